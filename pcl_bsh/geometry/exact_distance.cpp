@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Three stages, each used only where it is sure of itself: an enclosure in double, an expansion when the coordinate
+// differences are doubles, integers of any length.
+#include <pcl_bsh/geometry/exact_distance.h>
+
+#include <pcl_bsh/geometry/dyadic.h>
+#include <pcl_bsh/geometry/expansion.h>
+
+#include <limits>
+
+namespace pcl_bsh {
+namespace {
+
+/// Whether the squares of these, and the errors of the squares, are clear of underflow and overflow.
+bool safelySquared(const Point3& values)
+{
+  for (const double value : values) {
+    const double magnitude = std::abs(value);
+    if (magnitude != 0.0 && !(magnitude > 0x1p-450 && magnitude < 0x1p500)) return false;
+  }
+  return true;
+}
+
+/// Sign of |x|^2 - |y|^2, for values that are safelySquared().
+int compareSquares(const Point3& x, const Point3& y)
+{
+  Expansion<12> difference;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (x[k] != 0.0) difference.add(twoProduct(x[k], x[k]));
+    if (y[k] != 0.0) difference.add(twoProduct(-y[k], y[k]));
+  }
+  return difference.sign();
+}
+
+Dyadic square(const Dyadic& x)
+{
+  return x * x;
+}
+
+/// Sign of sqrt(squared) - y.
+int compareRoot(const Dyadic& squared, const Dyadic& y)
+{
+  return y.sign() < 0 ? 1 : (squared - square(y)).sign();
+}
+
+/// Sign of sqrt(x) + shift - sqrt(y).
+int compareShiftedRoots(const Dyadic& x, const Dyadic& shift, const Dyadic& y)
+{
+  if (shift.sign() < 0) return -compareShiftedRoots(y, -shift, x);
+  // Both sides are >= 0, so their squares compare alike: x + shift^2 - y + 2 shift sqrt(x).
+  const Dyadic rational = x + square(shift) - y;
+  const Dyadic irrational_squared = Dyadic(4.0) * square(shift) * x;
+  return rational.sign() >= 0 ? (rational + irrational_squared).sign() : (irrational_squared - square(rational)).sign();
+}
+
+/// sqrt(squared) - length within a few units in the last place.
+double approximateDifference(const Dyadic& squared, const Dyadic& length)
+{
+  // As a quotient, so that the only cancellation happens in exact arithmetic.
+  const auto numerator = (squared - square(length)).scaled();
+  auto root = squared.scaled();
+  const int parity = root.exponent & 1;
+  root = {std::sqrt(std::ldexp(root.mantissa, parity)), (root.exponent - parity) / 2};
+  const auto shorter = length.scaled();
+  const int exponent = std::max(root.exponent, shorter.exponent);
+  const double denominator =
+      std::ldexp(root.mantissa, root.exponent - exponent) + std::ldexp(shorter.mantissa, shorter.exponent - exponent);
+  return std::ldexp(numerator.mantissa / denominator, numerator.exponent - exponent);
+}
+
+/// Halfway to the next double above x; the one above the largest counts as 2^1024.
+Dyadic halfwayAbove(double x)
+{
+  constexpr double largest = std::numeric_limits<double>::max();
+  const Dyadic above = x < largest ? Dyadic(std::nextafter(x, largest)) : Dyadic(0x1p1023) * Dyadic(2.0);
+  return (Dyadic(x) + above) * Dyadic(0.5);
+}
+
+bool isEven(double x)
+{
+  return (std::bit_cast<std::uint64_t>(x) & 1) == 0;
+}
+
+} // namespace
+
+ExactDistance::ExactDistance(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b)
+: translations_only_(pose_a.linear() == Eigen::Matrix3d::Identity() && pose_b.linear() == Eigen::Matrix3d::Identity())
+{
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 4; ++j) {
+      a_[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = pose_a.matrix()(i, j);
+      b_[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = pose_b.matrix()(i, j);
+    }
+  }
+}
+
+int ExactDistance::compare(const Point3& p, const Point3& q, double clearance, double radius_p, double radius_q) const
+{
+  const double reach = clearance + radius_p + radius_q;
+  const Interval distance = enclose(p, q);
+  if (distance.high < reach * (1.0 - 0x1p-50)) return -1;
+  if (distance.low > reach * (1.0 + 0x1p-50)) return 1;
+
+  Point3 difference;
+  if (radius_p == 0.0 && radius_q == 0.0 && exactDifference(p, q, difference)) {
+    const Point3 length = {clearance, 0.0, 0.0};
+    if (safelySquared(length)) return compareSquares(difference, length);
+  }
+  return compareRoot(squaredDistance(p, q), Dyadic(clearance) + Dyadic(radius_p) + Dyadic(radius_q));
+}
+
+int ExactDistance::compareGaps(const Pair& first, const Pair& second) const
+{
+  const double first_radii = first.radius_p + first.radius_q;
+  const double second_radii = second.radius_p + second.radius_q;
+  const Interval first_distance = enclose(first.p, first.q);
+  const Interval second_distance = enclose(second.p, second.q);
+  const double slack = 0x1p-50 * (first_distance.high + second_distance.high + first_radii + second_radii);
+  if (first_distance.high - first_radii + slack < second_distance.low - second_radii) return -1;
+  if (second_distance.high - second_radii + slack < first_distance.low - first_radii) return 1;
+
+  Point3 x, y;
+  if (first_radii == 0.0 && second_radii == 0.0 && exactDifference(first.p, first.q, x) &&
+      exactDifference(second.p, second.q, y)) {
+    return compareSquares(x, y);
+  }
+  const Dyadic shift =
+      Dyadic(second.radius_p) + Dyadic(second.radius_q) - Dyadic(first.radius_p) - Dyadic(first.radius_q);
+  return compareShiftedRoots(squaredDistance(first.p, first.q), shift, squaredDistance(second.p, second.q));
+}
+
+double ExactDistance::gap(const Pair& pair) const
+{
+  const Dyadic squared = squaredDistance(pair.p, pair.q);
+  const Dyadic radii = Dyadic(pair.radius_p) + Dyadic(pair.radius_q);
+  if (compareRoot(squared, radii) == 0) return 0.0;
+
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr double largest = std::numeric_limits<double>::max();
+  double rounded = std::min(approximateDifference(squared, radii), largest);
+  const auto belongs_above = [&](double x) {
+    const int side = compareRoot(squared, radii + halfwayAbove(x));
+    return side > 0 || (side == 0 && !isEven(x));
+  };
+  while (rounded < infinity && belongs_above(rounded)) rounded = std::nextafter(rounded, infinity);
+  while (rounded > -infinity && !belongs_above(std::nextafter(rounded, -infinity)))
+    rounded = std::nextafter(rounded, -infinity);
+  return rounded;
+}
+
+/// Double arithmetic with its error. Each coordinate is a sum of eight terms W (in absolute value), each of them
+/// rounded at most five times: |error| <= 5.01 x 2^-53 W. The factor below is three times that; it also pays for
+/// summing W, for squares, root and the last subtraction, and 2^-500 for all underflow.
+ExactDistance::Interval ExactDistance::enclose(const Point3& p, const Point3& q) const
+{
+  double squared = 0.0;
+  double terms = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double a[] = {a_[k][0] * p[0], a_[k][1] * p[1], a_[k][2] * p[2], a_[k][3]};
+    const double b[] = {b_[k][0] * q[0], b_[k][1] * q[1], b_[k][2] * q[2], b_[k][3]};
+    const double difference = (a[0] + a[1] + a[2] + a[3]) - (b[0] + b[1] + b[2] + b[3]);
+    squared += difference * difference;
+    for (const double term : a) terms += std::abs(term);
+    for (const double term : b) terms += std::abs(term);
+  }
+  // Overflow anywhere, also to NaN, says nothing about the distance.
+  if (!(squared < 0x1p1000)) return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  const double distance = std::sqrt(squared);
+  const double error = 0x1p-49 * terms + 0x1p-50 * distance + 0x1p-500;
+  return {distance - error, distance + error};
+}
+
+/// T_a p - T_b q when its three coordinates are doubles, found without rounding, and safelySquared().
+bool ExactDistance::exactDifference(const Point3& p, const Point3& q, Point3& difference) const
+{
+  if (!translations_only_) return false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const WithError moved_p = twoSum(p[k], a_[k][3]);
+    const WithError moved_q = twoSum(q[k], b_[k][3]);
+    const WithError sum = twoSum(moved_p.value, -moved_q.value);
+    // Written so that the NaN of an overflow is refused as well.
+    if (!(moved_p.error == 0.0 && moved_q.error == 0.0 && sum.error == 0.0)) return false;
+    difference[k] = sum.value;
+  }
+  return safelySquared(difference);
+}
+
+Dyadic ExactDistance::squaredDistance(const Point3& p, const Point3& q) const
+{
+  Dyadic squared;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Dyadic difference = Dyadic(a_[k][3]) - Dyadic(b_[k][3]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      difference += Dyadic(a_[k][j]) * Dyadic(p[j]);
+      difference += Dyadic(-b_[k][j]) * Dyadic(q[j]);
+    }
+    squared += square(difference);
+  }
+  return squared;
+}
+
+} // namespace pcl_bsh

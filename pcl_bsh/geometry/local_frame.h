@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Float coordinates near an origin of their own: how points are stored, and how far a stored one is from the given one.
+#pragma once
+
+#include <array>
+
+namespace pcl_bsh {
+
+/// A point p of a cloud is stored as the float x nearest to (p - origin) / unit.
+///
+/// Rounding bound: |(p - origin) / unit - x| <= slack per axis. The double subtraction errs by v |p - origin| and the
+/// cast by u |x|, so u (1 + 2^-20) reach covers both; 2^-148 covers the cast of denormals.
+struct LocalFrame {
+  std::array<double, 3> origin = {0, 0, 0};
+  double unit = 1.0;                       ///< a power of two; 1 unless the cloud is of extreme size
+  std::array<double, 3> reach = {0, 0, 0}; ///< at least |x| of every stored point, per axis, in units
+
+  double slack(int axis) const noexcept
+  {
+    return 0x1p-24 * (1.0 + 0x1p-20) * reach[static_cast<unsigned>(axis)] + 0x1p-148;
+  }
+};
+
+} // namespace pcl_bsh

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/relative_frame.h>
+
+#include <pcl_bsh/geometry/rounding.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
+
+/// A sum kept with its rounding errors (Ogita, Rump, Oishi: Dot2), and the sum of the absolute terms.
+struct CompensatedSum {
+  double sum = 0.0, errors = 0.0, absolute = 0.0;
+
+  void add(double term)
+  {
+    const WithError s = twoSum(sum, term);
+    sum = s.value;
+    errors += s.error;
+    absolute += std::abs(term);
+  }
+
+  void addProduct(double a, double b)
+  {
+    const WithError p = twoProduct(a, b);
+    add(p.value);
+    errors += p.error;
+  }
+
+  double value() const { return sum + errors; }
+  double bound() const { return kDoubleUnit * std::abs(value()) + 0x1p-96 * absolute; }
+};
+
+double normOfSums(const std::array<double, 9>& m)
+{
+  double largest = 0.0;
+  for (std::size_t i = 0; i < 3; ++i)
+    largest = std::max(largest, std::abs(m[3 * i]) + std::abs(m[3 * i + 1]) + std::abs(m[3 * i + 2]));
+  return largest;
+}
+
+/// M'M, so that the square root of its largest row sum bounds the spectral norm of M.
+std::array<double, 9> gram(const Eigen::Matrix3d& m)
+{
+  const Eigen::Matrix3d product = m.transpose() * m;
+  return {product(0, 0), product(0, 1), product(0, 2), product(1, 0), product(1, 1),
+          product(1, 2), product(2, 0), product(2, 1), product(2, 2)};
+}
+
+/// Float and double arithmetic of the kernels keep their relative bounds while values stay within this range.
+bool inRange(double value)
+{
+  return std::abs(value) <= 0x1p60;
+}
+
+} // namespace
+
+RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_a, const LocalFrame& b,
+                             const Eigen::Isometry3d& pose_b)
+: unit_b_(b.unit)
+{
+  const Eigen::Matrix3d ra = pose_a.linear(), rb = pose_b.linear();
+  const double scale = a.unit / b.unit;
+  const Eigen::Matrix3d relative = rb.transpose() * ra;
+  const Eigen::Matrix3d excess = rb.transpose() * rb - Eigen::Matrix3d::Identity();
+  skew_ = excess.cwiseAbs().rowwise().sum().maxCoeff() + 0x1p-48;
+  if (rb == Eigen::Matrix3d::Identity()) skew_ = 0.0;
+
+  // The vector between the origins, whose terms may be millions of times larger than it.
+  std::array<double, 3> between, between_bound;
+  for (int i = 0; i < 3; ++i) {
+    CompensatedSum sum;
+    for (int j = 0; j < 3; ++j) {
+      sum.addProduct(ra(i, j), a.origin[static_cast<unsigned>(j)]);
+      sum.addProduct(-rb(i, j), b.origin[static_cast<unsigned>(j)]);
+    }
+    sum.add(pose_a.translation()(i));
+    sum.add(-pose_b.translation()(i));
+    between[static_cast<unsigned>(i)] = sum.value() / b.unit;
+    between_bound[static_cast<unsigned>(i)] = sum.bound() / b.unit;
+  }
+
+  double squared = 0.0, squared_exact = 0.0;
+  bool in_range = b.unit >= 0x1p-900 && a.unit >= 0x1p-900 && b.unit <= 0x1p900 && a.unit <= 0x1p900;
+  for (unsigned i = 0; i < 3; ++i) {
+    double value = 0.0, absolute = 0.0, inherited = 0.0;
+    for (unsigned k = 0; k < 3; ++k) {
+      const double r = rb(k, i);
+      value += r * between[k];
+      absolute += std::abs(r * between[k]);
+      inherited += std::abs(r) * between_bound[k];
+    }
+    g_exact[i] = value;
+    g[i] = roundToFloat(value);
+
+    double moved = 0.0, slack = 0.0; // sum |M_ij| reach_a_j, sum |M_ij| slack_a_j
+    for (unsigned j = 0; j < 3; ++j) {
+      const double entry = relative(i, j) * scale;
+      m_exact[3 * i + j] = entry;
+      m[3 * i + j] = roundToFloat(entry);
+      moved += (std::abs(entry) + 0x1p-50 * scale) * a.reach[j];
+      slack += (std::abs(entry) + 0x1p-50 * scale) * a.slack(static_cast<int>(j));
+    }
+    const double skewed = skew_ * (b.reach[0] + b.reach[1] + b.reach[2]);
+    const double evaluated = 8 * kDoubleUnit * absolute + inherited + 0x1p-49 * moved + skewed;
+    const double float_error = slack + (1.0 + skew_) * b.slack(static_cast<int>(i)) +
+                               4.001 * kFloatUnit * (std::abs(value) + moved) + evaluated;
+    const double double_error = evaluated + 16 * kDoubleUnit * (std::abs(value) + moved + b.reach[i]);
+    squared += float_error * float_error;
+    squared_exact += double_error * double_error;
+    in_range = in_range && inRange(value) && inRange(moved) && inRange(b.reach[i]);
+  }
+  float_error_ = std::sqrt(squared) * (1.0 + 0x1p-48) + 0x1p-60;
+  error = in_range ? float_error_ : kInfinity;
+  error_exact = in_range ? std::sqrt(squared_exact) * (1.0 + 0x1p-48) + 0x1p-500 : kInfinity;
+
+  stretch_a = roundUp(std::sqrt(normOfSums(gram(relative))) * (1.0 + 0x1p-40) * scale);
+  if (relative == Eigen::Matrix3d::Identity() && skew_ == 0.0) stretch_a = roundUp(scale);
+  stretch_b = roundUp(1.0 + skew_);
+  span_ = stretch_a * std::hypot(a.reach[0], a.reach[1], a.reach[2]) +
+          stretch_b * std::hypot(b.reach[0], b.reach[1], b.reach[2]);
+}
+
+bool RelativeFrame::separates(double clearance) const noexcept
+{
+  const double distance = std::hypot(g_exact[0], g_exact[1], g_exact[2]);
+  const double reach = span_ + clearance / unit_b_ * (1.0 + skew_) + float_error_;
+  return distance < kInfinity && distance * (1.0 - 0x1p-40) > reach * (1.0 + 0x1p-40);
+}
+
+DistanceBand RelativeFrame::band(double clearance) const noexcept
+{
+  const double d = clearance / unit_b_;
+  if (!(error < kInfinity) || !inRange(d)) return {-1.0f, kFloatInfinity};
+  // |z| <= d follows from |w| <= d (1 - skew), |z| > d from |w| > d (1 + skew).
+  const double low_d = d * (1.0 - skew_), high_d = d * (1.0 + skew_);
+  DistanceBand band;
+  const double low = (low_d - error) - 0x1p-52 * (low_d + error);
+  const double hit = (1.0 - 6 * kFloatUnit) * low * low - 0x1p-124;
+  band.hit = low > 0.0 && hit >= 0.0 ? std::min(roundDown(hit), std::numeric_limits<float>::max()) : -1.0f;
+  const double high = (high_d + error) * (1.0 + 0x1p-51);
+  const double miss = (1.0 + 6 * kFloatUnit) * high * high + 0x1p-124;
+  band.miss = miss >= 3.4e38 ? kFloatInfinity : roundUp(miss);
+  return band;
+}
+
+std::array<double, 2> RelativeFrame::bandExact(double clearance) const noexcept
+{
+  const double d = clearance / unit_b_;
+  if (!(error_exact < kInfinity) || !inRange(d)) return {-1.0, kInfinity};
+  const double low_d = d * (1.0 - skew_), high_d = d * (1.0 + skew_);
+  const double low = (low_d - error_exact) - 0x1p-50 * (low_d + error_exact);
+  const double high = (high_d + error_exact) * (1.0 + 0x1p-50);
+  const double hit = (1.0 - 12 * kDoubleUnit) * low * low - 0x1p-900;
+  return {low > 0.0 ? hit : -1.0, (1.0 + 12 * kDoubleUnit) * high * high + 0x1p-900};
+}
+
+float RelativeFrame::pruneReach(double clearance) const noexcept
+{
+  return roundUp((clearance / unit_b_ * (1.0 + skew_) + float_error_) * (1.0 + 0x1p-40));
+}
+
+float RelativeFrame::acceptReach(double clearance) const noexcept
+{
+  if (!(error < kInfinity)) return -kFloatInfinity;
+  return roundDown((clearance / unit_b_ * (1.0 - skew_) - error) - 0x1p-40 * (clearance / unit_b_ + 2 * error));
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From one local frame to another under two poses, and the bounds that make float arithmetic there provable.
+#pragma once
+
+#include <pcl_bsh/geometry/local_frame.h>
+
+#include <Eigen/Geometry>
+
+#include <array>
+
+namespace pcl_bsh {
+
+/// What float tests in a relative frame may conclude about |T_a p - T_b q| against the reach (a clearance).
+struct DistanceBand {
+  float hit = -1.0f; ///< squared float distance <= hit: within the clearance
+  float miss = 0.0f; ///< squared float distance > miss: beyond it; anything between, NaN too, is undecided
+};
+
+/// Carries points of frame a into frame b: y = M x + g, so that |y - x_b| times b's unit is the distance of the points.
+///
+/// Let z = T_a p - T_b q be the true vector, w = R_b' z / unit_b. With E = R_b'R_b - I (zero for a perfect pose),
+/// w = g + M (x_a + e_a) - (I + E)(x_b + e_b), where g = R_b' (T_a origin_a - T_b origin_b) / unit_b is evaluated with
+/// compensated products and M = R_b' R_a unit_a / unit_b. `error` bounds |w - (y - x_b)| over all stored points, float
+/// evaluation of y included (4u of the absolute terms, fused or not); |z| and |w| differ by at most ||E|| |w|.
+class RelativeFrame {
+public:
+  RelativeFrame() = default;
+  RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_a, const LocalFrame& b,
+                const Eigen::Isometry3d& pose_b);
+
+  std::array<float, 9> m = {}; ///< row-major, float
+  std::array<float, 3> g = {}; ///< float
+  float stretch_a = 1.0f;      ///< a radius in a's unit, times this, bounds it in b's frame (spectral norm, rounded up)
+  float stretch_b = 1.0f;      ///< likewise for a radius of b: 1 + ||E||, rounded up
+  std::array<double, 9> m_exact = {}; ///< M in double
+  std::array<double, 3> g_exact = {}; ///< g in double
+  double error = 0.0;                 ///< in b's units
+  double error_exact = 0.0;           ///< the same when x and y are evaluated in double from the given coordinates
+
+  /// The band for a clearance >= 0 given in the clouds' unit. @pre finite or infinite, not NaN.
+  DistanceBand band(double clearance) const noexcept;
+
+  /// The band for distances evaluated in double from the given coordinates: {hit, miss} of the squared distance in b's
+  /// units.
+  std::array<double, 2> bandExact(double clearance) const noexcept;
+
+  /// At least (clearance + error) in b's units: two nodes whose centres' float distance exceeds the sum of their
+  /// stretched radii and this, by the margin of kPruneMargin, hold no colliding pair.
+  float pruneReach(double clearance) const noexcept;
+
+  /// At most (clearance - error) in b's units; the counterpart for "every pair collides". May be negative.
+  float acceptReach(double clearance) const noexcept;
+
+  /// Bounds | |z| - |w| | / |w|, how far the poses are from rigid.
+  double skew() const noexcept { return skew_; }
+
+  /// Whether no stored points of the two frames are within the clearance, whatever they are. Judged in double, so that
+  /// distances whose squares leave the range of float are answered here.
+  bool separates(double clearance) const noexcept;
+
+private:
+  double span_ = 0.0;        // of both frames' points around their origins, in b's units
+  double float_error_ = 0.0; // `error` before it is given up for values out of range: good for spheres, not for points
+  double unit_b_ = 1.0;
+  double skew_ = 0.0; ///< bounds ||E||
+};
+
+/// Relative margin of squared node tests: covers the float evaluation of centre distances and radius sums (under 12 u).
+inline constexpr float kPruneMargin = 0x1p-20f;
+
+} // namespace pcl_bsh

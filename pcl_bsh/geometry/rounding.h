@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Directed rounding and error-free sums and products: the ground that every bound in this room stands on.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#ifdef __FAST_MATH__
+#error "pcl_bsh decides collisions exactly and cannot be compiled with -ffast-math"
+#endif
+
+namespace pcl_bsh {
+
+inline constexpr double kFloatUnit = 0x1p-24;  ///< u: unit roundoff of float
+inline constexpr double kDoubleUnit = 0x1p-53; ///< v: unit roundoff of double
+
+/// The float nearest to x. Keeps the rounding: g++ may drop it from a plain cast to float and back when it vectorises
+/// two lanes of straight-line code.
+inline float roundToFloat(double x) noexcept
+{
+  float rounded = static_cast<float>(x);
+#if defined(__GNUC__) && defined(__SSE__)
+  asm("" : "+x"(rounded));
+#elif defined(__GNUC__)
+  asm("" : "+m"(rounded));
+#endif
+  return rounded;
+}
+
+/// The smallest float that is not below x.
+inline float roundUp(double x) noexcept
+{
+  const float rounded = roundToFloat(x);
+  return static_cast<double>(rounded) < x ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;
+}
+
+/// The largest float that is not above x.
+inline float roundDown(double x) noexcept
+{
+  const float rounded = roundToFloat(x);
+  return static_cast<double>(rounded) > x ? std::nextafter(rounded, -std::numeric_limits<float>::infinity()) : rounded;
+}
+
+/// A double with the error of the operation that made it.
+struct WithError {
+  double value = 0.0;
+  double error = 0.0;
+};
+
+/// value + error = a + b exactly, barring overflow (Knuth).
+inline WithError twoSum(double a, double b) noexcept
+{
+  const double sum = a + b;
+  const double b_part = sum - a;
+  return {sum, (a - (sum - b_part)) + (b - b_part)};
+}
+
+/// value + error = a * b exactly, barring overflow and underflow (fused multiply-add, in software where need be).
+inline WithError twoProduct(double a, double b) noexcept
+{
+  const double product = a * b;
+  return {product, std::fma(a, b, -product)};
+}
+
+} // namespace pcl_bsh

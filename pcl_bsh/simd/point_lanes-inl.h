@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A leaf's points, sixteen at most, against another leaf's; and passes over any range of points.
+
+#if defined(PCL_BSH_SIMD_POINT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_SIMD_POINT_LANES_INL_H_
+#undef PCL_BSH_SIMD_POINT_LANES_INL_H_
+#else
+#define PCL_BSH_SIMD_POINT_LANES_INL_H_
+#endif
+
+#include <pcl_bsh/simd/sphere_lanes-inl.h>
+
+#include <algorithm>
+#include <limits>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+inline constexpr std::size_t kLeafPoints = 16; ///< of a leaf, at most
+
+/// The bits of the first `count` of sixteen points.
+HWY_INLINE std::uint32_t firstBits(std::size_t count)
+{
+  return (1u << count) - 1;
+}
+
+/// Sixteen points in one frame; those past the leaf's count hold anything.
+struct LeafPoints {
+  alignas(64) float x[kLeafPoints];
+  alignas(64) float y[kLeafPoints];
+  alignas(64) float z[kLeafPoints];
+};
+
+/// Which of the sixteen points are not proven to be farther than reach from (cx, cy, cz).
+HWY_INLINE std::uint32_t pointsNear(const LeafPoints& points, float cx, float cy, float cz, float reach, float margin)
+{
+  const LaneTag d;
+  const LaneVector limit = hn::Set(d, reach * reach * (1.0f + margin));
+  std::uint32_t far = 0;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+    const LaneVector dx = hn::Sub(hn::Load(d, points.x + i), hn::Set(d, cx));
+    const LaneVector dy = hn::Sub(hn::Load(d, points.y + i), hn::Set(d, cy));
+    const LaneVector dz = hn::Sub(hn::Load(d, points.z + i), hn::Set(d, cz));
+    far |= bitsOf(d, hn::Gt(squaredNorm(dx, dy, dz), limit)) << i;
+  }
+  return far ^ 0xffffu;
+}
+
+/// Lowers nearest[i] to the smallest squared distance of point i to `count` points (x, y, z); none may be NaN where the
+/// result is used.
+HWY_INLINE void nearestSquared(const LeafPoints& points, const float* x, const float* y, const float* z,
+                               std::size_t count, float* nearest)
+{
+  const LaneTag d;
+  for (std::size_t i = 0; i < kLeafPoints; i += 2 * hn::Lanes(d)) {
+    const std::size_t k = i + hn::Lanes(d);
+    const LaneVector ax = hn::Load(d, points.x + i), ay = hn::Load(d, points.y + i), az = hn::Load(d, points.z + i);
+    const LaneVector bx = hn::Load(d, points.x + k), by = hn::Load(d, points.y + k), bz = hn::Load(d, points.z + k);
+    LaneVector best_a = hn::LoadU(d, nearest + i), best_b = hn::LoadU(d, nearest + k);
+    for (std::size_t j = 0; j < count; ++j) {
+      const LaneVector qx = hn::Set(d, x[j]), qy = hn::Set(d, y[j]), qz = hn::Set(d, z[j]);
+      best_a = hn::Min(best_a, squaredNorm(hn::Sub(ax, qx), hn::Sub(ay, qy), hn::Sub(az, qz)));
+      best_b = hn::Min(best_b, squaredNorm(hn::Sub(bx, qx), hn::Sub(by, qy), hn::Sub(bz, qz)));
+    }
+    hn::StoreU(best_a, d, nearest + i);
+    hn::StoreU(best_b, d, nearest + k);
+  }
+}
+
+/// Which of sixteen values are at most `limit`.
+HWY_INLINE std::uint32_t atMost(const float* values, float limit)
+{
+  const LaneTag d;
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+    bits |= bitsOf(d, hn::Le(hn::Load(d, values + i), hn::Set(d, limit))) << i;
+  return bits;
+}
+
+/// Which of sixteen values are above `limit`. Not the opposite of atMost(): NaN is neither.
+HWY_INLINE std::uint32_t above(const float* values, float limit)
+{
+  const LaneTag d;
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+    bits |= bitsOf(d, hn::Gt(hn::Load(d, values + i), hn::Set(d, limit))) << i;
+  return bits;
+}
+
+/// Squared distances of the sixteen points to (qx, qy, qz).
+HWY_INLINE void squaredDistances(const LeafPoints& points, float qx, float qy, float qz, float* squared)
+{
+  const LaneTag d;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+    const LaneVector dx = hn::Sub(hn::Load(d, points.x + i), hn::Set(d, qx));
+    const LaneVector dy = hn::Sub(hn::Load(d, points.y + i), hn::Set(d, qy));
+    const LaneVector dz = hn::Sub(hn::Load(d, points.z + i), hn::Set(d, qz));
+    hn::StoreU(squaredNorm(dx, dy, dz), d, squared + i);
+  }
+}
+
+/// Smallest and largest of count > 0 values.
+HWY_INLINE void extent(const float* values, std::size_t count, float* low, float* high)
+{
+  const LaneTag d;
+  const std::size_t step = hn::Lanes(d);
+  if (count < step) {
+    *low = *std::min_element(values, values + count);
+    *high = *std::max_element(values, values + count);
+    return;
+  }
+  LaneVector least = hn::LoadU(d, values + count - step), most = least;
+  for (std::size_t i = 0; i + step < count; i += step) {
+    const LaneVector v = hn::LoadU(d, values + i);
+    least = hn::Min(least, v);
+    most = hn::Max(most, v);
+  }
+  *low = hn::GetLane(hn::MinOfLanes(d, least));
+  *high = hn::GetLane(hn::MaxOfLanes(d, most));
+}
+
+/// Largest squared distance of count > 0 points from (cx, cy, cz), plain float arithmetic (under 6 u above or below).
+HWY_INLINE float farthestSquared(const float* x, const float* y, const float* z, std::size_t count, float cx, float cy,
+                                 float cz)
+{
+  const LaneTag d;
+  const std::size_t step = hn::Lanes(d);
+  if (count < step) {
+    float most = 0.0f;
+    for (std::size_t i = 0; i < count; ++i) {
+      const float dx = x[i] - cx, dy = y[i] - cy, dz = z[i] - cz;
+      most = std::max(most, dx * dx + dy * dy + dz * dz);
+    }
+    return most;
+  }
+  const LaneVector vx = hn::Set(d, cx), vy = hn::Set(d, cy), vz = hn::Set(d, cz);
+  LaneVector most = hn::Zero(d);
+  for (std::size_t i = 0;; i += step) {
+    const std::size_t at = std::min(i, count - step); // the last vector overlaps the one before
+    const LaneVector dx = hn::Sub(hn::LoadU(d, x + at), vx);
+    const LaneVector dy = hn::Sub(hn::LoadU(d, y + at), vy);
+    const LaneVector dz = hn::Sub(hn::LoadU(d, z + at), vz);
+    most = hn::Max(most, squaredNorm(dx, dy, dz));
+    if (at + step >= count) break;
+  }
+  return hn::GetLane(hn::MaxOfLanes(d, most));
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle
