@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Threads are an argument: one is a plain loop, several are oneTBB's, and none of the results can tell.
+#pragma once
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <cstddef>
+#include <thread>
+
+namespace pcl_bsh {
+
+/// @param requested 0: all of the machine's.
+inline unsigned threadCount(unsigned requested) noexcept
+{
+  if (requested != 0) return requested;
+  const unsigned all = std::thread::hardware_concurrency();
+  return all != 0 ? all : 1;
+}
+
+/// Calls body(i) for each i in [0, count), in any order; rethrows what a body throws.
+template <class Body>
+void parallelFor(std::size_t count, unsigned threads, const Body& body)
+{
+  if (threads <= 1 || count <= 1) {
+    for (std::size_t i = 0; i < count; ++i) body(i);
+    return;
+  }
+  tbb::task_arena arena(static_cast<int>(threads));
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, body); });
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The caller's points, seen in place: any array of records that holds x, y, z as float32 or float64.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace pcl_bsh {
+
+enum class Scalar : std::uint8_t { float32, float64 };
+
+/// Three coordinates in double: exact for float32 and float64 input alike.
+using Point3 = std::array<double, 3>;
+
+/// A read-only view of `count` records. The memory must outlive whatever is built on it, unchanged: exact decisions
+/// return to the original coordinates. Records need not be aligned.
+struct PointsView {
+  const void* data = nullptr;                    ///< first byte of record 0; may be null only when count is 0
+  std::size_t count = 0;                         ///< records; at most 2^31 - 1, so that pcl::Indices can name them
+  std::size_t stride = 0;                        ///< bytes from one record to the next
+  std::array<std::size_t, 3> offset = {0, 0, 0}; ///< bytes from a record's start to its x, y, z
+  Scalar scalar = Scalar::float32;
+  const std::int32_t* indices = nullptr; ///< optional subset: only these records are points
+  std::size_t index_count = 0;           ///< length of `indices`; ignored when that is null
+  const float* radii = nullptr;          ///< optional, one per record (not per index): finite and >= 0
+
+  /// How many points the view names (a subset counts its indices).
+  std::size_t size() const noexcept { return indices ? index_count : count; }
+
+  /// The record of the i-th point, 0 <= i < size().
+  std::uint32_t record(std::size_t i) const noexcept { return static_cast<std::uint32_t>(indices ? indices[i] : i); }
+
+  /// Coordinates of a record, as given.
+  Point3 point(std::uint32_t record) const noexcept
+  {
+    const auto* base = static_cast<const unsigned char*>(data) + stride * record;
+    Point3 p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (scalar == Scalar::float32) {
+        float value;
+        std::memcpy(&value, base + offset[k], sizeof value);
+        p[k] = value;
+      }
+      else {
+        std::memcpy(&p[k], base + offset[k], sizeof(double));
+      }
+    }
+    return p;
+  }
+
+  double radius(std::uint32_t record) const noexcept { return radii ? radii[record] : 0.0; }
+};
+
+/// View of `count` float32 points, x y z in a row, `stride` bytes apart.
+inline PointsView viewOf(const float* xyz, std::size_t count, std::size_t stride = 3 * sizeof(float)) noexcept
+{
+  return {xyz, count, stride, {0, sizeof(float), 2 * sizeof(float)}, Scalar::float32};
+}
+
+/// View of `count` float64 points, x y z in a row, `stride` bytes apart.
+inline PointsView viewOf(const double* xyz, std::size_t count, std::size_t stride = 3 * sizeof(double)) noexcept
+{
+  return {xyz, count, stride, {0, sizeof(double), 2 * sizeof(double)}, Scalar::float64};
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One cloud's index: voxels, an octree in each voxel, a bounding-sphere hierarchy in each octree cell.
+// (Figueiredo, Pereira, Oliveira, Araujo: Collision Detection for Point Cloud Models with Bounding Spheres
+// Hierarchies, IJVR 11(2), 2012.)
+#pragma once
+
+#include <pcl_bsh/hierarchy/points_view.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// How the centre of an enclosing sphere is chosen. Changes times, never answers.
+enum class SphereFit : std::uint8_t { box_center, ritter, minimal };
+
+struct HierarchyOptions {
+  /// Edge of a voxel, in the cloud's unit; rounded to a power of two. 0: from the density of the points.
+  double voxel_edge = 0.0;
+  SphereFit fit = SphereFit::box_center;
+  unsigned threads = 1; ///< for sorting points into voxels; 0: all of the machine's
+};
+
+/// What a hierarchy holds. Lengths in the cloud's unit; of the voxels built so far.
+struct HierarchyStatistics {
+  std::size_t points = 0;       ///< finite points indexed
+  std::size_t voxels = 0;       ///< non-empty voxels
+  std::size_t voxels_built = 0; ///< of these, visited by a query or buildAll()
+  std::size_t nodes = 0;        ///< wide nodes
+  std::size_t leaves = 0;
+  std::size_t depth = 0; ///< wide nodes on the longest way from a voxel to a leaf
+  std::size_t bytes = 0; ///< memory held, the caller's cloud not counted
+  double voxel_edge = 0.0;
+  double mean_leaf_points = 0.0;
+  double mean_leaf_radius = 0.0;
+};
+
+/// What validate() found; no line means sound.
+struct HierarchyDefects {
+  std::vector<std::string> lines; ///< the first hundred, one defect each
+  bool none() const noexcept { return lines.empty(); }
+};
+
+/// The hierarchy of one cloud, in the cloud's own frame; poses belong to queries. Construction sorts the points into
+/// voxels; a voxel's octree and spheres are built on its first visit, once, safely from several threads. Non-finite
+/// points are left out. Holds about 20 bytes per point; the caller's points must outlive it, unchanged.
+class SphereHierarchy {
+public:
+  /// @throws std::invalid_argument naming the offending value: a null or too large view, an index outside the view, a
+  ///   radius that is negative or not finite, a negative or non-finite voxel edge.
+  explicit SphereHierarchy(const PointsView& points, const HierarchyOptions& options = {});
+  ~SphereHierarchy();
+  SphereHierarchy(SphereHierarchy&&) noexcept;
+  SphereHierarchy& operator=(SphereHierarchy&&) noexcept;
+
+  const PointsView& view() const noexcept;
+  const HierarchyOptions& options() const noexcept;
+
+  std::size_t size() const noexcept; ///< finite points indexed
+  bool empty() const noexcept { return size() == 0; }
+
+  /// Builds every voxel now. @param threads 0: all of the machine's. The result is the same for any number.
+  void buildAll(unsigned threads = 1) const;
+
+  /// Checks everything that queries rely on, in exact arithmetic: each point is in every sphere above it, each child in
+  /// its parent's range, no point lost or doubled. Builds what is not built yet.
+  HierarchyDefects validate() const;
+
+  HierarchyStatistics statistics() const;
+
+  class Storage; ///< voxels and nodes, for pcl_bsh/query (pcl_bsh/hierarchy/storage.h)
+  const Storage& storage() const noexcept { return *storage_; }
+
+private:
+  std::unique_ptr<Storage> storage_;
+};
+
+} // namespace pcl_bsh

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a SphereHierarchy holds: one buffer of points in voxel order, the voxels, and the tree above them.
+#pragma once
+
+#include <pcl_bsh/geometry/local_frame.h>
+#include <pcl_bsh/hierarchy/node.h>
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// A point before its voxel is built: local coordinates and where it came from.
+struct PointRecord {
+  float x, y, z;
+  std::uint32_t record;
+};
+static_assert(sizeof(PointRecord) == 4 * sizeof(float));
+
+/// The unit of lazy building and of local precision.
+struct Voxel {
+  enum State : std::uint8_t { sorted, building, built };
+
+  LocalFrame frame;
+  std::uint64_t key = 0;    ///< Morton code of its place in the voxel grid
+  std::uint32_t begin = 0;  ///< its first point, counted over all voxels
+  std::uint32_t lowest = 0; ///< smallest record number of its points
+  std::uint32_t count = 0;  ///< its points, at least 1
+  float radius = 0.0f;     ///< of a sphere around the frame's origin that holds all of its points, in the frame's units
+  float* block = nullptr;  ///< PointRecord[count] while sorted; x[count], y[count], z[count], record[count] once built
+  float* radii = nullptr;  ///< one per point in the order of x, once built; null when points have none
+  std::vector<Node> nodes; ///< nodes[0] is the root; empty until built
+  std::atomic<std::uint8_t> state{sorted};
+
+  const float* x() const noexcept { return block; }
+  const float* y() const noexcept { return block + count; }
+  const float* z() const noexcept { return block + 2 * std::size_t{count}; }
+  const std::uint32_t* records() const noexcept
+  {
+    return reinterpret_cast<const std::uint32_t*>(block + 3 * std::size_t{count});
+  }
+};
+
+class SphereHierarchy::Storage {
+public:
+  /// Sorts the points into voxels and builds the tree above them.
+  Storage(const PointsView& points, const HierarchyOptions& options);
+
+  /// The voxel with its octree and spheres. Builds it on the first call; other threads wait.
+  /// @param built_now incremented when this call built it.
+  const Voxel& built(std::size_t voxel, std::uint64_t& built_now) const
+  {
+    const Voxel& v = voxels[voxel];
+    if (v.state.load(std::memory_order_acquire) != Voxel::built) build(voxel, built_now);
+    return v;
+  }
+
+  PointsView view;
+  HierarchyOptions options;
+  double voxel_edge = 1.0;
+  std::size_t size = 0; ///< finite points
+  std::size_t voxel_count = 0;
+  std::unique_ptr<Voxel[]> voxels; ///< sorted by key
+  LocalFrame frame;                ///< of `top`
+  std::vector<Node> top; ///< the octree above the voxels: leaves are voxels; top[0] is the root; empty iff size == 0
+
+private:
+  void build(std::size_t voxel, std::uint64_t& built_now) const;
+
+  std::unique_ptr<float[]> buffer_; ///< every voxel's block, each followed by padding that vector loads may touch
+  std::unique_ptr<float[]> radii_;
+};
+
+/// Floats of padding behind each voxel's block: a whole leaf can be loaded from any point of it.
+inline constexpr std::size_t kBlockPadding = kMaxLeafPoints;
+
+/// Turns the voxel's sorted points into octree cells and bounding spheres.
+void buildVoxel(Voxel& voxel, const PointsView& view, SphereFit fit);
+
+/// Distributes the finite points of the view over voxels: what Storage's constructor starts with.
+struct VoxelSorting {
+  double edge = 1.0;
+  std::size_t size = 0;
+  std::size_t voxel_count = 0;
+  std::unique_ptr<Voxel[]> voxels;
+  std::unique_ptr<float[]> buffer;
+  LocalFrame frame; ///< of the whole cloud
+};
+VoxelSorting sortIntoVoxels(const PointsView& view, const HierarchyOptions& options);
+
+/// The octree above the voxels, in the cloud's frame. @param largest_radii largest point radius of each voxel, or null.
+std::vector<Node> buildTop(const Voxel* voxels, std::size_t count, const LocalFrame& frame, const float* largest_radii);
+
+/// The frame for points within [low, high]; its origin is a float where `float_origin` says so.
+LocalFrame frameBetween(const std::array<double, 3>& low, const std::array<double, 3>& high, bool float_origin);
+
+} // namespace pcl_bsh

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The octree above the voxels, so that a descent sees one sphere tree from the cloud down to the points.
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/hierarchy/storage.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_bsh {
+namespace {
+
+/// A voxel's bounds in the cloud's frame, in doubles; rounding is made good by `kSlack` of the largest coordinate.
+struct CloudBox {
+  std::array<double, 3> low, high;
+};
+
+constexpr double kSlack = 0x1p-50;
+
+class TopBuilder {
+public:
+  TopBuilder(const Voxel* voxels, std::size_t count, const LocalFrame& frame, const float* largest_radii)
+  : voxels_(voxels),
+    frame_(frame),
+    largest_radii_(largest_radii)
+  {
+    cut(0, static_cast<std::uint32_t>(count));
+  }
+
+  std::vector<Node> nodes;
+
+private:
+  /// The node over voxels [begin, end): its children are the octree cells in which their keys first differ.
+  std::uint32_t cut(std::uint32_t begin, std::uint32_t end)
+  {
+    const auto node = static_cast<std::uint32_t>(nodes.size());
+    nodes.emplace_back();
+    nodes[node].count = 0;
+    const std::uint64_t difference = voxels_[begin].key ^ voxels_[end - 1].key;
+    const unsigned shift = difference == 0 ? 0 : static_cast<unsigned>(63 - __builtin_clzll(difference)) / 3 * 3;
+    for (std::uint32_t from = begin; from < end;) {
+      std::uint32_t to = from + 1;
+      while (to < end && voxels_[to].key >> shift == voxels_[from].key >> shift) ++to;
+      const std::uint32_t below = to - from == 1 ? Node::kLeaf : cut(from, to);
+      const std::uint32_t i = nodes[node].count++;
+      nodes[node].begin[i] = from;
+      nodes[node].begin[i + 1] = to;
+      nodes[node].child[i] = below;
+      nodes[node].lowest[i] = lowestRecord(from, to);
+      fitSphere(nodes[node], i);
+      from = to;
+    }
+    nodes[node].clearUnused();
+    return node;
+  }
+
+  std::uint32_t lowestRecord(std::uint32_t begin, std::uint32_t end) const
+  {
+    std::uint32_t lowest = 0xffffffffu;
+    for (std::uint32_t v = begin; v < end; ++v) lowest = std::min(lowest, voxels_[v].lowest);
+    return lowest;
+  }
+
+  CloudBox boxOf(std::uint32_t v) const
+  {
+    const LocalFrame& f = voxels_[v].frame;
+    CloudBox box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double origin = f.origin[k] / frame_.unit - frame_.origin[k] / frame_.unit;
+      const double half = (f.reach[k] + f.slack(static_cast<int>(k))) * (f.unit / frame_.unit);
+      box.low[k] = origin - half;
+      box.high[k] = origin + half;
+    }
+    return box;
+  }
+
+  /// Around the voxels' boxes; each box's farthest corner decides.
+  void fitSphere(Node& node, std::uint32_t i) const
+  {
+    CloudBox all = boxOf(node.begin[i]);
+    for (std::uint32_t v = node.begin[i] + 1; v < node.begin[i + 1]; ++v) {
+      const CloudBox box = boxOf(v);
+      for (std::size_t k = 0; k < 3; ++k) {
+        all.low[k] = std::min(all.low[k], box.low[k]);
+        all.high[k] = std::max(all.high[k], box.high[k]);
+      }
+    }
+    std::array<float, 3> c;
+    for (std::size_t k = 0; k < 3; ++k) c[k] = roundToFloat(0.5 * all.low[k] + 0.5 * all.high[k]);
+    double radius = 0.0;
+    for (std::uint32_t v = node.begin[i]; v < node.begin[i + 1]; ++v) {
+      const CloudBox box = boxOf(v);
+      double squared = 0.0, largest = 0.0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double corner = std::max(std::abs(box.low[k] - c[k]), std::abs(box.high[k] - c[k]));
+        squared += corner * corner;
+        largest =
+            std::max({largest, std::abs(box.low[k]), std::abs(box.high[k]), std::abs(frame_.origin[k] / frame_.unit)});
+      }
+      const double ball = largest_radii_ ? static_cast<double>(largest_radii_[v]) / frame_.unit : 0.0;
+      radius = std::max(radius, (std::sqrt(squared) + ball) * (1.0 + kSlack) + 4 * kSlack * largest);
+    }
+    node.x[i] = c[0], node.y[i] = c[1], node.z[i] = c[2];
+    node.r[i] = roundUp(radius + 0x1p-60);
+  }
+
+  const Voxel* voxels_;
+  const LocalFrame& frame_;
+  const float* largest_radii_;
+};
+
+} // namespace
+
+std::vector<Node> buildTop(const Voxel* voxels, std::size_t count, const LocalFrame& frame, const float* largest_radii)
+{
+  return std::move(TopBuilder(voxels, count, frame, largest_radii).nodes);
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/hierarchy/storage.h>
+
+#include <cmath>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr std::size_t kMostLines = 100;
+
+class Validator {
+public:
+  explicit Validator(const SphereHierarchy::Storage& storage) : s_(storage), seen_(storage.view.count, 0) {}
+
+  HierarchyDefects run()
+  {
+    std::uint64_t built_now = 0;
+    std::size_t points = 0;
+    for (std::size_t v = 0; v < s_.voxel_count; ++v) {
+      const Voxel& voxel = s_.built(v, built_now);
+      name_ = "voxel " + std::to_string(v);
+      if (v > 0 && !(s_.voxels[v - 1].key < voxel.key)) defect("key out of order");
+      if (voxel.begin != points) defect("its points do not begin where the last voxel's end");
+      points += voxel.count;
+      checkPoints(voxel);
+      if (voxel.nodes.empty())
+        defect("no nodes");
+      else
+        checkNode(voxel.nodes, 0, 0, voxel.count, voxel.frame, v);
+    }
+    name_ = "cloud";
+    if (points != s_.size)
+      defect("voxels hold " + std::to_string(points) + " of " + std::to_string(s_.size) + " points");
+    if (s_.size > 0) checkNode(s_.top, 0, 0, static_cast<std::uint32_t>(s_.voxel_count), s_.frame, kAboveVoxels);
+    checkNoneLost();
+    return std::move(defects_);
+  }
+
+private:
+  static constexpr std::size_t kAboveVoxels = ~std::size_t{0};
+
+  void defect(const std::string& what)
+  {
+    if (defects_.lines.size() < kMostLines) defects_.lines.push_back(name_ + ": " + what);
+  }
+
+  /// Stored coordinates are within the frame's bounds of the given ones.
+  void checkPoints(const Voxel& voxel)
+  {
+    for (std::uint32_t i = 0; i < voxel.count; ++i) {
+      const std::uint32_t record = voxel.records()[i];
+      if (record >= s_.view.count) {
+        defect("no such record: " + std::to_string(record));
+        continue;
+      }
+      ++seen_[record];
+      const Point3 p = s_.view.point(record);
+      const float stored[3] = {voxel.x()[i], voxel.y()[i], voxel.z()[i]};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const LocalFrame& f = voxel.frame;
+        const double local = p[k] / f.unit - f.origin[k] / f.unit;
+        if (std::abs(static_cast<double>(stored[k])) > f.reach[k])
+          defect("point " + std::to_string(record) + " beyond the reach");
+        if (std::abs(local - static_cast<double>(stored[k])) >
+            f.slack(static_cast<int>(k)) * (1.0 + 0x1p-20) + std::abs(local) * 0x1p-50)
+          defect("point " + std::to_string(record) + " stored too far from where it is");
+      }
+    }
+  }
+
+  void checkNode(const std::vector<Node>& nodes, std::uint32_t index, std::uint32_t begin, std::uint32_t end,
+                 const LocalFrame& frame, std::size_t voxel)
+  {
+    const std::string here = "node " + std::to_string(index) + ": ";
+    if (index >= nodes.size()) return defect(here + "no such node");
+    const Node& node = nodes[index];
+    if (node.count < 1 || node.count > kNodeChildren)
+      return defect(here + "has " + std::to_string(node.count) + " children");
+    if (node.begin[0] != begin || node.begin[node.count] != end) defect(here + "its children do not span its range");
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      if (node.begin[i] >= node.begin[i + 1]) return defect(here + "child " + std::to_string(i) + " is empty");
+      checkSphere(node, i, frame, voxel, here);
+      const std::uint32_t most = voxel == kAboveVoxels ? 1 : static_cast<std::uint32_t>(kMaxLeafPoints);
+      if (node.isLeaf(i)) {
+        if (node.points(i) > most) defect(here + "leaf " + std::to_string(i) + " is too large");
+      }
+      else if (node.child[i] <= index) {
+        defect(here + "child " + std::to_string(i) + " does not follow its parent");
+      }
+      else {
+        checkNode(nodes, node.child[i], node.begin[i], node.begin[i + 1], frame, voxel);
+      }
+    }
+  }
+
+  /// Every point below child i is within its sphere, as given and in exact arithmetic.
+  void checkSphere(const Node& node, std::uint32_t i, const LocalFrame& frame, std::size_t voxel,
+                   const std::string& here)
+  {
+    std::uint32_t lowest = 0xffffffffu;
+    const auto visit = [&](const Voxel& v, std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t k = begin; k < end; ++k) {
+        lowest = std::min(lowest, v.records()[k]);
+        if (!contains(node, i, frame, v.records()[k]))
+          defect(here + "sphere " + std::to_string(i) + " does not contain point " + std::to_string(v.records()[k]));
+      }
+    };
+    if (voxel != kAboveVoxels)
+      visit(s_.voxels[voxel], node.begin[i], node.begin[i + 1]);
+    else
+      for (std::uint32_t v = node.begin[i]; v < node.begin[i + 1]; ++v) visit(s_.voxels[v], 0, s_.voxels[v].count);
+    if (lowest != node.lowest[i]) defect(here + "lowest record of child " + std::to_string(i) + " is wrong");
+  }
+
+  bool contains(const Node& node, std::uint32_t i, const LocalFrame& frame, std::uint32_t record) const
+  {
+    // The sphere's centre is origin + unit * (x, y, z): the pose adds the origin, exactly.
+    Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
+    origin.translation() = Eigen::Vector3d(frame.origin[0], frame.origin[1], frame.origin[2]);
+    const Point3 c = {node.x[i] * frame.unit, node.y[i] * frame.unit, node.z[i] * frame.unit};
+    return ExactDistance(Eigen::Isometry3d::Identity(), origin)
+               .compare(s_.view.point(record), c, node.r[i] * frame.unit, -s_.view.radius(record)) <= 0;
+  }
+
+  void checkNoneLost()
+  {
+    std::vector<std::uint32_t> expected(s_.view.count, 0);
+    for (std::size_t i = 0; i < s_.view.size(); ++i) {
+      const std::uint32_t record = s_.view.record(i);
+      const Point3 p = s_.view.point(record);
+      expected[record] += std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+    }
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      if (seen_[i] != expected[i])
+        defect("point " + std::to_string(i) + " is held " + std::to_string(seen_[i]) + " times, not " +
+               std::to_string(expected[i]));
+  }
+
+  const SphereHierarchy::Storage& s_;
+  std::vector<std::uint32_t> seen_;
+  std::string name_;
+  HierarchyDefects defects_;
+};
+
+} // namespace
+
+HierarchyDefects SphereHierarchy::validate() const
+{
+  return Validator(*storage_).run();
+}
+
+} // namespace pcl_bsh

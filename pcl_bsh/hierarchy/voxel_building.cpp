@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A voxel's octree cells and bounding spheres, built on the voxel's first visit:
+// sort the points by cell, cut the cells' tree into wide nodes with leaves of sixteen points at most, fit the spheres.
+#include <pcl_bsh/geometry/enclosing_sphere.h>
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/hierarchy/storage.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/hierarchy/voxel_building.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/simd/point_lanes-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+namespace {
+
+constexpr unsigned kChildBits = 3;              // a node's eight children are told apart by three bits of a cell's code
+constexpr unsigned kMostBits = 12;              // of a code: more points than 4,096 cells can hold are split again
+constexpr unsigned kMostRecursions = 12;        // cells within cells; beyond them points are nearly coincident
+constexpr std::uint32_t kWantedLeafPoints = 12; // cells hold this many at most on average, so that few exceed a leaf
+
+/// Bounds of some points. The fourth lane holds nothing.
+struct Box {
+  alignas(16) float low[4] = {kNone, kNone, kNone, kNone};
+  alignas(16) float high[4] = {-kNone, -kNone, -kNone, -kNone};
+  static constexpr float kNone = std::numeric_limits<float>::infinity();
+
+  void merge(const Box& other)
+  {
+    for (int k = 0; k < 4; ++k) {
+      low[k] = std::min(low[k], other.low[k]);
+      high[k] = std::max(high[k], other.high[k]);
+    }
+  }
+
+  float extent(int axis) const { return high[axis] - low[axis]; }
+};
+
+Box boxOf(const PointRecord* records, std::size_t count)
+{
+  Box box;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float p[3] = {records[i].x, records[i].y, records[i].z};
+    for (int k = 0; k < 3; ++k) {
+      box.low[k] = p[k] < box.low[k] ? p[k] : box.low[k];
+      box.high[k] = p[k] > box.high[k] ? p[k] : box.high[k];
+    }
+  }
+  return box;
+}
+
+/// Numbers the cells of a box along a space-filling order: each bit of a code halves the axis along which cells are
+/// longest, the most significant bit first. A cube gives the Morton order; a flat box is not split through its
+/// thickness.
+class CellCodes {
+public:
+  CellCodes(const Box& box, unsigned bits) : bits_(bits)
+  {
+    std::array<float, 3> edge = {box.extent(0), box.extent(1), box.extent(2)};
+    std::array<unsigned, 3> axis_bits = {0, 0, 0};
+    std::array<std::uint8_t, kMostBits> axis_of; // of each bit of the code, most significant first
+    for (unsigned b = 0; b < bits; ++b) {
+      const auto longest = static_cast<std::size_t>(std::max_element(edge.begin(), edge.end()) - edge.begin());
+      edge[longest] *= 0.5f;
+      ++axis_bits[longest];
+      axis_of[b] = static_cast<std::uint8_t>(longest);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto cells = static_cast<float>(1u << axis_bits[k]);
+      low_[k] = box.low[k];
+      last_[k] = cells - 1.0f;
+      const float extent = box.extent(static_cast<int>(k));
+      scale_[k] = extent > 0.0f ? std::min(cells / extent, std::numeric_limits<float>::max()) : 0.0f;
+      spread(static_cast<std::uint8_t>(k), axis_bits[k], axis_of);
+    }
+  }
+
+  std::uint32_t operator()(const PointRecord& p) const
+  {
+    return static_cast<std::uint32_t>(spread_[0][cell(p.x, 0)] | spread_[1][cell(p.y, 1)] | spread_[2][cell(p.z, 2)]);
+  }
+
+private:
+  std::uint32_t cell(float value, std::size_t k) const
+  {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::min((value - low_[k]) * scale_[k], last_[k])));
+  }
+
+  /// spread_[axis][cell]: the code bits that the cell's number along the axis stands for.
+  void spread(std::uint8_t axis, unsigned axis_bits, const std::array<std::uint8_t, kMostBits>& axis_of)
+  {
+    for (std::uint32_t number = 0; number < 1u << axis_bits; ++number) {
+      std::uint32_t code = 0;
+      unsigned taken = 0;
+      for (unsigned b = 0; b < bits_; ++b) {
+        if (axis_of[b] != axis) continue;
+        const std::uint32_t bit = number >> (axis_bits - 1 - taken++) & 1;
+        code |= bit << (bits_ - 1 - b);
+      }
+      spread_[axis][number] = static_cast<std::uint16_t>(code);
+    }
+  }
+
+  unsigned bits_;
+  std::array<float, 3> low_, scale_, last_;
+  std::array<std::array<std::uint16_t, 1u << kMostBits>, 3> spread_;
+};
+
+/// Scratch that a thread keeps from voxel to voxel.
+struct Scratch {
+  std::vector<PointRecord> sorted;
+  std::vector<std::uint16_t> codes;
+  std::vector<Box> boxes;
+};
+
+class VoxelBuilder {
+public:
+  VoxelBuilder(Voxel& voxel, const PointsView& view, SphereFit fit, Scratch& scratch)
+  : voxel_(voxel),
+    view_(view),
+    fit_(fit),
+    scratch_(scratch),
+    given_(reinterpret_cast<PointRecord*>(voxel.block))
+  {
+  }
+
+  void build()
+  {
+    scratch_.sorted.resize(voxel_.count);
+    scratch_.codes.resize(voxel_.count);
+    nodes_.reserve(voxel_.count / 32 + 4);
+    sortIntoCells();
+    fitBoxes();
+    storeAsArrays();
+    fitSpheres();
+    nodes_.shrink_to_fit();
+    voxel_.nodes = std::move(nodes_);
+  }
+
+private:
+  void sortIntoCells()
+  {
+    if (voxel_.count <= kMaxLeafPoints) {
+      std::copy_n(given_, voxel_.count, scratch_.sorted.data());
+      addLeaf(nodes_[newNode()], 0, voxel_.count);
+      return;
+    }
+    Box box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.low[k] = static_cast<float>(-voxel_.frame.reach[k]);
+      box.high[k] = static_cast<float>(voxel_.frame.reach[k]);
+    }
+    sortRange(0, voxel_.count, box, 0);
+  }
+
+  /// Moves points [begin, end), more than a leaf's, from given_ to scratch_.sorted in the order of their cells.
+  /// @return the node above the cells.
+  std::uint32_t sortRange(std::uint32_t begin, std::uint32_t end, const Box& box, unsigned recursion)
+  {
+    const bool coincident = !(box.extent(0) > 0.0f || box.extent(1) > 0.0f || box.extent(2) > 0.0f);
+    if (coincident || recursion == kMostRecursions) {
+      std::copy(given_ + begin, given_ + end, scratch_.sorted.begin() + begin);
+      return splitByCount(begin, end);
+    }
+    unsigned bits = 1;
+    while (bits < kMostBits && (end - begin) >> bits >= kWantedLeafPoints) ++bits;
+
+    const CellCodes codes(box, bits);
+    std::vector<std::uint32_t> starts((std::size_t{1} << bits) + 1, 0);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const std::uint32_t code = codes(given_[i]);
+      scratch_.codes[i] = static_cast<std::uint16_t>(code);
+      ++starts[code];
+    }
+    std::uint32_t sum = begin;
+    for (std::uint32_t& start : starts) {
+      const std::uint32_t count = start;
+      start = sum;
+      sum += count;
+    }
+    for (std::uint32_t i = begin; i < end; ++i) scratch_.sorted[starts[scratch_.codes[i]]++] = given_[i];
+    // Each start has moved on to where the next cell's was.
+    std::rotate(starts.begin(), starts.end() - 1, starts.end());
+    starts.front() = begin;
+    return cutCells(starts, 0, bits, recursion);
+  }
+
+  /// The wide node over the cells whose codes begin at `first` and differ in their last `bits` bits.
+  std::uint32_t cutCells(const std::vector<std::uint32_t>& starts, std::uint32_t first, unsigned bits,
+                         unsigned recursion)
+  {
+    // The root takes the bits that threes leave over, so that all nodes below it are wide.
+    unsigned taken = bits % kChildBits != 0 ? bits % kChildBits : kChildBits;
+    const std::uint32_t width = 1u << (bits - taken);
+    const auto startOf = [&](std::uint32_t child) { return starts[first + child * width]; };
+
+    std::uint32_t occupied = 0, only = 0;
+    for (std::uint32_t child = 0; child < 1u << taken; ++child)
+      if (startOf(child) != startOf(child + 1)) ++occupied, only = child;
+    if (occupied == 1) return descend(starts, first + only * width, bits - taken, recursion);
+
+    const std::uint32_t node = newNode();
+    for (std::uint32_t child = 0; child < 1u << taken; ++child) {
+      const std::uint32_t begin = startOf(child), end = startOf(child + 1);
+      if (begin == end) continue;
+      if (end - begin <= kMaxLeafPoints) {
+        addLeaf(nodes_[node], begin, end);
+      }
+      else {
+        const std::uint32_t below = descend(starts, first + child * width, bits - taken, recursion);
+        addChild(nodes_[node], begin, end, below);
+      }
+    }
+    return node;
+  }
+
+  /// A node for more points than a leaf holds: over the cells of `bits` further bits, or within a single one.
+  std::uint32_t descend(const std::vector<std::uint32_t>& starts, std::uint32_t first, unsigned bits,
+                        unsigned recursion)
+  {
+    if (bits > 0) return cutCells(starts, first, bits, recursion);
+    const std::uint32_t begin = starts[first], end = starts[first + 1];
+    std::copy(scratch_.sorted.begin() + begin, scratch_.sorted.begin() + end, given_ + begin);
+    return sortRange(begin, end, boxOf(given_ + begin, end - begin), recursion + 1);
+  }
+
+  /// Equal shares in the order given: for points that no plane tells apart.
+  std::uint32_t splitByCount(std::uint32_t begin, std::uint32_t end)
+  {
+    const std::uint32_t node = newNode();
+    const std::uint64_t count = end - begin;
+    const std::uint64_t leaves = (count + kMaxLeafPoints - 1) / kMaxLeafPoints;
+    const std::uint64_t shares = std::min<std::uint64_t>(leaves, kNodeChildren);
+    for (std::uint64_t i = 0; i < shares; ++i) {
+      const auto from = begin + static_cast<std::uint32_t>(count * i / shares);
+      const auto to = begin + static_cast<std::uint32_t>(count * (i + 1) / shares);
+      if (to - from <= kMaxLeafPoints) {
+        addLeaf(nodes_[node], from, to);
+      }
+      else {
+        const std::uint32_t below = splitByCount(from, to);
+        addChild(nodes_[node], from, to, below);
+      }
+    }
+    return node;
+  }
+
+  std::uint32_t newNode()
+  {
+    nodes_.emplace_back();
+    nodes_.back().count = 0;
+    return static_cast<std::uint32_t>(nodes_.size() - 1);
+  }
+
+  static void addChild(Node& node, std::uint32_t begin, std::uint32_t end, std::uint32_t child)
+  {
+    node.begin[node.count] = begin;
+    node.child[node.count] = child;
+    node.begin[++node.count] = end;
+  }
+
+  static void addLeaf(Node& node, std::uint32_t begin, std::uint32_t end) { addChild(node, begin, end, Node::kLeaf); }
+
+  /// Boxes and smallest record numbers, children before parents.
+  void fitBoxes()
+  {
+    scratch_.boxes.assign(nodes_.size() * kNodeChildren, Box{});
+    for (std::size_t n = nodes_.size(); n-- > 0;) {
+      Node& node = nodes_[n];
+      for (std::uint32_t i = 0; i < node.count; ++i) {
+        Box& box = scratch_.boxes[n * kNodeChildren + i];
+        std::uint32_t lowest = 0xffffffffu;
+        if (node.isLeaf(i)) {
+          const PointRecord* points = scratch_.sorted.data() + node.begin[i];
+          box = boxOf(points, node.points(i));
+          for (std::uint32_t k = 0; k < node.points(i); ++k) lowest = std::min(lowest, points[k].record);
+        }
+        else {
+          const Node& below = nodes_[node.child[i]];
+          for (std::uint32_t k = 0; k < below.count; ++k) {
+            box.merge(scratch_.boxes[node.child[i] * kNodeChildren + k]);
+            lowest = std::min(lowest, below.lowest[k]);
+          }
+        }
+        node.lowest[i] = lowest;
+      }
+    }
+  }
+
+  /// The points' final form: x, y, z and record numbers, each in an array of its own.
+  void storeAsArrays()
+  {
+    const std::size_t count = voxel_.count;
+    float* x = voxel_.block;
+    float *y = x + count, *z = y + count, *records = z + count;
+    const auto* from = reinterpret_cast<const float*>(scratch_.sorted.data());
+    const LaneTag d;
+    const std::size_t step = hn::Lanes(d);
+    std::size_t i = 0;
+    for (; i + step <= count; i += step) {
+      LaneVector vx, vy, vz, vr;
+      hn::LoadInterleaved4(d, from + 4 * i, vx, vy, vz, vr);
+      hn::StoreU(vx, d, x + i);
+      hn::StoreU(vy, d, y + i);
+      hn::StoreU(vz, d, z + i);
+      hn::StoreU(vr, d, records + i);
+    }
+    for (; i < count; ++i) {
+      const PointRecord& p = scratch_.sorted[i];
+      x[i] = p.x, y[i] = p.y, z[i] = p.z;
+      std::memcpy(records + i, &p.record, sizeof p.record);
+    }
+    if (voxel_.radii)
+      for (std::size_t k = 0; k < count; ++k) voxel_.radii[k] = view_.radii[scratch_.sorted[k].record];
+  }
+
+  void fitSpheres()
+  {
+    double slack = 0.0;
+    for (int k = 0; k < 3; ++k) slack += voxel_.frame.slack(k) * voxel_.frame.slack(k);
+    slack = std::sqrt(slack) * (1.0 + 0x1p-50) + 0x1p-60;
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+      Node& node = nodes_[n];
+      for (std::uint32_t i = 0; i < node.count; ++i) {
+        const std::array<float, 3> c = center(node.begin[i], node.begin[i + 1], scratch_.boxes[n * kNodeChildren + i]);
+        node.x[i] = c[0], node.y[i] = c[1], node.z[i] = c[2];
+        node.r[i] = radius(node.begin[i], node.begin[i + 1], c, slack);
+      }
+      node.clearUnused();
+    }
+  }
+
+  std::array<float, 3> center(std::uint32_t begin, std::uint32_t end, const Box& box) const
+  {
+    const PointArrays points{voxel_.x() + begin, voxel_.y() + begin, voxel_.z() + begin, end - begin};
+    if (fit_ == SphereFit::ritter) return ritterCenter(points);
+    if (fit_ == SphereFit::minimal) return minimalCenter(points);
+    return {0.5f * box.low[0] + 0.5f * box.high[0], 0.5f * box.low[1] + 0.5f * box.high[1],
+            0.5f * box.low[2] + 0.5f * box.high[2]};
+  }
+
+  /// Rounded outward: float distances err by less than 6 u of their squares, stored points by the frame's slack.
+  float radius(std::uint32_t begin, std::uint32_t end, const std::array<float, 3>& c, double slack) const
+  {
+    const float *x = voxel_.x(), *y = voxel_.y(), *z = voxel_.z();
+    if (!voxel_.radii) {
+      const float squared = farthestSquared(x + begin, y + begin, z + begin, end - begin, c[0], c[1], c[2]);
+      return roundUp(std::sqrt(static_cast<double>(squared)) * (1.0 + 0x1p-21) + slack);
+    }
+    double farthest = 0.0;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const float squared = farthestSquared(x + i, y + i, z + i, 1, c[0], c[1], c[2]);
+      const double ball = static_cast<double>(voxel_.radii[i]) / voxel_.frame.unit;
+      farthest = std::max(farthest, std::sqrt(static_cast<double>(squared)) * (1.0 + 0x1p-21) + ball);
+    }
+    return roundUp(farthest * (1.0 + 0x1p-50) + slack);
+  }
+
+  Voxel& voxel_;
+  const PointsView& view_;
+  SphereFit fit_;
+  Scratch& scratch_;
+  PointRecord* given_;
+  std::vector<Node> nodes_;
+};
+
+void buildVoxelHere(Voxel& voxel, const PointsView& view, SphereFit fit)
+{
+  constexpr std::size_t kKept = 1 << 16; // points for which a thread keeps its scratch
+  thread_local Scratch kept;
+  if (voxel.count <= kKept) {
+    VoxelBuilder(voxel, view, fit, kept).build();
+    return;
+  }
+  Scratch scratch;
+  VoxelBuilder(voxel, view, fit, scratch).build();
+}
+
+} // namespace
+
+void buildVoxelOnTarget(Voxel& voxel, const PointsView& view, SphereFit fit)
+{
+  buildVoxelHere(voxel, view, fit);
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(buildVoxelOnTarget);
+
+void buildVoxel(Voxel& voxel, const PointsView& view, SphereFit fit)
+{
+  HWY_DYNAMIC_DISPATCH(buildVoxelOnTarget)(voxel, view, fit);
+}
+
+} // namespace pcl_bsh
+#endif

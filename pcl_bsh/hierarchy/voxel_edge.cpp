@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/hierarchy/voxel_edge.h>
+
+#include <pcl_bsh/hierarchy/morton.h>
+
+#include <hwy/contrib/sort/vqsort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+// Enough points that the work of a voxel outweighs its frame, few enough that building one stays in the cache.
+constexpr double kPointsPerVoxel = 4096.0;
+
+// Keeps an edge and its inverse normal numbers.
+constexpr double kSmallestEdge = 0x1p-1000, kLargestEdge = 0x1p1000;
+
+double largestExtent(const Bounds& bounds)
+{
+  double extent = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, bounds.high[k] / 2 - bounds.low[k] / 2);
+  return 2 * std::min(extent, 0x1p1010);
+}
+
+/// The edge of a cube that holds the cloud with a bit to spare.
+double rootEdge(const Bounds& bounds)
+{
+  const double extent = largestExtent(bounds);
+  if (!(extent > 0.0)) return 1.0;
+  return std::clamp(std::exp2(std::ilogb(extent) + 1), kSmallestEdge, 0x1p1012);
+}
+
+double finestEdge(const Bounds& bounds)
+{
+  // Two cells of the 2^21 are kept free for the rounding of cell numbers.
+  return std::clamp(rootEdge(bounds) * 0x1p-20, kSmallestEdge, kLargestEdge);
+}
+
+} // namespace
+
+double voxelEdgeFromRequest(double edge, const Bounds& bounds)
+{
+  const double power = std::exp2(std::round(std::log2(std::clamp(edge, kSmallestEdge, kLargestEdge))));
+  return std::max(power, finestEdge(bounds));
+}
+
+double voxelEdgeFromDensity(const PointsView& view, const Bounds& bounds)
+{
+  const double root = rootEdge(bounds);
+  const double cell = finestEdge(bounds);
+  const double wanted = std::max(1.0, static_cast<double>(bounds.finite) / kPointsPerVoxel);
+
+  // Morton codes of a sample: neighbours in sorted order that first differ in bits of level L are in different voxels
+  // from level L down.
+  const std::size_t sample = std::min(view.size(), std::max<std::size_t>(4096, view.size() / 256));
+  std::vector<std::uint64_t> codes;
+  codes.reserve(sample);
+  for (std::size_t i = 0; i < sample; ++i) {
+    const Point3 p = view.point(view.record(i * view.size() / sample));
+    std::array<std::uint64_t, 3> number;
+    bool finite = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      finite = finite && std::isfinite(p[k]);
+      if (finite) number[k] = static_cast<std::uint64_t>(std::min(p[k] / cell - bounds.low[k] / cell, 0x1.fffffp20));
+    }
+    if (finite) codes.push_back(mortonCode(number[0], number[1], number[2]));
+  }
+  hwy::Sorter()(codes.data(), codes.size(), hwy::SortAscending());
+  std::array<std::size_t, kMortonBits + 1> split_at{}; // [b]: neighbours whose codes differ first in bit b of some axis
+  for (std::size_t i = 1; i < codes.size(); ++i) {
+    const std::uint64_t difference = codes[i] ^ codes[i - 1];
+    if (difference != 0) ++split_at[static_cast<std::size_t>(63 - __builtin_clzll(difference)) / 3];
+  }
+
+  double edge = cell * 0x1p21;
+  std::size_t occupied = 1;
+  for (std::size_t b = kMortonBits; b-- > 0;) {
+    // Going down to voxels of cell * 2^b: stop before the mean falls too far below what is wanted.
+    const std::size_t finer = occupied + split_at[b];
+    if (static_cast<double>(finer) > 2.0 * wanted) break;
+    occupied = finer;
+    edge = cell * std::exp2(static_cast<double>(b));
+  }
+  return std::clamp(std::min(edge, 2 * root), cell, kLargestEdge);
+}
+
+} // namespace pcl_bsh
