@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Walk, test and sink of two hierarchies at once, for queries that look for one pair: opens the larger sphere of a
+// pair, tests its children against the other sphere, and leaves the order to whoever keeps the pairs.
+
+#if defined(PCL_BSH_QUERY_PAIR_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_QUERY_PAIR_WALK_INL_H_
+#undef PCL_BSH_QUERY_PAIR_WALK_INL_H_
+#else
+#define PCL_BSH_QUERY_PAIR_WALK_INL_H_
+#endif
+
+#include <pcl_bsh/query/leaf_pair-inl.h>
+#include <pcl_bsh/query/space.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// A child of some node: where its sphere is stored.
+struct Lane {
+  std::uint32_t space = kAboveVoxels;
+  std::uint32_t node = 0;
+  std::uint32_t lane = 0;
+};
+
+/// Two lanes that may meet, and how near they are: smaller is nearer.
+struct LanePair {
+  float key = 0.0f;
+  Lane a, b;
+};
+
+/// Whose children to look at next.
+enum class Opened : std::uint8_t { a, b, neither };
+
+class PairWalk {
+public:
+  PairWalk(const Placed& placed_a, const Placed& placed_b) : a(placed_a), b(placed_b), frames(a, b) {}
+
+  Spaces a, b;
+  FrameTable frames;
+  Work work;
+
+  const Node& nodeOf(const Spaces& side, const Lane& lane) const { return side.node(lane.space, lane.node); }
+
+  bool isLeaf(const Spaces& side, const Lane& lane) const
+  {
+    return lane.space != kAboveVoxels && nodeOf(side, lane).isLeaf(lane.lane);
+  }
+
+  LeafRange leaf(const Spaces& side, const Lane& lane) const
+  {
+    return leafOf(side, lane.space, nodeOf(side, lane), lane.lane);
+  }
+
+  /// The larger one, in the clouds' unit, unless it is a leaf.
+  Opened choose(const LanePair& pair) const
+  {
+    const bool leaf_a = isLeaf(a, pair.a), leaf_b = isLeaf(b, pair.b);
+    if (leaf_a && leaf_b) return Opened::neither;
+    if (leaf_a != leaf_b) return leaf_a ? Opened::b : Opened::a;
+    const double ra = nodeOf(a, pair.a).r[pair.a.lane] * a.frame(pair.a.space).unit;
+    const double rb = nodeOf(b, pair.b).r[pair.b.lane] * b.frame(pair.b.space).unit;
+    return ra > rb ? Opened::a : Opened::b;
+  }
+
+  /// The node below a lane that is not a leaf. Entering a voxel builds it.
+  Lane enter(const Spaces& side, const Lane& lane)
+  {
+    const Node& node = nodeOf(side, lane);
+    if (!node.isLeaf(lane.lane)) return {lane.space, node.child[lane.lane], 0};
+    side.voxel(node.begin[lane.lane], work);
+    return {node.begin[lane.lane], 0, 0};
+  }
+
+  /// The children that a step has found near, as bits, with the sphere test's figures.
+  struct Step {
+    Lane entered; ///< the node whose children were tested
+    SphereHits hits;
+    float gap[kLanes];
+  };
+
+  /// Tests the children of pair.a, once opened, against pair.b; or the other way round.
+  void step(const LanePair& pair, Opened opened, double clearance, Step& out)
+  {
+    if (opened == Opened::a)
+      testChildrenOfA(enter(a, pair.a), pair.b, clearance, out);
+    else
+      testChildrenOfB(pair.a, enter(b, pair.b), clearance, out);
+  }
+
+  void testChildrenOfA(const Lane& entered, const Lane& lane_b, double clearance, Step& out)
+  {
+    const RelativeFrame& frame = frames.find(entered.space, lane_b.space);
+    const Node& node = nodeOf(a, entered);
+    const Node& other = nodeOf(b, lane_b);
+    alignas(32) float x[kLanes], y[kLanes], z[kLanes];
+    carry(frame.m.data(), frame.g.data(), node.x, node.y, node.z, kLanes, x, y, z);
+    out.entered = entered;
+    test(frame, x, y, z, node.r, frame.stretch_a, node.count, other.x[lane_b.lane], other.y[lane_b.lane],
+         other.z[lane_b.lane], other.r[lane_b.lane] * frame.stretch_b, clearance, out);
+  }
+
+  void testChildrenOfB(const Lane& lane_a, const Lane& entered, double clearance, Step& out)
+  {
+    const RelativeFrame& frame = frames.find(lane_a.space, entered.space);
+    const Node& node = nodeOf(b, entered);
+    const Node& other = nodeOf(a, lane_a);
+    float x, y, z;
+    carryOne(frame, other.x[lane_a.lane], other.y[lane_a.lane], other.z[lane_a.lane], x, y, z);
+    out.entered = entered;
+    test(frame, node.x, node.y, node.z, node.r, frame.stretch_b, node.count, x, y, z,
+         other.r[lane_a.lane] * frame.stretch_a, clearance, out);
+  }
+
+  /// Calls push(pair) for every pair of children of the two roots that may meet.
+  template <class Push>
+  void seed(double clearance, const Push& push)
+  {
+    if (a.storage.size == 0 || b.storage.size == 0) return;
+    if (frames.find(kAboveVoxels, kAboveVoxels).separates(clearance)) return;
+    Step found;
+    for (std::uint32_t i = 0; i < a.storage.top[0].count; ++i) {
+      const LanePair pair{0.0f, {kAboveVoxels, 0, i}, {kAboveVoxels, 0, 0}};
+      testChildrenOfB(pair.a, pair.b, clearance, found);
+      for (std::uint32_t near = found.hits.near; near != 0; near &= near - 1)
+        push(childOf(pair, Opened::b, found, static_cast<std::uint32_t>(std::countr_zero(near))));
+    }
+  }
+
+  static LanePair childOf(const LanePair& pair, Opened opened, const Step& step, std::uint32_t lane)
+  {
+    LanePair child = pair;
+    (opened == Opened::a ? child.a : child.b) = {step.entered.space, step.entered.node, lane};
+    child.key = step.gap[lane];
+    return child;
+  }
+
+  static void carryOne(const RelativeFrame& f, float px, float py, float pz, float& x, float& y, float& z)
+  {
+    x = ((f.g[0] + f.m[0] * px) + f.m[1] * py) + f.m[2] * pz;
+    y = ((f.g[1] + f.m[3] * px) + f.m[4] * py) + f.m[5] * pz;
+    z = ((f.g[2] + f.m[6] * px) + f.m[7] * py) + f.m[8] * pz;
+  }
+
+private:
+  void test(const RelativeFrame& frame, const float* x, const float* y, const float* z, const float* r, float stretch,
+            std::uint32_t count, float cx, float cy, float cz, float radius, double clearance, Step& out)
+  {
+    // The radius product is rounded: outward by the margin of the test for `near`, and here for `inside`.
+    out.hits = testSpheres(x, y, z, r, stretch, cx, cy, cz, radius + frame.pruneReach(clearance),
+                           frame.acceptReach(clearance) - radius * (1.0f + kPruneMargin), kPruneMargin, out.gap);
+    const std::uint32_t used = firstBits(count);
+    out.hits.near &= used;
+    out.hits.inside &= used;
+    work.node_pairs += count;
+  }
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

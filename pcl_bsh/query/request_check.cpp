@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/query/request_check.h>
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr double rigidity_tolerance = 1e-6; // far above a pose once kept in float32, far below a scale meant as one
+
+template <class... Parts>
+[[noreturn]] void refuse(const Parts&... parts)
+{
+  std::ostringstream message;
+  (message << ... << parts);
+  throw std::invalid_argument(message.str());
+}
+
+void checkPose(const char* name, const Eigen::Isometry3d& pose)
+{
+  const Eigen::Matrix4d& matrix = pose.matrix();
+  const Eigen::IOFormat one_line(6, Eigen::DontAlignCols, " ", "; ");
+  if (!matrix.allFinite()) refuse(name, ": not finite (", matrix.format(one_line), "): give a rigid transform");
+  if (matrix.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
+    refuse(name, ": last row is ", matrix.row(3).format(one_line), ": give a rigid transform, with last row 0 0 0 1");
+  }
+  const Eigen::Matrix3d rotation = pose.linear();
+  const double deviation = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).norm();
+  if (!(deviation <= rigidity_tolerance)) {
+    refuse(name, ": not rigid, |R'R - I| is ", deviation, " (", rotation.format(one_line),
+           "): give a rotation without scale or shear, within ", rigidity_tolerance);
+  }
+  if (rotation.determinant() < 0.0) refuse(name, ": a mirror (", rotation.format(one_line), "): give a rotation");
+}
+
+} // namespace
+
+void check(const Placed& a, const Placed& b, const CollisionRequest& request)
+{
+  if (!(std::isfinite(request.clearance) && request.clearance >= 0.0)) {
+    refuse("clearance: ", request.clearance, ": give a finite length >= 0");
+  }
+  checkPose("pose of a", a.pose);
+  checkPose("pose of b", b.pose);
+}
+
+} // namespace pcl_bsh
