@@ -148,9 +148,10 @@ double ExactDistance::gap(const Pair& pair) const
   return rounded;
 }
 
-/// Double arithmetic with its error. Each coordinate is a sum of eight terms W (in absolute value), each of them
-/// rounded at most five times: |error| <= 5.01 x 2^-53 W. The factor below is three times that; it also pays for
-/// summing W, for squares, root and the last subtraction, and 2^-500 for all underflow.
+/// Double arithmetic with its error. A coordinate sums eight terms, each rounded at most five times, so it errs by less
+/// than 5.01 x 2^-53 of their absolute sum. All terms of all coordinates together are also >= the distance; 32 x 2^-53
+/// of them pays for that, for the squares, the root, their own summation and the last subtraction; 2^-500 pays for
+/// underflow.
 ExactDistance::Interval ExactDistance::enclose(const Point3& p, const Point3& q) const
 {
   double squared = 0.0;
@@ -163,10 +164,10 @@ ExactDistance::Interval ExactDistance::enclose(const Point3& p, const Point3& q)
     for (const double term : a) terms += std::abs(term);
     for (const double term : b) terms += std::abs(term);
   }
-  // Overflow anywhere, also to NaN, says nothing about the distance.
-  if (!(squared < 0x1p1000)) return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  if (!std::isfinite(squared))
+    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   const double distance = std::sqrt(squared);
-  const double error = 0x1p-49 * terms + 0x1p-50 * distance + 0x1p-500;
+  const double error = 0x1p-48 * terms + 0x1p-500;
   return {distance - error, distance + error};
 }
 

@@ -5,8 +5,8 @@
 //   bool collide = distance.compare(p, q, clearance) <= 0;
 //
 // The twelve numbers of a pose are taken as they are: nothing here assumes that a rotation is one. Coordinates, poses
-// and lengths may be any finite doubles, denormal and huge ones included. Expects the default floating-point
-// environment (round to nearest, no flushing to zero).
+// and lengths may be any finite doubles, denormal and huge ones included. Expects the
+// DefaultFloatEnvironment.
 #pragma once
 
 #include <pcl_bsh/geometry/point3.h>

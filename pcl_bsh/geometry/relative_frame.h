@@ -45,7 +45,7 @@ public:
   std::array<double, 2> bandExact(double clearance) const noexcept;
 
   /// At least (clearance + error) in b's units: two nodes whose centres' float distance exceeds the sum of their
-  /// stretched radii and this, by the margin of kPruneMargin, hold no colliding pair.
+  /// stretched radii and this, by more than rounding, hold no colliding pair.
   float pruneReach(double clearance) const noexcept;
 
   /// At most (clearance - error) in b's units; the counterpart for "every pair collides". May be negative.
@@ -64,8 +64,5 @@ private:
   double unit_b_ = 1.0;
   double skew_ = 0.0; ///< bounds ||E||
 };
-
-/// Relative margin of squared node tests: covers the float evaluation of centre distances and radius sums (under 12 u).
-inline constexpr float kPruneMargin = 0x1p-20f;
 
 } // namespace pcl_bsh

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/geometry/local_frame.h>
+#include <pcl_bsh/hierarchy/large_buffer.h>
 #include <pcl_bsh/hierarchy/node.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
@@ -69,7 +70,7 @@ public:
 private:
   void build(std::size_t voxel, std::uint64_t& built_now) const;
 
-  std::unique_ptr<float[]> buffer_; ///< every voxel's block, each followed by padding that vector loads may touch
+  LargeBuffer<float> buffer_; ///< every voxel's block, each followed by padding that vector loads may touch
   std::unique_ptr<float[]> radii_;
 };
 
@@ -85,7 +86,7 @@ struct VoxelSorting {
   std::size_t size = 0;
   std::size_t voxel_count = 0;
   std::unique_ptr<Voxel[]> voxels;
-  std::unique_ptr<float[]> buffer;
+  LargeBuffer<float> buffer;
   LocalFrame frame; ///< of the whole cloud
 };
 VoxelSorting sortIntoVoxels(const PointsView& view, const HierarchyOptions& options);

@@ -24,10 +24,12 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-constexpr unsigned kChildBits = 3;              // a node's eight children are told apart by three bits of a cell's code
-constexpr unsigned kMostBits = 12;              // of a code: more points than 4,096 cells can hold are split again
-constexpr unsigned kMostRecursions = 12;        // cells within cells; beyond them points are nearly coincident
-constexpr std::uint32_t kWantedLeafPoints = 12; // cells hold this many at most on average, so that few exceed a leaf
+using RecordTag = hn::CappedTag<float, 4>; // x, y, z and the bits of a record number
+
+constexpr unsigned kMostBits = 12;       // of a code: more points than 4,096 cells can hold are split again
+constexpr unsigned kMostRecursions = 12; // cells within cells; beyond them points are nearly coincident
+constexpr std::uint32_t kCellPoints = 3; // cells hold this many on average: fine enough to cut leaves at good places
+constexpr std::uint32_t kFullNode = 96;  // points that eight leaves hold, cut between cells
 
 /// Bounds of some points. The fourth lane holds nothing.
 struct Box {
@@ -35,28 +37,34 @@ struct Box {
   alignas(16) float high[4] = {-kNone, -kNone, -kNone, -kNone};
   static constexpr float kNone = std::numeric_limits<float>::infinity();
 
-  void merge(const Box& other)
-  {
-    for (int k = 0; k < 4; ++k) {
-      low[k] = std::min(low[k], other.low[k]);
-      high[k] = std::max(high[k], other.high[k]);
-    }
-  }
-
   float extent(int axis) const { return high[axis] - low[axis]; }
 };
 
 Box boxOf(const PointRecord* records, std::size_t count)
 {
   Box box;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float p[3] = {records[i].x, records[i].y, records[i].z};
-    for (int k = 0; k < 3; ++k) {
-      box.low[k] = p[k] < box.low[k] ? p[k] : box.low[k];
-      box.high[k] = p[k] > box.high[k] ? p[k] : box.high[k];
+  const RecordTag d;
+  for (std::size_t k = 0; k < 4; k += hn::Lanes(d)) {
+    const float* from = reinterpret_cast<const float*>(records) + k;
+    auto low = hn::LoadU(d, from), high = low;
+    for (std::size_t i = 1; i < count; ++i) {
+      const auto p = hn::LoadU(d, from + 4 * i);
+      low = hn::Min(low, p);
+      high = hn::Max(high, p);
     }
+    hn::Store(low, d, box.low + k);
+    hn::Store(high, d, box.high + k);
   }
   return box;
+}
+
+void merge(Box& box, const Box& other)
+{
+  const RecordTag d;
+  for (std::size_t k = 0; k < 4; k += hn::Lanes(d)) {
+    hn::Store(hn::Min(hn::Load(d, box.low + k), hn::Load(d, other.low + k)), d, box.low + k);
+    hn::Store(hn::Max(hn::Load(d, box.high + k), hn::Load(d, other.high + k)), d, box.high + k);
+  }
 }
 
 /// Numbers the cells of a box along a space-filling order: each bit of a code halves the axis along which cells are
@@ -121,6 +129,7 @@ struct Scratch {
   std::vector<PointRecord> sorted;
   std::vector<std::uint16_t> codes;
   std::vector<Box> boxes;
+  std::vector<Node> nodes;
 };
 
 class VoxelBuilder {
@@ -130,6 +139,7 @@ public:
     view_(view),
     fit_(fit),
     scratch_(scratch),
+    nodes_(scratch.nodes),
     given_(reinterpret_cast<PointRecord*>(voxel.block))
   {
   }
@@ -138,13 +148,12 @@ public:
   {
     scratch_.sorted.resize(voxel_.count);
     scratch_.codes.resize(voxel_.count);
-    nodes_.reserve(voxel_.count / 32 + 4);
+    nodes_.clear();
     sortIntoCells();
     fitBoxes();
     storeAsArrays();
     fitSpheres();
-    nodes_.shrink_to_fit();
-    voxel_.nodes = std::move(nodes_);
+    voxel_.nodes.assign(nodes_.begin(), nodes_.end());
   }
 
 private:
@@ -173,7 +182,7 @@ private:
       return splitByCount(begin, end);
     }
     unsigned bits = 1;
-    while (bits < kMostBits && (end - begin) >> bits >= kWantedLeafPoints) ++bits;
+    while (bits < kMostBits && (end - begin) >> bits > kCellPoints) ++bits;
 
     const CellCodes codes(box, bits);
     std::vector<std::uint32_t> starts((std::size_t{1} << bits) + 1, 0);
@@ -192,44 +201,69 @@ private:
     // Each start has moved on to where the next cell's was.
     std::rotate(starts.begin(), starts.end() - 1, starts.end());
     starts.front() = begin;
-    return cutCells(starts, 0, bits, recursion);
+    return cutCells(starts, {0, bits}, recursion);
   }
 
-  /// The wide node over the cells whose codes begin at `first` and differ in their last `bits` bits.
-  std::uint32_t cutCells(const std::vector<std::uint32_t>& starts, std::uint32_t first, unsigned bits,
-                         unsigned recursion)
-  {
-    // The root takes the bits that threes leave over, so that all nodes below it are wide.
-    unsigned taken = bits % kChildBits != 0 ? bits % kChildBits : kChildBits;
-    const std::uint32_t width = 1u << (bits - taken);
-    const auto startOf = [&](std::uint32_t child) { return starts[first + child * width]; };
+  /// The cells whose codes begin at `first` and differ in their last `bits` bits only.
+  struct CellRange {
+    std::uint32_t first;
+    unsigned bits;
+  };
 
-    std::uint32_t occupied = 0, only = 0;
-    for (std::uint32_t child = 0; child < 1u << taken; ++child)
-      if (startOf(child) != startOf(child + 1)) ++occupied, only = child;
-    if (occupied == 1) return descend(starts, first + only * width, bits - taken, recursion);
+  /// Halves the fullest child until each is small enough, or eight are reached.
+  std::uint32_t cutCells(const std::vector<std::uint32_t>& starts, const CellRange& all, unsigned recursion)
+  {
+    const auto beginOf = [&](const CellRange& c) { return starts[c.first]; };
+    const auto endOf = [&](const CellRange& c) { return starts[c.first + (1u << c.bits)]; };
+    const auto count = [&](const CellRange& c) { return endOf(c) - beginOf(c); };
+
+    // Children of this size fill one node each, or a tree of full nodes.
+    std::uint32_t wanted = kMaxLeafPoints;
+    for (std::uint32_t full = kFullNode; count(all) > full && full < 1u << 28; full *= kNodeChildren) wanted = full;
+
+    std::array<CellRange, kNodeChildren> children = {all};
+    std::size_t used = 1;
+    for (;;) {
+      std::size_t fullest = kNodeChildren;
+      for (std::size_t i = 0; i < used; ++i)
+        if (children[i].bits > 0 && count(children[i]) > wanted &&
+            (fullest == kNodeChildren || count(children[i]) > count(children[fullest])))
+          fullest = i;
+      if (fullest == kNodeChildren) break;
+      const unsigned bits = children[fullest].bits - 1;
+      const CellRange low = {children[fullest].first, bits}, high = {children[fullest].first + (1u << bits), bits};
+      if (count(low) == 0 || count(high) == 0) {
+        children[fullest] = count(low) == 0 ? high : low;
+        continue;
+      }
+      if (used == kNodeChildren) break;
+      std::copy_backward(children.begin() + static_cast<std::ptrdiff_t>(fullest) + 1,
+                         children.begin() + static_cast<std::ptrdiff_t>(used),
+                         children.begin() + static_cast<std::ptrdiff_t>(used) + 1);
+      children[fullest] = low;
+      children[fullest + 1] = high;
+      ++used;
+    }
+    if (used == 1) return sortAgain(beginOf(children[0]), endOf(children[0]), recursion);
 
     const std::uint32_t node = newNode();
-    for (std::uint32_t child = 0; child < 1u << taken; ++child) {
-      const std::uint32_t begin = startOf(child), end = startOf(child + 1);
-      if (begin == end) continue;
-      if (end - begin <= kMaxLeafPoints) {
-        addLeaf(nodes_[node], begin, end);
+    for (std::size_t i = 0; i < used; ++i) {
+      const CellRange& child = children[i];
+      if (count(child) <= kMaxLeafPoints) {
+        addLeaf(nodes_[node], beginOf(child), endOf(child));
       }
       else {
-        const std::uint32_t below = descend(starts, first + child * width, bits - taken, recursion);
-        addChild(nodes_[node], begin, end, below);
+        const std::uint32_t below =
+            child.bits > 0 ? cutCells(starts, child, recursion) : sortAgain(beginOf(child), endOf(child), recursion);
+        addChild(nodes_[node], beginOf(child), endOf(child), below);
       }
     }
     return node;
   }
 
-  /// A node for more points than a leaf holds: over the cells of `bits` further bits, or within a single one.
-  std::uint32_t descend(const std::vector<std::uint32_t>& starts, std::uint32_t first, unsigned bits,
-                        unsigned recursion)
+  /// A node for one cell that holds more points than a leaf.
+  std::uint32_t sortAgain(std::uint32_t begin, std::uint32_t end, unsigned recursion)
   {
-    if (bits > 0) return cutCells(starts, first, bits, recursion);
-    const std::uint32_t begin = starts[first], end = starts[first + 1];
     std::copy(scratch_.sorted.begin() + begin, scratch_.sorted.begin() + end, given_ + begin);
     return sortRange(begin, end, boxOf(given_ + begin, end - begin), recursion + 1);
   }
@@ -288,7 +322,7 @@ private:
         else {
           const Node& below = nodes_[node.child[i]];
           for (std::uint32_t k = 0; k < below.count; ++k) {
-            box.merge(scratch_.boxes[node.child[i] * kNodeChildren + k]);
+            merge(box, scratch_.boxes[node.child[i] * kNodeChildren + k]);
             lowest = std::min(lowest, below.lowest[k]);
           }
         }
@@ -370,8 +404,8 @@ private:
   const PointsView& view_;
   SphereFit fit_;
   Scratch& scratch_;
+  std::vector<Node>& nodes_;
   PointRecord* given_;
-  std::vector<Node> nodes_;
 };
 
 void buildVoxelHere(Voxel& voxel, const PointsView& view, SphereFit fit)

@@ -9,102 +9,152 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/hierarchy/voxel_sorting.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/simd/quad-inl.h>
+
+HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
+namespace HWY_NAMESPACE {
 namespace {
 
 constexpr std::uint32_t kNoVoxel = 0xffffffffu;
 constexpr std::size_t kChunkPoints = 1 << 16; // points a thread takes at least: below that, one thread is faster
 
-template <class T>
-struct Coordinates {
-  T x, y, z;
-  bool finite() const { return std::abs(x) <= kMax && std::abs(y) <= kMax && std::abs(z) <= kMax; }
-  static constexpr T kMax = std::numeric_limits<T>::max();
+/// A point of a float64 cloud, with the operations that Quad has for float32.
+struct Triple {
+  double v[3];
+
+  static Triple load(const double* from) { return {{from[0], from[1], from[2]}}; }
+  static Triple of(double value) { return {{value, value, value}}; }
+  void store(double* to) const { std::copy_n(v, 3, to); }
+  void storeTruncated(std::int32_t* to) const
+  {
+    for (int k = 0; k < 3; ++k) to[k] = static_cast<std::int32_t>(v[k]);
+  }
+  bool finite() const { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+
+  template <class Operation>
+  static Triple apply(const Triple& a, const Triple& b, const Operation& operation)
+  {
+    return {{operation(a.v[0], b.v[0]), operation(a.v[1], b.v[1]), operation(a.v[2], b.v[2])}};
+  }
+  friend Triple operator-(const Triple& a, const Triple& b) { return apply(a, b, std::minus<double>()); }
+  friend Triple operator*(const Triple& a, const Triple& b) { return apply(a, b, std::multiplies<double>()); }
+  friend Triple min(const Triple& a, const Triple& b)
+  {
+    return apply(a, b, [](double l, double r) { return r < l ? r : l; });
+  }
+  friend Triple max(const Triple& a, const Triple& b)
+  {
+    return apply(a, b, [](double l, double r) { return r > l ? r : l; });
+  }
 };
+
+/// How a scalar type's points are held and computed with.
+template <class T>
+struct PointOf;
+template <>
+struct PointOf<float> {
+  using Type = Quad;
+};
+template <>
+struct PointOf<double> {
+  using Type = Triple;
+};
+template <class T>
+using Point = typename PointOf<T>::Type;
 
 /// Reads points of a view as they are stored.
 template <class T>
 class Reader {
 public:
-  explicit Reader(const PointsView& view)
-  : data_(static_cast<const unsigned char*>(view.data)),
-    stride_(view.stride),
-    offset_(view.offset),
-    indices_(view.indices)
+  explicit Reader(const PointsView& view) : view_(view), data_(static_cast<const unsigned char*>(view.data))
   {
+    const bool in_a_row =
+        view.offset[1] == view.offset[0] + sizeof(T) && view.offset[2] == view.offset[0] + 2 * sizeof(T);
+    // The spare lane of a Quad is read with the point; the last one must not be read beyond.
+    whole_ = in_a_row && view.count > 0 ? static_cast<std::uint32_t>(view.count - 1) : 0;
+    if (reinterpret_cast<std::uintptr_t>(data_) % alignof(T) != 0 || view.stride % alignof(T) != 0 ||
+        view.offset[0] % alignof(T) != 0)
+      whole_ = 0;
   }
 
-  std::uint32_t record(std::size_t i) const
+  Point<T> operator()(std::uint32_t record) const
   {
-    return static_cast<std::uint32_t>(indices_ ? indices_[i] : static_cast<std::int32_t>(i));
-  }
-
-  Coordinates<T> operator()(std::uint32_t record) const
-  {
-    const unsigned char* base = data_ + stride_ * record;
-    Coordinates<T> c;
-    std::memcpy(&c.x, base + offset_[0], sizeof(T));
-    std::memcpy(&c.y, base + offset_[1], sizeof(T));
-    std::memcpy(&c.z, base + offset_[2], sizeof(T));
-    return c;
+    const unsigned char* base = data_ + view_.stride * record;
+    if (record < whole_ && view_.stride >= 3 * sizeof(T))
+      return Point<T>::load(reinterpret_cast<const T*>(base + view_.offset[0]));
+    T copy[4] = {};
+    for (std::size_t k = 0; k < 3; ++k) std::memcpy(copy + k, base + view_.offset[k], sizeof(T));
+    return Point<T>::load(copy);
   }
 
 private:
+  const PointsView& view_;
   const unsigned char* data_;
-  std::size_t stride_;
-  std::array<std::size_t, 3> offset_;
-  const std::int32_t* indices_;
+  std::uint32_t whole_;
 };
 
-/// The cell number of a coordinate, counted from the lowest cell. Deterministic is all it needs to be: a point that
-/// rounding puts into the neighbouring voxel is at home there, for bounds and origins follow the points.
-template <class K>
-class CellNumbers {
-public:
-  CellNumbers(double edge, const Bounds& bounds) : inverse_(static_cast<K>(1.0 / edge))
-  {
-    for (std::size_t k = 0; k < 3; ++k) base_[k] = std::floor(static_cast<K>(bounds.low[k]) * inverse_);
-  }
-
-  template <class T>
-  std::uint64_t operator()(const Coordinates<T>& c) const
-  {
-    return number(c.x, 0) << 42 | number(c.y, 1) << 21 | number(c.z, 2);
-  }
-
-private:
-  std::uint64_t number(double value, std::size_t k) const
-  {
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(static_cast<K>(value) * inverse_ - base_[k]));
-  }
-
-  K inverse_;
-  std::array<K, 3> base_;
-};
-
-std::uint64_t mortonOf(std::uint64_t cell)
-{
-  return mortonCode(cell >> 42, cell >> 21 & 0x1fffff, cell & 0x1fffff);
-}
-
-/// A voxel as one chunk of points sees it.
+/// Points of the same voxel, as one chunk of the cloud has them.
 template <class T>
 struct Bin {
   std::uint64_t cell = 0;
   std::uint32_t count = 0;
-  std::uint32_t voxel = 0; // global number, known after merging; then the chunk's cursor lives in `next`
-  std::uint32_t next = 0;
-  std::array<T, 3> low, high;
+  std::uint32_t voxel = 0; ///< its number, known after merging
+  std::uint32_t first = 0; ///< place in the voxel of this chunk's first point, likewise
+  alignas(16) T low[4];
+  alignas(16) T high[4];
 
-  void add(const Coordinates<T>& c)
+  Bin()
+  {
+    std::fill(low, low + 4, std::numeric_limits<T>::infinity());
+    std::fill(high, high + 4, -std::numeric_limits<T>::infinity());
+  }
+
+  void add(const Point<T>& p)
   {
     ++count;
-    low[0] = std::min(low[0], c.x), high[0] = std::max(high[0], c.x);
-    low[1] = std::min(low[1], c.y), high[1] = std::max(high[1], c.y);
-    low[2] = std::min(low[2], c.z), high[2] = std::max(high[2], c.z);
+    min(Point<T>::load(low), p).store(low);
+    max(Point<T>::load(high), p).store(high);
   }
+};
+
+/// Which cell of the grid a point is in, as one number: 21 bits per axis, counted from the lowest cell. Deterministic
+/// is all it needs to be: a point that rounding puts into the neighbouring voxel is at home there, for frames follow
+/// points.
+template <class T>
+class CellNumbers {
+public:
+  CellNumbers(double edge, const Bounds& bounds)
+  : inverse_(Point<T>::of(static_cast<T>(1.0 / edge))),
+    base_(Point<T>::of(0))
+  {
+    T base[4] = {};
+    for (std::size_t k = 0; k < 3; ++k)
+      base[k] = std::floor(static_cast<T>(bounds.low[k]) * static_cast<T>(1.0 / edge));
+    base_ = Point<T>::load(base);
+  }
+
+  std::uint64_t operator()(const Point<T>& p) const
+  {
+    std::int32_t number[4];
+    (p * inverse_ - base_).storeTruncated(number);
+    const auto bits = [&](std::size_t k) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(number[k])); };
+    return bits(0) << 42 | bits(1) << 21 | bits(2);
+  }
+
+  static std::uint64_t morton(std::uint64_t cell)
+  {
+    return mortonCode(cell >> 42, cell >> 21 & 0x1fffff, cell & 0x1fffff);
+  }
+
+private:
+  Point<T> inverse_, base_;
 };
 
 /// Finds or adds the bin of a cell: open addressing, doubled when half full.
@@ -131,8 +181,6 @@ private:
     const auto bin = static_cast<std::uint32_t>(bins.size());
     bins.emplace_back();
     bins.back().cell = cell;
-    bins.back().low.fill(std::numeric_limits<T>::infinity());
-    bins.back().high.fill(-std::numeric_limits<T>::infinity());
     slots_[slot] = bin;
     if (2 * bins.size() > slots_.size()) grow();
     return bin;
@@ -151,194 +199,243 @@ private:
   std::vector<std::uint32_t> slots_;
 };
 
-/// Stores a point of the cloud as the frame has it.
+/// Stores points of the cloud as a frame has them.
 template <class T>
 class ToLocal {
 public:
-  explicit ToLocal(const LocalFrame& frame) : plain_(frame.unit == 1.0), inverse_(1.0 / frame.unit)
+  ToLocal(const LocalFrame& frame, PointRecord* next)
+  : next_(next),
+    plain_(frame.unit == 1.0),
+    inverse_(1.0 / frame.unit),
+    origin_(Point<T>::of(0))
   {
-    for (std::size_t k = 0; k < 3; ++k)
-      origin_[k] = static_cast<T>(frame.origin[k]), scaled_[k] = frame.origin[k] * inverse_;
+    T origin[4] = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      origin[k] = static_cast<T>(frame.origin[k]);
+      scaled_[k] = frame.origin[k] * inverse_;
+    }
+    origin_ = Point<T>::load(origin);
   }
 
-  PointRecord operator()(const Coordinates<T>& c, std::uint32_t record) const
+  void operator()(const Point<T>& p, std::uint32_t record)
   {
-    return {local(c.x, 0), local(c.y, 1), local(c.z, 2), record};
+    T local[4];
+    (plain_ ? p - origin_ : p).store(local);
+    PointRecord& out = *next_++;
+    out = {stored(local[0], 0), stored(local[1], 1), stored(local[2], 2), record};
   }
 
 private:
-  float local(T value, std::size_t k) const
+  float stored(T value, std::size_t k) const
   {
-    if (plain_) return static_cast<float>(value - origin_[k]);
+    if constexpr (std::is_same_v<T, float>)
+      if (plain_) return value;
+    if (plain_) return roundToFloat(static_cast<double>(value));
     return roundToFloat(static_cast<double>(value) * inverse_ - scaled_[k]);
   }
 
-  std::array<T, 3> origin_;
+  PointRecord* next_;
   bool plain_;
   double inverse_;
-  std::array<double, 3> scaled_;
+  double scaled_[3];
+  Point<T> origin_;
 };
 
 template <class T>
-Bounds boundsOf(const PointsView& view, std::size_t chunks, unsigned threads)
-{
-  const Reader<T> read(view);
-  struct Part {
-    std::array<T, 3> low, high;
-    std::size_t finite = 0;
-  };
-  std::vector<Part> parts(chunks);
-  parallelFor(chunks, threads, [&](std::size_t chunk) {
-    Bin<T> bin;
-    bin.low.fill(std::numeric_limits<T>::infinity());
-    bin.high.fill(-std::numeric_limits<T>::infinity());
-    for (std::size_t i = chunk * view.size() / chunks; i < (chunk + 1) * view.size() / chunks; ++i) {
-      const Coordinates<T> c = read(read.record(i));
-      if (c.finite()) bin.add(c);
+class VoxelSorter {
+public:
+  VoxelSorter(const PointsView& view, const HierarchyOptions& options)
+  : view_(view),
+    options_(options),
+    read_(view),
+    threads_(threadCount(options.threads)),
+    chunk_count_(threads_ == 1 ? 1 : std::clamp<std::size_t>(view.size() / kChunkPoints, 1, threads_))
+  {
+  }
+
+  VoxelSorting run()
+  {
+    const Bounds bounds = findBounds();
+    result_.size = bounds.finite;
+    if (result_.size == 0) return std::move(result_);
+    result_.frame = frameBetween(bounds.low, bounds.high, std::is_same_v<T, float>);
+    result_.edge = options_.voxel_edge > 0.0 ? voxelEdgeFromRequest(options_.voxel_edge, bounds)
+                                             : voxelEdgeFromDensity(view_, bounds);
+    // Cell numbers are computed in T: its inverse must not overflow.
+    result_.edge = std::max(result_.edge, static_cast<double>(std::numeric_limits<T>::min()) * 0x1p20);
+    fillBins(bounds);
+    mergeBins();
+    moveToVoxels();
+    for (std::size_t v = 0; v < result_.voxel_count; ++v) result_.voxels[v].lowest = lowestRecord(result_.voxels[v]);
+    return std::move(result_);
+  }
+
+private:
+  template <class Body>
+  void eachPoint(std::size_t chunk, const Body& body) const
+  {
+    const std::size_t end = (chunk + 1) * view_.size() / chunk_count_;
+    for (std::size_t i = chunk * view_.size() / chunk_count_; i < end; ++i) body(i, view_.record(i));
+  }
+
+  Bounds findBounds() const
+  {
+    std::vector<Bin<T>> parts(chunk_count_);
+    parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
+      Point<T> low = Point<T>::load(parts[chunk].low), high = Point<T>::load(parts[chunk].high);
+      eachPoint(chunk, [&](std::size_t, std::uint32_t record) {
+        const Point<T> p = read_(record);
+        if (!p.finite()) return;
+        low = min(low, p);
+        high = max(high, p);
+        ++parts[chunk].count;
+      });
+      low.store(parts[chunk].low);
+      high.store(parts[chunk].high);
+    });
+    Bounds bounds;
+    bounds.low.fill(std::numeric_limits<double>::infinity());
+    bounds.high.fill(-std::numeric_limits<double>::infinity());
+    for (const Bin<T>& part : parts) {
+      bounds.finite += part.count;
+      widen(bounds.low, bounds.high, part);
     }
-    parts[chunk] = {bin.low, bin.high, bin.count};
-  });
-  Bounds bounds;
-  bounds.low.fill(std::numeric_limits<double>::infinity());
-  bounds.high.fill(-std::numeric_limits<double>::infinity());
-  for (const Part& part : parts) {
-    bounds.finite += part.finite;
+    return bounds;
+  }
+
+  static void widen(std::array<double, 3>& low, std::array<double, 3>& high, const Bin<T>& bin)
+  {
     for (std::size_t k = 0; k < 3; ++k) {
-      bounds.low[k] = std::min(bounds.low[k], static_cast<double>(part.low[k]));
-      bounds.high[k] = std::max(bounds.high[k], static_cast<double>(part.high[k]));
+      low[k] = std::min(low[k], static_cast<double>(bin.low[k]));
+      high[k] = std::max(high[k], static_cast<double>(bin.high[k]));
     }
   }
-  return bounds;
-}
 
-/// Gives every voxel that some chunk saw its number (in Morton order), frame and place in the buffer, and every chunk
-/// its cursors, so that a voxel's points stand in the order of the cloud however many chunks there are.
-template <class T>
-void mergeBins(std::vector<BinTable<T>>& chunks, VoxelSorting& result)
-{
-  struct Entry {
-    std::uint64_t key;
-    std::uint32_t chunk, bin;
-  };
-  std::vector<Entry> entries;
-  for (std::uint32_t chunk = 0; chunk < chunks.size(); ++chunk)
-    for (std::uint32_t bin = 0; bin < chunks[chunk].bins.size(); ++bin)
-      entries.push_back({mortonOf(chunks[chunk].bins[bin].cell), chunk, bin});
-  std::sort(entries.begin(), entries.end(),
-            [](const Entry& a, const Entry& b) { return a.key != b.key ? a.key < b.key : a.chunk < b.chunk; });
-
-  for (std::size_t i = 0; i < entries.size(); ++i) result.voxel_count += i == 0 || entries[i].key != entries[i - 1].key;
-  result.voxels = std::make_unique<Voxel[]>(result.voxel_count);
-  result.buffer.reset(new float[4 * result.size + kBlockPadding * result.voxel_count]);
-
-  std::size_t voxel = 0, point = 0;
-  for (std::size_t i = 0; i < entries.size(); ++voxel) {
-    Voxel& v = result.voxels[voxel];
-    v.key = entries[i].key;
-    v.begin = static_cast<std::uint32_t>(point);
-    v.block = result.buffer.get() + 4 * point + kBlockPadding * voxel;
-    std::array<double, 3> low, high;
-    low.fill(std::numeric_limits<double>::infinity());
-    high.fill(-std::numeric_limits<double>::infinity());
-    for (; i < entries.size() && entries[i].key == v.key; ++i) {
-      Bin<T>& bin = chunks[entries[i].chunk].bins[entries[i].bin];
-      bin.voxel = static_cast<std::uint32_t>(voxel);
-      bin.next = v.count;
-      v.count += bin.count;
-      for (std::size_t k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], static_cast<double>(bin.low[k]));
-        high[k] = std::max(high[k], static_cast<double>(bin.high[k]));
-      }
-    }
-    v.frame = frameBetween(low, high, std::is_same_v<T, float>);
-    point += v.count;
+  void fillBins(const Bounds& bounds)
+  {
+    const CellNumbers<T> cell_of(result_.edge, bounds);
+    bin_of_ = makeBuffer<std::uint32_t>(view_.size());
+    chunks_.resize(chunk_count_);
+    parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
+      BinTable<T>& table = chunks_[chunk];
+      std::uint64_t last_cell = ~std::uint64_t{0};
+      std::uint32_t bin = kNoVoxel;
+      eachPoint(chunk, [&](std::size_t i, std::uint32_t record) {
+        const Point<T> p = read_(record);
+        if (!p.finite()) {
+          bin_of_[i] = kNoVoxel;
+          return;
+        }
+        const std::uint64_t cell = cell_of(p);
+        if (cell != last_cell) bin = table.find(last_cell = cell);
+        table.bins[bin].add(p);
+        bin_of_[i] = bin;
+      });
+    });
   }
-}
 
-/// Points stand in the view's order, so that without a subset the first is the lowest.
-std::uint32_t lowestRecord(const Voxel& voxel, const PointsView& view)
-{
-  const auto* points = reinterpret_cast<const PointRecord*>(voxel.block);
-  std::uint32_t lowest = points->record;
-  if (view.indices)
-    for (std::uint32_t i = 1; i < voxel.count; ++i) lowest = std::min(lowest, points[i].record);
-  return lowest;
-}
-
-template <class T, class K>
-void distribute(const PointsView& view, const Bounds& bounds, std::size_t chunk_count, unsigned threads,
-                VoxelSorting& result)
-{
-  const Reader<T> read(view);
-  const CellNumbers<K> cell_of(result.edge, bounds);
-  const auto chunkBegin = [&](std::size_t chunk) { return chunk * view.size() / chunk_count; };
-
-  std::vector<std::uint32_t> bin_of(view.size());
-  std::vector<BinTable<T>> chunks(chunk_count);
-  parallelFor(chunk_count, threads, [&](std::size_t chunk) {
-    BinTable<T>& table = chunks[chunk];
-    std::uint64_t last_cell = ~std::uint64_t{0};
-    std::uint32_t bin = 0;
-    for (std::size_t i = chunkBegin(chunk); i < chunkBegin(chunk + 1); ++i) {
-      const Coordinates<T> c = read(read.record(i));
-      if (!c.finite()) {
-        bin_of[i] = kNoVoxel;
-        continue;
-      }
-      const std::uint64_t cell = cell_of(c);
-      if (cell != last_cell) bin = table.find(last_cell = cell);
-      table.bins[bin].add(c);
-      bin_of[i] = bin;
-    }
-  });
-
-  mergeBins(chunks, result);
-
-  parallelFor(chunk_count, threads, [&](std::size_t chunk) {
-    struct Target {
-      ToLocal<T> to_local;
-      PointRecord* next;
+  /// Gives every voxel that some chunk saw its number (in Morton order), frame and place in the buffer, so that a
+  /// voxel's points stand in the order of the cloud however many chunks there are.
+  void mergeBins()
+  {
+    struct Entry {
+      std::uint64_t key;
+      std::uint32_t chunk;
+      Bin<T>* bin;
     };
-    std::vector<Target> targets;
-    for (const Bin<T>& bin : chunks[chunk].bins) {
-      const Voxel& voxel = result.voxels[bin.voxel];
-      targets.push_back({ToLocal<T>(voxel.frame), reinterpret_cast<PointRecord*>(voxel.block) + bin.next});
-    }
-    for (std::size_t i = chunkBegin(chunk); i < chunkBegin(chunk + 1); ++i) {
-      if (bin_of[i] == kNoVoxel) continue;
-      Target& target = targets[bin_of[i]];
-      const std::uint32_t record = read.record(i);
-      *target.next++ = target.to_local(read(record), record);
-    }
-  });
-  for (std::size_t v = 0; v < result.voxel_count; ++v) result.voxels[v].lowest = lowestRecord(result.voxels[v], view);
-}
+    std::vector<Entry> entries;
+    for (std::uint32_t chunk = 0; chunk < chunks_.size(); ++chunk)
+      for (Bin<T>& bin : chunks_[chunk].bins) entries.push_back({CellNumbers<T>::morton(bin.cell), chunk, &bin});
+    std::sort(entries.begin(), entries.end(),
+              [](const Entry& a, const Entry& b) { return a.key != b.key ? a.key < b.key : a.chunk < b.chunk; });
 
-template <class T>
-VoxelSorting sortPoints(const PointsView& view, const HierarchyOptions& options)
-{
-  const unsigned threads = threadCount(options.threads);
-  const std::size_t chunks = threads == 1 ? 1 : std::clamp<std::size_t>(view.size() / kChunkPoints, 1, threads);
-  VoxelSorting result;
-  const Bounds bounds = boundsOf<T>(view, chunks, threads);
-  result.size = bounds.finite;
-  if (result.size == 0) return result;
-  result.frame = frameBetween(bounds.low, bounds.high, std::is_same_v<T, float>);
-  result.edge =
-      options.voxel_edge > 0.0 ? voxelEdgeFromRequest(options.voxel_edge, bounds) : voxelEdgeFromDensity(view, bounds);
-  const bool float_cells = std::is_same_v<T, float> && result.edge >= 0x1p-60 && result.edge <= 0x1p100;
-  if (float_cells)
-    distribute<T, float>(view, bounds, chunks, threads, result);
-  else
-    distribute<T, double>(view, bounds, chunks, threads, result);
-  return result;
-}
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      result_.voxel_count += i == 0 || entries[i].key != entries[i - 1].key;
+    result_.voxels = std::make_unique<Voxel[]>(result_.voxel_count);
+    result_.buffer = makeBuffer<float>(4 * result_.size + kBlockPadding * result_.voxel_count);
+
+    std::size_t point = 0;
+    auto entry = entries.begin();
+    for (std::size_t v = 0; v < result_.voxel_count; ++v) {
+      Voxel& voxel = result_.voxels[v];
+      voxel.key = entry->key;
+      voxel.begin = static_cast<std::uint32_t>(point);
+      voxel.block = result_.buffer.get() + 4 * point + kBlockPadding * v;
+      std::array<double, 3> low, high;
+      low.fill(std::numeric_limits<double>::infinity());
+      high.fill(-std::numeric_limits<double>::infinity());
+      for (; entry != entries.end() && entry->key == voxel.key; ++entry) {
+        entry->bin->voxel = static_cast<std::uint32_t>(v);
+        entry->bin->first = voxel.count;
+        voxel.count += entry->bin->count;
+        widen(low, high, *entry->bin);
+      }
+      voxel.frame = frameBetween(low, high, std::is_same_v<T, float>);
+      point += voxel.count;
+    }
+  }
+
+  void moveToVoxels()
+  {
+    parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
+      std::vector<ToLocal<T>> targets;
+      targets.reserve(chunks_[chunk].bins.size());
+      for (const Bin<T>& bin : chunks_[chunk].bins) {
+        const Voxel& voxel = result_.voxels[bin.voxel];
+        targets.emplace_back(voxel.frame, reinterpret_cast<PointRecord*>(voxel.block) + bin.first);
+      }
+      eachPoint(chunk, [&](std::size_t i, std::uint32_t record) {
+        if (bin_of_[i] != kNoVoxel) targets[bin_of_[i]](read_(record), record);
+      });
+    });
+  }
+
+  /// Points stand in the view's order, so that without a subset the first is the lowest.
+  std::uint32_t lowestRecord(const Voxel& voxel) const
+  {
+    const auto* points = reinterpret_cast<const PointRecord*>(voxel.block);
+    std::uint32_t lowest = points->record;
+    if (view_.indices)
+      for (std::uint32_t i = 1; i < voxel.count; ++i) lowest = std::min(lowest, points[i].record);
+    return lowest;
+  }
+
+  const PointsView& view_;
+  const HierarchyOptions& options_;
+  const Reader<T> read_;
+  const unsigned threads_;
+  const std::size_t chunk_count_;
+  LargeBuffer<std::uint32_t> bin_of_; // of each point, in its chunk's table
+  std::vector<BinTable<T>> chunks_;
+  VoxelSorting result_;
+};
 
 } // namespace
 
+VoxelSorting sortFloats(const PointsView& view, const HierarchyOptions& options)
+{
+  return VoxelSorter<float>(view, options).run();
+}
+VoxelSorting sortDoubles(const PointsView& view, const HierarchyOptions& options)
+{
+  return VoxelSorter<double>(view, options).run();
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(sortFloats);
+HWY_EXPORT(sortDoubles);
+
 VoxelSorting sortIntoVoxels(const PointsView& view, const HierarchyOptions& options)
 {
-  return view.scalar == Scalar::float32 ? sortPoints<float>(view, options) : sortPoints<double>(view, options);
+  return view.scalar == Scalar::float32 ? HWY_DYNAMIC_DISPATCH(sortFloats)(view, options)
+                                        : HWY_DYNAMIC_DISPATCH(sortDoubles)(view, options);
 }
 
 } // namespace pcl_bsh
+#endif

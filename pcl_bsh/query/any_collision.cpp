@@ -47,13 +47,13 @@ private:
         continue;
       }
       walk_.step(pair, opened, pairs_.clearance, step);
-      if (step.hits.inside != 0) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(step.hits.inside));
+      if (step.inside != 0) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(step.inside));
         const LanePair inside = PairWalk::childOf(pair, opened, step, lane);
         return PointPair{firstRecord(walk_.a, inside.a), firstRecord(walk_.b, inside.b)};
       }
       const std::size_t from = stack_.size();
-      for (std::uint32_t near = step.hits.near; near != 0; near &= near - 1)
+      for (std::uint32_t near = step.near; near != 0; near &= near - 1)
         stack_.push_back(PairWalk::childOf(pair, opened, step, static_cast<std::uint32_t>(std::countr_zero(near))));
       sortFrom(from);
     }

@@ -2,6 +2,7 @@
 #include <pcl_bsh/query/brute_force.h>
 
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/query/request_check.h>
 
 #include <algorithm>
@@ -51,6 +52,7 @@ void forEachPair(const Placed& a, const Placed& b, const CollisionRequest& reque
 AnyResult anyCollision(const Placed& a, const Placed& b, const CollisionRequest& request)
 {
   check(a, b, request);
+  const DefaultFloatEnvironment environment;
   AnyResult result;
   forEachPair(a, b, request, [&](const Candidate& p, const Candidate& q, bool collide) {
     ++result.work.exact_decisions;
@@ -65,6 +67,7 @@ AnyResult anyCollision(const Placed& a, const Placed& b, const CollisionRequest&
 FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request)
 {
   check(a, b, request);
+  const DefaultFloatEnvironment environment;
   FlagsResult result;
   std::vector<std::uint8_t> flags_a(a.hierarchy.view().count);
   std::vector<std::uint8_t> flags_b(b.hierarchy.view().count);
@@ -93,6 +96,7 @@ FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequ
 DistanceResult closestPair(const Placed& a, const Placed& b, const CollisionRequest& request)
 {
   check(a, b, request);
+  const DefaultFloatEnvironment environment;
   const ExactDistance distance(a.pose, b.pose);
   const std::vector<Candidate> obstacles = candidatesOf(b.hierarchy.view());
   DistanceResult result;

@@ -66,7 +66,7 @@ private:
     if (opened == Opened::neither) return compareLeaves(pair);
     PairWalk::Step step;
     walk_.step(pair, opened, clearanceToBeat(), step);
-    for (std::uint32_t near = step.hits.near; near != 0; near &= near - 1) {
+    for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
       LanePair below = PairWalk::childOf(pair, opened, step, static_cast<std::uint32_t>(std::countr_zero(near)));
       below.key = lowerBound(below);
       if (canImprove(below)) child(below);
@@ -94,11 +94,10 @@ private:
   {
     const RelativeFrame& frame = walk_.frames.find(pair.a.space, pair.b.space);
     const Node &a = walk_.nodeOf(walk_.a, pair.a), &b = walk_.nodeOf(walk_.b, pair.b);
-    float x, y, z;
-    PairWalk::carryOne(frame, a.x[pair.a.lane], a.y[pair.a.lane], a.z[pair.a.lane], x, y, z);
-    const double dx = static_cast<double>(x) - static_cast<double>(b.x[pair.b.lane]);
-    const double dy = static_cast<double>(y) - static_cast<double>(b.y[pair.b.lane]);
-    const double dz = static_cast<double>(z) - static_cast<double>(b.z[pair.b.lane]);
+    const Point c = carriedCenter(frame, a, pair.a.lane);
+    const double dx = static_cast<double>(c.x) - static_cast<double>(b.x[pair.b.lane]);
+    const double dy = static_cast<double>(c.y) - static_cast<double>(b.y[pair.b.lane]);
+    const double dz = static_cast<double>(c.z) - static_cast<double>(b.z[pair.b.lane]);
     return std::sqrt(dx * dx + dy * dy + dz * dz) * walk_.b.frame(pair.b.space).unit;
   }
 

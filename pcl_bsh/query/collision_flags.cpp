@@ -21,85 +21,58 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// A ball of a in the frame of some space of b: a child of the walk, with what it has to be compared with.
-struct Ball {
-  float x, y, z;
-  float near_reach;   ///< its radius and the clearance, outward
-  float inside_reach; ///< the clearance less its radius, inward
-};
-
-/// Spheres of b, all in the frame of one voxel, that the points of some node of a may collide with.
-class Candidates {
-public:
-  void clear() { count = 0; }
-
-  void add(const Node& node, std::uint32_t lane, float stretch)
-  {
-    if (count + kLanes >= x_.size()) resize(2 * count + 4 * kLanes);
-    x_[count] = node.x[lane], y_[count] = node.y[lane], z_[count] = node.z[lane];
-    r_[count] = node.r[lane] * stretch;
-    node_[count] = &node;
-    lane_[count] = lane;
-    ++count;
-  }
-
-  void add(const Candidates& other, std::size_t i)
-  {
-    if (count + kLanes >= x_.size()) resize(2 * count + 4 * kLanes);
-    x_[count] = other.x_[i], y_[count] = other.y_[i], z_[count] = other.z_[i], r_[count] = other.r_[i];
-    node_[count] = other.node_[i];
-    lane_[count] = other.lane_[i];
-    ++count;
-  }
-
-  /// Tests eight from `first` on.
-  SphereHits test(std::size_t first, const Ball& ball) const
-  {
-    float gap[kLanes];
-    SphereHits hits = testSpheres(&x_[first], &y_[first], &z_[first], &r_[first], 1.0f, ball.x, ball.y, ball.z,
-                                  ball.near_reach, ball.inside_reach, kPruneMargin, gap);
-    const std::uint32_t used = firstBits(std::min(kLanes, count - first));
-    hits.near &= used;
-    hits.inside &= used;
-    return hits;
-  }
-
-  const Node& node(std::size_t i) const { return *node_[i]; }
-  std::uint32_t lane(std::size_t i) const { return lane_[i]; }
-  bool isLeaf(std::size_t i) const { return node_[i]->isLeaf(lane_[i]); }
-  float radius(std::size_t i) const { return r_[i]; }
-
-  std::size_t count = 0;
-
-private:
-  void resize(std::size_t size)
-  {
-    x_.resize(size), y_.resize(size), z_.resize(size), r_.resize(size);
-    node_.resize(size);
-    lane_.resize(size);
-  }
-
-  std::vector<float> x_, y_, z_, r_;
-  std::vector<const Node*> node_;
-  std::vector<std::uint32_t> lane_;
-};
-
-/// The candidates of one voxel of b.
-struct Group {
-  const Voxel* voxel = nullptr;
-  const RelativeFrame* frame = nullptr;
-  float prune_reach = 0.0f, accept_reach = 0.0f;
+/// A voxel of b, as seen from a voxel of a.
+struct Meeting {
+  const Voxel* voxel;
+  RelativeFrame frame;
+  float prune_reach, accept_reach;
   DistanceBand band;
-  Candidates candidates;
+};
+
+/// A sphere of b that the points of some node of a may collide with: a child of `node`, in the voxel of a meeting.
+struct Candidate {
+  const Node* node;
+  std::uint32_t lane;
+  std::uint32_t meeting;
+
+  bool isLeaf() const { return node->isLeaf(lane); }
+  LeafRange leaf(const Meeting& m) const { return {m.voxel, node->begin[lane], node->points(lane)}; }
+};
+
+/// A sphere in the frame of a's voxel.
+struct Sphere {
+  Point center;
+  float radius;
+};
+
+/// One node of a on its way through b, its children tested all at once.
+struct Visit {
+  const Node* node = nullptr;
+  std::uint32_t leaves = 0; ///< bits of the children that are leaves
+  std::uint32_t open = 0;   ///< bits of the children that are not settled yet
+  std::uint32_t meeting = 0;
+  alignas(32) float x[kLanes], y[kLanes], z[kLanes], r[kLanes]; ///< their spheres in the meeting's frame
+  float smallest = 0.0f;                                        ///< of r
+  Sphere around;                                                ///< holds them all; in the frame of a's voxel
+  Ball ball;                                                    ///< likewise, in the meeting's frame
+  std::vector<Candidate>
+      near[kLanes]; ///< what each child has to be compared with further down; of leaves, was compared with
+
+  // Of the children that are leaves:
+  std::uint32_t carried = 0;         ///< bits: `points` are in the meeting's frame
+  std::uint32_t open_points[kLanes]; ///< bits of their points that are not flagged yet
+  LeafPoints points[kLanes];
+  alignas(64) float nearest[kLanes][kLeafPoints]; ///< squared distances, in this meeting so far
 };
 
 class FlagWalk {
 public:
-  FlagWalk(const Placed& a, const Placed& b, const PointPairs& pairs, std::uint8_t* flags)
+  FlagWalk(const Placed& a, const Placed& b, const PointPairs& pairs, std::uint8_t* flags, std::deque<Visit>& visits)
   : a_(a),
     b_(b),
     pairs_(pairs),
-    flags_(flags)
+    flags_(flags),
+    visits_(visits)
   {
   }
 
@@ -109,246 +82,255 @@ public:
     const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose);
     if (above.separates(pairs_.clearance)) return;
     std::vector<std::uint32_t> reached;
-    if (!reach(voxel, above, 0, reached)) {
-      const Voxel& built = a_.voxel(voxel, work);
-      return settle(built, 0, built.count);
-    }
-    if (reached.empty()) return;
-    a_built_ = &a_.voxel(voxel, work);
-    std::vector<RelativeFrame> frames;
-    frames.reserve(reached.size());
-    std::vector<Group>& groups = level(0);
-    groups.clear();
+    const bool all = !reach(voxel, above, b_.storage.top[0], reached);
+    if (!all && reached.empty()) return;
+    a_voxel_ = &a_.voxel(voxel, work);
+    if (all) return settle(0, a_voxel_->count);
+
+    std::vector<Candidate> candidates;
     for (const std::uint32_t other : reached) {
-      frames.emplace_back(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose);
-      Group& group = groups.emplace_back();
-      group.voxel = &b_.voxel(other, work);
-      group.frame = &frames.back();
-      group.prune_reach = frames.back().pruneReach(pairs_.clearance);
-      group.accept_reach = frames.back().acceptReach(pairs_.clearance);
-      group.band = frames.back().band(pairs_.clearance);
-      const Node& root = group.voxel->nodes[0];
-      for (std::uint32_t lane = 0; lane < root.count; ++lane) group.candidates.add(root, lane, group.frame->stretch_b);
+      const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose);
+      const Node& root = b_.voxel(other, work).nodes[0];
+      for (std::uint32_t lane = 0; lane < root.count; ++lane)
+        candidates.push_back({&root, lane, static_cast<std::uint32_t>(meetings_.size())});
+      meetings_.push_back({&b_.storage.voxels[other], frame, frame.pruneReach(pairs_.clearance),
+                           frame.acceptReach(pairs_.clearance), frame.band(pairs_.clearance)});
     }
-    descend(a_built_->nodes[0], 0);
+    descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, candidates, 0);
   }
 
   Work work;
 
 private:
-  // Half the size settles nodes sooner, for it costs less than the children of a would.
-  static constexpr float kOpened = 1.0f; ///< candidates larger than this times the ball of a are opened
-
-  std::vector<Group>& level(std::size_t depth)
-  {
-    while (levels_.size() <= depth) levels_.emplace_back();
-    return levels_[depth];
-  }
-
   /// Collects the voxels of b that the voxel of a can reach. @return false when all of its points collide.
-  bool reach(std::uint32_t voxel, const RelativeFrame& frame, std::uint32_t node_index,
-             std::vector<std::uint32_t>& reached)
+  bool reach(std::uint32_t voxel, const RelativeFrame& frame, const Node& node, std::vector<std::uint32_t>& reached)
   {
-    const Node& node = b_.storage.top[node_index];
-    const Ball ball = ballOf(voxel, frame);
-    float gap[kLanes];
-    SphereHits hits = testSpheres(node.x, node.y, node.z, node.r, frame.stretch_b, ball.x, ball.y, ball.z,
-                                  ball.near_reach, ball.inside_reach, kPruneMargin, gap);
+    const float radius = a_.storage.voxels[voxel].radius * frame.stretch_a;
+    const Ball ball{frame.g[0], frame.g[1], frame.g[2], radius + frame.pruneReach(pairs_.clearance),
+                    frame.acceptReach(pairs_.clearance) - radius * (1.0f + kSphereMargin)};
+    const SphereLanes spheres{node.x, node.y, node.z, node.r, frame.stretch_b};
     work.node_pairs += node.count;
-    const std::uint32_t used = firstBits(node.count);
-    if ((hits.inside & used) != 0) return false;
-    for (std::uint32_t near = hits.near & used; near != 0; near &= near - 1) {
+    if ((spheresInside(spheres, ball) & firstBits(node.count)) != 0) return false;
+    for (std::uint32_t near = spheresNear(spheres, ball, nullptr) & firstBits(node.count); near != 0;
+         near &= near - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
       if (node.isLeaf(lane))
         reached.push_back(node.begin[lane]);
-      else if (!reach(voxel, frame, node.child[lane], reached))
+      else if (!reach(voxel, frame, b_.storage.top[node.child[lane]], reached))
         return false;
     }
     return true;
   }
 
-  /// The ball around all of a voxel's points, in the frame above b's voxels.
-  Ball ballOf(std::uint32_t voxel, const RelativeFrame& frame) const
+  /// Takes a node of a, all its children at once, through its candidates; then its inner children through theirs.
+  void descend(const Node& node, const Sphere& around, const std::vector<Candidate>& candidates, std::size_t depth)
   {
-    const float radius = a_.storage.voxels[voxel].radius * frame.stretch_a;
-    return {frame.g[0], frame.g[1], frame.g[2], radius + frame.pruneReach(pairs_.clearance),
-            frame.acceptReach(pairs_.clearance) - radius * (1.0f + kPruneMargin)};
+    if (visits_.size() == depth) visits_.emplace_back();
+    Visit& visit = visits_[depth];
+    begin(visit, node, around);
+    std::uint32_t meeting = kNoMeeting;
+    for (const Candidate& candidate : candidates) {
+      if (visit.open == 0) break;
+      if (candidate.meeting != meeting) {
+        if (meeting != kNoMeeting) decideLeft(visit);
+        enter(visit, meeting = candidate.meeting);
+      }
+      take(visit, candidate, visit.open);
+    }
+    if (meeting != kNoMeeting) decideLeft(visit);
+    for (std::uint32_t bits = visit.open & ~visit.leaves; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (visit.near[lane].empty()) continue;
+      const Sphere child{{node.x[lane], node.y[lane], node.z[lane]}, node.r[lane]};
+      descend(a_voxel_->nodes[node.child[lane]], child, visit.near[lane], depth + 1);
+    }
   }
 
-  /// Takes every child of a's node through what is left of b.
-  void descend(const Node& node, std::size_t depth)
+  static void begin(Visit& visit, const Node& node, const Sphere& around)
   {
-    level(depth + 1);
+    visit.around = around;
+    visit.node = &node;
+    visit.open = firstBits(node.count);
+    visit.leaves = 0;
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
-      if (!filter(node, lane, depth)) {
-        settle(*a_built_, node.begin[lane], node.begin[lane + 1]);
-        continue;
+      visit.near[lane].clear();
+      if (!node.isLeaf(lane)) continue;
+      visit.leaves |= 1u << lane;
+      visit.open_points[lane] = firstBits(node.points(lane));
+    }
+  }
+
+  /// Turns to a voxel of b: spheres go to its frame now, points when they are needed.
+  void enter(Visit& visit, std::uint32_t meeting)
+  {
+    visit.meeting = meeting;
+    visit.carried = 0;
+    const RelativeFrame& frame = meetings_[meeting].frame;
+    carry(frame.m.data(), frame.g.data(), visit.node->x, visit.node->y, visit.node->z, kLanes, visit.x, visit.y,
+          visit.z);
+    const Point center = carryPoint(frame.m.data(), frame.g.data(), visit.around.center);
+    visit.ball = {center.x, center.y, center.z, visit.around.radius * frame.stretch_a + meetings_[meeting].prune_reach,
+                  0.0f};
+    visit.smallest = std::numeric_limits<float>::infinity();
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) visit.r[lane] = visit.node->r[lane] * frame.stretch_a;
+    for (std::uint32_t lane = 0; lane < visit.node->count; ++lane) {
+      visit.smallest = std::min(visit.smallest, visit.r[lane]);
+      if ((visit.leaves >> lane & 1) != 0) visit.near[lane].clear();
+    }
+  }
+
+  /// Compares a sphere of b with those children of the visit that are in `lanes`: settles them, drops it, keeps it for
+  /// their own descent, or opens it.
+  void take(Visit& visit, const Candidate& candidate, std::uint32_t lanes)
+  {
+    const Meeting& meeting = meetings_[visit.meeting];
+    const Node& node = *candidate.node;
+    const std::uint32_t k = candidate.lane;
+    const float radius = node.r[k] * meeting.frame.stretch_b;
+    const Ball ball{node.x[k], node.y[k], node.z[k], radius + meeting.prune_reach,
+                    meeting.accept_reach - radius * (1.0f + kSphereMargin)};
+    const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
+    work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes & visit.open));
+    std::uint32_t near = spheresNear(spheres, ball, nullptr) & lanes & visit.open;
+    if (near == 0) return;
+    if (ball.inside_reach > visit.smallest) {
+      settleChildren(visit, spheresInside(spheres, ball) & near);
+      near &= visit.open;
+    }
+    if (candidate.isLeaf()) {
+      near = settleByPoints(visit, candidate, near);
+      for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+        visit.near[lane].push_back(candidate);
+        if ((visit.leaves >> lane & 1) != 0) compareLeaves(visit, lane, candidate);
       }
-      if (level(depth + 1).empty() || level_counts_[depth + 1] == 0) continue;
-      if (node.isLeaf(lane))
-        compareLeaf(node, lane, depth + 1);
+      return;
+    }
+    std::uint32_t opening = near & visit.leaves;
+    for (std::uint32_t bits = near & ~visit.leaves; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (radius > visit.r[lane])
+        opening |= 1u << lane;
       else
-        descend(a_built_->nodes[node.child[lane]], depth + 1);
+        visit.near[lane].push_back(candidate);
+    }
+    if (opening == 0) return;
+    const Node& below = meeting.voxel->nodes[node.child[k]];
+    const SphereLanes children{below.x, below.y, below.z, below.r, meeting.frame.stretch_b};
+    work.node_pairs += below.count;
+    for (std::uint32_t bits = spheresNear(children, visit.ball, nullptr) & firstBits(below.count); bits != 0;
+         bits &= bits - 1) {
+      if ((opening & visit.open) == 0) return;
+      take(visit, {&below, static_cast<std::uint32_t>(std::countr_zero(bits)), candidate.meeting}, opening);
     }
   }
 
-  /// Narrows the candidates at `depth` to those near the child, opened down to its size, at depth + 1.
-  /// @return false when all points of the child collide.
-  bool filter(const Node& node, std::uint32_t lane, std::size_t depth)
+  /// Where the clearance exceeds the radius of a child, a single point of b can settle all of it.
+  std::uint32_t settleByPoints(Visit& visit, const Candidate& candidate, std::uint32_t near)
   {
-    level_counts_.resize(std::max(level_counts_.size(), depth + 2));
-    std::vector<Group>& from = level(depth);
-    const std::size_t from_count = depth == 0 ? from.size() : level_counts_[depth];
-    std::vector<Group>& to = level(depth + 1);
-    std::size_t used = 0;
-    for (std::size_t g = 0; g < from_count; ++g) {
-      const Group& group = from[g];
-      if (to.size() == used) to.emplace_back();
-      Group& narrowed = to[used];
-      narrowed.candidates.clear();
-      const Ball ball = ballOf(node, lane, group);
-      const float opened_above = node.isLeaf(lane) ? 0.0f : kOpened * node.r[lane] * group.frame->stretch_a;
-      work.node_pairs += group.candidates.count;
-      for (std::size_t i = 0; i < group.candidates.count; i += kLanes) {
-        const SphereHits hits = group.candidates.test(i, ball);
-        if (hits.inside != 0) return false;
-        for (std::uint32_t near = hits.near; near != 0; near &= near - 1)
-          if (!open(group, group.candidates, i + static_cast<std::size_t>(std::countr_zero(near)), ball, opened_above,
-                    narrowed.candidates))
-            return false;
+    const Meeting& meeting = meetings_[visit.meeting];
+    if (!(meeting.accept_reach > visit.smallest)) return near;
+    const LeafRange leaf = candidate.leaf(meeting);
+    const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
+    for (std::uint32_t j = 0; j < leaf.count && near != 0; ++j) {
+      settleChildren(
+          visit, spheresInside(spheres, {leaf.x()[j], leaf.y()[j], leaf.z()[j], 0.0f, meeting.accept_reach}) & near);
+      near &= visit.open;
+    }
+    return near;
+  }
+
+  void compareLeaves(Visit& visit, std::uint32_t lane, const Candidate& candidate)
+  {
+    ++work.leaf_pairs;
+    const Meeting& meeting = meetings_[visit.meeting];
+    const LeafRange a = leafOfA(visit, lane), b = candidate.leaf(meeting);
+    if ((visit.carried >> lane & 1) == 0) {
+      visit.carried |= 1u << lane;
+      carryLeaf(meeting.frame, a, visit.points[lane]);
+      std::fill_n(visit.nearest[lane], kLeafPoints, std::numeric_limits<float>::infinity());
+    }
+    std::uint32_t hit = 0;
+    if (pairs_.haveRadii()) {
+      hit = hitBalls(visit, lane, a, b);
+    }
+    else {
+      nearestSquared(visit.points[lane], b.x(), b.y(), b.z(), b.count, visit.nearest[lane]);
+      hit = visit.open_points[lane] & atMost(visit.nearest[lane], meeting.band.hit);
+    }
+    flagPoints(visit, lane, a, hit);
+  }
+
+  /// The last pairs of this meeting, those within the float band.
+  void decideLeft(Visit& visit)
+  {
+    if (pairs_.haveRadii()) return;
+    const Meeting& meeting = meetings_[visit.meeting];
+    for (std::uint32_t bits = visit.carried & visit.open; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const std::uint32_t undecided = visit.open_points[lane] & ~above(visit.nearest[lane], meeting.band.miss);
+      if (undecided == 0) continue;
+      const LeafRange a = leafOfA(visit, lane);
+      std::uint32_t hit = 0;
+      for (const Candidate& candidate : visit.near[lane]) {
+        const LeafRange b = candidate.leaf(meeting);
+        eachPairNotBeyond(visit.points[lane], undecided, b, meeting.band.miss,
+                          [&](std::uint32_t i, std::uint32_t j, float) {
+                            if ((hit >> i & 1) == 0 && pairs_.collide({a.record(i), b.record(j)}, work)) hit |= 1u << i;
+                            return hit == undecided;
+                          });
       }
-      if (narrowed.candidates.count == 0) continue;
-      narrowed.voxel = group.voxel;
-      narrowed.frame = group.frame;
-      narrowed.prune_reach = group.prune_reach;
-      narrowed.accept_reach = group.accept_reach;
-      narrowed.band = group.band;
-      ++used;
-    }
-    level_counts_[depth + 1] = used;
-    return true;
-  }
-
-  Ball ballOf(const Node& node, std::uint32_t lane, const Group& group) const
-  {
-    const RelativeFrame& f = *group.frame;
-    const float px = node.x[lane], py = node.y[lane], pz = node.z[lane];
-    const float radius = node.r[lane] * f.stretch_a;
-    return {((f.g[0] + f.m[0] * px) + f.m[1] * py) + f.m[2] * pz, ((f.g[1] + f.m[3] * px) + f.m[4] * py) + f.m[5] * pz,
-            ((f.g[2] + f.m[6] * px) + f.m[7] * py) + f.m[8] * pz, radius + group.prune_reach,
-            group.accept_reach - radius * (1.0f + kPruneMargin)};
-  }
-
-  bool open(const Group& group, const Candidates& list, std::size_t i, const Ball& ball, float opened_above,
-            Candidates& out)
-  {
-    if (list.isLeaf(i) || list.radius(i) <= opened_above) {
-      out.add(list, i);
-      return true;
-    }
-    return openNode(group, group.voxel->nodes[list.node(i).child[list.lane(i)]], ball, opened_above, out);
-  }
-
-  bool openNode(const Group& group, const Node& node, const Ball& ball, float opened_above, Candidates& out)
-  {
-    float gap[kLanes];
-    const float stretch = group.frame->stretch_b;
-    SphereHits hits = testSpheres(node.x, node.y, node.z, node.r, stretch, ball.x, ball.y, ball.z, ball.near_reach,
-                                  ball.inside_reach, kPruneMargin, gap);
-    work.node_pairs += node.count;
-    const std::uint32_t used = firstBits(node.count);
-    if ((hits.inside & used) != 0) return false;
-    for (std::uint32_t near = hits.near & used; near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-      if (node.isLeaf(lane) || node.r[lane] * stretch <= opened_above)
-        out.add(node, lane, stretch);
-      else if (!openNode(group, group.voxel->nodes[node.child[lane]], ball, opened_above, out))
-        return false;
-    }
-    return true;
-  }
-
-  /// The points of a's leaf against the leaves of b that are left.
-  void compareLeaf(const Node& node, std::uint32_t lane, std::size_t depth)
-  {
-    const LeafRange leaf = leafOf(a_, static_cast<std::uint32_t>(a_built_ - a_.storage.voxels.get()), node, lane);
-    std::uint32_t open_points = firstBits(leaf.count);
-    const std::vector<Group>& groups = level(depth);
-    for (std::size_t g = 0; g < level_counts_[depth] && open_points != 0; ++g) {
-      const std::uint32_t hit =
-          pairs_.haveRadii() ? hitBalls(groups[g], leaf, open_points) : hitPoints(groups[g], leaf, open_points);
-      for (std::uint32_t bits = hit; bits != 0; bits &= bits - 1)
-        flags_[leaf.record(static_cast<std::uint32_t>(std::countr_zero(bits)))] = 1;
-      open_points &= ~hit;
+      flagPoints(visit, lane, a, hit);
     }
   }
 
-  /// Which of the leaf's open points collide with the group's candidates, all of them leaves.
-  std::uint32_t hitPoints(const Group& group, const LeafRange& leaf, std::uint32_t open_points)
+  std::uint32_t hitBalls(const Visit& visit, std::uint32_t lane, const LeafRange& a, const LeafRange& b)
   {
-    LeafPoints points;
-    carryLeaf(*group.frame, leaf, points);
-    alignas(64) float nearest[kLeafPoints];
-    std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
     std::uint32_t hit = 0;
-    for (std::size_t i = 0; i < group.candidates.count; ++i) {
-      ++work.leaf_pairs;
-      const LeafRange other = leafOfCandidate(group, i);
-      nearestSquared(points, other.x(), other.y(), other.z(), other.count, nearest);
-      hit = open_points & atMost(nearest, group.band.hit);
-      if (hit == open_points) return hit;
-    }
-    std::uint32_t undecided = open_points & ~hit & ~above(nearest, group.band.miss);
-    for (std::size_t i = 0; i < group.candidates.count && undecided != 0; ++i) {
-      const LeafRange other = leafOfCandidate(group, i);
-      eachPairNotBeyond(points, undecided, other, group.band.miss, [&](std::uint32_t p, std::uint32_t q, float) {
-        if ((undecided >> p & 1) != 0 && pairs_.collide({leaf.record(p), other.record(q)}, work)) {
-          hit |= 1u << p;
-          undecided &= ~(1u << p);
-        }
-        return undecided == 0;
-      });
-    }
+    eachBallPairNear(meetings_[visit.meeting].frame, visit.points[lane], visit.open_points[lane], a, b,
+                     pairs_.clearance, [&](std::uint32_t i, std::uint32_t j, float) {
+                       if ((hit >> i & 1) == 0 && pairs_.collide({a.record(i), b.record(j)}, work)) hit |= 1u << i;
+                       return hit == visit.open_points[lane];
+                     });
     return hit;
   }
 
-  /// The same where points have radii.
-  std::uint32_t hitBalls(const Group& group, const LeafRange& leaf, std::uint32_t open_points)
+  LeafRange leafOfA(const Visit& visit, std::uint32_t lane) const
   {
-    LeafPoints points;
-    carryLeaf(*group.frame, leaf, points);
-    std::uint32_t hit = 0;
-    for (std::size_t i = 0; i < group.candidates.count && hit != open_points; ++i) {
-      ++work.leaf_pairs;
-      const LeafRange other = leafOfCandidate(group, i);
-      eachBallPairNear(*group.frame, points, open_points, leaf, other, pairs_.clearance,
-                       [&](std::uint32_t p, std::uint32_t q, float) {
-                         if ((hit >> p & 1) == 0 && pairs_.collide({leaf.record(p), other.record(q)}, work))
-                           hit |= 1u << p;
-                         return hit == open_points;
-                       });
+    return {a_voxel_, visit.node->begin[lane], visit.node->points(lane)};
+  }
+
+  void flagPoints(Visit& visit, std::uint32_t lane, const LeafRange& leaf, std::uint32_t hit)
+  {
+    for (std::uint32_t bits = hit; bits != 0; bits &= bits - 1)
+      flags_[leaf.record(static_cast<std::uint32_t>(std::countr_zero(bits)))] = 1;
+    visit.open_points[lane] &= ~hit;
+    if (visit.open_points[lane] == 0) visit.open &= ~(1u << lane);
+  }
+
+  void settleChildren(Visit& visit, std::uint32_t lanes)
+  {
+    visit.open &= ~lanes;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+      settle(visit.node->begin[lane], visit.node->begin[lane + 1]);
     }
-    return hit;
   }
 
-  static LeafRange leafOfCandidate(const Group& group, std::size_t i)
+  /// Flags all points of a range.
+  void settle(std::uint32_t begin, std::uint32_t end)
   {
-    const Node& node = group.candidates.node(i);
-    const std::uint32_t lane = group.candidates.lane(i);
-    return {group.voxel, node.begin[lane], node.points(lane)};
+    for (std::uint32_t i = begin; i < end; ++i) flags_[a_voxel_->records()[i]] = 1;
   }
 
-  void settle(const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
-  {
-    for (std::uint32_t i = begin; i < end; ++i) flags_[voxel.records()[i]] = 1;
-  }
+  static constexpr std::uint32_t kNoMeeting = 0xffffffffu;
 
-  Spaces a_, b_;
+  const Spaces a_, b_;
   const PointPairs& pairs_;
   std::uint8_t* flags_;
-  const Voxel* a_built_ = nullptr;
-  std::deque<std::vector<Group>> levels_; // of candidates, one for each depth of a's node; groups keep their storage
-  std::vector<std::size_t> level_counts_; // groups in use
+  const Voxel* a_voxel_ = nullptr;
+  std::vector<Meeting> meetings_;
+  std::deque<Visit>& visits_; // by depth; a deque, for references to shallower visits stay in use
 };
 
 } // namespace
@@ -356,7 +338,8 @@ private:
 Work flagVoxelOnTarget(const Placed& a, const Placed& b, const PointPairs& pairs, std::uint32_t voxel,
                        std::uint8_t* flags)
 {
-  FlagWalk walk(a, b, pairs, flags);
+  thread_local std::deque<Visit> visits; // kept from voxel to voxel for their storage only
+  FlagWalk walk(a, b, pairs, flags, visits);
   walk.run(voxel);
   return walk.work;
 }

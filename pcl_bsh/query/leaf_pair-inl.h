@@ -15,6 +15,12 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
+/// The centre of a's sphere in the frame of b.
+HWY_INLINE Point carriedCenter(const RelativeFrame& frame, const Node& node, std::uint32_t lane)
+{
+  return carryPoint(frame.m.data(), frame.g.data(), {node.x[lane], node.y[lane], node.z[lane]});
+}
+
 /// Points [begin, begin + count) of a voxel.
 struct LeafRange {
   const Voxel* voxel = nullptr;
@@ -47,7 +53,7 @@ HWY_INLINE std::uint32_t pointsNearLeaf(const RelativeFrame& frame, const LeafPo
   if (a.voxel->radii)
     for (std::uint32_t i = 0; i < a.count; ++i) radius = std::max(radius, a.radius(i));
   const float reach = node.r[lane] * frame.stretch_b + frame.pruneReach(clearance + radius);
-  return firstBits(a.count) & pointsNear(points, node.x[lane], node.y[lane], node.z[lane], reach, kPruneMargin);
+  return firstBits(a.count) & pointsNear(points, node.x[lane], node.y[lane], node.z[lane], reach, kSphereMargin);
 }
 
 /// Calls found(i, j, squared) for the pairs among `lanes` of leaf a and the points of leaf b whose float distance does
@@ -78,7 +84,7 @@ bool eachBallPairNear(const RelativeFrame& frame, const LeafPoints& points, std:
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
       const float reach = std::max(0.0f, frame.pruneReach(clearance + a.radius(i) + b.radius(j)));
-      if (!(squared[i] > reach * reach * (1.0f + kPruneMargin)) && found(i, j, squared[i])) return true;
+      if (!(squared[i] > reach * reach * (1.0f + kSphereMargin)) && found(i, j, squared[i])) return true;
     }
   }
   return false;

@@ -74,8 +74,9 @@ public:
 
   /// The children that a step has found near, as bits, with the sphere test's figures.
   struct Step {
-    Lane entered; ///< the node whose children were tested
-    SphereHits hits;
+    Lane entered;             ///< the node whose children were tested
+    std::uint32_t near = 0;   ///< bit i: child i is not proven to be apart
+    std::uint32_t inside = 0; ///< bit i: all its points collide with all points of the other side
     float gap[kLanes];
   };
 
@@ -96,8 +97,9 @@ public:
     alignas(32) float x[kLanes], y[kLanes], z[kLanes];
     carry(frame.m.data(), frame.g.data(), node.x, node.y, node.z, kLanes, x, y, z);
     out.entered = entered;
-    test(frame, x, y, z, node.r, frame.stretch_a, node.count, other.x[lane_b.lane], other.y[lane_b.lane],
-         other.z[lane_b.lane], other.r[lane_b.lane] * frame.stretch_b, clearance, out);
+    test(frame, {x, y, z, node.r, frame.stretch_a}, node.count,
+         {other.x[lane_b.lane], other.y[lane_b.lane], other.z[lane_b.lane]}, other.r[lane_b.lane] * frame.stretch_b,
+         clearance, out);
   }
 
   void testChildrenOfB(const Lane& lane_a, const Lane& entered, double clearance, Step& out)
@@ -105,10 +107,8 @@ public:
     const RelativeFrame& frame = frames.find(lane_a.space, entered.space);
     const Node& node = nodeOf(b, entered);
     const Node& other = nodeOf(a, lane_a);
-    float x, y, z;
-    carryOne(frame, other.x[lane_a.lane], other.y[lane_a.lane], other.z[lane_a.lane], x, y, z);
     out.entered = entered;
-    test(frame, node.x, node.y, node.z, node.r, frame.stretch_b, node.count, x, y, z,
+    test(frame, {node.x, node.y, node.z, node.r, frame.stretch_b}, node.count, carriedCenter(frame, other, lane_a.lane),
          other.r[lane_a.lane] * frame.stretch_a, clearance, out);
   }
 
@@ -122,7 +122,7 @@ public:
     for (std::uint32_t i = 0; i < a.storage.top[0].count; ++i) {
       const LanePair pair{0.0f, {kAboveVoxels, 0, i}, {kAboveVoxels, 0, 0}};
       testChildrenOfB(pair.a, pair.b, clearance, found);
-      for (std::uint32_t near = found.hits.near; near != 0; near &= near - 1)
+      for (std::uint32_t near = found.near; near != 0; near &= near - 1)
         push(childOf(pair, Opened::b, found, static_cast<std::uint32_t>(std::countr_zero(near))));
     }
   }
@@ -135,23 +135,15 @@ public:
     return child;
   }
 
-  static void carryOne(const RelativeFrame& f, float px, float py, float pz, float& x, float& y, float& z)
-  {
-    x = ((f.g[0] + f.m[0] * px) + f.m[1] * py) + f.m[2] * pz;
-    y = ((f.g[1] + f.m[3] * px) + f.m[4] * py) + f.m[5] * pz;
-    z = ((f.g[2] + f.m[6] * px) + f.m[7] * py) + f.m[8] * pz;
-  }
-
 private:
-  void test(const RelativeFrame& frame, const float* x, const float* y, const float* z, const float* r, float stretch,
-            std::uint32_t count, float cx, float cy, float cz, float radius, double clearance, Step& out)
+  /// `near` and `inside` of the first `count` spheres, against a ball of the other side, its radius stretched.
+  void test(const RelativeFrame& frame, const SphereLanes& spheres, std::uint32_t count, const Point& center,
+            float radius, double clearance, Step& out)
   {
-    // The radius product is rounded: outward by the margin of the test for `near`, and here for `inside`.
-    out.hits = testSpheres(x, y, z, r, stretch, cx, cy, cz, radius + frame.pruneReach(clearance),
-                           frame.acceptReach(clearance) - radius * (1.0f + kPruneMargin), kPruneMargin, out.gap);
-    const std::uint32_t used = firstBits(count);
-    out.hits.near &= used;
-    out.hits.inside &= used;
+    const Ball ball{center.x, center.y, center.z, radius + frame.pruneReach(clearance),
+                    frame.acceptReach(clearance) - radius * (1.0f + kSphereMargin)};
+    out.near = spheresNear(spheres, ball, out.gap) & firstBits(count);
+    out.inside = spheresInside(spheres, ball) & firstBits(count);
     work.node_pairs += count;
   }
 };

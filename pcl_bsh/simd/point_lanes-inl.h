@@ -101,49 +101,18 @@ HWY_INLINE void squaredDistances(const LeafPoints& points, float qx, float qy, f
   }
 }
 
-/// Smallest and largest of count > 0 values.
-HWY_INLINE void extent(const float* values, std::size_t count, float* low, float* high)
-{
-  const LaneTag d;
-  const std::size_t step = hn::Lanes(d);
-  if (count < step) {
-    *low = *std::min_element(values, values + count);
-    *high = *std::max_element(values, values + count);
-    return;
-  }
-  LaneVector least = hn::LoadU(d, values + count - step), most = least;
-  for (std::size_t i = 0; i + step < count; i += step) {
-    const LaneVector v = hn::LoadU(d, values + i);
-    least = hn::Min(least, v);
-    most = hn::Max(most, v);
-  }
-  *low = hn::GetLane(hn::MinOfLanes(d, least));
-  *high = hn::GetLane(hn::MaxOfLanes(d, most));
-}
-
-/// Largest squared distance of count > 0 points from (cx, cy, cz), plain float arithmetic (under 6 u above or below).
+/// Largest squared distance of count > 0 points from (cx, cy, cz), in float arithmetic (relative error under 6 u).
+/// Reads whole vectors: the arrays must go on that far.
 HWY_INLINE float farthestSquared(const float* x, const float* y, const float* z, std::size_t count, float cx, float cy,
                                  float cz)
 {
   const LaneTag d;
-  const std::size_t step = hn::Lanes(d);
-  if (count < step) {
-    float most = 0.0f;
-    for (std::size_t i = 0; i < count; ++i) {
-      const float dx = x[i] - cx, dy = y[i] - cy, dz = z[i] - cz;
-      most = std::max(most, dx * dx + dy * dy + dz * dz);
-    }
-    return most;
-  }
   const LaneVector vx = hn::Set(d, cx), vy = hn::Set(d, cy), vz = hn::Set(d, cz);
   LaneVector most = hn::Zero(d);
-  for (std::size_t i = 0;; i += step) {
-    const std::size_t at = std::min(i, count - step); // the last vector overlaps the one before
-    const LaneVector dx = hn::Sub(hn::LoadU(d, x + at), vx);
-    const LaneVector dy = hn::Sub(hn::LoadU(d, y + at), vy);
-    const LaneVector dz = hn::Sub(hn::LoadU(d, z + at), vz);
-    most = hn::Max(most, squaredNorm(dx, dy, dz));
-    if (at + step >= count) break;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const LaneVector squared = squaredNorm(hn::Sub(hn::LoadU(d, x + i), vx), hn::Sub(hn::LoadU(d, y + i), vy),
+                                           hn::Sub(hn::LoadU(d, z + i), vz));
+    most = hn::Max(most, hn::IfThenElseZero(hn::FirstN(d, std::min(count - i, hn::Lanes(d))), squared));
   }
   return hn::GetLane(hn::MaxOfLanes(d, most));
 }

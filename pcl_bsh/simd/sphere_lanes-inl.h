@@ -73,37 +73,70 @@ HWY_INLINE void carry(const float* m, const float* g, const float* x, const floa
   }
 }
 
-/// Which of eight spheres may hold a point within reach of a ball, and which surely hold only such points.
-struct SphereHits {
-  std::uint32_t near = 0;   ///< bit i: sphere i is not proven to be apart
-  std::uint32_t inside = 0; ///< bit i: every point of sphere i is within reach of every point of the ball
+/// One point by y = m x + g, rounded as carry() rounds.
+struct Point {
+  float x, y, z;
 };
 
-/// @param x,y,z,r eight spheres. @param stretch multiplies r. @param cx,cy,cz the ball's centre; `near_reach` its
-/// radius and the clearance, rounded outward; `inside_reach` the clearance less its radius, rounded inward. @param
-/// margin relative margin of squared comparisons. @param gap receives squared distance less squared sum of radii: an
-/// order of nearness.
-HWY_INLINE SphereHits testSpheres(const float* x, const float* y, const float* z, const float* r, float stretch,
-                                  float cx, float cy, float cz, float near_reach, float inside_reach, float margin,
-                                  float* gap)
+HWY_INLINE Point carryPoint(const float* m, const float* g, const Point& p)
+{
+  return {((g[0] + m[0] * p.x) + m[1] * p.y) + m[2] * p.z, ((g[1] + m[3] * p.x) + m[4] * p.y) + m[5] * p.z,
+          ((g[2] + m[6] * p.x) + m[7] * p.y) + m[8] * p.z};
+}
+
+/// Eight spheres, and a factor that their radii are stretched by.
+struct SphereLanes {
+  const float *x, *y, *z, *r;
+  float stretch;
+};
+
+/// A ball to hold against spheres: its radius goes into the reaches.
+struct Ball {
+  float x, y, z;
+  float near_reach;   ///< the clearance and the radius, rounded outward
+  float inside_reach; ///< the clearance less the radius, rounded inward
+};
+
+/// Relative margin of squared comparisons: what rounding of distances and of sums of radii may amount to, under 14 u.
+inline constexpr float kSphereMargin = 0x1p-20f;
+
+/// Bit i: sphere i lies within inside_reach altogether.
+HWY_INLINE std::uint32_t spheresInside(const SphereLanes& spheres, const Ball& ball)
+{
+  if (!(ball.inside_reach > 0.0f)) return 0;
+  const LaneTag d;
+  std::uint32_t inside = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const LaneVector s = squaredNorm(hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, ball.x)),
+                                     hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, ball.y)),
+                                     hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, ball.z)));
+    const LaneVector radius =
+        hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch * (1.0f + kSphereMargin)));
+    const LaneVector room = hn::Sub(hn::Set(d, ball.inside_reach), radius);
+    const LaneVector core =
+        hn::Sub(hn::Mul(hn::Mul(room, room), hn::Set(d, 1.0f - kSphereMargin)), hn::Set(d, 0x1p-120f));
+    inside |= bitsOf(d, hn::And(hn::Gt(room, hn::Zero(d)), hn::Le(s, core))) << i;
+  }
+  return inside;
+}
+
+/// Bit i: sphere i is not proven to be out of near_reach. @param gap receives an order of nearness, smaller is nearer;
+/// or null.
+HWY_INLINE std::uint32_t spheresNear(const SphereLanes& spheres, const Ball& ball, float* gap)
 {
   const LaneTag d;
-  SphereHits hits;
+  std::uint32_t apart = 0;
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
-    const LaneVector dx = hn::Sub(hn::LoadU(d, x + i), hn::Set(d, cx));
-    const LaneVector dy = hn::Sub(hn::LoadU(d, y + i), hn::Set(d, cy));
-    const LaneVector dz = hn::Sub(hn::LoadU(d, z + i), hn::Set(d, cz));
-    const LaneVector s = squaredNorm(dx, dy, dz);
-    const LaneVector radius = hn::Mul(hn::LoadU(d, r + i), hn::Set(d, stretch));
-    const LaneVector reach = hn::Add(radius, hn::Set(d, near_reach));
-    const LaneVector limit = hn::Mul(hn::Mul(reach, reach), hn::Set(d, 1.0f + margin));
-    hits.near |= (bitsOf(d, hn::Gt(s, limit)) ^ ((1u << hn::Lanes(d)) - 1)) << i; // NaN counts as near
-    hn::StoreU(hn::Sub(s, limit), d, gap + i);
-    const LaneVector room = hn::Sub(hn::Set(d, inside_reach), hn::Mul(radius, hn::Set(d, 1.0f + margin)));
-    const LaneVector core = hn::Sub(hn::Mul(hn::Mul(room, room), hn::Set(d, 1.0f - margin)), hn::Set(d, 0x1p-120f));
-    hits.inside |= bitsOf(d, hn::And(hn::Gt(room, hn::Zero(d)), hn::Le(s, core))) << i;
+    const LaneVector s = squaredNorm(hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, ball.x)),
+                                     hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, ball.y)),
+                                     hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, ball.z)));
+    const LaneVector radius = hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch));
+    const LaneVector reach = hn::Add(radius, hn::Set(d, ball.near_reach));
+    const LaneVector limit = hn::Mul(hn::Mul(reach, reach), hn::Set(d, 1.0f + kSphereMargin));
+    apart |= bitsOf(d, hn::Gt(s, limit)) << i; // not so for NaN, which counts as near
+    if (gap) hn::StoreU(hn::Sub(s, limit), d, gap + i);
   }
-  return hits;
+  return apart ^ ((1u << kLanes) - 1);
 }
 
 } // namespace HWY_NAMESPACE

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// PCL's clouds, seen in place as the points a hierarchy is built on.
+//
+//   SphereHierarchy hall(viewOf(*cloud));           // cloud: pcl::PointCloud<PointT> or pcl::PCLPointCloud2
+//   SphereHierarchy part(viewOf(*cloud, indices));  // only these points; numbers stay those of the whole cloud
+//
+// A view borrows: cloud and indices must outlive it, unchanged.
+#pragma once
+
+#include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/search/pcl_abi.h>
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/point_cloud.h>
+#include <pcl/types.h>
+
+#include <cstdint>
+#include <type_traits>
+
+namespace pcl_bsh {
+
+static_assert(std::is_same_v<pcl::index_t, std::int32_t>, "pcl_bsh needs a PCL built with its default 32-bit indices");
+
+/// View of a typed cloud. Members x, y, z of PointT are all float or all double.
+template <typename PointT>
+PointsView viewOf(const pcl::PointCloud<PointT>& cloud)
+{
+  using Coordinate = decltype(PointT::x);
+  static_assert(std::is_same_v<Coordinate, float> || std::is_same_v<Coordinate, double>, "x must be float or double");
+  static_assert(std::is_same_v<decltype(PointT::y), Coordinate> && std::is_same_v<decltype(PointT::z), Coordinate>,
+                "x, y and z must be of one type");
+
+  PointsView view;
+  view.count = cloud.size();
+  view.stride = sizeof(PointT);
+  view.scalar = std::is_same_v<Coordinate, float> ? Scalar::float32 : Scalar::float64;
+  if (cloud.empty()) return view;
+
+  // Measured on a point: offsetof is not defined for every type that PCL accepts.
+  const PointT& first = *cloud.begin();
+  const auto* const start = reinterpret_cast<const char*>(&first);
+  const auto offset = [start](const Coordinate& member) {
+    return static_cast<std::size_t>(reinterpret_cast<const char*>(&member) - start);
+  };
+  view.data = start;
+  view.offset = {offset(first.x), offset(first.y), offset(first.z)};
+  return view;
+}
+
+/// View of a cloud that names its fields at run time. x, y, z are FLOAT32 or FLOAT64, all three alike, one value each,
+/// anywhere in the record.
+/// @throws std::invalid_argument naming the field or the number that is wrong: a field missing or of another type, a
+///   byte order not this machine's, padding between rows, fewer bytes than width * height records need.
+PointsView viewOf(const pcl::PCLPointCloud2& cloud);
+
+/// The same, of a subset. An empty list names no point.
+template <typename Cloud>
+PointsView viewOf(const Cloud& cloud, const pcl::Indices& indices)
+{
+  static constexpr std::int32_t none = 0; // a view without points still needs a list, for null means all of them
+  PointsView view = viewOf(cloud);
+  view.indices = indices.empty() ? &none : indices.data();
+  view.index_count = indices.size();
+  return view;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Four floats as one value: a point's x, y, z and a lane to spare.
+
+#if defined(PCL_BSH_SIMD_QUAD_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_SIMD_QUAD_INL_H_
+#undef PCL_BSH_SIMD_QUAD_INL_H_
+#else
+#define PCL_BSH_SIMD_QUAD_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+class Quad {
+public:
+  static HWY_INLINE Quad load(const float* from)
+  {
+    Quad q;
+    for (std::size_t i = 0; i < kVectors; ++i) q.v_[i] = hn::LoadU(Tag(), from + i * kStep);
+    return q;
+  }
+
+  static HWY_INLINE Quad of(float value)
+  {
+    Quad q;
+    for (std::size_t i = 0; i < kVectors; ++i) q.v_[i] = hn::Set(Tag(), value);
+    return q;
+  }
+
+  HWY_INLINE void store(float* to) const
+  {
+    for (std::size_t i = 0; i < kVectors; ++i) hn::StoreU(v_[i], Tag(), to + i * kStep);
+  }
+
+  /// Truncated towards zero. @pre in the range of int32.
+  HWY_INLINE void storeTruncated(std::int32_t* to) const
+  {
+    const hn::RebindToSigned<Tag> d;
+    for (std::size_t i = 0; i < kVectors; ++i) hn::StoreU(hn::ConvertTo(d, v_[i]), d, to + i * kStep);
+  }
+
+  /// Whether x, y and z are finite.
+  HWY_INLINE bool finite() const
+  {
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      std::uint8_t mask[8] = {};
+      hn::StoreMaskBits(Tag(), hn::Le(hn::Abs(v_[i]), hn::Set(Tag(), std::numeric_limits<float>::max())), mask);
+      bits |= static_cast<std::uint32_t>(mask[0]) << (i * kStep);
+    }
+    return (bits & 7) == 7;
+  }
+
+  friend HWY_INLINE Quad operator-(const Quad& a, const Quad& b)
+  {
+    Quad q;
+    for (std::size_t i = 0; i < kVectors; ++i) q.v_[i] = hn::Sub(a.v_[i], b.v_[i]);
+    return q;
+  }
+
+  friend HWY_INLINE Quad operator*(const Quad& a, const Quad& b)
+  {
+    Quad q;
+    for (std::size_t i = 0; i < kVectors; ++i) q.v_[i] = hn::Mul(a.v_[i], b.v_[i]);
+    return q;
+  }
+
+  friend HWY_INLINE Quad min(const Quad& a, const Quad& b)
+  {
+    Quad q;
+    for (std::size_t i = 0; i < kVectors; ++i) q.v_[i] = hn::Min(a.v_[i], b.v_[i]);
+    return q;
+  }
+
+  friend HWY_INLINE Quad max(const Quad& a, const Quad& b)
+  {
+    Quad q;
+    for (std::size_t i = 0; i < kVectors; ++i) q.v_[i] = hn::Max(a.v_[i], b.v_[i]);
+    return q;
+  }
+
+private:
+  using Tag = hn::CappedTag<float, 4>;
+  static constexpr std::size_t kStep = hn::MaxLanes(Tag());
+  static constexpr std::size_t kVectors = 4 / kStep;
+  hn::Vec<Tag> v_[kVectors];
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle
