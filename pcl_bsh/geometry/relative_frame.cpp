@@ -161,13 +161,14 @@ std::array<double, 2> RelativeFrame::bandExact(double clearance) const noexcept
 
 float RelativeFrame::pruneReach(double clearance) const noexcept
 {
-  return roundUp((clearance / unit_b_ * (1.0 + skew_) + float_error_) * (1.0 + 0x1p-40));
+  // At least 2^-60, so that the cast errs by u at most; the factor rounds outward again.
+  return static_cast<float>(clearance / unit_b_ * (1.0 + skew_) + float_error_) * (1.0f + 0x1p-21f);
 }
 
 float RelativeFrame::acceptReach(double clearance) const noexcept
 {
-  if (!(error < kInfinity)) return -kFloatInfinity;
-  return roundDown((clearance / unit_b_ * (1.0 - skew_) - error) - 0x1p-40 * (clearance / unit_b_ + 2 * error));
+  const double reach = clearance / unit_b_ * (1.0 - skew_) - float_error_;
+  return reach > 0x1p-60 && error < kInfinity ? static_cast<float>(reach) * (1.0f - 0x1p-21f) : -1.0f;
 }
 
 } // namespace pcl_bsh

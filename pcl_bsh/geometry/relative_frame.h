@@ -48,7 +48,7 @@ public:
   /// stretched radii and this, by more than rounding, hold no colliding pair.
   float pruneReach(double clearance) const noexcept;
 
-  /// At most (clearance - error) in b's units; the counterpart for "every pair collides". May be negative.
+  /// At most (clearance - error) in b's units; the counterpart for "every pair collides". Negative when there is none.
   float acceptReach(double clearance) const noexcept;
 
   /// Bounds | |z| - |w| | / |w|, how far the poses are from rigid.

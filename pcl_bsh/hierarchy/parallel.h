@@ -5,17 +5,17 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <thread>
 
 namespace pcl_bsh {
 
-/// @param requested 0: all of the machine's.
+/// @param requested 0: all of the machine's. More than the machine has would only wait for each other.
 inline unsigned threadCount(unsigned requested) noexcept
 {
-  if (requested != 0) return requested;
-  const unsigned all = std::thread::hardware_concurrency();
-  return all != 0 ? all : 1;
+  const unsigned all = std::max(1u, std::thread::hardware_concurrency());
+  return requested == 0 ? all : std::min(requested, all);
 }
 
 /// Calls body(i) for each i in [0, count), in any order; rethrows what a body throws.

@@ -60,11 +60,15 @@ private:
     return std::nullopt;
   }
 
-  /// The nearest pair last, to be taken first.
+  /// The nearest pair last, to be taken first. Insertion keeps the order of equals, and eight are few.
   void sortFrom(std::size_t from)
   {
-    std::stable_sort(stack_.begin() + static_cast<std::ptrdiff_t>(from), stack_.end(),
-                     [](const LanePair& left, const LanePair& right) { return left.key > right.key; });
+    for (std::size_t i = from + 1; i < stack_.size(); ++i) {
+      const LanePair pair = stack_[i];
+      std::size_t k = i;
+      for (; k > from && stack_[k - 1].key < pair.key; --k) stack_[k] = stack_[k - 1];
+      stack_[k] = pair;
+    }
   }
 
   std::optional<PointPair> compareLeaves(const LanePair& pair)
@@ -90,9 +94,12 @@ private:
     }
     else {
       const DistanceBand band = frame.band(pairs_.clearance);
-      eachPairNotBeyond(points, lanes, b, band.miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
-        return found(i, j, squared, band.hit);
-      });
+      alignas(64) float nearest[kLeafPoints];
+      std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
+      nearestSquared(points, b.x(), b.y(), b.z(), b.count, nearest);
+      eachPairNotBeyond(
+          points, lanes & ~above(nearest, band.miss), b, band.miss,
+          [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, band.hit); });
     }
     return witness;
   }

@@ -63,7 +63,7 @@ bool eachPairNotBeyond(const LeafPoints& points, std::uint32_t lanes, const Leaf
                        const Found& found)
 {
   alignas(64) float squared[kLeafPoints];
-  for (std::uint32_t j = 0; j < b.count; ++j) {
+  for (std::uint32_t j = 0; j < b.count && lanes != 0; ++j) {
     squaredDistances(points, b.x()[j], b.y()[j], b.z()[j], squared);
     for (std::uint32_t bits = lanes & ~above(squared, miss); bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
