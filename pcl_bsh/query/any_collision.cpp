@@ -35,8 +35,9 @@ public:
 private:
   std::optional<PointPair> search()
   {
-    walk_.seed(pairs_.clearance, [this](const LanePair& pair) { stack_.push_back(pair); });
-    sortFrom(0);
+    walk_.seed(pairs_.clearance,
+               [this](const LanePair& pair, const PairWalk::Step&, std::uint32_t) { stack_.push_back(pair); });
+    nearestLast(stack_, 0);
     PairWalk::Step step;
     while (!stack_.empty()) {
       const LanePair pair = stack_.back();
@@ -55,20 +56,9 @@ private:
       const std::size_t from = stack_.size();
       for (std::uint32_t near = step.near; near != 0; near &= near - 1)
         stack_.push_back(PairWalk::childOf(pair, opened, step, static_cast<std::uint32_t>(std::countr_zero(near))));
-      sortFrom(from);
+      nearestLast(stack_, from);
     }
     return std::nullopt;
-  }
-
-  /// The nearest pair last, to be taken first. Insertion keeps the order of equals, and eight are few.
-  void sortFrom(std::size_t from)
-  {
-    for (std::size_t i = from + 1; i < stack_.size(); ++i) {
-      const LanePair pair = stack_[i];
-      std::size_t k = i;
-      for (; k > from && stack_[k - 1].key < pair.key; --k) stack_[k] = stack_[k - 1];
-      stack_[k] = pair;
-    }
   }
 
   std::optional<PointPair> compareLeaves(const LanePair& pair)

@@ -32,6 +32,18 @@ struct LanePair {
 /// Whose children to look at next.
 enum class Opened : std::uint8_t { a, b, neither };
 
+/// Orders the pairs from `from` on so that the nearest is last, to be taken first. Insertion keeps the order of equals,
+/// and a step adds eight at most.
+inline void nearestLast(std::vector<LanePair>& stack, std::size_t from)
+{
+  for (std::size_t i = from + 1; i < stack.size(); ++i) {
+    const LanePair pair = stack[i];
+    std::size_t k = i;
+    for (; k > from && stack[k - 1].key < pair.key; --k) stack[k] = stack[k - 1];
+    stack[k] = pair;
+  }
+}
+
 class PairWalk {
 public:
   PairWalk(const Placed& placed_a, const Placed& placed_b) : a(placed_a), b(placed_b), frames(a, b) {}
@@ -77,7 +89,11 @@ public:
     Lane entered;             ///< the node whose children were tested
     std::uint32_t near = 0;   ///< bit i: child i is not proven to be apart
     std::uint32_t inside = 0; ///< bit i: all its points collide with all points of the other side
-    float gap[kLanes];
+    float gap[kLanes];        ///< from the other sphere's centre to each child, by spheresNear()
+    const RelativeFrame* frame = nullptr;
+    const float* radii = nullptr; ///< of the children
+    float stretch = 1.0f;         ///< of the children's radii
+    float radius = 0.0f;          ///< of the other sphere, stretched
   };
 
   /// Tests the children of pair.a, once opened, against pair.b; or the other way round.
@@ -112,7 +128,7 @@ public:
          other.r[lane_a.lane] * frame.stretch_a, clearance, out);
   }
 
-  /// Calls push(pair) for every pair of children of the two roots that may meet.
+  /// Calls push(pair, step, lane) for every pair of children of the two roots that may meet.
   template <class Push>
   void seed(double clearance, const Push& push)
   {
@@ -122,8 +138,10 @@ public:
     for (std::uint32_t i = 0; i < a.storage.top[0].count; ++i) {
       const LanePair pair{0.0f, {kAboveVoxels, 0, i}, {kAboveVoxels, 0, 0}};
       testChildrenOfB(pair.a, pair.b, clearance, found);
-      for (std::uint32_t near = found.near; near != 0; near &= near - 1)
-        push(childOf(pair, Opened::b, found, static_cast<std::uint32_t>(std::countr_zero(near))));
+      for (std::uint32_t near = found.near; near != 0; near &= near - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+        push(childOf(pair, Opened::b, found, lane), found, lane);
+      }
     }
   }
 
@@ -135,6 +153,16 @@ public:
     return child;
   }
 
+  /// No pair of points below child `lane` of a step is nearer than this, in the clouds' unit; may be negative.
+  double lowerBound(const LanePair& pair, const Step& step, std::uint32_t lane) const
+  {
+    const double gap = step.gap[lane], radius = step.radii[lane] * step.stretch;
+    const double rounding = static_cast<double>(kSphereMargin) * (std::abs(gap) + 2 * radius + step.radius);
+    const double bound =
+        gap - rounding - static_cast<double>(step.radius) - static_cast<double>(step.frame->pruneReach(0.0));
+    return (bound - std::abs(bound) * step.frame->skew()) * b.frame(pair.b.space).unit;
+  }
+
 private:
   /// `near` and `inside` of the first `count` spheres, against a ball of the other side, its radius stretched.
   void test(const RelativeFrame& frame, const SphereLanes& spheres, std::uint32_t count, const Point& center,
@@ -142,6 +170,10 @@ private:
   {
     const Ball ball{center.x, center.y, center.z, radius + frame.pruneReach(clearance),
                     frame.acceptReach(clearance) - radius * (1.0f + kSphereMargin)};
+    out.frame = &frame;
+    out.radii = spheres.r;
+    out.stretch = spheres.stretch;
+    out.radius = radius;
     out.near = spheresNear(spheres, ball, out.gap) & firstBits(count);
     out.inside = spheresInside(spheres, ball) & firstBits(count);
     work.node_pairs += count;

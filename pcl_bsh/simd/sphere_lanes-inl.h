@@ -134,7 +134,7 @@ HWY_INLINE std::uint32_t spheresNear(const SphereLanes& spheres, const Ball& bal
     const LaneVector reach = hn::Add(radius, hn::Set(d, ball.near_reach));
     const LaneVector limit = hn::Mul(hn::Mul(reach, reach), hn::Set(d, 1.0f + kSphereMargin));
     apart |= bitsOf(d, hn::Gt(s, limit)) << i; // not so for NaN, which counts as near
-    if (gap) hn::StoreU(hn::Sub(s, limit), d, gap + i);
+    if (gap) hn::StoreU(hn::Sub(hn::Sqrt(s), radius), d, gap + i);
   }
   return apart ^ ((1u << kLanes) - 1);
 }
