@@ -55,14 +55,9 @@ struct Visit {
   float smallest = 0.0f;                                        ///< of r
   Sphere around;                                                ///< holds them all; in the frame of a's voxel
   Ball ball;                                                    ///< likewise, in the meeting's frame
-  std::vector<Candidate>
-      near[kLanes]; ///< what each child has to be compared with further down; of leaves, was compared with
+  std::vector<Candidate> near[kLanes]; ///< what each child has to be compared with; of leaves, in this meeting
 
-  // Of the children that are leaves:
-  std::uint32_t carried = 0;         ///< bits: `points` are in the meeting's frame
-  std::uint32_t open_points[kLanes]; ///< bits of their points that are not flagged yet
-  LeafPoints points[kLanes];
-  alignas(64) float nearest[kLanes][kLeafPoints]; ///< squared distances, in this meeting so far
+  std::uint32_t open_points[kLanes] = {}; ///< of leaves: bits of the points not flagged yet
 };
 
 class FlagWalk {
@@ -128,16 +123,15 @@ private:
     if (visits_.size() == depth) visits_.emplace_back();
     Visit& visit = visits_[depth];
     begin(visit, node, around);
-    std::uint32_t meeting = kNoMeeting;
-    for (const Candidate& candidate : candidates) {
-      if (visit.open == 0) break;
-      if (candidate.meeting != meeting) {
-        if (meeting != kNoMeeting) decideLeft(visit);
-        enter(visit, meeting = candidate.meeting);
-      }
-      take(visit, candidate, visit.open);
+    for (auto from = candidates.begin(); from != candidates.end() && visit.open != 0;) {
+      const auto to =
+          std::find_if(from, candidates.end(), [&](const Candidate& c) { return c.meeting != from->meeting; });
+      enter(visit, from->meeting);
+      for (auto c = from; c != to && visit.open != 0; ++c) settleByPoints(visit, *c);
+      for (auto c = from; c != to && visit.open != 0; ++c) take(visit, *c, visit.open);
+      compareLeaves(visit);
+      from = to;
     }
-    if (meeting != kNoMeeting) decideLeft(visit);
     for (std::uint32_t bits = visit.open & ~visit.leaves; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
@@ -164,7 +158,6 @@ private:
   void enter(Visit& visit, std::uint32_t meeting)
   {
     visit.meeting = meeting;
-    visit.carried = 0;
     const RelativeFrame& frame = meetings_[meeting].frame;
     carry(frame.m.data(), frame.g.data(), visit.node->x, visit.node->y, visit.node->z, kLanes, visit.x, visit.y,
           visit.z);
@@ -194,22 +187,14 @@ private:
     std::uint32_t near = spheresNear(spheres, ball, nullptr) & lanes & visit.open;
     if (near == 0) return;
     if (ball.inside_reach > visit.smallest) {
-      settleChildren(visit, spheresInside(spheres, ball) & near);
+      for (std::uint32_t bits = spheresInside(spheres, ball) & near; bits != 0; bits &= bits - 1)
+        settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
       near &= visit.open;
     }
-    if (candidate.isLeaf()) {
-      near = settleByPoints(visit, candidate, near);
-      for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-        visit.near[lane].push_back(candidate);
-        if ((visit.leaves >> lane & 1) != 0) compareLeaves(visit, lane, candidate);
-      }
-      return;
-    }
-    std::uint32_t opening = near & visit.leaves;
-    for (std::uint32_t bits = near & ~visit.leaves; bits != 0; bits &= bits - 1) {
+    std::uint32_t opening = candidate.isLeaf() ? 0 : near & visit.leaves;
+    for (std::uint32_t bits = near & ~opening; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (radius > visit.r[lane])
+      if (!candidate.isLeaf() && radius > visit.r[lane])
         opening |= 1u << lane;
       else
         visit.near[lane].push_back(candidate);
@@ -225,96 +210,118 @@ private:
     }
   }
 
-  /// Where the clearance exceeds the radius of a child, a single point of b can settle all of it.
-  std::uint32_t settleByPoints(Visit& visit, const Candidate& candidate, std::uint32_t near)
+  /// Where the clearance exceeds the radius of a child, a single point of b near its centre settles all of it.
+  void settleByPoints(Visit& visit, const Candidate& candidate)
   {
     const Meeting& meeting = meetings_[visit.meeting];
-    if (!(meeting.accept_reach > visit.smallest)) return near;
-    const LeafRange leaf = candidate.leaf(meeting);
-    const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
-    for (std::uint32_t j = 0; j < leaf.count && near != 0; ++j) {
-      settleChildren(
-          visit, spheresInside(spheres, {leaf.x()[j], leaf.y()[j], leaf.z()[j], 0.0f, meeting.accept_reach}) & near);
-      near &= visit.open;
-    }
-    return near;
-  }
-
-  void compareLeaves(Visit& visit, std::uint32_t lane, const Candidate& candidate)
-  {
-    ++work.leaf_pairs;
-    const Meeting& meeting = meetings_[visit.meeting];
-    const LeafRange a = leafOfA(visit, lane), b = candidate.leaf(meeting);
-    if ((visit.carried >> lane & 1) == 0) {
-      visit.carried |= 1u << lane;
-      carryLeaf(meeting.frame, a, visit.points[lane]);
-      std::fill_n(visit.nearest[lane], kLeafPoints, std::numeric_limits<float>::infinity());
-    }
-    std::uint32_t hit = 0;
-    if (pairs_.haveRadii()) {
-      hit = hitBalls(visit, lane, a, b);
-    }
-    else {
-      nearestSquared(visit.points[lane], b.x(), b.y(), b.z(), b.count, visit.nearest[lane]);
-      hit = visit.open_points[lane] & atMost(visit.nearest[lane], meeting.band.hit);
-    }
-    flagPoints(visit, lane, a, hit);
-  }
-
-  /// The last pairs of this meeting, those within the float band.
-  void decideLeft(Visit& visit)
-  {
-    if (pairs_.haveRadii()) return;
-    const Meeting& meeting = meetings_[visit.meeting];
-    for (std::uint32_t bits = visit.carried & visit.open; bits != 0; bits &= bits - 1) {
+    if (!(meeting.accept_reach > visit.smallest)) return;
+    const Node& node = *candidate.node;
+    const std::uint32_t k = candidate.lane;
+    // A point of the candidate can be that near only if its sphere comes within the clearance less the child's radius.
+    const SphereLanes less_radius{visit.x, visit.y, visit.z, visit.r, -1.0f};
+    const Ball ball{node.x[k], node.y[k], node.z[k], node.r[k] * meeting.frame.stretch_b + meeting.accept_reach, 0.0f};
+    work.node_pairs += static_cast<std::uint64_t>(std::popcount(visit.open));
+    for (std::uint32_t bits = spheresNear(less_radius, ball, nullptr) & visit.open; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      const std::uint32_t undecided = visit.open_points[lane] & ~above(visit.nearest[lane], meeting.band.miss);
-      if (undecided == 0) continue;
-      const LeafRange a = leafOfA(visit, lane);
-      std::uint32_t hit = 0;
-      for (const Candidate& candidate : visit.near[lane]) {
-        const LeafRange b = candidate.leaf(meeting);
-        eachPairNotBeyond(visit.points[lane], undecided, b, meeting.band.miss,
-                          [&](std::uint32_t i, std::uint32_t j, float) {
-                            if ((hit >> i & 1) == 0 && pairs_.collide({a.record(i), b.record(j)}, work)) hit |= 1u << i;
-                            return hit == undecided;
-                          });
-      }
-      flagPoints(visit, lane, a, hit);
+      const float reach = meeting.accept_reach - visit.r[lane] * (1.0f + kSphereMargin);
+      const Ball center{visit.x[lane], visit.y[lane], visit.z[lane], reach, 0.0f};
+      if (reach > 0.0f && hasPointWithin(meeting, candidate, center)) settleChild(visit, lane);
     }
   }
 
-  std::uint32_t hitBalls(const Visit& visit, std::uint32_t lane, const LeafRange& a, const LeafRange& b)
+  /// Whether the candidate has a point in the ball; the nearest spheres are asked first.
+  bool hasPointWithin(const Meeting& meeting, const Candidate& candidate, const Ball& ball)
   {
+    if (candidate.isLeaf()) {
+      const LeafRange leaf = candidate.leaf(meeting);
+      return anyPointWithin(leaf.x(), leaf.y(), leaf.z(), leaf.count, ball.x, ball.y, ball.z, ball.near_reach);
+    }
+    const Node& below = meeting.voxel->nodes[candidate.node->child[candidate.lane]];
+    float gap[kLanes];
+    work.node_pairs += below.count;
+    std::uint32_t near =
+        spheresNear({below.x, below.y, below.z, below.r, meeting.frame.stretch_b}, ball, gap) & firstBits(below.count);
+    while (near != 0) {
+      auto nearest = static_cast<std::uint32_t>(std::countr_zero(near));
+      for (std::uint32_t bits = near & (near - 1); bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+        if (gap[lane] < gap[nearest]) nearest = lane;
+      }
+      if (hasPointWithin(meeting, {&below, nearest, candidate.meeting}, ball)) return true;
+      near &= ~(1u << nearest);
+    }
+    return false;
+  }
+
+  /// Compares the points of the children that are leaves with the leaves they are near to, in this meeting.
+  void compareLeaves(Visit& visit)
+  {
+    for (std::uint32_t bits = visit.leaves & visit.open; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (visit.near[lane].empty()) continue;
+      const LeafRange leaf{a_voxel_, visit.node->begin[lane], visit.node->points(lane)};
+      LeafPoints points;
+      carryLeaf(meetings_[visit.meeting].frame, leaf, points);
+      const std::uint32_t hit =
+          pairs_.haveRadii() ? hitBalls(visit, lane, leaf, points) : hitPoints(visit, lane, leaf, points);
+      for (std::uint32_t set = hit; set != 0; set &= set - 1)
+        flags_[leaf.record(static_cast<std::uint32_t>(std::countr_zero(set)))] = 1;
+      visit.open_points[lane] &= ~hit;
+      if (visit.open_points[lane] == 0) visit.open &= ~(1u << lane);
+    }
+  }
+
+  /// Which open points of a leaf collide with the leaves it is near to: by float band, and exactly within the band.
+  std::uint32_t hitPoints(const Visit& visit, std::uint32_t lane, const LeafRange& leaf, const LeafPoints& points)
+  {
+    const Meeting& meeting = meetings_[visit.meeting];
+    const std::uint32_t open = visit.open_points[lane];
+    alignas(64) float nearest[kLeafPoints];
+    std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
     std::uint32_t hit = 0;
-    eachBallPairNear(meetings_[visit.meeting].frame, visit.points[lane], visit.open_points[lane], a, b,
-                     pairs_.clearance, [&](std::uint32_t i, std::uint32_t j, float) {
-                       if ((hit >> i & 1) == 0 && pairs_.collide({a.record(i), b.record(j)}, work)) hit |= 1u << i;
-                       return hit == visit.open_points[lane];
-                     });
+    for (const Candidate& candidate : visit.near[lane]) {
+      ++work.leaf_pairs;
+      const LeafRange other = candidate.leaf(meeting);
+      nearestSquared(points, other.x(), other.y(), other.z(), other.count, nearest);
+      hit = open & atMost(nearest, meeting.band.hit);
+      if (hit == open) return hit;
+    }
+    const std::uint32_t undecided = open & ~hit & ~above(nearest, meeting.band.miss);
+    for (const Candidate& candidate : visit.near[lane]) {
+      if ((undecided & ~hit) == 0) break;
+      const LeafRange other = candidate.leaf(meeting);
+      eachPairNotBeyond(points, undecided, other, meeting.band.miss, [&](std::uint32_t i, std::uint32_t j, float) {
+        if ((hit >> i & 1) == 0 && pairs_.collide({leaf.record(i), other.record(j)}, work)) hit |= 1u << i;
+        return (undecided & ~hit) == 0;
+      });
+    }
     return hit;
   }
 
-  LeafRange leafOfA(const Visit& visit, std::uint32_t lane) const
+  /// The same where points have radii.
+  std::uint32_t hitBalls(const Visit& visit, std::uint32_t lane, const LeafRange& leaf, const LeafPoints& points)
   {
-    return {a_voxel_, visit.node->begin[lane], visit.node->points(lane)};
-  }
-
-  void flagPoints(Visit& visit, std::uint32_t lane, const LeafRange& leaf, std::uint32_t hit)
-  {
-    for (std::uint32_t bits = hit; bits != 0; bits &= bits - 1)
-      flags_[leaf.record(static_cast<std::uint32_t>(std::countr_zero(bits)))] = 1;
-    visit.open_points[lane] &= ~hit;
-    if (visit.open_points[lane] == 0) visit.open &= ~(1u << lane);
-  }
-
-  void settleChildren(Visit& visit, std::uint32_t lanes)
-  {
-    visit.open &= ~lanes;
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-      settle(visit.node->begin[lane], visit.node->begin[lane + 1]);
+    const Meeting& meeting = meetings_[visit.meeting];
+    const std::uint32_t open = visit.open_points[lane];
+    std::uint32_t hit = 0;
+    for (const Candidate& candidate : visit.near[lane]) {
+      if (hit == open) break;
+      ++work.leaf_pairs;
+      const LeafRange other = candidate.leaf(meeting);
+      eachBallPairNear(meeting.frame, points, open, leaf, other, pairs_.clearance,
+                       [&](std::uint32_t i, std::uint32_t j, float) {
+                         if ((hit >> i & 1) == 0 && pairs_.collide({leaf.record(i), other.record(j)}, work))
+                           hit |= 1u << i;
+                         return hit == open;
+                       });
     }
+    return hit;
+  }
+
+  void settleChild(Visit& visit, std::uint32_t lane)
+  {
+    visit.open &= ~(1u << lane);
+    settle(visit.node->begin[lane], visit.node->begin[lane + 1]);
   }
 
   /// Flags all points of a range.
@@ -322,8 +329,6 @@ private:
   {
     for (std::uint32_t i = begin; i < end; ++i) flags_[a_voxel_->records()[i]] = 1;
   }
-
-  static constexpr std::uint32_t kNoMeeting = 0xffffffffu;
 
   const Spaces a_, b_;
   const PointPairs& pairs_;

@@ -101,6 +101,23 @@ HWY_INLINE void squaredDistances(const LeafPoints& points, float qx, float qy, f
   }
 }
 
+/// Whether one of `count` points is surely within reach > 0 of (cx, cy, cz). Reads whole vectors, as farthestSquared()
+/// does.
+HWY_INLINE bool anyPointWithin(const float* x, const float* y, const float* z, std::size_t count, float cx, float cy,
+                               float cz, float reach)
+{
+  const LaneTag d;
+  const LaneVector vx = hn::Set(d, cx), vy = hn::Set(d, cy), vz = hn::Set(d, cz);
+  const LaneVector limit = hn::Set(d, reach * reach * (1.0f - kSphereMargin) - 0x1p-120f);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const LaneVector squared = squaredNorm(hn::Sub(hn::LoadU(d, x + i), vx), hn::Sub(hn::LoadU(d, y + i), vy),
+                                           hn::Sub(hn::LoadU(d, z + i), vz));
+    const std::uint32_t within = bitsOf(d, hn::Le(squared, limit));
+    if ((within & firstBits(std::min(count - i, hn::Lanes(d)))) != 0) return true;
+  }
+  return false;
+}
+
 /// Largest squared distance of count > 0 points from (cx, cy, cz), in float arithmetic (relative error under 6 u).
 /// Reads whole vectors: the arrays must go on that far.
 HWY_INLINE float farthestSquared(const float* x, const float* y, const float* z, std::size_t count, float cx, float cy,
