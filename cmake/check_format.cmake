@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Fails when a file is not as .clang-format has it.
+#   cmake [-D CLANG_FORMAT=clang-format] -P cmake/check_format.cmake
+cmake_minimum_required(VERSION 3.25)
+cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
+if(NOT CLANG_FORMAT)
+  set(CLANG_FORMAT clang-format)
+endif()
+
+foreach(room IN ITEMS pcl_bsh filters examples test)
+  file(GLOB_RECURSE room_files "${root}/${room}/*.h" "${root}/${room}/*.hpp" "${root}/${room}/*.cpp")
+  list(APPEND files ${room_files})
+endforeach()
+list(LENGTH files file_count)
+if(file_count EQUAL 0)
+  message(FATAL_ERROR "no files found under ${root}")
+endif()
+execute_process(COMMAND "${CLANG_FORMAT}" --dry-run --Werror ${files} RESULT_VARIABLE result ERROR_VARIABLE report)
+if(NOT result EQUAL 0)
+  string(REGEX MATCHALL "[^\n]+:[0-9]+:[0-9]+: error:" defects "${report}")
+  list(TRANSFORM defects REPLACE ":.*" "")
+  list(REMOVE_DUPLICATES defects)
+  list(JOIN defects "\n  " text)
+  message(FATAL_ERROR "run ${CLANG_FORMAT} -i on\n  ${text}")
+endif()
+message(STATUS "${file_count} files are formatted")

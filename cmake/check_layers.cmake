@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Fails when a file includes something of a room above its own, or a library that its room must not know.
+#   cmake -P cmake/check_layers.cmake
+cmake_minimum_required(VERSION 3.25)
+cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
+
+# From the bottom up: a room may include itself and those before it.
+set(rooms pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/search filters filters/io examples)
+set(core pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query)
+
+set(never "^(CGAL|vtk)")              # nowhere in these rooms
+set(never_in_core "^(pcl/|iostream$|fstream$)")
+
+# The room of an included path, or empty when it is not one of ours.
+function(room_of path room_variable)
+  string(REGEX REPLACE "^pcl_bsh/filters/" "filters/" path "${path}")
+  set(found "")
+  foreach(room IN LISTS rooms) # the longest match wins: filters/io after filters
+    if(path MATCHES "^${room}/")
+      set(found "${room}")
+    endif()
+  endforeach()
+  set(${room_variable} "${found}" PARENT_SCOPE)
+endfunction()
+
+set(file_count 0)
+set(defects "")
+foreach(room IN LISTS rooms)
+  list(FIND rooms "${room}" rank)
+  file(GLOB_RECURSE files RELATIVE "${root}" "${root}/${room}/*.h" "${root}/${room}/*.hpp" "${root}/${room}/*.cpp")
+  foreach(file IN LISTS files)
+    room_of("${file}" own_room)
+    if(NOT own_room STREQUAL room)
+      continue() # a room inside this one, with its own turn
+    endif()
+    math(EXPR file_count "${file_count} + 1")
+    file(STRINGS "${root}/${file}" includes REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")
+    foreach(line IN LISTS includes)
+      string(REGEX REPLACE "^[^<\"]*[<\"]([^>\"]*)[>\"].*$" "\\1" path "${line}")
+      room_of("${path}" included_room)
+      list(FIND rooms "${included_room}" included_rank)
+      if(included_rank GREATER rank)
+        list(APPEND defects "${file}: includes ${path}: ${room} lies below ${included_room}")
+      elseif(path MATCHES "\\.\\./")
+        list(APPEND defects "${file}: includes ${path}: write the path from the project's root")
+      elseif(path MATCHES "${never}" OR (room IN_LIST core AND path MATCHES "${never_in_core}"))
+        list(APPEND defects "${file}: includes ${path}: not allowed in ${room}")
+      endif()
+    endforeach()
+  endforeach()
+endforeach()
+
+if(file_count EQUAL 0)
+  message(FATAL_ERROR "no files found under ${root}")
+endif()
+if(defects)
+  list(JOIN defects "\n  " text)
+  message(FATAL_ERROR "these includes break the layers:\n  ${text}")
+endif()
+message(STATUS "${file_count} files keep to their layers")

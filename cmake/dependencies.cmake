@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Everything comes from the packages listed in packages.txt.
+
+set(THREADS_PREFER_PTHREAD_FLAG ON)
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(Boost 1.74 REQUIRED) # headers of Multiprecision
+find_package(TBB 2021 REQUIRED CONFIG)
+find_package(hwy 1.0 REQUIRED CONFIG)
+
+# Reading and writing clouds needs nothing of what pcl_io would drag in for cameras and windows.
+set(unwanted VTK OpenNI OpenNI2 libusb)
+foreach(package IN LISTS unwanted)
+  set(CMAKE_DISABLE_FIND_PACKAGE_${package} ON)
+endforeach()
+find_package(PCL 1.13 REQUIRED QUIET COMPONENTS common search filters io)
+foreach(package IN LISTS unwanted)
+  unset(CMAKE_DISABLE_FIND_PACKAGE_${package})
+endforeach()
+
+if(PCL_BSH_BUILD_TESTS)
+  find_package(GTest 1.12 REQUIRED CONFIG)
+endif()
+if(PCL_BSH_BUILD_TESTS OR PCL_BSH_BUILD_BENCHMARKS)
+  find_package(nanoflann 1.4 REQUIRED CONFIG)
+endif()
+if(PCL_BSH_BUILD_EXAMPLES)
+  find_package(CLI11 2 REQUIRED CONFIG)
+  find_package(nlohmann_json 3.11 REQUIRED CONFIG)
+endif()

@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# For find_package(pcl_bsh). Components: libs, dev (headers, CMake package) and, with the programs, tools.
+include(CMakePackageConfigHelpers)
+
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pcl_bsh")
+install(
+  TARGETS pcl_bsh_core pcl_bsh_search pcl_bsh_filters
+  EXPORT pcl_bsh
+  LIBRARY COMPONENT libs NAMELINK_COMPONENT dev
+  ARCHIVE COMPONENT dev
+  FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT dev)
+install(EXPORT pcl_bsh FILE pcl_bshTargets.cmake NAMESPACE pcl_bsh:: DESTINATION "${package_dir}" COMPONENT dev)
+
+configure_package_config_file(
+  "${PROJECT_SOURCE_DIR}/cmake/pcl_bshConfig.cmake.in" "${PROJECT_BINARY_DIR}/pcl_bshConfig.cmake"
+  INSTALL_DESTINATION "${package_dir}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/pcl_bshConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(
+  FILES "${PROJECT_BINARY_DIR}/pcl_bshConfig.cmake" "${PROJECT_BINARY_DIR}/pcl_bshConfigVersion.cmake"
+  DESTINATION "${package_dir}"
+  COMPONENT dev)

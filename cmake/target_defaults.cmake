@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# How everything of this project is compiled.
+
+# No -march here, nor in any preset: code that sees PCL's headers must be aligned as libpcl was when it was compiled, or
+# it crashes or, worse, returns empty clouds. Wider SIMD comes from run-time dispatch inside pcl_bsh_core.
+function(pcl_bsh_target_defaults target)
+  set_target_properties(${target} PROPERTIES CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
+  # A multiplication fused into an addition rounds once instead of twice: the same input would give other bits on
+  # another instruction set.
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -ffp-contract=off)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-restrict) # GCC 12 suspects "text" + std::string
+  endif()
+  if(PCL_BSH_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# A library named pcl_bsh_<name>, known inside and outside of the project as pcl_bsh::<name>. Its headers are C++17.
+function(pcl_bsh_add_library name)
+  add_library(pcl_bsh_${name} ${ARGN})
+  add_library(pcl_bsh::${name} ALIAS pcl_bsh_${name})
+  pcl_bsh_target_defaults(pcl_bsh_${name})
+  target_compile_features(pcl_bsh_${name} PUBLIC cxx_std_17)
+  set_target_properties(
+    pcl_bsh_${name}
+    PROPERTIES EXPORT_NAME ${name}
+               INSTALL_RPATH "$ORIGIN" # wherever they are installed, they lie side by side
+               VERIFY_INTERFACE_HEADER_SETS ON
+               VERSION ${PROJECT_VERSION}
+               SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+endfunction()
+
+if(PROJECT_IS_TOP_LEVEL)
+  find_program(CCACHE_PROGRAM ccache)
+  mark_as_advanced(CCACHE_PROGRAM)
+  if(CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+  endif()
+endif()

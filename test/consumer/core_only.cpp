@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The core alone: C++17, Eigen, no PCL.
+#include <pcl_bsh/query/brute_force.h>
+#include <pcl_bsh/query/collide.h>
+
+#include <cstdio>
+
+int main()
+{
+  const float wall[] = {0, 0, 0, 0, 1, 0, 0, 2, 0};
+  const double robot[] = {0.5, 1, 0};
+  const pcl_bsh::SphereHierarchy a(pcl_bsh::viewOf(wall, 3)), b(pcl_bsh::viewOf(robot, 1));
+
+  pcl_bsh::CollisionRequest request;
+  request.clearance = 0.5;
+  const auto found = pcl_bsh::collisionFlags({a}, {b}, request);
+  const auto expected = pcl_bsh::brute_force::collisionFlags({a}, {b}, request);
+  std::printf("%zu colliding point(s), smallest distance %g\n", found.colliding_a,
+              pcl_bsh::closestPair({a}, {b}).distance);
+  return found.colliding_a == 1 && found.a == expected.a ? 0 : 1;
+}

@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs a build of pcl_bsh to an empty prefix, then configures, builds and runs this project against it.
+#   cmake -D PCL_BSH_BUILD=<build folder> -D WORK=<folder of its own> -P run.cmake
+cmake_minimum_required(VERSION 3.25)
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+file(REMOVE_RECURSE "${WORK}")
+run(${CMAKE_COMMAND} --install "${PCL_BSH_BUILD}" --prefix "${WORK}/prefix")
+
+set(readme_example "${WORK}/readme_example.cpp")
+file(READ "${CMAKE_CURRENT_LIST_DIR}/../../README.md" readme)
+string(REGEX MATCH "```cpp\n(#include[^`]*)```" found "${readme}")
+file(WRITE "${readme_example}" "${CMAKE_MATCH_1}")
+
+run(${CMAKE_COMMAND} -S "${CMAKE_CURRENT_LIST_DIR}" -B "${WORK}/build" -G Ninja -D CMAKE_BUILD_TYPE=Release -D
+    "CMAKE_PREFIX_PATH=${WORK}/prefix" -D "README_EXAMPLE=${readme_example}")
+run(${CMAKE_COMMAND} --build "${WORK}/build")
+run("${WORK}/build/core_only")
+run("${WORK}/build/own_point_type")
