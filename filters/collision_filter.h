@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A PCL filter that removes the points of a cloud that collide with an obstacle cloud, keeps only those, or flags them.
+//
+//   pcl_bsh::CollisionFilter<pcl::PointXYZ> filter;
+//   filter.setObstacleCloud(robot);      // of any point type
+//   filter.setPose(T_scan_robot);        // the robot in the scan's frame
+//   filter.setClearance(0.05);           // in the clouds' unit; touching counts
+//   filter.setInputCloud(scan);
+//   filter.filter(free);                 // the scan without what touches the robot
+//
+// Free is never the answer to a failure: where PCL's filters would print a line and return, this one throws.
+#pragma once
+
+#include <pcl_bsh/filters/obstacle_query.h>
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/filters/filter_indices.h>
+#include <pcl/point_cloud.h>
+
+#include <cstdint>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// What the typed filter and the one of pcl::PCLPointCloud2 share. Use CollisionFilter.
+///
+/// PCL's filter() is not virtual. Called through a pointer to pcl::Filter, it leaves the output alone when the input is
+/// missing, and setKeepFlagged() needs an output that is not the input.
+template <typename PointT>
+class CollisionFilterBase : public pcl::FilterIndices<PointT>, public ObstacleQuery {
+public:
+  using Cloud =
+      std::conditional_t<std::is_same_v<PointT, pcl::PCLPointCloud2>, pcl::PCLPointCloud2, pcl::PointCloud<PointT>>;
+
+  /// @param extract_removed_indices keep what getRemovedIndices() returns
+  explicit CollisionFilterBase(bool extract_removed_indices = false);
+
+  /// Keeps the points of the input that do not collide; after setNegative(true), those that do. Points that are not
+  /// finite are removed either way. `output` may be the input; on an error it stays as it was.
+  /// @throws std::invalid_argument when input or obstacle is missing, or a setting is not what its declaration asks for
+  void filter(Cloud& output);
+
+  /// The same as indices into the input, in its order.
+  void filter(pcl::Indices& indices);
+
+  /// One flag per point of the whole input cloud, 1 = collides (also after setNegative(true)); 0 for points outside
+  /// setIndices() and for points that are not finite. Throws as filter() does.
+  void computeFlags(std::vector<std::uint8_t>& flags);
+
+protected:
+  using pcl::FilterIndices<PointT>::applyFilter;
+  void applyFilter(pcl::Indices& indices) override;
+
+  PointsView inputView() const;
+  void requireInput() const;
+
+public:
+  PCL_MAKE_ALIGNED_OPERATOR_NEW
+};
+
+/// Removes from a pcl::PointCloud<PointT> what collides with the obstacle.
+///
+/// Instantiated for PCL's XYZ types. For a point type of your own define PCL_NO_PRECOMPILE before the first PCL header.
+template <typename PointT>
+class CollisionFilter : public CollisionFilterBase<PointT> {
+public:
+  using Ptr = std::shared_ptr<CollisionFilter<PointT>>;
+  using ConstPtr = std::shared_ptr<const CollisionFilter<PointT>>;
+
+  using CollisionFilterBase<PointT>::CollisionFilterBase;
+};
+
+/// The same for clouds whose fields are known at run time only. Keeps every field; reads float64 coordinates at full
+/// precision; can flag the points instead of removing any.
+template <>
+class CollisionFilter<pcl::PCLPointCloud2> : public CollisionFilterBase<pcl::PCLPointCloud2> {
+public:
+  using Ptr = std::shared_ptr<CollisionFilter<pcl::PCLPointCloud2>>;
+  using ConstPtr = std::shared_ptr<const CollisionFilter<pcl::PCLPointCloud2>>;
+
+  using CollisionFilterBase<pcl::PCLPointCloud2>::CollisionFilterBase;
+
+  /// @throws std::invalid_argument when the pointer is null, as PCL's own would crash
+  void setInputCloud(const PCLPointCloud2ConstPtr& cloud);
+
+  /// true: filter(cloud) removes nothing and adds a field `collision` (UINT8), the flags of computeFlags(), whatever
+  /// setNegative() and setKeepOrganized() say. Default: false.
+  void setKeepFlagged(bool keep_flagged) { keep_flagged_ = keep_flagged; }
+  bool getKeepFlagged() const { return keep_flagged_; }
+
+protected:
+  using CollisionFilterBase<pcl::PCLPointCloud2>::applyFilter;
+  void applyFilter(pcl::PCLPointCloud2& output) override;
+
+private:
+  bool keep_flagged_ = false;
+};
+
+} // namespace pcl_bsh
+
+#ifdef PCL_NO_PRECOMPILE
+#include <pcl_bsh/filters/impl/collision_filter.hpp>
+#endif

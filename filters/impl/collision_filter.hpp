@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl_bsh/filters/collision_filter.h>
+
+#include <stdexcept>
+#include <utility>
+
+namespace pcl_bsh {
+
+template <typename PointT>
+CollisionFilterBase<PointT>::CollisionFilterBase(bool extract_removed_indices)
+: pcl::FilterIndices<PointT>(extract_removed_indices)
+{
+  this->filter_name_ = "CollisionFilter";
+}
+
+template <typename PointT>
+void CollisionFilterBase<PointT>::filter(Cloud& output)
+{
+  requireInput();
+  Cloud result; // apart, so that output may be the input and is untouched by an error
+  pcl::FilterIndices<PointT>::filter(result);
+  output = std::move(result);
+}
+
+template <typename PointT>
+void CollisionFilterBase<PointT>::filter(pcl::Indices& indices)
+{
+  requireInput();
+  pcl::FilterIndices<PointT>::filter(indices);
+}
+
+template <typename PointT>
+void CollisionFilterBase<PointT>::computeFlags(std::vector<std::uint8_t>& flags)
+{
+  requireInput();
+  flags = collisionFlags(inputView());
+}
+
+template <typename PointT>
+void CollisionFilterBase<PointT>::applyFilter(pcl::Indices& indices)
+{
+  select(inputView(), this->negative_, indices,
+         this->extract_removed_indices_ ? this->removed_indices_.get() : nullptr);
+}
+
+template <typename PointT>
+PointsView CollisionFilterBase<PointT>::inputView() const
+{
+  // PCL fills in the indices of the whole cloud where none were set.
+  const bool subset = this->indices_ && !this->fake_indices_;
+  return subset ? viewOf(*this->input_, *this->indices_) : viewOf(*this->input_);
+}
+
+template <typename PointT>
+void CollisionFilterBase<PointT>::requireInput() const
+{
+  if (!this->input_) throw std::invalid_argument("input cloud is missing: call setInputCloud() before filtering");
+}
+
+} // namespace pcl_bsh
+
+#define PCL_INSTANTIATE_CollisionFilter(T)                                                                             \
+  template class pcl_bsh::CollisionFilterBase<T>;                                                                      \
+  template class pcl_bsh::CollisionFilter<T>;

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Point clouds on disk: any format in, PCD or PLY out, every field kept in its type.
+//
+//   pcl::PCLPointCloud2 scan = pcl_bsh::io::readCloud("hall.ply");
+//   pcl_bsh::io::writeCloud("hall.pcd", scan);
+//
+// PCL's own readers are not used: they allocate what a header claims, read a malformed number as 0 and a short ascii
+// row as success. Here a damaged, truncated or lying file is an error, and is noticed before its memory is asked for.
+#pragma once
+
+#include <pcl_bsh/filters/io/cloud_file_error.h>
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <array>
+#include <filesystem>
+#include <string>
+
+namespace pcl_bsh::io {
+
+/// Where the sensor stood, as PCD's VIEWPOINT line has it: tx ty tz qw qx qy qz. Points are not moved by it.
+using Viewpoint = std::array<float, 7>;
+inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
+
+/// Reads the points of a file; the format is told by its extension, in any case of letters.
+///
+/// .pcd        ascii, binary, binary_compressed; every field in its type, float64 included
+/// .ply        ascii and binary of both byte orders; every vertex property in its type (a list, if of one length, is a
+///             field with a count), other elements skipped
+/// .obj .off   vertices; x y z as float64
+/// .xyz .txt   a point per line, separated by blanks, commas or semicolons; x y z and then column_4, column_5, ... as
+///             float64, unless the first line names the columns; comments start with # or //
+///
+/// The cloud has float32 or float64 x y z, at most 2^31 - 1 points, and is_dense as PCL defines it. A file that says
+/// it holds no points is an empty cloud.
+/// @param viewpoint if not null, set to the file's (PCD), or to no_viewpoint
+/// @throws CloudFileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z
+pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr);
+
+/// Writes .pcd (binary_compressed; binary from 2 GiB) or .ply (binary). The file appears complete or not at all; what
+/// `path` held before is replaced only then. PLY holds no viewpoint and no 64-bit integers.
+/// @throws CloudFileError when the extension is unknown, a field cannot be held, or the disk says no
+void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
+                const Viewpoint& viewpoint = no_viewpoint);
+
+/// Fails early, before hours of work, where writeCloud() would for the path's sake.
+/// @throws CloudFileError
+void requireWritableCloud(const std::filesystem::path& path);
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/obstacle_query.h>
+
+#include <pcl_bsh/query/collide.h>
+
+#include <cmath>
+#include <utility>
+
+namespace pcl_bsh {
+namespace {
+
+bool isFinite(const Point3& p)
+{
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+} // namespace
+
+void ObstacleQuery::setObstacle(std::function<PointsView()> view)
+{
+  view(); // a cloud that cannot be read is refused here, not at the first use
+  obstacle_ = std::move(view);
+  hierarchy_.reset();
+}
+
+const SphereHierarchy& ObstacleQuery::obstacleHierarchy()
+{
+  if (!obstacle_) throw std::invalid_argument("obstacle cloud is missing: call setObstacleCloud() before filtering");
+  const PointsView view = obstacle_();
+  if (!hierarchy_) {
+    HierarchyOptions options;
+    options.threads = threads_;
+    hierarchy_ = std::make_shared<SphereHierarchy>(view, options);
+  }
+  if (hierarchy_->view().data != view.data || hierarchy_->view().count != view.count) {
+    throw std::invalid_argument("obstacle cloud has changed since setObstacleCloud(): call it again");
+  }
+  return *hierarchy_;
+}
+
+std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input)
+{
+  const SphereHierarchy& obstacle = obstacleHierarchy();
+  HierarchyOptions options;
+  options.threads = threads_;
+  const SphereHierarchy hierarchy(input, options);
+
+  CollisionRequest request;
+  request.clearance = clearance_;
+  request.flagged = Side::a;
+  request.threads = threads_;
+  FlagsResult result = pcl_bsh::collisionFlags({hierarchy}, {obstacle, pose_}, request);
+  work_ = result.work;
+  return std::move(result.a);
+}
+
+void ObstacleQuery::select(const PointsView& input, bool negative, pcl::Indices& kept, pcl::Indices* removed)
+{
+  const std::vector<std::uint8_t> collides = collisionFlags(input);
+  // `kept` may be the very list the input is seen through: it is replaced only at the end.
+  pcl::Indices keep;
+  pcl::Indices remove;
+  for (std::size_t i = 0; i < input.size(); ++i) {
+    const std::uint32_t record = input.record(i);
+    const bool flagged = collides[record] != 0;
+    const bool wanted = negative ? flagged : !flagged && isFinite(input.point(record));
+    if (wanted)
+      keep.push_back(static_cast<pcl::index_t>(record));
+    else if (removed)
+      remove.push_back(static_cast<pcl::index_t>(record));
+  }
+  kept = std::move(keep);
+  if (removed) *removed = std::move(remove);
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The obstacle, where it stands and how close is too close: all of CollisionFilter that knows no point type.
+#pragma once
+
+#include <pcl_bsh/query/result.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <pcl/memory.h>
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+namespace pcl_bsh {
+
+class SphereHierarchy;
+
+/// The settings that CollisionFilter adds to PCL's, and the query they ask. Lengths are in the clouds' own unit.
+class ObstacleQuery {
+public:
+  /// The cloud to collide with: pcl::PointCloud of any point type, or pcl::PCLPointCloud2 (float64 at full precision).
+  /// Its hierarchy is built on the first use and kept until the next call of this method; pose, clearance and input may
+  /// change meanwhile, the cloud's points must not. An empty cloud collides with nothing.
+  /// @throws std::invalid_argument when the pointer is null, or as viewOf() does.
+  template <typename Cloud>
+  void setObstacleCloud(const std::shared_ptr<Cloud>& cloud);
+
+  /// Greatest distance at which two points collide; touching counts. Finite and >= 0 (default 0), or filtering throws.
+  void setClearance(double clearance) { clearance_ = clearance; }
+  double getClearance() const { return clearance_; }
+
+  /// Pose of the obstacle in the input's frame, T_input_obstacle. Rigid within 1e-6 (default: identity), or filtering
+  /// throws. Takes any of Eigen's transforms, and 4x4 matrices as PCL's registration returns them; float or double.
+  template <typename Scalar, int Mode, int Options>
+  void setPose(const Eigen::Transform<Scalar, 3, Mode, Options>& pose)
+  {
+    setPose(pose.matrix());
+  }
+  template <typename Derived>
+  void setPose(const Eigen::MatrixBase<Derived>& pose)
+  {
+    pose_.matrix() = pose.template cast<double>();
+  }
+  const Eigen::Isometry3d& getPose() const { return pose_; }
+
+  /// Default 1; 0: all of the machine's. The answer is the same for any number.
+  void setNumberOfThreads(unsigned threads) { threads_ = threads; }
+  unsigned getNumberOfThreads() const { return threads_; }
+
+  /// What the last query cost.
+  const Work& getWork() const { return work_; }
+
+protected:
+  ObstacleQuery() = default;
+  ~ObstacleQuery() = default;
+  ObstacleQuery(const ObstacleQuery&) = default;
+  ObstacleQuery& operator=(const ObstacleQuery&) = default;
+
+  /// One per record of the input, 1 = collides.
+  /// @throws std::invalid_argument when a setting is missing or not what its declaration asks for.
+  std::vector<std::uint8_t> collisionFlags(const PointsView& input);
+
+  /// Parts the input's points, in their order, into those that do not collide (if `negative`: that do) and the rest.
+  /// Points that are not finite are always of the rest. Throws as collisionFlags() does.
+  /// @param removed may be null
+  void select(const PointsView& input, bool negative, pcl::Indices& kept, pcl::Indices* removed);
+
+private:
+  void setObstacle(std::function<PointsView()> view);
+  const SphereHierarchy& obstacleHierarchy();
+
+  std::function<PointsView()> obstacle_; ///< owns its cloud
+  std::shared_ptr<const SphereHierarchy> hierarchy_;
+  Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
+  double clearance_ = 0.0;
+  unsigned threads_ = 1;
+  Work work_;
+
+public:
+  PCL_MAKE_ALIGNED_OPERATOR_NEW
+};
+
+template <typename Cloud>
+void ObstacleQuery::setObstacleCloud(const std::shared_ptr<Cloud>& cloud)
+{
+  if (!cloud) throw std::invalid_argument("obstacle cloud is null: give an empty cloud if there is no obstacle");
+  setObstacle([cloud] { return viewOf(*cloud); });
+}
+
+} // namespace pcl_bsh

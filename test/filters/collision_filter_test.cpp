@@ -1,0 +1,487 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/collision_filter.h>
+
+#include "clouds.h"
+
+#include <pcl/filters/voxel_grid.h>
+#include <pcl/impl/point_types.hpp>
+#include <pcl/point_types.h>
+
+#include <boost/preprocessor/seq/enum.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+namespace pcl_bsh {
+namespace {
+
+using namespace test;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::ThrowsMessage;
+
+using Cloud = pcl::PointCloud<pcl::PointXYZI>;
+using Filter = CollisionFilter<pcl::PointXYZI>;
+
+constexpr double clearance = 0.08;
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+auto refusedWith(const std::string& text)
+{
+  return ThrowsMessage<std::invalid_argument>(HasSubstr(text));
+}
+
+/// Two clouds that overlap in part. The input has points that are not finite, and says that it is dense.
+class CollisionFilterTest : public testing::Test {
+protected:
+  CollisionFilterTest()
+  {
+    points_[7].x() = nan;
+    points_[31] = {0, std::numeric_limits<double>::infinity(), 0};
+    flags_ = doubleLoop(points_, obstacle_, pose_, clearance);
+
+    input_ = typedCloud<pcl::PointXYZI>(points_);
+    input_->is_dense = true;
+    for (std::size_t i = 0; i < input_->size(); ++i) (*input_)[i].intensity = static_cast<float>(i);
+
+    filter_.setInputCloud(input_);
+    filter_.setObstacleCloud(typedCloud<pcl::PointXYZ>(obstacle_));
+    filter_.setPose(pose_);
+    filter_.setClearance(clearance);
+  }
+
+  pcl::Indices filtered()
+  {
+    pcl::Indices indices;
+    filter_.filter(indices);
+    return indices;
+  }
+
+  void expectSelected(const Cloud& output, const pcl::Indices& expected) const
+  {
+    ASSERT_EQ(output.size(), expected.size());
+    EXPECT_EQ(output.width, expected.size());
+    EXPECT_EQ(output.height, 1u);
+    EXPECT_EQ(output.header.frame_id, input_->header.frame_id);
+    for (std::size_t i = 0; i < output.size(); ++i) {
+      EXPECT_EQ(output[i].getVector3fMap(), (*original_)[at(expected, i)].getVector3fMap());
+      EXPECT_EQ(output[i].intensity, static_cast<float>(expected[i]));
+    }
+  }
+
+  static std::size_t at(const pcl::Indices& indices, std::size_t i) { return static_cast<std::size_t>(indices[i]); }
+
+  Points points_ = randomPoints(700, 1);
+  const Points obstacle_ = randomPoints(600, 2);
+  const Eigen::Isometry3d pose_ = somePose();
+  std::vector<std::uint8_t> flags_;
+  Cloud::Ptr original_ = typedCloud<pcl::PointXYZI>(points_);
+  Cloud::Ptr input_;
+  Filter filter_{true};
+};
+
+TEST_F(CollisionFilterTest, RemovesWhatCollides)
+{
+  const pcl::Indices expected = where(flags_, false, points_);
+  ASSERT_GT(expected.size(), 100u);
+  ASSERT_LT(expected.size(), 600u);
+
+  EXPECT_EQ(filtered(), expected);
+  Cloud output;
+  filter_.filter(output);
+  expectSelected(output, expected);
+}
+
+TEST_F(CollisionFilterTest, NegativeKeepsWhatCollides)
+{
+  filter_.setNegative(true);
+  const pcl::Indices expected = where(flags_, true, points_);
+  EXPECT_EQ(filtered(), expected);
+  Cloud output;
+  filter_.filter(output);
+  expectSelected(output, expected);
+}
+
+TEST_F(CollisionFilterTest, PointsThatAreNotFiniteAreRemovedInBothPolarities)
+{
+  for (const bool negative : {false, true}) {
+    filter_.setNegative(negative);
+    const pcl::Indices kept = filtered();
+    for (const pcl::index_t i : {7, 31}) EXPECT_EQ(std::count(kept.begin(), kept.end(), i), 0) << negative;
+    const pcl::Indices& removed = *filter_.getRemovedIndices();
+    for (const pcl::index_t i : {7, 31}) EXPECT_EQ(std::count(removed.begin(), removed.end(), i), 1) << negative;
+  }
+}
+
+TEST_F(CollisionFilterTest, RemovedIndicesAreTheRest)
+{
+  for (const bool negative : {false, true}) {
+    filter_.setNegative(negative);
+    pcl::Indices all = filtered();
+    const pcl::Indices removed = *filter_.getRemovedIndices();
+    EXPECT_TRUE(std::is_sorted(removed.begin(), removed.end()));
+    all.insert(all.end(), removed.begin(), removed.end());
+    std::sort(all.begin(), all.end());
+    pcl::Indices everything(points_.size());
+    std::iota(everything.begin(), everything.end(), 0);
+    EXPECT_EQ(all, everything);
+  }
+}
+
+TEST_F(CollisionFilterTest, FlagsKnowNoPolarity)
+{
+  std::vector<std::uint8_t> flags;
+  for (const bool negative : {false, true}) {
+    filter_.setNegative(negative);
+    filter_.computeFlags(flags);
+    EXPECT_EQ(flags, flags_);
+  }
+}
+
+TEST_F(CollisionFilterTest, KeepOrganizedOverwritesWhatIsRemoved)
+{
+  input_->width = 70;
+  input_->height = 10;
+  filter_.setKeepOrganized(true);
+  for (const float value : {nan, -5.0f}) {
+    filter_.setUserFilterValue(value);
+    Cloud output;
+    filter_.filter(output);
+    ASSERT_EQ(output.width, 70u);
+    ASSERT_EQ(output.height, 10u);
+    EXPECT_EQ(output.is_dense, std::isfinite(value));
+    for (std::size_t i = 0; i < output.size(); ++i) {
+      EXPECT_EQ(output[i].intensity, static_cast<float>(i));
+      const Eigen::Vector3f xyz = output[i].getVector3fMap();
+      if (points_[i].allFinite() && !flags_[i])
+        EXPECT_EQ(xyz, (*original_)[i].getVector3fMap());
+      else if (std::isnan(value))
+        EXPECT_TRUE(xyz.array().isNaN().all()) << i;
+      else
+        EXPECT_EQ(xyz, Eigen::Vector3f::Constant(value));
+    }
+  }
+}
+
+TEST_F(CollisionFilterTest, IndicesAreTheOnlyPoints)
+{
+  const auto indices = std::make_shared<pcl::Indices>(pcl::Indices{500, 7, 3, 3, 120, 64, 11});
+  filter_.setIndices(indices);
+  pcl::Indices expected;
+  std::copy_if(indices->begin(), indices->end(), std::back_inserter(expected),
+               [this](pcl::index_t i) { return i != 7 && !flags_[static_cast<std::size_t>(i)]; });
+  EXPECT_EQ(filtered(), expected);
+
+  std::vector<std::uint8_t> flags;
+  filter_.computeFlags(flags);
+  ASSERT_EQ(flags.size(), points_.size());
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    const bool listed = std::count(indices->begin(), indices->end(), static_cast<pcl::index_t>(i)) > 0;
+    EXPECT_EQ(flags[i], listed ? flags_[i] : 0) << i;
+  }
+}
+
+TEST_F(CollisionFilterTest, KeepOrganizedLeavesPointsOutsideTheIndicesAlone)
+{
+  const auto indices = std::make_shared<pcl::Indices>();
+  for (pcl::index_t i = 0; i < 350; ++i) indices->push_back(i);
+  filter_.setIndices(indices);
+  filter_.setKeepOrganized(true);
+  filter_.setUserFilterValue(9.0f);
+  Cloud output;
+  filter_.filter(output);
+  for (std::size_t i = 0; i < output.size(); ++i) {
+    const bool removed = i < 350 && (!points_[i].allFinite() || flags_[i]);
+    EXPECT_EQ(output[i].z, removed ? 9.0f : (*original_)[i].z) << i;
+  }
+}
+
+TEST_F(CollisionFilterTest, EmptyIndicesNameNoPoint)
+{
+  filter_.setIndices(std::make_shared<pcl::Indices>());
+  EXPECT_THAT(filtered(), IsEmpty());
+  EXPECT_THAT(*filter_.getRemovedIndices(), IsEmpty());
+  std::vector<std::uint8_t> flags;
+  filter_.computeFlags(flags);
+  EXPECT_EQ(flags, std::vector<std::uint8_t>(points_.size(), 0));
+}
+
+TEST_F(CollisionFilterTest, ResultMayReplaceTheIndices)
+{
+  const auto indices = std::make_shared<pcl::Indices>(where(flags_, true, points_));
+  indices->push_back(where(flags_, false, points_).front());
+  filter_.setIndices(indices);
+  filter_.filter(*indices);
+  EXPECT_EQ(*indices, (pcl::Indices{where(flags_, false, points_).front()}));
+}
+
+TEST_F(CollisionFilterTest, IndexOutsideTheCloud)
+{
+  for (const pcl::index_t wrong : {700, -1}) {
+    filter_.setIndices(std::make_shared<pcl::Indices>(pcl::Indices{0, wrong}));
+    EXPECT_THROW(filtered(), std::invalid_argument);
+  }
+}
+
+TEST_F(CollisionFilterTest, OutputMayBeTheInput)
+{
+  const pcl::Indices expected = where(flags_, false, points_);
+  filter_.filter(*input_);
+  expectSelected(*input_, expected);
+}
+
+TEST_F(CollisionFilterTest, InputMayBeTheObstacle)
+{
+  filter_.setObstacleCloud(input_);
+  Cloud output;
+  filter_.filter(output);
+  EXPECT_EQ(output.size(), where(doubleLoop(points_, points_, pose_, clearance), false, points_).size());
+}
+
+TEST_F(CollisionFilterTest, EmptyInput)
+{
+  filter_.setInputCloud(std::make_shared<Cloud>());
+  Cloud output = *original_;
+  filter_.filter(output);
+  EXPECT_TRUE(output.empty());
+  std::vector<std::uint8_t> flags(3);
+  filter_.computeFlags(flags);
+  EXPECT_THAT(flags, IsEmpty());
+}
+
+TEST_F(CollisionFilterTest, NothingCollidesWithAnEmptyObstacle)
+{
+  const Points nowhere(3, Eigen::Vector3d::Constant(nan));
+  for (const Points& obstacle : {Points(), nowhere}) {
+    filter_.setObstacleCloud(typedCloud<pcl::PointXYZ>(obstacle));
+    EXPECT_EQ(filtered().size(), points_.size() - 2);
+  }
+}
+
+TEST_F(CollisionFilterTest, MissingCloudsAreErrors)
+{
+  Cloud output = *original_;
+  pcl::Indices indices;
+  std::vector<std::uint8_t> flags;
+
+  Filter no_obstacle;
+  no_obstacle.setInputCloud(input_);
+  EXPECT_THAT([&] { no_obstacle.filter(output); }, refusedWith("obstacle cloud is missing: call setObstacleCloud()"));
+  EXPECT_THAT([&] { no_obstacle.filter(indices); }, refusedWith("obstacle cloud is missing"));
+  EXPECT_THAT([&] { no_obstacle.computeFlags(flags); }, refusedWith("obstacle cloud is missing"));
+  no_obstacle.setInputCloud(std::make_shared<Cloud>());
+  EXPECT_THAT([&] { no_obstacle.filter(output); }, refusedWith("obstacle cloud is missing"));
+
+  Filter no_input;
+  no_input.setObstacleCloud(input_);
+  EXPECT_THAT([&] { no_input.filter(output); }, refusedWith("input cloud is missing: call setInputCloud()"));
+  EXPECT_THAT([&] { no_input.filter(indices); }, refusedWith("input cloud is missing"));
+  EXPECT_THAT([&] { no_input.computeFlags(flags); }, refusedWith("input cloud is missing"));
+
+  EXPECT_EQ(output.size(), original_->size());
+  EXPECT_THAT([&] { filter_.setObstacleCloud(Cloud::Ptr()); }, refusedWith("obstacle cloud is null"));
+}
+
+TEST_F(CollisionFilterTest, BadSettingsAreErrorsAndLeaveTheOutput)
+{
+  Cloud output = *original_;
+  output.header.frame_id = "mine";
+  for (const double wrong : {-0.1, static_cast<double>(nan), std::numeric_limits<double>::infinity()}) {
+    filter_.setClearance(wrong);
+    EXPECT_THAT([&] { filter_.filter(output); }, refusedWith("clearance"));
+  }
+  filter_.setClearance(clearance);
+
+  Eigen::Matrix4d scaled = pose_.matrix();
+  scaled.topLeftCorner<3, 3>() *= 1.001;
+  Eigen::Matrix4d mirrored = pose_.matrix();
+  mirrored.col(0) *= -1;
+  Eigen::Matrix4d projective = pose_.matrix();
+  projective(3, 0) = 0.5;
+  for (const Eigen::Matrix4d& wrong : {scaled, mirrored, projective}) {
+    filter_.setPose(wrong);
+    EXPECT_THAT([&] { filter_.filter(output); }, refusedWith("pose"));
+  }
+  EXPECT_EQ(output.size(), original_->size());
+  EXPECT_EQ(output.header.frame_id, "mine");
+
+  filter_.setPose(pose_);
+  EXPECT_EQ(filtered(), where(flags_, false, points_));
+}
+
+TEST_F(CollisionFilterTest, TouchingIsColliding)
+{
+  filter_.setPose(Eigen::Isometry3d::Identity());
+  filter_.setInputCloud(typedCloud<pcl::PointXYZI>({{0, 0, 0}}));
+  filter_.setObstacleCloud(typedCloud<pcl::PointXYZ>({{3, 4, 0}}));
+  filter_.setClearance(5.0);
+  EXPECT_THAT(filtered(), IsEmpty());
+  filter_.setClearance(std::nextafter(5.0, 0.0));
+  EXPECT_EQ(filtered().size(), 1u);
+
+  filter_.setObstacleCloud(typedCloud<pcl::PointXYZ>({{0, 0, 0}}));
+  filter_.setClearance(0.0);
+  EXPECT_THAT(filtered(), IsEmpty());
+}
+
+TEST_F(CollisionFilterTest, ObstacleOfAnyCloudType)
+{
+  const pcl::Indices expected = where(flags_, false, points_);
+  filter_.setObstacleCloud(typedCloud<pcl::PointXYZI>(obstacle_));
+  EXPECT_EQ(filtered(), expected);
+  filter_.setObstacleCloud(pcl::PointCloud<pcl::PointNormal>::ConstPtr(typedCloud<pcl::PointNormal>(obstacle_)));
+  EXPECT_EQ(filtered(), expected);
+  filter_.setObstacleCloud(fieldCloud<double>(obstacle_));
+  EXPECT_EQ(filtered(), expected);
+
+  const auto unreadable = fieldCloud<float>(obstacle_);
+  unreadable->fields.pop_back();
+  unreadable->fields.pop_back();
+  EXPECT_THAT([&] { filter_.setObstacleCloud(unreadable); }, refusedWith("field 'z' is missing"));
+}
+
+TEST_F(CollisionFilterTest, PoseOfAnyEigenType)
+{
+  const Eigen::Isometry3f pose = pose_.cast<float>();
+  const auto expectPose = [&] { EXPECT_EQ(filter_.getPose().matrix(), pose.matrix().cast<double>()); };
+  const auto reset = [&] { filter_.setPose(Eigen::Isometry3d::Identity()); };
+  filter_.setPose(pose);
+  expectPose();
+  EXPECT_EQ(filtered(), where(doubleLoop(points_, obstacle_, pose.cast<double>(), clearance), false, points_));
+  reset();
+  filter_.setPose(Eigen::Affine3f(pose));
+  expectPose();
+  reset();
+  filter_.setPose(Eigen::Matrix4f(pose.matrix()));
+  expectPose();
+  reset();
+  filter_.setPose(pose.cast<double>().matrix());
+  expectPose();
+}
+
+TEST_F(CollisionFilterTest, ObstacleIsBuiltOnce)
+{
+  filtered();
+  const Work both = filter_.getWork();
+  filtered();
+  const Work input_only = filter_.getWork();
+  EXPECT_LT(input_only.voxels_built, both.voxels_built);
+
+  filter_.setInputCloud(typedCloud<pcl::PointXYZI>({points_[0]}));
+  filter_.setClearance(2 * clearance);
+  filter_.setNegative(true);
+  filter_.setPose(Eigen::Isometry3d::Identity());
+  filtered();
+  EXPECT_LE(filter_.getWork().voxels_built, input_only.voxels_built);
+
+  filter_.setInputCloud(input_);
+  filter_.setClearance(clearance);
+  filter_.setPose(pose_);
+  filter_.setObstacleCloud(typedCloud<pcl::PointXYZ>(obstacle_));
+  filtered();
+  EXPECT_EQ(filter_.getWork().voxels_built, both.voxels_built);
+}
+
+TEST_F(CollisionFilterTest, NewObstacleReplacesTheOld)
+{
+  filtered();
+  const Points other = randomPoints(300, 9);
+  filter_.setObstacleCloud(typedCloud<pcl::PointXYZ>(other));
+  EXPECT_EQ(filtered(), where(doubleLoop(points_, other, pose_, clearance), false, points_));
+}
+
+TEST_F(CollisionFilterTest, ObstacleThatChangedIsAnError)
+{
+  const auto obstacle = typedCloud<pcl::PointXYZ>(obstacle_);
+  filter_.setObstacleCloud(obstacle);
+  filtered();
+  obstacle->push_back({1000, 0, 0});
+  EXPECT_THAT([&] { filtered(); }, refusedWith("obstacle cloud has changed since setObstacleCloud()"));
+  filter_.setObstacleCloud(obstacle);
+  EXPECT_EQ(filtered().size(), where(flags_, false, points_).size());
+}
+
+TEST_F(CollisionFilterTest, ObstacleOutlivesItsCaller)
+{
+  auto obstacle = typedCloud<pcl::PointXYZ>(obstacle_);
+  filter_.setObstacleCloud(obstacle);
+  obstacle.reset();
+  EXPECT_EQ(filtered(), where(flags_, false, points_));
+}
+
+TEST_F(CollisionFilterTest, SettingsOfACopyAreItsOwn)
+{
+  filtered();
+  Filter copy = filter_;
+  copy.setClearance(0.0);
+  pcl::Indices kept;
+  copy.filter(kept);
+  EXPECT_EQ(kept.size(), points_.size() - 2);
+  EXPECT_EQ(filtered(), where(flags_, false, points_));
+}
+
+TEST_F(CollisionFilterTest, ThreadsChangeNothing)
+{
+  const pcl::Indices expected = filtered();
+  for (const unsigned threads : {0u, 2u, 7u}) {
+    filter_.setObstacleCloud(typedCloud<pcl::PointXYZ>(obstacle_)); // built anew by so many threads
+    filter_.setNumberOfThreads(threads);
+    EXPECT_EQ(filtered(), expected) << threads;
+  }
+}
+
+TEST_F(CollisionFilterTest, AfterVoxelGrid)
+{
+  const auto dense = typedCloud<pcl::PointXYZI>(randomPoints(20000, 5));
+  pcl::VoxelGrid<pcl::PointXYZI> voxels;
+  voxels.setInputCloud(dense);
+  voxels.setLeafSize(0.1f, 0.1f, 0.1f);
+  const auto thinned = std::make_shared<Cloud>();
+  voxels.filter(*thinned);
+  ASSERT_GT(thinned->size(), 500u);
+  Points points;
+  for (const auto& p : *thinned) points.push_back(p.getVector3fMap().cast<double>());
+
+  filter_.setInputCloud(thinned);
+  EXPECT_EQ(filtered(), where(doubleLoop(points, obstacle_, pose_, clearance), false, points));
+}
+
+TEST_F(CollisionFilterTest, IsAPclFilter)
+{
+  const auto filter = std::make_shared<Filter>(filter_);
+  const pcl::Filter<pcl::PointXYZI>::Ptr base = filter;
+  Cloud output;
+  base->filter(output);
+  expectSelected(output, where(flags_, false, points_));
+}
+
+template <typename PointT>
+class CollisionFilterPointTypes : public testing::Test {
+};
+
+using PointTypes = testing::Types<BOOST_PP_SEQ_ENUM(PCL_XYZ_POINT_TYPES)>;
+TYPED_TEST_SUITE(CollisionFilterPointTypes, PointTypes);
+
+TYPED_TEST(CollisionFilterPointTypes, AreInstantiated)
+{
+  const Points points = randomPoints(60, 3);
+  const Points obstacle = randomPoints(60, 4);
+  CollisionFilter<TypeParam> filter;
+  filter.setInputCloud(typedCloud<TypeParam>(points));
+  filter.setObstacleCloud(typedCloud<TypeParam>(obstacle));
+  filter.setClearance(0.15);
+  pcl::Indices kept;
+  filter.filter(kept);
+  EXPECT_EQ(kept, where(doubleLoop(points, obstacle, Eigen::Isometry3d::Identity(), 0.15), false, points));
+  pcl::PointCloud<TypeParam> output;
+  filter.filter(output);
+  EXPECT_EQ(output.size(), kept.size());
+}
+
+} // namespace
+} // namespace pcl_bsh
