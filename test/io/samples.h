@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clouds and folders for the tests of files.
+#pragma once
+
+#include <pcl_bsh/filters/io/records.h>
+
+#include <gtest/gtest.h>
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+using Field = pcl::PCLPointField;
+
+/// A folder of its own for each test, gone with it.
+class TemporaryFolder {
+public:
+  TemporaryFolder()
+  {
+    std::string name = (std::filesystem::temp_directory_path() / "pcl_bsh_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    path_ = name;
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+  std::filesystem::path write(const std::string& name, const std::string& content) const
+  {
+    std::ofstream(path_ / name, std::ios::binary) << content;
+    return path_ / name;
+  }
+
+  std::size_t files() const
+  {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
+  }
+
+private:
+  std::filesystem::path path_;
+};
+
+inline std::string contentOf(const std::filesystem::path& path)
+{
+  std::ostringstream content;
+  content << std::ifstream(path, std::ios::binary).rdbuf();
+  return content.str();
+}
+
+/// x y z and then a field of each of the types; every byte random (NaNs among them) but coordinates finite.
+template <typename Coordinate>
+pcl::PCLPointCloud2 randomCloud(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& types)
+{
+  pcl::PCLPointCloud2 cloud;
+  const std::uint8_t coordinate = sizeof(Coordinate) == 4 ? Field::FLOAT32 : Field::FLOAT64;
+  for (const char* axis : {"x", "y", "z"}) addField(cloud, axis, coordinate);
+  for (const std::uint8_t type : types) addField(cloud, "field_" + std::to_string(type), type);
+  addField(cloud, "rgb", Field::FLOAT32);
+  addField(cloud, "histogram", Field::FLOAT32, 5);
+  allocate(cloud, width, height);
+  cloud.is_dense = false;
+
+  std::mt19937 random(7);
+  for (std::uint8_t& byte : cloud.data) byte = static_cast<std::uint8_t>(random());
+  for (std::size_t i = 0; i < std::size_t{width} * height; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Coordinate value = static_cast<Coordinate>(std::uniform_real_distribution<double>(-1e6, 1e6)(random));
+      std::memcpy(&cloud.data[i * cloud.point_step + k * sizeof value], &value, sizeof value);
+    }
+  }
+  return cloud;
+}
+
+inline const std::vector<std::uint8_t> ply_datatypes = {Field::INT8,  Field::UINT8,  Field::INT16,   Field::UINT16,
+                                                        Field::INT32, Field::UINT32, Field::FLOAT32, Field::FLOAT64};
+inline const std::vector<std::uint8_t> pcd_datatypes = {Field::BOOL,   Field::INT8,    Field::UINT8,  Field::INT16,
+                                                        Field::UINT16, Field::INT32,   Field::UINT32, Field::INT64,
+                                                        Field::UINT64, Field::FLOAT32, Field::FLOAT64};
+
+/// Same size, fields and bytes.
+inline void expectSame(const pcl::PCLPointCloud2& actual, const pcl::PCLPointCloud2& expected)
+{
+  EXPECT_EQ(actual.width, expected.width);
+  EXPECT_EQ(actual.height, expected.height);
+  EXPECT_EQ(actual.point_step, expected.point_step);
+  ASSERT_EQ(actual.fields.size(), expected.fields.size());
+  for (std::size_t i = 0; i < actual.fields.size(); ++i) {
+    EXPECT_EQ(actual.fields[i].name, expected.fields[i].name);
+    EXPECT_EQ(actual.fields[i].datatype, expected.fields[i].datatype) << actual.fields[i].name;
+    EXPECT_EQ(actual.fields[i].count, expected.fields[i].count) << actual.fields[i].name;
+    EXPECT_EQ(actual.fields[i].offset, expected.fields[i].offset) << actual.fields[i].name;
+  }
+  EXPECT_TRUE(actual.data == expected.data);
+}
+
+/// The one value of a record's field, as double.
+inline double valueOf(const pcl::PCLPointCloud2& cloud, std::size_t record, const std::string& name)
+{
+  for (const Field& field : cloud.fields) {
+    if (field.name != name) continue;
+    return withFieldType(field.datatype, [&](auto value) {
+      std::memcpy(&value, &cloud.data[record * cloud.point_step + field.offset], sizeof value);
+      return static_cast<double>(value);
+    });
+  }
+  throw std::invalid_argument("no field " + name);
+}
+
+/// What the FormatError that `parse` throws says; fails the test when it throws none.
+template <typename Parse>
+std::string defectOf(Parse&& parse)
+{
+  try {
+    parse();
+  }
+  catch (const FormatError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "nothing was found wrong";
+  return {};
+}
+
+} // namespace pcl_bsh::io

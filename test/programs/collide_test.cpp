@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "program_run.h"
+
+#include <pcl_bsh/filters/io/cloud_file.h>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace pcl_bsh {
+
+using io::valueOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+/// A folder with a small input of every kind of field, and an obstacle of two points.
+class Collide : public testing::Test {
+protected:
+  /// Runs with names taken from the folder: {input.ply} becomes its path.
+  Outcome collide(std::string arguments) const
+  {
+    for (std::size_t at; (at = arguments.find('{')) != std::string::npos;) {
+      const std::size_t end = arguments.find('}', at);
+      arguments.replace(at, end - at + 1, (folder / arguments.substr(at + 1, end - at - 1)).string());
+    }
+    return run("pcl_bsh_collide", arguments);
+  }
+
+  void expectDone(const std::string& arguments) const
+  {
+    const Outcome done = collide(arguments);
+    EXPECT_EQ(done.exit_code, 0) << arguments << '\n' << done.err;
+  }
+
+  /// One line, the code, and nothing written.
+  void expectFailure(const std::string& arguments, int exit_code, const std::string& message) const
+  {
+    const std::size_t files = folder.files();
+    const Outcome failed = collide(arguments);
+    EXPECT_EQ(failed.exit_code, exit_code) << arguments;
+    EXPECT_THAT(failed.err, StartsWith("pcl_bsh_collide: ")) << arguments;
+    EXPECT_THAT(failed.err, HasSubstr(message)) << arguments;
+    EXPECT_EQ(std::count(failed.err.begin(), failed.err.end(), '\n'), 1) << failed.err;
+    EXPECT_EQ(failed.out, "");
+    EXPECT_EQ(folder.files(), files) << arguments;
+  }
+
+  Json report() const { return Json::parse(io::contentOf(folder / "report.json")); }
+
+  std::vector<int> flags(const std::string& file) const
+  {
+    const pcl::PCLPointCloud2 cloud = io::readCloud(folder / file);
+    std::vector<int> values;
+    for (std::size_t i = 0; i < cloud.width; ++i) values.push_back(static_cast<int>(valueOf(cloud, i, "collision")));
+    return values;
+  }
+
+  io::TemporaryFolder folder;
+  fs::path input =
+      folder.write("input.ply", "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+                                "property float z\nproperty uchar red\nproperty ushort label\n"
+                                "property double time\nend_header\n"
+                                "0 0 0 1 1000 0.1\n1 0 0 2 2000 0.2\n2 0 0 3 3000 0.3\nnan 0 0 4 4000 0.4\n"
+                                "0 1 0 5 5000 0.5\n");
+  fs::path obstacle = folder.write("obstacle.xyz", "1.5 0 0\n9 9 9\n");
+};
+
+TEST_F(Collide, FlagsTouchingPointsAndKeepsEveryField)
+{
+  for (const std::string output : {"out.pcd", "out.ply"}) {
+    expectDone("{input.ply} {obstacle.xyz} {" + output + "} --clearance 0.5");
+    EXPECT_EQ(flags(output), (std::vector<int>{0, 1, 1, 0, 0}));
+    const pcl::PCLPointCloud2 cloud = io::readCloud(folder / output);
+    const pcl::PCLPointCloud2 before = io::readCloud(input);
+    ASSERT_EQ(cloud.fields.size(), before.fields.size() + 1);
+    for (std::size_t i = 0; i < before.fields.size(); ++i) {
+      EXPECT_EQ(cloud.fields[i].name, before.fields[i].name);
+      EXPECT_EQ(cloud.fields[i].datatype, before.fields[i].datatype);
+      EXPECT_EQ(valueOf(cloud, 4, cloud.fields[i].name), valueOf(before, 4, cloud.fields[i].name));
+    }
+    EXPECT_EQ(cloud.fields.back().name, "collision");
+    EXPECT_EQ(cloud.fields.back().datatype, pcl::PCLPointField::UINT8);
+  }
+}
+
+TEST_F(Collide, KeepsOnlyWhatIsAskedFor)
+{
+  expectDone("{input.ply} {obstacle.xyz} {colliding.pcd} --clearance 0.5 --keep colliding");
+  expectDone("{input.ply} {obstacle.xyz} {free.ply} --clearance 0.5 --keep free");
+  const pcl::PCLPointCloud2 colliding = io::readCloud(folder / "colliding.pcd");
+  const pcl::PCLPointCloud2 free = io::readCloud(folder / "free.ply");
+  ASSERT_EQ(colliding.width, 2U);
+  ASSERT_EQ(free.width, 2U) << "the point that is not finite is neither";
+  EXPECT_EQ(colliding.fields.size(), 6U);
+  EXPECT_EQ(valueOf(colliding, 1, "label"), 3000);
+  EXPECT_EQ(valueOf(free, 0, "label"), 1000);
+  EXPECT_EQ(valueOf(free, 1, "time"), 0.5);
+  expectDone("{input.ply} {obstacle.xyz} {none.pcd} --clearance 0.25 --keep colliding");
+  EXPECT_EQ(io::readCloud(folder / "none.pcd").width, 0U);
+}
+
+TEST_F(Collide, ReportsWhatItFoundAndWhatItCost)
+{
+  const Outcome done = collide("{input.ply} {obstacle.xyz} {out.pcd} --clearance 0.5 --report {report.json}");
+  EXPECT_THAT(done.out,
+              HasSubstr("2 of 5 points collide; smallest distance 0.5, between point 1 of the input and point "
+                        "0 of the obstacle"));
+  const Json json = report();
+  EXPECT_EQ(json["input"], (Json{{"file", input.string()}, {"points", 5}, {"finite", 4}}));
+  EXPECT_EQ(json["obstacle"], (Json{{"file", obstacle.string()}, {"points", 2}, {"finite", 2}}));
+  EXPECT_EQ(json["clearance"], 0.5);
+  EXPECT_EQ(json["colliding"], 2);
+  EXPECT_EQ(json["distance"], 0.5);
+  EXPECT_EQ(json["closest_pair"], (Json{1, 0}));
+  EXPECT_EQ(json["accuracy"], "exact");
+  for (const char* count : {"node_pairs", "leaf_pairs", "exact_decisions", "voxels_built", "voxels_total"}) {
+    EXPECT_TRUE(json["work"][count].is_number_unsigned()) << count;
+  }
+  EXPECT_GT(json["work"]["voxels_built"], 0);
+  EXPECT_LE(json["work"]["voxels_built"], json["work"]["voxels_total"]);
+  for (const char* step : {"load", "build", "query", "write"}) {
+    EXPECT_TRUE(json["seconds"][step].is_number_float()) << step;
+    EXPECT_GT(json["seconds"][step], 0) << step;
+  }
+  ASSERT_EQ(json["warnings"].size(), 1U);
+  EXPECT_THAT(json["warnings"][0].get<std::string>(), HasSubstr("input.ply: 1 points are not finite"));
+  EXPECT_THAT(done.err, HasSubstr("pcl_bsh_collide: warning: "));
+}
+
+TEST_F(Collide, CloudsWithoutFinitePointsHaveNoDistance)
+{
+  folder.write("nothing.xyz", "nan 0 0\n");
+  expectDone("{input.ply} {nothing.xyz} {out.pcd} --clearance 0.5 --report {report.json}");
+  EXPECT_TRUE(report()["distance"].is_null());
+  EXPECT_TRUE(report()["closest_pair"].is_null());
+  EXPECT_EQ(report()["colliding"], 0);
+  expectDone("{nothing.xyz} {obstacle.xyz} {out.pcd} --clearance 0.5 --report {report.json}");
+  EXPECT_EQ(flags("out.pcd"), std::vector<int>{0});
+}
+
+TEST_F(Collide, PosesAreOfTheObstacleInTheInputsFrame)
+{
+  // A quarter turn about z takes (1.5, 0, 0) to (0, 1.5, 0); then it is moved by (0, -0.5, 0) onto the last point.
+  const std::string quarter = std::to_string(std::acos(0.0));
+  expectDone("{input.ply} {obstacle.xyz} {out.pcd} --clearance 0.001 --pose 0,-0.5,0,0,0," + quarter);
+  EXPECT_EQ(flags("out.pcd"), (std::vector<int>{0, 0, 0, 0, 1}));
+  folder.write("pose.txt", "# a quarter turn\n0 -1 0 0\n1 0 0 -0.5\n0 0 1 0\n");
+  expectDone("{input.ply} {obstacle.xyz} {out.pcd} --clearance 0 --pose {pose.txt}");
+  EXPECT_EQ(flags("out.pcd"), (std::vector<int>{0, 0, 0, 0, 1}));
+  folder.write("pose.txt", "0, -1, 0, 0\n1, 0, 0, -0.5\n0, 0, 1, 0\n0, 0, 0, 1\n");
+  expectDone("{input.ply} {obstacle.xyz} {out.pcd} --clearance 0 --pose {pose.txt}");
+  EXPECT_EQ(flags("out.pcd"), (std::vector<int>{0, 0, 0, 0, 1}));
+}
+
+TEST_F(Collide, RollComesBeforePitchBeforeYaw)
+{
+  // Roll turns z to -y, pitch leaves -y, yaw turns it to x: the obstacle's (0, 0, 2) arrives at (2, 0, 0).
+  folder.write("point.xyz", "0 0 2\n");
+  const std::string quarter = "1.5707963267948966";
+  expectDone("{input.ply} {point.xyz} {out.pcd} --clearance 1e-9 --pose 0,0,0," + quarter + "," + quarter + "," +
+             quarter);
+  EXPECT_EQ(flags("out.pcd"), (std::vector<int>{0, 0, 1, 0, 0}));
+}
+
+TEST_F(Collide, GeoreferencedDoublesAreNotRounded)
+{
+  std::string a = "x y z\n", apart = a, near = a;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string x = std::to_string(500000.003 + 0.01 * i);
+    a += x + " 5400000.26 100\n";
+    apart += x + " 5400000.34 100\n";
+    near += x + " 5400000.30 100\n";
+  }
+  folder.write("a.txt", a);
+  folder.write("apart.xyz", apart);
+  folder.write("near.xyz", near);
+  expectDone("{a.txt} {apart.xyz} {a.pcd} --clearance 0.05 --report {report.json}");
+  EXPECT_EQ(report()["colliding"], 0);
+  EXPECT_NEAR(report()["distance"], 0.08, 1e-9);
+  expectDone("{a.pcd} {near.xyz} {a.ply} --clearance 0.05 --report {report.json}");
+  EXPECT_EQ(report()["colliding"], 1000);
+  EXPECT_EQ(valueOf(io::readCloud(folder / "a.ply"), 1, "x"), 500000.013);
+  EXPECT_EQ(report()["warnings"].size(), 0U);
+}
+
+TEST_F(Collide, WarnsOfFloatsTooCoarseForTheClearance)
+{
+  folder.write("utm.ply",
+               "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+               "end_header\n500000 5400000 100\n");
+  expectDone("{utm.ply} {obstacle.xyz} {out.pcd} --clearance 0.05 --report {report.json}");
+  ASSERT_EQ(report()["warnings"].size(), 1U);
+  EXPECT_THAT(report()["warnings"][0].get<std::string>(), HasSubstr("utm.ply: its float32 coordinates lie 0.5 apart"));
+  expectDone("{utm.ply} {obstacle.xyz} {out.pcd} --clearance 5 --report {report.json}");
+  EXPECT_EQ(report()["warnings"].size(), 0U);
+}
+
+TEST_F(Collide, ReadsEveryFormat)
+{
+  folder.write("a.obj", "v 1 0 0\nv 5 0 0\n");
+  folder.write("a.off", "OFF\n2 0 0\n1 0 0\n5 0 0\n");
+  folder.write("a.txt", "1,0,0,7\n5,0,0,8\n");
+  folder.write("a.pcd", "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nPOINTS 2\nDATA ascii\n1 0 0\n5 0 0\n");
+  for (const std::string file : {"{a.obj}", "{a.off}", "{a.txt}", "{a.pcd}"}) {
+    expectDone(file + " {obstacle.xyz} {out.ply} --clearance 0.5");
+    EXPECT_EQ(flags("out.ply"), (std::vector<int>{1, 0})) << file;
+    expectDone("{input.ply} " + file + " {out.ply} --clearance 0");
+    EXPECT_EQ(flags("out.ply"), (std::vector<int>{0, 1, 0, 0, 0})) << file;
+  }
+}
+
+TEST_F(Collide, OutputMayReplaceTheInput)
+{
+  const std::size_t files = folder.files();
+  expectDone("{input.ply} {obstacle.xyz} {input.ply} --clearance 0.5");
+  EXPECT_EQ(flags("input.ply"), (std::vector<int>{0, 1, 1, 0, 0}));
+  // Flags that are there already are replaced, not doubled.
+  expectDone("{input.ply} {obstacle.xyz} {input.ply} --clearance 0.25");
+  EXPECT_EQ(flags("input.ply"), (std::vector<int>{0, 0, 0, 0, 0}));
+  EXPECT_EQ(io::readCloud(input).fields.size(), 7U);
+  EXPECT_EQ(folder.files(), files);
+}
+
+TEST_F(Collide, ThreadsChangeNothing)
+{
+  io::writeCloud(folder / "many.pcd", io::randomCloud<float>(20000, 1, {}));
+  const std::string job =
+      "{many.pcd} {many.pcd} {out.pcd} --clearance 20000 --pose 1e4,0,0,0.1,0.2,0.3 --report {report.json}";
+  expectDone(job + " --threads 1");
+  const std::string first = io::contentOf(folder / "out.pcd");
+  const Json found = report();
+  expectDone(job + " --threads 3");
+  EXPECT_TRUE(io::contentOf(folder / "out.pcd") == first);
+  for (const char* key : {"colliding", "distance", "closest_pair", "work"}) EXPECT_EQ(report()[key], found[key]) << key;
+  EXPECT_GT(found["colliding"], 0);
+}
+
+TEST_F(Collide, HelpShowsAnExample)
+{
+  const Outcome help = collide("--help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out, HasSubstr("pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05"));
+}
+
+TEST_F(Collide, RefusesClouds)
+{
+  folder.write("cut.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 9\nDATA binary\nabcdefghijkl");
+  folder.write("flat.pcd", "FIELDS x y\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n1 2\n");
+  folder.write("many.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2147483648\nDATA binary\n");
+  folder.write("image.ply", "\x89PNG\r\n");
+  folder.write("scan.las", "LASF");
+  folder.write("collision.pcd",
+               "FIELDS x y z collision\nSIZE 4 4 4 4\nTYPE F F F F\nPOINTS 1\nDATA ascii\n1 2 3 0.5\n");
+  const std::string rest = " {out.pcd} --clearance 1";
+  for (const auto& [file, message] :
+       {std::pair<std::string, std::string>{"{none.pcd}", "none.pcd: no such file: "},
+        {"{}", ": is a folder: "},
+        {"{cut.pcd}", "cut.pcd: is truncated: its header promises 9 points, its size allows 1 at most: "},
+        {"{flat.pcd}", "flat.pcd: field 'z' is missing"},
+        {"{many.pcd}", "many.pcd: it has 2147483648 points, more than the 2147483647 that an index can name: split"},
+        {"{image.ply}", "image.ply: is not a PLY file"},
+        {"{scan.las}", "scan.las: unknown extension '.las': "}}) {
+    expectFailure(file + " {obstacle.xyz}" + rest, 1, message);
+    expectFailure("{input.ply} " + file + rest, 1, message);
+  }
+  expectFailure("{collision.pcd} {obstacle.xyz}" + rest, 1, "collision.pcd: field 'collision' exists already");
+}
+
+TEST_F(Collide, RefusesOutputs)
+{
+  const std::string clouds = "{input.ply} {obstacle.xyz} ";
+  expectFailure(clouds + "{out.xyz} --clearance 1", 1, "out.xyz: unknown extension '.xyz': write a .pcd or .ply file");
+  expectFailure(clouds + "{none/out.pcd} --clearance 1", 1, "cannot be written, there is no folder");
+  expectFailure(clouds + "{out.pcd} --clearance 1 --report {none/report.json}", 1, "there is no folder");
+  expectFailure(clouds + "{out.pcd} --clearance 1 --report {}", 1, ": is a folder: ");
+  expectFailure(clouds + "{out.pcd} --clearance 1 --report {out.pcd}", 2, "is a cloud of this command: choose");
+  expectFailure(clouds + "{out.pcd} --clearance 1 --report {input.ply}", 2, "is a cloud of this command: choose");
+}
+
+TEST_F(Collide, RefusesClearances)
+{
+  const std::string job = "{input.ply} {obstacle.xyz} {out.pcd} --clearance ";
+  expectFailure(job + "-1", 1, "pcl_bsh_collide: --clearance: -1: give a finite length >= 0");
+  expectFailure(job + "nan", 1, "--clearance: nan: ");
+  expectFailure(job + "inf", 1, "--clearance: inf: ");
+  expectFailure(job + "wide", 2, "--clearance: 'wide' is not a number: ");
+}
+
+TEST_F(Collide, RefusesPoses)
+{
+  const std::string job = "{input.ply} {obstacle.xyz} {out.pcd} --clearance 1 --pose ";
+  expectFailure(job + "1,2,3", 2, "--pose: '1,2,3' is neither six numbers nor a file: ");
+  expectFailure(job + "nowhere.txt", 2, "--pose: 'nowhere.txt' is neither six numbers nor a file: ");
+  expectFailure(job + "nan,0,0,0,0,0", 1, "--pose: not finite");
+  folder.write("scale.txt", "2 0 0 0\n0 2 0 0\n0 0 2 0\n");
+  expectFailure(job + "{scale.txt}", 1, "--pose: not rigid");
+  folder.write("mirror.txt", "-1 0 0 0\n0 1 0 0\n0 0 1 0\n");
+  expectFailure(job + "{mirror.txt}", 1, "--pose: a mirror");
+  folder.write("row.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n");
+  expectFailure(job + "{row.txt}", 1, "--pose: last row is 0 0 0 2");
+  folder.write("short.txt", "1 0 0 0\n0 1 0 0\n");
+  expectFailure(job + "{short.txt}", 1, "short.txt: holds 8 numbers: give the 12 or 16 ");
+  folder.write("words.txt", "one\n");
+  expectFailure(job + "{words.txt}", 1, "words.txt: line 1 is damaged: 'one' is not a number: ");
+}
+
+TEST_F(Collide, RefusesCommandLines)
+{
+  expectFailure("", 2, "command line: INPUT is required: see pcl_bsh_collide --help");
+  expectFailure("{input.ply} {obstacle.xyz} {out.pcd}", 2, "--clearance is required");
+  const std::string job = "{input.ply} {obstacle.xyz} {out.pcd} --clearance 1 ";
+  expectFailure(job + "--fast", 2, "--fast");
+  expectFailure(job + "--pose", 2, "--pose");
+  expectFailure(job + "--keep some", 2, "--keep: 'some' is unknown: give flagged, colliding or free");
+  expectFailure(job + "--threads many", 2, "--threads: 'many' is not a whole number");
+  expectFailure(job + "--threads -1", 2, "--threads: '-1' is not a whole number");
+}
+
+} // namespace pcl_bsh

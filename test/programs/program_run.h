@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs a program of the project and keeps all that it says.
+#pragma once
+
+#include "../io/samples.h"
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+
+/// In the shell, so quote what it would change.
+inline Outcome run(const std::string& program, const std::string& arguments)
+{
+  const io::TemporaryFolder folder;
+  const std::string out = (folder / "out").string();
+  const std::string err = (folder / "err").string();
+  const std::string command =
+      std::string(PCL_BSH_PROGRAM_DIR) + "/" + program + " " + arguments + " >" + out + " 2>" + err;
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, io::contentOf(out), io::contentOf(err)};
+}
+
+} // namespace pcl_bsh
