@@ -26,6 +26,13 @@ struct alignas(32) Node {
   bool isLeaf(std::size_t i) const noexcept { return child[i] == kLeaf; }
   std::uint32_t points(std::size_t i) const noexcept { return begin[i + 1] - begin[i]; }
 
+  /// A leaf of more than kMaxLeafPoints points holds one place many times over; its first point, the one with the
+  /// smallest record number, stands for all.
+  bool isCoincident(std::size_t i) const noexcept { return points(i) > kMaxLeafPoints; }
+
+  /// How many of a leaf's points there are to compare.
+  std::uint32_t comparedPoints(std::size_t i) const noexcept { return isCoincident(i) ? 1 : points(i); }
+
   /// Makes every child past `count` one that loses all tests.
   void clearUnused() noexcept
   {

@@ -82,9 +82,10 @@ private:
     for (std::uint32_t i = 0; i < node.count; ++i) {
       if (node.begin[i] >= node.begin[i + 1]) return defect(here + "child " + std::to_string(i) + " is empty");
       checkSphere(node, i, frame, voxel, here);
-      const std::uint32_t most = voxel == kAboveVoxels ? 1 : static_cast<std::uint32_t>(kMaxLeafPoints);
       if (node.isLeaf(i)) {
-        if (node.points(i) > most) defect(here + "leaf " + std::to_string(i) + " is too large");
+        if (voxel == kAboveVoxels ? node.points(i) != 1
+                                  : node.isCoincident(i) && !isOnePlace(s_.voxels[voxel], node, i))
+          defect(here + "leaf " + std::to_string(i) + " is too large");
       }
       else if (node.child[i] <= index) {
         defect(here + "child " + std::to_string(i) + " does not follow its parent");
@@ -93,6 +94,18 @@ private:
         checkNode(nodes, node.child[i], node.begin[i], node.begin[i + 1], frame, voxel);
       }
     }
+  }
+
+  bool isOnePlace(const Voxel& voxel, const Node& node, std::uint32_t i) const
+  {
+    const std::uint32_t first = voxel.records()[node.begin[i]];
+    for (std::uint32_t k = node.begin[i]; k < node.begin[i + 1]; ++k) {
+      const std::uint32_t record = voxel.records()[k];
+      if (record < first || s_.view.point(record) != s_.view.point(first) ||
+          s_.view.radius(record) != s_.view.radius(first))
+        return false;
+    }
+    return true;
   }
 
   /// Every point below child i is within its sphere, as given and in exact arithmetic.

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <tuple>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pcl_bsh/hierarchy/voxel_building.cpp"
@@ -17,6 +18,7 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/simd/point_lanes-inl.h>
+#include <pcl_bsh/simd/quad-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -24,10 +26,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-using RecordTag = hn::CappedTag<float, 4>; // x, y, z and the bits of a record number
-
 constexpr unsigned kMostBits = 12;       // of a code: more points than 4,096 cells can hold are split again
-constexpr unsigned kMostRecursions = 12; // cells within cells; beyond them points are nearly coincident
+constexpr unsigned kMostRecursions = 40; // cells within cells: each of them tells at least two places apart
 constexpr std::uint32_t kCellPoints = 3; // cells hold this many on average: fine enough to cut leaves at good places
 constexpr std::uint32_t kFullNode = 96;  // points that eight leaves hold, cut between cells
 
@@ -40,31 +40,30 @@ struct Box {
   float extent(int axis) const { return high[axis] - low[axis]; }
 };
 
+/// The point's coordinates, and its record number taken for a float.
+Quad quadOf(const PointRecord& p)
+{
+  return Quad::load(reinterpret_cast<const float*>(&p));
+}
+
 Box boxOf(const PointRecord* records, std::size_t count)
 {
-  Box box;
-  const RecordTag d;
-  for (std::size_t k = 0; k < 4; k += hn::Lanes(d)) {
-    const float* from = reinterpret_cast<const float*>(records) + k;
-    auto low = hn::LoadU(d, from), high = low;
-    for (std::size_t i = 1; i < count; ++i) {
-      const auto p = hn::LoadU(d, from + 4 * i);
-      low = hn::Min(low, p);
-      high = hn::Max(high, p);
-    }
-    hn::Store(low, d, box.low + k);
-    hn::Store(high, d, box.high + k);
+  Quad low = quadOf(records[0]), high = low;
+  for (std::size_t i = 1; i < count; ++i) {
+    const Quad p = quadOf(records[i]);
+    low = min(low, p);
+    high = max(high, p);
   }
+  Box box;
+  low.store(box.low);
+  high.store(box.high);
   return box;
 }
 
 void merge(Box& box, const Box& other)
 {
-  const RecordTag d;
-  for (std::size_t k = 0; k < 4; k += hn::Lanes(d)) {
-    hn::Store(hn::Min(hn::Load(d, box.low + k), hn::Load(d, other.low + k)), d, box.low + k);
-    hn::Store(hn::Max(hn::Load(d, box.high + k), hn::Load(d, other.high + k)), d, box.high + k);
-  }
+  min(Quad::load(box.low), Quad::load(other.low)).store(box.low);
+  max(Quad::load(box.high), Quad::load(other.high)).store(box.high);
 }
 
 /// Numbers the cells of a box along a space-filling order: each bit of a code halves the axis along which cells are
@@ -72,7 +71,11 @@ void merge(Box& box, const Box& other)
 /// thickness.
 class CellCodes {
 public:
-  CellCodes(const Box& box, unsigned bits) : bits_(bits)
+  CellCodes(const Box& box, unsigned bits)
+  : bits_(bits),
+    low_(Quad::load(box.low)),
+    scale_(Quad::of(0.0f)),
+    last_(Quad::of(0.0f))
   {
     std::array<float, 3> edge = {box.extent(0), box.extent(1), box.extent(2)};
     std::array<unsigned, 3> axis_bits = {0, 0, 0};
@@ -83,27 +86,26 @@ public:
       ++axis_bits[longest];
       axis_of[b] = static_cast<std::uint8_t>(longest);
     }
+    float scale[4] = {}, last[4] = {};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto cells = static_cast<float>(1u << axis_bits[k]);
-      low_[k] = box.low[k];
-      last_[k] = cells - 1.0f;
       const float extent = box.extent(static_cast<int>(k));
-      scale_[k] = extent > 0.0f ? std::min(cells / extent, std::numeric_limits<float>::max()) : 0.0f;
+      scale[k] = extent > 0.0f ? std::min(cells / extent, std::numeric_limits<float>::max()) : 0.0f;
+      last[k] = cells - 1.0f;
       spread(static_cast<std::uint8_t>(k), axis_bits[k], axis_of);
     }
+    scale_ = Quad::load(scale);
+    last_ = Quad::load(last);
   }
 
   std::uint32_t operator()(const PointRecord& p) const
   {
-    return static_cast<std::uint32_t>(spread_[0][cell(p.x, 0)] | spread_[1][cell(p.y, 1)] | spread_[2][cell(p.z, 2)]);
+    std::int32_t cell[4];
+    min((quadOf(p) - low_) * scale_, last_).storeTruncated(cell);
+    return static_cast<std::uint32_t>(spread_[0][cell[0]] | spread_[1][cell[1]] | spread_[2][cell[2]]);
   }
 
 private:
-  std::uint32_t cell(float value, std::size_t k) const
-  {
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::min((value - low_[k]) * scale_[k], last_[k])));
-  }
-
   /// spread_[axis][cell]: the code bits that the cell's number along the axis stands for.
   void spread(std::uint8_t axis, unsigned axis_bits, const std::array<std::uint8_t, kMostBits>& axis_of)
   {
@@ -120,7 +122,7 @@ private:
   }
 
   unsigned bits_;
-  std::array<float, 3> low_, scale_, last_;
+  Quad low_, scale_, last_;
   std::array<std::array<std::uint16_t, 1u << kMostBits>, 3> spread_;
 };
 
@@ -179,7 +181,7 @@ private:
     const bool coincident = !(box.extent(0) > 0.0f || box.extent(1) > 0.0f || box.extent(2) > 0.0f);
     if (coincident || recursion == kMostRecursions) {
       std::copy(given_ + begin, given_ + end, scratch_.sorted.begin() + begin);
-      return splitByCount(begin, end);
+      return sortByPlace(begin, end);
     }
     unsigned bits = 1;
     while (bits < kMostBits && (end - begin) >> bits > kCellPoints) ++bits;
@@ -268,23 +270,49 @@ private:
     return sortRange(begin, end, boxOf(given_ + begin, end - begin), recursion + 1);
   }
 
-  /// Equal shares in the order given: for points that no plane tells apart.
-  std::uint32_t splitByCount(std::uint32_t begin, std::uint32_t end)
+  /// For points that float coordinates cannot tell apart: in the order of the given coordinates, so that points of one
+  /// place share a leaf, however many they are.
+  std::uint32_t sortByPlace(std::uint32_t begin, std::uint32_t end)
+  {
+    std::vector<Place> places;
+    places.reserve(end - begin);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const PointRecord& p = scratch_.sorted[i];
+      places.push_back({view_.point(p.record), view_.radius(p.record), p});
+    }
+    std::sort(places.begin(), places.end(), [](const Place& l, const Place& r) {
+      return std::tie(l.point, l.radius, l.stored.record) < std::tie(r.point, r.radius, r.stored.record);
+    });
+    for (std::uint32_t i = begin; i < end; ++i) scratch_.sorted[i] = places[i - begin].stored;
+
+    std::vector<std::uint32_t> starts{begin}; // of leaves: a crowded place, or several others
+    for (std::uint32_t i = begin; i < end;) {
+      std::uint32_t next = i + 1;
+      while (next < end && places[i - begin].isSame(places[next - begin])) ++next;
+      if (next - starts.back() > kMaxLeafPoints && i != starts.back()) starts.push_back(i);
+      i = next;
+    }
+    starts.push_back(end);
+    return groupLeaves(starts, 0, starts.size() - 1);
+  }
+
+  struct Place {
+    Point3 point;
+    double radius;
+    PointRecord stored;
+
+    bool isSame(const Place& other) const { return point == other.point && radius == other.radius; }
+  };
+
+  /// A tree over leaves [first, last) that begin at `starts`: equal shares of them to each child.
+  std::uint32_t groupLeaves(const std::vector<std::uint32_t>& starts, std::size_t first, std::size_t last)
   {
     const std::uint32_t node = newNode();
-    const std::uint64_t count = end - begin;
-    const std::uint64_t leaves = (count + kMaxLeafPoints - 1) / kMaxLeafPoints;
-    const std::uint64_t shares = std::min<std::uint64_t>(leaves, kNodeChildren);
-    for (std::uint64_t i = 0; i < shares; ++i) {
-      const auto from = begin + static_cast<std::uint32_t>(count * i / shares);
-      const auto to = begin + static_cast<std::uint32_t>(count * (i + 1) / shares);
-      if (to - from <= kMaxLeafPoints) {
-        addLeaf(nodes_[node], from, to);
-      }
-      else {
-        const std::uint32_t below = splitByCount(from, to);
-        addChild(nodes_[node], from, to, below);
-      }
+    const std::size_t count = last - first, shares = std::min(count, kNodeChildren);
+    for (std::size_t i = 0; i < shares; ++i) {
+      const std::size_t from = first + count * i / shares, to = first + count * (i + 1) / shares;
+      const std::uint32_t below = to - from == 1 ? Node::kLeaf : groupLeaves(starts, from, to);
+      addChild(nodes_[node], starts[from], starts[to], below);
     }
     return node;
   }

@@ -36,7 +36,7 @@ struct Candidate {
   std::uint32_t meeting;
 
   bool isLeaf() const { return node->isLeaf(lane); }
-  LeafRange leaf(const Meeting& m) const { return {m.voxel, node->begin[lane], node->points(lane)}; }
+  LeafRange leaf(const Meeting& m) const { return {m.voxel, node->begin[lane], node->comparedPoints(lane)}; }
 };
 
 /// A sphere in the frame of a's voxel.
@@ -150,7 +150,7 @@ private:
       visit.near[lane].clear();
       if (!node.isLeaf(lane)) continue;
       visit.leaves |= 1u << lane;
-      visit.open_points[lane] = firstBits(node.points(lane));
+      visit.open_points[lane] = firstBits(node.comparedPoints(lane));
     }
   }
 
@@ -259,7 +259,7 @@ private:
     for (std::uint32_t bits = visit.leaves & visit.open; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
-      const LeafRange leaf{a_voxel_, visit.node->begin[lane], visit.node->points(lane)};
+      const LeafRange leaf{a_voxel_, visit.node->begin[lane], visit.node->comparedPoints(lane)};
       LeafPoints points;
       carryLeaf(meetings_[visit.meeting].frame, leaf, points);
       const std::uint32_t hit =
@@ -267,7 +267,7 @@ private:
       for (std::uint32_t set = hit; set != 0; set &= set - 1)
         flags_[leaf.record(static_cast<std::uint32_t>(std::countr_zero(set)))] = 1;
       visit.open_points[lane] &= ~hit;
-      if (visit.open_points[lane] == 0) visit.open &= ~(1u << lane);
+      if (visit.open_points[lane] == 0) settleChild(visit, lane); // with it whatever its points stand for
     }
   }
 

@@ -21,7 +21,7 @@ HWY_INLINE Point carriedCenter(const RelativeFrame& frame, const Node& node, std
   return carryPoint(frame.m.data(), frame.g.data(), {node.x[lane], node.y[lane], node.z[lane]});
 }
 
-/// Points [begin, begin + count) of a voxel.
+/// Points [begin, begin + count) of a voxel: those of a leaf that are compared, sixteen at most.
 struct LeafRange {
   const Voxel* voxel = nullptr;
   std::uint32_t begin = 0;
@@ -36,7 +36,7 @@ struct LeafRange {
 
 HWY_INLINE LeafRange leafOf(const Spaces& side, std::uint32_t space, const Node& node, std::uint32_t lane)
 {
-  return {&side.storage.voxels[space], node.begin[lane], node.points(lane)};
+  return {&side.storage.voxels[space], node.begin[lane], node.comparedPoints(lane)};
 }
 
 /// A leaf of a in the frame of b's voxel.

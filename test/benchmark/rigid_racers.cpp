@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rigid_racers.h"
+
+#include "peer/uniform_grid.h"
+#if PCL_BSH_BENCH_FCL
+#include "peer/fcl_boxes.h"
+#endif
+
+#include <pcl_bsh/query/collide.h>
+
+#include <optional>
+#include <stdexcept>
+
+namespace pcl_bsh::bench {
+namespace {
+
+Eigen::Isometry3d toEigen(const RigidPose& pose)
+{
+  using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  result.linear() = Eigen::Map<const Rows>(pose.rotation.data());
+  result.translation() = Eigen::Map<const Eigen::Vector3d>(pose.translation.data());
+  return result;
+}
+
+class OurRacer : public RigidRacer {
+public:
+  void build(const Points& a, const Points& b, double d) override
+  {
+    a_.emplace(viewOf(&a.data()->x, a.size()));
+    b_.emplace(viewOf(&b.data()->x, b.size()));
+    a_->buildAll();
+    b_->buildAll();
+    request_.clearance = d;
+  }
+
+  bool any(const RigidPose& pose) const override
+  {
+    return counted(anyCollision({*a_}, {*b_, toEigen(pose)}, request_)).verdict == Verdict::colliding;
+  }
+
+  bool measuresDistance() const override { return true; }
+  double distance(const RigidPose& pose) const override
+  {
+    return counted(closestPair({*a_}, {*b_, toEigen(pose)})).distance;
+  }
+
+  std::string remark() override
+  {
+    const std::string words = std::to_string(work_.node_pairs / answers_) + " node pairs, " +
+                              std::to_string(work_.leaf_pairs / answers_) + " leaf pairs a pose";
+    work_ = {};
+    answers_ = 0;
+    return words;
+  }
+
+private:
+  template <typename Result>
+  const Result& counted(const Result& result) const
+  {
+    work_ += result.work;
+    ++answers_;
+    return result;
+  }
+
+  std::optional<SphereHierarchy> a_, b_;
+  CollisionRequest request_;
+  mutable Work work_;
+  mutable std::size_t answers_ = 0;
+};
+
+#if PCL_BSH_BENCH_FCL
+class FclRacer : public RigidRacer {
+public:
+  void build(const Points& a, const Points& b, double d) override
+  {
+    a_.emplace(a);
+    b_.emplace(b);
+    d_ = d;
+  }
+
+  bool any(const RigidPose& pose) const override { return a_->any(*b_, pose, d_); }
+  bool measuresDistance() const override { return true; }
+  double distance(const RigidPose& pose) const override { return a_->distance(*b_, pose); }
+
+private:
+  std::optional<FclBoxes> a_, b_;
+  double d_ = 0.0;
+};
+#endif
+
+class PointwiseRacer : public RigidRacer {
+public:
+  explicit PointwiseRacer(std::unique_ptr<ExistencePeer> peer) : peer_(std::move(peer)) {}
+
+  void build(const Points& a, const Points& b, double d) override
+  {
+    b_ = &b;
+    d_ = static_cast<float>(d);
+    peer_->adopt(a);
+    peer_->build(a, d_);
+  }
+
+  bool any(const RigidPose& pose) const override { return anyPosed(*peer_, *b_, pose, d_); }
+  bool slow() const override { return true; }
+
+private:
+  std::unique_ptr<ExistencePeer> peer_;
+  const Points* b_ = nullptr;
+  float d_ = 0.0f;
+};
+
+} // namespace
+
+std::vector<std::string> availableRigidRacers()
+{
+#if PCL_BSH_BENCH_FCL
+  return {"pcl_bsh", "fcl", "grid", "nanoflann", "pcl_kdtree"};
+#else
+  return {"pcl_bsh", "grid", "nanoflann", "pcl_kdtree"};
+#endif
+}
+
+std::unique_ptr<RigidRacer> makeRigidRacer(const std::string& name)
+{
+  if (name == "pcl_bsh") return std::make_unique<OurRacer>();
+#if PCL_BSH_BENCH_FCL
+  if (name == "fcl") return std::make_unique<FclRacer>();
+#endif
+  if (name == "grid") return std::make_unique<PointwiseRacer>(std::make_unique<UniformGrid>());
+  if (name == "nanoflann") return std::make_unique<PointwiseRacer>(makeNanoflannTree());
+  if (name == "pcl_kdtree") return std::make_unique<PointwiseRacer>(makePclKdTree());
+  throw std::invalid_argument("racer '" + name + "' is not available: see --help");
+}
+
+} // namespace pcl_bsh::bench

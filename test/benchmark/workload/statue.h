@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Closed bumpy surfaces with noise, like scanned statues.
+#pragma once
+
+#include "points.h"
+
+namespace pcl_bsh::bench {
+
+/// `count` points on a closed surface about the origin, some 2 units tall and 1.2 wide, with bumps of many sizes;
+/// roughly uniform spacing, noise of 5 % of it, in scan order (rows). Different seeds, different statues.
+Points statue(std::size_t count, std::uint64_t seed);
+
+} // namespace pcl_bsh::bench

@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+
+#include "../query/random_clouds.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using test::Cloud;
+using test::Random;
+using test::Shape;
+using testing::HasSubstr;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void expectSound(const SphereHierarchy& hierarchy)
+{
+  const HierarchyDefects defects = hierarchy.validate();
+  EXPECT_TRUE(defects.none()) << testing::PrintToString(defects.lines);
+}
+
+void expectSound(const Cloud& cloud, const HierarchyOptions& options = {})
+{
+  expectSound(SphereHierarchy(cloud.view(), options));
+}
+
+void expectEqual(const HierarchyStatistics& x, const HierarchyStatistics& y)
+{
+  EXPECT_EQ(x.points, y.points);
+  EXPECT_EQ(x.voxels, y.voxels);
+  EXPECT_EQ(x.voxels_built, y.voxels_built);
+  EXPECT_EQ(x.nodes, y.nodes);
+  EXPECT_EQ(x.leaves, y.leaves);
+  EXPECT_EQ(x.depth, y.depth);
+  EXPECT_EQ(x.bytes, y.bytes);
+  EXPECT_EQ(x.voxel_edge, y.voxel_edge);
+  EXPECT_EQ(x.mean_leaf_points, y.mean_leaf_points);
+  EXPECT_EQ(x.mean_leaf_radius, y.mean_leaf_radius);
+}
+
+template <class Make>
+Cloud cloudOf(std::size_t count, Scalar scalar, Make make)
+{
+  std::vector<Point3> points(count);
+  for (std::size_t i = 0; i < count; ++i) points[i] = make(static_cast<double>(i));
+  return Cloud(points, {scalar});
+}
+
+/// What the constructor says of this; empty when it accepts.
+std::string complaint(const PointsView& view, const HierarchyOptions& options = {})
+{
+  try {
+    SphereHierarchy hierarchy(view, options);
+    return {};
+  }
+  catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+// Soundness -------------------------------------------------------------------------------------------------------
+
+TEST(SphereHierarchy, SoundAtEverySize)
+{
+  Random random(1);
+  for (std::size_t count = 0; count <= 100; ++count) {
+    for (const Shape shape : test::all_shapes) {
+      SCOPED_TRACE(std::to_string(count) + " points of shape " + std::to_string(static_cast<int>(shape)));
+      const Scalar scalar = count % 2 == 0 ? Scalar::float32 : Scalar::float64;
+      const Cloud cloud(test::makePoints(shape, count, 1, random), {scalar});
+      const SphereHierarchy hierarchy(cloud.view());
+      EXPECT_EQ(hierarchy.size(), count);
+      EXPECT_EQ(hierarchy.empty(), count == 0);
+      expectSound(hierarchy);
+    }
+  }
+}
+
+TEST(SphereHierarchy, SoundInEveryShapeFitAndLayout)
+{
+  Random random(2);
+  for (const SphereFit fit : {SphereFit::box_center, SphereFit::ritter, SphereFit::minimal}) {
+    for (int i = 0; i < 40; ++i) {
+      SCOPED_TRACE(std::to_string(static_cast<int>(fit)) + ", cloud " + std::to_string(i));
+      constexpr double scales[] = {0x1p-10, 1.0, 0x1p10};
+      const double scale = random.pick(scales);
+      const Point3 center = i % 4 == 0 ? Point3{500000 * scale, 5400000 * scale, 100 * scale} : Point3{0, 0, 0};
+      HierarchyOptions options;
+      options.fit = fit;
+      expectSound(test::anyCloud(static_cast<std::size_t>(random.integer(100, 3000)), scale, center, random), options);
+    }
+  }
+}
+
+TEST(SphereHierarchy, SoundForAnyVoxelEdge)
+{
+  Random random(3);
+  const Cloud cloud(test::makePoints(Shape::uniform, 2000, 1, random));
+  for (const double edge : {0x1p-12, 0.01, 0.3, 1.0, 1000.0, 1e30}) {
+    SCOPED_TRACE(edge);
+    HierarchyOptions options;
+    options.voxel_edge = edge;
+    const SphereHierarchy hierarchy(cloud.view(), options);
+    expectSound(hierarchy);
+    const double used = hierarchy.statistics().voxel_edge;
+    EXPECT_EQ(std::exp2(std::round(std::log2(used))), used); // a power of two
+  }
+}
+
+TEST(SphereHierarchy, SoundAtExtremeMagnitudes) // H9, H15, H17, H18
+{
+  const auto both = [](auto make) {
+    for (const Scalar scalar : {Scalar::float32, Scalar::float64}) expectSound(cloudOf(1000, scalar, make));
+  };
+  both([](double i) { return Point3{1e30 * i / 1000, 1e30, -1e30}; });
+  both([](double i) { return Point3{std::fmod(i, 2) == 0 ? 3e38 : 2e38, 0, 0}; });
+  both([](double i) { return Point3{std::exp2(-std::fmod(i, 149)), 0, 0}; });
+  both([](double i) { return Point3{std::exp2(-std::fmod(i, 149)), std::exp2(-std::fmod(7 * i, 149)), 0}; });
+  both([](double i) { return Point3{1e-40 * i, 3e-45 * i, 0}; });
+  both([](double i) { return i == 0 ? Point3{1e30, 0, 0} : Point3{1e-7 * i, 0, 0}; });
+  both([](double i) { return i == 0 ? Point3{1e6, 0, 0} : Point3{1e-6 * i, 1e-6 * std::fmod(37 * i, 1000), 0}; });
+  both([](double i) { return i < 2 ? Point3{430 * i, 0, 0} : Point3{0, 0, 0}; });
+  const auto wide = [](auto make) { expectSound(cloudOf(1000, Scalar::float64, make)); };
+  wide([](double i) { return Point3{std::ldexp(1 + i, -1074), std::ldexp(3 * i, -1074), 0}; });
+  wide([](double i) { return Point3{std::ldexp(i, 1010), -std::ldexp(i, 1010), 0}; });
+  wide([](double i) { return Point3{std::ldexp(1, static_cast<int>(i * 2 - 1000)), 0, 0}; });
+  wide([](double i) { return Point3{std::fmod(i, 2) == 0 ? 1.7e308 : -1.7e308, i, 0}; });
+  wide([](double i) { return Point3{1 + std::ldexp(std::fmod(i, 8), -52), 1 + std::ldexp(std::fmod(i, 9), -52), 1}; });
+}
+
+TEST(SphereHierarchy, LeavesBadPointsOut) // H12
+{
+  Random random(5);
+  for (const double bad : {nan, infinity, -infinity}) {
+    for (const std::size_t step : {std::size_t{1}, std::size_t{3}, std::size_t{7}, std::size_t{5000}}) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::vector<Point3> points = test::makePoints(Shape::uniform, 1000, 1, random);
+        std::size_t good = points.size();
+        for (std::size_t i = 0; i < points.size(); i += step, --good) points[i][axis] = bad;
+        const Cloud cloud(points);
+        const SphereHierarchy hierarchy(cloud.view());
+        EXPECT_EQ(hierarchy.size(), good);
+        EXPECT_EQ(hierarchy.statistics().points, good);
+        expectSound(hierarchy);
+      }
+    }
+  }
+}
+
+TEST(SphereHierarchy, EmptyViews)
+{
+  Cloud one({{1, 2, 3}});
+  one.restrictTo({});
+  const Cloud bad({{nan, 0, 0}});
+  for (const PointsView& view : {PointsView{}, Cloud({}).view(), one.view(), bad.view()}) {
+    const SphereHierarchy hierarchy(view);
+    EXPECT_TRUE(hierarchy.empty());
+    hierarchy.buildAll();
+    expectSound(hierarchy);
+    const HierarchyStatistics statistics = hierarchy.statistics();
+    EXPECT_EQ(statistics.points, 0u);
+    EXPECT_EQ(statistics.voxels, 0u);
+    EXPECT_EQ(statistics.leaves, 0u);
+    EXPECT_FALSE(std::isnan(statistics.mean_leaf_points));
+    EXPECT_FALSE(std::isnan(statistics.mean_leaf_radius));
+  }
+}
+
+TEST(SphereHierarchy, IndexesTheSubsetOnly)
+{
+  Random random(6);
+  Cloud cloud(test::makePoints(Shape::uniform, 1000, 1, random));
+  std::vector<std::int32_t> indices;
+  for (std::int32_t i = 999; i >= 0; i -= 3) indices.push_back(i);
+  const std::size_t count = indices.size();
+  cloud.restrictTo(indices);
+  const SphereHierarchy hierarchy(cloud.view());
+  EXPECT_EQ(hierarchy.size(), count);
+  expectSound(hierarchy);
+}
+
+// Size ------------------------------------------------------------------------------------------------------------
+
+TEST(SphereHierarchy, MillionPointsInOnePlace) // H16
+{
+  const Cloud cloud(std::vector<Point3>(1000000, Point3{1.25, 2.5, 3.75}));
+  const SphereHierarchy hierarchy(cloud.view());
+  hierarchy.buildAll();
+  EXPECT_EQ(hierarchy.size(), 1000000u);
+  EXPECT_EQ(hierarchy.statistics().voxels, 1u);
+  EXPECT_LT(hierarchy.statistics().mean_leaf_radius, 1e-6);
+  expectSound(hierarchy);
+}
+
+TEST(SphereHierarchy, MillionPointsInALine) // H17
+{
+  const Cloud cloud = cloudOf(1000000, Scalar::float32, [](double i) { return Point3{1e-3 * i, 0, 0}; });
+  const SphereHierarchy hierarchy(cloud.view());
+  hierarchy.buildAll(2);
+  EXPECT_EQ(hierarchy.size(), 1000000u);
+  EXPECT_LT(hierarchy.statistics().depth, 32u);
+}
+
+TEST(SphereHierarchy, HoldsWhatItPromisesPerPoint)
+{
+  Random random(7);
+  const Cloud cloud(test::makePoints(Shape::uniform, 300000, 1, random));
+  const SphereHierarchy hierarchy(cloud.view());
+  hierarchy.buildAll();
+  const HierarchyStatistics statistics = hierarchy.statistics();
+  EXPECT_LT(static_cast<double>(statistics.bytes), 40.0 * 300000);
+  EXPECT_GE(static_cast<double>(statistics.bytes), 16.0 * 300000);
+}
+
+/// Containment alone would be satisfied by any large sphere: these must be near the smallest.
+TEST(SphereHierarchy, SpheresAreTight)
+{
+  Random random(8);
+  const Cloud plane(test::makePoints(Shape::plane, 100000, 1, random));
+  double largest = 0, smallest = infinity;
+  for (const SphereFit fit : {SphereFit::box_center, SphereFit::ritter, SphereFit::minimal}) {
+    HierarchyOptions options;
+    options.fit = fit;
+    const SphereHierarchy hierarchy(plane.view(), options);
+    hierarchy.buildAll();
+    const HierarchyStatistics statistics = hierarchy.statistics();
+    EXPECT_GE(statistics.mean_leaf_points, 6.0);
+    EXPECT_LE(statistics.mean_leaf_points, 16.0);
+    // A square patch of that many points, at the cloud's density, has this circumscribed radius.
+    const double area = 4 * std::sqrt(1 + 0.25 * 0.25 + 0.5 * 0.5);
+    const double ideal = std::sqrt(area * statistics.mean_leaf_points / 100000 / 2);
+    EXPECT_LT(statistics.mean_leaf_radius, 1.5 * ideal);
+    largest = std::max(largest, statistics.mean_leaf_radius);
+    smallest = std::min(smallest, statistics.mean_leaf_radius);
+    if (fit == SphereFit::minimal) EXPECT_EQ(statistics.mean_leaf_radius, smallest);
+  }
+  EXPECT_LT(largest, 1.15 * smallest);
+}
+
+// Building --------------------------------------------------------------------------------------------------------
+
+TEST(SphereHierarchy, BuildsNothingUntilAsked)
+{
+  Random random(9);
+  const Cloud cloud(test::makePoints(Shape::uniform, 100000, 1, random));
+  const SphereHierarchy hierarchy(cloud.view());
+  EXPECT_EQ(hierarchy.statistics().voxels_built, 0u);
+  EXPECT_GT(hierarchy.statistics().voxels, 8u);
+  hierarchy.buildAll();
+  EXPECT_EQ(hierarchy.statistics().voxels_built, hierarchy.statistics().voxels);
+}
+
+TEST(SphereHierarchy, SameForAnyNumberOfThreads)
+{
+  Random random(10);
+  for (const Shape shape : {Shape::uniform, Shape::clusters, Shape::outlier}) {
+    const Cloud cloud(test::makePoints(shape, 200000, 1, random));
+    const SphereHierarchy reference(cloud.view());
+    reference.buildAll(1);
+    for (const unsigned threads : {2u, 4u, 0u}) {
+      HierarchyOptions options;
+      options.threads = threads;
+      const SphereHierarchy hierarchy(cloud.view(), options);
+      hierarchy.buildAll(threads);
+      expectEqual(hierarchy.statistics(), reference.statistics());
+    }
+  }
+}
+
+TEST(SphereHierarchy, BuiltOnceByManyThreads)
+{
+  Random random(11);
+  const Cloud cloud(test::makePoints(Shape::uniform, 100000, 1, random));
+  const SphereHierarchy reference(cloud.view());
+  reference.buildAll();
+  const SphereHierarchy hierarchy(cloud.view());
+  std::vector<std::thread> threads;
+  for (unsigned i = 0; i < 4; ++i) threads.emplace_back([&, i] { hierarchy.buildAll(1 + i % 2); });
+  for (std::thread& thread : threads) thread.join();
+  expectEqual(hierarchy.statistics(), reference.statistics());
+  expectSound(hierarchy);
+}
+
+TEST(SphereHierarchy, MovesWithItsPoints)
+{
+  Random random(12);
+  const Cloud cloud(test::makePoints(Shape::uniform, 1000, 1, random));
+  SphereHierarchy first(cloud.view());
+  first.buildAll();
+  const HierarchyStatistics before = first.statistics();
+  SphereHierarchy second(std::move(first));
+  expectEqual(second.statistics(), before);
+  SphereHierarchy third{PointsView{}};
+  third = std::move(second);
+  EXPECT_EQ(third.size(), 1000u);
+  EXPECT_EQ(third.view().data, cloud.view().data);
+  expectSound(third);
+}
+
+// Arguments -------------------------------------------------------------------------------------------------------
+
+TEST(SphereHierarchy, RefusesBadViews)
+{
+  const float xyz[6] = {1, 2, 3, 4, 5, 6};
+  PointsView null = viewOf(xyz, 2);
+  null.data = nullptr;
+  EXPECT_THAT(complaint(null), HasSubstr("null"));
+  EXPECT_THAT(complaint(viewOf(xyz, std::size_t{1} << 31)), HasSubstr("2147483648"));
+  EXPECT_THAT(complaint(viewOf(xyz, std::numeric_limits<std::size_t>::max())), HasSubstr("18446744073709551615"));
+  for (const std::int32_t outside : {-1, 2, std::numeric_limits<std::int32_t>::max()}) {
+    const std::int32_t indices[] = {0, outside};
+    PointsView subset = viewOf(xyz, 2);
+    subset.indices = indices;
+    subset.index_count = 2;
+    EXPECT_THAT(complaint(subset), HasSubstr("index " + std::to_string(outside)));
+  }
+  for (const float radius : {-1.0f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+    const float radii[] = {0, radius};
+    PointsView balls = viewOf(xyz, 2);
+    balls.radii = radii;
+    EXPECT_THAT(complaint(balls), HasSubstr("radius"));
+  }
+  EXPECT_EQ(complaint(viewOf(xyz, 2)), "");
+}
+
+TEST(SphereHierarchy, RefusesBadVoxelEdges)
+{
+  const float xyz[3] = {1, 2, 3};
+  for (const double edge : {-1.0, nan, infinity, -infinity}) {
+    HierarchyOptions options;
+    options.voxel_edge = edge;
+    EXPECT_THAT(complaint(viewOf(xyz, 1), options), HasSubstr("voxel edge")) << edge;
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stands in for oneTBB under ThreadSanitizer. That sees nothing of what goes on inside libtbb, so that every piece of
+// work handed from thread to thread would look like a race; std::thread it understands.
+#pragma once
+
+namespace tbb {
+
+class task_arena {
+public:
+  explicit task_arena(int threads) : threads_(threads) {}
+
+  template <class Function>
+  void execute(const Function& function)
+  {
+    const int outer = threadsHere();
+    threadsHere() = threads_;
+    function();
+    threadsHere() = outer;
+  }
+
+  /// Threads for parallel_for() when this thread calls it.
+  static int& threadsHere()
+  {
+    thread_local int threads = 1;
+    return threads;
+  }
+
+private:
+  int threads_;
+};
+
+} // namespace tbb
