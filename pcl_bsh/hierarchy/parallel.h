@@ -2,6 +2,8 @@
 // Threads are an argument: one is a plain loop, several are oneTBB's, and none of the results can tell.
 #pragma once
 
+#include <pcl_bsh/geometry/float_environment.h>
+
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -27,7 +29,12 @@ void parallelFor(std::size_t count, unsigned threads, const Body& body)
     return;
   }
   tbb::task_arena arena(static_cast<int>(threads));
-  arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, body); });
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+      const DefaultFloatEnvironment environment;
+      body(i);
+    });
+  });
 }
 
 } // namespace pcl_bsh

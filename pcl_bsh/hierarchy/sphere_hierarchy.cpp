@@ -41,6 +41,7 @@ void check(const PointsView& view, const HierarchyOptions& options)
 SphereHierarchy::SphereHierarchy(const PointsView& points, const HierarchyOptions& options)
 {
   check(points, options);
+  const DefaultFloatEnvironment environment;
   storage_ = std::make_unique<Storage>(points, options);
 }
 
@@ -63,6 +64,7 @@ std::size_t SphereHierarchy::size() const noexcept
 
 void SphereHierarchy::buildAll(unsigned threads) const
 {
+  const DefaultFloatEnvironment environment;
   parallelFor(storage_->voxel_count, threadCount(threads), [&](std::size_t v) {
     std::uint64_t built_now = 0;
     storage_->built(v, built_now);

@@ -28,6 +28,7 @@ SphereHierarchy::Storage::Storage(const PointsView& points, const HierarchyOptio
       float largest = 0.0f;
       for (std::uint32_t i = 0; i < voxels[v].count; ++i) largest = std::max(largest, view.radii[sorted[i].record]);
       largest_radii.push_back(largest);
+      largest_radius = std::max(largest_radius, static_cast<double>(largest));
     }
   }
   for (std::size_t v = 0; v < voxel_count; ++v) {

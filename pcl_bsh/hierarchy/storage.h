@@ -64,6 +64,7 @@ public:
   std::size_t size = 0; ///< finite points
   std::size_t voxel_count = 0;
   std::unique_ptr<Voxel[]> voxels; ///< sorted by key
+  double largest_radius = 0.0;     ///< of all points
   LocalFrame frame;                ///< of `top`
   std::vector<Node> top; ///< the octree above the voxels: leaves are voxels; top[0] is the root; empty iff size == 0
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/storage.h>
 

@@ -125,6 +125,7 @@ HWY_EXPORT(anyCollisionOnTarget);
 AnyResult anyCollision(const Placed& a, const Placed& b, const CollisionRequest& request)
 {
   check(a, b, request);
+  const DefaultFloatEnvironment environment;
   return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request.clearance);
 }
 

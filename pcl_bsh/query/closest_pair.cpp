@@ -167,6 +167,7 @@ HWY_EXPORT(closestPairOnTarget);
 DistanceResult closestPair(const Placed& a, const Placed& b, const CollisionRequest& request)
 {
   check(a, b, request);
+  const DefaultFloatEnvironment environment;
   return HWY_DYNAMIC_DISPATCH(closestPairOnTarget)(a, b);
 }
 

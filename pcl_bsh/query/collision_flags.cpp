@@ -75,7 +75,7 @@ public:
   void run(std::uint32_t voxel)
   {
     const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose);
-    if (above.separates(pairs_.clearance)) return;
+    if (above.separates(pairs_.clearance + a_.storage.largest_radius + b_.storage.largest_radius)) return;
     std::vector<std::uint32_t> reached;
     const bool all = !reach(voxel, above, b_.storage.top[0], reached);
     if (!all && reached.empty()) return;
@@ -383,6 +383,7 @@ std::size_t countSet(const std::vector<std::uint8_t>& flags)
 FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request)
 {
   check(a, b, request);
+  const DefaultFloatEnvironment environment;
   FlagsResult result;
   if (request.flagged != Side::b) result.a = flagsOf(a, b, request, result.work);
   if (request.flagged != Side::a) result.b = flagsOf(b, a, request, result.work);

@@ -133,7 +133,8 @@ public:
   void seed(double clearance, const Push& push)
   {
     if (a.storage.size == 0 || b.storage.size == 0) return;
-    if (frames.find(kAboveVoxels, kAboveVoxels).separates(clearance)) return;
+    const double reach = clearance + a.storage.largest_radius + b.storage.largest_radius;
+    if (frames.find(kAboveVoxels, kAboveVoxels).separates(reach)) return;
     Step found;
     for (std::uint32_t i = 0; i < a.storage.top[0].count; ++i) {
       const LanePair pair{0.0f, {kAboveVoxels, 0, i}, {kAboveVoxels, 0, 0}};

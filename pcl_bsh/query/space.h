@@ -2,6 +2,7 @@
 // A walk moves through spaces: the tree above a cloud's voxels, then the tree in one voxel. Each has its own frame.
 #pragma once
 
+#include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/relative_frame.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/collide.h>

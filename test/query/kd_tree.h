@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An independent nearest neighbour, for clouds too large for brute force: nanoflann, in double.
+// Independent answers for clouds too large for brute force: nanoflann in double, exact arithmetic where that is not
+// sure.
 #pragma once
 
+#include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 
 #include <Eigen/Geometry>
 #include <nanoflann.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh::test {
@@ -49,6 +54,15 @@ public:
     return {points_.records[index], std::sqrt(squared)};
   }
 
+  /// Whether accept(record) holds for any point within the distance, give or take rounding.
+  template <class Accept>
+  bool anyWithin(const Eigen::Vector3d& query, double distance, const Accept& accept) const
+  {
+    std::vector<std::pair<std::size_t, double>> found;
+    tree_.radiusSearch(query.data(), distance * distance, found, nanoflann::SearchParams());
+    return std::any_of(found.begin(), found.end(), [&](const auto& hit) { return accept(points_.records[hit.first]); });
+  }
+
 private:
   struct Points {
     std::vector<std::uint32_t> records;
@@ -70,5 +84,42 @@ private:
   Points points_;
   nanoflann::KDTreeSingleIndexAdaptor<Metric, Points, 3, std::size_t> tree_{3, points_};
 };
+
+/// What collisionFlags() should say of a. For clearances well above the rounding of the world's coordinates.
+inline std::vector<std::uint8_t> flagsByKdTree(const PointsView& a, const Eigen::Isometry3d& pose_a,
+                                               const PointsView& b, const Eigen::Isometry3d& pose_b, double clearance)
+{
+  constexpr double band = 1e-6;
+  const KdTree tree(b, pose_b);
+  const ExactDistance distance(pose_a, pose_b);
+  std::vector<std::uint8_t> flags(a.count, 0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const std::uint32_t record = a.record(i);
+    const Eigen::Vector3d query = KdTree::moved(a, record, pose_a);
+    if (!query.allFinite()) continue;
+    const double nearest = tree.nearest(query).distance;
+    const auto collides = [&](std::uint32_t other) {
+      return distance.compare(a.point(record), b.point(other), clearance) <= 0;
+    };
+    if (nearest <= clearance * (1 - band))
+      flags[record] = 1;
+    else if (nearest <= clearance * (1 + band))
+      flags[record] = tree.anyWithin(query, clearance * (1 + 2 * band), collides);
+  }
+  return flags;
+}
+
+/// The smallest distance, within rounding.
+inline double distanceByKdTree(const PointsView& a, const Eigen::Isometry3d& pose_a, const PointsView& b,
+                               const Eigen::Isometry3d& pose_b)
+{
+  const KdTree tree(b, pose_b);
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Eigen::Vector3d query = KdTree::moved(a, a.record(i), pose_a);
+    if (query.allFinite()) smallest = std::min(smallest, tree.nearest(query).distance);
+  }
+  return smallest;
+}
 
 } // namespace pcl_bsh::test

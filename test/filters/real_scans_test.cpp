@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The queries on real scans, where they are at hand, against an independent kd-tree.
+#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include "../query/kd_tree.h"
+
+#include <pcl/io/pcd_io.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+namespace pcl_bsh {
+namespace {
+
+const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
+
+std::string dataFile(const std::string& name)
+{
+  return std::string(PCL_BSH_SHARED_DIR) + "/data/" + name + ".pcd";
+}
+
+pcl::PCLPointCloud2 load(const std::string& name)
+{
+  pcl::PCLPointCloud2 cloud;
+  if (pcl::PCDReader().read(dataFile(name), cloud) != 0) throw std::runtime_error("cannot read " + dataFile(name));
+  return cloud;
+}
+
+struct Scan {
+  explicit Scan(const std::string& name) : cloud(load(name)), hierarchy(viewOf(cloud)) {}
+  Scan(const Scan&) = delete;
+  Scan& operator=(const Scan&) = delete;
+  const PointsView& view() const { return hierarchy.view(); }
+
+  const pcl::PCLPointCloud2 cloud;
+  const SphereHierarchy hierarchy;
+};
+
+class RealScans : public testing::Test {
+protected:
+  void SetUp() override
+  {
+    if (!std::filesystem::exists(dataFile("lidar_sweep_a"))) GTEST_SKIP() << dataFile("*") << " are not there";
+  }
+
+  static CollisionRequest within(double clearance)
+  {
+    CollisionRequest request;
+    request.clearance = clearance;
+    request.flagged = Side::both;
+    request.threads = 2;
+    return request;
+  }
+
+  static void expectFlags(const Scan& a, const Eigen::Isometry3d& pose_a, const Scan& b,
+                          const Eigen::Isometry3d& pose_b, double clearance)
+  {
+    SCOPED_TRACE(clearance);
+    const FlagsResult result = collisionFlags({a.hierarchy, pose_a}, {b.hierarchy, pose_b}, within(clearance));
+    EXPECT_TRUE(result.a == test::flagsByKdTree(a.view(), pose_a, b.view(), pose_b, clearance));
+    EXPECT_TRUE(result.b == test::flagsByKdTree(b.view(), pose_b, a.view(), pose_a, clearance));
+    EXPECT_GT(result.colliding_a, 100u); // else the test would say nothing
+    EXPECT_LT(result.colliding_a, a.hierarchy.size() - 100);
+  }
+
+  /// The smallest distance is right, and exactly where anyCollision() turns.
+  static DistanceResult expectDistance(const Scan& a, const Eigen::Isometry3d& pose_a, const Scan& b,
+                                       const Eigen::Isometry3d& pose_b)
+  {
+    const Placed placed_a{a.hierarchy, pose_a}, placed_b{b.hierarchy, pose_b};
+    const DistanceResult result = closestPair(placed_a, placed_b, within(0));
+    EXPECT_NEAR(result.distance, test::distanceByKdTree(a.view(), pose_a, b.view(), pose_b), 1e-9);
+    if (!result.pair) {
+      ADD_FAILURE() << "no pair";
+      return result;
+    }
+    const Point3 p = a.view().point(result.pair->a), q = b.view().point(result.pair->b);
+    const ExactDistance distance(pose_a, pose_b);
+    EXPECT_EQ(distance.gap({p, q}), result.distance);
+    for (const double clearance : {std::nextafter(result.distance, 0.0), result.distance,
+                                   std::nextafter(result.distance, std::numeric_limits<double>::infinity())}) {
+      const Verdict expected = distance.compare(p, q, clearance) <= 0 ? Verdict::colliding : Verdict::free;
+      EXPECT_EQ(anyCollision(placed_a, placed_b, within(clearance)).verdict, expected) << clearance;
+    }
+    return result;
+  }
+};
+
+TEST_F(RealScans, TwoLidarSweeps)
+{
+  const Scan a("lidar_sweep_a"), b("lidar_sweep_b");
+  Eigen::Matrix3d rotation;
+  rotation << 0.999925, 0.0121483, -0.00177009, -0.0121523, 0.999924, -0.00228657, 0.00174218, 0.00230791, 0.999996;
+  Eigen::Isometry3d pose_b(Eigen::Quaterniond(rotation).normalized()); // given with six digits: not quite rigid
+  pose_b.translation() = Eigen::Vector3d(0.488882, 0.121214, -0.0253342);
+  expectFlags(a, identity, b, pose_b, 0.02);
+  expectFlags(a, identity, b, pose_b, 0.2);
+  expectDistance(a, identity, b, pose_b);
+  EXPECT_TRUE(a.hierarchy.validate().none());
+}
+
+TEST_F(RealScans, RoomScansWithEveryPointTwice)
+{
+  const Scan a("indoor_room_scan1"), b("indoor_room_scan2");
+  Eigen::Isometry3d pose_b(Eigen::AngleAxisd(0.6931, Eigen::Vector3d::UnitZ()));
+  pose_b.pretranslate(Eigen::Vector3d(1.79387, 0.720047, 0));
+  expectFlags(a, identity, b, pose_b, 0.05);
+  expectDistance(a, identity, b, pose_b);
+}
+
+TEST_F(RealScans, LionAgainstItselfShifted) // coordinates step by 0.001: ties everywhere, up to rounding
+{
+  const Scan lion("statue_lion_takanawa");
+  const Eigen::Isometry3d shifted(Eigen::Translation3d(0.004, 0.002, 0.004));
+  expectFlags(lion, identity, lion, shifted, 0.002);
+  expectFlags(lion, identity, lion, shifted, 0.003);
+  const Eigen::Isometry3d turned =
+      Eigen::Translation3d(8, 0, 0) * Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized());
+  expectDistance(lion, identity, lion, turned);
+  EXPECT_TRUE(lion.hierarchy.validate().none());
+}
+
+TEST_F(RealScans, PandaArmOverTheTable)
+{
+  const Scan table("tabletop_rgbd_organized"), arm("robot_panda_sampled");
+  Eigen::Isometry3d upright(
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(0, 0.82, 0.57)));
+  for (const Eigen::Vector3d& place : {Eigen::Vector3d(0.0, -0.03, -0.77), Eigen::Vector3d(0.3, 0.3, -0.3)}) {
+    Eigen::Isometry3d pose = upright;
+    pose.translation() = place;
+    expectDistance(table, identity, arm, pose);
+  }
+  EXPECT_TRUE(table.hierarchy.validate().none()); // a fifth of its points are NaN
+}
+
+TEST_F(RealScans, Float64TerrainAgainstItsFloat32Twin)
+{
+  const Scan precise("terrain_stbarth_utm20_f64"), rounded("terrain_stbarth_utm20_f32");
+  // A clearance that a pair meets as nearly as a double can: float32 itself moved this point by that much.
+  const double tie = ExactDistance(identity, identity).gap({precise.view().point(12345), rounded.view().point(12345)});
+  ASSERT_GT(tie, 1e-3);
+  expectFlags(precise, identity, rounded, identity, tie);
+
+  // Some points survive float32: the pair found is the smallest of those.
+  std::map<Point3, std::uint32_t> first_at;
+  for (auto i = static_cast<std::uint32_t>(rounded.view().count); i-- > 0;) first_at[rounded.view().point(i)] = i;
+  std::uint32_t survivor = 0;
+  while (!first_at.count(precise.view().point(survivor))) ++survivor;
+  const DistanceResult result = closestPair({precise.hierarchy}, {rounded.hierarchy}, within(0));
+  EXPECT_EQ(result.distance, 0.0);
+  EXPECT_EQ(result.pair, (PointPair{survivor, first_at[precise.view().point(survivor)]}));
+}
+
+} // namespace
+} // namespace pcl_bsh
