@@ -13,7 +13,6 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
-#include <utility>
 #ifdef __SSE2__
 #include <immintrin.h>
 #endif
@@ -354,11 +353,15 @@ TEST(CollisionFlags, SameAsKdTreeOnHundredThousandPoints)
 {
   Random random(100000);
   const std::size_t count = 100000;
-  const std::pair<Shape, double> cases[] = {{Shape::uniform, 0.02}, {Shape::plane, 0.01}, {Shape::clusters, 0.05}};
-  for (const auto& [shape, clearance] : cases) {
-    const Cloud a(test::makePoints(shape, count, 1, random)), b(test::makePoints(Shape::sphere, count, 1, random));
+  struct Case {
+    Shape a, b;
+    double clearance;
+  };
+  for (const Case& c : {Case{Shape::uniform, Shape::sphere, 0.02}, Case{Shape::plane, Shape::plane, 0.01},
+                        Case{Shape::clusters, Shape::uniform, 0.02}}) {
+    const Cloud a(test::makePoints(c.a, count, 1, random)), b(test::makePoints(c.b, count, 1, random));
     const Eigen::Isometry3d pose_a = random.pose(0.2);
-    expectSameAsKdTree(a, pose_a, b, random.pose(0.2), clearance);
+    expectSameAsKdTree(a, pose_a, b, random.pose(0.2), c.clearance);
   }
   std::vector<Point3> here = test::makePoints(Shape::uniform, count, 50, random), there = here;
   for (Point3& p : here) p = {p[0] + 515050, p[1] + 1981050, p[2]};
