@@ -15,28 +15,22 @@ namespace {
 // Enough points that the work of a voxel outweighs its frame, few enough that building one stays in the cache.
 constexpr double kPointsPerVoxel = 4096.0;
 
-// Keeps an edge and its inverse normal numbers.
-constexpr double kSmallestEdge = 0x1p-1000, kLargestEdge = 0x1p1000;
+// Keep an edge and its inverse normal numbers; 2^20 of the largest hold any cloud of doubles.
+constexpr double kSmallestEdge = 0x1p-1000, kLargestEdge = 0x1p1006;
 
-double largestExtent(const Bounds& bounds)
-{
-  double extent = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, bounds.high[k] / 2 - bounds.low[k] / 2);
-  return 2 * std::min(extent, 0x1p1010);
-}
-
-/// The edge of a cube that holds the cloud with a bit to spare.
-double rootEdge(const Bounds& bounds)
-{
-  const double extent = largestExtent(bounds);
-  if (!(extent > 0.0)) return 1.0;
-  return std::clamp(std::exp2(std::ilogb(extent) + 1), kSmallestEdge, 0x1p1012);
-}
-
+/// The smallest edge for which cells of 20 bits per axis reach over the cloud (one bit of the 21 is to spare), and in
+/// which no coordinate counts more cells than a float can hold.
 double finestEdge(const Bounds& bounds)
 {
-  // Two cells of the 2^21 are kept free for the rounding of cell numbers.
-  return std::clamp(rootEdge(bounds) * 0x1p-20, kSmallestEdge, kLargestEdge);
+  double half = 0.0, largest = 0.0; // half of the extent: the extent itself might overflow
+  for (std::size_t k = 0; k < 3; ++k) {
+    half = std::max(half, bounds.high[k] / 2 - bounds.low[k] / 2);
+    largest = std::max({largest, std::abs(bounds.low[k]), std::abs(bounds.high[k])});
+  }
+  if (!(half > 0.0)) half = std::max(largest, 1.0); // one place: any edge will do
+  const double over_cloud = std::exp2(std::ilogb(half) + 2 - 20),
+               countable = std::exp2(std::ilogb(largest * 0x1p-100) + 1);
+  return std::clamp(largest > 0.0 ? std::max(over_cloud, countable) : over_cloud, kSmallestEdge, kLargestEdge);
 }
 
 } // namespace
@@ -49,17 +43,16 @@ double voxelEdgeFromRequest(double edge, const Bounds& bounds)
 
 double voxelEdgeFromDensity(const PointsView& view, const Bounds& bounds)
 {
-  const double root = rootEdge(bounds);
   const double cell = finestEdge(bounds);
   const double wanted = std::max(1.0, static_cast<double>(bounds.finite) / kPointsPerVoxel);
 
   // Morton codes of a sample: neighbours in sorted order that first differ in bits of level L are in different voxels
   // from level L down.
-  const std::size_t sample = std::min(view.size(), std::max<std::size_t>(4096, view.size() / 256));
+  const std::size_t sample = sampleSize(view);
   std::vector<std::uint64_t> codes;
   codes.reserve(sample);
   for (std::size_t i = 0; i < sample; ++i) {
-    const Point3 p = view.point(view.record(i * view.size() / sample));
+    const Point3 p = view.point(sampleRecord(view, i));
     std::array<std::uint64_t, 3> number;
     bool finite = true;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -75,7 +68,7 @@ double voxelEdgeFromDensity(const PointsView& view, const Bounds& bounds)
     if (difference != 0) ++split_at[static_cast<std::size_t>(63 - __builtin_clzll(difference)) / 3];
   }
 
-  double edge = cell * 0x1p21;
+  double edge = kLargestEdge;
   std::size_t occupied = 1;
   for (std::size_t b = kMortonBits; b-- > 0;) {
     // Going down to voxels of cell * 2^b: stop before the mean falls too far below what is wanted.
@@ -84,7 +77,7 @@ double voxelEdgeFromDensity(const PointsView& view, const Bounds& bounds)
     occupied = finer;
     edge = cell * std::exp2(static_cast<double>(b));
   }
-  return std::clamp(std::min(edge, 2 * root), cell, kLargestEdge);
+  return std::clamp(edge, cell, kLargestEdge);
 }
 
 } // namespace pcl_bsh

@@ -3,15 +3,28 @@
 
 #include <pcl_bsh/hierarchy/points_view.h>
 
+#include <algorithm>
 #include <array>
 
 namespace pcl_bsh {
 
-/// The finite points' bounds, per axis; low > high when there are none.
+/// Bounds of some finite points, per axis; low > high when there are none.
 struct Bounds {
   std::array<double, 3> low, high;
   std::size_t finite = 0;
 };
+
+/// How many evenly spread points of a view tell enough about its density.
+inline std::size_t sampleSize(const PointsView& view) noexcept
+{
+  return std::min(view.size(), std::max<std::size_t>(4096, view.size() / 256));
+}
+
+/// The record of the i-th of sampleSize() points.
+inline std::uint32_t sampleRecord(const PointsView& view, std::size_t i) noexcept
+{
+  return view.record(i * view.size() / sampleSize(view));
+}
 
 /// The power of two that puts a few thousand points into an occupied voxel on average, judged from a sample; coarse
 /// enough for 21 bits per axis.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points into voxels: a counting sort that reads the cloud three times and keeps 4 bytes per point on the way.
+// Points into voxels: a counting sort that reads the cloud twice and keeps 4 bytes per point on the way.
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/morton.h>
 #include <pcl_bsh/hierarchy/parallel.h>
@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pcl_bsh/hierarchy/voxel_sorting.cpp"
@@ -136,17 +137,21 @@ public:
   {
     T base[4] = {};
     for (std::size_t k = 0; k < 3; ++k)
-      base[k] = std::floor(static_cast<T>(bounds.low[k]) * static_cast<T>(1.0 / edge));
+      base[k] = std::floor(static_cast<T>(bounds.low[k]) * static_cast<T>(1.0 / edge)) - kMargin;
     base_ = Point<T>::load(base);
   }
 
+  /// kOutside when the point is not finite or too far from the bounds to be counted.
   std::uint64_t operator()(const Point<T>& p) const
   {
     std::int32_t number[4];
     (p * inverse_ - base_).storeTruncated(number);
     const auto bits = [&](std::size_t k) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(number[k])); };
+    if ((bits(0) | bits(1) | bits(2)) >> kMortonBits != 0) return kOutside;
     return bits(0) << 42 | bits(1) << 21 | bits(2);
   }
+
+  static constexpr std::uint64_t kOutside = ~std::uint64_t{0};
 
   static std::uint64_t morton(std::uint64_t cell)
   {
@@ -154,6 +159,8 @@ public:
   }
 
 private:
+  static constexpr T kMargin = 1024; // cells below the bounds: those of a sample leave some points out
+
   Point<T> inverse_, base_;
 };
 
@@ -255,15 +262,12 @@ public:
 
   VoxelSorting run()
   {
-    const Bounds bounds = findBounds();
-    result_.size = bounds.finite;
-    if (result_.size == 0) return std::move(result_);
-    result_.frame = frameBetween(bounds.low, bounds.high, std::is_same_v<T, float>);
-    result_.edge = options_.voxel_edge > 0.0 ? voxelEdgeFromRequest(options_.voxel_edge, bounds)
-                                             : voxelEdgeFromDensity(view_, bounds);
-    // Cell numbers are computed in T: its inverse must not overflow.
-    result_.edge = std::max(result_.edge, static_cast<double>(std::numeric_limits<T>::min()) * 0x1p20);
-    fillBins(bounds);
+    // A sample's bounds will do, unless some point lies far outside.
+    if (!fillBins(sampleBounds())) {
+      const Bounds bounds = findBounds();
+      if (bounds.finite == 0) return std::move(result_);
+      if (!fillBins(bounds)) throw std::logic_error("SphereHierarchy: voxels do not reach over the cloud");
+    }
     mergeBins();
     moveToVoxels();
     for (std::size_t v = 0; v < result_.voxel_count; ++v) result_.voxels[v].lowest = lowestRecord(result_.voxels[v]);
@@ -293,45 +297,76 @@ private:
       low.store(parts[chunk].low);
       high.store(parts[chunk].high);
     });
-    Bounds bounds;
-    bounds.low.fill(std::numeric_limits<double>::infinity());
-    bounds.high.fill(-std::numeric_limits<double>::infinity());
+    Bounds bounds = none();
     for (const Bin<T>& part : parts) {
       bounds.finite += part.count;
-      widen(bounds.low, bounds.high, part);
+      widen(bounds, part);
     }
     return bounds;
   }
 
-  static void widen(std::array<double, 3>& low, std::array<double, 3>& high, const Bin<T>& bin)
+  static Bounds none()
+  {
+    Bounds bounds;
+    bounds.low.fill(std::numeric_limits<double>::infinity());
+    bounds.high.fill(-std::numeric_limits<double>::infinity());
+    return bounds;
+  }
+
+  static void widen(Bounds& bounds, const Bin<T>& bin)
   {
     for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], static_cast<double>(bin.low[k]));
-      high[k] = std::max(high[k], static_cast<double>(bin.high[k]));
+      bounds.low[k] = std::min(bounds.low[k], static_cast<double>(bin.low[k]));
+      bounds.high[k] = std::max(bounds.high[k], static_cast<double>(bin.high[k]));
     }
   }
 
-  void fillBins(const Bounds& bounds)
+  Bounds sampleBounds() const
   {
+    Bin<T> bin;
+    const std::size_t sample = sampleSize(view_);
+    for (std::size_t i = 0; i < sample; ++i) {
+      const Point<T> p = read_(sampleRecord(view_, i));
+      if (p.finite()) bin.add(p);
+    }
+    Bounds bounds = none();
+    if (sample > 0) bounds.finite = bin.count * (view_.size() / sample);
+    widen(bounds, bin);
+    return bounds;
+  }
+
+  /// Counts the points of every cell. @return false when there are no bounds, or points too far outside of them.
+  bool fillBins(const Bounds& bounds)
+  {
+    if (bounds.finite == 0) return false;
+    result_.edge = options_.voxel_edge > 0.0 ? voxelEdgeFromRequest(options_.voxel_edge, bounds)
+                                             : voxelEdgeFromDensity(view_, bounds);
+    // Cell numbers are computed in T: its inverse must not overflow.
+    result_.edge = std::max(result_.edge, static_cast<double>(std::numeric_limits<T>::min()) * 0x1p20);
     const CellNumbers<T> cell_of(result_.edge, bounds);
     bin_of_ = makeBuffer<std::uint32_t>(view_.size());
-    chunks_.resize(chunk_count_);
+    chunks_.assign(chunk_count_, BinTable<T>());
+    std::vector<std::uint8_t> outside(chunk_count_, 0);
     parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
       BinTable<T>& table = chunks_[chunk];
-      std::uint64_t last_cell = ~std::uint64_t{0};
+      std::uint64_t last_cell = CellNumbers<T>::kOutside;
       std::uint32_t bin = kNoVoxel;
+      std::uint8_t any_outside = 0;
       eachPoint(chunk, [&](std::size_t i, std::uint32_t record) {
         const Point<T> p = read_(record);
-        if (!p.finite()) {
+        const std::uint64_t cell = cell_of(p);
+        if (cell == CellNumbers<T>::kOutside) {
           bin_of_[i] = kNoVoxel;
+          any_outside |= p.finite();
           return;
         }
-        const std::uint64_t cell = cell_of(p);
         if (cell != last_cell) bin = table.find(last_cell = cell);
         table.bins[bin].add(p);
         bin_of_[i] = bin;
       });
+      outside[chunk] = any_outside;
     });
+    return std::find(outside.begin(), outside.end(), 1) == outside.end();
   }
 
   /// Gives every voxel that some chunk saw its number (in Morton order), frame and place in the buffer, so that a
@@ -351,28 +386,30 @@ private:
 
     for (std::size_t i = 0; i < entries.size(); ++i)
       result_.voxel_count += i == 0 || entries[i].key != entries[i - 1].key;
+    for (const Entry& entry : entries) result_.size += entry.bin->count;
     result_.voxels = std::make_unique<Voxel[]>(result_.voxel_count);
     result_.buffer = makeBuffer<float>(4 * result_.size + kBlockPadding * result_.voxel_count);
 
     std::size_t point = 0;
+    Bounds all = none();
     auto entry = entries.begin();
     for (std::size_t v = 0; v < result_.voxel_count; ++v) {
       Voxel& voxel = result_.voxels[v];
       voxel.key = entry->key;
       voxel.begin = static_cast<std::uint32_t>(point);
       voxel.block = result_.buffer.get() + 4 * point + kBlockPadding * v;
-      std::array<double, 3> low, high;
-      low.fill(std::numeric_limits<double>::infinity());
-      high.fill(-std::numeric_limits<double>::infinity());
+      Bounds bounds = none();
       for (; entry != entries.end() && entry->key == voxel.key; ++entry) {
         entry->bin->voxel = static_cast<std::uint32_t>(v);
         entry->bin->first = voxel.count;
         voxel.count += entry->bin->count;
-        widen(low, high, *entry->bin);
+        widen(bounds, *entry->bin);
+        widen(all, *entry->bin);
       }
-      voxel.frame = frameBetween(low, high, std::is_same_v<T, float>);
+      voxel.frame = frameBetween(bounds.low, bounds.high, std::is_same_v<T, float>);
       point += voxel.count;
     }
+    if (result_.size > 0) result_.frame = frameBetween(all.low, all.high, std::is_same_v<T, float>);
   }
 
   void moveToVoxels()

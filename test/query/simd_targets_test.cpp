@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The same answers and the same work on every instruction set that this machine has.
+#include <pcl_bsh/query/collide.h>
+
+#include "random_clouds.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+namespace pcl_bsh {
+namespace {
+
+struct Answers {
+  AnyResult any;
+  FlagsResult flags;
+  DistanceResult closest;
+  HierarchyStatistics statistics;
+};
+
+/// Everything from the points on, on one target.
+Answers answersOn(std::int64_t target, const test::Scene& scene)
+{
+  hwy::SetSupportedTargetsForTest(target);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  CollisionRequest request;
+  request.clearance = scene.clearance;
+  request.flagged = Side::both;
+  const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+  const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
+  Answers answers{anyCollision(placed_a, placed_b, request), collisionFlags(placed_a, placed_b, request),
+                  closestPair(placed_a, placed_b, request), a.statistics()};
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  return answers;
+}
+
+void expectEqual(const Work& x, const Work& y)
+{
+  EXPECT_EQ(x.node_pairs, y.node_pairs);
+  EXPECT_EQ(x.leaf_pairs, y.leaf_pairs);
+  EXPECT_EQ(x.exact_decisions, y.exact_decisions);
+  EXPECT_EQ(x.voxels_built, y.voxels_built);
+}
+
+TEST(SimdTargets, AnswerAlike)
+{
+  const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  ASSERT_FALSE(targets.empty());
+  if (targets.size() == 1) GTEST_SKIP() << "only " << hwy::TargetName(targets[0]) << " here";
+  for (std::uint64_t seed = 5000; seed < 5060; ++seed) {
+    const test::Scene scene = test::anyScene(seed, seed % 10 == 0 ? 3000 : 200);
+    SCOPED_TRACE(scene.name);
+    const Answers expected = answersOn(targets.front(), scene);
+    for (const std::int64_t target : targets) {
+      SCOPED_TRACE(hwy::TargetName(target));
+      const Answers answers = answersOn(target, scene);
+      EXPECT_EQ(answers.any.witness, expected.any.witness);
+      EXPECT_EQ(answers.flags.a, expected.flags.a);
+      EXPECT_EQ(answers.flags.b, expected.flags.b);
+      EXPECT_EQ(answers.closest.distance, expected.closest.distance);
+      EXPECT_EQ(answers.closest.pair, expected.closest.pair);
+      EXPECT_EQ(answers.statistics.mean_leaf_radius, expected.statistics.mean_leaf_radius);
+      expectEqual(answers.any.work, expected.any.work);
+      expectEqual(answers.flags.work, expected.flags.work);
+      expectEqual(answers.closest.work, expected.closest.work);
+    }
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh
