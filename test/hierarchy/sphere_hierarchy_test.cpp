@@ -158,6 +158,29 @@ TEST(SphereHierarchy, LeavesBadPointsOut) // H12
   }
 }
 
+TEST(SphereHierarchy, OutliersAnywhere) // also where no sample of the cloud sees them
+{
+  Random random(13);
+  for (int i = 0; i < 60; ++i) {
+    std::vector<Point3> points = test::makePoints(random.pick(test::all_shapes), 20000, 1, random);
+    const int outliers = random.integer(1, 3);
+    for (int k = 0; k < outliers; ++k) {
+      Point3& p = points[static_cast<std::size_t>(random.integer(0, 19999))];
+      p[static_cast<std::size_t>(random.integer(0, 2))] = (k % 2 ? 1 : -1) * std::exp2(random.integer(0, 40));
+    }
+    if (i % 3 == 0) std::fill(points.begin(), points.begin() + 5000, Point3{nan, nan, nan});
+    const Cloud cloud(points, {i % 2 == 0 ? Scalar::float32 : Scalar::float64});
+    const SphereHierarchy hierarchy(cloud.view());
+    EXPECT_EQ(hierarchy.size(), i % 3 == 0 ? 15000u : 20000u);
+    expectSound(hierarchy);
+    HierarchyOptions options;
+    options.threads = 4;
+    const SphereHierarchy parallel(cloud.view(), options);
+    parallel.buildAll(4);
+    expectEqual(parallel.statistics(), hierarchy.statistics());
+  }
+}
+
 TEST(SphereHierarchy, EmptyViews)
 {
   Cloud one({{1, 2, 3}});

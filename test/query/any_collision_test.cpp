@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 namespace pcl_bsh {
 namespace {
@@ -17,6 +18,7 @@ namespace {
 using test::Cloud;
 using test::Layout;
 using test::Scene;
+using test::Shape;
 
 const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -196,6 +198,63 @@ TEST(AnyCollision, FarMovesDecidedWithoutRoundingTheMovedPoint) // H20
                 distance.compare(cloud_p.view().point(0), cloud_q.view().point(0), .05) <= 0);
     }
   }
+}
+
+// Bounds: twice what it takes today. A prune that is lost costs far more.
+TEST(AnyCollision, PrunesMostOfTheWork)
+{
+  test::Random random(64);
+  const Cloud a(test::makePoints(Shape::uniform, 20000, 1, random));
+  const Cloud b(test::makePoints(Shape::sphere, 20000, 1, random));
+  const SphereHierarchy ha(a.view()), hb(b.view());
+  const Eigen::Isometry3d beside(Eigen::Translation3d(2.1, 0, 0));
+  const double distance = closestPair({ha}, {hb, beside}).distance;
+  const AnyResult miss = anyCollision({ha}, {hb, beside}, within(0.99 * distance));
+  EXPECT_EQ(miss.verdict, Verdict::free);
+  EXPECT_LT(miss.work.node_pairs, 8000u);
+  EXPECT_LT(miss.work.leaf_pairs, 400u);
+  const AnyResult hit = anyCollision({ha}, {hb}, within(0.05));
+  EXPECT_EQ(hit.verdict, Verdict::colliding);
+  EXPECT_LT(hit.work.node_pairs, 130u);
+  EXPECT_LT(hit.work.leaf_pairs, 10u);
+}
+
+TEST(AnyCollision, WorkIsTheSameForAnyNumberOfThreads)
+{
+  test::Random random(65);
+  const Cloud a(test::makePoints(Shape::uniform, 20000, 1, random));
+  const Cloud b(test::makePoints(Shape::sphere, 20000, 1, random));
+  for (const double shift : {0.5, 2.1, 3.0}) {
+    const Eigen::Isometry3d pose(Eigen::Translation3d(shift, 0, 0));
+    AnyResult expected;
+    for (const unsigned threads : {1u, 2u, 4u, 0u}) {
+      const SphereHierarchy ha(a.view()), hb(b.view());
+      const AnyResult result = anyCollision({ha}, {hb, pose}, within(0.03, threads));
+      if (threads == 1) expected = result;
+      EXPECT_EQ(result.witness, expected.witness) << threads;
+      EXPECT_EQ(result.work.node_pairs, expected.work.node_pairs) << threads;
+      EXPECT_EQ(result.work.leaf_pairs, expected.work.leaf_pairs) << threads;
+      EXPECT_EQ(result.work.exact_decisions, expected.work.exact_decisions) << threads;
+      EXPECT_EQ(result.work.voxels_built, expected.work.voxels_built) << threads;
+    }
+  }
+}
+
+TEST(AnyCollision, ManyThreadsOnOneFreshHierarchy)
+{
+  test::Random random(66);
+  const Cloud a(test::makePoints(Shape::uniform, 50000, 1, random));
+  const Cloud b(test::makePoints(Shape::sphere, 20000, 1, random));
+  const SphereHierarchy ha(a.view()), hb(b.view()), reference_a(a.view()), reference_b(b.view());
+  const auto ask = [&](const SphereHierarchy& x, const SphereHierarchy& y, std::size_t i) {
+    const Eigen::Isometry3d pose(Eigen::Translation3d(1.9 + 0.05 * static_cast<double>(i), 0, 0));
+    return anyCollision({x}, {y, pose}, within(0.02, 1 + i % 2)).witness;
+  };
+  std::vector<std::optional<PointPair>> witnesses(8);
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < witnesses.size(); ++i) threads.emplace_back([&, i] { witnesses[i] = ask(ha, hb, i); });
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t i = 0; i < witnesses.size(); ++i) EXPECT_EQ(witnesses[i], ask(reference_a, reference_b, i));
 }
 
 TEST(AnyCollision, RefusesWhatItCannotAnswer)
