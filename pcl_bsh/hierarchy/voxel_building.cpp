@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 #undef HWY_TARGET_INCLUDE
@@ -26,7 +27,11 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-constexpr unsigned kMostBits = 12;       // of a code: more points than 4,096 cells can hold are split again
+constexpr unsigned kMostBits = 16;       // of a code: what 65,536 cells cannot tell apart is split again
+constexpr unsigned kMostAxisBits = 12;   // of these, for one axis
+constexpr unsigned kFinerBits = 4;       // spent at most on cells that hold nothing
+constexpr unsigned kCoarseBits = 9;      // of the cells by which to judge how many those are
+constexpr unsigned kWorthJudging = 6;    // bits from which on that is done
 constexpr unsigned kMostRecursions = 40; // cells within cells: each of them tells at least two places apart
 constexpr std::uint32_t kCellPoints = 3; // cells hold this many on average: fine enough to cut leaves at good places
 constexpr std::uint32_t kFullNode = 96;  // points that eight leaves hold, cut between cells
@@ -71,20 +76,17 @@ void merge(Box& box, const Box& other)
 /// thickness.
 class CellCodes {
 public:
-  CellCodes(const Box& box, unsigned bits)
-  : bits_(bits),
-    low_(Quad::load(box.low)),
-    scale_(Quad::of(0.0f)),
-    last_(Quad::of(0.0f))
+  CellCodes(const Box& box, unsigned bits) : low_(Quad::load(box.low)), scale_(Quad::of(0.0f)), last_(Quad::of(0.0f))
   {
     std::array<float, 3> edge = {box.extent(0), box.extent(1), box.extent(2)};
     std::array<unsigned, 3> axis_bits = {0, 0, 0};
     std::array<std::uint8_t, kMostBits> axis_of; // of each bit of the code, most significant first
     for (unsigned b = 0; b < bits; ++b) {
       const auto longest = static_cast<std::size_t>(std::max_element(edge.begin(), edge.end()) - edge.begin());
+      if (axis_bits[longest] == kMostAxisBits) break;
       edge[longest] *= 0.5f;
       ++axis_bits[longest];
-      axis_of[b] = static_cast<std::uint8_t>(longest);
+      axis_of[bits_++] = static_cast<std::uint8_t>(longest);
     }
     float scale[4] = {}, last[4] = {};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -92,11 +94,13 @@ public:
       const float extent = box.extent(static_cast<int>(k));
       scale[k] = extent > 0.0f ? std::min(cells / extent, std::numeric_limits<float>::max()) : 0.0f;
       last[k] = cells - 1.0f;
-      spread(static_cast<std::uint8_t>(k), axis_bits[k], axis_of);
+      spread(static_cast<std::uint8_t>(k), axis_of);
     }
     scale_ = Quad::load(scale);
     last_ = Quad::load(last);
   }
+
+  unsigned bits() const { return bits_; }
 
   std::uint32_t operator()(const PointRecord& p) const
   {
@@ -107,29 +111,28 @@ public:
 
 private:
   /// spread_[axis][cell]: the code bits that the cell's number along the axis stands for.
-  void spread(std::uint8_t axis, unsigned axis_bits, const std::array<std::uint8_t, kMostBits>& axis_of)
+  void spread(std::uint8_t axis, const std::array<std::uint8_t, kMostBits>& axis_of)
   {
-    for (std::uint32_t number = 0; number < 1u << axis_bits; ++number) {
-      std::uint32_t code = 0;
-      unsigned taken = 0;
-      for (unsigned b = 0; b < bits_; ++b) {
-        if (axis_of[b] != axis) continue;
-        const std::uint32_t bit = number >> (axis_bits - 1 - taken++) & 1;
-        code |= bit << (bits_ - 1 - b);
-      }
-      spread_[axis][number] = static_cast<std::uint16_t>(code);
+    spread_[axis][0] = 0;
+    std::size_t numbers = 1; // the table so far; each further bit of the number doubles it
+    for (unsigned b = bits_; b-- > 0;) {
+      if (axis_of[b] != axis) continue;
+      for (std::size_t number = 0; number < numbers; ++number)
+        spread_[axis][numbers + number] = static_cast<std::uint16_t>(spread_[axis][number] | 1u << (bits_ - 1 - b));
+      numbers *= 2;
     }
   }
 
-  unsigned bits_;
+  unsigned bits_ = 0;
   Quad low_, scale_, last_;
-  std::array<std::array<std::uint16_t, 1u << kMostBits>, 3> spread_;
+  std::array<std::array<std::uint16_t, 1u << kMostAxisBits>, 3> spread_;
 };
 
 /// Scratch that a thread keeps from voxel to voxel.
 struct Scratch {
   std::vector<PointRecord> sorted;
   std::vector<std::uint16_t> codes;
+  std::array<std::vector<std::uint32_t>, kMostRecursions> starts;
   std::vector<Box> boxes;
   std::vector<Node> nodes;
 };
@@ -183,27 +186,46 @@ private:
       std::copy(given_ + begin, given_ + end, scratch_.sorted.begin() + begin);
       return sortByPlace(begin, end);
     }
-    unsigned bits = 1;
-    while (bits < kMostBits && (end - begin) >> bits > kCellPoints) ++bits;
+    const auto [computed, bits] = codeCells(begin, end, box);
+    const unsigned dropped = computed - bits;
 
-    const CellCodes codes(box, bits);
-    std::vector<std::uint32_t> starts((std::size_t{1} << bits) + 1, 0);
+    // Counts go one entry beyond the next cell's, so that they end up as the cells' starts.
+    std::vector<std::uint32_t>& starts = scratch_.starts[recursion];
+    starts.assign((std::size_t{1} << bits) + 2, 0);
+    for (std::uint32_t i = begin; i < end; ++i) ++starts[(scratch_.codes[i] >> dropped) + 2u];
+    starts[1] = begin;
+    for (std::size_t cell = 2; cell < starts.size(); ++cell) starts[cell] += starts[cell - 1];
+    for (std::uint32_t i = begin; i < end; ++i)
+      scratch_.sorted[starts[(scratch_.codes[i] >> dropped) + 1u]++] = given_[i];
+    starts[0] = begin;
+    return cutCells(starts, {0, bits}, recursion);
+  }
+
+  struct CodeBits {
+    unsigned computed;
+    unsigned worth; ///< the first of them, by which to sort: cells in use hold kCellPoints points on average
+  };
+
+  /// Codes of points [begin, end), into scratch_.codes. Scans are surfaces: they leave most cells of a cube empty, the
+  /// more the finer the cells are. So the share of coarse cells in use says how fine cells have to be.
+  CodeBits codeCells(std::uint32_t begin, std::uint32_t end, const Box& box)
+  {
+    const double wanted = static_cast<double>(end - begin) / kCellPoints;
+    unsigned even = 1; // bits that would do if no cell were empty
+    while (even < kMostBits && (end - begin) >> even > kCellPoints) ++even;
+    const bool few = even < kWorthJudging;
+    const CellCodes codes(box, few ? even : std::min(even + kFinerBits, kMostBits));
+    const unsigned fine = codes.bits(), coarse = few ? 1 : std::min({even - 2, fine, kCoarseBits});
+    std::array<std::uint8_t, 1u << kCoarseBits> seen{}; // coarse cells in use
     for (std::uint32_t i = begin; i < end; ++i) {
       const std::uint32_t code = codes(given_[i]);
       scratch_.codes[i] = static_cast<std::uint16_t>(code);
-      ++starts[code];
+      seen[code >> (fine - coarse)] = 1;
     }
-    std::uint32_t sum = begin;
-    for (std::uint32_t& start : starts) {
-      const std::uint32_t count = start;
-      start = sum;
-      sum += count;
-    }
-    for (std::uint32_t i = begin; i < end; ++i) scratch_.sorted[starts[scratch_.codes[i]]++] = given_[i];
-    // Each start has moved on to where the next cell's was.
-    std::rotate(starts.begin(), starts.end() - 1, starts.end());
-    starts.front() = begin;
-    return cutCells(starts, {0, bits}, recursion);
+    const auto used = std::accumulate(seen.begin(), seen.end(), 0u);
+    // Each bit multiplies the cells in use by the same factor.
+    const double bits = used > 1 ? coarse * std::log2(wanted) / std::log2(static_cast<double>(used)) : fine;
+    return {fine, std::clamp(static_cast<unsigned>(bits + 0.5), std::min(even, fine), fine)};
   }
 
   /// The cells whose codes begin at `first` and differ in their last `bits` bits only.
