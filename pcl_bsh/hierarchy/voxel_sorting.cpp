@@ -117,11 +117,14 @@ struct Bin {
     std::fill(high, high + 4, -std::numeric_limits<T>::infinity());
   }
 
-  void add(const Point<T>& p)
+  void add(const Point<T>& p) { add(p, p, 1); }
+
+  /// `more` points between two corners.
+  void add(const Point<T>& lowest, const Point<T>& highest, std::uint32_t more)
   {
-    ++count;
-    min(Point<T>::load(low), p).store(low);
-    max(Point<T>::load(high), p).store(high);
+    count += more;
+    min(Point<T>::load(low), lowest).store(low);
+    max(Point<T>::load(high), highest).store(high);
   }
 };
 
@@ -349,9 +352,11 @@ private:
     std::vector<std::uint8_t> outside(chunk_count_, 0);
     parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
       BinTable<T>& table = chunks_[chunk];
-      std::uint64_t last_cell = CellNumbers<T>::kOutside;
-      std::uint32_t bin = kNoVoxel;
       std::uint8_t any_outside = 0;
+      // A run of points in the same cell goes to its bin at once.
+      std::uint64_t cell_of_run = CellNumbers<T>::kOutside;
+      std::uint32_t bin = kNoVoxel, run = 0;
+      Point<T> low = Point<T>::of(0), high = low;
       eachPoint(chunk, [&](std::size_t i, std::uint32_t record) {
         const Point<T> p = read_(record);
         const std::uint64_t cell = cell_of(p);
@@ -360,10 +365,20 @@ private:
           any_outside |= p.finite();
           return;
         }
-        if (cell != last_cell) bin = table.find(last_cell = cell);
-        table.bins[bin].add(p);
+        if (cell == cell_of_run) {
+          low = min(low, p);
+          high = max(high, p);
+          ++run;
+        }
+        else {
+          if (run > 0) table.bins[bin].add(low, high, run);
+          bin = table.find(cell_of_run = cell);
+          low = high = p;
+          run = 1;
+        }
         bin_of_[i] = bin;
       });
+      if (run > 0) table.bins[bin].add(low, high, run);
       outside[chunk] = any_outside;
     });
     return std::find(outside.begin(), outside.end(), 1) == outside.end();
