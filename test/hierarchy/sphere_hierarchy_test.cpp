@@ -139,6 +139,14 @@ TEST(SphereHierarchy, SoundAtExtremeMagnitudes) // H9, H15, H17, H18
   wide([](double i) { return Point3{1 + std::ldexp(std::fmod(i, 8), -52), 1 + std::ldexp(std::fmod(i, 9), -52), 1}; });
 }
 
+TEST(SphereHierarchy, SoundWhereATinyVoxelLiesFarOut) // found by fuzzing: its origin, in its own unit, overflowed
+{
+  for (const double far : {1e30, 1e200, 1.7e308}) {
+    const auto make = [far](double i) { return Point3{3e-45 * i, 1e-23 * i, i < 2 ? far : i < 4 ? -far : 0.5 * far}; };
+    expectSound(cloudOf(20, Scalar::float64, make));
+  }
+}
+
 TEST(SphereHierarchy, LeavesBadPointsOut) // H12
 {
   Random random(5);

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clouds, poses and clearances from bytes: of every layout, and with all the numbers that make trouble.
+#pragma once
+
+#include "bytes.h"
+
+#include <pcl_bsh/query/collide.h>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace pcl_bsh::fuzz {
+
+/// Up to 24 points, repeated up to eight times along a line: enough for several leaves and a place too many points
+/// share, few enough for brute force.
+class FuzzedCloud {
+public:
+  explicit FuzzedCloud(Bytes& bytes);
+
+  /// None when the cloud is refused; refusing a good one or accepting a bad one is a Finding.
+  std::optional<SphereHierarchy> hierarchy() const;
+
+private:
+  PointsView view() const;
+  bool sensible() const;
+
+  PointsView layout_;
+  std::vector<std::uint8_t> records_;
+  std::vector<std::int32_t> indices_;
+  std::vector<float> radii_;
+  bool subset_ = false;
+  HierarchyOptions options_;
+};
+
+/// Mostly rigid, sometimes nearly, sometimes not at all.
+Eigen::Isometry3d anyPose(Bytes& bytes);
+
+/// Half of them the distance of a pair of points, give or take the last bit.
+double anyClearance(Bytes& bytes, const Placed& a, const Placed& b);
+
+} // namespace pcl_bsh::fuzz
