@@ -5,10 +5,14 @@ cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
 # From the bottom up: a room may include itself and those before it.
-set(rooms pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/search filters filters/io examples)
-set(core pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query)
+set(rooms pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/certify pcl_bsh/search filters filters/io
+    examples)
+set(core pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/certify) # without PCL
 
-set(never "^(CGAL|vtk)")              # nowhere in these rooms
+
+set(never "^vtk")                     # nowhere in these rooms
+set(gpl "^(CGAL/|pcl_bsh/certify/)")  # only in pcl_bsh/certify, and in its program what that offers
+set(gpl_program examples/pcl_bsh_certify.cpp)
 set(never_in_core "^(pcl/|iostream$|fstream$)")
 
 # The room of an included path, or empty when it is not one of ours.
@@ -45,6 +49,9 @@ foreach(room IN LISTS rooms)
         list(APPEND defects "${file}: includes ${path}: write the path from the project's root")
       elseif(path MATCHES "${never}" OR (room IN_LIST core AND path MATCHES "${never_in_core}"))
         list(APPEND defects "${file}: includes ${path}: not allowed in ${room}")
+      elseif(path MATCHES "${gpl}" AND NOT room STREQUAL "pcl_bsh/certify" AND NOT (file STREQUAL gpl_program AND path
+                                                                                    MATCHES "^pcl_bsh/"))
+        list(APPEND defects "${file}: includes ${path}: only ${gpl_program} may bring the GPL in")
       endif()
     endforeach()
   endforeach()

@@ -18,6 +18,16 @@ foreach(package IN LISTS unwanted)
   unset(CMAKE_DISABLE_FIND_PACKAGE_${package})
 endforeach()
 
+# Optional, and for pcl_bsh::certify alone: GPL-3.0-or-later, see pcl_bsh/certify/LICENSE.
+set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
+find_package(CGAL 5.4 QUIET)
+option(PCL_BSH_BUILD_CERTIFY "pcl_bsh::certify and pcl_bsh_certify; binaries are under GPL-3.0-or-later" ${CGAL_FOUND})
+if(PCL_BSH_BUILD_CERTIFY AND NOT CGAL_FOUND)
+  message(FATAL_ERROR "PCL_BSH_BUILD_CERTIFY: CGAL is not found: install libcgal-dev or set it OFF")
+elseif(NOT PCL_BSH_BUILD_CERTIFY)
+  message(STATUS "pcl_bsh::certify is left out: CGAL (libcgal-dev) is not found, or PCL_BSH_BUILD_CERTIFY is OFF")
+endif()
+
 if(PCL_BSH_BUILD_TESTS)
   find_package(GTest 1.12 REQUIRED CONFIG)
 endif()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# For find_package(pcl_bsh). Components: libs, dev (headers, CMake package) and, with the programs, tools.
+# For find_package(pcl_bsh). Components: libs, dev (headers, CMake package), with the programs tools, and with CGAL
+# certify, which is all that falls under the GPL.
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pcl_bsh")
@@ -19,3 +20,16 @@ install(
   FILES "${PROJECT_BINARY_DIR}/pcl_bshConfig.cmake" "${PROJECT_BINARY_DIR}/pcl_bshConfigVersion.cmake"
   DESTINATION "${package_dir}"
   COMPONENT dev)
+
+if(PCL_BSH_BUILD_CERTIFY) # find_package(pcl_bsh COMPONENTS certify)
+  install(
+    TARGETS pcl_bsh_certify
+    EXPORT pcl_bsh_certify
+    LIBRARY COMPONENT certify
+    ARCHIVE COMPONENT certify
+    FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT certify)
+  install(EXPORT pcl_bsh_certify FILE pcl_bsh_certifyTargets.cmake NAMESPACE pcl_bsh:: DESTINATION "${package_dir}"
+          COMPONENT certify)
+  install(FILES "${PROJECT_SOURCE_DIR}/pcl_bsh/certify/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}/certify"
+          COMPONENT certify)
+endif()

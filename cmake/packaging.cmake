@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Three .deb packages, by `cmake --workflow --preset package` or, from any build, by `cpack -G DEB`.
+# Three .deb packages, with CGAL a fourth, by `cmake --workflow --preset package` or, from any build, by `cpack -G DEB`.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The pcl_bsh authors")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
@@ -10,6 +10,9 @@ set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_COMPONENTS_ALL libs dev)
 if(PCL_BSH_BUILD_EXAMPLES)
   list(APPEND CPACK_COMPONENTS_ALL tools)
+endif()
+if(PCL_BSH_BUILD_CERTIFY)
+  list(APPEND CPACK_COMPONENTS_ALL certify)
 endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -30,9 +33,15 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Programs for the command line.")
 set(CPACK_COMPONENT_TOOLS_DEPENDS libs)
 
+set(CPACK_DEBIAN_CERTIFY_PACKAGE_NAME pcl-bsh-certify)
+set(CPACK_DEBIAN_CERTIFY_PACKAGE_SECTION science)
+set(CPACK_COMPONENT_CERTIFY_DESCRIPTION "Exact certification of sphere hierarchies; under GPL-3.0-or-later, by CGAL.")
+set(CPACK_COMPONENT_CERTIFY_DEPENDS libs)
+
 # What the binaries link to becomes what the packages depend on; our own libraries are found where they were built.
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/pcl_bsh" "${PROJECT_BINARY_DIR}/filters")
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/pcl_bsh"
+    "${PROJECT_BINARY_DIR}/pcl_bsh/certify" "${PROJECT_BINARY_DIR}/filters")
 
 include(CPack)

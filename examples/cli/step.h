@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <iostream>
@@ -28,6 +29,9 @@ public:
   Step(const Step&) = delete;
   Step& operator=(const Step&) = delete;
 
+  /// How much of the step is done, from 0 to 1, where that is known; from any thread.
+  void share(double done) { share_ = done; }
+
   /// @return seconds that the step took
   double done(const std::string& result)
   {
@@ -50,7 +54,9 @@ private:
       if (stop.stop_requested()) return;
       if (live || !told_) std::cerr << (told_ ? "\r" : "") << line_ << std::flush;
       told_ = true;
-      if (live) std::cerr << "[" << static_cast<long>(elapsed()) << " s] " << std::flush;
+      const double share = share_;
+      if (live) std::cerr << "[" << (share < 0 ? "" : std::to_string(static_cast<int>(100 * share)) + " %, ");
+      if (live) std::cerr << static_cast<long>(elapsed()) << " s] " << std::flush;
     }
   }
 
@@ -65,6 +71,7 @@ private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::string line_;
   bool told_ = false; ///< of the teller until it is joined
+  std::atomic<double> share_ = -1.0;
   std::jthread teller_;
 };
 

@@ -57,7 +57,9 @@ double voxelEdgeFromDensity(const PointsView& view, const Bounds& bounds)
     bool finite = true;
     for (std::size_t k = 0; k < 3; ++k) {
       finite = finite && std::isfinite(p[k]);
-      if (finite) number[k] = static_cast<std::uint64_t>(std::min(p[k] / cell - bounds.low[k] / cell, 0x1.fffffp20));
+      // The bounds may be a sample's: points lie outside.
+      const double cells = p[k] / cell - bounds.low[k] / cell;
+      if (finite) number[k] = static_cast<std::uint64_t>(std::clamp(cells, 0.0, 0x1.fffffp20));
     }
     if (finite) codes.push_back(mortonCode(number[0], number[1], number[2]));
   }

@@ -33,9 +33,11 @@ struct Triple {
   static Triple load(const double* from) { return {{from[0], from[1], from[2]}}; }
   static Triple of(double value) { return {{value, value, value}}; }
   void store(double* to) const { std::copy_n(v, 3, to); }
+  /// As Quad does on x86: what no int32 can hold, NaN included, becomes the lowest.
   void storeTruncated(std::int32_t* to) const
   {
-    for (int k = 0; k < 3; ++k) to[k] = static_cast<std::int32_t>(v[k]);
+    for (int k = 0; k < 3; ++k)
+      to[k] = std::abs(v[k]) < 0x1p31 ? static_cast<std::int32_t>(v[k]) : std::numeric_limits<std::int32_t>::min();
   }
   bool finite() const { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
