@@ -90,11 +90,11 @@ int run(const Options& options)
   Json report;
   report["cloud"] = {{"file", options.cloud.string()}, {"points", view.count}};
   report["fits"] = Json::array();
-  cli::printTableHead(std::cout);
   for (const auto& [name, fit] : options.wanted) {
     const SphereHierarchy hierarchy = build(view, fit, options, name);
     double seconds = 0.0;
     const Certificate certificate = certifyTold(hierarchy, options.certify, name, seconds);
+    if (report["fits"].empty()) cli::printTableHead(std::cout);
     cli::printRows(std::cout, name, certificate);
     if (!certificate.holds()) complain(options, name, certificate);
     holds = holds && certificate.holds();

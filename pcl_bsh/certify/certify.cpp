@@ -12,7 +12,9 @@
 #include <iterator>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <random>
+#include <utility>
 
 namespace pcl_bsh {
 namespace {
@@ -53,7 +55,7 @@ struct VoxelFindings {
 /// Tells the caller how far we are; seldom, and one at a time.
 class Progress {
 public:
-  Progress(const std::function<void(double)>& tell, std::size_t total) : tell_(tell), total_(total) {}
+  Progress(std::function<void(double)> tell, std::size_t total) : tell_(std::move(tell)), total_(total) {}
 
   void add(std::size_t done)
   {
@@ -64,7 +66,7 @@ public:
   }
 
 private:
-  const std::function<void(double)>& tell_;
+  const std::function<void(double)> tell_;
   const std::size_t total_;
   std::atomic<std::size_t> done_{0};
   std::mutex mutex_;
@@ -182,10 +184,17 @@ public:
   }
 
 private:
+  /// Tells the caller of one half of the work, which begins at a share of `from`.
+  std::function<void(double)> half(double from) const
+  {
+    if (!options_.progress) return {};
+    return [this, from](double share) { options_.progress(from + 0.5 * share); };
+  }
+
   void checkContainment()
   {
     std::vector<VoxelFindings> findings(storage_.voxel_count);
-    Progress progress(options_.progress, 2 * storage_.size); // the second half is for the radii
+    Progress progress(half(0.0), storage_.size);
     parallelFor(storage_.voxel_count, threads_, [&](std::size_t v) {
       std::uint64_t built_now = 0;
       storage_.built(v, built_now);
@@ -267,11 +276,7 @@ private:
                   std::min(options_.sample, spheres_[level].size()), random);
       for (const SphereId& id : sample) chosen.push_back({level, id});
     }
-    Progress progress(
-        [&](double share) {
-          if (options_.progress) options_.progress(0.5 + 0.5 * share);
-        },
-        chosen.size());
+    Progress progress(half(0.5), chosen.size());
     parallelFor(chosen.size(), threads_, [&](std::size_t i) {
       measure(chosen[i]);
       progress.add(1);
