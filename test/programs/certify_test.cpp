@@ -15,9 +15,9 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using Json = nlohmann::json;
 
-class Certify : public testing::Test {
+class CertifyProgram : public testing::Test {
 protected:
-  Certify() { io::writeCloud(cloud, io::randomCloud<double>(500, 1, {})); }
+  CertifyProgram() { io::writeCloud(cloud, io::randomCloud<double>(500, 1, {})); }
 
   /// One line, the code, and nothing written.
   void expectFailure(const std::string& arguments, int exit_code, const std::string& message) const
@@ -39,7 +39,7 @@ protected:
 
 } // namespace
 
-TEST_F(Certify, EveryFit)
+TEST_F(CertifyProgram, EveryFit)
 {
   const Outcome done = run("pcl_bsh_certify", cloud + " --report " + report);
   EXPECT_EQ(done.exit_code, 0) << done.err;
@@ -62,7 +62,7 @@ TEST_F(Certify, EveryFit)
   }
 }
 
-TEST_F(Certify, OneFitAndSample)
+TEST_F(CertifyProgram, OneFitAndSample)
 {
   const Outcome done = run("pcl_bsh_certify", cloud + " --fit minimal --sample 2 --threads 2 --report " + report);
   EXPECT_EQ(done.exit_code, 0) << done.err;
@@ -73,7 +73,7 @@ TEST_F(Certify, OneFitAndSample)
   EXPECT_EQ(run("pcl_bsh_certify", cloud + " --fit box --sample all").exit_code, 0);
 }
 
-TEST_F(Certify, Help)
+TEST_F(CertifyProgram, Help)
 {
   const Outcome help = run("pcl_bsh_certify", "--help");
   EXPECT_EQ(help.exit_code, 0);
@@ -81,7 +81,7 @@ TEST_F(Certify, Help)
     EXPECT_THAT(help.out, HasSubstr(text));
 }
 
-TEST_F(Certify, Refusals)
+TEST_F(CertifyProgram, Refusals)
 {
   expectFailure("", 2, "CLOUD");
   expectFailure(cloud + " --fit tight", 2, "--fit: 'tight'");
