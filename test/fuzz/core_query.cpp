@@ -79,7 +79,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
   using namespace pcl_bsh;
   fuzz::Bytes bytes(data, size);
-  const fuzz::FuzzedCloud a(bytes), b(bytes);
+  const fuzz::FuzzedCloud a(bytes, 8), b(bytes, 2);
   const std::optional<SphereHierarchy> first = a.hierarchy(), second = b.hierarchy();
   if (!first || !second) return 0;
 

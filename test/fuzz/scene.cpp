@@ -66,11 +66,11 @@ bool finite(const Point3& p)
 
 } // namespace
 
-FuzzedCloud::FuzzedCloud(Bytes& bytes)
+FuzzedCloud::FuzzedCloud(Bytes& bytes, unsigned most_repeats)
 {
   const auto flags = bytes.take<std::uint8_t>();
   const Kind kind = anyKind(bytes);
-  const std::size_t distinct = bytes.below(25), repeats = 1 + bytes.below(8);
+  const std::size_t distinct = bytes.below(25), repeats = 1 + bytes.below(most_repeats);
   const std::size_t head = bytes.below(9), tail = bytes.below(9);
   const bool doubles = (flags & 1) != 0;
   const std::size_t width = doubles ? sizeof(double) : sizeof(float);

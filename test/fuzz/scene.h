@@ -12,11 +12,11 @@
 
 namespace pcl_bsh::fuzz {
 
-/// Up to 24 points, repeated up to eight times along a line: enough for several leaves and a place too many points
-/// share, few enough for brute force.
+/// Up to 24 points, repeated along a line: enough for several leaves and a place too many points share.
 class FuzzedCloud {
 public:
-  explicit FuzzedCloud(Bytes& bytes);
+  /// @param most_repeats keeps one of two clouds small enough for brute force
+  FuzzedCloud(Bytes& bytes, unsigned most_repeats);
 
   /// None when the cloud is refused; refusing a good one or accepting a bad one is a Finding.
   std::optional<SphereHierarchy> hierarchy() const;
