@@ -19,3 +19,6 @@ run(${CMAKE_COMMAND} -S "${CMAKE_CURRENT_LIST_DIR}" -B "${WORK}/build" -G Ninja 
 run(${CMAKE_COMMAND} --build "${WORK}/build")
 run("${WORK}/build/core_only")
 run("${WORK}/build/own_point_type")
+if(EXISTS "${WORK}/build/certified")
+  run("${WORK}/build/certified")
+endif()
