@@ -115,6 +115,11 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
     in_range = in_range && inRange(value) && inRange(moved) && inRange(b.reach[i]);
   }
   float_error_ = std::sqrt(squared) * (1.0 + 0x1p-48) + 0x1p-60;
+  if (!(float_error_ < kInfinity)) { // NaN where a zero met an overflown bound: then nothing is known, and all is near
+    float_error_ = kInfinity;
+    in_range = false;
+    g.fill(0.0f);
+  }
   error = in_range ? float_error_ : kInfinity;
   error_exact = in_range ? std::sqrt(squared_exact) * (1.0 + 0x1p-48) + 0x1p-500 : kInfinity;
 
