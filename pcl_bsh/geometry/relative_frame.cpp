@@ -170,6 +170,11 @@ float RelativeFrame::pruneReach(double clearance) const noexcept
   return static_cast<float>(clearance / unit_b_ * (1.0 + skew_) + float_error_) * (1.0f + 0x1p-21f);
 }
 
+float RelativeFrame::bluntRadius() const noexcept
+{
+  return static_cast<float>(16 * float_error_);
+}
+
 float RelativeFrame::acceptReach(double clearance) const noexcept
 {
   const double reach = clearance / unit_b_ * (1.0 - skew_) - float_error_;

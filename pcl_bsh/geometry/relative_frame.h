@@ -51,6 +51,17 @@ public:
   /// At most (clearance - error) in b's units; the counterpart for "every pair collides". Negative when there is none.
   float acceptReach(double clearance) const noexcept;
 
+  /// Spheres of this radius or less are of the size of the error: float tests say little about where their points are.
+  float bluntRadius() const noexcept;
+
+  /// Whether the float test of two blunt spheres near each other might have gone the other way but for the error.
+  /// @param squared distance of their centres. @param reach the sum of their stretched radii and pruneReach().
+  bool isUndecided(float squared, float reach) const noexcept
+  {
+    const float surely_near = reach - bluntRadius() / 4;
+    return !(surely_near > 0.0f && squared < surely_near * surely_near);
+  }
+
   /// Bounds | |z| - |w| | / |w|, how far the poses are from rigid.
   double skew() const noexcept { return skew_; }
 

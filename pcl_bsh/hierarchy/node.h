@@ -33,6 +33,14 @@ struct alignas(32) Node {
   /// How many of a leaf's points there are to compare.
   std::uint32_t comparedPoints(std::size_t i) const noexcept { return isCoincident(i) ? 1 : points(i); }
 
+  /// @param below its node, or kLeaf. Ranges follow each other.
+  void addChild(std::uint32_t from, std::uint32_t to, std::uint32_t below) noexcept
+  {
+    begin[count] = from;
+    child[count] = below;
+    begin[++count] = to;
+  }
+
   /// Makes every child past `count` one that loses all tests.
   void clearUnused() noexcept
   {

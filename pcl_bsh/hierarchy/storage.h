@@ -2,6 +2,7 @@
 // What a SphereHierarchy holds: one buffer of points in voxel order, the voxels, and the tree above them.
 #pragma once
 
+#include <pcl_bsh/geometry/given_sphere.h>
 #include <pcl_bsh/geometry/local_frame.h>
 #include <pcl_bsh/hierarchy/large_buffer.h>
 #include <pcl_bsh/hierarchy/node.h>
@@ -33,6 +34,7 @@ struct Voxel {
   float* block = nullptr;  ///< PointRecord[count] while sorted; x[count], y[count], z[count], record[count] once built
   float* radii = nullptr;  ///< one per point in the order of x, once built; null when points have none
   std::vector<Node> nodes; ///< nodes[0] is the root; empty until built
+  std::vector<GivenSphere> given; ///< see givenSpheres(); empty unless the voxel has crowded cells
   std::atomic<std::uint8_t> state{sorted};
 
   const float* x() const noexcept { return block; }

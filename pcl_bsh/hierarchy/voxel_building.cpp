@@ -3,6 +3,8 @@
 // sort the points by cell, cut the cells' tree into wide nodes with leaves of sixteen points at most, fit the spheres.
 #include <pcl_bsh/geometry/enclosing_sphere.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/geometry/sphere_radius.h>
+#include <pcl_bsh/hierarchy/crowded_cell.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
-#include <tuple>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pcl_bsh/hierarchy/voxel_building.cpp"
@@ -145,7 +146,8 @@ public:
     fit_(fit),
     scratch_(scratch),
     nodes_(scratch.nodes),
-    given_(reinterpret_cast<PointRecord*>(voxel.block))
+    given_(reinterpret_cast<PointRecord*>(voxel.block)),
+    crowded_extent_(kCrowdedExtent * *std::max_element(voxel.frame.reach.begin(), voxel.frame.reach.end()))
   {
   }
 
@@ -159,6 +161,7 @@ public:
     storeAsArrays();
     fitSpheres();
     voxel_.nodes.assign(nodes_.begin(), nodes_.end());
+    if (crowded_) voxel_.given = givenSpheres(voxel_, view_);
   }
 
 private:
@@ -166,7 +169,7 @@ private:
   {
     if (voxel_.count <= kMaxLeafPoints) {
       std::copy_n(given_, voxel_.count, scratch_.sorted.data());
-      addLeaf(nodes_[newNode()], 0, voxel_.count);
+      nodes_[newNode()].addChild(0, voxel_.count, Node::kLeaf);
       return;
     }
     Box box;
@@ -181,10 +184,11 @@ private:
   /// @return the node above the cells.
   std::uint32_t sortRange(std::uint32_t begin, std::uint32_t end, const Box& box, unsigned recursion)
   {
-    const bool coincident = !(box.extent(0) > 0.0f || box.extent(1) > 0.0f || box.extent(2) > 0.0f);
-    if (coincident || recursion == kMostRecursions) {
+    const double extent = std::max({box.extent(0), box.extent(1), box.extent(2)});
+    if (extent <= crowded_extent_ || recursion == kMostRecursions) {
       std::copy(given_ + begin, given_ + end, scratch_.sorted.begin() + begin);
-      return sortByPlace(begin, end);
+      crowded_ = true;
+      return growCrowdedCell(view_, scratch_.sorted.data(), begin, end, nodes_);
     }
     const auto [computed, bits] = codeCells(begin, end, box);
     const unsigned dropped = computed - bits;
@@ -274,12 +278,12 @@ private:
     for (std::size_t i = 0; i < used; ++i) {
       const CellRange& child = children[i];
       if (count(child) <= kMaxLeafPoints) {
-        addLeaf(nodes_[node], beginOf(child), endOf(child));
+        nodes_[node].addChild(beginOf(child), endOf(child), Node::kLeaf);
       }
       else {
         const std::uint32_t below =
             child.bits > 0 ? cutCells(starts, child, recursion) : sortAgain(beginOf(child), endOf(child), recursion);
-        addChild(nodes_[node], beginOf(child), endOf(child), below);
+        nodes_[node].addChild(beginOf(child), endOf(child), below);
       }
     }
     return node;
@@ -292,68 +296,12 @@ private:
     return sortRange(begin, end, boxOf(given_ + begin, end - begin), recursion + 1);
   }
 
-  /// For points that float coordinates cannot tell apart: in the order of the given coordinates, so that points of one
-  /// place share a leaf, however many they are.
-  std::uint32_t sortByPlace(std::uint32_t begin, std::uint32_t end)
-  {
-    std::vector<Place> places;
-    places.reserve(end - begin);
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const PointRecord& p = scratch_.sorted[i];
-      places.push_back({view_.point(p.record), view_.radius(p.record), p});
-    }
-    std::sort(places.begin(), places.end(), [](const Place& l, const Place& r) {
-      return std::tie(l.point, l.radius, l.stored.record) < std::tie(r.point, r.radius, r.stored.record);
-    });
-    for (std::uint32_t i = begin; i < end; ++i) scratch_.sorted[i] = places[i - begin].stored;
-
-    std::vector<std::uint32_t> starts{begin}; // of leaves: a crowded place, or several others
-    for (std::uint32_t i = begin; i < end;) {
-      std::uint32_t next = i + 1;
-      while (next < end && places[i - begin].isSame(places[next - begin])) ++next;
-      if (next - starts.back() > kMaxLeafPoints && i != starts.back()) starts.push_back(i);
-      i = next;
-    }
-    starts.push_back(end);
-    return groupLeaves(starts, 0, starts.size() - 1);
-  }
-
-  struct Place {
-    Point3 point;
-    double radius;
-    PointRecord stored;
-
-    bool isSame(const Place& other) const { return point == other.point && radius == other.radius; }
-  };
-
-  /// A tree over leaves [first, last) that begin at `starts`: equal shares of them to each child.
-  std::uint32_t groupLeaves(const std::vector<std::uint32_t>& starts, std::size_t first, std::size_t last)
-  {
-    const std::uint32_t node = newNode();
-    const std::size_t count = last - first, shares = std::min(count, kNodeChildren);
-    for (std::size_t i = 0; i < shares; ++i) {
-      const std::size_t from = first + count * i / shares, to = first + count * (i + 1) / shares;
-      const std::uint32_t below = to - from == 1 ? Node::kLeaf : groupLeaves(starts, from, to);
-      addChild(nodes_[node], starts[from], starts[to], below);
-    }
-    return node;
-  }
-
   std::uint32_t newNode()
   {
     nodes_.emplace_back();
     nodes_.back().count = 0;
     return static_cast<std::uint32_t>(nodes_.size() - 1);
   }
-
-  static void addChild(Node& node, std::uint32_t begin, std::uint32_t end, std::uint32_t child)
-  {
-    node.begin[node.count] = begin;
-    node.child[node.count] = child;
-    node.begin[++node.count] = end;
-  }
-
-  static void addLeaf(Node& node, std::uint32_t begin, std::uint32_t end) { addChild(node, begin, end, Node::kLeaf); }
 
   /// Boxes and smallest record numbers, children before parents.
   void fitBoxes()
@@ -410,9 +358,7 @@ private:
 
   void fitSpheres()
   {
-    double slack = 0.0;
-    for (int k = 0; k < 3; ++k) slack += voxel_.frame.slack(k) * voxel_.frame.slack(k);
-    slack = std::sqrt(slack) * (1.0 + 0x1p-50) + 0x1p-60;
+    const double slack = storedSlack(voxel_.frame);
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       Node& node = nodes_[n];
       for (std::uint32_t i = 0; i < node.count; ++i) {
@@ -433,19 +379,19 @@ private:
             0.5f * box.low[2] + 0.5f * box.high[2]};
   }
 
-  /// Rounded outward: float distances err by less than 6 u of their squares, stored points by the frame's slack.
+  /// Rounded outward.
   float radius(std::uint32_t begin, std::uint32_t end, const std::array<float, 3>& c, double slack) const
   {
     const float *x = voxel_.x(), *y = voxel_.y(), *z = voxel_.z();
     if (!voxel_.radii) {
       const float squared = farthestSquared(x + begin, y + begin, z + begin, end - begin, c[0], c[1], c[2]);
-      return roundUp(std::sqrt(static_cast<double>(squared)) * (1.0 + 0x1p-21) + slack);
+      return roundUp(radiusOver(squared, slack));
     }
     double farthest = 0.0;
     for (std::uint32_t i = begin; i < end; ++i) {
       const float squared = farthestSquared(x + i, y + i, z + i, 1, c[0], c[1], c[2]);
       const double ball = static_cast<double>(voxel_.radii[i]) / voxel_.frame.unit;
-      farthest = std::max(farthest, std::sqrt(static_cast<double>(squared)) * (1.0 + 0x1p-21) + ball);
+      farthest = std::max(farthest, radiusOver(squared, ball));
     }
     return roundUp(farthest * (1.0 + 0x1p-50) + slack);
   }
@@ -456,6 +402,8 @@ private:
   Scratch& scratch_;
   std::vector<Node>& nodes_;
   PointRecord* given_;
+  double crowded_extent_;
+  bool crowded_ = false; // any cell of it
 };
 
 void buildVoxelHere(Voxel& voxel, const PointsView& view, SphereFit fit)

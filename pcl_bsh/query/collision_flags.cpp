@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Flags: every node of a carries the list of what can still matter of b, so that a's points share one descent. A point
 // is settled at its first neighbour, a node as soon as its farthest point must be within the clearance of something.
+#include <pcl_bsh/hierarchy/crowded_cell.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/query/collide.h>
 #include <pcl_bsh/query/request_check.h>
@@ -25,7 +26,7 @@ namespace {
 struct Meeting {
   const Voxel* voxel;
   RelativeFrame frame;
-  float prune_reach, accept_reach;
+  float prune_reach, accept_reach, blunt_radius;
   DistanceBand band;
 };
 
@@ -89,7 +90,7 @@ public:
       for (std::uint32_t lane = 0; lane < root.count; ++lane)
         candidates.push_back({&root, lane, static_cast<std::uint32_t>(meetings_.size())});
       meetings_.push_back({&b_.storage.voxels[other], frame, frame.pruneReach(pairs_.clearance),
-                           frame.acceptReach(pairs_.clearance), frame.band(pairs_.clearance)});
+                           frame.acceptReach(pairs_.clearance), frame.bluntRadius(), frame.band(pairs_.clearance)});
     }
     descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, candidates, 0);
   }
@@ -186,6 +187,7 @@ private:
     work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes & visit.open));
     std::uint32_t near = spheresNear(spheres, ball, nullptr) & lanes & visit.open;
     if (near == 0) return;
+    if (radius <= meeting.blunt_radius && (near &= ~apartAsGiven(visit, candidate, ball, near)) == 0) return;
     if (ball.inside_reach > visit.smallest) {
       for (std::uint32_t bits = spheresInside(spheres, ball) & near; bits != 0; bits &= bits - 1)
         settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
@@ -208,6 +210,27 @@ private:
       if ((opening & visit.open) == 0) return;
       take(visit, {&below, static_cast<std::uint32_t>(std::countr_zero(bits)), candidate.meeting}, opening);
     }
+  }
+
+  /// Of the children in `near`, those too small for float arithmetic to decide about, whose points as given are apart
+  /// from the candidate's.
+  std::uint32_t apartAsGiven(const Visit& visit, const Candidate& candidate, const Ball& ball, std::uint32_t near)
+  {
+    const Meeting& meeting = meetings_[visit.meeting];
+    std::uint32_t apart = 0;
+    GivenSphere other;
+    for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const float dx = visit.x[lane] - ball.x, dy = visit.y[lane] - ball.y, dz = visit.z[lane] - ball.z;
+      if (visit.r[lane] > meeting.blunt_radius ||
+          !meeting.frame.isUndecided(dx * dx + dy * dy + dz * dz, visit.r[lane] + ball.near_reach))
+        continue;
+      ++work.exact_decisions;
+      if (!other.isKnown()) other = givenSphereOf(b_.storage.view, *meeting.voxel, *candidate.node, candidate.lane);
+      const GivenSphere own = givenSphereOf(a_.storage.view, *a_voxel_, *visit.node, lane);
+      if (areApart(pairs_.distance, own, other, pairs_.clearance)) apart |= 1u << lane;
+    }
+    return apart;
   }
 
   /// Where the clearance exceeds the radius of a child, a single point of b near its centre settles all of it.

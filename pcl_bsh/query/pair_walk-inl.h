@@ -9,6 +9,7 @@
 #define PCL_BSH_QUERY_PAIR_WALK_INL_H_
 #endif
 
+#include <pcl_bsh/hierarchy/crowded_cell.h>
 #include <pcl_bsh/query/leaf_pair-inl.h>
 #include <pcl_bsh/query/space.h>
 
@@ -46,10 +47,17 @@ inline void nearestLast(std::vector<LanePair>& stack, std::size_t from)
 
 class PairWalk {
 public:
-  PairWalk(const Placed& placed_a, const Placed& placed_b) : a(placed_a), b(placed_b), frames(a, b) {}
+  PairWalk(const Placed& placed_a, const Placed& placed_b)
+  : a(placed_a),
+    b(placed_b),
+    frames(a, b),
+    distance(placed_a.pose, placed_b.pose)
+  {
+  }
 
   Spaces a, b;
   FrameTable frames;
+  ExactDistance distance;
   Work work;
 
   const Node& nodeOf(const Spaces& side, const Lane& lane) const { return side.node(lane.space, lane.node); }
@@ -103,6 +111,7 @@ public:
       testChildrenOfA(enter(a, pair.a), pair.b, clearance, out);
     else
       testChildrenOfB(pair.a, enter(b, pair.b), clearance, out);
+    if (out.radius <= out.frame->bluntRadius()) dropApartAsGiven(pair, opened, clearance, out);
   }
 
   void testChildrenOfA(const Lane& entered, const Lane& lane_b, double clearance, Step& out)
@@ -161,10 +170,45 @@ public:
     const double rounding = static_cast<double>(kSphereMargin) * (std::abs(gap) + 2 * radius + step.radius);
     const double bound =
         gap - rounding - static_cast<double>(step.radius) - static_cast<double>(step.frame->pruneReach(0.0));
-    return (bound - std::abs(bound) * step.frame->skew()) * b.frame(pair.b.space).unit;
+    const double stored = (bound - std::abs(bound) * step.frame->skew()) * b.frame(pair.b.space).unit;
+    if (!isBlunt(pair, step, lane)) return stored;
+    const GivenSphere given_a = givenSphere(a, pair.a), given_b = givenSphere(b, pair.b);
+    const double given =
+        distance.enclose(given_a.center, given_b.center).low - (given_a.radius + given_b.radius) * (1.0 + 0x1p-19);
+    return std::isfinite(given) ? std::max(stored, given) : stored;
   }
 
 private:
+  /// Whether float arithmetic says little about a pair of which one is child `lane` of the step.
+  static bool isBlunt(const LanePair& pair, const Step& step, std::uint32_t lane)
+  {
+    const float blunt = step.frame->bluntRadius();
+    return step.radius <= blunt && step.radii[lane] * step.stretch <= blunt && pair.a.space != kAboveVoxels &&
+           pair.b.space != kAboveVoxels;
+  }
+
+  static GivenSphere givenSphere(const Spaces& side, const Lane& lane)
+  {
+    return givenSphereOf(side.storage.view, side.storage.voxels[lane.space], side.node(lane.space, lane.node),
+                         lane.lane);
+  }
+
+  /// Takes children off the step's `near` that float arithmetic cannot decide about, and whose points as given are
+  /// apart from the other side's.
+  void dropApartAsGiven(const LanePair& pair, Opened opened, double clearance, Step& out)
+  {
+    for (std::uint32_t bits = out.near; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const LanePair child = childOf(pair, opened, out, lane);
+      if (!isBlunt(child, out, lane)) continue;
+      const float radius = out.radii[lane] * out.stretch;
+      const float between = out.gap[lane] + radius;
+      if (!out.frame->isUndecided(between * between, radius + out.radius + out.frame->pruneReach(clearance))) continue;
+      ++work.exact_decisions;
+      if (areApart(distance, givenSphere(a, child.a), givenSphere(b, child.b), clearance)) out.near &= ~(1u << lane);
+    }
+  }
+
   /// `near` and `inside` of the first `count` spheres, against a ball of the other side, its radius stretched.
   void test(const RelativeFrame& frame, const SphereLanes& spheres, std::uint32_t count, const Point& center,
             float radius, double clearance, Step& out)

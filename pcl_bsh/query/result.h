@@ -16,7 +16,7 @@ enum class Verdict : std::uint8_t { free, colliding, undecided };
 struct Work {
   std::uint64_t node_pairs = 0;      ///< sphere-sphere tests of two nodes
   std::uint64_t leaf_pairs = 0;      ///< pairs of leaves whose points were compared
-  std::uint64_t exact_decisions = 0; ///< pairs of points that float arithmetic could not decide
+  std::uint64_t exact_decisions = 0; ///< pairs of points, or of tiny nodes, that float arithmetic could not decide
   std::uint64_t voxels_built = 0;    ///< voxels whose octree and spheres this query built, of both clouds
 
   Work& operator+=(const Work& other) noexcept

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Spheres around points as given, in double and in the cloud's own frame: for places so crowded that the float spheres
+// of a local frame cannot tell them apart.
+#pragma once
+
+#include <pcl_bsh/geometry/exact_distance.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcl_bsh {
+
+struct GivenSphere {
+  Point3 center = {0, 0, 0};
+  double radius = -1.0; ///< negative: none is known
+
+  bool isKnown() const noexcept { return radius >= 0.0; }
+};
+
+/// Around count > 0 points, with their radii. @param point called with 0 .. count - 1. @param ball likewise: the radius
+///
+/// Rounding bound: differences of doubles, hypot and the sum err by 2^-53, 2^-52 and 2^-53 of their values, so 2^-50
+/// covers all three; a denormal unit covers hypot where it is denormal. Differences never underflow.
+template <class PointAt, class BallAt>
+GivenSphere sphereAround(std::size_t count, const PointAt& point, const BallAt& ball)
+{
+  Point3 low = point(0), high = low;
+  for (std::size_t i = 1; i < count; ++i) {
+    const Point3 p = point(i);
+    for (std::size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+  }
+  GivenSphere sphere;
+  for (std::size_t k = 0; k < 3; ++k) sphere.center[k] = low[k] == high[k] ? low[k] : low[k] / 2 + high[k] / 2;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Point3 p = point(i);
+    const double distance = std::hypot(p[0] - sphere.center[0], p[1] - sphere.center[1], p[2] - sphere.center[2]);
+    sphere.radius = std::max(sphere.radius, distance + ball(i));
+  }
+  constexpr double denormal = std::numeric_limits<double>::denorm_min();
+  if (sphere.radius > 0.0) sphere.radius = sphere.radius * (1.0 + 0x1p-50) + 2 * denormal;
+  return sphere;
+}
+
+/// Whether no point in one sphere collides with any in the other, in exact arithmetic. A pose that is rigid within 1e-6
+/// stretches a radius by less than 2^-20.
+inline bool areApart(const ExactDistance& distance, const GivenSphere& a, const GivenSphere& b, double clearance)
+{
+  constexpr double stretch = 1.0 + 0x1p-20;
+  const double radius_a = a.radius * stretch, radius_b = b.radius * stretch;
+  return std::isfinite(clearance + radius_a + radius_b) &&
+         distance.compare(a.center, b.center, clearance, radius_a, radius_b) > 0;
+}
+
+} // namespace pcl_bsh
