@@ -3,9 +3,9 @@
 #include <pcl_bsh/query/collide.h>
 
 #include "random_clouds.h"
+#include "simd_target.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 namespace pcl_bsh {
 namespace {
@@ -20,18 +20,14 @@ struct Answers {
 /// Everything from the points on, on one target.
 Answers answersOn(std::int64_t target, const test::Scene& scene)
 {
-  hwy::SetSupportedTargetsForTest(target);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  const test::OnTarget on_target(target);
   CollisionRequest request;
   request.clearance = scene.clearance;
   request.flagged = Side::both;
   const SphereHierarchy a(scene.a.view()), b(scene.b.view());
   const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
-  Answers answers{anyCollision(placed_a, placed_b, request), collisionFlags(placed_a, placed_b, request),
-                  closestPair(placed_a, placed_b, request), a.statistics()};
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  return answers;
+  return {anyCollision(placed_a, placed_b, request), collisionFlags(placed_a, placed_b, request),
+          closestPair(placed_a, placed_b, request), a.statistics()};
 }
 
 void expectEqual(const Work& x, const Work& y)

@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Inputs that other tools are known to answer wrongly, or not at all, each under its catalogue number, with the answer
+// of exact arithmetic. Every query, fit and instruction set, one thread and several.
+#include <pcl_bsh/query/brute_force.h>
+#include <pcl_bsh/query/collide.h>
+
+#include "random_clouds.h"
+#include "simd_target.h"
+
+#include <gtest/gtest.h>
+
+#include <cfenv>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
+
+namespace pcl_bsh {
+namespace {
+
+using Points = std::vector<Point3>;
+using test::Cloud;
+using test::Random;
+
+const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double denormal = std::numeric_limits<double>::denorm_min();
+constexpr std::size_t unknown = ~std::size_t{0};
+
+float f(double x)
+{
+  return static_cast<float>(x);
+}
+
+struct HardCase {
+  std::string name;
+  Points a, b;
+  double clearance;
+  std::size_t colliding_pairs = unknown; ///< ordered pairs, in exact arithmetic
+  Scalar scalar = Scalar::float32;
+  Eigen::Isometry3d pose_a = identity, pose_b = identity;
+};
+
+CollisionRequest within(double clearance, unsigned threads)
+{
+  CollisionRequest request;
+  request.clearance = clearance;
+  request.flagged = Side::both;
+  request.threads = threads;
+  return request;
+}
+
+std::size_t countPairs(const HardCase& c)
+{
+  const ExactDistance distance(c.pose_a, c.pose_b);
+  const Cloud a(c.a, {c.scalar}), b(c.b, {c.scalar});
+  const auto finite = [](const Point3& p) { return std::isfinite(p[0] + p[1] + p[2]); };
+  std::size_t pairs = 0;
+  for (std::uint32_t i = 0; i < c.a.size(); ++i) {
+    const Point3 p = a.view().point(i);
+    for (std::uint32_t j = 0; finite(p) && j < c.b.size(); ++j) {
+      const Point3 q = b.view().point(j);
+      pairs += finite(q) && distance.compare(p, q, c.clearance) <= 0;
+    }
+  }
+  return pairs;
+}
+
+/// What brute force says; it in turn agrees with the catalogue.
+struct Truth {
+  AnyResult any;
+  FlagsResult flags;
+  DistanceResult closest;
+};
+
+Truth truthOf(const HardCase& c, const Placed& a, const Placed& b)
+{
+  Truth truth{brute_force::anyCollision(a, b, within(c.clearance, 1)),
+              brute_force::collisionFlags(a, b, within(c.clearance, 1)), brute_force::closestPair(a, b)};
+  if (c.colliding_pairs != unknown) {
+    EXPECT_EQ(countPairs(c), c.colliding_pairs);
+    EXPECT_EQ(truth.any.verdict == Verdict::colliding, c.colliding_pairs > 0);
+  }
+  return truth;
+}
+
+int checks = 0; ///< answers compared so far
+
+void expectTruth(const Truth& truth, const HardCase& c, const Placed& a, const Placed& b, unsigned threads)
+{
+  const CollisionRequest request = within(c.clearance, threads);
+  const AnyResult any = anyCollision(a, b, request);
+  ASSERT_EQ(any.verdict, truth.any.verdict);
+  if (any.witness) {
+    EXPECT_LE(
+        ExactDistance(a.pose, b.pose)
+            .compare(a.hierarchy.view().point(any.witness->a), b.hierarchy.view().point(any.witness->b), c.clearance),
+        0);
+  }
+  const FlagsResult flags = collisionFlags(a, b, request);
+  EXPECT_EQ(flags.a, truth.flags.a);
+  EXPECT_EQ(flags.b, truth.flags.b);
+  const DistanceResult closest = closestPair(a, b, request);
+  EXPECT_EQ(closest.distance, truth.closest.distance);
+  EXPECT_EQ(closest.pair, truth.closest.pair);
+  checks += 4;
+}
+
+constexpr SphereFit all_fits[] = {SphereFit::box_center, SphereFit::ritter, SphereFit::minimal};
+
+void expectTruthEverywhere(const HardCase& c)
+{
+  SCOPED_TRACE(c.name);
+  const Cloud a(c.a, {c.scalar}), b(c.b, {c.scalar});
+  const SphereHierarchy plain_a(a.view()), plain_b(b.view());
+  const Truth truth = truthOf(c, {plain_a, c.pose_a}, {plain_b, c.pose_b});
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    const test::OnTarget on_target(target);
+    for (const SphereFit fit : all_fits) {
+      SCOPED_TRACE("fit " + std::to_string(static_cast<int>(fit)));
+      HierarchyOptions options;
+      options.fit = fit;
+      const SphereHierarchy ha(a.view(), options), hb(b.view(), options);
+      for (const unsigned threads : {1u, 4u}) expectTruth(truth, c, {ha, c.pose_a}, {hb, c.pose_b}, threads);
+      EXPECT_TRUE(ha.validate().none());
+      EXPECT_TRUE(hb.validate().none());
+    }
+  }
+}
+
+// Recipes ---------------------------------------------------------------------------------------------------------
+
+Points listOf(int count, const std::function<Point3(int)>& point)
+{
+  Points points;
+  for (int i = 0; i < count; ++i) points.push_back(point(i));
+  return points;
+}
+
+Points gridOf(int side, double start, double step)
+{
+  return listOf(side * side * side, [=](int i) {
+    return Point3{start + step * (i % side), start + step * (i / side % side), start + step * (i / side / side)};
+  });
+}
+
+HardCase pairOf(const std::string& name, const Point3& p, const Point3& q, double clearance, bool hit,
+                Scalar scalar = Scalar::float32)
+{
+  return {name, {p}, {q}, clearance, hit ? 1u : 0u, scalar};
+}
+
+HardCase selfOf(const std::string& name, const Points& points, double clearance, std::size_t pairs,
+                Scalar scalar = Scalar::float32)
+{
+  return {name, points, points, clearance, pairs, scalar};
+}
+
+Points rowAt(double y)
+{
+  return listOf(1000, [y](int i) { return Point3{500000.003 + .01 * i, y, 100}; });
+}
+
+Points lineWith(const std::function<bool(int)>& is_bad)
+{
+  return listOf(1000, [&](int i) { return Point3{is_bad(i) ? (i % 2 ? infinity : nan) : f(.001 * i), 0, 0}; });
+}
+
+std::vector<HardCase> smallCases()
+{
+  constexpr double d = 5 * denormal;
+  const Points full_line = lineWith([](int) { return false; });
+  std::vector<HardCase> cases = {
+      pairOf("H1", {0, 0, 0}, {3, 4, 0}, 5, true),
+      pairOf("H2", {1, 2, 3}, {1, 2, 3}, 0, true),
+      pairOf("H3", {0, 0, 0}, {f(.1), 0, 0}, .1, false),
+      selfOf("H5", gridOf(12, 0, 1.0 / 16), 3.0 / 16, 157240),
+      selfOf("H5b", gridOf(12, 0, .01), .03, 141232),
+      selfOf("H5c", gridOf(12, 1000, .01), .03, 144280),
+      {"H6", rowAt(5400000.26), rowAt(5400000.34), .05, 0, Scalar::float64},
+      {"H6b", rowAt(5400000.24), rowAt(5400000.26), .05, 8980, Scalar::float64},
+      pairOf("H8", {0, 0, 0}, {f(3e-40), f(4e-40), 0}, 5.1e-40, true),
+      pairOf("H8b", {0, 0, 0}, {f(1e-40), 0, 0}, 5e-41, false),
+      pairOf("H8c", {0, 0, 0}, {f(1e-23), 0, 0}, 5e-24, false),
+      pairOf("H8 double", {0, 0, 0}, {3 * denormal, 4 * denormal, 0}, d, true, Scalar::float64),
+      pairOf("H8 double miss", {0, 0, 0}, {3 * denormal, 4 * denormal, denormal}, d, false, Scalar::float64),
+      pairOf("H9", {0, 0, 0}, {f(1e30), 0, 0}, 2e30, true),
+      pairOf("H9 miss", {0, 0, 0}, {f(1e30), 0, 0}, .9e30, false),
+      selfOf("H10",
+             listOf(1000,
+                    [](int i) {
+                      return Point3{1000 + 1e-7 * i, 0, 0};
+                    }),
+             1e-6, 20846, Scalar::float64),
+      selfOf("H11",
+             listOf(64,
+                    [](int i) {
+                      return Point3{1000 + i * 0x1p-14, 0, 0};
+                    }),
+             0x1p-14, 190),
+      {"H12", full_line, lineWith([](int i) { return i == 0; }), f(.0105), 20879},
+      {"H12 every third", full_line, lineWith([](int i) { return i % 3 == 0; }), f(.0105), 13920},
+      {"H12 two", lineWith([](int i) { return i == 500 || i == 999; }), full_line, f(.0105), 20890 - 21 - 11},
+      {"H13", {{nan, 0, 0}, {0, infinity, 0}, {0, 0, -infinity}}, gridOf(3, 0, 1), 1e30, 0},
+      {"H14", {}, gridOf(3, 0, 1), 1e30, 0},
+      {"H14 both", {}, {}, 1e30, 0},
+      pairOf("H18", {3e38, 0, 0}, {2e38, 0, 0}, 1.1e38, true),
+      pairOf("H18 miss", {3e38, 0, 0}, {2e38, 0, 0}, .9e38, false),
+      pairOf("H18 double", {1e308, 0, 0}, {-1e308, 0, 0}, 1.7e308, false, Scalar::float64),
+      {"H22",
+       {{0, 0, 0}, {0x1.1eb852p-4, 0, 0}},
+       {{0x1.eb852p-4, 0, 0}, {0x1.851eb8p-3, 0, 0}},
+       0x1.99999cp-5,
+       unknown},
+  };
+  for (const double length : {400.0, 430.0, 1e3, 1e10, 1e30}) // H15: an octree would have to be deep
+    cases.push_back({"H15 " + std::to_string(length), {{0, 0, 0}, {length, 0, 0}}, {{length, 0, 0}}, .5, 1});
+  for (int k = 1; k <= 10000; k += 333) {
+    const double clearance = k / 1000.0;
+    cases.push_back(pairOf("H4 " + std::to_string(k), {0, 0, 0}, {f(clearance), 0, 0}, clearance,
+                           static_cast<double>(f(clearance)) <= clearance));
+  }
+  for (const double radius : {0.0, 0.25, 0.5}) // every shape of H16 and H17, small enough for brute force
+    for (const double shift : {0.0, 0.25}) {
+      const auto add = [&](const std::string& name, const Points& points) {
+        Points shifted = points;
+        for (Point3& p : shifted) p[0] += shift;
+        cases.push_back({name + " shifted by " + std::to_string(shift), points, shifted, radius, unknown});
+      };
+      const auto power = [](int i) { return std::exp2(-(i % 149)); };
+      add("H16", Points(300, {1.25, 2.5, 3.75}));
+      add("H17 collinear", listOf(300, [](int i) { return Point3{i * 1e-3, 0, 0}; }));
+      add("H17 powers", listOf(300, [&](int i) { return Point3{power(i), 0, 0}; }));
+      add("H17 powers in space", listOf(343, [&](int i) {
+            return Point3{power(20 * (i % 7)), power(20 * (i / 7 % 7)), power(20 * (i / 49))};
+          }));
+      add("H17 one ulp apart", gridOf(6, 1, 0x1p-23));
+    }
+  return cases;
+}
+
+class HardCases : public testing::TestWithParam<HardCase> {};
+
+TEST_P(HardCases, EqualExactArithmetic)
+{
+  checks = 0;
+  expectTruthEverywhere(GetParam());
+  RecordProperty("checks", checks);
+}
+
+std::string nameOf(const testing::TestParamInfo<HardCase>& info)
+{
+  std::string name = info.param.name + " " + std::to_string(info.index);
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, HardCases, testing::ValuesIn(smallCases()), nameOf);
+
+// Series ----------------------------------------------------------------------------------------------------------
+
+TEST(HardCaseSeries, H4)
+{
+  int hits = 0;
+  for (int k = 1; k <= 10000; ++k) {
+    const double d = k / 1000.0;
+    const Cloud a({{0, 0, 0}}), b({{d, 0, 0}});
+    const SphereHierarchy ha(a.view()), hb(b.view());
+    hits += anyCollision({ha}, {hb}, within(d, 1)).verdict == Verdict::colliding;
+  }
+  EXPECT_EQ(hits, 5033);
+}
+
+TEST(HardCaseSeries, H20FarMoves)
+{
+  Random random(20);
+  for (const double reach : {1.0, 10.0, 100.0, 1000.0, 1e4}) {
+    HardCase c{"H20 " + std::to_string(reach), {}, {}, .05, unknown};
+    c.pose_b.rotate(Eigen::AngleAxisd(std::acos(-1.0) / 6, Eigen::Vector3d::UnitZ()));
+    c.pose_b.pretranslate(Eigen::Vector3d(reach, -reach / 3, .1));
+    const double band = reach < 100 ? 1e-5 : 1e-3;
+    for (int i = 0; i < 200; ++i) {
+      const Point3 q = random.point([&] { return random.uniform(-reach, reach); });
+      const Eigen::Vector3d moved = c.pose_b * Eigen::Vector3d(f(q[0]), f(q[1]), f(q[2]));
+      const Eigen::Vector3d p =
+          moved + random.rotation() * Eigen::Vector3d(.05 * (1 + band * random.uniform(-1, 1)), 0, 0);
+      c.b.push_back(q);
+      c.a.push_back({p[0], p[1], p[2]});
+    }
+    expectTruthEverywhere(c);
+  }
+}
+
+TEST(HardCaseSeries, H21TiesUnderRotation)
+{
+  Random random(21);
+  for (int i = 0; i < 40; ++i) {
+    HardCase c{"H21 " + std::to_string(i), {}, {}, 0, unknown, Scalar::float64};
+    c.pose_b = random.pose(1000);
+    for (int k = 0; k < 20; ++k) {
+      c.a.push_back(random.point([&] { return random.uniform(-1000, 1000); }));
+      c.b.push_back(random.point([&] { return random.uniform(-1000, 1000); }));
+    }
+    const ExactDistance distance(c.pose_a, c.pose_b);
+    c.clearance = distance.gap({c.a[0], c.b[0]}); // the double nearest to a distance: decided by its last bit
+    expectTruthEverywhere(c);
+  }
+}
+
+TEST(HardCaseSeries, H22FlatLeaves)
+{
+  Random random(22);
+  for (int i = 0; i < 3000; ++i) {
+    const auto leaf = [&] { return listOf(2, [&](int) { return Point3{f(random.uniform(0, .25)), 0, 0}; }); };
+    const HardCase c{"H22 " + std::to_string(i), leaf(), leaf(), 0, unknown};
+    const Cloud a(c.a), b(c.b);
+    const SphereHierarchy ha(a.view()), hb(b.view());
+    const double gap = brute_force::closestPair({ha}, {hb}).distance;
+    EXPECT_EQ(anyCollision({ha}, {hb}, within(gap, 1)).verdict, Verdict::colliding);
+    EXPECT_EQ(closestPair({ha}, {hb}).distance, gap);
+    if (gap == 0) continue;
+    EXPECT_EQ(anyCollision({ha}, {hb}, within(std::nextafter(gap, 0.0), 1)).verdict, Verdict::free);
+  }
+}
+
+TEST(HardCaseSeries, H23AffinePosesAreRefusedNearlyRigidOnesExact)
+{
+  Random random(23);
+  const Cloud one({{1, 2, 3}});
+  const SphereHierarchy point(one.view());
+  for (int i = 0; i < 1000; ++i) {
+    Eigen::Isometry3d affine = identity;
+    for (int k = 0; k < 9; ++k) affine.linear()(k / 3, k % 3) = random.uniform(-3, 3);
+    EXPECT_THROW(anyCollision({point, affine}, {point}, within(1, 1)), std::invalid_argument);
+    EXPECT_THROW(collisionFlags({point}, {point, affine}, within(1, 1)), std::invalid_argument);
+    EXPECT_THROW(closestPair({point, affine}, {point}), std::invalid_argument);
+  }
+  for (int i = 0; i < 30; ++i) { // as far from rigid as is accepted: |R'R - I| of up to 1e-6
+    HardCase c{"H23 " + std::to_string(i), {}, {}, 0, unknown};
+    for (Eigen::Isometry3d* pose : {&c.pose_a, &c.pose_b}) {
+      *pose = random.pose(10);
+      Eigen::Matrix3d spoiled = pose->linear();
+      for (int k = 0; k < 9; ++k) spoiled(k / 3, k % 3) += random.uniform(-1, 1);
+      const auto deviation = [&](double t) -> double {
+        const Eigen::Matrix3d m = (1 - t) * pose->linear() + t * spoiled;
+        return (m.transpose() * m - Eigen::Matrix3d::Identity()).norm();
+      };
+      double t = 1e-6;
+      while (deviation(t) > 0.99e-6) t *= 0.9;
+      pose->linear() = ((1 - t) * pose->linear() + t * spoiled).eval();
+    }
+    for (int k = 0; k < 60; ++k) {
+      c.a.push_back(random.point([&] { return random.uniform(-10, 10); }));
+      c.b.push_back(random.point([&] { return random.uniform(-10, 10); }));
+    }
+    const Cloud a(c.a), b(c.b);
+    c.clearance = test::tiedClearance(a.view(), c.pose_a, b.view(), c.pose_b, random);
+    expectTruthEverywhere(c);
+  }
+}
+
+TEST(HardCaseSeries, H25AnyEnvironmentOfTheCaller)
+{
+  const auto each = [](const auto& set) {
+    for (const HardCase& c : smallCases()) {
+      if (c.a.size() > 400) continue;
+      SCOPED_TRACE(c.name);
+      const Cloud a(c.a, {c.scalar}), b(c.b, {c.scalar});
+      const SphereHierarchy plain_a(a.view()), plain_b(b.view());
+      const Truth truth = truthOf(c, {plain_a, c.pose_a}, {plain_b, c.pose_b});
+      set(true);
+      const SphereHierarchy ha(a.view()), hb(b.view());
+      const AnyResult any = anyCollision({ha, c.pose_a}, {hb, c.pose_b}, within(c.clearance, 2));
+      const FlagsResult flags = collisionFlags({ha, c.pose_a}, {hb, c.pose_b}, within(c.clearance, 2));
+      const DistanceResult closest = closestPair({ha, c.pose_a}, {hb, c.pose_b});
+      set(false);
+      EXPECT_EQ(any.verdict, truth.any.verdict);
+      EXPECT_EQ(flags.a, truth.flags.a);
+      EXPECT_EQ(flags.b, truth.flags.b);
+      EXPECT_EQ(closest.distance, truth.closest.distance);
+      EXPECT_EQ(closest.pair, truth.closest.pair);
+    }
+  };
+  for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO})
+    each([mode](bool on) { std::fesetround(on ? mode : FE_TONEAREST); });
+#ifdef __SSE2__
+  constexpr unsigned flush_to_zero = 0x8000, denormals_are_zero = 0x0040;
+  const unsigned before = _mm_getcsr();
+  each([before](bool on) { _mm_setcsr(on ? before | flush_to_zero | denormals_are_zero : before); });
+#endif
+}
+
+TEST(HardCaseSeries, H27FineVoxelsOverAWideCloud)
+{
+  HierarchyOptions fine;
+  fine.voxel_edge = .01;
+  const Cloud a({{0, 0, 0}, {1000, 1000, 1000}, {.5, 0, 0}}), b({{.5, 0, 0}});
+  const SphereHierarchy ha(a.view(), fine), hb(b.view(), fine);
+  EXPECT_EQ(collisionFlags({ha}, {hb}, within(.25, 1)).a, (std::vector<std::uint8_t>{0, 0, 1}));
+}
+
+} // namespace
+} // namespace pcl_bsh
