@@ -79,28 +79,16 @@ SphereHierarchy build(const Scan& scan, const fs::path& path, unsigned threads, 
   return hierarchy;
 }
 
-/// Distance from the largest coordinate to the next float32: what cannot be told apart there.
-double coordinateSpacing(const PointsView& view)
-{
-  float largest = 0;
-  for (std::size_t i = 0; i < view.count; ++i) {
-    for (const double coordinate : view.point(static_cast<std::uint32_t>(i))) {
-      if (std::isfinite(coordinate)) largest = std::max(largest, static_cast<float>(std::abs(coordinate)));
-    }
-  }
-  return double{largest} - std::nextafter(largest, 0.0F);
-}
-
-void warnOf(const cli::CloudReport& cloud, const PointsView& view, double clearance, std::vector<std::string>& warnings)
+void warnOf(const cli::CloudReport& cloud, const SphereHierarchy& hierarchy, double clearance,
+            std::vector<std::string>& warnings)
 {
   if (cloud.finite == 0) warnings.push_back(cloud.file + ": has no finite point: nothing collides");
   if (cloud.finite > 0 && cloud.finite < cloud.points) {
     warnings.push_back(cloud.file + ": " + std::to_string(cloud.points - cloud.finite) +
                        " points are not finite: they collide with nothing");
   }
-  if (view.scalar == Scalar::float32 && clearance > 0 && cloud.finite > 0) {
-    const double spacing = coordinateSpacing(view);
-    if (spacing <= clearance / 10) return;
+  const double spacing = hierarchy.coordinateSpacing();
+  if (clearance > 0 && spacing > clearance / 10) {
     std::ostringstream warning;
     warning << cloud.file << ": its float32 coordinates lie " << spacing
             << " apart, coarse for this clearance: export float64 or coordinates near the origin";
@@ -193,8 +181,8 @@ int collide(const Options& options)
   report.voxels_total = a.statistics().voxels + b.statistics().voxels;
   report.input = {options.input.string(), a.view().count, a.size()};
   report.obstacle = {options.obstacle.string(), b.view().count, b.size()};
-  warnOf(report.input, a.view(), report.clearance, report.warnings);
-  warnOf(report.obstacle, b.view(), report.clearance, report.warnings);
+  warnOf(report.input, a, report.clearance, report.warnings);
+  warnOf(report.obstacle, b, report.clearance, report.warnings);
 
   write(options, input, flags.a, report.seconds.write);
   if (options.report) cli::writeReport(*options.report, report);

@@ -3,6 +3,8 @@
 
 #include <pcl_bsh/query/collide.h>
 
+#include <pcl/console/print.h>
+
 #include <cmath>
 #include <utility>
 
@@ -38,12 +40,25 @@ const SphereHierarchy& ObstacleQuery::obstacleHierarchy()
   return *hierarchy_;
 }
 
+void ObstacleQuery::warnOfCoarse(const char* cloud, const SphereHierarchy& hierarchy)
+{
+  const double spacing = hierarchy.coordinateSpacing();
+  if (warned_ || !(clearance_ > 0.0) || spacing <= clearance_ / 10) return;
+  warned_ = true;
+  PCL_WARN("[pcl_bsh::CollisionFilter] the %s cloud's float32 coordinates lie %g apart, coarse for a clearance of %g: "
+           "give float64 coordinates (pcl::PCLPointCloud2), or ones near the origin.\n",
+           cloud, spacing, clearance_);
+}
+
 std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input)
 {
   const SphereHierarchy& obstacle = obstacleHierarchy();
   HierarchyOptions options;
   options.threads = threads_;
   const SphereHierarchy hierarchy(input, options);
+
+  warnOfCoarse("input", hierarchy);
+  warnOfCoarse("obstacle", obstacle);
 
   CollisionRequest request;
   request.clearance = clearance_;

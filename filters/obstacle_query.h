@@ -71,6 +71,7 @@ protected:
 
 private:
   void setObstacle(std::function<PointsView()> view);
+  void warnOfCoarse(const char* cloud, const SphereHierarchy& hierarchy);
   const SphereHierarchy& obstacleHierarchy();
 
   std::function<PointsView()> obstacle_; ///< owns its cloud
@@ -79,6 +80,7 @@ private:
   double clearance_ = 0.0;
   unsigned threads_ = 1;
   Work work_;
+  bool warned_ = false; ///< of coordinates too coarse for the clearance; once, for clouds come in streams
 
 public:
   PCL_MAKE_ALIGNED_OPERATOR_NEW

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Three stages, each used only where it is sure of itself: an enclosure in double, an expansion when the coordinate
-// differences are doubles, integers of any length.
+// Stages, each used only where it is sure of itself: an enclosure in double, one with compensated sums, an expansion
+// when the coordinate differences are doubles, integers of any length.
 #include <pcl_bsh/geometry/exact_distance.h>
 
+#include <pcl_bsh/geometry/compensated_sum.h>
 #include <pcl_bsh/geometry/dyadic.h>
 #include <pcl_bsh/geometry/expansion.h>
 
@@ -97,9 +98,12 @@ ExactDistance::ExactDistance(const Eigen::Isometry3d& pose_a, const Eigen::Isome
 int ExactDistance::compare(const Point3& p, const Point3& q, double clearance, double radius_p, double radius_q) const
 {
   const double reach = clearance + radius_p + radius_q;
-  const Interval distance = enclose(p, q);
-  if (distance.high < reach * (1.0 - 0x1p-50)) return -1;
-  if (distance.low > reach * (1.0 + 0x1p-50)) return 1;
+  const auto side = [reach](const Interval& distance) {
+    return distance.high < reach * (1.0 - 0x1p-50) ? -1 : distance.low > reach * (1.0 + 0x1p-50) ? 1 : 0;
+  };
+  if (const int found = side(enclose(p, q)); found != 0) return found;
+  if (!translations_only_)
+    if (const int found = side(encloseClosely(p, q)); found != 0) return found;
 
   Point3 difference;
   if (radius_p == 0.0 && radius_q == 0.0 && exactDifference(p, q, difference)) {
@@ -190,6 +194,30 @@ ExactDistance::Interval ExactDistance::encloseTranslated(const Point3& p, const 
     return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   const double distance = std::sqrt(squared);
   const double error = 0x1p-50 * distance + 2.0 * errors + 0x1p-500;
+  return {distance - error, distance + error};
+}
+
+/// Sums with their rounding errors: for places whose points double arithmetic cannot tell apart from afar. A coordinate
+/// errs by 2^-53 of itself and 2^-98 of its terms; norm, root and last subtraction by 5 x 2^-53 of the distance.
+ExactDistance::Interval ExactDistance::encloseClosely(const Point3& p, const Point3& q) const
+{
+  double squared = 0.0;
+  double terms = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    CompensatedSum sum;
+    sum.add(a_[k][3]);
+    sum.add(-b_[k][3]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      sum.addProduct(a_[k][j], p[j]);
+      sum.addProduct(-b_[k][j], q[j]);
+    }
+    squared += sum.value() * sum.value();
+    terms += sum.absolute;
+  }
+  if (!std::isfinite(squared + terms))
+    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  const double distance = std::sqrt(squared);
+  const double error = 0x1p-50 * distance + 0x1p-96 * terms + 0x1p-500;
   return {distance - error, distance + error};
 }
 

@@ -50,6 +50,7 @@ private:
   using Row = std::array<double, 4>; // of a pose: rotation, then translation
 
   Interval encloseTranslated(const Point3& p, const Point3& q) const;
+  Interval encloseClosely(const Point3& p, const Point3& q) const;
   bool exactDifference(const Point3& p, const Point3& q, Point3& difference) const;
   Dyadic squaredDistance(const Point3& p, const Point3& q) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/relative_frame.h>
 
+#include <pcl_bsh/geometry/compensated_sum.h>
 #include <pcl_bsh/geometry/rounding.h>
 
 #include <algorithm>
@@ -11,29 +12,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
-
-/// A sum kept with its rounding errors (Ogita, Rump, Oishi: Dot2), and the sum of the absolute terms.
-struct CompensatedSum {
-  double sum = 0.0, errors = 0.0, absolute = 0.0;
-
-  void add(double term)
-  {
-    const WithError s = twoSum(sum, term);
-    sum = s.value;
-    errors += s.error;
-    absolute += std::abs(term);
-  }
-
-  void addProduct(double a, double b)
-  {
-    const WithError p = twoProduct(a, b);
-    add(p.value);
-    errors += p.error;
-  }
-
-  double value() const { return sum + errors; }
-  double bound() const { return kDoubleUnit * std::abs(value()) + 0x1p-96 * absolute; }
-};
 
 double normOfSums(const std::array<double, 9>& m)
 {
@@ -84,7 +62,7 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
     between_bound[static_cast<unsigned>(i)] = sum.bound() / b.unit;
   }
 
-  double squared = 0.0, squared_exact = 0.0;
+  double squared = 0.0;
   bool in_range = b.unit >= 0x1p-900 && a.unit >= 0x1p-900 && b.unit <= 0x1p900 && a.unit <= 0x1p900;
   for (unsigned i = 0; i < 3; ++i) {
     double value = 0.0, absolute = 0.0, inherited = 0.0;
@@ -100,7 +78,6 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
     double moved = 0.0, slack = 0.0; // sum |M_ij| reach_a_j, sum |M_ij| slack_a_j
     for (unsigned j = 0; j < 3; ++j) {
       const double entry = relative(i, j) * scale;
-      m_exact[3 * i + j] = entry;
       m[3 * i + j] = roundToFloat(entry);
       moved += (std::abs(entry) + 0x1p-50 * scale) * a.reach[j];
       slack += (std::abs(entry) + 0x1p-50 * scale) * a.slack(static_cast<int>(j));
@@ -109,9 +86,7 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
     const double evaluated = 8 * kDoubleUnit * absolute + inherited + 0x1p-49 * moved + skewed;
     const double float_error = slack + (1.0 + skew_) * b.slack(static_cast<int>(i)) +
                                4.001 * kFloatUnit * (std::abs(value) + moved) + evaluated;
-    const double double_error = evaluated + 16 * kDoubleUnit * (std::abs(value) + moved + b.reach[i]);
     squared += float_error * float_error;
-    squared_exact += double_error * double_error;
     in_range = in_range && inRange(value) && inRange(moved) && inRange(b.reach[i]);
   }
   float_error_ = std::sqrt(squared) * (1.0 + 0x1p-48) + 0x1p-60;
@@ -121,7 +96,6 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
     g.fill(0.0f);
   }
   error = in_range ? float_error_ : kInfinity;
-  error_exact = in_range ? std::sqrt(squared_exact) * (1.0 + 0x1p-48) + 0x1p-500 : kInfinity;
 
   stretch_a = roundUp(std::sqrt(normOfSums(gram(relative))) * (1.0 + 0x1p-40) * scale);
   if (relative == Eigen::Matrix3d::Identity() && skew_ == 0.0) stretch_a = roundUp(scale);
@@ -151,17 +125,6 @@ DistanceBand RelativeFrame::band(double clearance) const noexcept
   const double miss = (1.0 + 6 * kFloatUnit) * high * high + 0x1p-124;
   band.miss = miss >= 3.4e38 ? kFloatInfinity : roundUp(miss);
   return band;
-}
-
-std::array<double, 2> RelativeFrame::bandExact(double clearance) const noexcept
-{
-  const double d = clearance / unit_b_;
-  if (!(error_exact < kInfinity) || !inRange(d)) return {-1.0, kInfinity};
-  const double low_d = d * (1.0 - skew_), high_d = d * (1.0 + skew_);
-  const double low = (low_d - error_exact) - 0x1p-50 * (low_d + error_exact);
-  const double high = (high_d + error_exact) * (1.0 + 0x1p-50);
-  const double hit = (1.0 - 12 * kDoubleUnit) * low * low - 0x1p-900;
-  return {low > 0.0 ? hit : -1.0, (1.0 + 12 * kDoubleUnit) * high * high + 0x1p-900};
 }
 
 float RelativeFrame::pruneReach(double clearance) const noexcept

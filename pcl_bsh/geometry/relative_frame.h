@@ -32,17 +32,11 @@ public:
   std::array<float, 3> g = {}; ///< float
   float stretch_a = 1.0f;      ///< a radius in a's unit, times this, bounds it in b's frame (spectral norm, rounded up)
   float stretch_b = 1.0f;      ///< likewise for a radius of b: 1 + ||E||, rounded up
-  std::array<double, 9> m_exact = {}; ///< M in double
   std::array<double, 3> g_exact = {}; ///< g in double
   double error = 0.0;                 ///< in b's units
-  double error_exact = 0.0;           ///< the same when x and y are evaluated in double from the given coordinates
 
   /// The band for a clearance >= 0 given in the clouds' unit. @pre finite or infinite, not NaN.
   DistanceBand band(double clearance) const noexcept;
-
-  /// The band for distances evaluated in double from the given coordinates: {hit, miss} of the squared distance in b's
-  /// units.
-  std::array<double, 2> bandExact(double clearance) const noexcept;
 
   /// At least (clearance + error) in b's units: two nodes whose centres' float distance exceeds the sum of their
   /// stretched radii and this, by more than rounding, hold no colliding pair.

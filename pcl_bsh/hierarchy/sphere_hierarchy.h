@@ -62,6 +62,10 @@ public:
   std::size_t size() const noexcept; ///< finite points indexed
   bool empty() const noexcept { return size() == 0; }
 
+  /// How far apart neighbouring float32 numbers are at the largest coordinate: what a float32 cloud lost when it was
+  /// rounded. 0 for float64 clouds and for empty ones.
+  double coordinateSpacing() const noexcept;
+
   /// Builds every voxel now. @param threads 0: all of the machine's. The result is the same for any number.
   void buildAll(unsigned threads = 1) const;
 

@@ -269,6 +269,36 @@ TEST(CollisionFilterUtm, Float64IsNotRounded)
   EXPECT_THAT(kept, IsEmpty());
 }
 
+TEST(CollisionFilterUtm, WarnsOnceOfFloatsTooCoarseForTheClearance)
+{
+  const auto said = [](Filter& filter) {
+    std::vector<std::uint8_t> flags;
+    testing::internal::CaptureStderr();
+    testing::internal::CaptureStdout(); // PCL's console may use either
+    filter.computeFlags(flags);
+    return testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr();
+  };
+  Filter coarse;
+  coarse.setClearance(.05);
+  coarse.setInputCloud(fieldCloud<float>(utmRow(5400000.26)));
+  coarse.setObstacleCloud(fieldCloud<double>(utmRow(5400000.34)));
+  const std::string warning = said(coarse);
+  EXPECT_THAT(warning, testing::HasSubstr("input cloud's float32 coordinates lie 0.5 apart"));
+  EXPECT_THAT(warning, testing::HasSubstr("clearance of 0.05"));
+  EXPECT_EQ(said(coarse), "");
+
+  Filter wide;
+  wide.setClearance(6.0);
+  wide.setInputCloud(fieldCloud<float>(utmRow(5400000.26)));
+  wide.setObstacleCloud(fieldCloud<float>(utmRow(5400000.34)));
+  EXPECT_EQ(said(wide), "");
+  Filter precise;
+  precise.setClearance(.05);
+  precise.setInputCloud(fieldCloud<double>(utmRow(5400000.26)));
+  precise.setObstacleCloud(fieldCloud<double>(utmRow(5400000.34)));
+  EXPECT_EQ(said(precise), "");
+}
+
 TEST_F(CollisionFilterPcl2Test, EmptyClouds)
 {
   filter_.setInputCloud(fieldCloud<float>({}));

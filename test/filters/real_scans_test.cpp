@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The queries on real scans, where they are at hand, against an independent kd-tree.
+#include <pcl_bsh/filters/collision_filter.h>
 #include <pcl_bsh/query/collide.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -9,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -156,6 +158,54 @@ TEST_F(RealScans, Float64TerrainAgainstItsFloat32Twin)
   const DistanceResult result = closestPair({precise.hierarchy}, {rounded.hierarchy}, within(0));
   EXPECT_EQ(result.distance, 0.0);
   EXPECT_EQ(result.pair, (PointPair{survivor, first_at[precise.view().point(survivor)]}));
+}
+
+/// Flags of PCL's side of things: the filter of clouds with run-time fields.
+std::vector<std::uint8_t> flagsByFilter(const pcl::PCLPointCloud2& input, const pcl::PCLPointCloud2& obstacle,
+                                        const Eigen::Isometry3d& pose, double clearance)
+{
+  CollisionFilter<pcl::PCLPointCloud2> filter;
+  filter.setInputCloud(std::make_shared<pcl::PCLPointCloud2>(input));
+  filter.setObstacleCloud(std::make_shared<pcl::PCLPointCloud2>(obstacle));
+  filter.setPose(pose);
+  filter.setClearance(clearance);
+  std::vector<std::uint8_t> flags;
+  filter.computeFlags(flags);
+  return flags;
+}
+
+TEST_F(RealScans, GeoreferencedTerrainIsExactInFloat64AndOnlyThere)
+{
+  const Scan precise("terrain_stbarth_utm20_f64"), rounded("terrain_stbarth_utm20_f32");
+  const PointsView view = precise.view();
+  Eigen::Isometry3d lifted = identity; // turned about its own middle, and lifted by 5 cm
+  lifted.translate(Eigen::Vector3d(515050, 1981050, 0.05));
+  lifted.rotate(Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitZ()));
+  lifted.translate(Eigen::Vector3d(-515050, -1981050, 0));
+  // Two points as far apart as the clearance, to the last bit of a double; and the doubles below and above.
+  const double tie = ExactDistance(identity, lifted).gap({view.point(12345), view.point(12345)});
+  ASSERT_LT(tie, 2.0);
+  std::size_t differ = 0;
+  for (const double clearance : {0.05, tie, std::nextafter(tie, 0.0), std::nextafter(tie, 10.0)}) {
+    const auto expected = test::flagsByKdTree(view, identity, view, lifted, clearance);
+    const FlagsResult flags = collisionFlags({precise.hierarchy}, {precise.hierarchy, lifted}, within(clearance));
+    EXPECT_TRUE(flags.a == expected);
+    EXPECT_TRUE(flagsByFilter(precise.cloud, precise.cloud, lifted, clearance) == expected);
+    const bool any = std::find(expected.begin(), expected.end(), 1) != expected.end();
+    EXPECT_EQ(anyCollision({precise.hierarchy}, {precise.hierarchy, lifted}, within(clearance)).verdict,
+              any ? Verdict::colliding : Verdict::free);
+    const auto of_floats = flagsByFilter(rounded.cloud, rounded.cloud, lifted, clearance);
+    if (clearance == 0.05)
+      for (std::size_t i = 0; i < expected.size(); ++i) differ += of_floats[i] != expected[i];
+  }
+  EXPECT_GT(differ, 1000u);
+  RecordProperty("points that float32 decides otherwise at 5 cm", static_cast<int>(differ));
+
+  const DistanceResult closest = closestPair({precise.hierarchy}, {precise.hierarchy, lifted});
+  EXPECT_NEAR(closest.distance, test::distanceByKdTree(view, identity, view, lifted), 1e-8);
+  ASSERT_TRUE(closest.pair);
+  EXPECT_EQ(closest.distance,
+            ExactDistance(identity, lifted).gap({view.point(closest.pair->a), view.point(closest.pair->b)}));
 }
 
 } // namespace
