@@ -4,7 +4,9 @@
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" // g++ 12 at -O2 mistakes what its inlining makes of cpp_int
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" // g++ 12 mistakes what its inlining makes of cpp_int
+#pragma GCC diagnostic ignored "-Warray-bounds"
+#pragma GCC diagnostic ignored "-Wstringop-overflow"
 #endif
 #include <boost/multiprecision/cpp_int.hpp>
 #if defined(__GNUC__) && !defined(__clang__)

@@ -29,12 +29,6 @@ std::array<double, 9> gram(const Eigen::Matrix3d& m)
           product(1, 2), product(2, 0), product(2, 1), product(2, 2)};
 }
 
-/// Float and double arithmetic of the kernels keep their relative bounds while values stay within this range.
-bool inRange(double value)
-{
-  return std::abs(value) <= 0x1p60;
-}
-
 } // namespace
 
 RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_a, const LocalFrame& b,
@@ -87,7 +81,7 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
     const double float_error = slack + (1.0 + skew_) * b.slack(static_cast<int>(i)) +
                                4.001 * kFloatUnit * (std::abs(value) + moved) + evaluated;
     squared += float_error * float_error;
-    in_range = in_range && inRange(value) && inRange(moved) && inRange(b.reach[i]);
+    in_range = in_range && inFloatRange(value) && inFloatRange(moved) && inFloatRange(b.reach[i]);
   }
   float_error_ = std::sqrt(squared) * (1.0 + 0x1p-48) + 0x1p-60;
   if (!(float_error_ < kInfinity)) { // NaN where a zero met an overflown bound: then nothing is known, and all is near
@@ -114,17 +108,9 @@ bool RelativeFrame::separates(double clearance) const noexcept
 DistanceBand RelativeFrame::band(double clearance) const noexcept
 {
   const double d = clearance / unit_b_;
-  if (!(error < kInfinity) || !inRange(d)) return {-1.0f, kFloatInfinity};
+  if (!(error < kInfinity) || !inFloatRange(d)) return {-1.0f, kFloatInfinity};
   // |z| <= d follows from |w| <= d (1 - skew), |z| > d from |w| > d (1 + skew).
-  const double low_d = d * (1.0 - skew_), high_d = d * (1.0 + skew_);
-  DistanceBand band;
-  const double low = (low_d - error) - 0x1p-52 * (low_d + error);
-  const double hit = (1.0 - 6 * kFloatUnit) * low * low - 0x1p-124;
-  band.hit = low > 0.0 && hit >= 0.0 ? std::min(roundDown(hit), std::numeric_limits<float>::max()) : -1.0f;
-  const double high = (high_d + error) * (1.0 + 0x1p-51);
-  const double miss = (1.0 + 6 * kFloatUnit) * high * high + 0x1p-124;
-  band.miss = miss >= 3.4e38 ? kFloatInfinity : roundUp(miss);
-  return band;
+  return distanceBand(d * (1.0 - skew_), d * (1.0 + skew_), error);
 }
 
 float RelativeFrame::pruneReach(double clearance) const noexcept

@@ -2,6 +2,7 @@
 // From one local frame to another under two poses, and the bounds that make float arithmetic there provable.
 #pragma once
 
+#include <pcl_bsh/geometry/distance_band.h>
 #include <pcl_bsh/geometry/local_frame.h>
 
 #include <Eigen/Geometry>
@@ -9,12 +10,6 @@
 #include <array>
 
 namespace pcl_bsh {
-
-/// What float tests in a relative frame may conclude about |T_a p - T_b q| against the reach (a clearance).
-struct DistanceBand {
-  float hit = -1.0f; ///< squared float distance <= hit: within the clearance
-  float miss = 0.0f; ///< squared float distance > miss: beyond it; anything between, NaN too, is undecided
-};
 
 /// Carries points of frame a into frame b: y = M x + g, so that |y - x_b| times b's unit is the distance of the points.
 ///

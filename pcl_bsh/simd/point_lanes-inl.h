@@ -134,6 +134,20 @@ HWY_INLINE float farthestSquared(const float* x, const float* y, const float* z,
   return hn::GetLane(hn::MaxOfLanes(d, most));
 }
 
+/// Squared distances of a leaf's points to (qx, qy, qz), sixteen of them whatever the leaf's count: the arrays go on
+/// that far.
+HWY_INLINE void leafSquaredDistances(const float* x, const float* y, const float* z, float qx, float qy, float qz,
+                                     float* squared)
+{
+  const LaneTag d;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+    const LaneVector dx = hn::Sub(hn::LoadU(d, x + i), hn::Set(d, qx));
+    const LaneVector dy = hn::Sub(hn::LoadU(d, y + i), hn::Set(d, qy));
+    const LaneVector dz = hn::Sub(hn::LoadU(d, z + i), hn::Set(d, qz));
+    hn::Store(squaredNorm(dx, dy, dz), d, squared + i);
+  }
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh
 HWY_AFTER_NAMESPACE();

@@ -139,6 +139,28 @@ HWY_INLINE std::uint32_t spheresNear(const SphereLanes& spheres, const Ball& bal
   return apart ^ ((1u << kLanes) - 1);
 }
 
+/// Lower bounds of the distances from a point to what eight spheres hold, and as bits: which are not above `limit`.
+/// @param error how far the point may be from (px, py, pz). @param unit a power of two that the bounds are times.
+HWY_INLINE std::uint32_t sphereGaps(const SphereLanes& spheres, float px, float py, float pz, float error, float unit,
+                                    float limit, float* gaps)
+{
+  const LaneTag d;
+  std::uint32_t beyond = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const LaneVector s = squaredNorm(hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, px)),
+                                     hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, py)),
+                                     hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, pz)));
+    // Rounding amounts to less than the margin of the two lengths that are subtracted.
+    const LaneVector nearest = hn::Mul(hn::Sqrt(s), hn::Set(d, 1.0f - kSphereMargin));
+    const LaneVector radius =
+        hn::Add(hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, 1.0f + kSphereMargin)), hn::Set(d, error));
+    const LaneVector gap = hn::Mul(hn::Sub(nearest, radius), hn::Set(d, unit));
+    hn::StoreU(gap, d, gaps + i);
+    beyond |= bitsOf(d, hn::Gt(gap, hn::Set(d, limit))) << i; // not so for NaN, which may be near
+  }
+  return beyond ^ ((1u << kLanes) - 1);
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh
 HWY_AFTER_NAMESPACE();

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Between which squared float distances the float answer is no proof.
+#pragma once
+
+#include <pcl_bsh/geometry/rounding.h>
+
+#include <algorithm>
+
+namespace pcl_bsh {
+
+/// What float tests between two local frames may conclude about a distance against the reach (a clearance, a radius).
+struct DistanceBand {
+  float hit = -1.0f; ///< squared float distance <= hit: within the reach
+  float miss = 0.0f; ///< squared float distance > miss: beyond it; anything between, NaN too, is undecided
+};
+
+/// Float and double arithmetic of the kernels keep their relative bounds while values stay within this range.
+inline bool inFloatRange(double value) noexcept
+{
+  return std::abs(value) <= 0x1p60;
+}
+
+/// The band where a vector is known within `error`: a hit needs a length of at most low_d, a miss one above high_d.
+/// Squared float distances err by less than 6 u. All in the frame's units; error is finite and >= 0.
+inline DistanceBand distanceBand(double low_d, double high_d, double error) noexcept
+{
+  DistanceBand band;
+  const double low = (low_d - error) - 0x1p-52 * (low_d + error);
+  const double hit = (1.0 - 6 * kFloatUnit) * low * low - 0x1p-124;
+  band.hit = low > 0.0 && hit >= 0.0 ? std::min(roundDown(hit), std::numeric_limits<float>::max()) : -1.0f;
+  const double high = (high_d + error) * (1.0 + 0x1p-51);
+  const double miss = (1.0 + 6 * kFloatUnit) * high * high + 0x1p-124;
+  band.miss = miss >= 3.4e38 ? std::numeric_limits<float>::infinity() : roundUp(miss);
+  return band;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What queries for neighbours share below their public face: memory kept from query to query, and the last steps.
+#pragma once
+
+#include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/query/neighbors.h>
+
+namespace pcl_bsh {
+
+/// A list that grows but never shrinks, and is not written before it is used.
+template <class T>
+class Pile {
+public:
+  std::size_t size() const noexcept { return size_; }
+  void resize(std::size_t size) noexcept { size_ = size; } ///< @pre room() was made
+  void clear() noexcept { size_ = 0; }
+  T* data() noexcept { return items_.data(); }
+  T* end() noexcept { return items_.data() + size_; }
+  T& operator[](std::size_t i) noexcept { return items_[i]; }
+  T& back() noexcept { return items_[size_ - 1]; }
+  void pop() noexcept { --size_; }
+
+  /// Makes sure that `more` items fit behind the last one.
+  void room(std::size_t more)
+  {
+    if (size_ + more > items_.size()) items_.resize(std::max(2 * items_.size(), size_ + more + 64));
+  }
+
+  /// @pre room() was made
+  void push(const T& item) noexcept { items_[size_++] = item; }
+
+private:
+  std::vector<T> items_;
+  std::size_t size_ = 0;
+};
+
+/// A point that may be among the nearest: its squared distance lies in [low, high], in the cloud's frame.
+struct NearCandidate {
+  float low, high;
+  std::uint32_t record;
+};
+
+/// A place that the search for the nearest has yet to visit.
+struct NearEntry {
+  static constexpr std::uint32_t kNode = 0;
+
+  float gap;           ///< no point there is nearer, in the cloud's frame; may be negative
+  std::uint32_t index; ///< a node, a leaf's first point, or a voxel
+  std::uint32_t count; ///< of the leaf's points; kNode for a node
+};
+
+/// One per thread.
+struct NeighborScratch {
+  Pile<std::uint32_t> records;
+  Pile<NearCandidate> candidates;
+  Pile<NearEntry> entries;
+  Pile<std::uint64_t> keys;
+
+  static NeighborScratch& ofThisThread();
+};
+
+bool isFinite(const Point3& point) noexcept;
+void checkRadius(double radius);
+
+/// Exact: |p - q| <= radius.
+bool isWithin(const Point3& p, const Point3& q, double radius, Work& work);
+
+/// Measures scratch.records, sorts them and keeps the first `most` (0: all). Expects the DefaultFloatEnvironment.
+void deliver(const PointsView& view, const Point3& query, const RadiusOptions& options, NeighborScratch& scratch,
+             Neighbors& found, Work& work);
+
+/// One query each, arguments checked, environment set. The radius search ignores options.most.
+void findWithin(const SphereHierarchy::Storage& cloud, const Point3& query, double radius, NeighborScratch& scratch,
+                Work& work);
+bool findAny(const SphereHierarchy::Storage& cloud, const Point3& query, double radius, Work& work);
+void findNearest(const SphereHierarchy::Storage& cloud, const Point3& query, std::size_t k, double radius,
+                 NeighborScratch& scratch, Work& work);
+
+} // namespace pcl_bsh

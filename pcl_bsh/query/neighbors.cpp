@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/query/neighbors.h>
+
+#include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/query/neighbor_scratch.h>
+#include <pcl_bsh/query/query_order.h>
+
+#include <limits>
+#include <stdexcept>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
+
+/// One query of a kind, wherever it comes from: alone or in a batch.
+void search(const SphereHierarchy& cloud, const Point3& query, double radius, const RadiusOptions& options,
+            Neighbors& found, Work& work)
+{
+  NeighborScratch& scratch = NeighborScratch::ofThisThread();
+  scratch.records.clear();
+  if (isFinite(query)) {
+    if (options.most > 0)
+      findNearest(cloud.storage(), query, options.most, radius, scratch, work);
+    else
+      findWithin(cloud.storage(), query, radius, scratch, work);
+  }
+  deliver(cloud.view(), query, options, scratch, found, work);
+}
+
+void search(const SphereHierarchy& cloud, const Point3& query, std::size_t k, Neighbors& found, Work& work)
+{
+  NeighborScratch& scratch = NeighborScratch::ofThisThread();
+  scratch.records.clear();
+  if (isFinite(query) && k > 0) findNearest(cloud.storage(), query, k, kAnyDistance, scratch, work);
+  deliver(cloud.view(), query, {k, true}, scratch, found, work);
+}
+
+} // namespace
+
+std::size_t radiusSearch(const SphereHierarchy& cloud, const Point3& query, double radius, Neighbors& found,
+                         const RadiusOptions& options, Work* work)
+{
+  checkRadius(radius);
+  const DefaultFloatEnvironment environment;
+  Work unasked;
+  search(cloud, query, radius, options, found, work ? *work : unasked);
+  return found.indices.size();
+}
+
+std::size_t nearestKSearch(const SphereHierarchy& cloud, const Point3& query, std::size_t k, Neighbors& found,
+                           Work* work)
+{
+  const DefaultFloatEnvironment environment;
+  Work unasked;
+  search(cloud, query, k, found, work ? *work : unasked);
+  return found.indices.size();
+}
+
+bool anyInRadius(const SphereHierarchy& cloud, const Point3& query, double radius, Work* work)
+{
+  checkRadius(radius);
+  const DefaultFloatEnvironment environment;
+  Work unasked;
+  return isFinite(query) && findAny(cloud.storage(), query, radius, work ? *work : unasked);
+}
+
+void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius, std::vector<Neighbors>& found,
+                  const RadiusOptions& options, unsigned threads)
+{
+  checkRadius(radius);
+  found.resize(queries.size());
+  forEachQuery(cloud.storage(), queries, threads, [&](std::size_t i, const Point3& query) {
+    Work work;
+    search(cloud, query, radius, options, found[i], work);
+  });
+}
+
+void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k,
+                    std::vector<Neighbors>& found, unsigned threads)
+{
+  found.resize(queries.size());
+  forEachQuery(cloud.storage(), queries, threads, [&](std::size_t i, const Point3& query) {
+    Work work;
+    search(cloud, query, k, found[i], work);
+  });
+}
+
+std::vector<std::uint8_t> anyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
+                                      unsigned threads)
+{
+  checkRadius(radius);
+  std::vector<std::uint8_t> flags(queries.size());
+  forEachQuery(cloud.storage(), queries, threads, [&](std::size_t i, const Point3& query) {
+    Work work;
+    flags[i] = isFinite(query) && findAny(cloud.storage(), query, radius, work) ? 1 : 0;
+  });
+  return flags;
+}
+
+std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, unsigned threads)
+{
+  if (!balls.radii) throw std::invalid_argument("balls: the view has no radii: give one per record");
+  for (std::size_t i = 0; i < balls.size(); ++i) checkRadius(balls.radius(balls.record(i)));
+  std::vector<std::uint8_t> flags(balls.size());
+  forEachQuery(cloud.storage(), balls, threads, [&](std::size_t i, const Point3& center) {
+    Work work;
+    flags[i] = isFinite(center) && findAny(cloud.storage(), center, balls.radius(balls.record(i)), work) ? 1 : 0;
+  });
+  return flags;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The neighbours of a point, as pcl::search asks for them: within a radius, the k nearest, in a box.
+//
+//   SphereHierarchy scan(viewOf(xyz, n));
+//   Neighbors found;
+//   nearestKSearch(scan, {x, y, z}, 8, found);      // found.indices, found.squared_distances: nearest first
+//   radiusSearch(scan, {x, y, z}, 0.1, found);      // |p - q| <= 0.1
+//   bool near = anyInRadius(scan, {x, y, z}, 0.1);
+//
+// Who is a neighbour, and in which order, is what exact arithmetic on the given numbers says: by ascending distance,
+// equal distances by ascending record number. Radii that the cloud's points may have play no part. A query that is not
+// finite has no neighbour; nor has anything in an empty cloud. Voxels are built as queries visit them. Several threads
+// may query one hierarchy at once.
+#pragma once
+
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/query/result.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// The answer to one query. Vectors that come with memory are filled without allocating.
+struct Neighbors {
+  std::vector<std::int32_t> indices;    ///< record numbers of the cloud's view
+  std::vector<float> squared_distances; ///< one per index: |p - q|^2, rounded once, to the nearest float
+};
+
+struct RadiusOptions {
+  std::size_t most = 0; ///< only so many, the nearest ones; 0: all
+  bool sorted = true;   ///< false: in any order, but always the same one
+};
+
+/// All points with |p - query| <= radius. @return how many.
+/// @param work when given, what the query cost is added: a node or leaf pair is one node or leaf against the query.
+/// @throws std::invalid_argument when the radius is negative or NaN. Infinity is a radius.
+std::size_t radiusSearch(const SphereHierarchy& cloud, const Point3& query, double radius, Neighbors& found,
+                         const RadiusOptions& options = {}, Work* work = nullptr);
+
+/// The k nearest points, or all when there are fewer. @return how many. `work` as above.
+std::size_t nearestKSearch(const SphereHierarchy& cloud, const Point3& query, std::size_t k, Neighbors& found,
+                           Work* work = nullptr);
+
+/// Does any point lie within the radius? Throws as radiusSearch() does. `work` as above.
+bool anyInRadius(const SphereHierarchy& cloud, const Point3& query, double radius, Work* work = nullptr);
+
+/// The points with low <= p <= high on each axis, by ascending record number. @return how many. `work` as above.
+/// @throws std::invalid_argument when a bound is NaN. Infinite bounds are bounds; low above high is an empty box.
+std::size_t boxSearch(const SphereHierarchy& cloud, const Point3& low, const Point3& high,
+                      std::vector<std::int32_t>& indices, Work* work = nullptr);
+
+/// The same for many queries at once, shared among threads and taken in an order that visits neighbouring places one
+/// after another. found[i] belongs to the i-th point that the view of queries names: bit for bit what the single query
+/// gives. @param threads 0: all of the machine's. @throws as the single query does.
+void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius, std::vector<Neighbors>& found,
+                  const RadiusOptions& options = {}, unsigned threads = 1);
+void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k,
+                    std::vector<Neighbors>& found, unsigned threads = 1);
+
+/// One flag per query, 1 = some point lies within the radius.
+std::vector<std::uint8_t> anyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
+                                      unsigned threads = 1);
+
+/// One flag per ball, 1 = some point lies in it, its surface included. The view's radii are the balls'.
+/// @throws std::invalid_argument when the view has no radii, or one of them is negative or NaN.
+std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, unsigned threads = 1);
+
+} // namespace pcl_bsh

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many queries in an order that visits neighbouring places one after another, so that what one query has brought into
+// the caches serves the next.
+#pragma once
+
+#include <pcl_bsh/hierarchy/parallel.h>
+#include <pcl_bsh/hierarchy/storage.h>
+
+namespace pcl_bsh {
+
+/// The numbers [0, queries.size()) by the Morton code of the query's place in the cloud's bounds; queries that are not
+/// finite come last.
+std::vector<std::uint32_t> queryOrder(const SphereHierarchy::Storage& cloud, const PointsView& queries);
+
+/// Calls body(i, point) for the i-th point that the view names, for all of them, in the DefaultFloatEnvironment.
+template <class Body>
+void forEachQuery(const SphereHierarchy::Storage& cloud, const PointsView& queries, unsigned threads, const Body& body)
+{
+  constexpr std::size_t kShare = 256; // enough to make up for handing it to a thread, few enough to share out evenly
+  const DefaultFloatEnvironment environment;
+  const std::vector<std::uint32_t> order = queryOrder(cloud, queries);
+  parallelFor((order.size() + kShare - 1) / kShare, threadCount(threads), [&](std::size_t share) {
+    const std::size_t end = std::min(order.size(), (share + 1) * kShare);
+    for (std::size_t k = share * kShare; k < end; ++k) body(order[k], queries.point(queries.record(order[k])));
+  });
+}
+
+} // namespace pcl_bsh
