@@ -14,7 +14,7 @@ namespace {
 constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
 
 /// One query of a kind, wherever it comes from: alone or in a batch.
-void search(const SphereHierarchy& cloud, const Point3& query, double radius, const RadiusOptions& options,
+void answer(const SphereHierarchy& cloud, const Point3& query, double radius, const RadiusOptions& options,
             Neighbors& found, Work& work)
 {
   NeighborScratch& scratch = NeighborScratch::ofThisThread();
@@ -28,7 +28,7 @@ void search(const SphereHierarchy& cloud, const Point3& query, double radius, co
   deliver(cloud.view(), query, options, scratch, found, work);
 }
 
-void search(const SphereHierarchy& cloud, const Point3& query, std::size_t k, Neighbors& found, Work& work)
+void answer(const SphereHierarchy& cloud, const Point3& query, std::size_t k, Neighbors& found, Work& work)
 {
   NeighborScratch& scratch = NeighborScratch::ofThisThread();
   scratch.records.clear();
@@ -44,7 +44,7 @@ std::size_t radiusSearch(const SphereHierarchy& cloud, const Point3& query, doub
   checkRadius(radius);
   const DefaultFloatEnvironment environment;
   Work unasked;
-  search(cloud, query, radius, options, found, work ? *work : unasked);
+  answer(cloud, query, radius, options, found, work ? *work : unasked);
   return found.indices.size();
 }
 
@@ -53,7 +53,7 @@ std::size_t nearestKSearch(const SphereHierarchy& cloud, const Point3& query, st
 {
   const DefaultFloatEnvironment environment;
   Work unasked;
-  search(cloud, query, k, found, work ? *work : unasked);
+  answer(cloud, query, k, found, work ? *work : unasked);
   return found.indices.size();
 }
 
@@ -72,7 +72,7 @@ void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, doubl
   found.resize(queries.size());
   forEachQuery(cloud.storage(), queries, threads, [&](std::size_t i, const Point3& query) {
     Work work;
-    search(cloud, query, radius, options, found[i], work);
+    answer(cloud, query, radius, options, found[i], work);
   });
 }
 
@@ -82,7 +82,7 @@ void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std
   found.resize(queries.size());
   forEachQuery(cloud.storage(), queries, threads, [&](std::size_t i, const Point3& query) {
     Work work;
-    search(cloud, query, k, found[i], work);
+    answer(cloud, query, k, found[i], work);
   });
 }
 

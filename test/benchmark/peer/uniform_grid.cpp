@@ -89,29 +89,37 @@ bool UniformGrid::columnHasNear(std::size_t column, const std::array<int, 2>& fa
   return false;
 }
 
-bool UniformGrid::near(const Point& point, float d, float squared_d) const
+UniformGrid::Reach UniformGrid::reachOf(const Point& point, float d) const
 {
+  Reach reach;
+  reach.empty = sorted_.empty();
   const auto query = coordinates(point, axis_);
-  std::array<std::array<int, 2>, 3> reach;
-  std::array<int, 3> home;
-  for (std::size_t k = 0; k < 3; ++k) {
+  for (std::size_t k = 0; k < 3 && !reach.empty; ++k) {
     const float position = (query[k] - origin_[k]) * inverse_edge_;
     const float slack = d * inverse_edge_ * 1.00001f + 1e-5f;
     const auto last = static_cast<float>(size_[k] - 1);
-    if (position + slack < 0.0f || position - slack > last + 1.0f) return false;
-    reach[k][0] = static_cast<int>(std::max(position - slack, 0.0f));
-    reach[k][1] = static_cast<int>(std::min(position + slack, last));
-    home[k] = static_cast<int>(std::min(std::max(position, 0.0f), last));
+    reach.empty = position + slack < 0.0f || position - slack > last + 1.0f;
+    reach.cell[k][0] = static_cast<int>(std::max(position - slack, 0.0f));
+    reach.cell[k][1] = static_cast<int>(std::min(position + slack, last));
+    reach.home[k] = static_cast<int>(std::min(std::max(position, 0.0f), last));
   }
+  return reach;
+}
+
+bool UniformGrid::near(const Point& point, float d, float squared_d) const
+{
+  const Reach reach = reachOf(point, d);
+  if (reach.empty) return false;
   const auto column = [&](int s, int m) {
     return static_cast<std::size_t>(s) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(m);
   };
   const bool home_first = tuning_.craft == GridCraft::crafted;
-  if (home_first && columnHasNear(column(home[0], home[1]), reach[2], point, squared_d)) return true;
-  for (int s = reach[0][0]; s <= reach[0][1]; ++s) {
-    for (int m = reach[1][0]; m <= reach[1][1]; ++m) {
-      if (home_first && s == home[0] && m == home[1]) continue;
-      if (columnHasNear(column(s, m), reach[2], point, squared_d)) return true;
+  const auto& [slow, middle, fast] = reach.cell;
+  if (home_first && columnHasNear(column(reach.home[0], reach.home[1]), fast, point, squared_d)) return true;
+  for (int s = slow[0]; s <= slow[1]; ++s) {
+    for (int m = middle[0]; m <= middle[1]; ++m) {
+      if (home_first && s == reach.home[0] && m == reach.home[1]) continue;
+      if (columnHasNear(column(s, m), fast, point, squared_d)) return true;
     }
   }
   return false;
