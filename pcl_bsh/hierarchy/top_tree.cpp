@@ -4,6 +4,7 @@
 #include <pcl_bsh/hierarchy/storage.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace pcl_bsh {
@@ -29,28 +30,45 @@ public:
   std::vector<Node> nodes;
 
 private:
-  /// The node over voxels [begin, end): its children are the octree cells in which their keys first differ.
+  /// The node over voxels [begin, end). Its children are cells of a binary octree: the fullest one is halved, where its
+  /// keys first differ, until there are eight.
   std::uint32_t cut(std::uint32_t begin, std::uint32_t end)
   {
     const auto node = static_cast<std::uint32_t>(nodes.size());
     nodes.emplace_back();
-    nodes[node].count = 0;
-    const std::uint64_t difference = voxels_[begin].key ^ voxels_[end - 1].key;
-    const unsigned shift = difference == 0 ? 0 : static_cast<unsigned>(63 - __builtin_clzll(difference)) / 3 * 3;
-    for (std::uint32_t from = begin; from < end;) {
-      std::uint32_t to = from + 1;
-      while (to < end && voxels_[to].key >> shift == voxels_[from].key >> shift) ++to;
+    std::array<std::uint32_t, kNodeChildren + 1> starts = {begin, end};
+    std::uint32_t count = 1;
+    while (count < kNodeChildren) {
+      std::uint32_t fullest = 0;
+      for (std::uint32_t i = 1; i < count; ++i)
+        if (starts[i + 1] - starts[i] > starts[fullest + 1] - starts[fullest]) fullest = i;
+      if (starts[fullest + 1] - starts[fullest] == 1) break;
+      const std::uint32_t middle = halve(starts[fullest], starts[fullest + 1]);
+      std::copy_backward(starts.begin() + fullest + 1, starts.begin() + count + 1, starts.begin() + count + 2);
+      starts[fullest + 1] = middle;
+      ++count;
+    }
+    nodes[node].count = count;
+    nodes[node].begin[0] = begin;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t from = starts[i], to = starts[i + 1];
       const std::uint32_t below = to - from == 1 ? Node::kLeaf : cut(from, to);
-      const std::uint32_t i = nodes[node].count++;
-      nodes[node].begin[i] = from;
       nodes[node].begin[i + 1] = to;
       nodes[node].child[i] = below;
       nodes[node].lowest[i] = lowestRecord(from, to);
       fitSphere(nodes[node], i);
-      from = to;
     }
     nodes[node].clearUnused();
     return node;
+  }
+
+  /// Where the highest bit in which the keys of [begin, end) differ is set for the first time.
+  std::uint32_t halve(std::uint32_t begin, std::uint32_t end) const
+  {
+    const std::uint64_t bit = std::bit_floor(voxels_[begin].key ^ voxels_[end - 1].key);
+    const Voxel* const middle =
+        std::partition_point(voxels_ + begin, voxels_ + end, [bit](const Voxel& v) { return (v.key & bit) == 0; });
+    return static_cast<std::uint32_t>(middle - voxels_);
   }
 
   std::uint32_t lowestRecord(std::uint32_t begin, std::uint32_t end) const

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The k nearest points: nearest children first, until nothing left can be nearer than the k-th. Float arithmetic keeps
-// whatever may be among them; who is, the original coordinates say at the end.
+// The k nearest points: a guess bounds their distance, then a descent shrinks the bound as it finds points within.
+// Float arithmetic keeps whatever may be among them; who is, the original coordinates say at the end.
 #include <pcl_bsh/geometry/point_frame.h>
 #include <pcl_bsh/query/neighbor_scratch.h>
 
@@ -29,12 +29,13 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// With rho the frame's error and any e > 0, (sqrt(s) + rho)^2 <= s (1 + e) + rho^2 (1 + 1/e), and likewise below.
 /// Here e = 2^-20, and 2^-19 pays for float arithmetic as well.
 struct NearFrame {
-  NearFrame(const LocalFrame& frame, const Point3& query, double cloud_unit)
-  : point(frame, query),
-    unit(static_cast<float>(point.unit / cloud_unit)),
-    error(static_cast<float>(point.error) * (1.0f + 0x1p-20f))
+  NearFrame(const PointFrame& point, double cloud_unit)
+  : at{point.at[0], point.at[1], point.at[2]},
+    error(static_cast<float>(point.error))
   {
-    const double scale = (point.unit / cloud_unit) * (point.unit / cloud_unit);
+    const double unit = point.unit == cloud_unit ? 1.0 : point.unit / cloud_unit;
+    const double scale = unit * unit;
+    inverse_unit = static_cast<float>(1.0 / unit);
     below = static_cast<float>(scale) * (1.0f - 0x1p-19f);
     above = static_cast<float>(scale) * (1.0f + 0x1p-19f);
     slack = static_cast<float>(scale * point.error * point.error * 0x1p20) * (1.0f + 0x1p-15f) + 0x1p-100f;
@@ -44,8 +45,14 @@ struct NearFrame {
   /// Squared float distances above this are beyond `bound`.
   float miss(float bound) const { return (bound + slack) / below * (1.0f + 0x1p-20f); }
 
-  PointFrame point;
-  float unit, error, below, above, slack;
+  /// Spheres farther than this and their radius are beyond `distance`.
+  Ball ball(float distance) const
+  {
+    return {at.x, at.y, at.z, (distance * inverse_unit + error) * (1.0f + 0x1p-20f), -1.0f};
+  }
+
+  Point at;
+  float error, inverse_unit, below, above, slack;
 };
 
 class NearestWalk {
@@ -56,126 +63,146 @@ public:
     query_(query),
     k_(std::min(k, cloud.size)),
     radius_(radius),
-    candidates_(scratch.candidates),
-    entries_(scratch.entries),
     records_(scratch.records),
+    highs_(scratch.squared),
     work_(work)
   {
-    candidates_.clear();
-    entries_.clear();
     records_.clear();
+    highs_.clear();
   }
 
   void run()
   {
     if (k_ == 0) return;
+    wanted_ = k_;
     const double reach = radius_ / cloud_.frame.unit;
     lower(roundUp(reach * reach * (1.0 + 0x1p-50) + 0x1p-140));
-    wanted_ = k_;
-    const NearFrame frame(cloud_.frame, query_, cloud_.frame.unit);
-    if (frame.point.separates(cloud_.frame, reach)) return;
-    open(frame, cloud_.top[0]);
-    while (entries_.size() > 0) {
-      const NearEntry entry = entries_.back();
-      entries_.pop();
-      if (entry.gap > distance_) continue;
-      if (entry.count == NearEntry::kNode)
-        open(frame, cloud_.top[entry.index]);
-      else
-        visitVoxel(entry.index);
-    }
+    const PointFrame point(cloud_.frame, query_);
+    if (point.separates(cloud_.frame, reach)) return;
+    const NearFrame frame(point, cloud_.frame.unit);
+    guess(frame);
+    visitAbove(frame, 0);
     collect();
   }
 
 private:
-  void visitVoxel(std::uint32_t index)
+  static SphereLanes spheresOf(const Node& node) { return {node.x, node.y, node.z, node.r, 1.0f}; }
+
+  /// Goes straight down to where the nearest points most likely are, and bounds their distances by those of at least k
+  /// points found there.
+  void guess(const NearFrame& above)
   {
-    const Voxel& voxel = cloud_.voxels[index];
-    const NearFrame frame(voxel.frame, query_, cloud_.frame.unit);
-    if (frame.point.separates(voxel.frame, static_cast<double>(distance_) / static_cast<double>(frame.unit))) return;
-    cloud_.built(index, work_.voxels_built);
-    const std::size_t floor = entries_.size();
-    open(frame, voxel.nodes[0]);
-    while (entries_.size() > floor) {
-      const NearEntry entry = entries_.back();
-      entries_.pop();
-      if (entry.gap > distance_) continue;
-      if (entry.count == NearEntry::kNode)
-        open(frame, voxel.nodes[entry.index]);
+    std::uint32_t index = 0, child = likeliestSphere(spheresOf(cloud_.top[0]), above.at);
+    while (!cloud_.top[index].isLeaf(child)) {
+      index = cloud_.top[index].child[child];
+      child = likeliestSphere(spheresOf(cloud_.top[index]), above.at);
+    }
+    const Voxel& voxel = cloud_.built(cloud_.top[index].begin[child], work_.voxels_built);
+    const NearFrame frame(PointFrame(voxel.frame, query_), cloud_.frame.unit);
+    std::uint32_t begin = 0, end = voxel.count;
+    for (index = 0;;) {
+      const Node& node = voxel.nodes[index];
+      child = likeliestSphere(spheresOf(node), frame.at);
+      if (node.points(child) < k_) break;
+      begin = node.begin[child], end = node.begin[child + 1];
+      if (node.isLeaf(child)) break;
+      index = node.child[child];
+    }
+    const std::size_t count = end - begin;
+    if (count < k_ || count > kMostGuessed + 4 * k_) return;
+    highs_.room(count + kLeafPoints);
+    for (std::size_t i = 0; i < count; i += kLeafPoints) {
+      alignas(64) float squared[kLeafPoints];
+      leafSquaredDistances(voxel.x() + begin + i, voxel.y() + begin + i, voxel.z() + begin + i, frame.at.x, frame.at.y,
+                           frame.at.z, squared);
+      for (std::size_t j = 0; j < kLeafPoints; ++j) highs_.end()[i + j] = squared[j] * frame.above + frame.slack;
+    }
+    tighten(highs_.data(), count);
+  }
+
+  void visitAbove(const NearFrame& frame, std::uint32_t index)
+  {
+    const Node& node = cloud_.top[index];
+    work_.node_pairs += node.count;
+    for (std::uint32_t near = spheresNear(spheresOf(node), frame.ball(distance_), nullptr) & firstBits(node.count);
+         near != 0; near &= near - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
+      if (node.isLeaf(i))
+        visitVoxel(node.begin[i]);
       else
-        compare(frame, voxel, entry.index, entry.count);
+        visitAbove(frame, node.child[i]);
     }
   }
 
-  /// Puts the children that may matter on the pile, the nearest one on top.
-  void open(const NearFrame& frame, const Node& node)
+  void visitVoxel(std::uint32_t index)
   {
+    const LocalFrame& local = cloud_.voxels[index].frame;
+    const PointFrame point(local, query_);
+    const NearFrame frame(point, cloud_.frame.unit);
+    if (point.separates(local, static_cast<double>(distance_) * static_cast<double>(frame.inverse_unit))) return;
+    most_slack_ = std::max(most_slack_, frame.slack);
+    visit(frame, cloud_.built(index, work_.voxels_built), 0);
+  }
+
+  void visit(const NearFrame& frame, const Voxel& voxel, std::uint32_t index)
+  {
+    const Node& node = voxel.nodes[index];
     work_.node_pairs += node.count;
-    alignas(32) float gaps[kLanes];
-    std::uint32_t near = sphereGaps({node.x, node.y, node.z, node.r, 1.0f}, frame.point.at[0], frame.point.at[1],
-                                    frame.point.at[2], frame.error, frame.unit, distance_, gaps) &
-                         firstBits(node.count);
-    entries_.room(kLanes);
-    NearEntry* const from = entries_.end();
-    NearEntry* end = from;
-    for (; near != 0; near &= near - 1) {
+    for (std::uint32_t near = spheresNear(spheresOf(node), frame.ball(distance_), nullptr) & firstBits(node.count);
+         near != 0; near &= near - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
-      const NearEntry entry = node.isLeaf(i) ? NearEntry{gaps[i], node.begin[i], node.points(i)}
-                                             : NearEntry{gaps[i], node.child[i], NearEntry::kNode};
-      NearEntry* place = end++;
-      for (; place > from && place[-1].gap < entry.gap; --place) *place = place[-1];
-      *place = entry;
+      if (node.isLeaf(i))
+        compare(frame, voxel, node.begin[i], node.points(i));
+      else
+        visit(frame, voxel, node.child[i]);
     }
-    entries_.resize(entries_.size() + static_cast<std::size_t>(end - from));
   }
 
   void compare(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t count)
   {
     ++work_.leaf_pairs;
     alignas(64) float squared[kLeafPoints];
-    leafSquaredDistances(voxel.x() + begin, voxel.y() + begin, voxel.z() + begin, frame.point.at[0], frame.point.at[1],
-                         frame.point.at[2], squared);
+    leafSquaredDistances(voxel.x() + begin, voxel.y() + begin, voxel.z() + begin, frame.at.x, frame.at.y, frame.at.z,
+                         squared);
+    const std::uint32_t* const records = voxel.records() + begin;
+    const std::size_t before = records_.size();
     // Of a crowded place one point answers for all; among equals the smallest record numbers count, and come first.
     const bool coincident = count > kMaxLeafPoints;
-    const std::uint32_t near = ~above(squared, frame.miss(bound_)) & firstBits(coincident ? 1 : count);
-    if (near == 0) return;
-    const std::uint32_t* const records = voxel.records() + begin;
-    if (coincident) {
-      const std::size_t same = std::min<std::size_t>(count, k_);
-      candidates_.room(same);
-      for (std::size_t i = 0; i < same; ++i) candidates_.push(candidate(frame, squared[0], records[i]));
+    const std::size_t same = coincident ? std::min<std::size_t>(count, k_) : 0;
+    records_.room(same + kLeafPoints);
+    highs_.room(same + kLeafPoints);
+    std::size_t found = appendNear(squared, records, coincident ? 1 : count, frame.miss(bound_), frame.above,
+                                   frame.slack, highs_.end(), records_.end());
+    if (coincident && found > 0) {
+      std::copy_n(records, same, records_.end());
+      std::fill_n(highs_.end(), same, float{*highs_.end()});
+      found = same;
     }
-    else {
-      candidates_.room(kLeafPoints);
-      for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
-        const int i = std::countr_zero(bits);
-        candidates_.push(candidate(frame, squared[i], records[i]));
-      }
+    records_.resize(before + found);
+    highs_.resize(before + found);
+    if (records_.size() >= wanted_) {
+      tighten(highs_.data(), highs_.size());
+      wanted_ = records_.size() + std::max<std::size_t>(1, std::min<std::size_t>(k_ / 2, 16));
     }
-    if (candidates_.size() >= wanted_) tighten();
   }
 
-  static NearCandidate candidate(const NearFrame& frame, float squared, std::uint32_t record)
+  /// Lowers the bound to where k of the values lie within it: to the k-th smallest, or a little above.
+  void tighten(const float* highs, std::size_t count)
   {
-    if (frame.slack == kInfinity) return {0.0f, kInfinity, record};
-    return {squared * frame.below - frame.slack, squared * frame.above + frame.slack, record};
-  }
-
-  /// Drops candidates that k others are surely nearer than.
-  void tighten()
-  {
-    NearCandidate* const begin = candidates_.data();
-    NearCandidate* const end = candidates_.end();
-    NearCandidate* const kth = begin + (k_ - 1);
-    const auto by_high = [](const NearCandidate& x, const NearCandidate& y) { return x.high < y.high; };
-    if (k_ == 1)
-      std::iter_swap(begin, std::min_element(begin, end, by_high));
-    else
-      std::nth_element(begin, kth, end, by_high);
-    if (kth->high < bound_) lower(kth->high);
-    const auto kept = std::partition(kth, end, [this](const NearCandidate& c) { return !(c.low > bound_); });
-    candidates_.resize(static_cast<std::size_t>(kept - begin));
-    wanted_ = candidates_.size() + std::max<std::size_t>(k_ / 2, k_ == 1 ? 1 : 8);
+    if (k_ == 1) {
+      const float least = *std::min_element(highs, highs + count);
+      if (least < bound_) lower(least);
+      return;
+    }
+    float enough = std::min(bound_, *std::max_element(highs, highs + count)), few = 0.0f;
+    if (enough == kInfinity) return;
+    for (int step = 0; step < kBisections; ++step) {
+      const float middle = 0.5f * (few + enough);
+      const std::size_t within = countAtMost(highs, count, middle);
+      (within >= k_ ? enough : few) = middle;
+      if (within == k_) break;
+    }
+    if (enough < bound_ && countAtMost(highs, count, enough) >= k_) lower(enough);
   }
 
   void lower(float bound)
@@ -184,32 +211,39 @@ private:
     distance_ = std::sqrt(bound) * (1.0f + 0x1p-20f);
   }
 
+  /// Keeps the candidates that may be within the bound, and of them those within the radius.
   void collect()
   {
-    if (candidates_.size() > k_) tighten();
+    if (records_.size() > k_) tighten(highs_.data(), highs_.size());
     const double reach = radius_ / cloud_.frame.unit;
     const float surely = roundDown(std::min(reach * reach * (1.0 - 0x1p-50), 0x1p120));
-    const std::size_t count = candidates_.size();
-    records_.room(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const NearCandidate& c = candidates_[i];
-      const bool within = c.high < surely || radius_ == std::numeric_limits<double>::infinity() ||
-                          (!(c.low > bound_) && isWithin(cloud_.view.point(c.record), query_, radius_, work_));
-      if (within) records_.push(c.record);
+    const bool any_distance = radius_ == std::numeric_limits<double>::infinity();
+    // A candidate's lower bound is at least that: above / below is less than 1 + 2^-17.
+    const float miss = (bound_ + most_slack_) * (1.0f + 0x1p-17f) + most_slack_;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < records_.size(); ++i) {
+      if (highs_[i] > miss) continue;
+      const std::uint32_t record = records_[i];
+      if (any_distance || highs_[i] < surely || isWithin(cloud_.view.point(record), query_, radius_, work_))
+        records_[kept++] = record;
     }
+    records_.resize(kept);
   }
+
+  static constexpr int kBisections = 8;            ///< of the k-th smallest bound; any that is not too low will do
+  static constexpr std::size_t kMostGuessed = 128; ///< points that a first guess may look at, and four for each of k
 
   const SphereHierarchy::Storage& cloud_;
   const Point3& query_;
   const std::size_t k_;
   const double radius_;
-  Pile<NearCandidate>& candidates_;
-  Pile<NearEntry>& entries_;
-  Pile<std::uint32_t>& records_;
+  Pile<std::uint32_t>& records_; ///< points that may be among the nearest
+  Pile<float>& highs_;           ///< upper bounds of their squared distances, in the cloud's frame
   Work& work_;
-  float bound_ = kInfinity;    ///< squared; candidates that are farther do not count
+  float bound_ = kInfinity;    ///< squared; points that are farther do not count
   float distance_ = kInfinity; ///< at least its root
-  std::size_t wanted_ = 0;     ///< when so many candidates have come together, most can go
+  float most_slack_ = 0.0f;    ///< of the frames visited
+  std::size_t wanted_ = 0;     ///< candidates at which the bound is looked at again
 };
 
 } // namespace

@@ -4,10 +4,7 @@
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/squared_distance.h>
 
-#include <hwy/contrib/sort/vqsort.h>
-
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -20,20 +17,6 @@ const ExactDistance& unposed()
 {
   static const ExactDistance distance(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity());
   return distance;
-}
-
-/// A squared distance and a record as one number that sorts by the one, then by the other.
-std::uint64_t keyOf(float squared, std::uint32_t record)
-{
-  return std::uint64_t{std::bit_cast<std::uint32_t>(squared)} << 32 | record;
-}
-float squaredOf(std::uint64_t key)
-{
-  return std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32));
-}
-std::uint32_t recordOf(std::uint64_t key)
-{
-  return static_cast<std::uint32_t>(key);
 }
 
 /// PointsView::point() for one scalar type.
@@ -52,40 +35,30 @@ Point3 pointAt(const PointsView& view, std::uint32_t record)
 
 template <class T>
 void measure(const PointsView& view, const Point3& query, const std::uint32_t* records, std::size_t count,
-             std::uint64_t* keys)
+             float* squared)
 {
-  for (std::size_t i = 0; i < count; ++i)
-    keys[i] = keyOf(squaredDistanceAsFloat(pointAt<T>(view, records[i]), query), records[i]);
-}
-
-void sortKeys(std::uint64_t* keys, std::size_t count)
-{
-  constexpr std::size_t kFew = 48; // below, calling the vectorised sort costs more than it saves
-  if (count <= kFew) {
-    std::sort(keys, keys + count);
-    return;
-  }
-  thread_local const hwy::Sorter sorter;
-  sorter(keys, count, hwy::SortAscending());
+  for (std::size_t i = 0; i < count; ++i) squared[i] = squaredDistanceAsFloat(pointAt<T>(view, records[i]), query);
 }
 
 /// Squared distances that are one float need not be one number: puts those runs that begin among the first `most` in
-/// their exact order.
-void settleTies(const PointsView& view, const Point3& query, std::uint64_t* keys, std::size_t count, std::size_t most,
-                Work& work)
+/// their exact order, and equal distances in the order of their records.
+void settleTies(const PointsView& view, const Point3& query, NeighborScratch& scratch, std::size_t most, Work& work)
 {
-  const auto nearer = [&](std::uint64_t x, std::uint64_t y) {
-    const Point3 p = view.point(recordOf(x)), q = view.point(recordOf(y));
+  const auto nearer = [&](std::uint32_t x, std::uint32_t y) {
+    const Point3 p = view.point(x), q = view.point(y);
     if (p == q) return x < y;
     ++work.exact_decisions;
     const int sign = unposed().compareGaps({p, query}, {q, query});
     return sign != 0 ? sign < 0 : x < y;
   };
+  const float* const squared = scratch.squared.data();
+  std::uint32_t* const records = scratch.records.data();
+  const std::size_t count = scratch.records.size();
   for (std::size_t begin = 0; begin + 1 < count && begin < most;) {
     std::size_t end = begin + 1;
-    while (end < count && keys[end] >> 32 == keys[begin] >> 32) ++end;
-    if (end - begin > 1 && !std::is_sorted(keys + begin, keys + end, nearer))
-      std::sort(keys + begin, keys + end, nearer);
+    while (end < count && squared[end] == squared[begin]) ++end;
+    if (end - begin > 1 && !std::is_sorted(records + begin, records + end, nearer))
+      std::sort(records + begin, records + end, nearer);
     begin = end;
   }
 }
@@ -118,24 +91,20 @@ void deliver(const PointsView& view, const Point3& query, const RadiusOptions& o
              Neighbors& found, Work& work)
 {
   const std::size_t count = scratch.records.size();
-  scratch.keys.clear();
-  scratch.keys.room(count);
-  std::uint64_t* const keys = scratch.keys.data();
+  scratch.squared.clear();
+  scratch.squared.room(count);
+  scratch.squared.resize(count);
   if (view.scalar == Scalar::float32)
-    measure<float>(view, query, scratch.records.data(), count, keys);
+    measure<float>(view, query, scratch.records.data(), count, scratch.squared.data());
   else
-    measure<double>(view, query, scratch.records.data(), count, keys);
+    measure<double>(view, query, scratch.records.data(), count, scratch.squared.data());
   const std::size_t kept = options.most == 0 ? count : std::min(count, options.most);
   if (options.sorted || kept < count) {
-    sortKeys(keys, count);
-    settleTies(view, query, keys, count, kept, work);
+    sortBySquared(scratch);
+    settleTies(view, query, scratch, kept, work);
   }
-  found.indices.resize(kept);
-  found.squared_distances.resize(kept);
-  for (std::size_t i = 0; i < kept; ++i) {
-    found.indices[i] = static_cast<std::int32_t>(recordOf(keys[i]));
-    found.squared_distances[i] = squaredOf(keys[i]);
-  }
+  found.indices.assign(scratch.records.data(), scratch.records.data() + kept);
+  found.squared_distances.assign(scratch.squared.data(), scratch.squared.data() + kept);
 }
 
 } // namespace pcl_bsh

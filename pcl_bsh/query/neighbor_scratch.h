@@ -17,8 +17,6 @@ public:
   T* data() noexcept { return items_.data(); }
   T* end() noexcept { return items_.data() + size_; }
   T& operator[](std::size_t i) noexcept { return items_[i]; }
-  T& back() noexcept { return items_[size_ - 1]; }
-  void pop() noexcept { --size_; }
 
   /// Makes sure that `more` items fit behind the last one.
   void room(std::size_t more)
@@ -34,26 +32,14 @@ private:
   std::size_t size_ = 0;
 };
 
-/// A point that may be among the nearest: its squared distance lies in [low, high], in the cloud's frame.
-struct NearCandidate {
-  float low, high;
-  std::uint32_t record;
-};
-
-/// A place that the search for the nearest has yet to visit.
-struct NearEntry {
-  static constexpr std::uint32_t kNode = 0;
-
-  float gap;           ///< no point there is nearer, in the cloud's frame; may be negative
-  std::uint32_t index; ///< a node, a leaf's first point, or a voxel
-  std::uint32_t count; ///< of the leaf's points; kNode for a node
-};
-
 /// One per thread.
 struct NeighborScratch {
-  Pile<std::uint32_t> records;
-  Pile<NearCandidate> candidates;
-  Pile<NearEntry> entries;
+  Pile<std::uint32_t> records; ///< what was found
+  Pile<float> squared;         ///< how far it is: an upper bound while searching, then the value to deliver
+
+  // of sorting
+  Pile<std::uint32_t> sorted_records;
+  Pile<float> sorted_squared;
   Pile<std::uint64_t> keys;
 
   static NeighborScratch& ofThisThread();
@@ -64,6 +50,9 @@ void checkRadius(double radius);
 
 /// Exact: |p - q| <= radius.
 bool isWithin(const Point3& p, const Point3& q, double radius, Work& work);
+
+/// Sorts scratch.records by scratch.squared, its equals in any order.
+void sortBySquared(NeighborScratch& scratch);
 
 /// Measures scratch.records, sorts them and keeps the first `most` (0: all). Expects the DefaultFloatEnvironment.
 void deliver(const PointsView& view, const Point3& query, const RadiusOptions& options, NeighborScratch& scratch,

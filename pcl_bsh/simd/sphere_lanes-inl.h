@@ -12,8 +12,10 @@
 
 #include <hwy/highway.h>
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -139,26 +141,27 @@ HWY_INLINE std::uint32_t spheresNear(const SphereLanes& spheres, const Ball& bal
   return apart ^ ((1u << kLanes) - 1);
 }
 
-/// Lower bounds of the distances from a point to what eight spheres hold, and as bits: which are not above `limit`.
-/// @param error how far the point may be from (px, py, pz). @param unit a power of two that the bounds are times.
-HWY_INLINE std::uint32_t sphereGaps(const SphereLanes& spheres, float px, float py, float pz, float error, float unit,
-                                    float limit, float* gaps)
+/// The sphere in which the point's nearest neighbours are most likely found: of those around the point the one in which
+/// it lies deepest for its size, else the one whose surface is nearest.
+HWY_INLINE std::uint32_t likeliestSphere(const SphereLanes& spheres, const Point& point)
 {
   const LaneTag d;
-  std::uint32_t beyond = 0;
+  alignas(32) float rank[kLanes];
+  LaneVector best = hn::Set(d, std::numeric_limits<float>::max());
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
-    const LaneVector s = squaredNorm(hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, px)),
-                                     hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, py)),
-                                     hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, pz)));
-    // Rounding amounts to less than the margin of the two lengths that are subtracted.
-    const LaneVector nearest = hn::Mul(hn::Sqrt(s), hn::Set(d, 1.0f - kSphereMargin));
-    const LaneVector radius =
-        hn::Add(hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, 1.0f + kSphereMargin)), hn::Set(d, error));
-    const LaneVector gap = hn::Mul(hn::Sub(nearest, radius), hn::Set(d, unit));
-    hn::StoreU(gap, d, gaps + i);
-    beyond |= bitsOf(d, hn::Gt(gap, hn::Set(d, limit))) << i; // not so for NaN, which may be near
+    const LaneVector s = squaredNorm(hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, point.x)),
+                                     hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, point.y)),
+                                     hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, point.z)));
+    const LaneVector radius = hn::LoadU(d, spheres.r + i), distance = hn::Sqrt(s);
+    const LaneVector outside = hn::Sub(distance, radius), depth = hn::Sub(hn::Div(distance, radius), hn::Set(d, 1.0f));
+    const LaneVector ranks = hn::IfThenElse(hn::Gt(outside, hn::Zero(d)), outside, depth);
+    hn::Store(ranks, d, rank + i);
+    best = hn::Min(best, ranks);
   }
-  return beyond ^ ((1u << kLanes) - 1);
+  best = hn::MinOfLanes(d, best);
+  std::uint32_t lanes = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) lanes |= bitsOf(d, hn::Eq(hn::Load(d, rank + i), best)) << i;
+  return lanes == 0 ? 0 : static_cast<std::uint32_t>(std::countr_zero(lanes)); // 0 where all are NaN
 }
 
 } // namespace HWY_NAMESPACE
