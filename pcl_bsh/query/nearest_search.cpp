@@ -99,17 +99,22 @@ private:
     }
     const Voxel& voxel = cloud_.built(cloud_.top[index].begin[child], work_.voxels_built);
     const NearFrame frame(PointFrame(voxel.frame, query_), cloud_.frame.unit);
-    std::uint32_t begin = 0, end = voxel.count;
+    std::uint32_t begin = 0, end = voxel.count; // the smallest node around the query that holds k points
+    std::uint32_t begin_of_child = begin, end_of_child = end;
     for (index = 0;;) {
       const Node& node = voxel.nodes[index];
       child = likeliestSphere(spheresOf(node), frame.at);
+      begin_of_child = node.begin[child], end_of_child = node.begin[child + 1];
       if (node.points(child) < k_) break;
-      begin = node.begin[child], end = node.begin[child + 1];
+      begin = begin_of_child, end = end_of_child;
       if (node.isLeaf(child)) break;
       index = node.child[child];
     }
-    const std::size_t count = end - begin;
-    if (count < k_ || count > kMostGuessed + 4 * k_) return;
+    if (end - begin < k_) return;
+    // Points are in the order of their cells: those before and after the child's are near it too.
+    const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(end - begin, kGuessed + 2 * k_));
+    const std::uint32_t middle = begin_of_child + (end_of_child - begin_of_child) / 2;
+    begin = std::clamp(middle - std::min(middle, count / 2), begin, end - count);
     highs_.room(count + kLeafPoints);
     for (std::size_t i = 0; i < count; i += kLeafPoints) {
       alignas(64) float squared[kLeafPoints];
@@ -165,25 +170,33 @@ private:
     leafSquaredDistances(voxel.x() + begin, voxel.y() + begin, voxel.z() + begin, frame.at.x, frame.at.y, frame.at.z,
                          squared);
     const std::uint32_t* const records = voxel.records() + begin;
-    const std::size_t before = records_.size();
     // Of a crowded place one point answers for all; among equals the smallest record numbers count, and come first.
     const bool coincident = count > kMaxLeafPoints;
     const std::size_t same = coincident ? std::min<std::size_t>(count, k_) : 0;
     records_.room(same + kLeafPoints);
     highs_.room(same + kLeafPoints);
-    std::size_t found = appendNear(squared, records, coincident ? 1 : count, frame.miss(bound_), frame.above,
-                                   frame.slack, highs_.end(), records_.end());
-    if (coincident && found > 0) {
-      std::copy_n(records, same, records_.end());
-      std::fill_n(highs_.end(), same, float{*highs_.end()});
-      found = same;
+    std::uint32_t near = ~above(squared, frame.miss(bound_)) & firstBits(coincident ? 1 : count);
+    if (near == 0) return;
+    if (coincident) {
+      const float high = squared[0] * frame.above + frame.slack;
+      for (std::size_t i = 0; i < same; ++i) note(records[i], high);
     }
-    records_.resize(before + found);
-    highs_.resize(before + found);
+    else {
+      for (; near != 0; near &= near - 1) {
+        const int i = std::countr_zero(near);
+        note(records[i], squared[i] * frame.above + frame.slack);
+      }
+    }
     if (records_.size() >= wanted_) {
       tighten(highs_.data(), highs_.size());
       wanted_ = records_.size() + std::max<std::size_t>(1, std::min<std::size_t>(k_ / 2, 16));
     }
+  }
+
+  void note(std::uint32_t record, float high)
+  {
+    records_.push(record);
+    highs_.push(high);
   }
 
   /// Lowers the bound to where k of the values lie within it: to the k-th smallest, or a little above.
@@ -194,7 +207,7 @@ private:
       if (least < bound_) lower(least);
       return;
     }
-    float enough = std::min(bound_, *std::max_element(highs, highs + count)), few = 0.0f;
+    float enough = bound_ < kInfinity ? bound_ : largestOf(highs, count), few = 0.0f;
     if (enough == kInfinity) return;
     for (int step = 0; step < kBisections; ++step) {
       const float middle = 0.5f * (few + enough);
@@ -230,8 +243,8 @@ private:
     records_.resize(kept);
   }
 
-  static constexpr int kBisections = 8;            ///< of the k-th smallest bound; any that is not too low will do
-  static constexpr std::size_t kMostGuessed = 128; ///< points that a first guess may look at, and four for each of k
+  static constexpr int kBisections = 7;       ///< of the k-th smallest bound; any that is not too low will do
+  static constexpr std::size_t kGuessed = 16; ///< points that a first guess looks at, and two for each of k
 
   const SphereHierarchy::Storage& cloud_;
   const Point3& query_;

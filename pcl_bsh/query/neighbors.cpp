@@ -86,8 +86,8 @@ void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std
   });
 }
 
-std::vector<std::uint8_t> anyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
-                                      unsigned threads)
+std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
+                                          unsigned threads)
 {
   checkRadius(radius);
   std::vector<std::uint8_t> flags(queries.size());

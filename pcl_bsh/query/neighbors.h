@@ -60,8 +60,8 @@ void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std
                     std::vector<Neighbors>& found, unsigned threads = 1);
 
 /// One flag per query, 1 = some point lies within the radius.
-std::vector<std::uint8_t> anyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
-                                      unsigned threads = 1);
+std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
+                                          unsigned threads = 1);
 
 /// One flag per ball, 1 = some point lies in it, its surface included. The view's radii are the balls'.
 /// @throws std::invalid_argument when the view has no radii, or one of them is negative or NaN.

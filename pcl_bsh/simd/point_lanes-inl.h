@@ -148,21 +148,17 @@ HWY_INLINE void leafSquaredDistances(const float* x, const float* y, const float
   }
 }
 
-/// Appends scale * squared[i] + slack and records[i] of those among a leaf's first `count` points whose squared
-/// distance is not above `limit`. @return how many; sixteen must fit.
-HWY_INLINE std::size_t appendNear(const float* squared, const std::uint32_t* records, std::size_t count, float limit,
-                                  float scale, float slack, float* out_values, std::uint32_t* out_records)
+/// Largest of `count` > 0 values.
+HWY_INLINE float largestOf(const float* values, std::size_t count)
 {
   const LaneTag d;
-  const hn::RebindToUnsigned<LaneTag> du;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const LaneVector s = hn::Load(d, squared + i);
-    const auto near = hn::And(hn::Not(hn::Gt(s, hn::Set(d, limit))), hn::FirstN(d, count - i));
-    hn::CompressStore(hn::LoadU(du, records + i), hn::RebindMask(du, near), du, out_records + kept);
-    kept += hn::CompressStore(hn::Add(hn::Mul(s, hn::Set(d, scale)), hn::Set(d, slack)), near, d, out_values + kept);
-  }
-  return kept;
+  const std::size_t step = hn::Lanes(d);
+  LaneVector most = hn::Set(d, values[0]);
+  std::size_t i = 0;
+  for (; i + step <= count; i += step) most = hn::Max(most, hn::LoadU(d, values + i));
+  float largest = hn::GetLane(hn::MaxOfLanes(d, most));
+  for (; i < count; ++i) largest = std::max(largest, values[i]);
+  return largest;
 }
 
 /// How many of `count` values are at most `limit`.

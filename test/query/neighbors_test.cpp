@@ -144,5 +144,193 @@ TEST(Neighbors, LikeBruteForceOnLargerClouds)
   }
 }
 
+/// A grid of doubles where float32 would see nothing but rounding.
+std::vector<double> georeferencedGrid()
+{
+  std::vector<double> xyz;
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j) xyz.insert(xyz.end(), {500000.003 + 0.01 * i, 5400000.26 + 0.01 * j, 100.0});
+  return xyz;
+}
+
+TEST(Neighbors, Float64Georeferenced)
+{
+  const std::vector<double> xyz = georeferencedGrid();
+  const SphereHierarchy cloud(viewOf(xyz.data(), xyz.size() / 3));
+  Neighbors found, expected;
+  for (std::size_t i = 0; i < xyz.size(); i += 21) {
+    const Point3 q = {xyz[i], xyz[i + 1], xyz[i + 2]};
+    for (const double radius : {0.01, 0.03, 0.05}) {
+      radiusSearch(cloud, q, radius, found);
+      brute_force::radiusSearch(cloud, q, radius, expected);
+      expectEqual(found, expected);
+    }
+    nearestKSearch(cloud, q, 9, found);
+    brute_force::nearestKSearch(cloud, q, 9, expected);
+    expectEqual(found, expected);
+  }
+}
+
+/// Clouds so small, so large or so far away that squares leave float, or even double.
+TEST(Neighbors, ExtremeCoordinates)
+{
+  for (const double scale : {1e-200, 1e-40, 1e-23, 1e15, 1e30, 1e100}) {
+    std::vector<double> xyz;
+    for (int i = 0; i < 300; ++i)
+      for (const int k : {7, 11, 13}) xyz.push_back(scale * ((i * k) % 17));
+    const SphereHierarchy cloud(viewOf(xyz.data(), xyz.size() / 3));
+    Neighbors found, expected;
+    for (const Point3& q :
+         {Point3{scale, 2 * scale, 3 * scale}, Point3{0, 0, 0}, Point3{1e3, 0, 0}, Point3{-1e90, 0, 0}}) {
+      for (const double radius : {0.0, 5 * scale, 1e3, kInfinity}) {
+        EXPECT_EQ(radiusSearch(cloud, q, radius, found), brute_force::radiusSearch(cloud, q, radius, expected));
+        expectEqual(found, expected);
+        EXPECT_EQ(anyInRadius(cloud, q, radius), !expected.indices.empty());
+      }
+      nearestKSearch(cloud, q, 20, found);
+      brute_force::nearestKSearch(cloud, q, 20, expected);
+      expectEqual(found, expected);
+      if (HasFailure()) FAIL() << "scale " << scale;
+    }
+  }
+}
+
+TEST(Neighbors, ManyPointsInOnePlace)
+{
+  const std::vector<float> xyz(3 * 100000, 1.25f);
+  const SphereHierarchy cloud(viewOf(xyz.data(), xyz.size() / 3));
+  Neighbors found;
+  Work work;
+  EXPECT_EQ(radiusSearch(cloud, {1.25, 1.25, 1.25}, 0.0, found, {}, &work), 100000u);
+  EXPECT_TRUE(std::is_sorted(found.indices.begin(), found.indices.end()));
+  EXPECT_EQ(nearestKSearch(cloud, {0, 0, 0}, 3, found, &work), 3u);
+  EXPECT_EQ(found.indices, (std::vector<std::int32_t>{0, 1, 2}));
+  EXPECT_LE(work.leaf_pairs, 2u);
+}
+
+TEST(Neighbors, QueriesThatAreNotFinite)
+{
+  const float xyz[] = {0, 0, 0};
+  const SphereHierarchy cloud(viewOf(xyz, 1)), empty(viewOf(xyz, 0));
+  Neighbors found;
+  for (const Point3& q : {Point3{kNan, 0, 0}, Point3{0, kInfinity, 0}}) {
+    EXPECT_EQ(radiusSearch(cloud, q, kInfinity, found), 0u);
+    EXPECT_EQ(nearestKSearch(cloud, q, 1, found), 0u);
+    EXPECT_FALSE(anyInRadius(cloud, q, kInfinity));
+  }
+  found.indices = {1};
+  EXPECT_EQ(nearestKSearch(empty, {0, 0, 0}, 1, found), 0u);
+  EXPECT_TRUE(found.indices.empty());
+}
+
+TEST(Neighbors, SaysWhatIsWrong)
+{
+  const float xyz[] = {0, 0, 0};
+  const SphereHierarchy cloud(viewOf(xyz, 1));
+  Neighbors found;
+  std::vector<Neighbors> many;
+  std::vector<std::int32_t> indices;
+  const auto refused = [](const char* text) { return ThrowsMessage<std::invalid_argument>(HasSubstr(text)); };
+  EXPECT_THAT([&] { radiusSearch(cloud, {0, 0, 0}, -1.0, found); }, refused("radius: -1"));
+  EXPECT_THAT([&] { anyInRadius(cloud, {0, 0, 0}, kNan); }, refused("radius: "));
+  EXPECT_THAT([&] { boxSearch(cloud, {kNan, 0, 0}, {1, 1, 1}, indices); }, refused("a bound is NaN"));
+  EXPECT_THAT([&] { anyInBalls(cloud, viewOf(xyz, 1)); }, refused("no radii"));
+  EXPECT_THAT([&] { nearestKSearch(cloud, viewOf(static_cast<const float*>(nullptr), 2), 1, many); },
+              refused("data is null"));
+}
+
+TEST(Neighbors, VoxelsAreBuiltWhereQueriesGo)
+{
+  std::vector<float> xyz;
+  for (int i = 0; i < 100000; ++i) xyz.insert(xyz.end(), {0.001f * static_cast<float>(i), 0.0f, 0.0f});
+  const SphereHierarchy cloud(viewOf(xyz.data(), xyz.size() / 3));
+  Neighbors found;
+  radiusSearch(cloud, {0, 0, 0}, 0.01, found);
+  nearestKSearch(cloud, {0, 0, 0}, 5, found);
+  EXPECT_FALSE(anyInRadius(cloud, {0, 1e3, 0}, 1.0));
+  const HierarchyStatistics statistics = cloud.statistics();
+  EXPECT_GE(statistics.voxels, 10u);
+  EXPECT_LE(statistics.voxels_built, 2u);
+}
+
+TEST(Neighbors, BatchAsOneByOneForAnyThreads)
+{
+  for (const std::uint64_t seed : {3u, 17u, 2000u}) {
+    Questions ask(seed, 3000);
+    const SphereHierarchy cloud(ask.view());
+    std::vector<double> queries;
+    std::vector<float> radii;
+    for (int i = 0; i < 1000; ++i) {
+      const Point3 q = i == 500 ? Point3{kNan, 0, 0} : ask.query();
+      queries.insert(queries.end(), q.begin(), q.end());
+      radii.push_back(static_cast<float>(ask.scale * ask.random.uniform(0, 0.5)));
+    }
+    PointsView view = viewOf(queries.data(), 1000);
+    view.radii = radii.data();
+    const double radius = 0.2 * ask.scale;
+    for (const unsigned threads : {1u, 2u}) {
+      std::vector<Neighbors> within, nearest;
+      radiusSearch(cloud, view, radius, within, {5, true}, threads);
+      nearestKSearch(cloud, view, 7, nearest, threads);
+      const auto any = flagAnyInRadius(cloud, view, radius, threads), balls = anyInBalls(cloud, view, threads);
+      Neighbors single;
+      for (std::uint32_t i = 0; i < 1000; ++i) {
+        radiusSearch(cloud, view.point(i), radius, single, {5, true});
+        expectEqual(within[i], single);
+        nearestKSearch(cloud, view.point(i), 7, single);
+        expectEqual(nearest[i], single);
+        EXPECT_EQ(any[i] != 0, anyInRadius(cloud, view.point(i), radius));
+        EXPECT_EQ(balls[i] != 0, anyInRadius(cloud, view.point(i), radii[i]));
+      }
+    }
+  }
+}
+
+TEST(NeighborsThreads, OneFreshHierarchyForAll)
+{
+  Questions ask(42, 4000);
+  const SphereHierarchy cloud(ask.view());
+  std::vector<Point3> queries;
+  for (int i = 0; i < 300; ++i) queries.push_back(ask.query());
+  std::vector<std::vector<std::int32_t>> answers(4);
+  std::vector<std::thread> threads;
+  for (auto& answer : answers)
+    threads.emplace_back([&] {
+      Neighbors found;
+      for (const Point3& q : queries) {
+        nearestKSearch(cloud, q, 3, found);
+        answer.insert(answer.end(), found.indices.begin(), found.indices.end());
+        radiusSearch(cloud, q, 0.1 * ask.scale, found);
+        answer.insert(answer.end(), found.indices.begin(), found.indices.end());
+      }
+    });
+  for (auto& thread : threads) thread.join();
+  for (const auto& answer : answers) EXPECT_EQ(answer, answers.front());
+}
+
+TEST(NeighborsTargets, AnswerAlike)
+{
+  const auto on = [](std::int64_t target, std::uint64_t seed) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    Questions ask(seed, 1500);
+    const SphereHierarchy cloud(ask.view());
+    Neighbors found, all;
+    for (int i = 0; i < 20; ++i) {
+      const Point3 q = ask.query();
+      radiusSearch(cloud, q, ask.radius(q), found, {0, i % 2 == 0});
+      all.indices.insert(all.indices.end(), found.indices.begin(), found.indices.end());
+      nearestKSearch(cloud, q, 12, found);
+      all.indices.insert(all.indices.end(), found.indices.begin(), found.indices.end());
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    return all.indices;
+  };
+  const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  for (std::uint64_t seed = 0; seed < 20; ++seed)
+    for (const std::int64_t target : targets) EXPECT_EQ(on(target, seed), on(targets.front(), seed));
+}
+
 } // namespace
 } // namespace pcl_bsh

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# PCL's test/search/test_search.cpp and test_kdtree.cpp, compiled as they are but for a header in front of them that
+# puts our class where they say KdTree.
+if(NOT PCL_SOURCE_TEST_DIR)
+  message(STATUS "PCL_SOURCE_TEST_DIR is not set: PCL's own tests of search classes are skipped")
+  return()
+endif()
+
+function(pcl_bsh_add_conformance_test name)
+  set(source "${PCL_SOURCE_TEST_DIR}/search/${name}.cpp")
+  if(NOT EXISTS "${source}")
+    message(STATUS "${source} does not exist: skipped")
+    return()
+  endif()
+  add_executable(pcl_${name} "${source}")
+  set_target_properties(pcl_${name} PROPERTIES CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON)
+  target_compile_options(pcl_${name} PRIVATE -include "${CMAKE_CURRENT_SOURCE_DIR}/search/in_place_of_kdtree.h" -w)
+  target_include_directories(pcl_${name} PRIVATE "${PCL_SOURCE_TEST_DIR}/include" "${PROJECT_SOURCE_DIR}")
+  target_link_libraries(pcl_${name} PRIVATE pcl_bsh_search pcl_search pcl_octree pcl_kdtree pcl_io GTest::gtest)
+  add_test(NAME pcl/${name} COMMAND pcl_${name} ${ARGN})
+  set_tests_properties(pcl/${name} PROPERTIES LABELS pcl TIMEOUT 300)
+endfunction()
+
+pcl_bsh_add_conformance_test(test_search "${PCL_SOURCE_TEST_DIR}/table_scene_mug_stereo_textured.pcd")
+pcl_bsh_add_conformance_test(test_kdtree)
