@@ -32,7 +32,9 @@ using Theirs = pcl::search::KdTree<Point>;
 Cloud::Ptr sheets()
 {
   std::mt19937 random(3);
-  const auto uniform = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+  };
   auto cloud = std::make_shared<Cloud>();
   for (int i = 0; i < 4000; ++i) {
     const double x = uniform(0, 4), y = uniform(0, 4), level = i % 2;
