@@ -14,7 +14,7 @@ namespace pcl_bsh::bench {
 /// What many queries found, all together: enough to see that two racers gave the same.
 struct SearchAnswer {
   std::uint64_t found = 0;
-  double squared_distances = 0.0; ///< their sum
+  std::optional<double> squared_distances = 0.0; ///< their sum; nothing where they need not be those of the nearest
 };
 
 /// Each query gives indices and squared distances, nearest first, into vectors kept from query to query. (The octree

@@ -39,7 +39,7 @@ public:
       const auto kept = most == 0 ? found.size() : std::min<std::size_t>(most, found.size());
       std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(kept), found.end());
       answer.found += kept;
-      for (std::size_t i = 0; i < kept; ++i) answer.squared_distances += static_cast<double>(found[i].first);
+      for (std::size_t i = 0; i < kept; ++i) *answer.squared_distances += static_cast<double>(found[i].first);
     }
     return answer;
   }

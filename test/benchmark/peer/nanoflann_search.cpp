@@ -46,14 +46,14 @@ public:
         squared[most - 1] = inclusive(radius);
         tree_->findNeighbors(set, &q.x, nanoflann::SearchParams());
         answer.found += set.size();
-        for (std::size_t i = 0; i < set.size(); ++i) answer.squared_distances += static_cast<double>(squared[i]);
+        for (std::size_t i = 0; i < set.size(); ++i) *answer.squared_distances += static_cast<double>(squared[i]);
       }
       return answer;
     }
     std::vector<std::pair<std::uint32_t, float>> found;
     for (const Point& q : queries) {
       answer.found += tree_->radiusSearch(&q.x, inclusive(radius), found, nanoflann::SearchParams());
-      for (const auto& hit : found) answer.squared_distances += static_cast<double>(hit.second);
+      for (const auto& hit : found) *answer.squared_distances += static_cast<double>(hit.second);
     }
     return answer;
   }
@@ -66,7 +66,7 @@ public:
     for (const Point& q : queries) {
       const std::size_t count = tree_->knnSearch(&q.x, k, indices.data(), squared.data());
       answer.found += count;
-      for (std::size_t i = 0; i < count; ++i) answer.squared_distances += static_cast<double>(squared[i]);
+      for (std::size_t i = 0; i < count; ++i) *answer.squared_distances += static_cast<double>(squared[i]);
     }
     return answer;
   }

@@ -29,7 +29,7 @@ Cloud::Ptr toPcl(const Points& points)
 void count(SearchAnswer& answer, const std::vector<float>& squared)
 {
   answer.found += squared.size();
-  answer.squared_distances = std::accumulate(squared.begin(), squared.end(), answer.squared_distances);
+  answer.squared_distances = std::accumulate(squared.begin(), squared.end(), answer.squared_distances.value_or(0.0));
 }
 
 template <typename Search>
@@ -60,6 +60,7 @@ public:
       search_->radiusSearch(pcl::PointXYZ(q.x, q.y, q.z), radius, indices, squared, most);
       count(answer, squared);
     }
+    if (std::is_same_v<Search, Octree> && most > 0) answer.squared_distances.reset(); // those of the first points found
     return answer;
   }
 
