@@ -209,17 +209,11 @@ private:
     }
     float enough = bound_ < kInfinity ? bound_ : largestOf(highs, count), few = 0.0f;
     if (enough == kInfinity) return;
-    // On surfaces as many points come with each step of the squared distance: interpolation is soon there.
-    std::size_t within_few = 0, within_enough = count;
-    for (int step = 0; step < kTrials && within_enough > k_; ++step) {
-      const auto wanted = static_cast<float>(k_ - within_few) + 0.5f;
-      const auto between = static_cast<float>(within_enough - within_few);
-      const float middle = few + (enough - few) * (wanted / between);
+    for (int step = 0; step < kBisections; ++step) {
+      const float middle = 0.5f * (few + enough);
       const std::size_t within = countAtMost(highs, count, middle);
-      if (within >= k_)
-        enough = middle, within_enough = within;
-      else
-        few = middle, within_few = within;
+      (within >= k_ ? enough : few) = middle;
+      if (within == k_) break;
     }
     if (enough < bound_ && countAtMost(highs, count, enough) >= k_) lower(enough);
   }
@@ -249,7 +243,7 @@ private:
     records_.resize(kept);
   }
 
-  static constexpr int kTrials = 4;           ///< for the k-th smallest bound; any that is not too low will do
+  static constexpr int kBisections = 7;       ///< of the k-th smallest bound; any that is not too low will do
   static constexpr std::size_t kGuessed = 16; ///< points that a first guess looks at, and two for each of k
 
   const SphereHierarchy::Storage& cloud_;

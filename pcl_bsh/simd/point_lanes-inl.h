@@ -165,15 +165,11 @@ HWY_INLINE float largestOf(const float* values, std::size_t count)
 HWY_INLINE std::size_t countAtMost(const float* values, std::size_t count, float limit)
 {
   const LaneTag d;
-  const hn::RebindToSigned<LaneTag> di;
   const std::size_t step = hn::Lanes(d);
-  auto found = hn::Zero(di); // less one for each
-  std::size_t i = 0;
-  for (; i + step <= count; i += step)
-    found = hn::Add(found, hn::BitCast(di, hn::VecFromMask(d, hn::Le(hn::LoadU(d, values + i), hn::Set(d, limit)))));
-  auto total = static_cast<std::size_t>(-hn::GetLane(hn::SumOfLanes(di, found)));
-  for (; i < count; ++i) total += values[i] <= limit ? 1 : 0;
-  return total;
+  std::size_t found = 0, i = 0;
+  for (; i + step <= count; i += step) found += hn::CountTrue(d, hn::Le(hn::LoadU(d, values + i), hn::Set(d, limit)));
+  for (; i < count; ++i) found += values[i] <= limit ? 1 : 0;
+  return found;
 }
 
 } // namespace HWY_NAMESPACE
