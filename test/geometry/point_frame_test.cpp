@@ -45,8 +45,8 @@ TEST(PointFrame, BandHoldsForStoredPoints)
     const DistanceBand band = local.band(length);
     const float squared = squaredFloat(stored, local.at);
     const bool within = distance.compare(given, query, length) <= 0;
-    if (squared <= band.hit) EXPECT_TRUE(within);
-    if (squared > band.miss) EXPECT_FALSE(within);
+    EXPECT_FALSE(squared <= band.hit && !within);
+    EXPECT_FALSE(squared > band.miss && within);
     decided += squared <= band.hit || squared > band.miss;
     EXPECT_FALSE(within && local.separates(frame, length));
   }
