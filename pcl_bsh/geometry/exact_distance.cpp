@@ -113,24 +113,24 @@ int ExactDistance::compare(const Point3& p, const Point3& q, double clearance, d
   return compareRoot(squaredDistance(p, q), Dyadic(clearance) + Dyadic(radius_p) + Dyadic(radius_q));
 }
 
-int ExactDistance::compareGaps(const Pair& first, const Pair& second) const
+int ExactDistance::compareGaps(const Pair& first, const ExactDistance& other, const Pair& second) const
 {
   const double first_radii = first.radius_p + first.radius_q;
   const double second_radii = second.radius_p + second.radius_q;
   const Interval first_distance = enclose(first.p, first.q);
-  const Interval second_distance = enclose(second.p, second.q);
+  const Interval second_distance = other.enclose(second.p, second.q);
   const double slack = 0x1p-50 * (first_distance.high + second_distance.high + first_radii + second_radii);
   if (first_distance.high - first_radii + slack < second_distance.low - second_radii) return -1;
   if (second_distance.high - second_radii + slack < first_distance.low - first_radii) return 1;
 
   Point3 x, y;
   if (first_radii == 0.0 && second_radii == 0.0 && exactDifference(first.p, first.q, x) &&
-      exactDifference(second.p, second.q, y)) {
+      other.exactDifference(second.p, second.q, y)) {
     return compareSquares(x, y);
   }
   const Dyadic shift =
       Dyadic(second.radius_p) + Dyadic(second.radius_q) - Dyadic(first.radius_p) - Dyadic(first.radius_q);
-  return compareShiftedRoots(squaredDistance(first.p, first.q), shift, squaredDistance(second.p, second.q));
+  return compareShiftedRoots(squaredDistance(first.p, first.q), shift, other.squaredDistance(second.p, second.q));
 }
 
 double ExactDistance::gap(const Pair& pair) const

@@ -41,7 +41,10 @@ public:
   int compare(const Point3& p, const Point3& q, double clearance, double radius_p = 0.0, double radius_q = 0.0) const;
 
   /// Sign of gap(first) - gap(second), of the gaps before rounding.
-  int compareGaps(const Pair& first, const Pair& second) const;
+  int compareGaps(const Pair& first, const Pair& second) const { return compareGaps(first, *this, second); }
+
+  /// Sign of gap(first) - other.gap(second), of the gaps before rounding.
+  int compareGaps(const Pair& first, const ExactDistance& other, const Pair& second) const;
 
   /// |T_a p - T_b q| - radius_p - radius_q, rounded to the nearest double (ties to even; infinity beyond the largest).
   double gap(const Pair& pair) const;

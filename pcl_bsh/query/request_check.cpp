@@ -2,8 +2,10 @@
 #include <pcl_bsh/query/request_check.h>
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace pcl_bsh {
 namespace {
@@ -18,7 +20,12 @@ template <class... Parts>
   throw std::invalid_argument(message.str());
 }
 
-void checkPose(const char* name, const Eigen::Isometry3d& pose)
+void checkClearance(double clearance)
+{
+  if (!(std::isfinite(clearance) && clearance >= 0.0)) refuse("clearance: ", clearance, ": give a finite length >= 0");
+}
+
+void checkPose(const std::string& name, const Eigen::Isometry3d& pose)
 {
   const Eigen::Matrix4d& matrix = pose.matrix();
   const Eigen::IOFormat one_line(6, Eigen::DontAlignCols, " ", "; ");
@@ -39,11 +46,24 @@ void checkPose(const char* name, const Eigen::Isometry3d& pose)
 
 void check(const Placed& a, const Placed& b, const CollisionRequest& request)
 {
-  if (!(std::isfinite(request.clearance) && request.clearance >= 0.0)) {
-    refuse("clearance: ", request.clearance, ": give a finite length >= 0");
-  }
+  checkClearance(request.clearance);
   checkPose("pose of a", a.pose);
   checkPose("pose of b", b.pose);
+}
+
+void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
+{
+  checkClearance(request.clearance);
+  if (request.swept && !(std::isfinite(*request.swept) && *request.swept > 0.0))
+    refuse("tolerance of the swept motion: ", *request.swept, ": give a finite length > 0");
+  for (const double coordinate : request.pivot)
+    if (!std::isfinite(coordinate)) refuse("pivot: ", coordinate, ": give three finite coordinates");
+  constexpr std::size_t most_poses = std::numeric_limits<std::int32_t>::max();
+  if (model_poses.size() > most_poses)
+    refuse("trajectory: ", model_poses.size(), " poses are more than an index can name (", most_poses, ")");
+  checkPose("pose of the scan", scan.pose);
+  for (std::size_t k = 0; k < model_poses.size(); ++k)
+    checkPose("pose " + std::to_string(k) + " of the model", model_poses[k]);
 }
 
 } // namespace pcl_bsh

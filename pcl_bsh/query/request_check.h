@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/trajectory.h>
 
 namespace pcl_bsh {
 
@@ -9,5 +9,8 @@ namespace pcl_bsh {
 /// @throws std::invalid_argument naming the value: a clearance that is negative or not finite; a pose that is not
 ///   finite, whose last row is not 0 0 0 1, that mirrors, or whose rotation R has |R'R - I| > 1e-6 (Frobenius norm).
 void check(const Placed& a, const Placed& b, const CollisionRequest& request);
+
+/// The same for a trajectory, with its tolerance and its pivot; a pose of the model is named by its index.
+void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
 
 } // namespace pcl_bsh

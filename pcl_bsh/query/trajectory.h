@@ -50,7 +50,7 @@ struct PoseSummary {
 };
 
 /// An instant of the motion: `fraction` in [0, 1) of the way from `pose` to the next; 0 at the last pose.
-struct Instant {
+struct FirstContact {
   std::size_t pose = 0;
   double fraction = 0.0;
 };
@@ -70,7 +70,7 @@ struct TrajectoryResult {
                                             ///< 0xffffffff where free
   std::vector<PoseSummary> poses;           ///< one per pose
   /// Swept: no pair comes within the clearance before; at it, one is within clearance + tolerance. Empty when free.
-  std::optional<Instant> first_contact;
+  std::optional<FirstContact> first_contact;
   Work work; ///< leaf pairs count once per pose they were compared at
 };
 

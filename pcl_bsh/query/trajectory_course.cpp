@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/query/trajectory_walk.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_bsh {
+namespace {
+
+/// Of the tolerance: three eighths for the bow of a way taken as straight, an eighth for rounding, half as room that
+/// the reported clearance has.
+constexpr double kStrayShare = 0.375;
+
+double farthest(const BoxTree& boxes, const Point3& from)
+{
+  double squared = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double at = from[axis] - boxes.origin[axis];
+    const double distance = std::max(std::abs(boxes.low[axis] - at), std::abs(boxes.high[axis] - at));
+    squared += distance * distance;
+  }
+  return std::sqrt(squared) * (1.0 + 0x1p-40);
+}
+
+PosePath pathOf(const Placed& scan, const std::vector<Eigen::Isometry3d>& poses, const TrajectoryRequest& request,
+                const BoxTree& boxes, double reach)
+{
+  if (!request.swept) return PosePath(scan.pose, poses, boxes.origin);
+  return PosePath(
+      scan.pose, poses, boxes.origin,
+      {request.pivot, farthest(boxes, request.pivot), reach + *request.swept, kStrayShare * *request.swept});
+}
+
+double largestRadii(const Placed& scan, const SphereHierarchy& model)
+{
+  return scan.hierarchy.storage().largest_radius + model.storage().largest_radius;
+}
+
+} // namespace
+
+Course::Course(const Placed& scan_at, const SphereHierarchy& model_of,
+               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
+               TrajectoryResult& into)
+: scan(scan_at),
+  model(model_of),
+  given(model_poses),
+  request(asked),
+  result(into),
+  boxes(model_of.storage()),
+  radii(largestRadii(scan_at, model_of)),
+  reach(asked.clearance + asked.swept.value_or(0.0) / 2 + radii),
+  path(pathOf(scan_at, model_poses, asked, boxes, reach)),
+  closest(asked.distances || asked.closest_poses),
+  first(asked.first_poses || asked.swept.has_value())
+{
+}
+
+double Course::error(const Point3& origin) const
+{
+  const double size = std::abs(origin[0]) + std::abs(origin[1]) + std::abs(origin[2]) + 3 * path.far + boxes.radius;
+  return 0x1p-47 * size + path.skew * (boxes.radius + reach);
+}
+
+bool Course::near(const Ball& ball, const PathInterval& interval, double& stray) const
+{
+  double squared = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    squared += (ball.center[axis] - interval.pivot[axis]) * (ball.center[axis] - interval.pivot[axis]);
+  stray = interval.drift + interval.turn * (std::sqrt(squared) * (1.0 + 0x1p-40) + ball.radius);
+  const double room = (reach + ball.radius) * (1.0 + path.skew) + stray + error(ball.center);
+  const Point3 from = path.poses[interval.first].see(ball.center), to = path.poses[interval.last].see(ball.center);
+  double enter = 0.0, leave = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double slack = room + 0x1p-40 * (std::abs(from[axis]) + std::abs(to[axis]) + boxes.radius);
+    const double low = boxes.low[axis] - slack - from[axis], high = boxes.high[axis] + slack - from[axis];
+    const double motion = to[axis] - from[axis];
+    if (std::abs(motion) <= 0x1p-45 * slack) {
+      if (low > 0.0 || high < 0.0) return false;
+      continue;
+    }
+    enter = std::max(enter, std::min(low / motion, high / motion));
+    leave = std::min(leave, std::max(low / motion, high / motion));
+  }
+  return !(enter > leave);
+}
+
+void Course::meet(std::uint32_t node, std::uint32_t lane, std::uint32_t index,
+                  std::vector<std::vector<std::uint32_t>>& meetings) const
+{
+  const SphereHierarchy::Storage& storage = scan.hierarchy.storage();
+  const Node& of = storage.top[node];
+  const bool is_voxel = of.isLeaf(lane);
+  const LocalFrame& frame = is_voxel ? storage.voxels[of.begin[lane]].frame : storage.frame;
+  Point3 center = frame.origin;
+  if (!is_voxel) {
+    const float at[3] = {of.x[lane], of.y[lane], of.z[lane]};
+    for (std::size_t axis = 0; axis < 3; ++axis) center[axis] += at[axis] * frame.unit;
+  }
+  const double radius = (is_voxel ? storage.voxels[of.begin[lane]].radius : of.r[lane]) * frame.unit;
+  const Ball ball{carried(scan.pose, center), radius * (1.0 + path.skew + 0x1p-40)};
+  const PathInterval& interval = path.intervals[index];
+  double stray;
+  if (!near(ball, interval, stray)) return;
+  if (interval.divided() && stray > (is_voxel ? 0.5 : 1.0) * ball.radius) {
+    meet(node, lane, interval.left, meetings);
+    meet(node, lane, interval.right, meetings);
+  }
+  else if (is_voxel) {
+    meetings[of.begin[lane]].push_back(index);
+  }
+  else {
+    const std::uint32_t below = of.child[lane];
+    for (std::uint32_t i = 0; i < storage.top[below].count; ++i) meet(below, i, index, meetings);
+  }
+}
+
+std::vector<std::vector<std::uint32_t>> Course::meetings() const
+{
+  const SphereHierarchy::Storage& storage = scan.hierarchy.storage();
+  std::vector<std::vector<std::uint32_t>> meetings(storage.voxel_count);
+  if (storage.size == 0 || boxes.storage.size == 0 || path.poses.empty()) return meetings;
+  for (std::uint32_t lane = 0; lane < storage.top[0].count; ++lane) meet(0, lane, 0, meetings);
+  return meetings;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Points that move in straight lines, against boxes: when are they inside?
+
+#if defined(PCL_BSH_SIMD_SEGMENT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_SIMD_SEGMENT_LANES_INL_H_
+#undef PCL_BSH_SIMD_SEGMENT_LANES_INL_H_
+#else
+#define PCL_BSH_SIMD_SEGMENT_LANES_INL_H_
+#endif
+
+#include <pcl_bsh/simd/sphere_lanes-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Ways from start to end, each to be held against boxes that are widened by a reach of its own. Rounding here is the
+/// caller's to make good, in the reach; so is taking a motion for one of `smallest` that is smaller (kSegmentRounding).
+template <std::size_t Count>
+struct Segments {
+  alignas(64) float inverse[3][Count]; ///< of end - start
+  alignas(64) float start[3][Count];
+  alignas(64) float reach[Count];
+
+  HWY_INLINE void set(const float (&from)[3][Count], const float (&to)[3][Count], float smallest)
+  {
+    const LaneTag d;
+    const LaneVector least = hn::Set(d, smallest), one = hn::Set(d, 1.0f);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t i = 0; i < Count; i += hn::Lanes(d)) {
+        const LaneVector first = hn::Load(d, from[axis] + i);
+        const LaneVector motion = hn::Sub(hn::Load(d, to[axis] + i), first);
+        hn::Store(first, d, start[axis] + i);
+        hn::Store(hn::Div(one, hn::CopySign(hn::Max(hn::Abs(motion), least), motion)), d, inverse[axis] + i);
+      }
+  }
+};
+
+/// What rounding may amount to, relative to the largest coordinate of starts, ends and widened boxes: 4 u for starts
+/// and ends carried, 2 u for their difference, 2 u for that to a box, 6 u of the motion for the time; less than 40 u.
+inline constexpr float kSegmentRounding = 0x1p-18f;
+
+/// When a segment is in a box: a part of [0, 1].
+template <std::size_t Count>
+struct Stays {
+  alignas(64) float from[Count];
+  alignas(64) float to[Count];
+};
+
+struct ClippedLanes {
+  LaneVector from, to;
+};
+
+HWY_INLINE void clipAxis(LaneVector start, LaneVector inverse, LaneVector reach, LaneVector low, LaneVector high,
+                         ClippedLanes& stay)
+{
+  const LaneVector at_low = hn::Mul(hn::Sub(low, hn::Add(start, reach)), inverse);
+  const LaneVector at_high = hn::Mul(hn::Sub(high, hn::Sub(start, reach)), inverse);
+  stay.from = hn::Max(stay.from, hn::Min(at_low, at_high));
+  stay.to = hn::Min(stay.to, hn::Max(at_low, at_high));
+}
+
+/// Whether a stay contains one of the instants i / steps; always where steps are too many for floats to tell.
+HWY_INLINE std::uint32_t staysAtStep(LaneTag d, const ClippedLanes& stay, float steps)
+{
+  const LaneVector scale = hn::Set(d, steps), slack = hn::Set(d, steps * 0x1p-21f);
+  const LaneVector first = hn::Ceil(hn::Sub(hn::Mul(stay.from, scale), slack));
+  const LaneVector last = hn::Floor(hn::Add(hn::Mul(stay.to, scale), slack));
+  return bitsOf(d, hn::And(hn::Le(stay.from, stay.to), hn::Le(first, last)));
+}
+
+/// Bit i: segment i may be in the box at an instant j / steps; at any instant when steps is 0.
+template <std::size_t Count>
+HWY_INLINE std::uint32_t segmentsInBox(const Segments<Count>& segments, const float* low, const float* high,
+                                       float steps, Stays<Count>* stays)
+{
+  const LaneTag d;
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < Count; i += hn::Lanes(d)) {
+    ClippedLanes stay{hn::Zero(d), hn::Set(d, 1.0f)};
+    const LaneVector reach = hn::Load(d, segments.reach + i);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      clipAxis(hn::Load(d, segments.start[axis] + i), hn::Load(d, segments.inverse[axis] + i), reach,
+               hn::Set(d, low[axis]), hn::Set(d, high[axis]), stay);
+    bits |= staysAtStep(d, stay, steps) << i;
+    if (stays) {
+      hn::Store(stay.from, d, stays->from + i);
+      hn::Store(stay.to, d, stays->to + i);
+    }
+  }
+  return bits;
+}
+
+/// One segment, with a reach along each axis.
+struct Segment {
+  float start[3], inverse[3], reach[3];
+};
+
+/// Bit i: the segment may be in box i of eight at an instant j / steps. @param low, high 3 x 8 floats.
+HWY_INLINE std::uint32_t boxesOnSegment(const Segment& segment, const float (*low)[kLanes], const float (*high)[kLanes],
+                                        float steps)
+{
+  const LaneTag d;
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    ClippedLanes stay{hn::Zero(d), hn::Set(d, 1.0f)};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      clipAxis(hn::Set(d, segment.start[axis]), hn::Set(d, segment.inverse[axis]), hn::Set(d, segment.reach[axis]),
+               hn::Load(d, low[axis] + i), hn::Load(d, high[axis] + i), stay);
+    bits |= staysAtStep(d, stay, steps) << i;
+  }
+  return bits;
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle
