@@ -395,7 +395,7 @@ private:
     }
     leaf.ways.set(from, to, span.smallest);
     std::fill(leaf.ways.reach, leaf.ways.reach + kLeafPoints, span.reach);
-    if (course_.closest)
+    if (course_.closestOnly())
       for (std::uint32_t i = 0; i < points.count; ++i)
         leaf.ways.reach[i] = std::min(span.reach, reachOf(span, scratch_.best[points.begin + i]));
     leaf.around = ballOn(span, {node.x[lane], node.y[lane], node.z[lane]}, seenRadius(node.r[lane]));
@@ -543,7 +543,7 @@ private:
         const double high = highOf(nearest[i]);
         best->limit = std::min(best->limit, notBeyond(nearest[i]));
         best->reach = std::min(best->reach, roundUp(high));
-        leaf.ways.reach[i] = std::min(leaf.ways.reach[i], reachOf(span, *best));
+        if (course_.closestOnly()) leaf.ways.reach[i] = std::min(leaf.ways.reach[i], reachOf(span, *best));
       }
       if (for_pose && certain) lowerPoseLimit(k, notBeyond(nearest[i]));
     }

@@ -34,7 +34,8 @@ struct Course {
   const double reach; ///< of points: the clearance, half of the tolerance, the radii
   const PosePath path;
   const bool closest, first; ///< what has to be known of each point, beside whether it collides
-  bool everything() const { return closest || request.pose_summaries; } ///< whether a collision settles nothing
+  bool closestOnly() const { return closest && !request.pose_summaries; } ///< whether the best so far bounds the search
+  bool everything() const { return closest || request.pose_summaries; }   ///< whether a collision settles nothing
 
   /// Bounds what double arithmetic gets wrong about the place of a scan's point seen by the model, for a voxel whose
   /// origin is there in the world.
