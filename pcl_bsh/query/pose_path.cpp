@@ -12,7 +12,7 @@ namespace pcl_bsh {
 namespace {
 
 constexpr double kRounding = 0x1p-45; ///< of the bounds below: a few dozen operations in double
-constexpr double kMostPoses = 0x1p26; ///< of a swept path: some 10 GB
+constexpr double kMostPoses = 0x1p24; ///< of a swept path: some 5 GB
 
 double distance(const Point3& a, const Point3& b)
 {

@@ -56,6 +56,8 @@ void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses
   checkClearance(request.clearance);
   if (request.swept && !(std::isfinite(*request.swept) && *request.swept > 0.0))
     refuse("tolerance of the swept motion: ", *request.swept, ": give a finite length > 0");
+  if (request.swept && request.pose_summaries)
+    refuse("pose_summaries: are of poses, swept motion is of what is between: ask for one of them");
   for (const double coordinate : request.pivot)
     if (!std::isfinite(coordinate)) refuse("pivot: ", coordinate, ": give three finite coordinates");
   constexpr std::size_t most_poses = std::numeric_limits<std::int32_t>::max();

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <sstream>
 #include <thread>
 #include <tuple>
 #include <vector>
@@ -139,7 +140,7 @@ public:
       if (!entered_) enter();
       if (scratch_.open_lanes[0] == 0) break;
       const std::vector<Candidate> candidates = scratch_.seed;
-      descend(0, span, {}, candidates, 0);
+      descend(0, span, candidates, 0);
     }
     if (entered_) finish();
     return answer_;
@@ -274,8 +275,7 @@ private:
 
   bool divides(const Span& span, double size) const { return span.interval->divided() && span.stray > size; }
 
-  void descend(std::uint32_t index, const Span& span, const Segment& given_around,
-               const std::vector<Candidate>& candidates, std::size_t depth)
+  void descend(std::uint32_t index, const Span& span, const std::vector<Candidate>& candidates, std::size_t depth)
   {
     const Node& node = voxel_->nodes[index];
     float largest = 0.0f;
@@ -283,11 +283,10 @@ private:
     if (divides(span, kNodeStray * largest * frame_.unit)) {
       for (const std::uint32_t half : {span.interval->left, span.interval->right}) {
         if (scratch_.open_lanes[index] == 0) return;
-        descend(index, spanOf(half), {}, candidates, depth);
+        descend(index, spanOf(half), candidates, depth);
       }
       return;
     }
-    static_cast<void>(given_around);
     if (scratch_.visits.size() <= depth) scratch_.visits.resize(depth + 1);
     Visit& visit = scratch_.visits[depth];
     begin(visit, node, span);
@@ -301,7 +300,7 @@ private:
         open = compareLeaf(index * kLanes + lane, points, node, lane, span, visit.near[lane]);
       }
       else {
-        descend(node.child[lane], span, {}, visit.near[lane], depth + 1);
+        descend(node.child[lane], span, visit.near[lane], depth + 1);
         open = scratch_.open_lanes[node.child[lane]] != 0;
       }
       if (!open) scratch_.open_lanes[index] &= static_cast<std::uint8_t>(~(1u << lane));
@@ -438,7 +437,7 @@ private:
     const Node& node = candidate.nodes[candidate.node];
     const LeafRange other{&tree_.storage.voxels[candidate.voxel], node.begin[k], node.comparedPoints(k)};
     if (path_.is_swept)
-      compareWays(leaf, lanes, other, candidate.voxel, span);
+      compareWays(leaf, lanes, stays, other, span);
     else
       comparePoses(leaf, lanes, stays, other, candidate.voxel, span);
   }
@@ -598,52 +597,82 @@ private:
 
   // --- the motion between poses ---
 
-  /// Points that move in straight lines against points at rest: all instants at once.
-  void compareWays(LeafVisit& leaf, std::uint32_t lanes, const LeafRange& other, std::uint32_t voxel, const Span& span)
+  /// Points that move in straight lines against points at rest: all instants at once. In double; what that gets wrong
+  /// is small against the tolerance (checkTolerance()).
+  void compareWays(LeafVisit& leaf, std::uint32_t lanes, const Stays<kLeafPoints>& stays, const LeafRange& other,
+                   const Span& span)
   {
     ++answer_.work.leaf_pairs;
-    static_cast<void>(voxel);
-    const double steps = span.interval->last - span.interval->first;
-    const PathPose &from = path_.poses[span.interval->first], &to = path_.poses[span.interval->last];
+    const double begin = span.interval->first, steps = span.interval->last - span.interval->first;
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      double& first = scratch_.first[leaf.points.begin + i];
+      if (!course_.closest && first <= begin + steps * stays.from[i]) continue;
       const std::uint32_t record = leaf.points.record(i);
-      const PointsView& view = course_.scan.hierarchy.view();
-      const Point3 world = carried(course_.scan.pose, view.point(record));
-      const Point3 start = from.see(world), end = to.see(world);
+      const Way way = wayOf(record, span);
       for (std::uint32_t j = 0; j < other.count; ++j) {
-        const Point3 q = course_.model.view().point(other.record(j));
-        const double radii = view.radius(record) + course_.model.view().radius(other.record(j));
-        const double near_enough = course_.request.clearance + *course_.request.swept / 2 + radii;
-        double length = 0.0, along = 0.0, apart = 0.0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          const double motion = end[axis] - start[axis], away = start[axis] - (q[axis] - tree_.origin[axis]);
-          length += motion * motion;
-          along += motion * away;
-          apart += away * away;
-        }
-        const double at = length > 0.0 ? std::clamp(-along / length, 0.0, 1.0) : 0.0;
-        const double squared = std::max(0.0, apart + at * (2 * along + at * length));
         ++answer_.work.exact_decisions;
-        if (!(squared <= near_enough * near_enough)) continue;
+        const std::uint32_t q = other.record(j);
+        const double radii = course_.scan.hierarchy.view().radius(record) + course_.model.view().radius(q);
+        const Approach approach = approachOf(way, course_.model.view().point(q), course_.reach - course_.radii + radii);
+        if (!approach.contact) continue;
         scratch_.hit[leaf.slot] = static_cast<std::uint16_t>(scratch_.hit[leaf.slot] | 1u << i);
-        // The first instant: of along^2 - length * excess the root that subtracts nothing from alike.
-        const double excess = apart - near_enough * near_enough;
-        const double root = std::sqrt(std::max(0.0, along * along - length * excess));
-        const double enter = excess <= 0.0 ? 0.0 : std::min(at, excess / (root - along));
-        double& first = scratch_.first[leaf.points.begin + i];
-        first = std::min(first, span.interval->first + steps * enter);
-        if (!course_.closest) continue;
-        Best& best = scratch_.best[leaf.points.begin + i];
-        const double gap = std::sqrt(squared) - radii, time = span.interval->first + steps * at;
-        if (std::tie(gap, time) >= std::tie(best.gap, best.time) &&
-            !(gap == best.gap && time == best.time && other.record(j) < best.record))
-          continue;
-        best.gap = gap;
-        best.time = time;
-        best.record = other.record(j);
+        first = std::min(first, begin + steps * approach.enter);
+        if (course_.closest)
+          consider(scratch_.best[leaf.points.begin + i], approach.distance - radii, begin + steps * approach.at, q);
       }
     }
+  }
+
+  /// Where a point of the scan is seen at a span's ends.
+  struct Way {
+    Point3 start, motion;
+  };
+
+  Way wayOf(std::uint32_t record, const Span& span) const
+  {
+    const Point3 world = carried(course_.scan.pose, course_.scan.hierarchy.view().point(record));
+    const Point3 start = path_.poses[span.interval->first].see(world);
+    const Point3 end = path_.poses[span.interval->last].see(world);
+    return {start, {end[0] - start[0], end[1] - start[1], end[2] - start[2]}};
+  }
+
+  /// A point on its way and one at rest: the instants, in [0, 1], of their closest approach and of the first contact.
+  struct Approach {
+    bool contact;
+    double distance, at, enter;
+  };
+
+  Approach approachOf(const Way& way, const Point3& model_point, double near_enough) const
+  {
+    double length = 0.0, along = 0.0, apart = 0.0, squared = 0.0;
+    Point3 away;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      away[axis] = way.start[axis] - (model_point[axis] - tree_.origin[axis]);
+      length += way.motion[axis] * way.motion[axis];
+      along += way.motion[axis] * away[axis];
+      apart += away[axis] * away[axis];
+    }
+    const double at = length > 0.0 ? std::clamp(-along / length, 0.0, 1.0) : 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double closest = away[axis] + at * way.motion[axis];
+      squared += closest * closest;
+    }
+    const double limit = near_enough * near_enough;
+    if (!(squared <= limit)) return {false, 0.0, 0.0, 0.0};
+    // Of the two roots the earlier one, written so that it subtracts nothing alike.
+    const double root = std::sqrt(std::max(0.0, along * along - length * (apart - limit)));
+    const double enter = apart <= limit ? 0.0 : std::min(at, (apart - limit) / (root - along));
+    return {true, std::sqrt(squared), at, enter};
+  }
+
+  /// Keeps the nearest; of several the first instant, and there the smallest record.
+  static void consider(Best& best, double gap, double time, std::uint32_t record)
+  {
+    if (std::tie(gap, time, record) >= std::tie(best.gap, best.time, best.record)) return;
+    best.gap = gap;
+    best.time = time;
+    best.record = record;
   }
 
   // --- per pose ---
@@ -828,6 +857,21 @@ void summarize(const Course& course, TrajectoryResult& result)
   }
 }
 
+/// Swept: what double arithmetic may get wrong has to fit into a sixteenth of the tolerance.
+void checkTolerance(const Course& course)
+{
+  const LocalFrame& frame = course.scan.hierarchy.storage().frame;
+  const Point3 origin = carried(course.scan.pose, frame.origin);
+  double size = 3 * course.path.far + 4 * course.boxes.radius + course.reach;
+  for (std::size_t axis = 0; axis < 3; ++axis) size += std::abs(origin[axis]) + 2 * frame.reach[axis] * frame.unit;
+  const double least = 16 * 0x1p-46 * size;
+  if (*course.request.swept >= least) return;
+  std::ostringstream message;
+  message << "tolerance of the swept motion: " << *course.request.swept << ": too small for coordinates as large as "
+          << size << ": give at least " << least;
+  throw std::invalid_argument(message.str());
+}
+
 /// The instant of a place on a swept path.
 FirstContact instantOf(const PosePath& path, double time)
 {
@@ -851,6 +895,7 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   allocate(result, request, scan.hierarchy.view().count, model_poses.size());
   if (scan.hierarchy.empty() || model.empty() || model_poses.empty()) return result;
   Course course(scan, model, model_poses, request, result);
+  if (request.swept) checkTolerance(course);
   if (request.pose_summaries) {
     course.pose_best.resize(course.path.poses.size());
     course.pose_counts.resize(course.path.poses.size());

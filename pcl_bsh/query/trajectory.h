@@ -33,7 +33,7 @@ struct TrajectoryRequest {
   bool distances = false;      ///< per colliding scan point: the smallest distance over all poses
   bool first_poses = false;    ///< per colliding scan point: the first pose at which it collides
   bool closest_poses = false;  ///< per colliding scan point: the pose of smallest distance, of several the first
-  bool pose_summaries = false; ///< per pose: how many points collide, and the smallest distance
+  bool pose_summaries = false; ///< per pose: how many points collide, and the smallest distance; not with `swept`
   std::optional<double> swept; ///< finite, > 0: the motion between poses too, to this tolerance
   Point3 pivot = {0, 0, 0};    ///< swept: the point of the model that moves in straight lines
   unsigned threads = 1;        ///< 0: all of the machine's
@@ -41,7 +41,7 @@ struct TrajectoryRequest {
                                         ///< 1], ascending; false: stop, collideAlong() throws Cancelled
 };
 
-/// The model at one pose; when swept, during the motion from this pose to the next (of the last pose: at rest).
+/// The model at one pose.
 struct PoseSummary {
   bool colliding = false;
   std::size_t colliding_points = 0; ///< points of the scan

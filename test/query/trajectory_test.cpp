@@ -109,13 +109,13 @@ Poses anyPath(const Eigen::Isometry3d& start, const Point3& center, double scale
   return poses;
 }
 
-struct Run {
+struct Journey {
   Scene scene;
   Poses poses;
   std::string name;
 };
 
-Run anyRun(std::uint64_t seed, int max_points, int max_poses)
+Journey anyJourney(std::uint64_t seed, int max_points, int max_poses)
 {
   Random random(seed + 77);
   Scene scene = test::anyScene(seed, max_points);
@@ -138,7 +138,7 @@ Run anyRun(std::uint64_t seed, int max_points, int max_poses)
   return {std::move(scene), std::move(poses), name};
 }
 
-void expectSameAsBruteForce(const Run& run)
+void expectSameAsBruteForce(const Journey& run)
 {
   SCOPED_TRACE(run.name);
   const SphereHierarchy scan(run.scene.a.view()), model(run.scene.b.view());
@@ -164,7 +164,7 @@ void expectSameAsBruteForce(const Run& run)
 TEST(Trajectory, SameAsBruteForceOnSmallClouds)
 {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    expectSameAsBruteForce(anyRun(seed, 40, 12));
+    expectSameAsBruteForce(anyJourney(seed, 40, 12));
     if (::testing::Test::HasFailure()) return;
   }
 }
@@ -172,7 +172,7 @@ TEST(Trajectory, SameAsBruteForceOnSmallClouds)
 TEST(Trajectory, SameAsBruteForceOnManyPoses)
 {
   for (std::uint64_t seed = 1000; seed < 1030; ++seed) {
-    expectSameAsBruteForce(anyRun(seed, 40, 100));
+    expectSameAsBruteForce(anyJourney(seed, 40, 100));
     if (::testing::Test::HasFailure()) return;
   }
 }
@@ -180,7 +180,130 @@ TEST(Trajectory, SameAsBruteForceOnManyPoses)
 TEST(Trajectory, SameAsBruteForceOnLargerClouds)
 {
   for (std::uint64_t seed = 2000; seed < 2010; ++seed) {
-    expectSameAsBruteForce(anyRun(seed, 400, 20));
+    expectSameAsBruteForce(anyJourney(seed, 400, 20));
+    if (::testing::Test::HasFailure()) return;
+  }
+}
+
+// --- swept ---
+
+/// Distances of each scan point to the model, at sub-poses of the motion.
+struct Samples {
+  std::vector<double> times;           ///< pose and fraction
+  std::vector<std::vector<double>> of; ///< [time][record]; infinity where there is no point
+  std::vector<double> smallest;        ///< [record]
+  double step = 0.0;                   ///< no point of the model moves farther from one time to the next
+};
+
+Samples sample(const Placed& scan, const SphereHierarchy& model, const Poses& poses, const Point3& pivot,
+               std::size_t count)
+{
+  const auto finite = [](const PointsView& view) {
+    std::vector<std::pair<std::uint32_t, Eigen::Vector3d>> points;
+    for (std::size_t i = 0; i < view.size(); ++i) {
+      const Point3 p = view.point(view.record(i));
+      if (std::isfinite(p[0] + p[1] + p[2])) points.push_back({view.record(i), Eigen::Vector3d(p[0], p[1], p[2])});
+    }
+    return points;
+  };
+  const PointsView &a = scan.hierarchy.view(), &b = model.view();
+  const auto points = finite(a), obstacles = finite(b);
+  Samples samples;
+  samples.smallest.assign(a.count, std::numeric_limits<double>::infinity());
+  std::vector<Eigen::Vector3d> before;
+  for (std::size_t s = 0; s <= count; ++s) {
+    const double time = static_cast<double>(s) * static_cast<double>(poses.size() - 1) / static_cast<double>(count);
+    const auto k = std::min(static_cast<std::size_t>(time), poses.size() - 1);
+    const Eigen::Isometry3d pose =
+        poseBetween(poses[k], poses[std::min(k + 1, poses.size() - 1)], time - static_cast<double>(k), pivot);
+    samples.times.push_back(time);
+    std::vector<Eigen::Vector3d> moved;
+    for (const auto& [record, q] : obstacles) moved.push_back(pose * q);
+    for (std::size_t i = 0; i < before.size(); ++i)
+      samples.step = std::max(samples.step, (moved[i] - before[i]).norm());
+    before = moved;
+    std::vector<double>& row = samples.of.emplace_back(a.count, std::numeric_limits<double>::infinity());
+    for (const auto& [record, p] : points) {
+      const Eigen::Vector3d world = scan.pose * p;
+      for (std::size_t j = 0; j < moved.size(); ++j)
+        row[record] =
+            std::min(row[record], (world - moved[j]).norm() - a.radius(record) - b.radius(obstacles[j].first));
+      samples.smallest[record] = std::min(samples.smallest[record], row[record]);
+    }
+  }
+  return samples;
+}
+
+void expectTrueToSamples(const Journey& run, double tolerance, const Point3& pivot, std::size_t count)
+{
+  SCOPED_TRACE(run.name + ", tolerance " + std::to_string(tolerance));
+  const SphereHierarchy scan(run.scene.a.view()), model(run.scene.b.view());
+  const Placed placed{scan, run.scene.pose_a};
+  const double clearance = run.scene.clearance;
+  TrajectoryRequest request;
+  request.clearance = clearance;
+  request.swept = tolerance;
+  request.pivot = pivot;
+  request.distances = request.first_poses = request.closest_poses = true;
+  const TrajectoryResult result = collideAlong(placed, model, run.poses, request);
+  if (run.poses.empty()) {
+    EXPECT_EQ(result.colliding, 0u);
+    return;
+  }
+  const Samples samples = sample(placed, model, run.poses, pivot, count);
+  double size = 0.0; // of coordinates: what the samples' own arithmetic errs by
+  for (const Eigen::Isometry3d& pose : run.poses) size = std::max(size, pose.translation().cwiseAbs().maxCoeff());
+  const double rounding = 1e-14 * (size + 1.0), between = samples.step + rounding;
+  double contact = std::numeric_limits<double>::infinity();
+  if (result.first_contact) contact = static_cast<double>(result.first_contact->pose) + result.first_contact->fraction;
+  EXPECT_EQ(std::isfinite(contact), result.colliding > 0);
+  for (std::uint32_t p = 0; p < result.flags.size(); ++p) {
+    SCOPED_TRACE("point " + std::to_string(p));
+    if (result.flags[p] == 0) {
+      EXPECT_GT(samples.smallest[p], clearance - rounding);
+      EXPECT_TRUE(std::isnan(result.distance[p]));
+      EXPECT_EQ(result.first_pose[p], -1);
+      continue;
+    }
+    EXPECT_LE(samples.smallest[p], clearance + tolerance + between);
+    EXPECT_LE(std::abs(result.distance[p] - samples.smallest[p]),
+              tolerance / 2 + between + 1e-6 * std::abs(result.distance[p]));
+    EXPECT_GE(result.first_pose[p], 0);
+    for (std::size_t s = 0; samples.times[s] < result.first_pose[p]; ++s)
+      EXPECT_GT(samples.of[s][p], clearance - rounding);
+  }
+  if (!result.first_contact) return;
+  double at_contact = std::numeric_limits<double>::infinity();
+  const std::size_t k = result.first_contact->pose;
+  const Poses there = {poseBetween(run.poses[k], run.poses[std::min(k + 1, run.poses.size() - 1)],
+                                   result.first_contact->fraction, pivot)};
+  for (const double distance : sample(placed, model, there, pivot, 1).smallest)
+    at_contact = std::min(at_contact, distance);
+  EXPECT_LE(at_contact, clearance + tolerance + rounding);
+  for (std::size_t s = 0; s < samples.times.size(); ++s) {
+    if (samples.times[s] >= contact) break;
+    for (const double distance : samples.of[s]) EXPECT_GT(distance, clearance - rounding);
+  }
+}
+
+TEST(TrajectorySwept, TrueToDenseSamples)
+{
+  for (std::uint64_t seed = 3000; seed < 3120; ++seed) {
+    Journey run = anyJourney(seed, 25, 6);
+    Random random(seed);
+    double size = 0.0;
+    for (const Eigen::Isometry3d& pose : run.poses) size = std::max(size, pose.translation().cwiseAbs().maxCoeff());
+    const double tolerance = std::max(1e-9 * size, 0.2 * run.scene.clearance * random.uniform(0.01, 1) + 1e-6);
+    const Point3 pivot = random.chance(0.5) || run.poses.empty() || run.scene.b.view().size() == 0
+                             ? Point3{0, 0, 0}
+                             : run.scene.b.view().point(run.scene.b.view().record(0));
+    if (!std::isfinite(pivot[0] + pivot[1] + pivot[2])) continue;
+    try {
+      expectTrueToSamples(run, tolerance, pivot, 1000);
+    }
+    catch (const std::invalid_argument& e) {
+      EXPECT_THAT(e.what(), testing::HasSubstr("tolerance of the swept motion")) << run.name;
+    }
     if (::testing::Test::HasFailure()) return;
   }
 }
