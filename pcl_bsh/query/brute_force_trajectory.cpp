@@ -36,6 +36,7 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   distances.reserve(model_poses.size());
   for (const Eigen::Isometry3d& pose : model_poses) distances.emplace_back(scan.pose, pose);
 
+  if (!asksForAnything(request)) return {};
   const std::size_t records = scan.hierarchy.view().count;
   const auto sized = [records](bool asked) { return asked ? records : 0; };
   const bool closest = request.distances || request.closest_poses;
@@ -46,7 +47,6 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   result.closest_pose.assign(sized(request.closest_poses), -1);
   result.closest_point.assign(sized(closest), 0xffffffffu);
   if (request.pose_summaries) result.poses.resize(model_poses.size());
-  const bool per_point = request.flags || request.first_poses || closest;
 
   std::vector<Closest> of_poses(model_poses.size());
   for (const Candidate& p : points) {
@@ -65,7 +65,7 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
       if (first < 0) first = static_cast<std::int32_t>(k);
       if (request.pose_summaries) ++result.poses[k].colliding_points;
     }
-    if (first < 0 || !per_point) continue;
+    if (first < 0) continue;
     ++result.colliding;
     if (request.flags) result.flags[p.record] = 1;
     if (request.first_poses) result.first_pose[p.record] = first;

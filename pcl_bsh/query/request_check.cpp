@@ -68,4 +68,10 @@ void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses
     checkPose("pose " + std::to_string(k) + " of the model", model_poses[k]);
 }
 
+bool asksForAnything(const TrajectoryRequest& request)
+{
+  return request.flags || request.distances || request.first_poses || request.closest_poses || request.pose_summaries ||
+         request.swept;
+}
+
 } // namespace pcl_bsh

@@ -13,4 +13,7 @@ void check(const Placed& a, const Placed& b, const CollisionRequest& request);
 /// The same for a trajectory, with its tolerance and its pivot; a pose of the model is named by its index.
 void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
 
+/// Whether a trajectory's result would hold anything.
+bool asksForAnything(const TrajectoryRequest& request);
+
 } // namespace pcl_bsh

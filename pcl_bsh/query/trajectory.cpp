@@ -893,9 +893,10 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   const DefaultFloatEnvironment environment;
   TrajectoryResult result;
   allocate(result, request, scan.hierarchy.view().count, model_poses.size());
-  if (scan.hierarchy.empty() || model.empty() || model_poses.empty()) return result;
+  if (!asksForAnything(request) || scan.hierarchy.empty() || model.empty() || model_poses.empty()) return result;
   Course course(scan, model, model_poses, request, result);
   if (request.swept) checkTolerance(course);
+  if (!course.inFloatRange()) return brute_force::collideAlong(scan, model, model_poses, request);
   if (request.pose_summaries) {
     course.pose_best.resize(course.path.poses.size());
     course.pose_counts.resize(course.path.poses.size());

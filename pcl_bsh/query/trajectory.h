@@ -61,7 +61,7 @@ struct FirstContact {
 /// for the motion from pose k to pose k + 1.
 struct TrajectoryResult {
   std::vector<std::uint8_t> flags;          ///< 1 = collides
-  std::size_t colliding = 0;                ///< points that collide; counted unless only pose_summaries are asked for
+  std::size_t colliding = 0;                ///< points that collide; 0 when nothing is asked for
   std::vector<float> distance;              ///< less the radii; the float nearest to the distance in double; NaN: free
   std::vector<std::int32_t> first_pose;     ///< -1 where free
   std::vector<std::int32_t> closest_pose;   ///< -1 where free

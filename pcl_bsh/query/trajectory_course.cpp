@@ -61,6 +61,16 @@ double Course::error(const Point3& origin) const
   return 0x1p-47 * size + path.skew * (boxes.radius + reach);
 }
 
+bool Course::inFloatRange() const
+{
+  const LocalFrame& frame = scan.hierarchy.storage().frame;
+  double largest = std::max({path.far, boxes.radius, reach});
+  const Point3 center = carried(scan.pose, frame.origin);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    largest = std::max({largest, std::abs(center[axis]), frame.reach[axis] * frame.unit});
+  return largest < 0x1p100;
+}
+
 bool Course::near(const Ball& ball, const PathInterval& interval, double& stray) const
 {
   double squared = 0.0;

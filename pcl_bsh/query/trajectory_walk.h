@@ -41,6 +41,9 @@ struct Course {
   /// origin is there in the world.
   double error(const Point3& origin) const;
 
+  /// Whether floats can hold the places and lengths that a walk compares. Where not, every pair is looked at.
+  bool inFloatRange() const;
+
   /// The intervals of the path during which each voxel may be near the model, in their order.
   std::vector<std::vector<std::uint32_t>> meetings() const;
 

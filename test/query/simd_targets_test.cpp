@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The same answers and the same work on every instruction set that this machine has.
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/trajectory.h>
 
 #include "random_clouds.h"
 #include "simd_target.h"
@@ -14,8 +14,23 @@ struct Answers {
   AnyResult any;
   FlagsResult flags;
   DistanceResult closest;
+  TrajectoryResult poses, swept;
   HierarchyStatistics statistics;
 };
+
+/// A few steps from where b stands, turning.
+TrajectoryResult alongPath(const test::Scene& scene, const SphereHierarchy& a, const SphereHierarchy& b, bool swept)
+{
+  std::vector<Eigen::Isometry3d> poses(6, scene.pose_b);
+  for (std::size_t k = 1; k < poses.size(); ++k)
+    poses[k] = poses[k - 1] * Eigen::Translation3d(0.1 * scene.clearance, 0, 0) *
+               Eigen::AngleAxisd(1e-3, Eigen::Vector3d::UnitZ());
+  TrajectoryRequest request;
+  request.clearance = scene.clearance;
+  request.distances = request.first_poses = request.closest_poses = true;
+  if (swept) request.swept = 1.0;
+  return collideAlong({a, scene.pose_a}, b, poses, request);
+}
 
 /// Everything from the points on, on one target.
 Answers answersOn(std::int64_t target, const test::Scene& scene)
@@ -26,8 +41,12 @@ Answers answersOn(std::int64_t target, const test::Scene& scene)
   request.flagged = Side::both;
   const SphereHierarchy a(scene.a.view()), b(scene.b.view());
   const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
-  return {anyCollision(placed_a, placed_b, request), collisionFlags(placed_a, placed_b, request),
-          closestPair(placed_a, placed_b, request), a.statistics()};
+  return {anyCollision(placed_a, placed_b, request),
+          collisionFlags(placed_a, placed_b, request),
+          closestPair(placed_a, placed_b, request),
+          alongPath(scene, a, b, false),
+          alongPath(scene, a, b, true),
+          a.statistics()};
 }
 
 void expectEqual(const Work& x, const Work& y)
@@ -56,6 +75,13 @@ TEST(SimdTargets, AnswerAlike)
       EXPECT_EQ(answers.closest.distance, expected.closest.distance);
       EXPECT_EQ(answers.closest.pair, expected.closest.pair);
       EXPECT_EQ(answers.statistics.mean_leaf_radius, expected.statistics.mean_leaf_radius);
+      for (const auto along : {&Answers::poses, &Answers::swept}) {
+        EXPECT_EQ((answers.*along).flags, (expected.*along).flags);
+        EXPECT_EQ((answers.*along).first_pose, (expected.*along).first_pose);
+        EXPECT_EQ((answers.*along).closest_pose, (expected.*along).closest_pose);
+        EXPECT_EQ((answers.*along).closest_point, (expected.*along).closest_point);
+        expectEqual((answers.*along).work, (expected.*along).work);
+      }
       expectEqual(answers.any.work, expected.any.work);
       expectEqual(answers.flags.work, expected.flags.work);
       expectEqual(answers.closest.work, expected.closest.work);

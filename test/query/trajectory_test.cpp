@@ -6,10 +6,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 namespace pcl_bsh {
 namespace {
@@ -305,6 +308,396 @@ TEST(TrajectorySwept, TrueToDenseSamples)
       EXPECT_THAT(e.what(), testing::HasSubstr("tolerance of the swept motion")) << run.name;
     }
     if (::testing::Test::HasFailure()) return;
+  }
+}
+
+// --- a corridor: what is long, and mostly free ---
+
+/// A box of points, edges along the axes, from low to high, `step` apart.
+std::vector<Point3> shell(const Point3& low, const Point3& high, double step)
+{
+  std::vector<Point3> points;
+  const auto steps = [&](std::size_t axis) { return static_cast<int>(std::lround((high[axis] - low[axis]) / step)); };
+  for (int i = 0; i <= steps(0); ++i)
+    for (int j = 0; j <= steps(1); ++j)
+      for (int k = 0; k <= steps(2); ++k)
+        if (i == 0 || j == 0 || k == 0 || i == steps(0) || j == steps(1) || k == steps(2))
+          points.push_back({low[0] + step * i, low[1] + step * j, low[2] + step * k});
+  return points;
+}
+
+/// Two walls along x, and some posts that reach in from them.
+std::vector<Point3> corridor(double length, Random& random)
+{
+  std::vector<Point3> points;
+  for (double x = 0; x < length; x += 0.08)
+    for (double z = 0; z < 2; z += 0.08)
+      for (const double y : {-1.0, 1.0}) points.push_back({x + random.uniform(-0.02, 0.02), y, z});
+  for (double x = 5; x < length; x += 10)
+    for (double y = 0.5; y < 1; y += 0.02) points.push_back({x, y, 1.0});
+  return points;
+}
+
+Poses alongCorridor(double from, double to, std::size_t count)
+{
+  Poses poses;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double x = from + (to - from) * static_cast<double>(k) / static_cast<double>(count - 1);
+    Eigen::Isometry3d pose = identity;
+    pose.translation() = Eigen::Vector3d(x, 0.02 * std::sin(x), 0);
+    pose.linear() = Eigen::AngleAxisd(0.05 * std::sin(0.1 * x), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+struct Corridor {
+  Random random{4711};
+  Cloud walls{corridor(60, random)};
+  Cloud cart{shell({-1, -0.5, 0.2}, {1, 0.5, 1.6}, 0.05)};
+};
+
+TEST(Trajectory, SameForAnyNumberOfThreads)
+{
+  const Corridor corridor;
+  const Poses poses = alongCorridor(2, 58, 200);
+  const SphereHierarchy model(corridor.cart.view());
+  for (const bool swept : {false, true}) {
+    TrajectoryRequest request = everything(0.1);
+    if (swept) {
+      request.pose_summaries = false;
+      request.swept = 0.01;
+    }
+    const SphereHierarchy first_scan(corridor.walls.view());
+    const TrajectoryResult expected = collideAlong({first_scan}, model, poses, request);
+    EXPECT_GT(expected.colliding, 0u);
+    for (const unsigned threads : {2u, 4u, 0u}) {
+      const SphereHierarchy scan(corridor.walls.view()), fresh(corridor.cart.view());
+      request.threads = threads;
+      const TrajectoryResult result = collideAlong({scan}, fresh, poses, request);
+      expectSame(result, expected);
+      EXPECT_EQ(result.work.node_pairs, expected.work.node_pairs);
+      EXPECT_EQ(result.work.leaf_pairs, expected.work.leaf_pairs);
+      EXPECT_EQ(result.work.exact_decisions, expected.work.exact_decisions);
+      EXPECT_EQ(result.first_contact.has_value(), expected.first_contact.has_value());
+      if (result.first_contact) {
+        EXPECT_EQ(result.first_contact->pose, expected.first_contact->pose);
+        EXPECT_EQ(result.first_contact->fraction, expected.first_contact->fraction);
+      }
+    }
+  }
+}
+
+TEST(Trajectory, BuildsOnlyVoxelsThatThePathNears)
+{
+  const Corridor corridor;
+  HierarchyOptions options;
+  options.voxel_edge = 1.0;
+  const SphereHierarchy scan(corridor.walls.view(), options), model(corridor.cart.view());
+  const TrajectoryResult result = collideAlong({scan}, model, alongCorridor(2, 8, 50), flagsOnly(0.1));
+  EXPECT_GT(result.colliding, 0u);
+  EXPECT_LT(scan.statistics().voxels_built, scan.statistics().voxels / 5);
+  const SphereHierarchy untouched(corridor.walls.view(), options), fresh(corridor.cart.view());
+  Eigen::Isometry3d away = identity;
+  away.translation().z() = 100;
+  const TrajectoryResult none = collideAlong({untouched}, fresh, Poses(20, away), flagsOnly(0.1));
+  EXPECT_EQ(none.colliding, 0u);
+  EXPECT_EQ(none.work.voxels_built, 0u);
+  EXPECT_EQ(untouched.statistics().voxels_built + fresh.statistics().voxels_built, 0u);
+}
+
+TEST(Trajectory, WhatIsNotAskedForCostsNothing)
+{
+  const Corridor corridor;
+  const Poses poses = alongCorridor(2, 58, 200);
+  const SphereHierarchy scan(corridor.walls.view()), model(corridor.cart.view());
+  const auto workOf = [&](const TrajectoryRequest& request) {
+    return collideAlong({scan}, model, poses, request).work.leaf_pairs;
+  };
+  TrajectoryRequest request = flagsOnly(0.1);
+  collideAlong({scan}, model, poses, request); // builds
+  const TrajectoryResult flags = collideAlong({scan}, model, poses, request);
+  EXPECT_TRUE(flags.distance.empty() && flags.first_pose.empty() && flags.closest_pose.empty() &&
+              flags.closest_point.empty() && flags.poses.empty() && !flags.first_contact);
+  EXPECT_EQ(flags.work.voxels_built, 0u);
+  EXPECT_EQ(flags.work.exact_decisions, 0u) << "no tie here";
+  const std::uint64_t of_flags = flags.work.leaf_pairs;
+  request.first_poses = true;
+  const std::uint64_t of_first = workOf(request);
+  request.first_poses = false;
+  request.closest_poses = true;
+  const std::uint64_t of_closest = workOf(request);
+  request.pose_summaries = true;
+  EXPECT_LT(of_flags, of_first);
+  EXPECT_LT(of_flags, of_closest);
+  EXPECT_LT(of_closest, workOf(request));
+  request = flagsOnly(0.1);
+  request.flags = false;
+  EXPECT_EQ(collideAlong({scan}, model, poses, request).work.node_pairs, 0u);
+}
+
+TEST(Trajectory, CostsLessPerPoseAsPosesGetDenser)
+{
+  const Corridor corridor;
+  const SphereHierarchy scan(corridor.walls.view()), model(corridor.cart.view());
+  const auto workOf = [&](std::size_t poses, const TrajectoryRequest& request) {
+    const Work work = collideAlong({scan}, model, alongCorridor(2, 58, poses), request).work;
+    return work.node_pairs + 20 * work.leaf_pairs;
+  };
+  for (const std::size_t poses : {100u, 1000u})
+    EXPECT_LT(workOf(10 * poses, flagsOnly(0.1)), 3 * workOf(poses, flagsOnly(0.1))) << poses;
+}
+
+TEST(Trajectory, MorePosesHitNoLess)
+{
+  const Corridor corridor;
+  const SphereHierarchy scan(corridor.walls.view()), model(corridor.cart.view());
+  const Poses poses = alongCorridor(2, 58, 65);
+  std::vector<std::uint8_t> denser;
+  for (const std::size_t step : {1u, 2u, 4u, 64u}) {
+    Poses some;
+    for (std::size_t k = 0; k < poses.size(); k += step) some.push_back(poses[k]);
+    const std::vector<std::uint8_t> flags = collideAlong({scan}, model, some, flagsOnly(0.1)).flags;
+    for (std::size_t p = 0; p < denser.size(); ++p) EXPECT_LE(flags[p], denser[p]);
+    denser = flags;
+  }
+}
+
+TEST(Trajectory, SamePosesInARowAreLookedAtOnce)
+{
+  const Corridor corridor;
+  const SphereHierarchy scan(corridor.walls.view()), model(corridor.cart.view());
+  const Poses once = alongCorridor(2, 20, 20);
+  Poses thrice;
+  for (const Eigen::Isometry3d& pose : once) thrice.insert(thrice.end(), 3, pose);
+  collideAlong({scan}, model, once, everything(0.1)); // builds
+  const TrajectoryResult expected = collideAlong({scan}, model, once, everything(0.1));
+  const TrajectoryResult result = collideAlong({scan}, model, thrice, everything(0.1));
+  EXPECT_EQ(result.work.leaf_pairs, expected.work.leaf_pairs);
+  EXPECT_EQ(result.work.exact_decisions, expected.work.exact_decisions);
+  for (std::size_t p = 0; p < expected.flags.size(); ++p) {
+    EXPECT_EQ(result.first_pose[p], expected.first_pose[p] < 0 ? -1 : 3 * expected.first_pose[p]);
+    EXPECT_EQ(result.closest_pose[p], expected.closest_pose[p] < 0 ? -1 : 3 * expected.closest_pose[p]);
+  }
+  for (std::size_t k = 0; k < thrice.size(); ++k)
+    EXPECT_EQ(result.poses[k].colliding_points, expected.poses[k / 3].colliding_points);
+}
+
+TEST(Trajectory, ManyPointsInOnePlaceAnswerAlike)
+{
+  std::vector<Point3> points(5000, Point3{1, 0, 0});
+  for (int i = 0; i < 100; ++i) points.push_back({2 + 0.01 * i, 0, 0});
+  const Cloud cloud(points), probe(std::vector<Point3>{{0, 0, 0}});
+  Poses poses(4, identity);
+  for (std::size_t k = 0; k < 4; ++k) poses[k].translation().x() = static_cast<double>(k);
+  const SphereHierarchy scan(cloud.view()), model(probe.view());
+  const TrajectoryResult result = collideAlong({scan}, model, poses, everything(0.25));
+  expectSame(result, brute_force::collideAlong({scan}, model, poses, everything(0.25)));
+  EXPECT_EQ(result.poses[1].colliding_points, 5000u);
+}
+
+TEST(Trajectory, GeoreferencedAndTied)
+{
+  // Millimetres at half a million metres, clearances that some pairs meet exactly.
+  std::vector<Point3> scan_points, model_points;
+  for (int i = 0; i < 300; ++i) scan_points.push_back({500000.0 + 0.125 * i, 5400000.0, 100.0});
+  for (int i = 0; i < 5; ++i) model_points.push_back({0.0, 0.125 * i, 0.0});
+  const Cloud scan_cloud(scan_points, {Scalar::float64, 0, 0}), model_cloud(model_points, {Scalar::float64, 0, 0});
+  Poses poses;
+  for (int k = 0; k < 60; ++k) {
+    poses.push_back(identity);
+    poses.back().translation() = Eigen::Vector3d(500000.0 + 0.5 * k, 5400000.0, 100.0 + 0.0625 * (k % 7));
+  }
+  const SphereHierarchy scan(scan_cloud.view()), model(model_cloud.view());
+  for (const double clearance : {0.0, 0.125, std::nextafter(0.125, 0.0), 0.25}) {
+    SCOPED_TRACE(clearance);
+    expectSame(collideAlong({scan}, model, poses, everything(clearance)),
+               brute_force::collideAlong({scan}, model, poses, everything(clearance)));
+  }
+}
+
+TEST(Trajectory, ExtremeMagnitudes) // H8, H9
+{
+  for (const double scale : {1e-300, 1e-40, 1e-20, 1e20, 1e30, 1e150, 1e300}) {
+    SCOPED_TRACE(scale);
+    std::vector<Point3> points;
+    for (int i = 0; i < 40; ++i) points.push_back({scale * (i % 7), scale * (i % 5) * 0.5, scale * 0.1 * i});
+    const Cloud cloud(points, {Scalar::float64, 0, 0});
+    const SphereHierarchy scan(cloud.view()), model(cloud.view());
+    Poses poses(6, identity);
+    for (std::size_t k = 0; k < poses.size(); ++k) poses[k].translation().x() = scale * static_cast<double>(k);
+    expectSame(collideAlong({scan}, model, poses, everything(0.7 * scale)),
+               brute_force::collideAlong({scan}, model, poses, everything(0.7 * scale)));
+  }
+}
+
+TEST(Trajectory, NothingCollidesWithNothing)
+{
+  const std::vector<Point3> bad(20, Point3{std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  const Cloud none(std::vector<Point3>{}), spoiled(bad), some(std::vector<Point3>{{0, 0, 0}});
+  for (const Cloud* a : {&none, &spoiled, &some})
+    for (const Cloud* b : {&none, &spoiled, &some})
+      for (const std::size_t count : {0u, 1u, 3u}) {
+        const SphereHierarchy scan(a->view()), model(b->view());
+        const Poses poses(count, identity);
+        const TrajectoryResult result = collideAlong({scan}, model, poses, everything(1.0));
+        expectSame(result, brute_force::collideAlong({scan}, model, poses, everything(1.0)));
+        EXPECT_EQ(result.colliding, a == &some && b == &some && count > 0 ? 1u : 0u);
+        EXPECT_EQ(result.poses.size(), count);
+        TrajectoryRequest swept = flagsOnly(1.0);
+        swept.swept = 0.1;
+        EXPECT_EQ(collideAlong({scan}, model, poses, swept).colliding, result.colliding);
+      }
+}
+
+TEST(Trajectory, ReportsProgressAndStops)
+{
+  const Corridor corridor;
+  const SphereHierarchy scan(corridor.walls.view()), model(corridor.cart.view());
+  for (const unsigned threads : {1u, 2u}) {
+    TrajectoryRequest request = flagsOnly(0.1);
+    request.threads = threads;
+    std::vector<double> fractions;
+    const std::thread::id caller = std::this_thread::get_id();
+    request.progress = [&](double fraction) {
+      EXPECT_EQ(std::this_thread::get_id(), caller);
+      fractions.push_back(fraction);
+      return true;
+    };
+    const TrajectoryResult result = collideAlong({scan}, model, alongCorridor(2, 58, 100), request);
+    EXPECT_GT(result.colliding, 0u);
+    ASSERT_FALSE(fractions.empty());
+    EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+    EXPECT_GT(fractions.front(), 0.0);
+    EXPECT_LE(fractions.back(), 1.0);
+    int calls = 0;
+    request.progress = [&](double) { return ++calls < 3; };
+    EXPECT_THROW(collideAlong({scan}, model, alongCorridor(2, 58, 100), request), Cancelled);
+    EXPECT_EQ(calls, 3);
+  }
+}
+
+std::string refusal(const Poses& poses, const TrajectoryRequest& request)
+{
+  const Cloud cloud(std::vector<Point3>{{0, 0, 0}, {1, 0, 0}});
+  const SphereHierarchy scan(cloud.view()), model(cloud.view());
+  try {
+    collideAlong({scan}, model, poses, request);
+  }
+  catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(Trajectory, RefusesWhatMakesNoSense)
+{
+  using testing::HasSubstr;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  Poses poses(3, identity);
+  EXPECT_THAT(refusal(poses, flagsOnly(-1)), HasSubstr("clearance: -1"));
+  EXPECT_THAT(refusal(poses, flagsOnly(nan)), HasSubstr("clearance: nan"));
+  TrajectoryRequest swept = flagsOnly(0);
+  for (const double tolerance : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
+    swept.swept = tolerance;
+    EXPECT_THAT(refusal(poses, swept), HasSubstr("tolerance of the swept motion"));
+  }
+  swept.swept = 1e-30;
+  EXPECT_THAT(refusal(poses, swept), HasSubstr("too small for coordinates"));
+  swept.swept = 0.1;
+  swept.pivot = {0, nan, 0};
+  EXPECT_THAT(refusal(poses, swept), HasSubstr("pivot: nan"));
+  swept.pivot = {0, 0, 0};
+  swept.pose_summaries = true;
+  EXPECT_THAT(refusal(poses, swept), HasSubstr("pose_summaries"));
+  poses[1].linear() *= 1.1;
+  EXPECT_THAT(refusal(poses, flagsOnly(0)), HasSubstr("pose 1 of the model: not rigid"));
+  poses[1] = identity;
+  poses[2].translation().x() = nan;
+  EXPECT_THAT(refusal(poses, flagsOnly(0)), HasSubstr("pose 2 of the model: not finite"));
+  swept.pose_summaries = false;
+  poses[2] = identity;
+  poses[2].linear() = Eigen::AngleAxisd(3.0, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  poses[2].translation().x() = 1e6;
+  swept.swept = 1e-8;
+  EXPECT_THAT(refusal(poses, swept), HasSubstr("from pose 1 to the next"));
+}
+
+TEST(TrajectorySwept, CatchesAThinPoleBetweenPoses)
+{
+  std::vector<Point3> pole;
+  for (int i = 0; i <= 100; ++i) pole.push_back({10.5, 0.1, 0.02 * i});
+  const Cloud scan_cloud(pole), model_cloud(shell({-0.1, -0.3, 0.5}, {0.1, 0.3, 1.5}, 0.05));
+  const SphereHierarchy scan(scan_cloud.view()), model(model_cloud.view());
+  Poses poses(21, identity);
+  for (std::size_t k = 0; k < poses.size(); ++k) poses[k].translation().x() = static_cast<double>(k);
+  TrajectoryRequest request = flagsOnly(0.05);
+  EXPECT_EQ(collideAlong({scan}, model, poses, request).colliding, 0u);
+  request.swept = 0.001;
+  const TrajectoryResult result = collideAlong({scan}, model, poses, request);
+  EXPECT_EQ(result.colliding, 55u); // from 0.5 - 0.05 to 1.5 + 0.05, every 0.02
+  ASSERT_TRUE(result.first_contact);
+  EXPECT_EQ(result.first_contact->pose, 10u);
+  EXPECT_NEAR(result.first_contact->fraction, 0.35, 0.001); // 0.1 ahead of the origin, 0.05 of clearance
+}
+
+TEST(TrajectorySwept, CatchesAPoleThatATurnSweeps)
+{
+  // A boom of ten metres turns by a quarter in one go; the pole stands where neither pose sees it.
+  std::vector<Point3> boom;
+  for (int i = 0; i <= 1000; ++i) boom.push_back({0.01 * i, 0, 1});
+  const double angle = 0.7, radius = 9.0;
+  const Cloud scan_cloud(std::vector<Point3>{{radius * std::cos(angle), radius * std::sin(angle), 1}}),
+      model_cloud(boom);
+  const SphereHierarchy scan(scan_cloud.view()), model(model_cloud.view());
+  Poses poses(2, identity);
+  poses[1].linear() = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  TrajectoryRequest request = flagsOnly(0.05);
+  EXPECT_EQ(collideAlong({scan}, model, poses, request).colliding, 0u);
+  request.swept = 0.001;
+  request.distances = true;
+  const TrajectoryResult result = collideAlong({scan}, model, poses, request);
+  EXPECT_EQ(result.colliding, 1u);
+  EXPECT_NEAR(result.distance[0], 0.0, 0.0006);
+  ASSERT_TRUE(result.first_contact);
+  EXPECT_NEAR(result.first_contact->fraction, (angle - 0.05 / radius) / (M_PI / 2), 0.001 / radius);
+}
+
+TEST(TrajectorySwept, ShrinksToTheTruthWithTheTolerance)
+{
+  const Corridor corridor;
+  const Poses poses = alongCorridor(2, 58, 30);
+  const SphereHierarchy scan(corridor.walls.view()), model(corridor.cart.view());
+  std::vector<std::uint8_t> wider = std::vector<std::uint8_t>(corridor.walls.view().count, 1);
+  const std::vector<std::uint8_t> at_poses = collideAlong({scan}, model, poses, flagsOnly(0.1)).flags;
+  for (const double tolerance : {0.16, 0.01, 0.000625}) { // each a sixteenth of the one before
+    TrajectoryRequest request = flagsOnly(0.1);
+    request.swept = tolerance;
+    const std::vector<std::uint8_t> flags = collideAlong({scan}, model, poses, request).flags;
+    for (std::size_t p = 0; p < flags.size(); ++p) {
+      EXPECT_LE(at_poses[p], flags[p]);
+      EXPECT_LE(flags[p], wider[p]);
+    }
+    wider = flags;
+  }
+}
+
+TEST(TrajectorySwept, PosesBetween)
+{
+  Random random(5);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Isometry3d from = random.pose(10), to = random.pose(10);
+    const Point3 pivot = random.point([&] { return random.uniform(-5, 5); });
+    const Eigen::Vector3d p(pivot[0], pivot[1], pivot[2]);
+    EXPECT_LT((poseBetween(from, to, 0, pivot).matrix() - from.matrix()).norm(), 1e-12);
+    EXPECT_LT((poseBetween(from, to, 1, pivot).matrix() - to.matrix()).norm(), 1e-12);
+    const double f = random.uniform(0, 1);
+    const Eigen::Isometry3d between = poseBetween(from, to, f, pivot);
+    EXPECT_LT((between * p - ((1 - f) * (from * p) + f * (to * p))).norm(), 1e-12);
+    const auto angle = [](const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+      return Eigen::Quaterniond(a.linear()).angularDistance(Eigen::Quaterniond(b.linear()));
+    };
+    EXPECT_NEAR(angle(from, between), f * angle(from, to), 1e-7);
   }
 }
 
