@@ -29,9 +29,12 @@ namespace HWY_NAMESPACE {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNodeStray = 0.5;  // of a node's radius: an interval that strays farther is divided
-constexpr double kLeafStray = 0.15; // of a leaf's
-constexpr double kBoxSize = 1.0;    // of a node's radius: a larger box of the model is opened
+constexpr double kNodeStray = 0.5;       // of a node's radius: an interval that strays farther is divided
+constexpr double kLeafStray = 0.15;      // of a leaf's
+constexpr double kManyPosesStray = 0.08; // likewise, where it has many poses
+constexpr float kManyPoses = 64;
+constexpr float kFewPoses = 4;   // as quickly looked at one by one as all together
+constexpr double kBoxSize = 1.0; // of a node's radius: a larger box of the model is opened
 
 /// A box of the model: a child of one of a voxel's nodes, or of the nodes above the voxels.
 struct Candidate {
@@ -65,6 +68,7 @@ struct Span {
   float steps;    ///< poses after the first; 0 where all instants count
   float reach;    ///< of points: within this of a straight line, in floats, is all that collides
   float smallest; ///< motion that floats can tell from none
+  float rounding; ///< of places in floats
 };
 
 /// One node of the scan on its way through the model, its children tested all at once.
@@ -81,6 +85,7 @@ struct LeafVisit {
   std::size_t slot;   ///< of its flags
   std::uint32_t open; ///< bits of the points that are not settled
   Segments<kLeafPoints> ways;
+  Ways<kLeafPoints> motions;
   Segment around;
 };
 
@@ -178,7 +183,8 @@ private:
     const double rounding =
         static_cast<double>(kSegmentRounding) * (coordinate + 2.01 * radius_ + tree_.radius + reach) + 0x1p-100;
     span.reach = roundUp(reach + rounding);
-    span.smallest = static_cast<float>(rounding) * 0x1p-8f;
+    span.rounding = roundUp(rounding);
+    span.smallest = span.rounding * 0x1p-8f;
     return span;
   }
 
@@ -376,7 +382,8 @@ private:
   {
     const std::uint32_t all = firstBits(points.count);
     if ((all & ~scratch_.settled[slot]) == 0) return false;
-    const double limit = path_.is_swept ? path_.stray : kLeafStray * node.r[lane] * frame_.unit;
+    const double share = span.steps > kManyPoses ? kManyPosesStray : kLeafStray;
+    const double limit = path_.is_swept ? path_.stray : share * node.r[lane] * frame_.unit;
     if (divides(span, limit)) {
       return compareLeaf(slot, points, node, lane, spanOf(span.interval->left), candidates) &&
              compareLeaf(slot, points, node, lane, spanOf(span.interval->right), candidates);
@@ -393,6 +400,7 @@ private:
       std::fill(to[axis] + points.count, to[axis] + kLeafPoints, 0.0f);
     }
     leaf.ways.set(from, to, span.smallest);
+    if (path_.is_swept || span.steps >= kFewPoses) leaf.motions.set(from, to, span.smallest, span.rounding);
     std::fill(leaf.ways.reach, leaf.ways.reach + kLeafPoints, span.reach);
     if (course_.closestOnly())
       for (std::uint32_t i = 0; i < points.count; ++i)
@@ -437,42 +445,83 @@ private:
     const Node& node = candidate.nodes[candidate.node];
     const LeafRange other{&tree_.storage.voxels[candidate.voxel], node.begin[k], node.comparedPoints(k)};
     if (path_.is_swept)
-      compareWays(leaf, lanes, stays, other, span);
+      compareWays(leaf, lanes, stays, other, candidate.voxel, span);
     else
       comparePoses(leaf, lanes, stays, other, candidate.voxel, span);
   }
 
   // --- poses ---
 
-  void comparePoses(LeafVisit& leaf, std::uint32_t lanes, const Stays<kLeafPoints>& stays, const LeafRange& other,
+  void comparePoses(LeafVisit& leaf, std::uint32_t lanes, Stays<kLeafPoints>& stays, const LeafRange& other,
                     std::uint32_t voxel, const Span& span)
   {
-    const std::uint32_t begin = span.interval->first;
-    const double steps = span.interval->last - begin;
-    std::uint32_t first[kLeafPoints], last[kLeafPoints]; // poses at which a point is in the box
-    std::uint32_t from = span.interval->last, to = begin;
-    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      first[i] = begin + static_cast<std::uint32_t>(std::ceil(steps * stays.from[i]));
-      last[i] = begin + static_cast<std::uint32_t>(std::floor(steps * stays.to[i]));
-      from = std::min(from, first[i]);
-      to = std::max(to, last[i]);
-    }
-    for (std::uint32_t k = from; k <= to; ++k) {
-      std::uint32_t here = 0;
-      for (std::uint32_t bits = lanes & leaf.open; bits != 0; bits &= bits - 1) {
-        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-        if (first[i] <= k && k <= last[i] && isWanted(leaf, i, k)) here |= 1u << i;
+    PoseRanges ranges = rangesOf(lanes, stays, span);
+    if (ranges.lanes == 0) return;
+    if (static_cast<float>(ranges.end - ranges.begin) > kFewPoses && other.voxel->frame.unit == 1.0) {
+      lanes &= nearPoints(leaf, other, voxel, stays);
+      ranges = rangesOf(lanes, stays, span);
+      lanes = ranges.lanes;
+      if (!course_.everything() && !course_.first) {
+        // Any pose will do: the one in the middle is nearest.
+        for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+          const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+          if ((leaf.open >> i & 1) == 0) continue;
+          const std::uint32_t k = ranges.first[i] + (ranges.last[i] - ranges.first[i]) / 2;
+          compareAt(leaf, ranges.at(k, lanes & leaf.open), other, voxel, k, span);
+        }
       }
+    }
+    for (std::uint32_t k = ranges.begin; k < ranges.end && (lanes & leaf.open) != 0; ++k) {
+      std::uint32_t here = ranges.at(k, lanes & leaf.open);
+      if (course_.first && !course_.everything())
+        for (std::uint32_t bits = here; bits != 0; bits &= bits - 1) {
+          const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+          if (scratch_.first[leaf.points.begin + i] <= k) here &= ~(1u << i);
+        }
       if (here != 0) compareAt(leaf, here, other, voxel, k, span);
-      if ((lanes & leaf.open) == 0) return;
     }
   }
 
-  /// Whether a collision of the leaf's point i at pose k would be news.
-  bool isWanted(const LeafVisit& leaf, std::uint32_t i, std::uint32_t k) const
+  /// Bits of the leaf's points whose ways come near to points of the model's leaf, and when.
+  std::uint32_t nearPoints(const LeafVisit& leaf, const LeafRange& other, std::uint32_t voxel,
+                           Stays<kLeafPoints>& stays) const
   {
-    return course_.everything() || !course_.first || k < scratch_.first[leaf.points.begin + i];
+    const Point3 at = tree_.offset(voxel);
+    const float shift[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
+    return segmentsNearPoints(leaf.ways, leaf.motions, other.x(), other.y(), other.z(), other.count, shift, stays);
+  }
+
+  /// The poses at which each of a leaf's points has to be looked at: first..last, of all of them [begin, end).
+  struct PoseRanges {
+    std::uint32_t lanes = 0; ///< points that have such a pose
+    std::uint32_t first[kLeafPoints], last[kLeafPoints];
+    std::uint32_t begin = 0xffffffffu, end = 0;
+
+    std::uint32_t at(std::uint32_t k, std::uint32_t among) const
+    {
+      std::uint32_t here = 0;
+      for (std::uint32_t bits = among & lanes; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+        if (first[i] <= k && k <= last[i]) here |= 1u << i;
+      }
+      return here;
+    }
+  };
+
+  static PoseRanges rangesOf(std::uint32_t lanes, const Stays<kLeafPoints>& stays, const Span& span)
+  {
+    PoseRanges ranges;
+    const double steps = span.interval->last - span.interval->first;
+    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      ranges.first[i] = span.interval->first + static_cast<std::uint32_t>(std::ceil(steps * stays.from[i]));
+      ranges.last[i] = span.interval->first + static_cast<std::uint32_t>(std::floor(steps * stays.to[i]));
+      if (ranges.first[i] > ranges.last[i]) continue;
+      ranges.lanes |= 1u << i;
+      ranges.begin = std::min(ranges.begin, ranges.first[i]);
+      ranges.end = std::max(ranges.end, ranges.last[i] + 1);
+    }
+    return ranges;
   }
 
   void compareAt(LeafVisit& leaf, std::uint32_t lanes, const LeafRange& other, std::uint32_t voxel, std::uint32_t k,
@@ -599,9 +648,10 @@ private:
 
   /// Points that move in straight lines against points at rest: all instants at once. In double; what that gets wrong
   /// is small against the tolerance (checkTolerance()).
-  void compareWays(LeafVisit& leaf, std::uint32_t lanes, const Stays<kLeafPoints>& stays, const LeafRange& other,
-                   const Span& span)
+  void compareWays(LeafVisit& leaf, std::uint32_t lanes, Stays<kLeafPoints>& stays, const LeafRange& other,
+                   std::uint32_t voxel, const Span& span)
   {
+    if (other.voxel->frame.unit == 1.0) lanes &= nearPoints(leaf, other, voxel, stays);
     ++answer_.work.leaf_pairs;
     const double begin = span.interval->first, steps = span.interval->last - span.interval->first;
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {

@@ -113,6 +113,72 @@ HWY_INLINE std::uint32_t boxesOnSegment(const Segment& segment, const float (*lo
   return bits;
 }
 
+/// The same ways, to be held against points.
+template <std::size_t Count>
+struct Ways {
+  alignas(64) float motion[3][Count];
+  alignas(64) float inverse_length[Count]; ///< of the motion, or of `smallest` where that is longer
+  float rounding; ///< in lengths: what it may amount to, at least 64 u of the largest coordinate
+
+  HWY_INLINE void set(const float (&from)[3][Count], const float (&to)[3][Count], float smallest, float rounded)
+  {
+    const LaneTag d;
+    rounding = rounded;
+    for (std::size_t i = 0; i < Count; i += hn::Lanes(d)) {
+      const LaneVector x = hn::Sub(hn::Load(d, to[0] + i), hn::Load(d, from[0] + i));
+      const LaneVector y = hn::Sub(hn::Load(d, to[1] + i), hn::Load(d, from[1] + i));
+      const LaneVector z = hn::Sub(hn::Load(d, to[2] + i), hn::Load(d, from[2] + i));
+      const LaneVector length = hn::Sqrt(squaredNorm(x, y, z)), least = hn::Set(d, smallest);
+      const auto moves = hn::Gt(length, least);
+      hn::Store(hn::IfThenElseZero(moves, x), d, motion[0] + i);
+      hn::Store(hn::IfThenElseZero(moves, y), d, motion[1] + i);
+      hn::Store(hn::IfThenElseZero(moves, z), d, motion[2] + i);
+      hn::Store(hn::Div(hn::Set(d, 1.0f), hn::Max(length, least)), d, inverse_length + i);
+    }
+  }
+};
+
+/// Bit i: segment i may come within its reach of one of `count` points, at (x, y, z) + shift.
+/// @param stays when that is: from the first instant for any of the points to the last; of lanes whose bit is set.
+template <std::size_t Count>
+HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, const Ways<Count>& ways, const float* x,
+                                            const float* y, const float* z, std::size_t count, const float* shift,
+                                            Stays<Count>& stays)
+{
+  const LaneTag d;
+  const LaneVector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < Count; i += hn::Lanes(d)) {
+    const LaneVector mx = hn::Load(d, ways.motion[0] + i), my = hn::Load(d, ways.motion[1] + i),
+                     mz = hn::Load(d, ways.motion[2] + i), inverse = hn::Load(d, ways.inverse_length + i);
+    const LaneVector sx = hn::Sub(hn::Load(d, segments.start[0] + i), hn::Set(d, shift[0]));
+    const LaneVector sy = hn::Sub(hn::Load(d, segments.start[1] + i), hn::Set(d, shift[1]));
+    const LaneVector sz = hn::Sub(hn::Load(d, segments.start[2] + i), hn::Set(d, shift[2]));
+    const LaneVector reach = hn::Add(hn::Load(d, segments.reach + i), hn::Set(d, ways.rounding));
+    const LaneVector limit = hn::Mul(reach, reach);
+    const LaneVector slack = hn::Mul(hn::Set(d, ways.rounding), inverse);
+    LaneVector from = one, to = zero;
+    for (std::size_t j = 0; j < count; ++j) {
+      const LaneVector wx = hn::Sub(hn::Set(d, x[j]), sx), wy = hn::Sub(hn::Set(d, y[j]), sy),
+                       wz = hn::Sub(hn::Set(d, z[j]), sz);
+      const LaneVector along = hn::Add(hn::Add(hn::Mul(wx, mx), hn::Mul(wy, my)), hn::Mul(wz, mz));
+      const LaneVector at = hn::Mul(hn::Mul(along, inverse), inverse);
+      const LaneVector left = hn::Sub(
+          limit, squaredNorm(hn::Sub(wx, hn::Mul(at, mx)), hn::Sub(wy, hn::Mul(at, my)), hn::Sub(wz, hn::Mul(at, mz))));
+      const LaneVector half = hn::Add(hn::Mul(hn::Sqrt(hn::Max(left, zero)), inverse), slack);
+      const auto near = hn::Ge(left, zero);
+      from = hn::Min(from, hn::IfThenElse(near, hn::Sub(at, half), one));
+      to = hn::Max(to, hn::IfThenElse(near, hn::Add(at, half), zero));
+    }
+    from = hn::Max(from, zero);
+    to = hn::Min(to, one);
+    hn::Store(from, d, stays.from + i);
+    hn::Store(to, d, stays.to + i);
+    bits |= bitsOf(d, hn::Le(from, to)) << i;
+  }
+  return bits;
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh
 HWY_AFTER_NAMESPACE();
