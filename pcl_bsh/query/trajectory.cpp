@@ -5,7 +5,7 @@
 // whichever is larger is divided.
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/query/request_check.h>
-#include <pcl_bsh/query/trajectory_walk.h>
+#include <pcl_bsh/query/trajectory_course.h>
 
 #include <algorithm>
 #include <atomic>
@@ -39,6 +39,7 @@ struct Visit {
   std::vector<Candidate> near[kLanes];
 };
 
+/// Takes one voxel of the scan along the trajectory.
 class TrajectoryWalk {
 public:
   TrajectoryWalk(const Course& course, std::uint32_t voxel, std::deque<Visit>& visits)
@@ -52,7 +53,7 @@ public:
   {
   }
 
-  /// Takes the voxel through intervals of the path, given in their order.
+  /// @param intervals of the path, at least one, in their order.
   VoxelAnswer run(const std::vector<std::uint32_t>& intervals)
   {
     if (course_.request.pose_summaries)
@@ -83,6 +84,7 @@ private:
     findings_.begin(*voxel_);
   }
 
+  /// Takes a node, all its children at once, through its candidates; then each child through its own.
   void descend(std::uint32_t index, const Span& span, const std::vector<Candidate>& candidates, std::size_t depth)
   {
     const Node& node = voxel_->nodes[index];
@@ -127,7 +129,7 @@ private:
       visit.radius[lane] = sight_.seenRadius(node.r[lane]);
       visit.children.reach[lane] = (span.reach + visit.radius[lane]) * (1.0f + 0x1p-21f);
     }
-    // Around all of them: a box that moves as their bounds' middle does, in the voxel's frame.
+    // A ball around all of them.
     const float* coordinates[3] = {node.x, node.y, node.z};
     float widest = 0.0f;
     for (std::size_t axis = 0; axis < 3; ++axis) {

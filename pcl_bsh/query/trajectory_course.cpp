@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/query/trajectory_walk.h>
+#include <pcl_bsh/query/trajectory_course.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // What is known so far of the points of one of the scan's voxels, and of the poses it was looked at.
 #pragma once
 
-#include <pcl_bsh/query/trajectory_walk.h>
+#include <pcl_bsh/query/trajectory_course.h>
 
 #include <vector>
 
@@ -17,7 +17,8 @@ struct Best {
   float reach = std::numeric_limits<float>::infinity(); ///< the same, as a distance
 };
 
-/// A leaf of the scan: `slot` is 8 * its node + its place in there.
+/// Leaves of the voxel are named by slots: 8 * the node + the child. Points by their place in the voxel, poses by their
+/// place on the path.
 class Findings {
 public:
   explicit Findings(const Course& course) : course_(course) {}

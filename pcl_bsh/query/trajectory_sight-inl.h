@@ -9,7 +9,7 @@
 #endif
 
 #include <pcl_bsh/query/leaf_pair-inl.h>
-#include <pcl_bsh/query/trajectory_walk.h>
+#include <pcl_bsh/query/trajectory_course.h>
 #include <pcl_bsh/simd/segment_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();

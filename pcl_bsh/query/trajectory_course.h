@@ -19,6 +19,7 @@ struct PoseBest {
   bool found = false;
 };
 
+/// The question, and what its answer takes that no voxel changes.
 struct Course {
   Course(const Placed& scan_at, const SphereHierarchy& model_of, const std::vector<Eigen::Isometry3d>& model_poses,
          const TrajectoryRequest& asked, TrajectoryResult& into);
