@@ -571,9 +571,12 @@ TEST(Trajectory, ReportsProgressAndStops)
     EXPECT_GT(fractions.front(), 0.0);
     EXPECT_LE(fractions.back(), 1.0);
     int calls = 0;
-    request.progress = [&](double) { return ++calls < 3; };
+    request.progress = [&](double) {
+      ++calls;
+      return false;
+    };
     EXPECT_THROW(collideAlong({scan}, model, alongCorridor(2, 58, 100), request), Cancelled);
-    EXPECT_EQ(calls, 3);
+    EXPECT_EQ(calls, 1);
   }
 }
 
