@@ -5,6 +5,8 @@
 #include <pcl_bsh/geometry/rounding.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace pcl_bsh {
 
@@ -32,6 +34,16 @@ inline DistanceBand distanceBand(double low_d, double high_d, double error) noex
   const double miss = (1.0 + 6 * kFloatUnit) * high * high + 0x1p-124;
   band.miss = miss >= 3.4e38 ? std::numeric_limits<float>::infinity() : roundUp(miss);
   return band;
+}
+
+/// The band where z is the true vector, w its image under a map that changes lengths by a factor of 1 +- skew at most,
+/// and float arithmetic knows w within `error`; no band at all, all undecided, where that is infinite or the reach is
+/// out of range. |z| <= d follows from |w| <= d (1 - skew), |z| > d from |w| > d (1 + skew). @param d >= 0, not NaN
+inline DistanceBand skewedBand(double d, double error, double skew) noexcept
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (!(error < infinity) || !inFloatRange(d)) return {-1.0f, std::numeric_limits<float>::infinity()};
+  return distanceBand(d * (1.0 - skew), d * (1.0 + skew), error);
 }
 
 } // namespace pcl_bsh

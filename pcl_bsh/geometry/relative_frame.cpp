@@ -11,7 +11,6 @@ namespace pcl_bsh {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 double normOfSums(const std::array<double, 9>& m)
 {
@@ -107,10 +106,7 @@ bool RelativeFrame::separates(double clearance) const noexcept
 
 DistanceBand RelativeFrame::band(double clearance) const noexcept
 {
-  const double d = clearance / unit_b_;
-  if (!(error < kInfinity) || !inFloatRange(d)) return {-1.0f, kFloatInfinity};
-  // |z| <= d follows from |w| <= d (1 - skew), |z| > d from |w| > d (1 + skew).
-  return distanceBand(d * (1.0 - skew_), d * (1.0 + skew_), error);
+  return skewedBand(clearance / unit_b_, error, skew_);
 }
 
 float RelativeFrame::pruneReach(double clearance) const noexcept

@@ -54,7 +54,7 @@ public:
     placing_ = course.error(origin) + (1.0 + skew) * (slack + tree.voxel_slack);
     far = (radius + course.reach) * (1.0 + skew) + placing_ + tree.voxel_reach;
     error = placing_ + 4.001 * kFloatUnit * 1.7321 * (far + 1.7321 * (1.0 + skew) * radius) + 0x1p-60;
-    band = distanceBand(course.request.clearance, error, skew);
+    band = skewedBand(course.request.clearance, error, skew);
   }
 
   const Voxel& voxel; ///< sorted at least
@@ -140,7 +140,7 @@ public:
   }
 
   /// A pair at a larger squared distance in floats is farther than one at this.
-  float notBeyond(float squared) const { return distanceBand(highOf(squared), error, path.skew).miss; }
+  float notBeyond(float squared) const { return skewedBand(highOf(squared), error, path.skew).miss; }
 
   /// How far from a line a point may be that is as near as the best one.
   float reachOf(const Span& span, float best) const
