@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <examples/tunnel/tunnel.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+namespace pcl_bsh::tunnel {
+namespace {
+
+using Eigen::Vector2d, Eigen::Vector3d;
+using std::numbers::pi;
+
+constexpr double track_step = 0.1; // of the track's samples: a bend strays from its chord by 7 um there
+constexpr double rise = 3.0;       // the track's highest place above its mean
+
+/// A stretch of track whose curvature runs evenly from one value to another: a straight, a bend, or a clothoid.
+struct Stretch {
+  double length, from, to;
+};
+
+constexpr double tight = 1.0 / 175, medium = -1.0 / 210, wide = 1.0 / 450;
+constexpr std::array<Stretch, 13> stretches = {{{120, 0, 0},
+                                                {40, 0, tight},
+                                                {120, tight, tight},
+                                                {40, tight, 0},
+                                                {160, 0, 0},
+                                                {40, 0, medium},
+                                                {160, medium, medium},
+                                                {40, medium, 0},
+                                                {120, 0, 0},
+                                                {40, 0, wide},
+                                                {120, wide, wide},
+                                                {40, wide, 0},
+                                                {104, 0, 0}}};
+
+// The tunnel's cross-section: a flat floor, upright walls, an arch.
+constexpr double half_width = 1.76;
+constexpr double floor_level = -0.3;
+constexpr double spring_level = 2.9; // where the arch begins
+constexpr double arch_height = 1.9;
+constexpr double wall_height = spring_level - floor_level;
+const double arch_length = // half an ellipse, by Ramanujan
+    pi / 2 *
+    (3 * (half_width + arch_height) - std::sqrt((3 * half_width + arch_height) * (half_width + 3 * arch_height)));
+const double section_length = 2 * half_width + 2 * wall_height + arch_length;
+
+// Lamps stand out from the walls, left and right in turn; every fifth reaches in too far.
+constexpr double lamp_distance = 24.0;
+constexpr double lamp_length = 1.2;
+constexpr double lamp_low = 2.3, lamp_high = 2.5;
+constexpr double lamp_reach = 0.12, bad_lamp_reach = 0.285;
+
+/// The wagon's outline, left half, from the floor's edge to the middle of the roof; convex.
+constexpr std::array<std::array<double, 2>, 5> outline = {
+    {{1.2, 0.35}, {1.45, 0.9}, {1.45, 3.1}, {1.1, 3.8}, {0.0, 4.05}}};
+
+/// The standard fixes this generator's numbers, not those of its distributions.
+class Random {
+public:
+  explicit Random(std::uint64_t seed) : bits_(seed) {}
+  double uniform(double low, double high) { return low + (high - low) * static_cast<double>(bits_() >> 11) * 0x1p-53; }
+
+private:
+  std::mt19937_64 bits_;
+};
+
+double lampReach(double station, double side, double z)
+{
+  const double lamp = std::round(station / lamp_distance);
+  const bool here = std::abs(station - lamp * lamp_distance) <= lamp_length / 2 && z >= lamp_low && z <= lamp_high;
+  const auto number = static_cast<long>(lamp);
+  if (!here || (number % 2 == 0) != (side > 0)) return 0;
+  return number % 5 == 0 ? bad_lamp_reach : lamp_reach;
+}
+
+/// What sprayed concrete looks like: up to 2 cm in or out.
+double roughness(double station, double along)
+{
+  return 0.012 * std::sin(2 * pi * station / 7.3 + 1.3 * along) + 0.008 * std::sin(2 * pi * along / 1.1 + station);
+}
+
+/// A place on the tunnel's inside, by the way round its section, 0 .. section_length.
+Vector2d onSection(double station, double along)
+{
+  const double bump = roughness(station, along);
+  if (along < 2 * half_width) return {along - half_width, floor_level};
+  along -= 2 * half_width;
+  for (const double side : {1.0, -1.0}) {
+    if (along < wall_height) {
+      const double z = floor_level + along;
+      return {side * (half_width - bump - lampReach(station, side, z)), z};
+    }
+    along -= wall_height;
+  }
+  const double angle = pi * along / arch_length;
+  return {(half_width - bump) * std::cos(angle), spring_level + (arch_height - bump) * std::sin(angle)};
+}
+
+/// The whole outline, once round: the left half, then its mirror image from the roof down, then the floor.
+std::vector<Vector2d> wholeOutline()
+{
+  std::vector<Vector2d> corners;
+  for (const auto& corner : outline) corners.emplace_back(corner[0], corner[1]);
+  for (std::size_t i = outline.size() - 1; i-- > 0;) corners.emplace_back(-outline[i][0], outline[i][1]);
+  return corners;
+}
+
+double lengthOf(const std::vector<Vector2d>& ring)
+{
+  double sum = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) sum += (ring[(i + 1) % ring.size()] - ring[i]).norm();
+  return sum;
+}
+
+double areaOf(const std::vector<Vector2d>& ring)
+{
+  double twice = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vector2d &p = ring[i], &q = ring[(i + 1) % ring.size()];
+    twice += p.x() * q.y() - p.y() * q.x();
+  }
+  return std::abs(twice) / 2;
+}
+
+Vector2d alongRing(const std::vector<Vector2d>& ring, double along)
+{
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vector2d edge = ring[(i + 1) % ring.size()] - ring[i];
+    if (along <= edge.norm()) return ring[i] + edge.normalized() * along;
+    along -= edge.norm();
+  }
+  return ring.front();
+}
+
+/// How a scanner that turns as it travels sees a tube: calls take(way along, way round) for `count` places, as far
+/// apart one way as the other.
+template <typename Take>
+void sweepTube(std::size_t count, double length, double round, Random& random, const Take& take)
+{
+  const double per_turn = std::max(1.0, std::round(std::sqrt(static_cast<double>(count) * round / length)));
+  for (std::size_t i = 0; i < count; ++i) {
+    const double place = static_cast<double>(i) + random.uniform(0.1, 0.9);
+    take(length * place / static_cast<double>(count), round * (place / per_turn - std::floor(place / per_turn)));
+  }
+}
+
+std::vector<Eigen::Vector3f> scanTunnel(const Track& track, std::size_t count)
+{
+  Random random(1);
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(count);
+  sweepTube(count, track_length, section_length, random, [&](double station, double along) {
+    const Vector2d place = onSection(station, along);
+    Vector3d noise;
+    for (double& n : noise) n = random.uniform(-0.003, 0.003);
+    points.emplace_back((track.at(station) * Vector3d(0, place.x(), place.y()) + noise).cast<float>());
+  });
+  return points;
+}
+
+std::vector<Eigen::Vector3f> scanWagon(std::size_t count)
+{
+  Random random(2);
+  const std::vector<Vector2d> ring = wholeOutline();
+  const double round = lengthOf(ring), end_area = areaOf(ring);
+  const auto share = end_area / (2 * end_area + wagon_length * round);
+  const auto at_end = static_cast<std::size_t>(share * static_cast<double>(count));
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(count);
+  sweepTube(count - 2 * at_end, wagon_length, round, random, [&](double along, double way_round) {
+    const Vector2d place = alongRing(ring, way_round);
+    points.emplace_back(Vector3d(along - wagon_length / 2, place.x(), place.y()).cast<float>());
+  });
+  while (points.size() < count) {
+    const double end = points.size() % 2 == 0 ? wagon_length / 2 : -wagon_length / 2;
+    const double y = random.uniform(-1.45, 1.45), z = random.uniform(0.35, 4.05);
+    if (distanceToWagonOutline(y, z) == 0) points.emplace_back(Vector3d(end, y, z).cast<float>());
+  }
+  return points;
+}
+
+} // namespace
+
+double Track::curvature(double station)
+{
+  for (const Stretch& stretch : stretches) {
+    if (station < stretch.length) return stretch.from + (stretch.to - stretch.from) * station / stretch.length;
+    station -= stretch.length;
+  }
+  return 0;
+}
+
+Track::Track()
+{
+  Sample sample{0, 0, 0};
+  const auto steps = static_cast<std::size_t>(std::lround(track_length / track_step));
+  for (std::size_t i = 0; i <= steps; ++i) {
+    samples_.push_back(sample);
+    const double middle = (static_cast<double>(i) + 0.5) * track_step;
+    const double turn = curvature(middle) * track_step;
+    sample.x += track_step * std::cos(sample.heading + turn / 2);
+    sample.y += track_step * std::sin(sample.heading + turn / 2);
+    sample.heading += turn;
+  }
+}
+
+Eigen::Isometry3d Track::at(double station) const
+{
+  const double place = std::clamp(station, 0.0, track_length) / track_step;
+  const auto i = std::min(static_cast<std::size_t>(place), samples_.size() - 2);
+  const double f = place - static_cast<double>(i);
+  const Sample &p = samples_[i], &q = samples_[i + 1];
+  const double phase = 2 * pi * station / track_length;
+  const double heading = p.heading + f * (q.heading - p.heading);
+  const double slope = rise * 2 * pi / track_length * std::cos(phase);
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(heading, Vector3d::UnitZ()) *
+                         Eigen::AngleAxisd(-std::atan(slope), Vector3d::UnitY()));
+  pose.translation() = Vector3d(p.x + f * (q.x - p.x), p.y + f * (q.y - p.y), rise * std::sin(phase));
+  return pose;
+}
+
+Eigen::Isometry3d Track::wagonAt(double station) const
+{
+  const Vector3d rear = at(station - pivot_distance / 2).translation();
+  const Vector3d front = at(station + pivot_distance / 2).translation();
+  const Vector3d x = (front - rear).normalized();
+  const Vector3d y = Vector3d::UnitZ().cross(x).normalized();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() << x, y, x.cross(y);
+  pose.translation() = (rear + front) / 2;
+  return pose;
+}
+
+Size Size::atScale(double scale)
+{
+  if (!(scale > 0 && scale <= 10)) {
+    throw std::invalid_argument("scale: " + std::to_string(scale) + ": give a number above 0, 10 at most");
+  }
+  const auto scaled = [&](double count) { return static_cast<std::size_t>(std::max(1.0, count * scale)); };
+  return {scaled(18.92e6), scaled(2.5e6), scaled(19392)};
+}
+
+Passage makePassage(const Size& size)
+{
+  const Track track;
+  Passage run{scanTunnel(track, size.scan), scanWagon(size.wagon), {}};
+  // From the portal, just inside, to the other.
+  const double first = wagon_length / 2, last = track_length - wagon_length / 2;
+  for (std::size_t i = 0; i < size.poses; ++i) {
+    const double f = size.poses > 1 ? static_cast<double>(i) / static_cast<double>(size.poses - 1) : 0.5;
+    run.poses.push_back(track.wagonAt(first + f * (last - first)));
+  }
+  return run;
+}
+
+double distanceToWagonOutline(double y, double z)
+{
+  const std::vector<Vector2d> ring = wholeOutline();
+  const Vector2d place(y, z);
+  double nearest = 1e300;
+  bool inside = true;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vector2d edge = ring[(i + 1) % ring.size()] - ring[i], to_place = place - ring[i];
+    inside = inside && edge.x() * to_place.y() - edge.y() * to_place.x() >= 0;
+    const double f = std::clamp(to_place.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+    nearest = std::min(nearest, (to_place - f * edge).norm());
+  }
+  return inside ? 0 : nearest;
+}
+
+} // namespace pcl_bsh::tunnel

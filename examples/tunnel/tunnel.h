@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A railway wagon on its way through a scanned tunnel, made up: does it keep 5 cm from the wall everywhere?
+//
+// The size at scale 1 is that of Schauer & Nuechter, Collision detection between point clouds using an efficient k-d
+// tree implementation (2015): 18.92 M points of a tunnel 1144 m long, a wagon of 2.5 M points, 19,392 positions. The
+// wagon stands on two bogies, so in a bend its middle leaves the track to the inside and its ends to the outside: there
+// it touches walls that its cross-section, carried along the track, would clear. Some lamps reach in too far anywhere.
+//
+// Metres; z up, x forward, the origin of wagon and track at the rails' level in the middle of the track.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcl_bsh::tunnel {
+
+inline constexpr double track_length = 1144.0;
+inline constexpr double clearance = 0.05;
+inline constexpr double wagon_length = 26.4;
+inline constexpr double pivot_distance = 19.0; ///< between the wagon's two bogies
+
+/// A curve in space, by the distance travelled: straights, bends, and clothoids between them; a gentle rise and fall.
+class Track {
+public:
+  Track();
+
+  /// Where a narrow trolley would stand at this station, 0 .. track_length: x along the track, y left, z up.
+  Eigen::Isometry3d at(double station) const;
+
+  /// The wagon with its middle at this station: both bogies on the track, the body straight between them.
+  Eigen::Isometry3d wagonAt(double station) const;
+
+  /// In 1/m, positive to the left; 0 on a straight.
+  static double curvature(double station);
+
+private:
+  struct Sample {
+    double x, y, heading;
+  };
+  std::vector<Sample> samples_;
+};
+
+struct Size {
+  std::size_t scan = 0;
+  std::size_t wagon = 0;
+  std::size_t poses = 0;
+
+  /// Counts in proportion, lengths as they are. @throws std::invalid_argument unless 0 < scale <= 10
+  static Size atScale(double scale);
+};
+
+/// All that a question along a path needs. Points are float x, y, z in a row.
+struct Passage {
+  std::vector<Eigen::Vector3f> scan;    ///< in the world, in the order of a scanner that turns as it travels
+  std::vector<Eigen::Vector3f> wagon;   ///< in the wagon's frame
+  std::vector<Eigen::Isometry3d> poses; ///< of the wagon in the world, evenly spaced over the whole tunnel
+};
+
+/// The same on every call.
+Passage makePassage(const Size& size);
+
+/// Distance from a place in the cross-section (y to the left, z up) to the wagon's outline there; 0 inside.
+double distanceToWagonOutline(double y, double z);
+
+} // namespace pcl_bsh::tunnel

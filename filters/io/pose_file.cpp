@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/io/cloud_file_error.h>
+#include <pcl_bsh/filters/io/file_bytes.h>
+#include <pcl_bsh/filters/io/pose_file.h>
+#include <pcl_bsh/filters/io/replace_file.h>
+#include <pcl_bsh/filters/io/text_cursor.h>
+
+#include <pcl_bsh/query/collide.h>
+
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+namespace pcl_bsh::io {
+
+namespace {
+
+constexpr auto remedy = "give 12 or 16 numbers of a rigid matrix, row by row, or time tx ty tz qx qy qz qw, a pose to "
+                        "a line";
+
+std::vector<double> numbersOf(TextCursor& cursor)
+{
+  std::vector<double> numbers;
+  while (!cursor.line().empty()) numbers.push_back(cursor.number<double>());
+  return numbers;
+}
+
+Eigen::Isometry3d fromMatrix(const std::vector<double>& numbers)
+{
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    pose.matrix()(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = numbers[i];
+  }
+  return pose;
+}
+
+Eigen::Isometry3d fromQuaternion(const std::vector<double>& n, const TextCursor& cursor)
+{
+  const Eigen::Quaterniond rotation(n[7], n[4], n[5], n[6]);
+  const double length = rotation.norm();
+  if (!(std::abs(length - 1) <= 1e-3)) cursor.fail("has a quaternion of length " + std::to_string(length) + ", not 1");
+  Eigen::Isometry3d pose(rotation.normalized());
+  pose.translation() = Eigen::Vector3d(n[1], n[2], n[3]);
+  return pose;
+}
+
+/// What a query would say to the pose.
+void requireRigid(const Eigen::Isometry3d& pose, const SphereHierarchy& nothing, const TextCursor& cursor)
+{
+  try {
+    anyCollision({nothing}, {nothing, pose}, {});
+  }
+  catch (const std::invalid_argument& error) { // `pose of b: what is wrong: what to do`
+    const std::string message = error.what();
+    const std::size_t begin = message.find(": ") + 2;
+    cursor.fail("holds no pose, " + message.substr(begin, message.rfind(": ") - begin));
+  }
+}
+
+std::vector<Eigen::Isometry3d> parsePoses(std::string_view text)
+{
+  const SphereHierarchy nothing{PointsView{}};
+  std::vector<Eigen::Isometry3d> poses;
+  std::size_t columns = 0;
+  TextCursor cursor(text, '#', ",;");
+  while (cursor.nextLine()) {
+    const std::vector<double> numbers = numbersOf(cursor);
+    const std::string count = std::to_string(numbers.size());
+    if (numbers.size() != 8 && numbers.size() != 12 && numbers.size() != 16) {
+      cursor.fail("has " + count + " numbers, not 8, 12 or 16");
+    }
+    if (columns != 0 && numbers.size() != columns) {
+      cursor.fail("has " + count + " numbers, the lines before have " + std::to_string(columns));
+    }
+    columns = numbers.size();
+    poses.push_back(columns == 8 ? fromQuaternion(numbers, cursor) : fromMatrix(numbers));
+    requireRigid(poses.back(), nothing, cursor);
+  }
+  if (poses.empty()) throw FormatError("holds no pose");
+  return poses;
+}
+
+} // namespace
+
+std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path)
+{
+  const FileBytes file(path);
+  try {
+    return parsePoses(file.view());
+  }
+  catch (const FormatError& error) {
+    throw CloudFileError(path, error.what(), remedy);
+  }
+}
+
+void writePoses(const std::filesystem::path& path, const std::vector<Eigen::Isometry3d>& poses)
+{
+  replaceFile(path, [&](std::ostream& out) {
+    for (const Eigen::Isometry3d& pose : poses) {
+      for (int i = 0; i < 12; ++i) {
+        std::array<char, 32> digits;
+        const auto end = std::to_chars(digits.begin(), digits.end(), pose.matrix()(i / 4, i % 4)).ptr;
+        out << (i == 0 ? "" : " ") << std::string_view(digits.data(), end);
+      }
+      out << '\n';
+    }
+  });
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Trajectories as text: one pose a line.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <filesystem>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// Reads a pose from each line; numbers are separated by blanks, tabs, commas or semicolons, the rest of a line from
+/// '#' on is ignored, and so are lines without a number. How a pose is written is told by how many numbers a line has,
+/// the same in the whole file:
+///
+///   12  the upper three rows of its matrix, row by row (KITTI)
+///   16  all four rows
+///    8  time tx ty tz qx qy qz qw (TUM); the time is not used, the quaternion is normalised
+///
+/// @throws CloudFileError naming the file and the line: another number of numbers, or not that of the lines before; a
+///   word that is no number; a matrix that is not rigid (|R'R - I| > 1e-6, a mirror, a last row other than 0 0 0 1); a
+///   quaternion whose length is off 1 by more than 1e-3; a value that is not finite. Also when the file cannot be read
+///   or holds no pose.
+std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path);
+
+/// Writes twelve numbers a line, which read back to the same bits. The file appears complete or not at all.
+/// @throws CloudFileError
+void writePoses(const std::filesystem::path& path, const std::vector<Eigen::Isometry3d>& poses);
+
+} // namespace pcl_bsh::io

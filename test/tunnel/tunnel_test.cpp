@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <examples/tunnel/tunnel.h>
+
+#include <pcl_bsh/query/collide.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_bsh::tunnel {
+namespace {
+
+PointsView viewOf(const std::vector<Eigen::Vector3f>& points)
+{
+  return pcl_bsh::viewOf(points.front().data(), points.size());
+}
+
+/// Where a point lies, as seen from the track beside it.
+struct Place {
+  double station = 0;
+  double outline = 0; ///< distance to the wagon's cross-section there
+  bool straight = false;
+};
+
+Place placeOf(const Track& track, const Eigen::Vector3f& point)
+{
+  Place place;
+  double nearest = 1e300;
+  for (double station = 0; station <= track_length; station += 0.25) {
+    const double along = std::abs((track.at(station).inverse() * point.cast<double>()).x());
+    const double distance = (track.at(station).translation() - point.cast<double>()).norm();
+    if (distance < 10 && along < nearest) nearest = along, place.station = station;
+  }
+  const Eigen::Vector3d seen = track.at(place.station).inverse() * point.cast<double>();
+  place.outline = distanceToWagonOutline(seen.y(), seen.z());
+  place.straight = true; // all along the wagon, wherever it stands beside this place
+  for (double ahead = -wagon_length; ahead <= wagon_length; ahead += 1) {
+    place.straight = place.straight && Track::curvature(place.station + ahead) == 0;
+  }
+  return place;
+}
+
+TEST(TunnelSize, InProportion)
+{
+  const Size full = Size::atScale(1), tenth = Size::atScale(0.1);
+  EXPECT_EQ(full.scan, 18920000u);
+  EXPECT_EQ(full.wagon, 2500000u);
+  EXPECT_EQ(full.poses, 19392u);
+  EXPECT_EQ(tenth.scan, 1892000u);
+  EXPECT_EQ(tenth.wagon, 250000u);
+  EXPECT_EQ(tenth.poses, 1939u);
+  for (const double scale : {0.0, -1.0, 11.0, std::nan("")}) EXPECT_THROW(Size::atScale(scale), std::invalid_argument);
+}
+
+TEST(TunnelPassage, HoldsWhatWasAskedFor)
+{
+  const Size size{20000, 3000, 50};
+  const Passage run = makePassage(size), again = makePassage(size);
+  EXPECT_EQ(run.scan.size(), size.scan);
+  EXPECT_EQ(run.wagon.size(), size.wagon);
+  ASSERT_EQ(run.poses.size(), size.poses);
+  EXPECT_EQ(run.scan, again.scan);
+  EXPECT_EQ(run.wagon, again.wagon);
+  double length = 0;
+  for (std::size_t i = 1; i < run.poses.size(); ++i) {
+    length += (run.poses[i].translation() - run.poses[i - 1].translation()).norm();
+  }
+  EXPECT_NEAR(length, track_length - wagon_length, 1.0);
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : run.wagon) box.extend(p);
+  EXPECT_NEAR(box.sizes().x(), wagon_length, 0.1);
+  EXPECT_NEAR(box.sizes().y(), 2.9, 0.1);
+}
+
+TEST(TunnelTrack, WagonsMiddleLeavesTheTrackInABend)
+{
+  const Track track;
+  const auto leaves = [&](double station) {
+    return (track.at(station).inverse() * track.wagonAt(station).translation()).y();
+  };
+  EXPECT_NEAR(leaves(60), 0, 1e-4) << "straight";
+  EXPECT_NEAR(leaves(220), pivot_distance * pivot_distance / (8 * 175), 1e-3) << "left bend: to the left";
+  EXPECT_NEAR(leaves(600), -pivot_distance * pivot_distance / (8 * 210), 1e-3) << "right bend: to the right";
+}
+
+TEST(TunnelPassage, BendsShowCollisionsThatTheCrossSectionDoesNot)
+{
+  const Passage run = makePassage(Size::atScale(0.02));
+  const SphereHierarchy scan(viewOf(run.scan)), wagon(viewOf(run.wagon));
+  CollisionRequest request;
+  request.clearance = clearance;
+  std::vector<std::uint8_t> collides(run.scan.size(), 0);
+  for (const Eigen::Isometry3d& pose : run.poses) {
+    const FlagsResult here = collisionFlags({scan}, {wagon, pose}, request);
+    if (here.colliding_a == 0) continue;
+    for (std::size_t i = 0; i < collides.size(); ++i) collides[i] |= here.a[i];
+  }
+
+  const Track track;
+  std::size_t lamps = 0, only_in_bends = 0;
+  for (std::size_t i = 0; i < collides.size(); ++i) {
+    if (collides[i] == 0) continue;
+    const Place place = placeOf(track, run.scan[i]);
+    if (place.outline > clearance + 0.01) {
+      ++only_in_bends;
+      EXPECT_FALSE(place.straight) << "station " << place.station;
+    }
+    else if (place.straight) {
+      ++lamps;
+    }
+  }
+  EXPECT_GT(only_in_bends, 500u) << "walls that the cross-section clears";
+  EXPECT_GT(lamps, 3u) << "lamps that reach in anywhere";
+  EXPECT_LT(lamps, 200u);
+}
+
+} // namespace
+} // namespace pcl_bsh::tunnel
