@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/collision_field.h>
 
+#include <pcl_bsh/query/trajectory.h>
 #include <pcl_bsh/search/cloud_view.h>
+
+#include <pcl/common/io.h>
+#include <pcl/type_traits.h>
 
 #include <algorithm>
 #include <cstring>
@@ -12,17 +16,40 @@ namespace {
 
 using Field = pcl::PCLPointField;
 
-void requireByteField(const Field& field, const pcl::PCLPointCloud2& cloud)
+/// Calls use(values) with the vector behind the field.
+template <typename Use>
+decltype(auto) withValues(const NewField& field, const Use& use)
 {
-  if (field.datatype != Field::UINT8 || field.count > 1 || field.offset >= cloud.point_step) {
-    throw std::invalid_argument("field '" + field.name +
-                                "' exists already and is not one UINT8 per point: rename or remove it");
+  return std::visit([&](const auto* values) -> decltype(auto) { return use(*values); }, field.values);
+}
+
+template <typename Value>
+constexpr std::uint8_t datatypeOf(const std::vector<Value>&)
+{
+  return pcl::traits::asEnum_v<Value>;
+}
+
+void requireSame(const Field& field, std::uint8_t datatype, const pcl::PCLPointCloud2& cloud)
+{
+  const auto bytes = static_cast<std::size_t>(pcl::getFieldSize(datatype));
+  if (field.datatype != datatype || field.count > 1 || field.offset + bytes > cloud.point_step) {
+    const char* type = datatype == Field::UINT8 ? "UINT8" : datatype == Field::INT32 ? "INT32" : "FLOAT32";
+    throw std::invalid_argument("field '" + field.name + "' exists already and is not one " + type +
+                                " per point: rename or remove it");
   }
 }
 
-/// The cloud with room for one more byte at the end of each record. Records are packed, not aligned: padding would
+/// The field of that name, if the cloud has one.
+const Field* find(const pcl::PCLPointCloud2& cloud, const std::string& name)
+{
+  const auto field =
+      std::find_if(cloud.fields.begin(), cloud.fields.end(), [&](const Field& f) { return f.name == name; });
+  return field == cloud.fields.end() ? nullptr : &*field;
+}
+
+/// The cloud's header, its fields and the new ones, without a record. New fields lie packed, not aligned: padding would
 /// show as fields named "_" in every file PCL writes.
-pcl::PCLPointCloud2 widened(const pcl::PCLPointCloud2& cloud, std::size_t points)
+pcl::PCLPointCloud2 layout(const pcl::PCLPointCloud2& cloud, const std::vector<NewField>& fields)
 {
   pcl::PCLPointCloud2 result;
   result.header = cloud.header;
@@ -31,45 +58,60 @@ pcl::PCLPointCloud2 widened(const pcl::PCLPointCloud2& cloud, std::size_t points
   result.fields = cloud.fields;
   result.is_bigendian = cloud.is_bigendian;
   result.is_dense = cloud.is_dense;
-  result.point_step = cloud.point_step + 1;
-  result.row_step = result.point_step * result.width;
-  result.data.resize(points * result.point_step);
-  for (std::size_t i = 0; i < points; ++i) {
-    std::memcpy(&result.data[i * result.point_step], &cloud.data[i * cloud.point_step], cloud.point_step);
+  result.point_step = cloud.point_step;
+  for (const NewField& field : fields) {
+    const std::uint8_t datatype = withValues(field, [](const auto& values) { return datatypeOf(values); });
+    if (const Field* present = find(result, field.name)) {
+      requireSame(*present, datatype, result);
+      continue;
+    }
+    Field added;
+    added.name = field.name;
+    added.offset = result.point_step;
+    added.datatype = datatype;
+    added.count = 1;
+    result.fields.push_back(added);
+    result.point_step += static_cast<pcl::uindex_t>(pcl::getFieldSize(datatype));
   }
+  result.row_step = result.point_step * result.width;
   return result;
 }
 
 } // namespace
 
-pcl::PCLPointCloud2 withField(const pcl::PCLPointCloud2& cloud, const std::string& name,
-                              const std::vector<std::uint8_t>& values)
+pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vector<NewField>& fields)
 {
   const std::size_t points = viewOf(cloud).count;
-  if (values.size() != points) {
-    throw std::invalid_argument("field '" + name + "' has " + std::to_string(values.size()) +
-                                " values: the cloud has " + std::to_string(points) + " points");
+  for (const NewField& field : fields) {
+    const std::size_t count = withValues(field, [](const auto& values) { return values.size(); });
+    if (count != points) {
+      throw std::invalid_argument("field '" + field.name + "' has " + std::to_string(count) +
+                                  " values: the cloud has " + std::to_string(points) + " points");
+    }
   }
 
-  pcl::PCLPointCloud2 result;
-  auto field = std::find_if(cloud.fields.begin(), cloud.fields.end(), [&](const Field& f) { return f.name == name; });
-  std::size_t offset = cloud.point_step;
-  if (field != cloud.fields.end()) {
-    requireByteField(*field, cloud);
-    offset = field->offset;
-    result = cloud;
+  pcl::PCLPointCloud2 result = layout(cloud, fields);
+  result.data.resize(points * result.point_step);
+  for (std::size_t i = 0; i < points; ++i) {
+    std::memcpy(&result.data[i * result.point_step], &cloud.data[i * cloud.point_step], cloud.point_step);
   }
-  else {
-    result = widened(cloud, points);
-    Field added;
-    added.name = name;
-    added.offset = cloud.point_step;
-    added.datatype = Field::UINT8;
-    added.count = 1;
-    result.fields.push_back(added);
+  for (const NewField& field : fields) {
+    const std::size_t offset = find(result, field.name)->offset;
+    withValues(field, [&](const auto& values) {
+      for (std::size_t i = 0; i < points; ++i) {
+        std::memcpy(&result.data[i * result.point_step + offset], &values[i], sizeof values[i]);
+      }
+    });
   }
-  for (std::size_t i = 0; i < points; ++i) result.data[i * result.point_step + offset] = values[i];
   return result;
+}
+
+std::vector<NewField> fieldsOf(const TrajectoryResult& result)
+{
+  return {{collision_field_name, &result.flags},
+          {distance_field_name, &result.distance},
+          {first_pose_field_name, &result.first_pose},
+          {closest_pose_field_name, &result.closest_pose}};
 }
 
 } // namespace pcl_bsh

@@ -1,25 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Collision flags as a field of the cloud, beside all it had.
+// What a query says of each point, as fields of the cloud beside all it had.
 #pragma once
 
 #include <pcl/PCLPointCloud2.h>
 
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace pcl_bsh {
 
+struct TrajectoryResult;
+
 /// The field that holds collision flags: UINT8, 1 = collides.
 inline constexpr const char* collision_field_name = "collision";
 
-/// A copy of the cloud with one more UINT8 field at the end of each record; every other byte is kept. A UINT8 field of
-/// that name which is there already takes the new values instead.
-/// @param values one per point
+/// Along a trajectory: FLOAT32, the smallest distance, NaN where free; INT32, numbers of poses, -1 where free.
+inline constexpr const char* distance_field_name = "distance";
+inline constexpr const char* first_pose_field_name = "first_pose";
+inline constexpr const char* closest_pose_field_name = "closest_pose";
+
+/// One value per point: UINT8, INT32 or FLOAT32. The values are borrowed.
+struct NewField {
+  std::string name;
+  std::variant<const std::vector<std::uint8_t>*, const std::vector<std::int32_t>*, const std::vector<float>*> values;
+};
+
+/// A copy of the cloud with more fields at the end of each record; every other byte is kept. A field of the same name
+/// and type that is there already takes the new values instead.
 /// @throws std::invalid_argument naming what is wrong: a cloud that viewOf() refuses, a number of values that is not
-/// the
-///   number of points, a field of that name but of another type
-pcl::PCLPointCloud2 withField(const pcl::PCLPointCloud2& cloud, const std::string& name,
-                              const std::vector<std::uint8_t>& values);
+///   the number of points, a field of that name but of another type
+pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vector<NewField>& fields);
+
+/// The same with one UINT8 field.
+inline pcl::PCLPointCloud2 withField(const pcl::PCLPointCloud2& cloud, const std::string& name,
+                                     const std::vector<std::uint8_t>& values)
+{
+  return withFields(cloud, {{name, &values}});
+}
+
+/// `collision`, `distance`, `first_pose` and `closest_pose` of a result that has all four. Borrows them.
+std::vector<NewField> fieldsOf(const TrajectoryResult& result);
 
 } // namespace pcl_bsh

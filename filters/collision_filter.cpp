@@ -38,7 +38,8 @@ void CollisionFilter<pcl::PCLPointCloud2>::setInputCloud(const PCLPointCloud2Con
 void CollisionFilter<pcl::PCLPointCloud2>::applyFilter(pcl::PCLPointCloud2& output)
 {
   if (keep_flagged_) {
-    output = withField(*input_, collision_field_name, collisionFlags(inputView()));
+    output = getTrajectory() ? withFields(*input_, fieldsOf(alongTrajectory(inputView())))
+                             : withField(*input_, collision_field_name, collisionFlags(inputView()));
     removed_indices_->clear();
     return;
   }

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <pcl_bsh/filters/obstacle_query.h>
+#include <pcl_bsh/query/trajectory.h>
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/filters/filter_indices.h>
@@ -48,6 +49,10 @@ public:
   /// One flag per point of the whole input cloud, 1 = collides (also after setNegative(true)); 0 for points outside
   /// setIndices() and for points that are not finite. Throws as filter() does.
   void computeFlags(std::vector<std::uint8_t>& flags);
+
+  /// More along the trajectory (or at the one pose) than flags: for each colliding point of the whole input cloud its
+  /// smallest distance, the first pose and the closest, and a summary of each pose. Throws as filter() does.
+  void computeTrajectory(TrajectoryResult& result);
 
 protected:
   using pcl::FilterIndices<PointT>::applyFilter;
@@ -86,7 +91,8 @@ public:
   void setInputCloud(const PCLPointCloud2ConstPtr& cloud);
 
   /// true: filter(cloud) removes nothing and adds a field `collision` (UINT8), the flags of computeFlags(), whatever
-  /// setNegative() and setKeepOrganized() say. Default: false.
+  /// setNegative() and setKeepOrganized() say; along a trajectory also `distance` (FLOAT32, NaN where free),
+  /// `first_pose` and `closest_pose` (INT32, -1 where free). Default: false.
   void setKeepFlagged(bool keep_flagged) { keep_flagged_ = keep_flagged; }
   bool getKeepFlagged() const { return keep_flagged_; }
 

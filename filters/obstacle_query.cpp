@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/obstacle_query.h>
 
 #include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/trajectory.h>
 
 #include <pcl/console/print.h>
 
@@ -50,8 +51,41 @@ void ObstacleQuery::warnOfCoarse(const char* cloud, const SphereHierarchy& hiera
            cloud, spacing, clearance_);
 }
 
+TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& request)
+{
+  if (trajectory_ && trajectory_->empty()) {
+    throw std::invalid_argument("trajectory has no pose: give one at least, or call setPose()");
+  }
+  const SphereHierarchy& obstacle = obstacleHierarchy();
+  HierarchyOptions options;
+  options.threads = threads_;
+  const SphereHierarchy hierarchy(input, options);
+
+  warnOfCoarse("input", hierarchy);
+  warnOfCoarse("obstacle", obstacle);
+
+  request.clearance = clearance_;
+  request.threads = threads_;
+  if (swept_ != 0.0) request.swept = swept_;
+  TrajectoryResult result =
+      collideAlong({hierarchy}, obstacle, trajectory_ ? *trajectory_ : std::vector{pose_}, request);
+  work_ = result.work;
+  return result;
+}
+
+TrajectoryResult ObstacleQuery::alongTrajectory(const PointsView& input)
+{
+  TrajectoryRequest request;
+  request.distances = request.first_poses = request.closest_poses = request.pose_summaries = true;
+  return run(input, request);
+}
+
 std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input)
 {
+  if (trajectory_) {
+    TrajectoryRequest request;
+    return run(input, request).flags;
+  }
   const SphereHierarchy& obstacle = obstacleHierarchy();
   HierarchyOptions options;
   options.threads = threads_;

@@ -12,12 +12,15 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
 namespace pcl_bsh {
 
 class SphereHierarchy;
+struct TrajectoryRequest;
+struct TrajectoryResult;
 
 /// The settings that CollisionFilter adds to PCL's, and the query they ask. Lengths are in the clouds' own unit.
 class ObstacleQuery {
@@ -44,8 +47,21 @@ public:
   void setPose(const Eigen::MatrixBase<Derived>& pose)
   {
     pose_.matrix() = pose.template cast<double>();
+    trajectory_.reset();
   }
   const Eigen::Isometry3d& getPose() const { return pose_; }
+
+  /// The obstacle moves: its poses in the input's frame, one after another, each rigid as setPose() asks. A point
+  /// collides if it does at any of them. At least one pose, or filtering throws. Replaces setPose(), and the other way
+  /// round.
+  void setTrajectory(const std::vector<Eigen::Isometry3d>& poses) { trajectory_ = poses; }
+  const std::optional<std::vector<Eigen::Isometry3d>>& getTrajectory() const { return trajectory_; }
+
+  /// > 0: points collide with the motion between consecutive poses of the trajectory too (straight for the obstacle's
+  /// origin, the rotation spherically interpolated), to this tolerance: those within clearance do, those beyond
+  /// clearance + tolerance do not. 0 (default): at the poses alone. Finite and >= 0, or filtering throws.
+  void setSwept(double tolerance) { swept_ = tolerance; }
+  double getSwept() const { return swept_; }
 
   /// Default 1; 0: all of the machine's. The answer is the same for any number.
   void setNumberOfThreads(unsigned threads) { threads_ = threads; }
@@ -64,6 +80,10 @@ protected:
   /// @throws std::invalid_argument when a setting is missing or not what its declaration asks for.
   std::vector<std::uint8_t> collisionFlags(const PointsView& input);
 
+  /// Everything that is known of each point along the trajectory, or at the one pose.
+  /// Throws as collisionFlags() does.
+  TrajectoryResult alongTrajectory(const PointsView& input);
+
   /// Parts the input's points, in their order, into those that do not collide (if `negative`: that do) and the rest.
   /// Points that are not finite are always of the rest. Throws as collisionFlags() does.
   /// @param removed may be null
@@ -73,10 +93,13 @@ private:
   void setObstacle(std::function<PointsView()> view);
   void warnOfCoarse(const char* cloud, const SphereHierarchy& hierarchy);
   const SphereHierarchy& obstacleHierarchy();
+  TrajectoryResult run(const PointsView& input, TrajectoryRequest& request);
 
   std::function<PointsView()> obstacle_; ///< owns its cloud
   std::shared_ptr<const SphereHierarchy> hierarchy_;
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
+  std::optional<std::vector<Eigen::Isometry3d>> trajectory_; ///< instead of pose_
+  double swept_ = 0.0;
   double clearance_ = 0.0;
   unsigned threads_ = 1;
   Work work_;

@@ -39,6 +39,13 @@ void CollisionFilterBase<PointT>::computeFlags(std::vector<std::uint8_t>& flags)
 }
 
 template <typename PointT>
+void CollisionFilterBase<PointT>::computeTrajectory(TrajectoryResult& result)
+{
+  requireInput();
+  result = alongTrajectory(inputView());
+}
+
+template <typename PointT>
 void CollisionFilterBase<PointT>::applyFilter(pcl::Indices& indices)
 {
   select(inputView(), this->negative_, indices,

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which points belong together? Euclidean clusters of one cloud, through its hierarchy.
+#pragma once
+
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/query/result.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace pcl_bsh {
+
+struct Clusters {
+  static constexpr std::int32_t kNone = -1;
+
+  std::vector<std::int32_t> of; ///< one per record of the view: number of its cluster; kNone: not a finite point of it
+  std::vector<std::size_t> sizes; ///< points of each cluster
+  Work work;
+};
+
+/// Two points belong to the same cluster iff a chain of the cloud's points leads from one to the other in steps of
+/// `distance` at most, decided exactly. Clusters are numbered by their smallest records. Radii play no part.
+/// @throws std::invalid_argument unless the distance is finite and >= 0
+Clusters euclideanClusters(const SphereHierarchy& cloud, double distance);
+
+namespace brute_force {
+
+/// The same, pair by pair in exact arithmetic.
+Clusters euclideanClusters(const SphereHierarchy& cloud, double distance);
+
+} // namespace brute_force
+} // namespace pcl_bsh

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How densely is a surface sampled? A collision can hide in a hole wider than the clearance.
+#pragma once
+
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+
+#include <cstddef>
+
+namespace pcl_bsh {
+
+/// Distances from points to the nearest other place that has one, in the cloud's unit, good to six digits.
+struct Spacing {
+  std::size_t samples = 0; ///< points that were asked
+  double median = 0.0;     ///< 0 when no two places are sampled
+  double wide = 0.0;       ///< nine of ten are no farther from a neighbour
+};
+
+/// Asks at most 1,024 points, in 32 groups that are evenly spaced through the cloud's voxels, so that few voxels are
+/// built for it; all points of a cloud that has no more. The same on every call.
+Spacing spacingOf(const SphereHierarchy& cloud);
+
+} // namespace pcl_bsh
