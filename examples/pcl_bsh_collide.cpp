@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which points of a cloud collide with an obstacle? From two files to a third, with a report.
+// Which points of a cloud collide with an obstacle, at a pose or along a path? From two files to a third, with reports.
+#include "cli/clash_html.h"
 #include "cli/collide_options.h"
+#include "cli/interruption.h"
 #include "cli/program.h"
 #include "cli/report.h"
 #include "cli/step.h"
 
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/io/cloud_file.h>
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/trajectory.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <algorithm>
@@ -33,11 +35,11 @@ struct Scan {
 };
 
 /// The core names what is wrong with a request as `what: wrong: remedy`; users know it by the option.
-void requireAccepted(const char* option, const Eigen::Isometry3d& pose, const CollisionRequest& request)
+template <typename Ask>
+void requireAccepted(const char* option, const Ask& ask)
 {
   try {
-    const SphereHierarchy nothing{PointsView{}};
-    anyCollision({nothing}, {nothing, pose}, request);
+    ask(SphereHierarchy{PointsView{}});
   }
   catch (const std::invalid_argument& error) {
     const std::string message = error.what();
@@ -45,19 +47,56 @@ void requireAccepted(const char* option, const Eigen::Isometry3d& pose, const Co
   }
 }
 
+/// A report must not be written over what this command reads or writes.
+void requireOwnFile(const char* option, const fs::path& path, const Options& options)
+{
+  const auto same = [&](const fs::path& used) { return fs::weakly_canonical(path) == fs::weakly_canonical(used); };
+  const std::vector<fs::path> used = options.files();
+  if (std::count_if(used.begin(), used.end(), same) > 1) {
+    throw UsageError(std::string(option) + ": " + path.string() +
+                     " is another file of this command: choose another name");
+  }
+  io::requireWritable(path);
+}
+
 /// Everything that can be known to fail is known before the first cloud is loaded.
 void check(const Options& options)
 {
-  requireAccepted("--clearance", Eigen::Isometry3d::Identity(), options.request);
-  requireAccepted("--pose", options.pose, {});
+  requireAccepted("--clearance",
+                  [&](const SphereHierarchy& nothing) { anyCollision({nothing}, {nothing}, options.request); });
+  requireAccepted("--pose", [&](const SphereHierarchy& nothing) {
+    anyCollision({nothing}, {nothing, options.pose}, {});
+  });
+  if (!options.path.empty()) {
+    requireAccepted("--from", [&](const SphereHierarchy& nothing) {
+      anyCollision({nothing}, {nothing, options.path.front()}, {});
+    });
+    requireAccepted("--to", [&](const SphereHierarchy& nothing) {
+      anyCollision({nothing}, {nothing, options.path.back()}, {});
+    });
+  }
+  if (options.swept) {
+    requireAccepted("--swept", [&](const SphereHierarchy& nothing) {
+      TrajectoryRequest request;
+      request.swept = options.swept;
+      collideAlong({nothing}, nothing, {Eigen::Isometry3d::Identity()}, request);
+    });
+  }
   io::requireWritableCloud(options.output);
-  if (!options.report) return;
-  for (const fs::path& used : {options.input, options.obstacle, options.output}) {
-    if (fs::weakly_canonical(*options.report) == fs::weakly_canonical(used)) {
-      throw UsageError("--report: " + options.report->string() + " is a cloud of this command: choose another name");
+  if (options.report) requireOwnFile("--report", *options.report, options);
+  for (const fs::path& list : options.clashes) {
+    const std::string extension = list.extension().string();
+    if (extension != ".json" && extension != ".csv" && extension != ".html") {
+      throw UsageError("--clashes: " + list.string() + ": unknown extension '" + extension +
+                       "': give a .json, .csv or .html file");
+    }
+    if (!(options.previous && fs::weakly_canonical(list) == fs::weakly_canonical(*options.previous))) {
+      requireOwnFile("--clashes", list, options);
+    }
+    else {
+      io::requireWritable(list); // the list is brought up to date
     }
   }
-  io::requireWritable(*options.report);
 }
 
 Scan load(const fs::path& path, double& seconds)
@@ -109,15 +148,20 @@ pcl::PCLPointCloud2 emptyLike(const pcl::PCLPointCloud2& cloud)
   return empty;
 }
 
-pcl::PCLPointCloud2 flagged(const fs::path& path, const pcl::PCLPointCloud2& cloud,
-                            const std::vector<std::uint8_t>& collides)
+pcl::PCLPointCloud2 marked(const fs::path& path, const pcl::PCLPointCloud2& cloud, const std::vector<NewField>& fields)
 {
   try {
-    return withField(cloud, collision_field_name, collides);
+    return withFields(cloud, fields);
   }
   catch (const std::invalid_argument& error) {
     throw std::invalid_argument(path.string() + ": " + error.what());
   }
+}
+
+/// What the output gets beside all the input had.
+std::vector<NewField> newFields(const Options& options, const TrajectoryResult& found)
+{
+  return options.moves() ? fieldsOf(found) : std::vector<NewField>{{collision_field_name, &found.flags}};
 }
 
 /// The input's points that are wanted, as one row.
@@ -137,17 +181,17 @@ pcl::PCLPointCloud2 select(const pcl::PCLPointCloud2& cloud, const PointsView& v
   return kept;
 }
 
-void write(const Options& options, const Scan& input, const std::vector<std::uint8_t>& collides, double& seconds)
+void write(const Options& options, const Scan& input, const TrajectoryResult& found, double& seconds)
 {
   cli::Step step("Writing " + options.output.string());
   const pcl::PCLPointCloud2 cloud = options.keep == Keep::flagged
-                                        ? flagged(options.input, input.cloud, collides)
-                                        : select(input.cloud, viewOf(input.cloud), collides, options.keep);
+                                        ? marked(options.input, input.cloud, newFields(options, found))
+                                        : select(input.cloud, viewOf(input.cloud), found.flags, options.keep);
   io::writeCloud(options.output, cloud, input.viewpoint);
   seconds += step.done(std::to_string(std::size_t{cloud.width} * cloud.height) + " points");
 }
 
-void summarise(const Options& options, const cli::CollisionReport& report)
+void summarise(const Options& options, const cli::CollisionReport& report, const std::vector<Clash>& clashes)
 {
   for (const std::string& warning : report.warnings) std::cerr << program << ": warning: " << warning << '\n';
   std::cout << report.colliding << " of " << report.input.points << " points collide";
@@ -155,38 +199,156 @@ void summarise(const Options& options, const cli::CollisionReport& report)
     std::cout << "; smallest distance " << report.closest.distance << ", between point " << report.closest.pair->a
               << " of the input and point " << report.closest.pair->b << " of the obstacle";
   }
+  if (report.path) std::cout << "; " << report.path->poses << " poses";
+  if (report.path && report.path->first_contact) {
+    std::cout << "; first contact at pose "
+              << static_cast<double>(report.path->first_contact->pose) + report.path->first_contact->fraction;
+  }
+  if (!options.clashes.empty()) {
+    const auto resolved = std::count_if(clashes.begin(), clashes.end(),
+                                        [](const Clash& clash) { return clash.status == ClashStatus::resolved; });
+    std::cout << "; " << clashes.size() - static_cast<std::size_t>(resolved) << " clashes";
+    if (options.previous) std::cout << ", " << resolved << " resolved";
+  }
   std::cout << "; wrote " << options.output.string() << '\n';
+}
+
+/// At one pose, without a list of clashes: flags, and the smallest distance however large.
+TrajectoryResult atPose(const Options& options, const SphereHierarchy& a, const SphereHierarchy& b,
+                        cli::CollisionReport& report)
+{
+  cli::Step query("Comparing");
+  FlagsResult flags = collisionFlags({a}, {b, options.pose}, options.request);
+  report.closest = closestPair({a}, {b, options.pose}, options.request);
+  report.seconds.query = query.done(std::to_string(flags.colliding_a) + " colliding");
+  report.work = flags.work;
+  report.work += report.closest.work;
+  TrajectoryResult found;
+  found.flags = std::move(flags.a);
+  found.colliding = flags.colliding_a;
+  return found;
+}
+
+/// Of all colliding points, that of the smallest distance.
+DistanceResult closestOf(const TrajectoryResult& found)
+{
+  DistanceResult closest;
+  for (std::size_t i = 0; i < found.distance.size(); ++i) {
+    const double distance = static_cast<double>(found.distance[i]);
+    if (!(distance < closest.distance)) continue;
+    closest.distance = distance;
+    closest.pair = PointPair{static_cast<std::uint32_t>(i), found.closest_point[i]};
+  }
+  return closest;
+}
+
+TrajectoryResult alongPath(const Options& options, const std::vector<Eigen::Isometry3d>& poses,
+                           const SphereHierarchy& a, const SphereHierarchy& b, cli::CollisionReport& report)
+{
+  cli::Step query("Following " + std::to_string(poses.size()) + " poses");
+  TrajectoryRequest request;
+  request.clearance = options.request.clearance;
+  request.distances = request.first_poses = request.closest_poses = request.pose_summaries = true;
+  request.swept = options.swept;
+  request.threads = options.request.threads;
+  request.progress = [&](double fraction) {
+    query.share(fraction);
+    return true;
+  };
+  TrajectoryResult found = collideAlong({a}, b, poses, request);
+  report.seconds.query = query.done(std::to_string(found.colliding) + " colliding");
+  report.work = found.work;
+  report.closest = closestOf(found);
+  if (options.moves()) report.path = cli::PathReport{poses.size(), options.swept, found.poses, found.first_contact};
+  return found;
+}
+
+/// The default distance within which colliding points are one clash.
+double clusterDistance(const Options& options, const cli::Density& density)
+{
+  if (options.cluster_distance > 0) return options.cluster_distance;
+  const double least = std::max(options.request.clearance, 4 * density.input.median);
+  return least > 0 ? std::exp2(std::ceil(std::log2(least))) : 1.0;
+}
+
+void warnOfHoles(cli::CollisionReport& report)
+{
+  if (!report.density.couldHide(report.clearance)) return;
+  std::ostringstream warning;
+  warning << "points lie " << report.density.input.median << " apart in the input and "
+          << report.density.obstacle.median << " in the obstacle: surfaces may touch with no two points within the "
+          << "clearance of " << report.clearance << ": scan more densely, or give a clearance of "
+          << report.density.blind() << " at least";
+  report.warnings.push_back(warning.str());
+}
+
+std::vector<Clash> listClashes(const Options& options, const std::vector<Eigen::Isometry3d>& poses,
+                               const SphereHierarchy& a, const SphereHierarchy& b, const TrajectoryResult& found,
+                               const std::vector<Clash>& earlier, cli::CollisionReport& report)
+{
+  cli::Step step("Listing clashes");
+  const double distance = clusterDistance(options, report.density);
+  cli::ClashReport list{options.input.string(),
+                        options.obstacle.string(),
+                        report.clearance,
+                        distance,
+                        {},
+                        findClashes(a.view(), found, distance),
+                        a.view(),
+                        b.view(),
+                        poses,
+                        found,
+                        options.swept};
+  if (options.previous) {
+    list.previous = options.previous->string();
+    compareWithEarlier(list.clashes, earlier, distance);
+  }
+  for (const fs::path& file : options.clashes) {
+    const std::string text = file.extension() == ".json"  ? cli::clashJson(list)
+                             : file.extension() == ".csv" ? cli::clashCsv(list)
+                                                          : cli::ClashPage(list).html();
+    io::replaceFile(file, [&](std::ostream& out) { out << text; });
+  }
+  report.seconds.clashes = step.done(std::to_string(list.clashes.size()) + " clashes");
+  return list.clashes;
+}
+
+std::vector<Eigen::Isometry3d> posesOf(const Options& options)
+{
+  if (!options.trajectory.empty()) return io::readPoses(options.trajectory);
+  return options.path.empty() ? std::vector{options.pose} : options.path;
 }
 
 int collide(const Options& options)
 {
   check(options);
+  const std::vector<Eigen::Isometry3d> poses = posesOf(options);
+  const std::vector<Clash> earlier = options.previous ? cli::readClashes(*options.previous) : std::vector<Clash>();
   cli::CollisionReport report;
   report.clearance = options.request.clearance;
 
   const Scan input = load(options.input, report.seconds.load);
-  if (options.keep == Keep::flagged) flagged(options.input, emptyLike(input.cloud), {}); // fails now if it must
+  if (options.keep == Keep::flagged) marked(options.input, emptyLike(input.cloud), newFields(options, {})); // fails now
   const Scan obstacle = load(options.obstacle, report.seconds.load);
   const auto a = build(input, options.input, options.request.threads, report.seconds.build);
   const auto b = build(obstacle, options.obstacle, options.request.threads, report.seconds.build);
 
-  cli::Step query("Comparing");
-  FlagsResult flags = collisionFlags({a}, {b, options.pose}, options.request);
-  report.closest = closestPair({a}, {b, options.pose}, options.request);
-  report.seconds.query = query.done(std::to_string(flags.colliding_a) + " colliding");
-
-  report.colliding = flags.colliding_a;
-  report.work = flags.work;
-  report.work += report.closest.work;
+  const bool by_place = options.moves() || !options.clashes.empty();
+  const TrajectoryResult found = by_place ? alongPath(options, poses, a, b, report) : atPose(options, a, b, report);
+  report.density = {spacingOf(a), spacingOf(b)};
+  report.colliding = found.colliding;
   report.voxels_total = a.statistics().voxels + b.statistics().voxels;
   report.input = {options.input.string(), a.view().count, a.size()};
   report.obstacle = {options.obstacle.string(), b.view().count, b.size()};
   warnOf(report.input, a, report.clearance, report.warnings);
   warnOf(report.obstacle, b, report.clearance, report.warnings);
+  warnOfHoles(report);
 
-  write(options, input, flags.a, report.seconds.write);
+  write(options, input, found, report.seconds.write);
+  std::vector<Clash> clashes;
+  if (!options.clashes.empty()) clashes = listClashes(options, poses, a, b, found, earlier, report);
   if (options.report) cli::writeReport(*options.report, report);
-  summarise(options, report);
+  summarise(options, report, clashes);
   return 0;
 }
 
@@ -194,6 +356,7 @@ int collide(const Options& options)
 
 int main(int argc, char** argv)
 {
+  cli::stopCleanlyWhenTold(program);
   return cli::runProgram(program, [&] {
     const std::optional<Options> options = cli::parseCollideOptions(argc, argv);
     return options ? collide(*options) : 0;

@@ -2,18 +2,21 @@
 // The command line of pcl_bsh_collide.
 #pragma once
 
-#include "pose.h"
+#include "path.h"
 #include "program.h"
 
 #include <pcl_bsh/filters/io/field_type.h>
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/trajectory.h>
 
 #include <CLI/CLI.hpp>
 
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace pcl_bsh::cli {
 
@@ -28,16 +31,37 @@ struct CollideOptions {
   std::optional<std::filesystem::path> report;
   Keep keep = Keep::flagged;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_input_obstacle
+  std::filesystem::path trajectory;                       ///< a file of such poses, or empty
+  std::vector<Eigen::Isometry3d> path;                    ///< a straight run of them, or empty
+  std::optional<double> swept;
+  std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
+  double cluster_distance = 0;                ///< 0: from clearance and spacing
+  std::optional<std::filesystem::path> previous;
   CollisionRequest request;
+
+  bool moves() const { return !trajectory.empty() || !path.empty(); }
+
+  /// Every file that is read or written.
+  std::vector<std::filesystem::path> files() const
+  {
+    std::vector<std::filesystem::path> all = {input, obstacle, output};
+    if (!trajectory.empty()) all.push_back(trajectory);
+    if (report) all.push_back(*report);
+    if (previous) all.push_back(*previous);
+    all.insert(all.end(), clashes.begin(), clashes.end());
+    return all;
+  }
 };
 
 inline constexpr auto collide_footer =
     R"(Point p of INPUT and q of OBSTACLE collide iff |p - POSE q| <= D, decided exactly.
 Reads .pcd .ply .obj .off .xyz .txt, writes .pcd and .ply.
-Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood.
+Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example: which points of a hall are within 5 cm of a robot at (1.5, 2, 0), turned by 90 degrees?
-  pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708)";
+  pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708
+Example: does a wagon keep 5 cm from a tunnel on its way, and where does it not?
+  pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html)";
 
 template <typename Number>
 Number parseOption(const std::string& option, const std::string& text, const char* remedy)
@@ -61,7 +85,10 @@ inline Keep parseKeep(const std::string& text)
 /// The options, checked one by one; none when only help was asked for.
 inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
 {
-  std::string input, obstacle, output, clearance, pose, report, keep = "flagged", threads = "0";
+  std::string input, obstacle, output, clearance, pose, report, cluster_distance, previous, keep = "flagged",
+                                                                                            threads = "0";
+  std::vector<std::string> clashes;
+  PathOptions path;
   CLI::App app("Flags, keeps or removes the points of a cloud that collide with an obstacle.", collide_program);
   app.footer(collide_footer);
   app.add_option("INPUT", input, "cloud whose points are asked about")->type_name("")->required();
@@ -77,6 +104,7 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
                  "radians (R = Rz(yaw) Ry(pitch) Rx(roll)); or a file of 12 or 16\n"
                  "numbers, the rows of its matrix (default: no motion)")
       ->type_name("POSE");
+  path.addTo(app);
   app.add_option("--keep", keep,
                  "flagged: all points, with a field 'collision' of 0 or 1 (default)\n"
                  "colliding: only these\n"
@@ -85,6 +113,17 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   app.add_option("--threads", threads, "0: all of the machine's (default); any number gives the same result")
       ->type_name("N");
   app.add_option("--report", report, "JSON file for what was found and what it cost")->type_name("FILE");
+  app.add_option("--clashes", clashes,
+                 "list of the places that collide, to .json, .csv or .html; may be given\n"
+                 "more than once")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  app.add_option("--cluster-distance", cluster_distance,
+                 "colliding points no farther apart belong to one clash (default: the\n"
+                 "greater of D and four spacings of INPUT, rounded up to a power of two)")
+      ->type_name("L");
+  app.add_option("--previous", previous, "earlier .json list: clashes are new, persisting or resolved")
+      ->type_name("FILE");
   try {
     app.parse(argc, argv);
   }
@@ -104,7 +143,27 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   options.keep = parseKeep(keep);
   options.request.clearance = parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
   options.request.threads = parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
-  if (!pose.empty()) options.pose = parsePose(pose);
+  path.requireSense(pose);
+  if (!pose.empty()) options.pose = parsePose("--pose", pose);
+  options.trajectory = path.file;
+  if (path.isStraight()) {
+    const auto steps = parseOption<std::uint32_t>("--steps", path.steps, "give a number of steps");
+    if (steps == 0 || steps > 10'000'000) throw UsageError("--steps: " + path.steps + ": give 1 to 10000000");
+    options.path = straightRun(parsePose("--from", path.from), parsePose("--to", path.to), steps);
+  }
+  if (!path.swept.empty()) options.swept = parseOption<double>("--swept", path.swept, "give a length > 0");
+  options.clashes.assign(clashes.begin(), clashes.end());
+  if (clashes.empty() && !(cluster_distance.empty() && previous.empty())) {
+    throw UsageError(std::string(previous.empty() ? "--cluster-distance" : "--previous") +
+                     ": no clash report is written: give --clashes FILE");
+  }
+  if (!cluster_distance.empty()) {
+    options.cluster_distance = parseOption<double>("--cluster-distance", cluster_distance, "give a length > 0");
+    if (!(options.cluster_distance > 0 && std::isfinite(options.cluster_distance))) {
+      throw UsageError("--cluster-distance: " + cluster_distance + ": give a finite length > 0");
+    }
+  }
+  if (!previous.empty()) options.previous = previous;
   return options;
 }
 

@@ -58,9 +58,9 @@ inline Eigen::Isometry3d readPose(const std::filesystem::path& path)
   }
 }
 
-/// What stands behind --pose: six numbers x,y,z,roll,pitch,yaw or the name of a file for readPose().
+/// What stands behind an option for a pose: six numbers x,y,z,roll,pitch,yaw or the name of a file for readPose().
 /// @throws UsageError when it is neither, io::CloudFileError as readPose() does
-inline Eigen::Isometry3d parsePose(const std::string& text)
+inline Eigen::Isometry3d parsePose(const std::string& option, const std::string& text)
 {
   if (std::filesystem::exists(text)) return readPose(text);
   try {
@@ -70,7 +70,7 @@ inline Eigen::Isometry3d parsePose(const std::string& text)
   catch (const io::FormatError&) {
     // Not numbers, and no file either.
   }
-  throw UsageError("--pose: '" + text +
+  throw UsageError(option + ": '" + text +
                    "' is neither six numbers nor a file: give x,y,z,roll,pitch,yaw or a file name");
 }
 

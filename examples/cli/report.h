@@ -3,11 +3,15 @@
 #pragma once
 
 #include <pcl_bsh/filters/io/replace_file.h>
-#include <pcl_bsh/query/result.h>
+#include <pcl_bsh/query/spacing.h>
+#include <pcl_bsh/query/trajectory.h>
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,10 +23,33 @@ struct CloudReport {
   std::size_t finite = 0;
 };
 
+/// How wide the holes are that a collision may hide in.
+struct Density {
+  Spacing input, obstacle;
+
+  /// Half a hole each: where two surfaces touch, a point of one may be this far from the nearest of the other.
+  double blind() const { return (input.median + obstacle.median) / std::sqrt(2.0); }
+
+  /// Clouds of less than a hundred points are no scans, and have no density.
+  bool couldHide(double clearance) const
+  {
+    return std::min(input.samples, obstacle.samples) >= 100 && blind() > clearance;
+  }
+};
+
+/// What is known only along a path.
+struct PathReport {
+  std::size_t poses = 0;
+  std::optional<double> swept;
+  std::vector<PoseSummary> table;
+  std::optional<FirstContact> first_contact; ///< swept only
+};
+
 struct Seconds {
   double load = 0;
   double build = 0; ///< sorting into voxels; their trees are built by the query that visits them
   double query = 0;
+  double clashes = 0;
   double write = 0;
 };
 
@@ -31,8 +58,10 @@ struct CollisionReport {
   CloudReport obstacle;
   double clearance = 0;
   std::size_t colliding = 0; ///< points of the input
-  DistanceResult closest;    ///< a: the input, b: the obstacle
-  Work work;                 ///< of all queries
+  DistanceResult closest;    ///< a: the input, b: the obstacle; along a path within the clearance only
+  Density density;
+  std::optional<PathReport> path;
+  Work work; ///< of all queries
   std::size_t voxels_total = 0;
   Seconds seconds;
   std::vector<std::string> warnings;
@@ -43,7 +72,35 @@ inline nlohmann::ordered_json toJson(const CloudReport& cloud)
   return {{"file", cloud.file}, {"points", cloud.points}, {"finite", cloud.finite}};
 }
 
-/// `distance` and `closest_pair` are null when a cloud has no finite point.
+inline nlohmann::ordered_json toJson(const Spacing& spacing)
+{
+  return {{"median", spacing.median}, {"nine_of_ten", spacing.wide}, {"sampled_points", spacing.samples}};
+}
+
+/// A finite number, or null.
+inline nlohmann::ordered_json orNull(double number)
+{
+  return std::isfinite(number) ? nlohmann::ordered_json(number) : nlohmann::ordered_json();
+}
+
+inline nlohmann::ordered_json toJson(const PathReport& path)
+{
+  nlohmann::ordered_json json;
+  json["poses"] = path.poses;
+  json["swept"] = path.swept ? nlohmann::ordered_json(*path.swept) : nlohmann::ordered_json();
+  json["first_contact"] = nullptr;
+  if (path.first_contact) {
+    json["first_contact"] = {{"pose", path.first_contact->pose}, {"fraction", path.first_contact->fraction}};
+  }
+  json["table"] = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < path.table.size(); ++k) {
+    const PoseSummary& pose = path.table[k];
+    json["table"].push_back({{"pose", k}, {"colliding", pose.colliding_points}, {"distance", orNull(pose.distance)}});
+  }
+  return json;
+}
+
+/// `distance` and `closest_pair` are null when a cloud has no finite point, or nothing collides along a path.
 inline nlohmann::ordered_json toJson(const CollisionReport& report)
 {
   nlohmann::ordered_json json;
@@ -57,7 +114,12 @@ inline nlohmann::ordered_json toJson(const CollisionReport& report)
     json["distance"] = report.closest.distance;
     json["closest_pair"] = {report.closest.pair->a, report.closest.pair->b};
   }
-  json["accuracy"] = "exact";
+  json["accuracy"] = report.path && report.path->swept ? "swept" : "exact";
+  json["density"] = {{"input", toJson(report.density.input)},
+                     {"obstacle", toJson(report.density.obstacle)},
+                     {"blind", report.density.blind()},
+                     {"could_hide_collisions", report.density.couldHide(report.clearance)}};
+  if (report.path) json["path"] = toJson(*report.path);
   json["work"] = {{"node_pairs", report.work.node_pairs},
                   {"leaf_pairs", report.work.leaf_pairs},
                   {"exact_decisions", report.work.exact_decisions},
@@ -66,6 +128,7 @@ inline nlohmann::ordered_json toJson(const CollisionReport& report)
   json["seconds"] = {{"load", report.seconds.load},
                      {"build", report.seconds.build},
                      {"query", report.seconds.query},
+                     {"clashes", report.seconds.clashes},
                      {"write", report.seconds.write}};
   json["warnings"] = report.warnings;
   return json;

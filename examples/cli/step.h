@@ -29,7 +29,8 @@ public:
   Step(const Step&) = delete;
   Step& operator=(const Step&) = delete;
 
-  /// How much of the step is done, from 0 to 1, where that is known; from any thread.
+  /// How much of the step is done, from 0 to 1, where that is known; from any thread. How long the rest
+  /// will take is told from it.
   void share(double done) { share_ = done; }
 
   /// @return seconds that the step took
@@ -54,10 +55,18 @@ private:
       if (stop.stop_requested()) return;
       if (live || !told_) std::cerr << (told_ ? "\r" : "") << line_ << std::flush;
       told_ = true;
-      const double share = share_;
-      if (live) std::cerr << "[" << (share < 0 ? "" : std::to_string(static_cast<int>(100 * share)) + " %, ");
-      if (live) std::cerr << static_cast<long>(elapsed()) << " s] " << std::flush;
+      if (live) std::cerr << "[" << static_cast<long>(elapsed()) << " s" << outlook() << "] \033[K" << std::flush;
     }
+  }
+
+  /// Nothing before the first hundredth is done: it would be a guess.
+  std::string outlook() const
+  {
+    const double fraction = share_;
+    if (fraction < 0.01) return "";
+    const double left = elapsed() * (1 - fraction) / fraction;
+    return ", " + std::to_string(static_cast<long>(100 * fraction)) + " %, about " +
+           std::to_string(static_cast<long>(left) + 1) + " s left";
   }
 
   void end(const std::string& last)

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
+#include <set>
 #include <system_error>
 
 namespace pcl_bsh::io {
@@ -26,17 +27,31 @@ fs::path folderOf(const fs::path& path)
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+/// The temporary files there are.
+struct Unfinished {
+  std::mutex mutex;
+  std::set<fs::path> names;
+};
+
+Unfinished& unfinished()
+{
+  static Unfinished files;
+  return files;
+}
+
 /// A file of its own beside `path`, removed again unless renamed.
 class TemporaryFile {
 public:
   explicit TemporaryFile(const fs::path& path) : target_(path)
   {
+    const std::lock_guard lock(unfinished().mutex);
     for (int attempt = 0; attempt < 1000; ++attempt) {
       name_ = path;
       name_ += ".part" + std::to_string(attempt);
       // "x": only if the name is free, so two programs never share one, and no planted link is followed.
       if (std::FILE* file = std::fopen(name_.c_str(), "wbx")) {
         std::fclose(file);
+        unfinished().names.insert(name_);
         return;
       }
       if (errno != EEXIST) break;
@@ -46,8 +61,10 @@ public:
 
   ~TemporaryFile()
   {
+    const std::lock_guard lock(unfinished().mutex);
     std::error_code ignored;
     if (!renamed_) fs::remove(name_, ignored);
+    unfinished().names.erase(name_);
   }
 
   TemporaryFile(const TemporaryFile&) = delete;
@@ -57,6 +74,7 @@ public:
 
   void rename()
   {
+    const std::lock_guard lock(unfinished().mutex);
     std::error_code error;
     if (fs::exists(target_, error)) fs::permissions(name_, fs::status(target_).permissions(), error);
     fs::rename(name_, target_, error);
@@ -101,6 +119,14 @@ void replaceFile(const fs::path& path, const std::function<void(std::ostream&)>&
   TemporaryFile temporary(fs::weakly_canonical(path));
   writeTo(temporary.name(), path, write);
   temporary.rename();
+}
+
+std::unique_lock<std::mutex> discardUnfinishedFiles()
+{
+  std::unique_lock lock(unfinished().mutex);
+  std::error_code ignored;
+  for (const fs::path& name : unfinished().names) fs::remove(name, ignored);
+  return lock;
 }
 
 } // namespace pcl_bsh::io

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <ostream>
 
 namespace pcl_bsh::io {
@@ -15,5 +16,9 @@ void replaceFile(const std::filesystem::path& path, const std::function<void(std
 
 /// @throws CloudFileError when a file cannot be made at `path`, because of its folder or of what stands there
 void requireWritable(const std::filesystem::path& path);
+
+/// Removes the temporary files of every replaceFile() that is under way; those fail. While the lock that is returned
+/// lives, no other is begun or ends. For programs that are told to stop.
+std::unique_lock<std::mutex> discardUnfinishedFiles();
 
 } // namespace pcl_bsh::io

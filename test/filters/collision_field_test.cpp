@@ -47,6 +47,32 @@ TEST(CollisionField, IsAddedAtTheEndOfEachRecord)
   }
 }
 
+TEST(CollisionField, SeveralOfSeveralTypes)
+{
+  const pcl::PCLPointCloud2 cloud = threePoints();
+  const std::vector<std::int32_t> poses = {-1, 7, 8};
+  const std::vector<float> distances = {0.5f, 0.25f, 0.125f};
+  pcl::PCLPointCloud2 result = withFields(cloud, {{"pose", &poses}, {"distance", &distances}});
+  ASSERT_EQ(result.fields.size(), cloud.fields.size() + 2);
+  EXPECT_EQ(result.point_step, cloud.point_step + 8);
+  // Fields that are there already take the new values.
+  const std::vector<float> nearer = {0.1f, 0.2f, 0.3f};
+  result = withFields(result, {{"distance", &nearer}});
+  EXPECT_EQ(result.point_step, cloud.point_step + 8);
+  for (std::size_t i = 0; i < 3; ++i) {
+    auto expected = record(cloud, i);
+    for (const void* value : {static_cast<const void*>(&poses[i]), static_cast<const void*>(&nearer[i])}) {
+      const auto* const first = static_cast<const std::uint8_t*>(value);
+      expected.insert(expected.end(), first, first + 4);
+    }
+    EXPECT_EQ(record(result, i), expected) << i;
+  }
+  EXPECT_THAT(([&] {
+                withFields(result, {{"pose", &nearer}});
+              }),
+              refusedWith("field 'pose' exists already and is not one FLOAT32"));
+}
+
 TEST(CollisionField, KeepsRowsAndDensity)
 {
   pcl::PCLPointCloud2 cloud = threePoints();

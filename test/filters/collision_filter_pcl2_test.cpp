@@ -117,6 +117,39 @@ TEST_F(CollisionFilterPcl2Test, OutputMayBeTheInput)
   expectRecords(*input_, *original_, where(flags_, false, points_));
 }
 
+TEST_F(CollisionFilterPcl2Test, TrajectoryAddsItsFields)
+{
+  filter_.setTrajectory({Eigen::Isometry3d(Eigen::Translation3d(9, 9, 9)), pose_});
+  filter_.setKeepFlagged(true);
+  const Cloud output = filtered();
+  ASSERT_EQ(output.fields.size(), original_->fields.size() + 4);
+  const auto last = output.fields.end() - 4;
+  const std::vector<std::pair<std::string, std::uint8_t>> expected = {{"collision", pcl::PCLPointField::UINT8},
+                                                                      {"distance", pcl::PCLPointField::FLOAT32},
+                                                                      {"first_pose", pcl::PCLPointField::INT32},
+                                                                      {"closest_pose", pcl::PCLPointField::INT32}};
+  for (std::size_t f = 0; f < 4; ++f) {
+    EXPECT_EQ(last[static_cast<std::ptrdiff_t>(f)].name, expected[f].first);
+    EXPECT_EQ(last[static_cast<std::ptrdiff_t>(f)].datatype, expected[f].second);
+  }
+  TrajectoryResult along;
+  filter_.computeTrajectory(along);
+  EXPECT_EQ(along.flags, flags_);
+  for (std::size_t i = 0; i < flags_.size(); ++i) {
+    auto bytes = record(*original_, i);
+    const auto append = [&](const auto& value) {
+      const auto* const first = reinterpret_cast<const std::uint8_t*>(&value);
+      bytes.insert(bytes.end(), first, first + sizeof value);
+    };
+    append(flags_[i]);
+    append(along.distance[i]);
+    append(along.first_pose[i]);
+    append(along.closest_pose[i]);
+    EXPECT_EQ(along.first_pose[i], flags_[i] ? 1 : -1);
+    EXPECT_EQ(record(output, i), bytes) << i;
+  }
+}
+
 TEST_F(CollisionFilterPcl2Test, AgreesWithTheTypedFilter)
 {
   const auto typed_input = typedCloud<pcl::PointXYZ>(points_);

@@ -435,6 +435,105 @@ TEST_F(CollisionFilterTest, ThreadsChangeNothing)
   }
 }
 
+/// Poses that carry the obstacle through the input.
+std::vector<Eigen::Isometry3d> somePath(const Eigen::Isometry3d& start)
+{
+  std::vector<Eigen::Isometry3d> poses;
+  for (int k = 0; k < 5; ++k) {
+    Eigen::Isometry3d pose = start * Eigen::AngleAxisd(0.2 * k, Eigen::Vector3d::UnitX());
+    pose.translation().x() += 0.15 * k;
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+TEST_F(CollisionFilterTest, TrajectoryCollidesAtAnyOfItsPoses)
+{
+  const std::vector<Eigen::Isometry3d> poses = somePath(pose_);
+  std::vector<std::int32_t> first(points_.size(), -1), closest(points_.size(), -1);
+  std::vector<double> distance(points_.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Eigen::Vector3d& q : obstacle_) nearest = std::fmin(nearest, (points_[i] - poses[k] * q).norm());
+      if (!points_[i].allFinite() || nearest > clearance) continue;
+      if (first[i] < 0) first[i] = static_cast<std::int32_t>(k);
+      if (nearest < distance[i]) distance[i] = nearest, closest[i] = static_cast<std::int32_t>(k);
+    }
+  }
+  std::vector<std::uint8_t> expected;
+  for (const std::int32_t k : first) expected.push_back(k >= 0);
+  ASSERT_NE(expected, flags_) << "one pose is not enough";
+
+  filter_.setTrajectory(poses);
+  std::vector<std::uint8_t> flags;
+  filter_.computeFlags(flags);
+  EXPECT_EQ(flags, expected);
+  EXPECT_EQ(filtered(), where(expected, false, points_));
+  filter_.setNegative(true);
+  EXPECT_EQ(filtered(), where(expected, true, points_));
+
+  TrajectoryResult along;
+  filter_.computeTrajectory(along);
+  EXPECT_EQ(along.flags, expected);
+  EXPECT_EQ(along.first_pose, first);
+  EXPECT_EQ(along.closest_pose, closest);
+  EXPECT_EQ(along.poses.size(), poses.size());
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (expected[i])
+      EXPECT_NEAR(along.distance[i], distance[i], 1e-6) << i;
+    else
+      EXPECT_TRUE(std::isnan(along.distance[i])) << i;
+  }
+}
+
+TEST_F(CollisionFilterTest, PoseAndTrajectoryReplaceEachOther)
+{
+  filter_.setTrajectory(somePath(pose_));
+  filter_.setPose(pose_);
+  EXPECT_FALSE(filter_.getTrajectory());
+  std::vector<std::uint8_t> flags;
+  filter_.computeFlags(flags);
+  EXPECT_EQ(flags, flags_);
+  filter_.setPose(Eigen::Isometry3d(Eigen::Translation3d(9, 9, 9)));
+  filter_.setTrajectory({pose_});
+  filter_.computeFlags(flags);
+  EXPECT_EQ(flags, flags_);
+}
+
+TEST_F(CollisionFilterTest, SweptFindsWhatLiesBetweenPoses)
+{
+  // A point half way between two poses that are far from it.
+  filter_.setInputCloud(typedCloud<pcl::PointXYZI>({{0.5, 0, 0}, {0.5, 0.2, 0}}));
+  filter_.setObstacleCloud(typedCloud<pcl::PointXYZ>({{0, 0, 0}}));
+  filter_.setTrajectory({Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(1, 0, 0))});
+  std::vector<std::uint8_t> flags;
+  filter_.computeFlags(flags);
+  EXPECT_EQ(flags, (std::vector<std::uint8_t>{0, 0}));
+  filter_.setSwept(0.01);
+  filter_.computeFlags(flags);
+  EXPECT_EQ(flags, (std::vector<std::uint8_t>{1, 0}));
+  filter_.setSwept(0);
+  filter_.computeFlags(flags);
+  EXPECT_EQ(flags, (std::vector<std::uint8_t>{0, 0}));
+}
+
+TEST_F(CollisionFilterTest, BadTrajectoriesAreErrors)
+{
+  std::vector<std::uint8_t> flags;
+  filter_.setTrajectory({});
+  EXPECT_THAT([&] { filter_.computeFlags(flags); }, refusedWith("trajectory has no pose"));
+  Eigen::Isometry3d scaled = pose_;
+  scaled.linear() *= 2;
+  filter_.setTrajectory({pose_, scaled});
+  EXPECT_THAT([&] { filter_.computeFlags(flags); }, refusedWith("not rigid"));
+  filter_.setTrajectory({pose_});
+  for (const double tolerance : {-1.0, std::nan(""), HUGE_VAL}) {
+    filter_.setSwept(tolerance);
+    EXPECT_THROW(filter_.computeFlags(flags), std::invalid_argument) << tolerance;
+  }
+}
+
 TEST_F(CollisionFilterTest, AfterVoxelGrid)
 {
   const auto dense = typedCloud<pcl::PointXYZI>(randomPoints(20000, 5));

@@ -36,6 +36,23 @@ TEST(ReplaceFile, LeavesNothingBehindWhenWritingFails)
   EXPECT_EQ(folder.files(), 1U);
 }
 
+TEST(ReplaceFile, UnfinishedFilesCanBeDiscarded)
+{
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("out", "old");
+  EXPECT_THROW(replaceFile(file,
+                           [&](std::ostream& out) {
+                             out << "new";
+                             EXPECT_EQ(folder.files(), 2U);
+                             discardUnfinishedFiles();
+                             EXPECT_EQ(folder.files(), 1U);
+                           }),
+               CloudFileError);
+  EXPECT_EQ(contentOf(file), "old");
+  replaceFile(file, [](std::ostream& out) { out << "newer"; });
+  EXPECT_EQ(contentOf(file), "newer");
+}
+
 TEST(ReplaceFile, FollowsLinks)
 {
   const TemporaryFolder folder;
