@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <sys/stat.h>
+
 #include <cmath>
 
 namespace pcl_bsh {
@@ -236,6 +238,169 @@ TEST_F(Collide, ThreadsChangeNothing)
   EXPECT_TRUE(io::contentOf(folder / "out.pcd") == first);
   for (const char* key : {"colliding", "distance", "closest_pair", "work"}) EXPECT_EQ(report()[key], found[key]) << key;
   EXPECT_GT(found["colliding"], 0);
+}
+
+/// A wall of points along x, and a probe of one point that passes it at a distance that depends on where it is.
+class CollideAlong : public Collide {
+protected:
+  CollideAlong()
+  {
+    std::string points = "x y z\n", lines;
+    for (int i = 0; i <= 40; ++i) points += std::to_string(0.25 * i) + " 0 0\n";
+    folder.write("wall.txt", points);
+    folder.write("probe.xyz", "0 0 0\n");
+    // In at 2, away at 4 and 6, in again and nearer at 8.
+    for (const char* pose : {"2 0.2 0", "4 5 0", "6 5 0", "8 0.1 0"}) lines += "0 " + std::string(pose) + " 0 0 0 1\n";
+    folder.write("poses.txt", lines);
+  }
+
+  Json clashes(const std::string& file) const { return Json::parse(io::contentOf(folder / file))["clashes"]; }
+
+  const std::string job = "{wall.txt} {probe.xyz} {out.ply} --clearance 0.3 ";
+};
+
+TEST_F(CollideAlong, WritesItsFieldsAndReports)
+{
+  const Outcome done = collide(job + "--trajectory {poses.txt} --report {report.json}");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("6 of 41 points collide; smallest distance 0.1, between point 32 of the input and "
+                                  "point 0 of the obstacle; 4 poses; wrote "));
+  const pcl::PCLPointCloud2 cloud = io::readCloud(folder / "out.ply");
+  ASSERT_EQ(cloud.fields.size(), 7U);
+  EXPECT_EQ(cloud.fields[3].datatype, pcl::PCLPointField::UINT8);
+  EXPECT_EQ(cloud.fields[4].datatype, pcl::PCLPointField::FLOAT32);
+  EXPECT_EQ(cloud.fields[5].datatype, pcl::PCLPointField::INT32);
+  EXPECT_EQ(valueOf(cloud, 8, "collision"), 1);
+  EXPECT_NEAR(valueOf(cloud, 8, "distance"), 0.2, 1e-7);
+  EXPECT_EQ(valueOf(cloud, 8, "first_pose"), 0);
+  EXPECT_EQ(valueOf(cloud, 32, "closest_pose"), 3);
+  EXPECT_EQ(valueOf(cloud, 20, "collision"), 0);
+  EXPECT_TRUE(std::isnan(valueOf(cloud, 20, "distance")));
+  EXPECT_EQ(valueOf(cloud, 20, "first_pose"), -1);
+  EXPECT_EQ(valueOf(cloud, 20, "closest_pose"), -1);
+
+  const Json json = report();
+  EXPECT_EQ(json["colliding"], 6);
+  EXPECT_EQ(json["path"]["poses"], 4);
+  EXPECT_EQ(json["path"]["table"][0]["colliding"], 1 + 2 * (0.3 * 0.3 - 0.2 * 0.2 >= 0.25 * 0.25));
+  EXPECT_EQ(json["path"]["table"][1], (Json{{"pose", 1}, {"colliding", 0}, {"distance", nullptr}}));
+  EXPECT_EQ(json["density"]["input"], (Json{{"median", 0.25}, {"nine_of_ten", 0.25}, {"sampled_points", 41}}));
+}
+
+TEST_F(CollideAlong, StraightRunsAndSweptMotion)
+{
+  const std::string run = "--from 0,-1,0,0,0,0 --to 10,1,0,0,0,1 --steps ";
+  expectDone(job + run + "1 --report {report.json}");
+  EXPECT_EQ(report()["path"]["poses"], 2);
+  EXPECT_EQ(report()["colliding"], 0);
+  expectDone(job + run + "1 --swept 0.01 --report {report.json}");
+  EXPECT_GT(report()["colliding"], 0);
+  EXPECT_EQ(report()["path"]["first_contact"]["pose"], 0);
+  EXPECT_NEAR(report()["path"]["first_contact"]["fraction"], 0.35, 0.03);
+  expectDone(job + run + "100 --report {report.json}");
+  EXPECT_EQ(report()["path"]["poses"], 101);
+  EXPECT_GT(report()["colliding"], 0);
+}
+
+TEST_F(CollideAlong, ListsClashesAndComparesThem)
+{
+  const std::string lists = "--trajectory {poses.txt} --clashes {a.json} --clashes {a.csv} --clashes {a.html} ";
+  expectDone(job + lists + "--cluster-distance 0.5");
+  const Json first = clashes("a.json");
+  ASSERT_EQ(first.size(), 2U);
+  EXPECT_EQ(first[0]["id"], "C4_0_0");
+  EXPECT_EQ(first[0]["status"], "new");
+  EXPECT_EQ(first[0]["points"], 3);
+  EXPECT_EQ(first[0]["closest_pose"], 3);
+  EXPECT_EQ(first[0]["box"]["min"], (Json{7.75, 0, 0}));
+  EXPECT_EQ(first[0]["closest_pair"]["input"]["point"], 32);
+  EXPECT_EQ(first[0]["closest_pair"]["obstacle"]["at"], (Json{8.0, 0.1, 0.0}));
+  EXPECT_EQ(first[1]["id"], "C1_0_0");
+  const std::string csv = io::contentOf(folder / "a.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+  EXPECT_THAT(csv, HasSubstr("\nC4_0_0,new,3,"));
+  const std::string html = io::contentOf(folder / "a.html");
+  EXPECT_THAT(html, StartsWith("<!DOCTYPE html>"));
+  EXPECT_THAT(html, HasSubstr("id=\"C1_0_0\""));
+  EXPECT_EQ(html.find("http"), std::string::npos) << "needs nothing from elsewhere";
+
+  // The same again, then without the first place.
+  expectDone(job + lists + "--cluster-distance 0.5 --previous {a.json}");
+  for (const Json& clash : clashes("a.json")) EXPECT_EQ(clash["status"], "persisting");
+  folder.write("poses.txt", "0 8 0.1 0 0 0 0 1\n0 9.5 0.1 0 0 0 0 1\n");
+  expectDone(job + lists + "--cluster-distance 0.5 --previous {a.json}");
+  const Json last = clashes("a.json");
+  ASSERT_EQ(last.size(), 3U);
+  EXPECT_EQ(last[2]["status"], "resolved");
+  EXPECT_EQ(last[2]["id"], "C1_0_0");
+}
+
+TEST_F(CollideAlong, ClashesOfOnePose)
+{
+  expectDone(job + "--pose 2,0.2,0,0,0,0 --clashes {a.json}");
+  ASSERT_EQ(clashes("a.json").size(), 1U);
+  EXPECT_EQ(io::readCloud(folder / "out.ply").fields.size(), 4U) << "no path, no fields of a path";
+  expectDone(job + "--pose 2,9,0,0,0,0 --clashes {a.json} --clashes {a.html}");
+  EXPECT_EQ(clashes("a.json").size(), 0U);
+}
+
+TEST_F(CollideAlong, WarnsOfHolesThatCollisionsHideIn)
+{
+  std::string sheet = "x y z\n";
+  for (int i = 0; i < 400; ++i) sheet += std::to_string(i % 20) + ' ' + std::to_string(i / 20) + " 0\n";
+  folder.write("sheet.txt", sheet);
+  expectDone("{sheet.txt} {sheet.txt} {out.ply} --clearance 1 --report {report.json}");
+  ASSERT_EQ(report()["warnings"].size(), 1U);
+  EXPECT_THAT(report()["warnings"][0].get<std::string>(), HasSubstr("points lie 1 apart in the input"));
+  EXPECT_EQ(report()["density"]["could_hide_collisions"], true);
+  expectDone("{sheet.txt} {sheet.txt} {out.ply} --clearance 1.5 --report {report.json}");
+  EXPECT_EQ(report()["warnings"].size(), 0U);
+  EXPECT_EQ(report()["density"]["could_hide_collisions"], false);
+}
+
+TEST_F(CollideAlong, Refuses)
+{
+  const std::string path = "--trajectory {poses.txt} ";
+  expectFailure(job + path + "--pose 0,0,0,0,0,0", 2, "--pose: a path is given too: give one of them");
+  expectFailure(job + path + "--steps 3", 2, "--from: --trajectory is given too");
+  expectFailure(job + "--from 0,0,0,0,0,0 --steps 3", 2, "--from: a straight run is not complete");
+  expectFailure(job + "--from 0,0,0,0,0,0 --to 1,2 --steps 3", 2, "--to: '1,2' is neither six numbers nor a file");
+  expectFailure(job + "--from 0,0,0,0,0,0 --to 1,0,0,0,0,0 --steps 0", 2, "--steps: 0: give 1 to 10000000");
+  expectFailure(job + "--from nan,0,0,0,0,0 --to 1,0,0,0,0,0 --steps 2", 1, "--from: not finite");
+  expectFailure(job + "--swept 0.1", 2, "--swept: nothing moves");
+  expectFailure(job + path + "--swept 0", 1, "--swept: ");
+  expectFailure(job + path + "--swept much", 2, "--swept: 'much' is not a number");
+  expectFailure(job + "--trajectory {none.txt}", 1, "none.txt: no such file");
+  folder.write("bad.txt", "0 2 0.2 0 0 0 0 1\n0 4 5 0 0 0 0\n");
+  expectFailure(job + "--trajectory {bad.txt}", 1, "bad.txt: line 2 has 7 numbers");
+  expectFailure(job + path + "--clashes {a.txt}", 2, "--clashes: ");
+  expectFailure(job + path + "--clashes {none/a.csv}", 1, "there is no folder");
+  expectFailure(job + path + "--clashes {a.csv} --clashes {a.csv}", 2, "is another file of this command");
+  expectFailure(job + path + "--cluster-distance 1", 2, "--cluster-distance: no clash report is written");
+  expectFailure(job + path + "--previous {a.json}", 2, "--previous: no clash report is written");
+  expectFailure(job + path + "--clashes {a.csv} --cluster-distance 0", 2, "--cluster-distance: 0: give a finite");
+  expectFailure(job + path + "--clashes {a.csv} --previous {none.json}", 1, "none.json: no such file");
+  folder.write("odd.json", "{\"clashes\": [{\"id\": 7}]}");
+  expectFailure(job + path + "--clashes {a.csv} --previous {odd.json}", 1, "odd.json: is no list of clashes (");
+  folder.write("cut.json", "{\"clashes\": [");
+  expectFailure(job + path + "--clashes {a.csv} --previous {cut.json}", 1, "cut.json: is no list of clashes (");
+  folder.write("distance.pcd", "FIELDS x y z distance\nSIZE 4 4 4 8\nTYPE F F F F\nPOINTS 1\nDATA ascii\n1 2 3 0.5\n");
+  expectFailure("{distance.pcd} {probe.xyz} {out.ply} --clearance 1 " + path, 1, "field 'distance' exists already");
+}
+
+TEST_F(CollideAlong, StopsCleanlyWhenInterrupted)
+{
+  // A pipe that nobody reads from holds the program up while it writes.
+  const fs::path pipe = folder / "pipe.ply";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const io::TemporaryFolder elsewhere;
+  const std::size_t files = folder.files();
+  const Outcome stopped = collide("{wall.txt} {probe.xyz} {pipe.ply} --clearance 0.3 2>" +
+                                  (elsewhere / "err").string() + " & sleep 1; kill -INT $!; wait $!");
+  EXPECT_EQ(stopped.exit_code, 130);
+  EXPECT_THAT(io::contentOf(elsewhere / "err"),
+              HasSubstr("pcl_bsh_collide: stopped on request: nothing unfinished was left behind\n"));
+  EXPECT_EQ(folder.files(), files);
 }
 
 TEST_F(Collide, HelpShowsAnExample)
