@@ -248,8 +248,9 @@ TrajectoryResult alongPath(const Options& options, const std::vector<Eigen::Isom
   cli::Step query("Following " + std::to_string(poses.size()) + " poses");
   TrajectoryRequest request;
   request.clearance = options.request.clearance;
-  request.distances = request.first_poses = request.closest_poses = request.pose_summaries = true;
+  request.distances = request.first_poses = request.closest_poses = true;
   request.swept = options.swept;
+  request.pose_summaries = !options.swept; // swept motion is of what lies between poses
   request.threads = options.request.threads;
   request.progress = [&](double fraction) {
     query.share(fraction);

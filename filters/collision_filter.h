@@ -51,7 +51,7 @@ public:
   void computeFlags(std::vector<std::uint8_t>& flags);
 
   /// More along the trajectory (or at the one pose) than flags: for each colliding point of the whole input cloud its
-  /// smallest distance, the first pose and the closest, and a summary of each pose. Throws as filter() does.
+  /// smallest distance, the first pose and the closest; a summary of each pose, unless swept. Throws as filter() does.
   void computeTrajectory(TrajectoryResult& result);
 
 protected:

@@ -76,7 +76,8 @@ TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& 
 TrajectoryResult ObstacleQuery::alongTrajectory(const PointsView& input)
 {
   TrajectoryRequest request;
-  request.distances = request.first_poses = request.closest_poses = request.pose_summaries = true;
+  request.distances = request.first_poses = request.closest_poses = true;
+  request.pose_summaries = swept_ == 0.0;
   return run(input, request);
 }
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 #include <string>
 
@@ -156,10 +157,25 @@ svg{width:100%;height:auto;display:block}svg text{font:11px system-ui,"DejaVu Sa
     return "rgb(" + mix(150, 245) + ',' + mix(10, 190) + ',' + mix(40, 66) + ')';
   }
 
+  /// The smallest distance at each pose, infinity where nothing collides. Swept, it is known of each point's closest
+  /// pose only.
+  std::vector<double> nearestAtPoses() const
+  {
+    std::vector<double> nearest(report_.poses.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t k = 0; k < report_.found.poses.size(); ++k) nearest[k] = report_.found.poses[k].distance;
+    for (const Clash& clash : report_.clashes) {
+      for (const std::uint32_t record : clash.records) {
+        double& at_pose = nearest[static_cast<std::size_t>(report_.found.closest_pose[record])];
+        at_pose = std::min(at_pose, static_cast<double>(report_.found.distance[record]));
+      }
+    }
+    return nearest;
+  }
+
   /// Along the path: the smallest distance at each pose, where it is within the clearance.
   void path(std::ostream& out) const
   {
-    const std::vector<PoseSummary>& poses = report_.found.poses;
+    const std::vector<double> poses = nearestAtPoses();
     if (poses.size() < 2) return;
     const Area area{54, 12, 1010, 130};
     // No more columns than can be told apart.
@@ -171,7 +187,7 @@ svg{width:100%;height:auto;display:block}svg text{font:11px system-ui,"DejaVu Sa
     for (std::size_t c = 0; c < columns; ++c) {
       const std::size_t first = c * poses.size() / columns, last = (c + 1) * poses.size() / columns;
       double nearest = std::numeric_limits<double>::infinity();
-      for (std::size_t k = first; k < last; ++k) nearest = std::min(nearest, poses[k].distance);
+      for (std::size_t k = first; k < last; ++k) nearest = std::min(nearest, poses[k]);
       if (!std::isfinite(nearest)) continue;
       const double share = span(floor) > 0 ? (report_.clearance - nearest) / span(floor) : 1;
       const double height = std::max(2.0, area.height * std::clamp(share, 0.0, 1.0));

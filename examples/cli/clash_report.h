@@ -121,8 +121,9 @@ inline std::vector<Clash> readClashes(const std::filesystem::path& path)
 {
   const io::FileBytes file(path);
   try {
+    const nlohmann::json list = nlohmann::json::parse(file.view());
     std::vector<Clash> clashes;
-    for (const nlohmann::json& entry : nlohmann::json::parse(file.view()).at("clashes")) {
+    for (const nlohmann::json& entry : list.at("clashes")) {
       Clash clash;
       clash.id = entry.at("id").get<std::string>();
       const auto status = entry.at("status").get<std::string>();

@@ -41,7 +41,7 @@ struct Density {
 struct PathReport {
   std::size_t poses = 0;
   std::optional<double> swept;
-  std::vector<PoseSummary> table;
+  std::vector<PoseSummary> table;            ///< one per pose; none when swept
   std::optional<FirstContact> first_contact; ///< swept only
 };
 
