@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Makes a question along a path to try the tools on: a tunnel, a wagon, and the wagon's poses on its way through.
+#include "cli/interruption.h"
 #include "cli/program.h"
 #include "cli/step.h"
 #include "tunnel/tunnel.h"
@@ -61,6 +62,7 @@ int makeTunnel(const fs::path& folder, double scale)
 
 int main(int argc, char** argv)
 {
+  cli::stopCleanlyWhenTold(program);
   std::string folder;
   double scale = 0.1;
   CLI::App app("Makes a scanned railway tunnel, a wagon, and the wagon's way through.", program);
