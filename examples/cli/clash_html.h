@@ -40,6 +40,7 @@ private:
 body{margin:0 auto;max-width:1120px;padding:28px 24px 60px;font:15px/1.5 system-ui,"Segoe UI",Roboto,"DejaVu Sans",sans-serif;color:var(--ink);background:var(--ground)}
 h1{font-size:26px;margin:0 0 4px}h2{font-size:18px;margin:34px 0 10px}
 .sub{color:var(--soft);margin:0 0 18px;overflow-wrap:anywhere}
+.tiles+.sub{margin-top:12px}
 .tiles{display:flex;flex-wrap:wrap;gap:12px}
 .tile{background:var(--paper);border:1px solid var(--line);border-radius:10px;padding:10px 18px;min-width:120px}
 .tile b{display:block;font-size:22px;font-variant-numeric:tabular-nums}.tile span{color:var(--soft);font-size:13px}
