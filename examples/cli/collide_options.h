@@ -55,7 +55,7 @@ struct CollideOptions {
 
 inline constexpr auto collide_footer =
     R"(Point p of INPUT and q of OBSTACLE collide iff |p - POSE q| <= D, decided exactly.
-Reads .pcd .ply .obj .off .xyz .txt, writes .pcd and .ply.
+Reads .pcd .ply .obj .off .xyz .txt, writes all of these but .off.
 Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example: which points of a hall are within 5 cm of a robot at (1.5, 2, 0), turned by 90 degrees?

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 
 namespace pcl_bsh::io {
 
@@ -37,7 +38,24 @@ pcl::PCLPointCloud2 parse(const std::string& extension, std::string_view file, V
   return parseColumns(file);
 }
 
-/// The number of the points, and that they have usable x y z.
+pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view file)
+{
+  if (extension == ".pcd") return parsePcdHeader(file);
+  if (extension == ".ply") return parsePlyHeader(file);
+  const bool mesh = extension == ".obj" || extension == ".off"; // without a header: all of them hold vertices
+  return parseColumnNames(mesh ? "x y z" : file);
+}
+
+void print(const std::string& extension, std::ostream& out, const pcl::PCLPointCloud2& cloud,
+           const Viewpoint& viewpoint)
+{
+  if (extension == ".pcd") return writePcd(out, cloud, viewpoint);
+  if (extension == ".ply") return writePly(out, cloud);
+  if (extension == ".obj") return writeObj(out, cloud);
+  writeColumns(out, cloud);
+}
+
+/// That the points have usable x y z.
 void requireCoordinates(const pcl::PCLPointCloud2& cloud)
 {
   for (const char* axis : {"x", "y", "z"}) {
@@ -54,9 +72,9 @@ void requireCoordinates(const pcl::PCLPointCloud2& cloud)
   }
 }
 
-} // namespace
-
-pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint)
+/// Opens the file and gives its extension and content to `parse`; names the file when that throws.
+template <typename Parse>
+pcl::PCLPointCloud2 parsed(const std::filesystem::path& path, Parse&& parse)
 {
   constexpr std::array readable = {".pcd", ".ply", ".obj", ".off", ".xyz", ".txt"};
   const std::string extension = extensionOf(path);
@@ -65,39 +83,67 @@ pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* view
     throw CloudFileError(path, unknown(extension), "give a .pcd, .ply, .obj, .off, .xyz or .txt file");
   }
   try {
-    Viewpoint stored = no_viewpoint;
-    pcl::PCLPointCloud2 cloud = parse(extension, file.view(), stored);
-    requireCoordinates(cloud);
-    setDense(cloud);
-    if (viewpoint != nullptr) *viewpoint = stored;
-    return cloud;
+    return parse(extension, file.view());
   }
   catch (const FormatError& error) {
     throw CloudFileError(path, error.what(), error.remedy());
   }
 }
 
+} // namespace
+
+pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint)
+{
+  return parsed(path, [&](const std::string& extension, std::string_view file) {
+    Viewpoint stored = no_viewpoint;
+    pcl::PCLPointCloud2 cloud = parse(extension, file, stored);
+    requireCoordinates(cloud);
+    setDense(cloud);
+    if (viewpoint != nullptr) *viewpoint = stored;
+    return cloud;
+  });
+}
+
+pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path)
+{
+  return parsed(path, [](const std::string& extension, std::string_view file) {
+    pcl::PCLPointCloud2 header = parseHeader(extension, file);
+    pcl::PCLPointCloud2 fields = header;
+    fields.width = fields.height = fields.row_step = 0; // the records are not there
+    requireCoordinates(fields);
+    return header;
+  });
+}
+
 void requireWritableCloud(const std::filesystem::path& path)
 {
   const std::string extension = extensionOf(path);
-  if (extension != ".pcd" && extension != ".ply") {
-    throw CloudFileError(path, unknown(extension), "write a .pcd or .ply file");
+  constexpr std::array writable = {".pcd", ".ply", ".obj", ".xyz", ".txt"};
+  if (std::find(writable.begin(), writable.end(), extension) == writable.end()) {
+    throw CloudFileError(path, unknown(extension), "write a .pcd, .ply, .obj, .xyz or .txt file");
   }
   requireWritable(path);
+}
+
+void requireWritableCloud(const std::filesystem::path& path, pcl::PCLPointCloud2 header)
+{
+  requireWritableCloud(path);
+  header.width = 0;
+  header.data.clear();
+  std::ostringstream nowhere;
+  try {
+    print(extensionOf(path), nowhere, header, no_viewpoint);
+  }
+  catch (const FormatError& error) {
+    throw CloudFileError(path, error.what(), error.remedy());
+  }
 }
 
 void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint)
 {
   requireWritableCloud(path);
   try {
-    replaceFile(path, [&](std::ostream& out) {
-      if (extensionOf(path) == ".pcd") {
-        writePcd(out, cloud, viewpoint);
-      }
-      else {
-        writePly(out, cloud);
-      }
-    });
+    replaceFile(path, [&](std::ostream& out) { print(extensionOf(path), out, cloud, viewpoint); });
   }
   catch (const FormatError& error) {
     throw CloudFileError(path, error.what(), error.remedy());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Point clouds on disk: any format in, PCD or PLY out, every field kept in its type.
+// Point clouds on disk: any format in, most out, every field kept in its type.
 //
 //   pcl::PCLPointCloud2 scan = pcl_bsh::io::readCloud("hall.ply");
 //   pcl_bsh::io::writeCloud("hall.pcd", scan);
@@ -37,8 +37,13 @@ inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 /// @throws CloudFileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z
 pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr);
 
-/// Writes .pcd (binary_compressed; binary from 2 GiB) or .ply (binary). The file appears complete or not at all; what
-/// `path` held before is replaced only then. PLY holds no viewpoint and no 64-bit integers.
+/// The fields of a file's cloud and, where its header says so, the number of its points; the points are not read.
+/// Throws as readCloud() does for what a header can tell.
+pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path);
+
+/// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .xyz and .txt (named columns) or .obj (vertices).
+/// The file appears complete or not at all; what `path` held before is replaced only then. Only PCD holds a viewpoint.
+/// PLY holds no 64-bit integers, text no field with a count, OBJ no field but x y z.
 /// @throws CloudFileError when the extension is unknown, a field cannot be held, or the disk says no
 void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
                 const Viewpoint& viewpoint = no_viewpoint);
@@ -46,5 +51,8 @@ void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cl
 /// Fails early, before hours of work, where writeCloud() would for the path's sake.
 /// @throws CloudFileError
 void requireWritableCloud(const std::filesystem::path& path);
+
+/// The same, and that the format can hold a cloud with these fields.
+void requireWritableCloud(const std::filesystem::path& path, pcl::PCLPointCloud2 header);
 
 } // namespace pcl_bsh::io

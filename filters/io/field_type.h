@@ -80,6 +80,18 @@ T parseNumber(std::string_view word)
   return value;
 }
 
+/// Whether the word says a number.
+inline bool isNumber(std::string_view word)
+{
+  try {
+    parseNumber<double>(word);
+    return true;
+  }
+  catch (const FormatError&) {
+    return false;
+  }
+}
+
 /// Writes the number that the word says to `out`, in the representation of `datatype`. Throws as parseNumber() does.
 inline void parseNumber(std::string_view word, std::uint8_t datatype, std::uint8_t* out)
 {

@@ -189,7 +189,22 @@ void readCompressed(std::string_view body, pcl::PCLPointCloud2& cloud, std::size
   }
 }
 
+/// The fields and the size of the cloud that the header promises.
+pcl::PCLPointCloud2 promised(const Header& header)
+{
+  pcl::PCLPointCloud2 cloud;
+  layOut(header, cloud);
+  std::tie(cloud.width, cloud.height) = extent(header);
+  return cloud;
+}
+
 } // namespace
+
+pcl::PCLPointCloud2 parsePcdHeader(std::string_view file)
+{
+  TextCursor text(file, '#');
+  return promised(readHeader(text));
+}
 
 pcl::PCLPointCloud2 parsePcd(std::string_view file, Viewpoint& viewpoint)
 {
@@ -197,9 +212,7 @@ pcl::PCLPointCloud2 parsePcd(std::string_view file, Viewpoint& viewpoint)
   const Header header = readHeader(text);
   viewpoint = header.viewpoint;
 
-  pcl::PCLPointCloud2 cloud;
-  layOut(header, cloud);
-  std::tie(cloud.width, cloud.height) = extent(header);
+  pcl::PCLPointCloud2 cloud = promised(header);
   const std::size_t points = std::size_t{cloud.width} * cloud.height;
   if (points == 0) return cloud;
 

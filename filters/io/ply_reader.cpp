@@ -12,6 +12,9 @@ namespace pcl_bsh::io {
 
 namespace {
 
+/// What of a file is wanted.
+enum class Part : std::uint8_t { all, header };
+
 struct Property {
   std::string name;
   std::uint8_t datatype = 0;
@@ -129,7 +132,7 @@ std::vector<std::uint64_t> firstLengths(Rows rows, const Element& vertices)
 }
 
 template <typename Rows>
-pcl::PCLPointCloud2 readVertices(Rows& rows, const Element& vertices)
+pcl::PCLPointCloud2 readVertices(Rows& rows, const Element& vertices, Part part)
 {
   if (vertices.properties.empty()) throw FormatError("its vertices have no properties");
   const std::vector<std::uint64_t> lengths = firstLengths(rows, vertices);
@@ -142,6 +145,11 @@ pcl::PCLPointCloud2 readVertices(Rows& rows, const Element& vertices)
     least_bytes += lengths[i] * Rows::leastBytes(property.datatype);
   }
   requireBytes(vertices.count, least_bytes, rows.bytesLeft());
+  if (part == Part::header) {
+    cloud.width = static_cast<std::uint32_t>(vertices.count);
+    cloud.height = 1;
+    return cloud;
+  }
   allocate(cloud, static_cast<std::uint32_t>(vertices.count));
 
   for (std::size_t row = 0; row < cloud.width; ++row) {
@@ -164,7 +172,7 @@ pcl::PCLPointCloud2 readVertices(Rows& rows, const Element& vertices)
 
 /// Reads all elements, also those that are not wanted: a file cut off behind its vertices is damaged, too.
 template <typename Rows>
-pcl::PCLPointCloud2 readElements(Rows rows, const Header& header)
+pcl::PCLPointCloud2 readElements(Rows rows, const Header& header, Part part)
 {
   std::optional<pcl::PCLPointCloud2> cloud;
   for (const Element& element : header.elements) {
@@ -172,7 +180,8 @@ pcl::PCLPointCloud2 readElements(Rows rows, const Header& header)
       skipElement(rows, element);
     }
     else if (!cloud) {
-      cloud = readVertices(rows, element);
+      cloud = readVertices(rows, element, part);
+      if (part == Part::header) break;
     }
     else {
       throw FormatError("its header has two 'vertex' elements");
@@ -182,21 +191,19 @@ pcl::PCLPointCloud2 readElements(Rows rows, const Header& header)
   return std::move(*cloud);
 }
 
-} // namespace
-
-pcl::PCLPointCloud2 parsePly(std::string_view file)
+pcl::PCLPointCloud2 parse(std::string_view file, Part part)
 {
   TextCursor text(file);
   const Header header = readHeader(text);
   pcl::PCLPointCloud2 cloud;
   if (header.format == "ascii") {
-    cloud = readElements(AsciiRows(text), header);
+    cloud = readElements(AsciiRows(text), header, part);
   }
   else if (header.format == "binary_little_endian") {
-    cloud = readElements(BinaryRows(text.rest(), std::endian::little), header);
+    cloud = readElements(BinaryRows(text.rest(), std::endian::little), header, part);
   }
   else if (header.format == "binary_big_endian") {
-    cloud = readElements(BinaryRows(text.rest(), std::endian::big), header);
+    cloud = readElements(BinaryRows(text.rest(), std::endian::big), header, part);
   }
   else {
     throw FormatError("has the unknown format '" + header.format + "'",
@@ -208,6 +215,18 @@ pcl::PCLPointCloud2 parsePly(std::string_view file)
     cloud.row_step = cloud.width * cloud.point_step;
   }
   return cloud;
+}
+
+} // namespace
+
+pcl::PCLPointCloud2 parsePly(std::string_view file)
+{
+  return parse(file, Part::all);
+}
+
+pcl::PCLPointCloud2 parsePlyHeader(std::string_view file)
+{
+  return parse(file, Part::header);
 }
 
 } // namespace pcl_bsh::io

@@ -42,17 +42,6 @@ std::vector<std::string> wordsOf(TextCursor line)
   return words;
 }
 
-bool isNumber(std::string_view word)
-{
-  try {
-    parseNumber<double>(word);
-    return true;
-  }
-  catch (const FormatError&) {
-    return false;
-  }
-}
-
 /// Goes to the next line that is no comment of the // kind.
 bool nextRow(TextCursor& text)
 {
@@ -76,23 +65,39 @@ bool namesColumns(const std::vector<std::string>& words)
   return std::none_of(words.begin(), words.end(), [](const std::string& word) { return isNumber(word); });
 }
 
+struct Columns {
+  std::vector<std::string> names;
+  bool at_row = false; ///< the text is at the first point; false when there is none
+};
+
+Columns readNames(TextCursor& text)
+{
+  Columns columns;
+  columns.at_row = nextRow(text);
+  columns.names = wordsOf(text);
+  if (columns.at_row && namesColumns(columns.names)) {
+    columns.at_row = nextRow(text);
+    return columns;
+  }
+  if (columns.at_row && columns.names.size() < 3) text.fail("is no point: it has fewer than three numbers");
+  columns.names = defaultNames(columns.names.size());
+  return columns;
+}
+
 } // namespace
+
+pcl::PCLPointCloud2 parseColumnNames(std::string_view file)
+{
+  TextCursor text(file, '#', ",;");
+  return emptyCloud(readNames(text).names);
+}
 
 pcl::PCLPointCloud2 parseColumns(std::string_view file)
 {
   TextCursor text(file, '#', ",;");
-  bool at_row = nextRow(text);
-  std::vector<std::string> names = wordsOf(text);
-  if (at_row && namesColumns(names)) {
-    at_row = nextRow(text);
-  }
-  else {
-    if (at_row && names.size() < 3) text.fail("is no point: it has fewer than three numbers");
-    names = defaultNames(names.size());
-  }
-
-  pcl::PCLPointCloud2 cloud = emptyCloud(names);
-  for (; at_row; at_row = nextRow(text)) {
+  const Columns columns = readNames(text);
+  pcl::PCLPointCloud2 cloud = emptyCloud(columns.names);
+  for (bool at_row = columns.at_row; at_row; at_row = nextRow(text)) {
     appendRecord(text, cloud);
     text.requireEndOfLine();
   }

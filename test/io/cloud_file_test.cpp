@@ -80,6 +80,22 @@ TEST(CloudFile, DenseMeansAllFloatsAreFinite)
   EXPECT_FALSE(readCloud(folder.write("a.xyz", "1 2 3 nan\n")).is_dense);
 }
 
+TEST(CloudFile, HeadersHaveTheFieldsButNoPoints)
+{
+  const TemporaryFolder folder;
+  const pcl::PCLPointCloud2 cloud = randomCloud<double>(5, 2, {Field::UINT8});
+  for (const char* name : {"a.pcd", "a.ply"}) {
+    writeCloud(folder / name, cloud);
+    const pcl::PCLPointCloud2 header = readCloudHeader(folder / name);
+    EXPECT_EQ(header.fields.size(), cloud.fields.size()) << name;
+    EXPECT_EQ(header.width * header.height, 10U) << name;
+    EXPECT_TRUE(header.data.empty()) << name;
+  }
+  EXPECT_EQ(readCloudHeader(folder.write("a.obj", "v 1 2 broken\n")).fields.size(), 3U);
+  EXPECT_THROW(readCloudHeader(folder.write("a.txt", "u v w\n1 2 3\n")), CloudFileError);
+  EXPECT_THROW(readCloudHeader(folder / "none.pcd"), CloudFileError);
+}
+
 TEST(CloudFile, SaysWhatCannotBeRead)
 {
   const TemporaryFolder folder;

@@ -3,6 +3,8 @@
 
 #include <pcl_bsh/filters/io/text_clouds.h>
 
+#include <sstream>
+
 namespace pcl_bsh::io {
 
 TEST(TextClouds, ColumnsAreFloat64)
@@ -73,6 +75,52 @@ TEST(TextClouds, RefusesDamagedOff)
             "is truncated: it ends before the last of its faces");
   EXPECT_EQ(defectOf([] { parseOff("OFF\n3000000000 0 0\n"); }),
             "it has 3000000000 points, more than the 2147483647 that an index can name");
+}
+
+TEST(TextClouds, WritesColumnsThatReadBackAsTheyWere)
+{
+  const std::string text = "x y z label\n596648.1234567891 -2 1e-300 7\nnan 0.1 3 8\n";
+  std::ostringstream out;
+  writeColumns(out, parseColumns(text));
+  EXPECT_EQ(out.str(), text);
+}
+
+TEST(TextClouds, WritesEachTypeInItsOwnDigits)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* axis : {"x", "y", "z"}) addField(cloud, axis, Field::FLOAT32);
+  addField(cloud, "ring", Field::UINT8);
+  allocate(cloud, 1);
+  const float coordinates[] = {0.1F, 16777216, -1};
+  std::memcpy(cloud.data.data(), coordinates, sizeof coordinates);
+  cloud.data.back() = 200;
+  std::ostringstream out;
+  writeColumns(out, cloud);
+  EXPECT_EQ(out.str(), "x y z ring\n0.1 16777216 -1 200\n");
+}
+
+TEST(TextClouds, WritesVertices)
+{
+  std::ostringstream out;
+  writeObj(out, parseColumns("z y x\n3 2 1\n6 5 4\n"));
+  EXPECT_EQ(out.str(), "v 1 2 3\nv 4 5 6\n");
+}
+
+TEST(TextClouds, RefusesFieldsThatTextCannotHold)
+{
+  std::ostringstream out;
+  EXPECT_EQ(defectOf([&] { writeColumns(out, randomCloud<float>(1, 1, {})); }),
+            "field 'histogram' has 5 values per point");
+  pcl::PCLPointCloud2 cloud = parseColumns("1 2 3 4\n");
+  EXPECT_EQ(defectOf([&] { writeObj(out, cloud); }), "field 'column_4' has no place in an .obj");
+  cloud.fields.back().name = "4";
+  EXPECT_EQ(defectOf([&] { writeColumns(out, cloud); }), "field '4' cannot name a column");
+}
+
+TEST(TextClouds, HeaderNamesTheColumns)
+{
+  EXPECT_EQ(parseColumnNames("1 2 3 4\n5 six\n").fields.back().name, "column_4");
+  EXPECT_EQ(parseColumnNames("x y z ring\n").fields.size(), 4U);
 }
 
 } // namespace pcl_bsh::io

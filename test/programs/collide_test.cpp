@@ -437,7 +437,7 @@ TEST_F(Collide, RefusesClouds)
 TEST_F(Collide, RefusesOutputs)
 {
   const std::string clouds = "{input.ply} {obstacle.xyz} ";
-  expectFailure(clouds + "{out.xyz} --clearance 1", 1, "out.xyz: unknown extension '.xyz': write a .pcd or .ply file");
+  expectFailure(clouds + "{out.las} --clearance 1", 1, "out.las: unknown extension '.las': write a .pcd, .ply, ");
   expectFailure(clouds + "{none/out.pcd} --clearance 1", 1, "cannot be written, there is no folder");
   expectFailure(clouds + "{out.pcd} --clearance 1 --report {none/report.json}", 1, "there is no folder");
   expectFailure(clouds + "{out.pcd} --clearance 1 --report {}", 1, ": is a folder: ");

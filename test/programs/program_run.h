@@ -18,14 +18,15 @@ struct Outcome {
   std::string err;
 };
 
-/// In the shell, so quote what it would change.
-inline Outcome run(const std::string& program, const std::string& arguments)
+/// In the shell, so quote what it would change. @param place the folder to run in; empty: this one
+inline Outcome run(const std::string& program, const std::string& arguments, const std::filesystem::path& place = {})
 {
   const io::TemporaryFolder folder;
   const std::string out = (folder / "out").string();
   const std::string err = (folder / "err").string();
-  const std::string command =
-      std::string(PCL_BSH_PROGRAM_DIR) + "/" + program + " " + arguments + " >" + out + " 2>" + err;
+  const std::string command = (place.empty() ? "" : "cd " + place.string() + " && ") +
+                              std::string(PCL_BSH_PROGRAM_DIR) + "/" + program + " " + arguments + " >" + out + " 2>" +
+                              err;
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, io::contentOf(out), io::contentOf(err)};
 }

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs a pipeline of point cloud filters, read from a JSON file.
+#include "cli/pipeline_options.h"
+#include "cli/pipeline_run.h"
+
+#include <iostream>
+#include <optional>
+
+namespace {
+
+using namespace pcl_bsh;
+using cli::PipelineTask;
+
+int run(const cli::PipelineOptions& options)
+{
+  if (options.task == PipelineTask::print_schema) {
+    std::cout << pipeline::jsonSchema();
+    return 0;
+  }
+  if (options.task == PipelineTask::print_stages) {
+    std::cout << pipeline::stageDocumentation();
+    return 0;
+  }
+  Pipeline pipeline = Pipeline::read(options.document, options.overrides);
+  if (options.task == PipelineTask::validate) {
+    pipeline.validate();
+    std::cout << options.document.string() << " is valid\n";
+    return 0;
+  }
+  pipeline.setNumberOfThreads(options.threads);
+  cli::runPipeline(cli::pipeline_program, pipeline, options);
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(cli::pipeline_program, [&] {
+    const std::optional<cli::PipelineOptions> options = cli::parsePipelineOptions(argc, argv);
+    return options ? run(*options) : 0;
+  });
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Poses as text.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// All numbers of a text, separated by blanks, commas, semicolons or line ends. @throws FormatError
+std::vector<double> numbersOf(std::string_view text);
+
+/// Translation, then angles in radians: R = Rz(yaw) Ry(pitch) Rx(roll), as pcl::getTransformation() has it.
+Eigen::Isometry3d poseFrom(double x, double y, double z, double roll, double pitch, double yaw);
+
+/// x y z roll pitch yaw, or the 12 or 16 numbers of a 3x4 or 4x4 matrix, row by row. Whether that is rigid is for the
+/// query to judge. @throws FormatError for any other number of numbers
+Eigen::Isometry3d poseFrom(const std::vector<double>& numbers);
+
+/// A file of the 12 or 16 numbers of a pose's matrix, row by row. @throws CloudFileError
+Eigen::Isometry3d readPose(const std::filesystem::path& path);
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A document, understood: which stages there are, with which options, and who reads whom.
+#pragma once
+
+#include <pcl_bsh/filters/pipeline/json_document.h>
+#include <pcl_bsh/filters/pipeline/pipeline.h>
+#include <pcl_bsh/filters/pipeline/stage_type.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh::pipeline {
+
+struct Node {
+  const StageType* type = nullptr;
+  std::string tag;
+  std::string path;                                        ///< in the document: /pipeline/2
+  std::vector<Value> options;                              ///< one per option of the type
+  std::vector<std::size_t> inputs;                         ///< nodes before this one
+  std::vector<std::pair<std::size_t, std::size_t>> clouds; ///< option and node, for each OtherCloud that is given
+  Json user_data;                                          ///< null when there is none
+  bool in_document = true;                                 ///< else it reads a file that another stage's option names
+  StageCloudPtr given;                                     ///< instead of a reader's file
+
+  const Value* findOption(Kind kind) const;
+};
+
+struct Graph {
+  std::string name;        ///< of the document
+  std::vector<Node> nodes; ///< each after those that it reads
+  Json user_data;
+  unsigned threads = 0;
+  std::function<void(const StageProgress&)> progress;
+};
+
+/// @throws PipelineError
+Graph parseGraph(std::string_view text, const std::vector<OptionOverride>& overrides, const std::string& name);
+
+/// For each node, how many inputs and options of others read it.
+std::vector<std::size_t> countReaders(const Graph& graph);
+
+/// An error about one stage or, when an option is given, about that. @param wrong `what is wrong: what to do`
+PipelineError stageError(const Graph& graph, const Node& node, const std::string& option, const std::string& wrong);
+
+/// Makes all stages and lets each check its options and what flows into it.
+/// @return a stage per node; for a reader whose cloud is given, none
+/// @throws PipelineError
+std::vector<std::unique_ptr<Stage>> planStages(const Graph& graph);
+
+/// @throws PipelineError
+PipelineResult runGraph(const Graph& graph);
+
+/// The document again, with every tag and option written out.
+Json documentOf(const Graph& graph);
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What somebody may have meant.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcl_bsh::pipeline {
+
+/// How many letters must be added, dropped or replaced to turn one word into the other; case does not count.
+std::size_t editDistance(std::string_view a, std::string_view b);
+
+/// The valid name nearest to `name`, the first of several; a name without dot or colon may also be a part of it, or
+/// mean what follows its last dot or colon. Empty when there are no names.
+std::string nearestName(std::string_view name, const std::vector<std::string>& valid);
+
+/// "did you mean 'x'?", or what to do where nothing is valid.
+std::string suggestion(std::string_view name, const std::vector<std::string>& valid);
+
+} // namespace pcl_bsh::pipeline

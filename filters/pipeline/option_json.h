@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Options between JSON and their values.
+#pragma once
+
+#include <pcl_bsh/filters/pipeline/json_document.h>
+#include <pcl_bsh/filters/pipeline/stage_type.h>
+
+#include <string>
+
+namespace pcl_bsh::pipeline {
+
+/// What may be written: "a number above 0", "one of free, colliding".
+std::string expectation(const Option& option);
+
+/// @throws std::invalid_argument `is X: give EXPECTATION`
+Value valueOf(const Json& json, const Option& option);
+
+Json jsonOf(const Value& value);
+
+/// What a command line gives as text, as a document would give it: texts need no quotes, lists no brackets.
+Json jsonOfText(const std::string& text, const Option& option);
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an option of a stage may be: the C++ type of a member says how a document writes it.
+//
+//   bool, int and other integers, double, std::string   true, 3, 0.5, "x"
+//   Numbers<2>, Numbers<3>                               [0, 1.5]
+//   Size3                                                0.05 or [0.05, 0.05, 0.1]
+//   Pose                                                 [x, y, z, roll, pitch, yaw], a matrix, or a file with one
+//   InputFile, OutputFile                                "hall.pcd"
+//   OtherCloud                                           the tag of an earlier stage, or "robot.pcd"
+//   std::optional of any                                 the same; nothing unless the document says something
+#pragma once
+
+#include <pcl_bsh/filters/pipeline/stage_cloud.h>
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+namespace pcl_bsh::pipeline {
+
+/// What a document can say, checked to be of the option's kind. std::monostate: null.
+using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>>;
+
+enum class Kind : std::uint8_t {
+  boolean,
+  integer,
+  number,
+  text,
+  two_numbers,
+  three_numbers,
+  size,
+  pose,
+  input_file,
+  output_file,
+  cloud,
+};
+
+template <std::size_t N>
+using Numbers = std::array<double, N>;
+
+/// Along x, y and z.
+struct Size3 {
+  Numbers<3> xyz = {0, 0, 0};
+};
+
+/// An affine map; whether it must be rigid is for the stage to say.
+struct Pose {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+};
+
+struct InputFile {
+  std::string path;
+};
+
+struct OutputFile {
+  std::string path;
+};
+
+/// Another cloud than the stage's input. The pipeline fills it in.
+struct OtherCloud {
+  std::string name;    ///< the tag of a stage, or a file
+  CloudHeader header;  ///< when Stage::plan() is called
+  StageCloudPtr cloud; ///< when Stage::run() is called
+};
+
+/// What the type itself cannot exceed.
+template <typename T, typename = void>
+struct NumberLimits {
+  static constexpr double least = -std::numeric_limits<double>::infinity();
+  static constexpr double most = std::numeric_limits<double>::infinity();
+};
+
+template <typename T>
+struct NumberLimits<T, std::enable_if_t<std::is_integral_v<T> && !std::is_same_v<T, bool>>> {
+  static constexpr double least = static_cast<double>(std::numeric_limits<T>::lowest());
+  static constexpr double most = static_cast<double>(std::numeric_limits<T>::max());
+};
+
+template <typename T>
+struct NumberLimits<std::optional<T>> : NumberLimits<T> {
+};
+
+/// How a member of type T is written: its kind, and the way from and to a Value of that kind.
+template <typename T, typename = void>
+struct OptionType;
+
+template <>
+struct OptionType<bool> {
+  static constexpr Kind kind = Kind::boolean;
+  static bool from(const Value& value) { return std::get<bool>(value); }
+  static Value to(bool option) { return option; }
+};
+
+template <typename T>
+struct OptionType<T, std::enable_if_t<std::is_integral_v<T> && !std::is_same_v<T, bool>>> {
+  static constexpr Kind kind = Kind::integer;
+  static T from(const Value& value) { return static_cast<T>(std::get<std::int64_t>(value)); }
+  static Value to(T option) { return static_cast<std::int64_t>(option); }
+};
+
+template <>
+struct OptionType<double> {
+  static constexpr Kind kind = Kind::number;
+  static double from(const Value& value) { return std::get<double>(value); }
+  static Value to(double option) { return option; }
+};
+
+template <>
+struct OptionType<std::string> {
+  static constexpr Kind kind = Kind::text;
+  static std::string from(const Value& value) { return std::get<std::string>(value); }
+  static Value to(const std::string& option) { return option; }
+};
+
+template <std::size_t N>
+struct OptionType<Numbers<N>> {
+  static_assert(N == 2 || N == 3, "two or three numbers");
+  static constexpr Kind kind = N == 2 ? Kind::two_numbers : Kind::three_numbers;
+  static Numbers<N> from(const Value& value)
+  {
+    const auto& numbers = std::get<std::vector<double>>(value);
+    Numbers<N> option;
+    for (std::size_t i = 0; i < N; ++i) option[i] = numbers[i];
+    return option;
+  }
+  static Value to(const Numbers<N>& option) { return std::vector<double>(option.begin(), option.end()); }
+};
+
+template <>
+struct OptionType<Size3> {
+  static constexpr Kind kind = Kind::size;
+  static Size3 from(const Value& value) { return {OptionType<Numbers<3>>::from(value)}; }
+  static Value to(const Size3& option) { return OptionType<Numbers<3>>::to(option.xyz); }
+};
+
+template <>
+struct OptionType<Pose> {
+  static constexpr Kind kind = Kind::pose;
+  static Pose from(const Value& value)
+  {
+    using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+    return {Eigen::Map<const RowMajor>(std::get<std::vector<double>>(value).data())};
+  }
+  static Value to(const Pose& option)
+  {
+    std::vector<double> rows;
+    for (Eigen::Index i = 0; i < 16; ++i) rows.push_back(option.matrix(i / 4, i % 4));
+    return rows;
+  }
+};
+
+template <>
+struct OptionType<InputFile> {
+  static constexpr Kind kind = Kind::input_file;
+  static InputFile from(const Value& value) { return {std::get<std::string>(value)}; }
+  static Value to(const InputFile& option) { return option.path; }
+};
+
+template <>
+struct OptionType<OutputFile> {
+  static constexpr Kind kind = Kind::output_file;
+  static OutputFile from(const Value& value) { return {std::get<std::string>(value)}; }
+  static Value to(const OutputFile& option) { return option.path; }
+};
+
+template <>
+struct OptionType<OtherCloud> {
+  static constexpr Kind kind = Kind::cloud;
+  static OtherCloud from(const Value& value) { return {std::get<std::string>(value), {}, {}}; }
+  static Value to(const OtherCloud& option) { return option.name; }
+};
+
+template <typename T>
+struct OptionType<std::optional<T>> {
+  static constexpr Kind kind = OptionType<T>::kind;
+  static std::optional<T> from(const Value& value)
+  {
+    if (std::holds_alternative<std::monostate>(value)) return std::nullopt;
+    return OptionType<T>::from(value);
+  }
+  static Value to(const std::optional<T>& option) { return option ? OptionType<T>::to(*option) : Value(); }
+};
+
+} // namespace pcl_bsh::pipeline

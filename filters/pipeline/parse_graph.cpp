@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/pipeline/graph.h>
+#include <pcl_bsh/filters/pipeline/nearest_name.h>
+#include <pcl_bsh/filters/pipeline/option_json.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <set>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+const std::vector<std::string> common_keys = {"type", "tag", "inputs", "user_data"};
+
+std::string extensionOf(const std::string& file)
+{
+  std::string extension = std::filesystem::path(file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+std::vector<std::string> typeNames()
+{
+  std::vector<std::string> names;
+  for (const StageType& type : stageTypes()) {
+    names.push_back(type.name);
+    names.insert(names.end(), type.aliases.begin(), type.aliases.end());
+  }
+  return names;
+}
+
+/// The reader or writer that files of this name stand for; null when there is none.
+const StageType* typeOfFile(const std::string& file, bool written)
+{
+  const std::string extension = extensionOf(file);
+  for (const StageType& type : stageTypes()) {
+    const bool can = written ? type.isWriter() : type.isReader();
+    if (can && std::find(type.extensions.begin(), type.extensions.end(), extension) != type.extensions.end()) {
+      return &type;
+    }
+  }
+  return nullptr;
+}
+
+std::string knownExtensions(bool written)
+{
+  std::string list;
+  for (const StageType& type : stageTypes()) {
+    if (!(written ? type.isWriter() : type.isReader())) continue;
+    for (const std::string& extension : type.extensions) list += (list.empty() ? "" : " ") + extension;
+  }
+  return list;
+}
+
+bool isTag(const std::string& text)
+{
+  const auto letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  const auto inner = [&](char c) { return letter(c) || std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  return !text.empty() && letter(text[0]) && std::all_of(text.begin(), text.end(), inner);
+}
+
+/// A part of a JSON pointer.
+std::string escaped(const std::string& key)
+{
+  std::string pointer;
+  for (const char c : key) pointer += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return pointer;
+}
+
+class Parser {
+public:
+  Parser(const std::vector<OptionOverride>& overrides, const std::string& name)
+  : overrides_(overrides),
+    used_(overrides.size(), false)
+  {
+    graph_.name = name;
+  }
+
+  Graph parse(std::string_view text)
+  {
+    Json document = read(text);
+    const bool bare = document.is_array(); // PDAL allows the list alone, too
+    if (bare) document = Json{{"pipeline", document}};
+    readTopLevel(document);
+    const std::string list = bare ? "" : "/pipeline";
+    const Json& stages = document["pipeline"];
+    if (!stages.is_array() || stages.empty()) fail(list, "is " + shown(stages) + ": give a list of stages");
+
+    noteTags(stages);
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+      readStage(stages[i], list + "/" + std::to_string(i), i > 0 && i + 1 == stages.size());
+    }
+    requireOverridesUsed();
+    requireEachRead();
+    return std::move(graph_);
+  }
+
+private:
+  [[noreturn]] void fail(const std::string& place, const std::string& wrong) const
+  {
+    throw PipelineError(graph_.name + ": " + (place.empty() ? "" : place + ": ") + wrong);
+  }
+
+  Json read(std::string_view text) const
+  {
+    try {
+      return parseJson(text);
+    }
+    catch (const JsonError& error) {
+      fail("", error.what());
+    }
+  }
+
+  void readTopLevel(const Json& document)
+  {
+    if (!document.is_object()) fail("", "is " + shown(document) + ": give {\"pipeline\": [...]}");
+    // `metadata` is what a run adds to the pipeline it reports; it says nothing about what to do.
+    const std::vector<std::string> keys = {"pipeline", "user_data", "metadata", "$schema"};
+    for (const auto& item : document.items()) {
+      if (std::find(keys.begin(), keys.end(), item.key()) == keys.end()) {
+        fail("/" + escaped(item.key()), "is no key of a pipeline: " + suggestion(item.key(), keys));
+      }
+    }
+    if (!document.contains("pipeline")) fail("/pipeline", "is missing: give a list of stages");
+    if (document.contains("user_data")) graph_.user_data = document["user_data"];
+  }
+
+  /// All tags that the document gives, so that none is made up twice.
+  void noteTags(const Json& stages)
+  {
+    for (const Json& stage : stages) {
+      if (stage.is_object() && stage.contains("tag") && stage["tag"].is_string()) {
+        given_tags_.insert(stage["tag"].get<std::string>());
+      }
+    }
+  }
+
+  void readStage(Json stage, const std::string& path, bool last)
+  {
+    if (stage.is_string()) stage = Json{{"filename", stage}};
+    if (!stage.is_object()) fail(path, "is " + shown(stage) + ": give a file name or {\"type\": ...}");
+    Node node;
+    node.path = path;
+    node.type = &readType(stage, path, last);
+    node.tag = readTag(stage, node);
+    readOptions(withOverrides(stage, node), node);
+    readInputs(stage, node);
+    readClouds(node);
+    if (stage.contains("user_data")) node.user_data = stage["user_data"];
+    previous_ = graph_.nodes.size();
+    graph_.nodes.push_back(std::move(node));
+  }
+
+  /// @param last a file without a type is written when it comes last
+  const StageType& readType(const Json& stage, const std::string& path, bool last) const
+  {
+    if (stage.contains("type")) {
+      const Json& name = stage["type"];
+      const std::vector<std::string> names = typeNames();
+      if (!name.is_string()) fail(path + "/type", "is " + shown(name) + ": give the name of a stage");
+      const StageType* type = findStageType(name.get<std::string>());
+      if (type != nullptr) return *type;
+      fail(path + "/type",
+           shown(name) + " is no type of stage: " + suggestion(name.get_ref<const std::string&>(), names));
+    }
+    if (!stage.contains("filename")) fail(path + "/type", "is missing: give the type of the stage");
+    const Json& file = stage["filename"];
+    if (!file.is_string()) fail(path + "/filename", "is " + shown(file) + ": give the name of a file");
+    const StageType* type = typeOfFile(file.get<std::string>(), last);
+    if (type != nullptr) return *type;
+    fail(path, shown(file) + " has none of the extensions that can be " + (last ? "written" : "read") + ": give " +
+                   knownExtensions(last) + ", or a type");
+  }
+
+  std::string readTag(const Json& stage, const Node& node)
+  {
+    if (!stage.contains("tag")) return madeUpTag(*node.type);
+    const Json& tag = stage["tag"];
+    if (!tag.is_string() || !isTag(tag.get<std::string>())) {
+      fail(node.path + "/tag", "is " + shown(tag) + ": give letters, digits and underscores, no digit first");
+    }
+    const auto text = tag.get<std::string>();
+    if (findTag(text) != nullptr) fail(node.path + "/tag", "is " + shown(tag) + " a second time: rename one");
+    return text;
+  }
+
+  /// filters_voxel_grid1
+  std::string madeUpTag(const StageType& type)
+  {
+    std::string begin = type.name;
+    std::replace(begin.begin(), begin.end(), '.', '_');
+    while (true) {
+      const std::string tag = begin + std::to_string(++made_up_[begin]);
+      if (given_tags_.count(tag) == 0 && findTag(tag) == nullptr) return tag;
+    }
+  }
+
+  const Node* findTag(const std::string& tag) const
+  {
+    const auto found =
+        std::find_if(graph_.nodes.begin(), graph_.nodes.end(), [&](const Node& node) { return node.tag == tag; });
+    return found == graph_.nodes.end() ? nullptr : &*found;
+  }
+
+  std::size_t positionOf(const Node* node) const { return static_cast<std::size_t>(node - graph_.nodes.data()); }
+
+  std::vector<std::string> earlierTags() const
+  {
+    std::vector<std::string> tags;
+    for (const Node& node : graph_.nodes) tags.push_back(node.tag);
+    return tags;
+  }
+
+  Json withOverrides(Json stage, const Node& node)
+  {
+    for (std::size_t i = 0; i < overrides_.size(); ++i) {
+      const OptionOverride& given = overrides_[i];
+      if (given.tag != node.tag) continue;
+      used_[i] = true;
+      stage[given.option] = jsonOfText(given.value, requireOption(given.option, node));
+    }
+    return stage;
+  }
+
+  const Option& requireOption(const std::string& name, const Node& node) const
+  {
+    const Option* option = node.type->findOption(name);
+    if (option != nullptr) return *option;
+    std::vector<std::string> names;
+    for (const Option& valid : node.type->options) names.push_back(valid.name);
+    names.insert(names.end(), common_keys.begin(), common_keys.end());
+    fail(node.tag + ": " + node.path + "/" + escaped(name),
+         "is no option of " + node.type->name + ": " + suggestion(name, names));
+  }
+
+  void readOptions(const Json& stage, Node& node) const
+  {
+    for (const auto& item : stage.items()) {
+      const bool common = std::find(common_keys.begin(), common_keys.end(), item.key()) != common_keys.end();
+      if (!common) requireOption(item.key(), node);
+    }
+    for (const Option& option : node.type->options) {
+      if (!stage.contains(option.name)) {
+        if (option.required) throw stageError(graph_, node, option.name, "is missing: give " + expectation(option));
+        node.options.push_back(option.standard);
+        continue;
+      }
+      try {
+        node.options.push_back(valueOf(stage[option.name], option));
+      }
+      catch (const std::invalid_argument& error) {
+        throw stageError(graph_, node, option.name, error.what());
+      }
+    }
+  }
+
+  void readInputs(const Json& stage, Node& node) const
+  {
+    if (stage.contains("inputs")) {
+      const Json& inputs = stage["inputs"];
+      if (inputs.is_string()) {
+        node.inputs.push_back(inputOf(inputs, node, "inputs"));
+      }
+      else if (inputs.is_array()) {
+        for (std::size_t i = 0; i < inputs.size(); ++i) {
+          node.inputs.push_back(inputOf(inputs[i], node, "inputs/" + std::to_string(i)));
+        }
+      }
+      else {
+        throw stageError(graph_, node, "inputs", "is " + shown(inputs) + ": give a list of tags");
+      }
+    }
+    else if (!node.type->isReader() && !graph_.nodes.empty()) {
+      node.inputs.push_back(previous_);
+    }
+    requireInputs(node);
+  }
+
+  void requireInputs(const Node& node) const
+  {
+    const std::size_t count = node.inputs.size();
+    const StageType& type = *node.type;
+    if (count >= type.least_inputs && count <= type.most_inputs) return;
+    if (type.isReader()) throw stageError(graph_, node, "inputs", "is given to a reader: remove it");
+    if (graph_.nodes.empty()) throw stageError(graph_, node, "", "has nothing to read: begin with a reader");
+    throw stageError(graph_, node, "inputs",
+                     "names " + std::to_string(count) + " stages: " + type.name +
+                         (type.least_inputs == type.most_inputs ? " takes " : " takes at least ") +
+                         std::to_string(type.least_inputs));
+  }
+
+  std::size_t inputOf(const Json& tag, const Node& node, const std::string& option) const
+  {
+    if (!tag.is_string()) throw stageError(graph_, node, option, "is " + shown(tag) + ": give the tag of a stage");
+    const Node* input = findTag(tag.get<std::string>());
+    if (input != nullptr) return positionOf(input);
+    if (given_tags_.count(tag.get<std::string>()) != 0) {
+      throw stageError(graph_, node, option,
+                       "is " + shown(tag) + ", which comes later: put that stage before this one");
+    }
+    throw stageError(graph_, node, option,
+                     "is " + shown(tag) + ", which is no earlier stage's tag: " +
+                         suggestion(tag.get_ref<const std::string&>(), earlierTags()));
+  }
+
+  /// Options that name other clouds: the tag of a stage or else a file, which gets a reader of its own.
+  void readClouds(Node& node)
+  {
+    for (std::size_t i = 0; i < node.options.size(); ++i) {
+      const Option& option = node.type->options[i];
+      if (option.kind != Kind::cloud || std::holds_alternative<std::monostate>(node.options[i])) continue;
+      const auto& name = std::get<std::string>(node.options[i]);
+      if (const Node* other = findTag(name)) {
+        node.clouds.emplace_back(i, positionOf(other));
+        continue;
+      }
+      const StageType* type = typeOfFile(name, false);
+      if (type == nullptr) {
+        throw stageError(graph_, node, option.name,
+                         "is " + shown(name) +
+                             ", neither an earlier stage's tag nor a cloud file: " + suggestion(name, earlierTags()));
+      }
+      Node reader;
+      reader.type = type;
+      reader.tag = madeUpTag(*type);
+      reader.path = node.path + "/" + escaped(option.name);
+      reader.in_document = false;
+      readOptions(Json{{"filename", name}}, reader);
+      node.clouds.emplace_back(i, graph_.nodes.size());
+      graph_.nodes.push_back(std::move(reader));
+    }
+  }
+
+  void requireOverridesUsed() const
+  {
+    for (std::size_t i = 0; i < overrides_.size(); ++i) {
+      if (used_[i]) continue;
+      const OptionOverride& given = overrides_[i];
+      fail("--stage." + given.tag + "." + given.option,
+           "no stage has the tag '" + given.tag + "': " + suggestion(given.tag, earlierTags()));
+    }
+  }
+
+  /// A cloud that nobody reads is a slip of the pen, but for what comes last.
+  void requireEachRead() const
+  {
+    const std::vector<std::size_t> readers = countReaders(graph_);
+    for (std::size_t i = 0; i + 1 < graph_.nodes.size(); ++i) {
+      const Node& node = graph_.nodes[i];
+      if (readers[i] == 0 && !node.type->isWriter()) {
+        throw stageError(graph_, node, "", "is read by no other stage: name it in one's `inputs`, or remove it");
+      }
+    }
+  }
+
+  Graph graph_;
+  const std::vector<OptionOverride>& overrides_;
+  std::vector<bool> used_;                     ///< of the overrides
+  std::set<std::string> given_tags_;           ///< of the whole document
+  std::map<std::string, std::size_t> made_up_; ///< by how they begin: the last number
+  std::size_t previous_ = 0;                   ///< the node of the document's last stage so far
+};
+
+} // namespace
+
+Graph parseGraph(std::string_view text, const std::vector<OptionOverride>& overrides, const std::string& name)
+{
+  return Parser(overrides, name).parse(text);
+}
+
+std::vector<std::size_t> countReaders(const Graph& graph)
+{
+  std::vector<std::size_t> readers(graph.nodes.size(), 0);
+  for (const Node& node : graph.nodes) {
+    for (const std::size_t input : node.inputs) ++readers[input];
+    for (const auto& cloud : node.clouds) ++readers[cloud.second];
+  }
+  return readers;
+}
+
+PipelineError stageError(const Graph& graph, const Node& node, const std::string& option, const std::string& wrong)
+{
+  return PipelineError(graph.name + ": " + node.tag + ": " + node.path + (option.empty() ? "" : "/" + option) + ": " +
+                       wrong);
+}
+
+} // namespace pcl_bsh::pipeline

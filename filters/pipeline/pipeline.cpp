@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/io/cloud_file_error.h>
+#include <pcl_bsh/filters/io/file_bytes.h>
+#include <pcl_bsh/filters/pipeline/graph.h>
+#include <pcl_bsh/filters/pipeline/nearest_name.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace pcl_bsh {
+namespace {
+
+/// Names of the user's may hold anything; a message is one line that does not steer the terminal.
+std::string printable(std::string line)
+{
+  const auto steers = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  std::replace_if(line.begin(), line.end(), steers, '?');
+  return line;
+}
+
+} // namespace
+
+PipelineError::PipelineError(std::string line) : std::runtime_error(printable(std::move(line)))
+{
+}
+
+Pipeline::Pipeline(std::unique_ptr<pipeline::Graph> graph) : graph_(std::move(graph))
+{
+}
+Pipeline::Pipeline(Pipeline&&) noexcept = default;
+Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
+Pipeline::~Pipeline() = default;
+
+Pipeline Pipeline::parse(std::string_view json, const std::vector<OptionOverride>& overrides, const std::string& name)
+{
+  return Pipeline(std::make_unique<pipeline::Graph>(pipeline::parseGraph(json, overrides, name)));
+}
+
+Pipeline Pipeline::read(const std::filesystem::path& file, const std::vector<OptionOverride>& overrides)
+{
+  try {
+    const io::FileBytes bytes(file);
+    return parse(bytes.view(), overrides, file.string());
+  }
+  catch (const io::CloudFileError& error) {
+    throw PipelineError(error.what());
+  }
+}
+
+void Pipeline::setCloud(const std::string& tag, pipeline::StageCloudPtr cloud)
+{
+  if (!cloud) throw PipelineError(graph_->name + ": " + tag + ": the cloud is null: give an empty one");
+  std::vector<std::string> readers;
+  for (pipeline::Node& node : graph_->nodes) {
+    if (!node.type->isReader()) continue;
+    readers.push_back(node.tag);
+    if (node.tag != tag) continue;
+    node.given = std::move(cloud);
+    return;
+  }
+  throw PipelineError(graph_->name + ": no reader has the tag '" + tag + "': " + pipeline::suggestion(tag, readers));
+}
+
+void Pipeline::setNumberOfThreads(unsigned threads)
+{
+  graph_->threads = threads;
+}
+
+void Pipeline::setProgress(std::function<void(const StageProgress&)> progress)
+{
+  graph_->progress = std::move(progress);
+}
+
+void Pipeline::validate()
+{
+  pipeline::planStages(*graph_);
+}
+
+PipelineResult Pipeline::run()
+{
+  return pipeline::runGraph(*graph_);
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pipelines of point cloud filters, written as JSON in PDAL's grammar.
+//
+//   pcl_bsh::Pipeline pipeline = pcl_bsh::Pipeline::read("flag.json");
+//   pipeline.validate();                     // all that can be known without reading points
+//   pcl_bsh::PipelineResult result = pipeline.run();
+//
+// {"pipeline": ["hall.pcd",
+//               {"type": "filters.voxel_grid", "leaf_size": 0.02},
+//               {"type": "filters.bsh_flag", "obstacle": "robot.pcd", "clearance": 0.05},
+//               "marked.pcd"]}
+//
+// Comments are allowed. A string is a file to read or, when last, to write. Without `inputs`, a stage reads the one
+// before it. STAGES.md lists the stages and their options.
+#pragma once
+
+#include <pcl_bsh/filters/pipeline/stage_cloud.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcl_bsh {
+
+namespace pipeline {
+struct Graph;
+}
+
+/// what() reads `DOCUMENT: TAG: /pipeline/2/leaf_size: what is wrong: what to do`; parts that do not apply are absent.
+class PipelineError : public std::runtime_error {
+public:
+  /// @param line bytes that would break or steer a terminal's line are replaced
+  explicit PipelineError(std::string line);
+};
+
+/// One option of one stage, given after the document was written.
+struct OptionOverride {
+  std::string tag; ///< as the document has it or, for a stage without tag, type and number: filters_voxel_grid1
+  std::string option;
+  std::string value; ///< as in JSON; a text needs no quotes
+};
+
+/// What has become of a stage.
+struct StageProgress {
+  std::string tag;
+  std::string type;
+  bool done = false;      ///< otherwise it begins
+  std::size_t points = 0; ///< that came out
+  double seconds = 0;
+  std::size_t finished = 0; ///< stages done so far
+  std::size_t stages = 0;   ///< of all
+};
+
+struct PipelineResult {
+  std::map<std::string, pipeline::StageCloudPtr> clouds; ///< by tag: what no other stage read
+  std::vector<std::string> warnings;                     ///< `TAG: text`
+  std::string metadata;                                  ///< JSON: what ran and what it took; a pipeline to run again
+};
+
+class Pipeline {
+public:
+  /// @param name how errors call the document
+  /// @throws PipelineError for anything that is wrong with the document itself
+  static Pipeline parse(std::string_view json, const std::vector<OptionOverride>& overrides = {},
+                        const std::string& name = "pipeline");
+
+  /// The same, of a file. @throws PipelineError also when it cannot be read
+  static Pipeline read(const std::filesystem::path& file, const std::vector<OptionOverride>& overrides = {});
+
+  Pipeline(Pipeline&&) noexcept;
+  Pipeline& operator=(Pipeline&&) noexcept;
+  ~Pipeline();
+
+  /// Lets the reader with that tag give this cloud instead of reading its file. The pipeline holds it until it ends.
+  /// @throws PipelineError when no reader has that tag
+  void setCloud(const std::string& tag, pipeline::StageCloudPtr cloud);
+
+  /// How many stages may run at once; 0: as many as the machine has threads (default). The results are the same.
+  void setNumberOfThreads(unsigned threads);
+
+  /// Called when a stage begins and when it is done, one call at a time, from whichever thread runs it.
+  void setProgress(std::function<void(const StageProgress&)> progress);
+
+  /// Checks that input files are there, that their headers have the fields that are needed, and that outputs can be
+  /// written. No points are read. @throws PipelineError
+  void validate();
+
+  /// Validates, then runs. A cloud is freed once its last reader has it done. Can be called again.
+  /// @throws PipelineError when a stage fails; of several, the first in the document
+  PipelineResult run();
+
+private:
+  explicit Pipeline(std::unique_ptr<pipeline::Graph> graph);
+  std::unique_ptr<pipeline::Graph> graph_;
+};
+
+namespace pipeline {
+
+/// A JSON schema (draft 7) of pipeline documents with the stages of this program, for editors.
+std::string jsonSchema();
+
+/// The table of stages and their options, as Markdown.
+std::string stageDocumentation();
+
+} // namespace pipeline
+
+} // namespace pcl_bsh

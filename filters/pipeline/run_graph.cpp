@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/pipeline/graph.h>
+#include <pcl_bsh/filters/pipeline/option_json.h>
+#include <pcl_bsh/filters/pipeline/process_memory.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start)
+{
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::size_t pointsOf(const StageCloud& cloud)
+{
+  return std::size_t{cloud.cloud.width} * cloud.cloud.height;
+}
+
+/// What a stage took. Memory is the whole program's, so stages that ran at the same time share it.
+struct Cost {
+  std::size_t points_in = 0;
+  std::size_t points_out = 0;
+  double seconds = 0;
+  std::size_t bytes_out = 0;
+  std::size_t resident_before = 0;
+  std::size_t resident_after = 0;
+};
+
+class Run {
+public:
+  explicit Run(const Graph& graph)
+  : graph_(graph),
+    stages_(planStages(graph)),
+    costs_(graph.nodes.size()),
+    clouds_(graph.nodes.size()),
+    readers_left_(countReaders(graph)),
+    inputs_left_(graph.nodes.size()),
+    consumers_(graph.nodes.size())
+  {
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+      for (const std::size_t input : graph.nodes[i].inputs) addEdge(input, i);
+      for (const auto& cloud : graph.nodes[i].clouds) addEdge(cloud.second, i);
+      if (inputs_left_[i] == 0) ready_.insert(i);
+    }
+  }
+
+  PipelineResult run()
+  {
+    const Clock::time_point start = Clock::now();
+    const unsigned wanted = graph_.threads != 0 ? graph_.threads : std::max(std::thread::hardware_concurrency(), 1U);
+    const std::size_t threads = std::min<std::size_t>(wanted, graph_.nodes.size());
+    {
+      std::vector<std::jthread> others;
+      for (std::size_t i = 1; i < threads; ++i) others.emplace_back([this] { work(); });
+      work();
+    }
+    if (!errors_.empty()) std::rethrow_exception(errors_.begin()->second);
+    return resultAfter(secondsSince(start));
+  }
+
+private:
+  void addEdge(std::size_t from, std::size_t to)
+  {
+    consumers_[from].push_back(to);
+    ++inputs_left_[to];
+  }
+
+  /// Takes one stage after the other, in the document's order, until none is left or one has failed.
+  void work()
+  {
+    std::unique_lock lock(mutex_);
+    while (true) {
+      changed_.wait(lock, [this] { return !ready_.empty() || finished_ == graph_.nodes.size() || !errors_.empty(); });
+      if (ready_.empty() || !errors_.empty()) return;
+      const std::size_t node = *ready_.begin();
+      ready_.erase(ready_.begin());
+      runStage(node, lock);
+      changed_.notify_all();
+    }
+  }
+
+  /// The lock is open while the stage works.
+  void runStage(std::size_t position, std::unique_lock<std::mutex>& lock)
+  {
+    const Node& node = graph_.nodes[position];
+    StageClouds inputs = takeInputs(position);
+    Cost& cost = costs_[position];
+    for (const StageCloudPtr& input : inputs) cost.points_in += pointsOf(*input);
+    report(node, cost, false);
+    lock.unlock();
+
+    StageCloudPtr output;
+    std::exception_ptr error;
+    cost.resident_before = residentBytes();
+    const Clock::time_point start = Clock::now();
+    try {
+      output = outputOf(position, std::move(inputs));
+      cost.points_out = pointsOf(*output);
+      cost.bytes_out = output->cloud.data.size();
+    }
+    catch (...) {
+      error = std::current_exception();
+    }
+    releaseClouds(position);
+    cost.seconds = secondsSince(start);
+    cost.resident_after = residentBytes();
+
+    lock.lock();
+    ++finished_;
+    if (error) {
+      errors_.emplace(position, error);
+      return;
+    }
+    report(node, cost, true);
+    const bool wanted = readers_left_[position] > 0 || !node.type->isWriter();
+    if (wanted) clouds_[position] = std::move(output);
+    for (const std::size_t consumer : consumers_[position]) {
+      if (--inputs_left_[consumer] == 0) ready_.insert(consumer);
+    }
+  }
+
+  /// A cloud goes to its last reader for good.
+  StageCloudPtr take(std::size_t producer)
+  {
+    return --readers_left_[producer] == 0 ? std::move(clouds_[producer]) : clouds_[producer];
+  }
+
+  StageClouds takeInputs(std::size_t position)
+  {
+    const Node& node = graph_.nodes[position];
+    StageClouds inputs;
+    for (const std::size_t input : node.inputs) inputs.push_back(take(input));
+    for (const auto& [option, other] : node.clouds) {
+      node.type->options[option].cloud(*stages_[position])->cloud = take(other);
+    }
+    return inputs;
+  }
+
+  void releaseClouds(std::size_t position)
+  {
+    const Node& node = graph_.nodes[position];
+    for (const auto& cloud : node.clouds) node.type->options[cloud.first].cloud(*stages_[position])->cloud.reset();
+  }
+
+  StageCloudPtr outputOf(std::size_t position, StageClouds&& inputs)
+  {
+    const Node& node = graph_.nodes[position];
+    if (node.given) return node.given;
+    try {
+      StageCloudPtr output = stages_[position]->run(std::move(inputs));
+      if (!output) throw std::logic_error("gave no cloud: let its run() return one");
+      return output;
+    }
+    catch (const OptionError& error) {
+      throw stageError(graph_, node, error.option(), error.what());
+    }
+    catch (const std::bad_alloc&) {
+      throw stageError(graph_, node, "", "there is too little memory: give smaller clouds or a larger machine");
+    }
+    catch (const std::exception& error) {
+      throw stageError(graph_, node, "", error.what());
+    }
+  }
+
+  void report(const Node& node, const Cost& cost, bool done) const
+  {
+    if (!graph_.progress) return;
+    StageProgress progress;
+    progress.tag = node.tag;
+    progress.type = node.type->name;
+    progress.done = done;
+    progress.points = cost.points_out;
+    progress.seconds = cost.seconds;
+    progress.finished = finished_;
+    progress.stages = graph_.nodes.size();
+    graph_.progress(progress);
+  }
+
+  PipelineResult resultAfter(double seconds)
+  {
+    PipelineResult result;
+    Json stages = Json::array();
+    for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
+      const Node& node = graph_.nodes[i];
+      if (clouds_[i]) result.clouds.emplace(node.tag, std::move(clouds_[i]));
+      const std::vector<std::string> warnings = stages_[i] ? stages_[i]->warnings() : std::vector<std::string>();
+      for (const std::string& warning : warnings) result.warnings.push_back(node.tag + ": " + warning);
+      stages.push_back({{"tag", node.tag},
+                        {"type", node.type->name},
+                        {"points_in", costs_[i].points_in},
+                        {"points_out", costs_[i].points_out},
+                        {"seconds", costs_[i].seconds},
+                        {"bytes_out", costs_[i].bytes_out},
+                        {"resident_bytes_before", costs_[i].resident_before},
+                        {"resident_bytes_after", costs_[i].resident_after},
+                        {"warnings", warnings}});
+    }
+    Json metadata = documentOf(graph_);
+    metadata["metadata"] = {
+        {"document", graph_.name}, {"seconds", seconds}, {"peak_bytes", peakBytes()}, {"stages", stages}};
+    result.metadata = printed(metadata);
+    return result;
+  }
+
+  const Graph& graph_;
+  const std::vector<std::unique_ptr<Stage>> stages_;
+  std::vector<Cost> costs_;
+
+  std::mutex mutex_; ///< of all below
+  std::condition_variable changed_;
+  StageClouds clouds_; ///< of each node, from when it is done until its last reader begins
+  std::vector<std::size_t> readers_left_;
+  std::vector<std::size_t> inputs_left_; ///< that are not done yet
+  std::vector<std::vector<std::size_t>> consumers_;
+  std::set<std::size_t> ready_;
+  std::size_t finished_ = 0;
+  std::map<std::size_t, std::exception_ptr> errors_; ///< the first of them is the document's first
+};
+
+} // namespace
+
+PipelineResult runGraph(const Graph& graph)
+{
+  return Run(graph).run();
+}
+
+Json documentOf(const Graph& graph)
+{
+  Json stages = Json::array();
+  for (const Node& node : graph.nodes) {
+    if (!node.in_document) continue;
+    Json stage = {{"type", node.type->name}, {"tag", node.tag}};
+    Json inputs = Json::array();
+    for (const std::size_t input : node.inputs) inputs.push_back(graph.nodes[input].tag);
+    if (!node.type->isReader()) stage["inputs"] = inputs;
+    for (std::size_t i = 0; i < node.options.size(); ++i) {
+      stage[node.type->options[i].name] = jsonOf(node.options[i]);
+    }
+    if (!node.user_data.is_null()) stage["user_data"] = node.user_data;
+    stages.push_back(std::move(stage));
+  }
+  Json document = {{"pipeline", std::move(stages)}};
+  if (!graph.user_data.is_null()) document["user_data"] = graph.user_data;
+  return document;
+}
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One step of a pipeline: what a class must do to be one. stage_type.h tells how it gets its name and options.
+//
+//   struct EveryNth : pcl_bsh::pipeline::Stage {
+//     int step = 1;                                               // an option and its default
+//     StageCloudPtr run(StageClouds&& inputs) override;           // the work
+//   };
+#pragma once
+
+#include <pcl_bsh/filters/pipeline/stage_cloud.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh::pipeline {
+
+/// Something is wrong with one option of a stage. what() reads `what is wrong: what to do`.
+class OptionError : public std::invalid_argument {
+public:
+  OptionError(std::string option, const std::string& wrong) : std::invalid_argument(wrong), option_(std::move(option))
+  {
+  }
+  const std::string& option() const noexcept { return option_; }
+
+private:
+  std::string option_;
+};
+
+/// A stage is made, has its options set, is asked for its plan, and runs once. Stages run in parallel, but each in one
+/// thread; any exception ends the pipeline, with the stage's tag and place in the document before its text.
+class Stage {
+public:
+  virtual ~Stage() = default;
+
+  /// The fields of what run() will return, from those of its inputs; no points are there yet. To be refused here:
+  /// whatever is known to fail before the first point is read.
+  virtual CloudHeader plan(const std::vector<CloudHeader>& inputs)
+  {
+    return inputs.empty() ? CloudHeader() : inputs[0];
+  }
+
+  /// @param inputs as many as the stage's type says; never null
+  /// @return never null
+  virtual StageCloudPtr run(StageClouds&& inputs) = 0;
+
+  /// What the user should know of the run, a line each.
+  const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+protected:
+  void warn(std::string line) { warnings_.push_back(std::move(line)); }
+
+private:
+  std::vector<std::string> warnings_;
+};
+
+} // namespace pcl_bsh::pipeline

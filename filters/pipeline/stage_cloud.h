@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What flows from stage to stage.
+#pragma once
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace pcl_bsh::pipeline {
+
+/// A cloud with all its fields, and where its sensor stood: tx ty tz qw qx qy qz, as a PCD file has it.
+struct StageCloud {
+  pcl::PCLPointCloud2 cloud;
+  std::array<float, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};
+};
+
+/// Several stages may read one cloud, so nobody changes it.
+using StageCloudPtr = std::shared_ptr<const StageCloud>;
+using StageClouds = std::vector<StageCloudPtr>;
+
+/// The fields of a cloud, without its points.
+using CloudHeader = pcl::PCLPointCloud2;
+
+/// The cloud itself when nobody else holds it, to be changed in place; otherwise a copy.
+std::shared_ptr<StageCloud> ownCloud(StageCloudPtr&& cloud);
+
+/// A cloud with the fields, the frame and the viewpoint of this one, and no points.
+std::shared_ptr<StageCloud> emptyLike(const StageCloud& cloud);
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/pipeline/stage_type.h>
+#include <pcl_bsh/filters/pipeline/stages/built_in.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+std::deque<StageType>& table()
+{
+  static std::deque<StageType> types = builtInStages(); // a deque: who holds a row keeps it when more are added
+  return types;
+}
+
+bool isNamed(const StageType& type, const std::string& name)
+{
+  return type.name == name || std::find(type.aliases.begin(), type.aliases.end(), name) != type.aliases.end();
+}
+
+void requireRegistrable(const StageType& type)
+{
+  const std::string stage = "stage '" + type.name + "': ";
+  const auto begins = [&](const char* prefix) {
+    return type.name.rfind(prefix, 0) == 0 && type.name.size() > std::string(prefix).size();
+  };
+  if (!begins("readers.") && !begins("filters.") && !begins("writers.")) {
+    throw std::invalid_argument(stage + "begin its name with readers., filters. or writers.");
+  }
+  std::vector<std::string> names = type.aliases;
+  names.push_back(type.name);
+  for (const std::string& name : names) {
+    if (findStageType(name) != nullptr) throw std::invalid_argument(stage + "'" + name + "' is taken: rename it");
+  }
+  std::vector<std::string> keys = {"type", "tag", "inputs", "user_data"};
+  for (const Option& option : type.options) {
+    if (std::find(keys.begin(), keys.end(), option.name) != keys.end()) {
+      throw std::invalid_argument(stage + "option '" + option.name + "' is taken: rename it");
+    }
+    keys.push_back(option.name);
+  }
+}
+
+} // namespace
+
+const Option* StageType::findOption(const std::string& option) const
+{
+  const auto found = std::find_if(options.begin(), options.end(), [&](const Option& o) { return o.name == option; });
+  return found == options.end() ? nullptr : &*found;
+}
+
+bool registerStage(StageType type)
+{
+  requireRegistrable(type);
+  table().push_back(std::move(type));
+  return true;
+}
+
+const std::deque<StageType>& stageTypes()
+{
+  return table();
+}
+
+const StageType* findStageType(const std::string& name)
+{
+  const auto found =
+      std::find_if(table().begin(), table().end(), [&](const StageType& type) { return isNamed(type, name); });
+  return found == table().end() ? nullptr : &*found;
+}
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/pipeline/stages/built_in.h>
+
+namespace pcl_bsh::pipeline {
+
+std::deque<StageType> builtInStages()
+{
+  return {pcdReader(),
+          plyReader(),
+          objReader(),
+          offReader(),
+          textReader(),
+          voxelGrid(),
+          approximateVoxelGrid(),
+          uniformSampling(),
+          passThrough(),
+          cropBox(),
+          statisticalOutlierRemoval(),
+          radiusOutlierRemoval(),
+          transform(),
+          normalEstimation(),
+          euclideanCluster(),
+          merge(),
+          bshCollision(),
+          bshFlag(),
+          pcdWriter(),
+          plyWriter(),
+          objWriter(),
+          textWriter()};
+}
+
+} // namespace pcl_bsh::pipeline

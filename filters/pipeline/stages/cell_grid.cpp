@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/pipeline/stages/cell_grid.h>
+#include <pcl_bsh/filters/pipeline/stages/finite_point.h>
+
+#include <boost/sort/spreadsort/integer_sort.hpp>
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+constexpr double float_counts_to = 16777216;          // 2^24
+constexpr double double_counts_to = 9007199254740992; // 2^53
+
+std::int64_t floorOf(double coordinate, double edge, bool in_float)
+{
+  if (!in_float) return static_cast<std::int64_t>(std::floor(coordinate / edge));
+  const float inverse = 1.0F / static_cast<float>(edge);
+  return static_cast<std::int64_t>(std::floor(static_cast<float>(coordinate) * inverse));
+}
+
+std::string sizeOf(const Cell& cells)
+{
+  std::ostringstream text;
+  text << cells[0] << " x " << cells[1] << " x " << cells[2];
+  return text.str();
+}
+
+} // namespace
+
+CellGrid::CellGrid(const PointsView& points, const Numbers<3>& edge) : edge_(edge)
+{
+  Point3 least = {0, 0, 0};
+  Point3 most = {0, 0, 0};
+  bool first = true;
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    const Point3 p = points.point(i);
+    if (!isFinite(p)) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      least[k] = first ? p[k] : std::min(least[k], p[k]);
+      most[k] = first ? p[k] : std::max(most[k], p[k]);
+    }
+    first = false;
+  }
+  double farthest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    farthest = std::max({farthest, std::abs(least[k] / edge[k]), std::abs(most[k] / edge[k])});
+  }
+  if (!(farthest < double_counts_to)) {
+    throw std::invalid_argument("cells of this size cannot be counted from the origin to these points: give larger "
+                                "ones, or move the cloud to the origin");
+  }
+  in_float_ = points.scalar == Scalar::float32 && farthest < float_counts_to;
+  least_ = cellOf(least);
+  most_ = cellOf(most);
+}
+
+Cell CellGrid::cellOf(const Point3& p) const
+{
+  return {floorOf(p[0], edge_[0], in_float_), floorOf(p[1], edge_[1], in_float_), floorOf(p[2], edge_[2], in_float_)};
+}
+
+Point3 CellGrid::centreOf(const Cell& cell) const
+{
+  Point3 centre;
+  for (std::size_t k = 0; k < 3; ++k) centre[k] = (static_cast<double>(cell[k]) + 0.5) * edge_[k];
+  return centre;
+}
+
+std::vector<CellEntry> sortIntoCells(const PointsView& points, const CellGrid& grid)
+{
+  Cell cells;
+  long double total = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    cells[k] = grid.most()[k] - grid.least()[k] + 1;
+    total *= static_cast<long double>(cells[k]);
+  }
+  if (total > 9.2e18L) {
+    throw std::invalid_argument("a grid of " + sizeOf(cells) + " cells is too large to be numbered: give larger cells");
+  }
+  std::vector<CellEntry> entries;
+  entries.reserve(points.count);
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    const Point3 p = points.point(i);
+    if (!isFinite(p)) continue;
+    const Cell cell = grid.cellOf(p);
+    const std::int64_t number =
+        cell[0] - grid.least()[0] + cells[0] * (cell[1] - grid.least()[1] + cells[1] * (cell[2] - grid.least()[2]));
+    entries.push_back({static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32), i});
+  }
+  namespace spreadsort = boost::sort::spreadsort;
+  spreadsort::integer_sort(
+      entries.begin(), entries.end(), [](const CellEntry& entry, unsigned shift) { return entry.cell() >> shift; },
+      [](const CellEntry& a, const CellEntry& b) { return a.cell() < b.cell(); });
+  return entries;
+}
+
+std::size_t countCells(const std::vector<CellEntry>& sorted)
+{
+  std::size_t cells = sorted.empty() ? 0 : 1;
+  for (std::size_t i = 1; i < sorted.size(); ++i) cells += sorted[i].cell() != sorted[i - 1].cell() ? 1 : 0;
+  return cells;
+}
+
+void forEachCell(const std::vector<CellEntry>& sorted,
+                 const std::function<void(const std::vector<std::uint32_t>&)>& use)
+{
+  std::vector<std::uint32_t> records;
+  for (std::size_t begin = 0; begin < sorted.size();) {
+    records.clear();
+    std::size_t end = begin;
+    for (; end < sorted.size() && sorted[end].cell() == sorted[begin].cell(); ++end)
+      records.push_back(sorted[end].record);
+    std::sort(records.begin(), records.end());
+    use(records);
+    begin = end;
+  }
+}
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Readers and writers, of all formats that filters/io knows.
+#include <pcl_bsh/filters/io/cloud_file.h>
+#include <pcl_bsh/filters/pipeline/stages/built_in.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+/// The format is told by the extension, so a stage refuses the extensions of others.
+void requireExtension(const std::string& file, const std::vector<std::string>& extensions)
+{
+  std::string extension = std::filesystem::path(file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) return;
+  std::string known;
+  for (const std::string& valid : extensions) known += (known.empty() ? "" : " or ") + valid;
+  throw OptionError("filename", "is \"" + file + "\": give a " + known + " file, or leave out the type");
+}
+
+struct FileReader : Stage {
+  InputFile filename;
+  std::vector<std::string> extensions;
+
+  CloudHeader plan(const std::vector<CloudHeader>&) override
+  {
+    requireExtension(filename.path, extensions);
+    return io::readCloudHeader(filename.path);
+  }
+
+  StageCloudPtr run(StageClouds&&) override
+  {
+    auto cloud = std::make_shared<StageCloud>();
+    cloud->cloud = io::readCloud(filename.path, &cloud->viewpoint);
+    return cloud;
+  }
+};
+
+struct FileWriter : Stage {
+  OutputFile filename;
+  std::vector<std::string> extensions;
+
+  CloudHeader plan(const std::vector<CloudHeader>& inputs) override
+  {
+    requireExtension(filename.path, extensions);
+    io::requireWritableCloud(filename.path, written(inputs[0]));
+    return inputs[0];
+  }
+
+  StageCloudPtr run(StageClouds&& inputs) override
+  {
+    write(*inputs[0]);
+    return inputs[0];
+  }
+
+protected:
+  virtual CloudHeader written(const CloudHeader& cloud) const { return cloud; }
+  virtual void write(const StageCloud& cloud) { io::writeCloud(filename.path, cloud.cloud, cloud.viewpoint); }
+};
+
+/// OBJ has room for x y z alone.
+struct ObjWriter : FileWriter {
+protected:
+  CloudHeader written(const CloudHeader& cloud) const override
+  {
+    CloudHeader vertices = cloud;
+    const auto is_lost = [](const pcl::PCLPointField& field) {
+      return field.name != "x" && field.name != "y" && field.name != "z";
+    };
+    vertices.fields.erase(std::remove_if(vertices.fields.begin(), vertices.fields.end(), is_lost),
+                          vertices.fields.end());
+    return vertices;
+  }
+
+  void write(const StageCloud& cloud) override
+  {
+    std::string lost;
+    for (const pcl::PCLPointField& field : cloud.cloud.fields) {
+      if (field.name != "x" && field.name != "y" && field.name != "z" && field.name != "_") lost += " " + field.name;
+    }
+    if (!lost.empty()) warn("an .obj has no place for the fields" + lost + ": they are left out");
+    io::writeCloud(filename.path, written(cloud.cloud));
+  }
+};
+
+template <typename S>
+StageType ofFiles(const std::string& name, const std::vector<std::string>& extensions, const std::string& doc,
+                  const std::string& option_doc)
+{
+  StageType type =
+      describe<S>(name, doc).extensions(extensions).option(&S::filename, "filename", option_doc).required();
+  type.make = [extensions] {
+    auto stage = std::make_unique<S>();
+    stage->extensions = extensions;
+    return stage;
+  };
+  return type;
+}
+
+StageType reader(const std::string& name, const std::vector<std::string>& extensions, const std::string& doc)
+{
+  return ofFiles<FileReader>(name, extensions, doc, "the file to read");
+}
+
+constexpr auto to_write = "the file to write; it appears complete or not at all";
+
+} // namespace
+
+StageType pcdReader()
+{
+  return reader("readers.pcd", {".pcd"}, "PCL's own format, every field in its type, with the sensor's viewpoint.");
+}
+
+StageType plyReader()
+{
+  return reader("readers.ply", {".ply"}, "The vertices of a PLY file, every property in its type.");
+}
+
+StageType objReader()
+{
+  return reader("readers.obj", {".obj"}, "The vertices of a Wavefront OBJ file, as float64.");
+}
+
+StageType offReader()
+{
+  return reader("readers.off", {".off"}, "The vertices of an OFF file, as float64.");
+}
+
+StageType textReader()
+{
+  return reader("readers.text", {".txt", ".xyz"},
+                "A point per line, as float64: x y z and more columns, named by the first line or column_4, ...");
+}
+
+StageType pcdWriter()
+{
+  return ofFiles<FileWriter>("writers.pcd", {".pcd"}, "PCL's own format, with every field and the viewpoint.",
+                             to_write);
+}
+
+StageType plyWriter()
+{
+  return ofFiles<FileWriter>("writers.ply", {".ply"}, "Binary PLY, with every field but 64-bit integers.", to_write);
+}
+
+StageType objWriter()
+{
+  return ofFiles<ObjWriter>("writers.obj", {".obj"}, "Wavefront OBJ: vertices only; a warning names lost fields.",
+                            to_write);
+}
+
+StageType textWriter()
+{
+  return ofFiles<FileWriter>("writers.text", {".txt", ".xyz"}, "A line that names the fields, then a point per line.",
+                             to_write);
+}
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The points of a cloud as PCL's typed classes want them.
+#pragma once
+
+#include <pcl_bsh/geometry/point3.h>
+#include <pcl_bsh/hierarchy/points_view.h>
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::pipeline {
+
+/// The finite points, as float32 relative to an origin. PCL's search aborts the program on points that are not finite.
+struct FloatCloud {
+  pcl::PointCloud<pcl::PointXYZ>::Ptr points; ///< one row: so searches are by k-d tree, right for any sensor
+  std::vector<std::uint32_t> records;         ///< of the cloud that each of them was
+  Point3 origin = {0, 0, 0};                  ///< of float32 clouds 0, of float64 ones the middle of the points
+  double moved = 0;                           ///< the most that rounding to float32 changed a coordinate
+};
+
+FloatCloud floatCloud(const PointsView& points);
+
+/// What to tell the user when distances are compared with `length`: nothing when rounding does not matter.
+/// @throws std::invalid_argument when rounding moved points by more than a hundredth of the length: results would be
+///   wrong
+std::string roundingWarning(const FloatCloud& cloud, double length);
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/io/field_type.h>
+#include <pcl_bsh/filters/io/records.h>
+#include <pcl_bsh/filters/pipeline/stages/built_in.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& like)
+{
+  for (const pcl::PCLPointField& field : cloud.fields) {
+    if (field.name == like.name && field.datatype == like.datatype && io::sizeOf(field) == io::sizeOf(like)) {
+      return &field;
+    }
+  }
+  return nullptr;
+}
+
+/// The points of all inputs in one row, with the first one's layout, frame and viewpoint.
+struct Merge : Stage {
+  CloudHeader plan(const std::vector<CloudHeader>& inputs) override
+  {
+    for (std::size_t i = 1; i < inputs.size(); ++i) {
+      requireFields(inputs[0], inputs[i], i);
+      if (inputs[i].fields.size() != inputs[0].fields.size()) requireFields(inputs[i], inputs[0], 0);
+    }
+    return inputs[0];
+  }
+
+  StageCloudPtr run(StageClouds&& inputs) override
+  {
+    std::uint64_t points = 0;
+    for (const StageCloudPtr& input : inputs) points += std::uint64_t{input->cloud.width} * input->cloud.height;
+    io::requirePoints(points);
+    const auto output = emptyLike(*inputs[0]);
+    pcl::PCLPointCloud2& merged = output->cloud;
+    io::allocate(merged, static_cast<std::uint32_t>(points));
+    std::uint8_t* next = merged.data.data();
+    for (StageCloudPtr& input : inputs) {
+      next = append(input->cloud, merged, next);
+      if (input->cloud.is_dense == 0) merged.is_dense = 0;
+      input.reset();
+    }
+    return output;
+  }
+
+private:
+  static void requireFields(const CloudHeader& needed, const CloudHeader& cloud, std::size_t input)
+  {
+    for (const pcl::PCLPointField& field : needed.fields) {
+      if (findField(cloud, field) != nullptr) continue;
+      throw OptionError("inputs/" + std::to_string(input),
+                        "has no field '" + field.name + "' of the type that another has: give clouds alike");
+    }
+  }
+
+  static std::uint8_t* append(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointCloud2& merged, std::uint8_t* next)
+  {
+    const std::size_t points = std::size_t{cloud.width} * cloud.height;
+    std::vector<std::size_t> from;
+    for (const pcl::PCLPointField& field : merged.fields) from.push_back(findField(cloud, field)->offset);
+    for (std::size_t i = 0; i < points; ++i, next += merged.point_step) {
+      for (std::size_t k = 0; k < merged.fields.size(); ++k) {
+        const pcl::PCLPointField& field = merged.fields[k];
+        std::memcpy(next + field.offset, &cloud.data[i * cloud.point_step + from[k]], io::sizeOf(field));
+      }
+    }
+    return next;
+  }
+};
+
+} // namespace
+
+StageType merge()
+{
+  return describe<Merge>("filters.merge", "All points of several clouds with the same fields, as one row.")
+      .alias("pcl::concatenate")
+      .inputs(1, std::numeric_limits<std::size_t>::max());
+}
+
+} // namespace pcl_bsh::pipeline

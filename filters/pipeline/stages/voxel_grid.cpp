@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/filters/pipeline/stages/cell_grid.h>
+#include <pcl_bsh/filters/pipeline/stages/record_mean.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+struct VoxelGrid : Stage {
+  Size3 leaf_size;
+  bool downsample_all_data = true;
+  unsigned minimum_points_number_per_voxel = 0;
+
+  StageCloudPtr run(StageClouds&& inputs) override
+  {
+    const StageCloud& input = *inputs[0];
+    const std::vector<CellEntry> entries = sorted(viewOf(input.cloud));
+    RecordMeans output(input, downsample_all_data);
+    output.reserve(countCells(entries));
+    forEachCell(entries, [&](const std::vector<std::uint32_t>& records) {
+      if (records.size() >= minimum_points_number_per_voxel) output.add(records);
+    });
+    return output.finished();
+  }
+
+private:
+  std::vector<CellEntry> sorted(const PointsView& points) const
+  {
+    try {
+      return sortIntoCells(points, CellGrid(points, leaf_size.xyz));
+    }
+    catch (const std::invalid_argument& error) {
+      throw OptionError("leaf_size", error.what());
+    }
+  }
+};
+
+} // namespace
+
+StageType voxelGrid()
+{
+  return describe<VoxelGrid>(
+             "filters.voxel_grid",
+             "Replaces the points in each cube of a grid by their mean. Cells have 64-bit numbers, so that none are "
+             "confused in large scenes; float64 coordinates keep their digits.")
+      .alias("pcl::VoxelGrid")
+      .option(&VoxelGrid::leaf_size, "leaf_size", "edge of the cubes")
+      .unit("m")
+      .above(0)
+      .required()
+      .option(&VoxelGrid::downsample_all_data, "downsample_all_data",
+              "true: all fields are averaged (integers: the most frequent value); false: only x y z, the other fields "
+              "are one point's")
+      .option(&VoxelGrid::minimum_points_number_per_voxel, "minimum_points_number_per_voxel",
+              "cubes with fewer points give none");
+}
+
+} // namespace pcl_bsh::pipeline

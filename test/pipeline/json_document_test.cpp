@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/pipeline/json_document.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pcl_bsh::pipeline {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+auto refusedWith(const std::string& text)
+{
+  return ThrowsMessage<JsonError>(HasSubstr(text));
+}
+
+TEST(JsonDocument, CommentsAreIgnored)
+{
+  EXPECT_EQ(parseJson("// one\n[1, /* two */ 2]").dump(), "[1,2]");
+}
+
+TEST(JsonDocument, RefusesWhatIsNoJson)
+{
+  EXPECT_THAT([] { parseJson("{\"a\": 1,\n \"b\" 2}"); }, refusedWith("is no JSON: line 2, column 6: "));
+  EXPECT_THAT([] { parseJson(""); }, refusedWith("is no JSON: "));
+  EXPECT_THAT([] { parseJson("[1] []"); }, refusedWith("is no JSON: "));
+  EXPECT_THAT([] { parseJson("[1e999]"); }, refusedWith("is no JSON: "));
+  EXPECT_THAT([] { parseJson("[\"\xff\"]"); }, refusedWith("is no JSON: "));
+}
+
+TEST(JsonDocument, RefusesAKeySaidTwice)
+{
+  EXPECT_THAT([] { parseJson(R"({"a": 1, "a": 2})"); }, refusedWith("says the key \"a\" twice in one object"));
+  EXPECT_EQ(parseJson(R"([{"a": 1}, {"a": {"a": 2}}])").size(), 2U);
+}
+
+TEST(JsonDocument, RefusesEndlessNesting)
+{
+  EXPECT_THAT([] { parseJson(std::string(1000000, '[')); }, refusedWith("nests deeper than 100 levels"));
+  EXPECT_EQ(parseJson(std::string(100, '[') + std::string(100, ']')).size(), 1U);
+}
+
+TEST(JsonDocument, ShowsValuesOnOneShortLine)
+{
+  EXPECT_EQ(shown(Json("a\nb")), "\"a\\nb\"");
+  EXPECT_EQ(shown(Json("\xff")).find('\xff'), std::string::npos);
+  EXPECT_LT(shown(Json(std::string(1000, 'a'))).size(), 70U);
+}
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The table of stages, and what is written from it.
+#include <pcl_bsh/filters/pipeline/stage_type.h>
+
+#include "../io/samples.h"
+#include "run_stage.h"
+
+#include <set>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+struct Own : Stage {
+  int step = 2;
+  StageCloudPtr run(StageClouds&& inputs) override { return inputs[0]; }
+};
+
+auto refusedWith(const std::string& text)
+{
+  return ThrowsMessage<std::invalid_argument>(HasSubstr(text));
+}
+
+TEST(StageType, NamesAreUniqueAndDocumented)
+{
+  std::set<std::string> names;
+  for (const StageType& type : stageTypes()) {
+    EXPECT_TRUE(names.insert(type.name).second) << type.name;
+    for (const std::string& alias : type.aliases) EXPECT_TRUE(names.insert(alias).second) << alias;
+    if (type.name.find("test") != std::string::npos) continue;
+    EXPECT_EQ(type.doc.back(), '.') << type.name;
+    for (const Option& option : type.options) EXPECT_FALSE(option.doc.empty()) << type.name << ' ' << option.name;
+  }
+}
+
+TEST(StageType, RefusesNamesThatAreTaken)
+{
+  const auto registering = [](const std::string& name) { return [name] { registerStage(describe<Own>(name, "")); }; };
+  EXPECT_THAT(registering("filters.voxel_grid"), refusedWith("'filters.voxel_grid' is taken"));
+  EXPECT_THAT(registering("own"), refusedWith("begin its name with readers., filters. or writers."));
+  EXPECT_THAT(registering("filters."), refusedWith("begin its name with"));
+  EXPECT_THAT([] { registerStage(describe<Own>("filters.own", "").alias("pcl::VoxelGrid")); },
+              refusedWith("'pcl::VoxelGrid' is taken"));
+  EXPECT_THAT([] { registerStage(describe<Own>("filters.own", "").option(&Own::step, "tag", "")); },
+              refusedWith("option 'tag' is taken"));
+  EXPECT_EQ(findStageType("filters.own"), nullptr);
+}
+
+/// What the repository holds must be what the table says; the tests' own stages are in the table, too, but come last.
+std::string committed(const std::string& file)
+{
+  return io::contentOf(std::string(PCL_BSH_SOURCE_DIR) + "/" + file);
+}
+
+TEST(StageType, DocumentationIsCurrent)
+{
+  std::string lines = committed("filters/pipeline/STAGES.md");
+  ASSERT_FALSE(lines.empty());
+  const std::string written = stageDocumentation();
+  // Section by section, since the tests have filters of their own.
+  for (std::size_t begin = 0; begin < lines.size();) {
+    const std::size_t end = std::min(lines.find("\n#", begin + 1), lines.size());
+    EXPECT_NE(written.find(lines.substr(begin, end - begin)), std::string::npos)
+        << "run pcl_bsh_pipeline --print-stages > filters/pipeline/STAGES.md: " << lines.substr(begin, end - begin);
+    begin = end;
+  }
+  for (const StageType& type : stageTypes()) {
+    const bool of_tests = type.name.find("test") != std::string::npos;
+    EXPECT_TRUE(of_tests || lines.find("### " + type.name + "\n") != std::string::npos) << type.name;
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh::pipeline

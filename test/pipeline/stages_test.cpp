@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where stages go beyond PCL's classes: float64, large scenes, every field, clouds that are empty or not finite.
+#include "../filters/clouds.h"
+#include "../io/samples.h"
+#include "run_stage.h"
+
+#include <pcl_bsh/filters/io/cloud_file.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <pcl/point_types.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+using test::Points;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+template <typename Coordinate>
+StageCloudPtr cloudOf(const Points& points)
+{
+  auto cloud = std::make_shared<StageCloud>();
+  cloud->cloud = *test::fieldCloud<Coordinate>(points);
+  cloud->viewpoint = {1, 2, 3, 1, 0, 0, 0};
+  return cloud;
+}
+
+Points pointsOf(const StageCloudPtr& cloud)
+{
+  const PointsView view = viewOf(cloud->cloud);
+  Points points;
+  for (std::uint32_t i = 0; i < view.count; ++i) {
+    const Point3 p = view.point(i);
+    points.emplace_back(p[0], p[1], p[2]);
+  }
+  return points;
+}
+
+/// Points about a corner of a UTM zone, to the tenth of a millimetre.
+Points utmPoints(std::size_t count)
+{
+  Points points = test::randomPoints(count, 3);
+  for (Eigen::Vector3d& p : points) p = p * 10 + Eigen::Vector3d(500000.1234, 5400000.5678, 100.25);
+  return points;
+}
+
+/// All stages that take one input and need no second, with options that suit points in a cube of edge 1.
+const std::map<std::string, std::string> filters = {
+    {"filters.voxel_grid", R"("leaf_size": 0.1)"},
+    {"filters.approximate_voxel_grid", R"("leaf_size": 0.1)"},
+    {"filters.uniform_sampling", R"("radius_search": 0.1)"},
+    {"filters.pass_through", R"("filter_field_name": "z", "filter_limits": [-0.2, 0.2])"},
+    {"filters.crop_box", R"("min": [-0.3, -0.3, -0.3], "max": [0.3, 0.3, 0.3])"},
+    {"filters.statistical_outlier_removal", R"("mean_k": 4, "stddev_mul_thresh": 1)"},
+    {"filters.radius_outlier_removal", R"("radius_search": 0.1, "min_neighbors_in_radius": 2)"},
+    {"filters.transform", R"("transform": [1, 2, 3, 0, 0, 0.5])"},
+    {"filters.normal_estimation", R"("k_search": 8)"},
+    {"filters.euclidean_cluster", R"("cluster_tolerance": 0.1)"},
+    {"filters.merge", R"("tag": "all")"},
+    {"filters.bsh_collision", R"("obstacle": "in", "clearance": 0, "keep": "colliding")"},
+    {"filters.bsh_flag", R"("obstacle": "in", "clearance": 0)"}};
+
+std::string stageOf(const std::string& type)
+{
+  return R"({"type": ")" + type + R"(", )" + filters.at(type) + "}";
+}
+
+TEST(Stages, KeepEveryFieldTheFrameAndTheViewpoint)
+{
+  for (const auto& [type, options] : filters) {
+    const StageCloudPtr in = cloudOf<float>(test::randomPoints(500, 1));
+    const StageCloudPtr out = outputOf(in, stageOf(type));
+    EXPECT_GT(out->cloud.width, 0U) << type;
+    ASSERT_GE(out->cloud.fields.size(), in->cloud.fields.size()) << type;
+    for (std::size_t i = 0; i < in->cloud.fields.size(); ++i) {
+      EXPECT_EQ(out->cloud.fields[i].name, in->cloud.fields[i].name) << type;
+      EXPECT_EQ(out->cloud.fields[i].datatype, in->cloud.fields[i].datatype) << type;
+    }
+    EXPECT_EQ(out->cloud.data.size(), std::size_t{out->cloud.width} * out->cloud.height * out->cloud.point_step)
+        << type;
+    EXPECT_EQ(out->cloud.row_step, out->cloud.width * out->cloud.point_step) << type;
+    EXPECT_EQ(out->cloud.header.frame_id, "scanner") << type;
+    EXPECT_EQ(out->viewpoint == in->viewpoint, type != "filters.transform") << type;
+  }
+}
+
+TEST(Stages, TakeEmptyClouds)
+{
+  for (const auto& [type, options] : filters) {
+    const StageCloudPtr out = outputOf(cloudOf<float>({}), stageOf(type));
+    EXPECT_EQ(out->cloud.width * out->cloud.height, 0U) << type;
+    EXPECT_THAT(out->cloud.data, IsEmpty()) << type;
+    EXPECT_NO_THROW(viewOf(out->cloud)) << type;
+  }
+}
+
+TEST(Stages, TakePointsThatAreNotFinite)
+{
+  Points points = test::randomPoints(300, 2);
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    points[points.size() / 3].x() = bad;
+    points.back().z() = -bad;
+    points.push_back(points[0]);
+  }
+  std::size_t finite = 0;
+  for (const Eigen::Vector3d& p : points) finite += p.allFinite() ? 1 : 0;
+  for (const auto& [type, options] : filters) {
+    const StageCloudPtr out = outputOf(cloudOf<float>(points), stageOf(type));
+    const bool keeps_all = type == "filters.transform" || type == "filters.normal_estimation" ||
+                           type == "filters.euclidean_cluster" || type == "filters.merge" || type == "filters.bsh_flag";
+    if (keeps_all) {
+      EXPECT_EQ(out->cloud.width, points.size()) << type;
+      continue;
+    }
+    EXPECT_LE(out->cloud.width, finite) << type;
+    for (const Eigen::Vector3d& p : pointsOf(out)) EXPECT_TRUE(p.allFinite()) << type;
+  }
+  const StageCloudPtr clusters = outputOf(cloudOf<float>(points), stageOf("filters.euclidean_cluster"));
+  std::int32_t number;
+  std::memcpy(&number, &clusters->cloud.data[(points.size() / 3 + 1) * 0 + clusters->cloud.point_step - 4], 4);
+  EXPECT_GE(number, 0);
+}
+
+TEST(Stages, KeepFloat64AsItIs)
+{
+  const Points points = utmPoints(400);
+  const StageCloudPtr in = cloudOf<double>(points);
+  const std::string near_origin = R"("translation": [500000.1234, 5400000.5678, 100.25])";
+  for (const std::string& stage :
+       {std::string(R"({"type": "filters.crop_box", "min": [-3, -3, -9], "max": [3, 3, 9], )") + near_origin + "}",
+        std::string(
+            R"({"type": "filters.pass_through", "filter_field_name": "y", "filter_limits": [5400000.5678, null]})"),
+        std::string(R"({"type": "filters.statistical_outlier_removal", "mean_k": 4, "stddev_mul_thresh": 1})"),
+        std::string(R"({"type": "filters.radius_outlier_removal", "radius_search": 1, "min_neighbors_in_radius": 2})"),
+        std::string(R"({"type": "filters.uniform_sampling", "radius_search": 1})"),
+        std::string(R"({"type": "filters.bsh_collision", "obstacle": "in", "clearance": 0, "keep": "colliding"})")}) {
+    const PipelineResult result = runStage(in, stage);
+    const StageCloudPtr out = result.clouds.begin()->second;
+    EXPECT_GT(out->cloud.width, 0U) << stage;
+    EXPECT_THAT(result.warnings, IsEmpty()) << stage;
+    for (const std::size_t i : {std::size_t{0}, std::size_t{out->cloud.width - 1U}}) {
+      std::uint16_t label;
+      std::memcpy(&label, test::record(out->cloud, i).data(), sizeof label);
+      EXPECT_EQ(test::record(out->cloud, i), test::record(in->cloud, label)) << stage;
+    }
+  }
+}
+
+TEST(Stages, CropBoxAndPassThroughCutFloat64Exactly)
+{
+  // 1/8 mm steps about the limit, which float32 could not tell apart at all.
+  Points points;
+  for (int i = -4; i <= 4; ++i) points.emplace_back(5400000.0 + i * 0.000125, 0, 0);
+  EXPECT_THAT(pointsOf(outputOf(cloudOf<double>(points), R"({"type": "filters.crop_box", "min": [5400000, -1, -1],
+                                                            "max": [5400000.00025, 1, 1]})")),
+              ElementsAre(points[4], points[5], points[6]));
+  EXPECT_THAT(pointsOf(outputOf(cloudOf<double>(points), R"({"type": "filters.pass_through", "filter_field_name": "x",
+                                                            "filter_limits": [null, 5399999.999625]})")),
+              ElementsAre(points[0], points[1]));
+}
+
+TEST(Stages, VoxelGridKeepsTheDigitsOfFloat64)
+{
+  const Points points = {{500000.0001, 5400000.0001, 100}, {500000.0003, 5400000.0005, 100.5}};
+  const Points mean = pointsOf(outputOf(cloudOf<double>(points), R"({"type": "filters.voxel_grid", "leaf_size": 1})"));
+  ASSERT_EQ(mean.size(), 1U);
+  EXPECT_NEAR(mean[0].x(), 500000.0002, 1e-9);
+  EXPECT_NEAR(mean[0].y(), 5400000.0003, 1e-8);
+}
+
+TEST(Stages, VoxelGridIsRightWherePclOverflows)
+{
+  // PCL numbers cells with 32 bits, and returns these three points as they are, or worse.
+  const Points points = {{0, 0, 0}, {1000, 1000, 1000}, {0.5, 0, 0}, {0.502, 0.001, 0}};
+  for (const std::string type : {"filters.voxel_grid", "filters.approximate_voxel_grid"}) {
+    const Points out = pointsOf(outputOf(cloudOf<float>(points), R"({"type": ")" + type + R"(", "leaf_size": 0.01})"));
+    ASSERT_EQ(out.size(), 3U) << type;
+    std::size_t merged = 0;
+    for (const Eigen::Vector3d& p : out) merged += std::abs(p.x() - 0.501) < 1e-6 ? 1 : 0;
+    EXPECT_EQ(merged, 1U) << type;
+  }
+  EXPECT_EQ(
+      outputOf(cloudOf<float>(points), R"({"type": "filters.uniform_sampling", "radius_search": 0.01})")->cloud.width,
+      3U);
+}
+
+TEST(Stages, VoxelGridCountsBeyondFloat)
+{
+  // 2^25 cells from the origin, where float counts by twos.
+  const Points points = {{33554432.25, 0, 0}, {33554433.25, 0, 0}, {33554434.25, 0, 0}, {33554434.5, 0, 0}};
+  EXPECT_EQ(outputOf(cloudOf<double>(points), R"({"type": "filters.voxel_grid", "leaf_size": 1})")->cloud.width, 3U);
+}
+
+TEST(Stages, VoxelGridRefusesCellsBeyondCounting)
+{
+  const auto error = [](const Points& points, const std::string& size) {
+    return errorOf(
+        [&] { outputOf(cloudOf<double>(points), R"({"type": "filters.voxel_grid", "leaf_size": )" + size + "}"); });
+  };
+  EXPECT_THAT(error({{0, 0, 0}, {1e9, 1e9, 1e9}}, "0.001"),
+              EndsWith("/1/leaf_size: a grid of 1000000000001 x 1000000000001 x 1000000000001 cells is too large to be "
+                       "numbered: give larger cells"));
+  EXPECT_THAT(error({{0, 0, 0}, {1e300, 0, 0}}, "0.001"),
+              HasSubstr("/1/leaf_size: cells of this size cannot be counted"));
+}
+
+TEST(Stages, NeighbourSearchSaysWhatFloatLoses)
+{
+  const auto wide = [](double size) {
+    Points points = test::randomPoints(200, 4);
+    for (Eigen::Vector3d& p : points) p *= 100;
+    points[0].x() = size;
+    points[0].y() += 1e-7;
+    return cloudOf<double>(points);
+  };
+  const std::string stage =
+      R"({"type": "filters.radius_outlier_removal", "radius_search": 20, "min_neighbors_in_radius": 2})";
+  EXPECT_THAT(runStage(wide(100), stage).warnings, IsEmpty());
+  EXPECT_THAT(
+      runStage(wide(5e5), stage).warnings,
+      ElementsAre(HasSubstr("float32, in which neighbours are searched, moves points of this float64 cloud by up to")));
+  EXPECT_THAT(errorOf([&] { runStage(wide(5e7), stage); }), EndsWith(": crop the cloud first"));
+  EXPECT_THAT(errorOf([&] { runStage(wide(1e200), stage); }), HasSubstr("too large for float32"));
+}
+
+TEST(Stages, TransformWarnsWhereFloatIsCoarse)
+{
+  const StageCloudPtr local = cloudOf<float>(test::randomPoints(50, 5));
+  const std::string far = R"({"type": "filters.transform", "transform": [500000, 5400000, 0, 0, 0, 0]})";
+  EXPECT_THAT(runStage(local, far).warnings, ElementsAre(HasSubstr("rounding moved points by up to 0.2")));
+  EXPECT_THAT(runStage(cloudOf<double>(test::randomPoints(50, 5)), far).warnings, IsEmpty());
+  EXPECT_THAT(runStage(local, R"({"type": "filters.transform", "transform": [1, 2, 3, 0, 0, 1]})").warnings, IsEmpty());
+  EXPECT_THAT(errorOf([&] { runStage(local, R"({"type": "filters.transform", "transform": [1e39, 0, 0, 0, 0, 0]})"); }),
+              HasSubstr("/1/transform: moves a point beyond all numbers"));
+  EXPECT_THAT(
+      errorOf([&] { runStage(local, R"({"type": "filters.transform", "transform": [1,0,0,0, 0,1,0,0, 0,0,0,0]})"); }),
+      HasSubstr("/1/transform: flattens space"));
+}
+
+TEST(Stages, TransformMovesTheViewpoint)
+{
+  const StageCloudPtr out =
+      outputOf(cloudOf<float>(test::randomPoints(5, 5)),
+               R"({"type": "filters.transform", "transform": [10, 0, 0, 0, 0, 1.5707963267948966]})");
+  EXPECT_NEAR(out->viewpoint[0], 8, 1e-6);
+  EXPECT_NEAR(out->viewpoint[1], 1, 1e-6);
+  EXPECT_NEAR(out->viewpoint[2], 3, 1e-6);
+  EXPECT_NEAR(out->viewpoint[6], std::sqrt(0.5), 1e-6);
+}
+
+TEST(Stages, NormalsPointToWhereTheSensorStood)
+{
+  Points plane;
+  for (int i = 0; i < 100; ++i) plane.emplace_back(i % 10, i / 10, 0);
+  auto cloud = std::make_shared<StageCloud>();
+  cloud->cloud = *test::fieldCloud<float>(plane);
+  for (const float side : {5.0F, -5.0F}) {
+    cloud->viewpoint = {5, 5, side, 1, 0, 0, 0};
+    const StageCloudPtr out = outputOf(cloud, R"({"type": "filters.normal_estimation", "k_search": 9})");
+    EXPECT_NEAR(io::valueOf(out->cloud, 50, "normal_z"), side > 0 ? 1 : -1, 1e-6);
+  }
+}
+
+TEST(Stages, PassThroughReadsAnyTypeOfField)
+{
+  const StageCloudPtr in = cloudOf<float>(test::randomPoints(100, 6));
+  const auto count = [&](const std::string& limits) {
+    return outputOf(in, R"({"type": "filters.pass_through", "filter_field_name": "label", "filter_limits": )" + limits +
+                            "}")
+        ->cloud.width;
+  };
+  EXPECT_EQ(count("[10, 19]"), 10U);
+  EXPECT_EQ(count("[null, 4.5]"), 5U);
+  EXPECT_EQ(count("[null, null]"), 100U);
+}
+
+TEST(Stages, OptionsThatContradictEachOther)
+{
+  const StageCloudPtr in = cloudOf<float>(test::randomPoints(10, 6));
+  const auto error = [&](const std::string& stage) { return errorOf([&] { runStage(in, stage); }); };
+  EXPECT_THAT(error(R"({"type": "filters.pass_through", "filter_limits": [2, 1]})"),
+              EndsWith("/1/filter_limits: has a least above its most: exchange them"));
+  EXPECT_THAT(
+      error(R"({"type": "filters.pass_through", "filter_field_name": "intensty"})"),
+      EndsWith("/1/filter_field_name: is 'intensty', which is no field with one value: did you mean 'intensity'?"));
+  EXPECT_THAT(error(R"({"type": "filters.crop_box", "min": [0, 0, 0], "max": [1, -1, 1]})"),
+              EndsWith("/1/min: lies above `max`: exchange them"));
+  EXPECT_THAT(error(R"({"type": "filters.normal_estimation"})"),
+              EndsWith("/1/k_search: and `radius_search` are neither given: give one of them"));
+  EXPECT_THAT(error(R"({"type": "filters.normal_estimation", "k_search": 5, "radius_search": 1})"),
+              EndsWith("/1/k_search: and `radius_search` are both given: give one of them"));
+  EXPECT_THAT(error(R"({"type": "filters.euclidean_cluster", "cluster_tolerance": 1, "min_cluster_size": 5,
+                        "max_cluster_size": 4})"),
+              EndsWith("/1/min_cluster_size: exceeds `max_cluster_size`: exchange them"));
+  EXPECT_THAT(error(R"({"type": "filters.statistical_outlier_removal", "mean_k": 10})"),
+              EndsWith("/1/mean_k: is 10, but there are only 10 finite points: give less"));
+  EXPECT_THAT(error(R"({"type": "filters.bsh_flag", "obstacle": "in", "pose": [1,0,0,0, 0,2,0,0, 0,0,1,0]})"),
+              HasSubstr("/1/pose: "));
+}
+
+TEST(Stages, MergeRefusesCloudsThatDiffer)
+{
+  const StageCloudPtr with = cloudOf<float>(test::randomPoints(3, 6));
+  auto without = std::make_shared<StageCloud>(*with);
+  without->cloud.fields.pop_back();
+  const std::string stage = R"({"type": "filters.merge", "inputs": ["in", "other"]})";
+  EXPECT_THAT(errorOf([&] { runStage(with, stage, without); }),
+              EndsWith("/inputs/1: has no field 'intensity' of the type that another has: give clouds alike"));
+  EXPECT_THAT(errorOf([&] { runStage(without, stage, with); }), HasSubstr("/inputs/0: has no field 'intensity'"));
+  EXPECT_THAT(errorOf([&] { runStage(with, stage, cloudOf<double>(test::randomPoints(3, 6))); }),
+              HasSubstr("/inputs/1: has no field 'x'"));
+}
+
+TEST(Stages, FilesOfEachFormat)
+{
+  const io::TemporaryFolder folder;
+  pcl::PCLPointCloud2 cloud = io::randomCloud<float>(6, 1, {});
+  cloud.fields.pop_back(); // text holds no field with a count
+  for (std::size_t i = 0; i < 6; ++i) {
+    const float rgb = static_cast<float>(i);
+    std::memcpy(&cloud.data[i * cloud.point_step + 12], &rgb, 4);
+  }
+  for (const std::string extension : {".pcd", ".ply", ".txt", ".xyz", ".obj"}) {
+    const std::string first = (folder / ("a" + extension)).string();
+    const std::string second = (folder / ("b" + extension)).string();
+    auto in = std::make_shared<StageCloud>();
+    in->cloud = cloud;
+    const PipelineResult result = runStage(in, "{\"filename\": \"" + first + "\"}");
+    EXPECT_EQ(result.warnings.size(), extension == ".obj" ? 1U : 0U);
+    Pipeline::parse("[\"" + first + "\", \"" + second + "\"]").run();
+    EXPECT_EQ(io::contentOf(second), io::contentOf(first)) << extension;
+    EXPECT_EQ(io::readCloud(second).width, 6U);
+  }
+}
+
+TEST(Stages, ValidationReadsHeadersButNoPoints)
+{
+  const io::TemporaryFolder folder;
+  const std::string good = "FIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nPOINTS 1\nDATA ascii\n";
+  const std::string file = folder.write("in.pcd", good + "these are no points\n").string();
+  const auto pipeline = [&](const std::string& in, const std::string& stage, const std::string& out) {
+    return Pipeline::parse("[\"" + in + "\", " + stage + ", \"" + (folder / out).string() + "\"]");
+  };
+  const std::string by_intensity = R"({"type": "filters.pass_through", "filter_field_name": "intensity"})";
+  EXPECT_NO_THROW(pipeline(file, by_intensity, "out.pcd").validate());
+  EXPECT_EQ(folder.files(), 1U) << "and writes nothing";
+  EXPECT_THAT(errorOf([&] { pipeline(file, by_intensity, "out.pcd").run(); }), HasSubstr("in.pcd: line 6 is damaged"));
+  EXPECT_THAT(errorOf([&] { pipeline("none.pcd", by_intensity, "out.pcd").validate(); }),
+              EndsWith("readers_pcd1: /0: none.pcd: no such file: check the name"));
+  EXPECT_THAT(errorOf([&] { pipeline(file, by_intensity, "none/out.pcd").validate(); }),
+              HasSubstr("there is no folder"));
+  EXPECT_THAT(
+      errorOf([&] { pipeline(file, R"({"type": "filters.bsh_flag", "obstacle": "none.ply"})", "out.pcd").validate(); }),
+      EndsWith("readers_ply1: /1/obstacle: none.ply: no such file: check the name"));
+  // A stage's own field is known to those after it.
+  EXPECT_NO_THROW(pipeline(file, R"({"type": "filters.euclidean_cluster", "cluster_tolerance": 1},
+                                    {"type": "filters.pass_through", "filter_field_name": "cluster"})",
+                           "out.pcd")
+                      .validate());
+  const std::string wide =
+      folder.write("wide.pcd", "FIELDS x y z id\nSIZE 4 4 4 8\nTYPE F F F U\nPOINTS 0\nDATA ascii\n");
+  EXPECT_THAT(errorOf([&] { pipeline(wide, by_intensity, "out.ply").validate(); }), HasSubstr("did you mean"));
+  EXPECT_THAT(errorOf([&] { pipeline(wide, R"({"type": "filters.merge"})", "out.ply").validate(); }),
+              HasSubstr("field 'id' has a type that PLY does not know"));
+  EXPECT_THAT(errorOf([&] { Pipeline::parse(R"([{"type": "readers.ply", "filename": ")" + file + "\"}]").validate(); }),
+              HasSubstr("/0/filename: is \"" + file + "\": give a .ply file, or leave out the type"));
+}
+
+TEST(Stages, FilesThatWouldRace)
+{
+  const io::TemporaryFolder folder;
+  const std::string a = folder.write("a.xyz", "1 2 3\n").string();
+  const std::string out = (folder / "out.pcd").string();
+  EXPECT_THAT(errorOf([&] {
+                Pipeline::parse("[\"" + a + "\", {\"type\": \"writers.pcd\", \"filename\": \"" + out + "\"}, \"" + out +
+                                "\"]")
+                    .validate();
+              }),
+              EndsWith("/2/filename: is what writers_pcd1 writes, too: choose another name"));
+  EXPECT_THAT(errorOf([&] {
+                Pipeline::parse(R"([{"filename": ")" + a + R"(", "tag": "a"}, {"filename": ")" + a + R"(", "tag": "b"},
+                                   {"type": "filters.merge", "inputs": ["a", "b"], "tag": "both"},
+                                   {"type": "writers.text", "inputs": "a", "filename": ")" +
+                                a + R"("}, {"type": "filters.merge", "inputs": "both"}])")
+                    .validate();
+              }),
+              EndsWith("/3/filename: is what b reads, maybe later: choose another name"));
+  Pipeline::parse("[\"" + a + "\", \"" + a + "\"]").run(); // in place
+  EXPECT_EQ(io::contentOf(a), "x y z\n1 2 3\n");
+}
+
+} // namespace
+} // namespace pcl_bsh::pipeline
