@@ -44,6 +44,14 @@ struct HierarchyDefects {
   bool none() const noexcept { return lines.empty(); }
 };
 
+/// What a refit did.
+struct RefitReport {
+  bool sorted_anew = false; ///< everything was made anew: points had scattered, or some came or went
+  std::size_t voxels_refitted = 0;
+  std::size_t voxels_dropped = 0; ///< built ones that had grown loose: their next visit builds them anew
+  double looseness = 1.0;         ///< mean growth of the voxels since points were sorted into them
+};
+
 /// The hierarchy of one cloud, in the cloud's own frame; poses belong to queries. Construction sorts the points into
 /// voxels; a voxel's octree and spheres are built on its first visit, once, safely from several threads. Non-finite
 /// points are left out. Holds about 20 bytes per point; the caller's points must outlive it, unchanged.
@@ -69,6 +77,15 @@ public:
   /// Builds every voxel now. @param threads 0: all of the machine's. The result is the same for any number.
   void buildAll(unsigned threads = 1) const;
 
+  /// The points have moved: same records, other coordinates. Their spheres follow and stay conservative; answers are
+  /// those of a hierarchy built anew. Not while a query runs.
+  /// @param now as many records as before, of the same scalar type and subset; becomes the view
+  /// @param most_growth >= 1: a voxel is dropped once its leaves' radii have grown by this factor on average since it
+  /// was
+  ///   built, and all points are sorted anew once the voxels have
+  /// @throws std::invalid_argument when `now` does not fit, or the factor is not finite and >= 1
+  RefitReport refit(const PointsView& now, double most_growth = 1.5);
+
   /// Checks everything that queries rely on, in exact arithmetic: each point is in every sphere above it, each child in
   /// its parent's range, no point lost or doubled. Builds what is not built yet.
   HierarchyDefects validate() const;
@@ -79,6 +96,8 @@ public:
   const Storage& storage() const noexcept { return *storage_; }
 
 private:
+  friend class HierarchyUpdate;
+
   std::unique_ptr<Storage> storage_;
 };
 

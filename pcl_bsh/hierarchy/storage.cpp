@@ -12,32 +12,55 @@ SphereHierarchy::Storage::Storage(const PointsView& points, const HierarchyOptio
 {
   VoxelSorting sorting = sortIntoVoxels(view, options);
   voxel_edge = sorting.edge;
+  base = sorting.base;
   size = sorting.size;
   voxel_count = sorting.voxel_count;
   voxels = std::move(sorting.voxels);
-  buffer_ = std::move(sorting.buffer);
+  buffers.push_back(std::move(sorting.buffer));
   frame = sorting.frame;
   if (size == 0) return;
 
-  std::vector<float> largest_radii;
   if (view.radii) {
-    radii_ = std::make_unique<float[]>(size);
-    for (std::size_t v = 0; v < voxel_count; ++v) {
-      voxels[v].radii = radii_.get() + voxels[v].begin;
-      const auto* sorted = reinterpret_cast<const PointRecord*>(voxels[v].block);
-      float largest = 0.0f;
-      for (std::uint32_t i = 0; i < voxels[v].count; ++i) largest = std::max(largest, view.radii[sorted[i].record]);
-      largest_radii.push_back(largest);
-      largest_radius = std::max(largest_radius, static_cast<double>(largest));
-    }
+    radii_buffers.push_back(std::make_unique<float[]>(size));
+    for (std::size_t v = 0; v < voxel_count; ++v) voxels[v].radii = radii_buffers.front().get() + voxels[v].begin;
   }
-  for (std::size_t v = 0; v < voxel_count; ++v) {
-    const LocalFrame& f = voxels[v].frame;
-    const double ball = view.radii ? largest_radii[v] / f.unit : 0.0;
-    const double corner = std::hypot(f.reach[0] + f.slack(0), f.reach[1] + f.slack(1), f.reach[2] + f.slack(2));
-    voxels[v].radius = roundUp((corner + ball) * (1.0 + 0x1p-40));
+  for (std::size_t v = 0; v < voxel_count; ++v) measure(voxels[v]);
+  extent = sumOfRadii();
+  raiseTop();
+}
+
+void SphereHierarchy::Storage::measure(Voxel& voxel) const
+{
+  voxel.largest_radius = 0.0f;
+  if (view.radii) {
+    const bool built = voxel.state.load(std::memory_order_relaxed) == Voxel::built;
+    const auto* sorted = reinterpret_cast<const PointRecord*>(voxel.block);
+    for (std::uint32_t i = 0; i < voxel.count; ++i)
+      voxel.largest_radius = std::max(voxel.largest_radius, view.radii[built ? voxel.records()[i] : sorted[i].record]);
   }
-  top = buildTop(voxels.get(), voxel_count, frame, view.radii ? largest_radii.data() : nullptr);
+  const LocalFrame& f = voxel.frame;
+  const double ball = static_cast<double>(voxel.largest_radius) / f.unit;
+  const double corner = std::hypot(f.reach[0] + f.slack(0), f.reach[1] + f.slack(1), f.reach[2] + f.slack(2));
+  voxel.radius = roundUp((corner + ball) * (1.0 + 0x1p-40));
+}
+
+void SphereHierarchy::Storage::raiseTop()
+{
+  std::vector<float> largest_radii;
+  largest_radius = 0.0;
+  for (std::size_t v = 0; v < voxel_count && view.radii; ++v) {
+    largest_radii.push_back(voxels[v].largest_radius);
+    largest_radius = std::max(largest_radius, static_cast<double>(voxels[v].largest_radius));
+  }
+  top.clear();
+  if (size > 0) top = buildTop(voxels.get(), voxel_count, frame, view.radii ? largest_radii.data() : nullptr);
+}
+
+double SphereHierarchy::Storage::sumOfRadii() const
+{
+  double sum = 0.0;
+  for (std::size_t v = 0; v < voxel_count; ++v) sum += static_cast<double>(voxels[v].radius) * voxels[v].frame.unit;
+  return sum;
 }
 
 void SphereHierarchy::Storage::build(std::size_t index, std::uint64_t& built_now) const

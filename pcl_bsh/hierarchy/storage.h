@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/geometry/given_sphere.h>
 #include <pcl_bsh/geometry/local_frame.h>
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/large_buffer.h>
 #include <pcl_bsh/hierarchy/node.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
@@ -30,12 +31,35 @@ struct Voxel {
   std::uint32_t begin = 0;  ///< its first point, counted over all voxels
   std::uint32_t lowest = 0; ///< smallest record number of its points
   std::uint32_t count = 0;  ///< its points, at least 1
-  float radius = 0.0f;     ///< of a sphere around the frame's origin that holds all of its points, in the frame's units
+  float radius = 0.0f; ///< of a sphere around the frame's origin that holds all of its points, in the frame's units
+  float largest_radius = 0.0f; ///< of its points, in the cloud's unit
+  double leaf_radii = 0.0;     ///< sum over its leaves when last built; 0 until a refit asks
   float* block = nullptr;  ///< PointRecord[count] while sorted; x[count], y[count], z[count], record[count] once built
   float* radii = nullptr;  ///< one per point in the order of x, once built; null when points have none
   std::vector<Node> nodes; ///< nodes[0] is the root; empty until built
   std::vector<GivenSphere> given; ///< see givenSpheres(); empty unless the voxel has crowded cells
   std::atomic<std::uint8_t> state{sorted};
+
+  /// Takes over what another voxel is. Nobody may visit either meanwhile.
+  void adopt(Voxel& other)
+  {
+    frame = other.frame;
+    key = other.key;
+    begin = other.begin;
+    lowest = other.lowest;
+    count = other.count;
+    radius = other.radius;
+    largest_radius = other.largest_radius;
+    leaf_radii = other.leaf_radii;
+    block = other.block;
+    radii = other.radii;
+    nodes = std::move(other.nodes);
+    given = std::move(other.given);
+    state.store(other.state.load(std::memory_order_relaxed), std::memory_order_relaxed);
+  }
+
+  /// Floats of its block and the padding behind it.
+  std::size_t blockSize() const noexcept;
 
   const float* x() const noexcept { return block; }
   const float* y() const noexcept { return block + count; }
@@ -65,23 +89,57 @@ public:
   double voxel_edge = 1.0;
   std::size_t size = 0; ///< finite points
   std::size_t voxel_count = 0;
-  std::unique_ptr<Voxel[]> voxels; ///< sorted by key
-  double largest_radius = 0.0;     ///< of all points
-  LocalFrame frame;                ///< of `top`
+  std::unique_ptr<Voxel[]> voxels;        ///< sorted by key
+  double largest_radius = 0.0;            ///< of all points
+  std::array<double, 3> base = {0, 0, 0}; ///< cell number 0 of the voxel grid, in cells from the origin
+  LocalFrame frame;                       ///< of `top`
   std::vector<Node> top; ///< the octree above the voxels: leaves are voxels; top[0] is the root; empty iff size == 0
+
+  double extent = 0.0; ///< sum of the voxels' radii when the points were sorted into them, in the cloud's unit
+
+  /// Sets what is known of a voxel by its frame and points: `radius`, `largest_radius`. @pre its points' records are
+  /// set
+  void measure(Voxel& voxel) const;
+
+  /// Builds the tree above the voxels and what else depends on all of them, once each is measured.
+  void raiseTop();
+
+  /// Sum of the voxels' radii.
+  double sumOfRadii() const;
+
+  /// Every voxel's block, each followed by padding that vector loads may touch. The first holds the voxels as sorted;
+  /// others those that an update made anew.
+  std::vector<LargeBuffer<float>> buffers;
+  std::vector<std::unique_ptr<float[]>> radii_buffers; ///< likewise of `radii`
+  std::size_t floats_unused = 0;                       ///< in the buffers, left behind by updates
 
 private:
   void build(std::size_t voxel, std::uint64_t& built_now) const;
-
-  LargeBuffer<float> buffer_; ///< every voxel's block, each followed by padding that vector loads may touch
-  std::unique_ptr<float[]> radii_;
 };
 
 /// Floats of padding behind each voxel's block: a whole leaf can be loaded from any point of it.
 inline constexpr std::size_t kBlockPadding = kMaxLeafPoints;
 
+inline std::size_t Voxel::blockSize() const noexcept
+{
+  return 4 * std::size_t{count} + kBlockPadding;
+}
+
+/// The point as a frame stores it.
+inline PointRecord storedIn(const LocalFrame& frame, const Point3& p, std::uint32_t record)
+{
+  const double inverse = 1.0 / frame.unit;
+  float local[3];
+  for (std::size_t k = 0; k < 3; ++k)
+    local[k] = roundToFloat(frame.unit == 1.0 ? p[k] - frame.origin[k] : p[k] * inverse - frame.origin[k] * inverse);
+  return {local[0], local[1], local[2], record};
+}
+
 /// Turns the voxel's sorted points into octree cells and bounding spheres.
 void buildVoxel(Voxel& voxel, const PointsView& view, SphereFit fit);
+
+/// Gives the points of a built voxel other coordinates, in the order they are in, and fits its spheres to them.
+void refitVoxel(Voxel& voxel, const PointRecord* points, const PointsView& view, SphereFit fit);
 
 /// Distributes the finite points of the view over voxels: what Storage's constructor starts with.
 struct VoxelSorting {
@@ -90,6 +148,7 @@ struct VoxelSorting {
   std::size_t voxel_count = 0;
   std::unique_ptr<Voxel[]> voxels;
   LargeBuffer<float> buffer;
+  std::array<double, 3> base = {0, 0, 0};
   LocalFrame frame; ///< of the whole cloud
 };
 VoxelSorting sortIntoVoxels(const PointsView& view, const HierarchyOptions& options);

@@ -164,6 +164,17 @@ public:
     if (crowded_) voxel_.given = givenSpheres(voxel_, view_);
   }
 
+  /// The same tree for points that have moved.
+  void refit(const PointRecord* points)
+  {
+    scratch_.sorted.assign(points, points + voxel_.count);
+    nodes_.assign(voxel_.nodes.begin(), voxel_.nodes.end());
+    fitBoxes();
+    storeAsArrays();
+    fitSpheres();
+    voxel_.nodes.assign(nodes_.begin(), nodes_.end());
+  }
+
 private:
   void sortIntoCells()
   {
@@ -425,6 +436,12 @@ void buildVoxelOnTarget(Voxel& voxel, const PointsView& view, SphereFit fit)
   buildVoxelHere(voxel, view, fit);
 }
 
+void refitVoxelOnTarget(Voxel& voxel, const PointRecord* points, const PointsView& view, SphereFit fit)
+{
+  Scratch scratch;
+  VoxelBuilder(voxel, view, fit, scratch).refit(points);
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh
 HWY_AFTER_NAMESPACE();
@@ -433,10 +450,16 @@ HWY_AFTER_NAMESPACE();
 namespace pcl_bsh {
 
 HWY_EXPORT(buildVoxelOnTarget);
+HWY_EXPORT(refitVoxelOnTarget);
 
 void buildVoxel(Voxel& voxel, const PointsView& view, SphereFit fit)
 {
   HWY_DYNAMIC_DISPATCH(buildVoxelOnTarget)(voxel, view, fit);
+}
+
+void refitVoxel(Voxel& voxel, const PointRecord* points, const PointsView& view, SphereFit fit)
+{
+  HWY_DYNAMIC_DISPATCH(refitVoxelOnTarget)(voxel, points, view, fit);
 }
 
 } // namespace pcl_bsh

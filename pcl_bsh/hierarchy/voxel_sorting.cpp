@@ -158,6 +158,14 @@ public:
 
   static constexpr std::uint64_t kOutside = ~std::uint64_t{0};
 
+  /// Number 0 on each axis, in cells from the origin.
+  std::array<double, 3> base() const
+  {
+    T base[4];
+    base_.store(base);
+    return {static_cast<double>(base[0]), static_cast<double>(base[1]), static_cast<double>(base[2])};
+  }
+
   static std::uint64_t morton(std::uint64_t cell)
   {
     return mortonCode(cell >> 42, cell >> 21 & 0x1fffff, cell & 0x1fffff);
@@ -349,6 +357,7 @@ private:
     // Cell numbers are computed in T: its inverse must not overflow.
     result_.edge = std::max(result_.edge, static_cast<double>(std::numeric_limits<T>::min()) * 0x1p20);
     const CellNumbers<T> cell_of(result_.edge, bounds);
+    result_.base = cell_of.base();
     bin_of_ = makeBuffer<std::uint32_t>(view_.size());
     chunks_.assign(chunk_count_, BinTable<T>());
     std::vector<std::uint8_t> outside(chunk_count_, 0);

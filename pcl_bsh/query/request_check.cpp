@@ -25,6 +25,8 @@ void checkClearance(double clearance)
   if (!(std::isfinite(clearance) && clearance >= 0.0)) refuse("clearance: ", clearance, ": give a finite length >= 0");
 }
 
+} // namespace
+
 void checkPose(const std::string& name, const Eigen::Isometry3d& pose)
 {
   const Eigen::Matrix4d& matrix = pose.matrix();
@@ -41,8 +43,6 @@ void checkPose(const std::string& name, const Eigen::Isometry3d& pose)
   }
   if (rotation.determinant() < 0.0) refuse(name, ": a mirror (", rotation.format(one_line), "): give a rotation");
 }
-
-} // namespace
 
 void check(const Placed& a, const Placed& b, const CollisionRequest& request)
 {

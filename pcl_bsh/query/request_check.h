@@ -3,6 +3,8 @@
 
 #include <pcl_bsh/query/trajectory.h>
 
+#include <string>
+
 namespace pcl_bsh {
 
 /// Every query calls this before anything else, whatever it computes.
@@ -15,5 +17,8 @@ void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses
 
 /// Whether a trajectory's result would hold anything.
 bool asksForAnything(const TrajectoryRequest& request);
+
+/// The part of it that judges one pose, called `name` in the message.
+void checkPose(const std::string& name, const Eigen::Isometry3d& pose);
 
 } // namespace pcl_bsh

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a scene file makes the program compute and build, and why; said without doing any of it.
+#pragma once
+
+#include <pcl_bsh/filters/io/scene_file.h>
+
+#include <ostream>
+#include <string>
+
+namespace pcl_bsh::cli {
+
+/// What an effect is and what it needs.
+inline const char* explanationOf(Effect effect)
+{
+  switch (effect) {
+  case Effect::any:
+    return "which pairs collide; grid over the scene, then spheres down to the first witness: builds only the voxels "
+           "it "
+           "visits";
+  case Effect::flags:
+    return "which points collide; as any, then every voxel of a colliding pair that the other comes near";
+  case Effect::distance:
+    return "smallest distances; grid, then spheres around the nearest pairs";
+  case Effect::contacts:
+    return "the nearest colliding pairs of points with their normals; of colliding pairs only";
+  case Effect::first_contact:
+    return "when a pair first meets within a step; the grid holds whole ways instead of places";
+  case Effect::swept:
+    return "which points meet anything between the poses of a step; the grid holds whole ways instead of places";
+  case Effect::self:
+    return "parts of one object against each other; no grid";
+  case Effect::stop:
+    return "objects halt at their first contact; collects the points that can meet on the way of each moving object";
+  case Effect::slide:
+    return "objects glide along what they meet; collects the points that can meet on the way of each moving object";
+  case Effect::gravity:
+    return "objects follow the ground; collects points below each moving object, and above and ahead where it is "
+           "blocked";
+  case Effect::deform:
+    return "points of objects move; their spheres are measured anew in each step, and built anew when they grow loose";
+  }
+  return "";
+}
+
+inline void explain(const io::SceneFile& file, std::ostream& out)
+{
+  const Effects& effects = file.options.effects;
+  out << file.path.string() << ": " << file.objects.size() << " objects, " << file.clouds.size() << " clouds, "
+      << file.steps << " steps of " << file.dt << " s\n\nEffects that are on:\n";
+  for (std::size_t e = 0; e < kEffects; ++e) {
+    const auto effect = static_cast<Effect>(e);
+    if (effects.has(effect)) out << "  " << nameOf(effect) << ": " << explanationOf(effect) << '\n';
+  }
+  if (effects.none()) out << "  none: objects move, nothing is tested, no voxel is built\n";
+  out << "\nEffects that are off (no code runs for them, nothing is allocated or built):\n ";
+  for (std::size_t e = 0; e < kEffects; ++e)
+    if (!effects.has(static_cast<Effect>(e))) out << ' ' << nameOf(static_cast<Effect>(e));
+
+  const bool pairs = effects.any || effects.flags || effects.distance || effects.contacts || effects.first_contact ||
+                     effects.swept || effects.response != Response::none || effects.gravity;
+  out << "\n\nWhat is built:\n  voxels of every cloud: points are sorted into them when the cloud is read\n";
+  out << "  octree and spheres of a voxel: when an effect first visits it" << (effects.none() ? ", so never\n" : "\n");
+  out << "  grid over the scene: " << (pairs ? "yes, " : "no, no effect asks for pairs of objects\n");
+  if (pairs) {
+    std::size_t fixed = 0;
+    for (const io::ObjectEntry& object : file.objects) fixed += object.fixed;
+    out << "only objects that share one of its voxels are tested\n  pairs of the " << fixed
+        << " fixed objects: not tested, unless a rule says so; " << file.rules.size() << " rules\n";
+  }
+}
+
+} // namespace pcl_bsh::cli

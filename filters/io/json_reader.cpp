@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/io/json_reader.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+namespace pcl_bsh::io {
+namespace {
+
+/// On one line, without anything that steers a terminal, and not too long.
+std::string shown(const Json& json)
+{
+  std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+std::string printable(std::string line)
+{
+  const auto steers = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  std::replace_if(line.begin(), line.end(), steers, '?');
+  return line;
+}
+
+bool alike(char a, char b)
+{
+  return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+}
+
+std::size_t lettersBetween(std::string_view a, std::string_view b)
+{
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (alike(a[i], b[j]) ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string listed(const std::vector<std::string>& names)
+{
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+} // namespace
+
+JsonError::JsonError(const std::string& file, const std::string& place, const std::string& wrong,
+                     const std::string& remedy)
+: std::runtime_error(printable(file + ": " + (place.empty() ? "" : place + ": ") + wrong + ": " + remedy))
+{
+}
+
+std::string nearestName(std::string_view name, const std::vector<std::string>& valid)
+{
+  name = name.substr(0, 64);
+  std::string nearest;
+  std::size_t least = 1000;
+  for (const std::string& candidate : valid) {
+    const std::size_t letters = lettersBetween(name, candidate);
+    if (letters >= least) continue;
+    least = letters;
+    nearest = candidate;
+  }
+  return nearest;
+}
+
+Json parseJson(const std::string& text, const std::string& file)
+{
+  std::vector<std::set<std::string>> keys; // of the objects that are open
+  std::string twice;
+  const Json::parser_callback_t watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    if (depth > 100) throw JsonError(file, "", "is nested more than 100 deep", "write it flatter");
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
+      twice = parsed.get<std::string>();
+    return true;
+  };
+  try {
+    Json json = Json::parse(text, watch, true, true);
+    if (!twice.empty()) throw JsonError(file, "", "key '" + twice + "' is twice in one object", "keep one of them");
+    return json;
+  }
+  catch (const Json::parse_error& error) {
+    const std::size_t end = std::min<std::size_t>(error.byte, text.size());
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
+    throw JsonError(file, "line " + std::to_string(line), "is no JSON", "mend what stands there or just before");
+  }
+}
+
+void JsonReader::fail(const std::string& wrong, const std::string& remedy) const
+{
+  throw JsonError(*file_, place_, wrong, remedy);
+}
+
+JsonReader JsonReader::child(const Json& json, const std::string& step) const
+{
+  JsonReader reader(json, *file_);
+  reader.place_ = place_ + (place_.empty() || step.front() == '[' ? "" : ".") + step;
+  return reader;
+}
+
+void JsonReader::requireKeys(const std::vector<std::string>& valid) const
+{
+  if (!json_->is_object()) fail(shown(*json_) + " is no object", "give { ... } with any of " + listed(valid));
+  for (const auto& [key, value] : json_->items())
+    if (std::find(valid.begin(), valid.end(), key) == valid.end())
+      fail("key '" + key + "' is unknown", "did you mean '" + nearestName(key, valid) + "'?");
+}
+
+JsonReader JsonReader::at(const char* key) const
+{
+  if (!json_->is_object() || !has(key)) fail(std::string("'") + key + "' is missing", "add it");
+  return child(json_->at(key), key);
+}
+
+std::vector<JsonReader> JsonReader::elements() const
+{
+  if (!json_->is_array()) fail(shown(*json_) + " is no list", "give [ ... ]");
+  std::vector<JsonReader> list;
+  for (std::size_t i = 0; i < json_->size(); ++i) list.push_back(child((*json_)[i], "[" + std::to_string(i) + "]"));
+  return list;
+}
+
+std::vector<std::pair<std::string, JsonReader>> JsonReader::members() const
+{
+  if (!json_->is_object()) fail(shown(*json_) + " is no object", "give { ... }");
+  std::vector<std::pair<std::string, JsonReader>> list;
+  for (const auto& [key, value] : json_->items()) list.emplace_back(key, child(value, key));
+  return list;
+}
+
+bool JsonReader::boolean() const
+{
+  if (!json_->is_boolean()) fail(shown(*json_) + " is neither true nor false", "give one of them");
+  return json_->get<bool>();
+}
+
+std::string JsonReader::text() const
+{
+  if (!json_->is_string() || json_->get_ref<const std::string&>().empty())
+    fail(shown(*json_) + " is no text", "give \"...\"");
+  return json_->get<std::string>();
+}
+
+double JsonReader::number(double low, double high) const
+{
+  if (!json_->is_number()) fail(shown(*json_) + " is no number", "give one");
+  const auto value = json_->get<double>();
+  if (!(value >= low)) fail(shown(*json_) + " is too small", "give at least " + shown(Json(low)));
+  if (!(value <= high)) fail(shown(*json_) + " is too large", "give at most " + shown(Json(high)));
+  return value;
+}
+
+std::uint64_t JsonReader::whole(std::uint64_t low, std::uint64_t high) const
+{
+  const double value = number(static_cast<double>(low), static_cast<double>(high));
+  if (value != std::floor(value)) fail(shown(*json_) + " is no whole number", "give one");
+  return static_cast<std::uint64_t>(value);
+}
+
+std::string JsonReader::oneOf(const std::vector<std::string>& valid) const
+{
+  const std::string name = text();
+  if (std::find(valid.begin(), valid.end(), name) == valid.end())
+    fail("'" + name + "' is unknown", "did you mean '" + nearestName(name, valid) + "'?");
+  return name;
+}
+
+std::vector<double> JsonReader::numbers(std::size_t count) const
+{
+  if (!json_->is_array() || json_->size() != count)
+    fail(shown(*json_) + " is no list of " + std::to_string(count) + " numbers", "give [ ... ]");
+  std::vector<double> list;
+  for (const JsonReader& element : elements()) list.push_back(element.number());
+  return list;
+}
+
+Eigen::Vector3d JsonReader::vector() const
+{
+  const std::vector<double> v = numbers(3);
+  return {v[0], v[1], v[2]};
+}
+
+Eigen::Isometry3d JsonReader::pose() const
+{
+  const std::size_t count = json_->is_array() ? json_->size() : 0;
+  if (count != 3 && count != 6 && count != 12 && count != 16)
+    fail(shown(*json_) + " is no pose",
+         "give [x, y, z], [x, y, z, roll, pitch, yaw] with radians, or the 12 or 16 numbers of a matrix, row by row");
+  const std::vector<double> n = numbers(count);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  if (count <= 6) {
+    pose.translation() = Eigen::Vector3d(n[0], n[1], n[2]);
+    using Eigen::AngleAxisd, Eigen::Vector3d;
+    if (count == 6)
+      pose.linear() = (AngleAxisd(n[5], Vector3d::UnitZ()) * AngleAxisd(n[4], Vector3d::UnitY()) *
+                       AngleAxisd(n[3], Vector3d::UnitX()))
+                          .toRotationMatrix();
+    return pose;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+    pose.matrix()(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = n[i];
+  const Eigen::Matrix3d r = pose.linear();
+  const bool last_row = pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
+  if (!last_row || !((r.transpose() * r - Eigen::Matrix3d::Identity()).norm() <= 1e-6) || r.determinant() < 0.0)
+    fail("is no rigid transform", "give a rotation without scale or mirror, and 0 0 0 1 as last row");
+  return pose;
+}
+
+} // namespace pcl_bsh::io

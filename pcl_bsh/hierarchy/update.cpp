@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/hierarchy/update.h>
+
+#include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/hierarchy/morton.h>
+#include <pcl_bsh/hierarchy/storage.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr std::uint64_t kOutside = ~std::uint64_t{0};
+constexpr double kMostUnused = 0.5; // of the floats in use, before blocks are moved together
+
+[[noreturn]] void refuse(const std::string& what)
+{
+  throw std::invalid_argument("HierarchyUpdate: " + what);
+}
+
+bool isFinite(const Point3& p)
+{
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+/// The grid's cell as VoxelSorter numbers it, in the arithmetic of the cloud's scalar type.
+template <class T>
+std::uint64_t cellKey(const Point3& point, double edge, const std::array<double, 3>& base)
+{
+  std::array<std::uint64_t, 3> number;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const T cells = static_cast<T>(point[k]) * static_cast<T>(1.0 / edge) - static_cast<T>(base[k]);
+    if (!(cells >= 0 && cells < static_cast<T>(1u << kMortonBits))) return kOutside;
+    number[k] = static_cast<std::uint64_t>(cells);
+  }
+  return mortonCode(number[0], number[1], number[2]);
+}
+
+std::uint32_t recordOf(const Voxel& voxel, std::uint32_t i)
+{
+  if (voxel.state.load(std::memory_order_acquire) == Voxel::built) return voxel.records()[i];
+  return reinterpret_cast<const PointRecord*>(voxel.block)[i].record;
+}
+
+/// A touched voxel: its points after the change.
+struct Touched {
+  std::uint64_t key = 0;
+  Voxel* old = nullptr;
+  std::size_t leaving = 0;
+  std::vector<std::uint32_t> records;
+  std::vector<Point3> points;
+
+  void add(std::uint32_t record, const Point3& point)
+  {
+    records.push_back(record);
+    points.push_back(point);
+  }
+};
+
+/// The points of some records of a large cloud, in any order: memory is asked for each before its turn.
+template <class Visit>
+void eachPoint(const PointsView& view, const std::vector<std::uint32_t>& records, const Visit& visit)
+{
+  constexpr std::size_t ahead = 24;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (i + ahead < records.size())
+      __builtin_prefetch(static_cast<const unsigned char*>(view.data) + view.stride * records[i + ahead] +
+                         view.offset[0]);
+    visit(records[i], view.point(records[i]));
+  }
+}
+
+/// Fills a voxel that holds these records.
+void fill(Voxel& voxel, const Touched& from, const PointsView& view, float* block, float* radii)
+{
+  voxel.key = from.key;
+  voxel.count = static_cast<std::uint32_t>(from.records.size());
+  voxel.lowest = *std::min_element(from.records.begin(), from.records.end());
+  voxel.block = block;
+  voxel.radii = radii;
+  std::array<double, 3> low, high;
+  low.fill(std::numeric_limits<double>::infinity());
+  high.fill(-std::numeric_limits<double>::infinity());
+  for (const Point3& p : from.points) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], p[k]);
+      high[k] = std::max(high[k], p[k]);
+    }
+  }
+  voxel.frame = frameBetween(low, high, view.scalar == Scalar::float32);
+  auto* stored = reinterpret_cast<PointRecord*>(block);
+  for (std::size_t i = 0; i < from.points.size(); ++i)
+    *stored++ = storedIn(voxel.frame, from.points[i], from.records[i]);
+}
+
+/// Moves all blocks into one buffer, when too much of the present ones is left behind.
+void compact(SphereHierarchy::Storage& storage)
+{
+  const std::size_t used = 4 * storage.size + kBlockPadding * storage.voxel_count;
+  if (static_cast<double>(storage.floats_unused) <= kMostUnused * static_cast<double>(used)) return;
+  LargeBuffer<float> buffer = makeBuffer<float>(used);
+  std::unique_ptr<float[]> radii = storage.view.radii ? std::make_unique<float[]>(storage.size) : nullptr;
+  float* next = buffer.get();
+  for (std::size_t v = 0; v < storage.voxel_count; ++v) {
+    Voxel& voxel = storage.voxels[v];
+    std::memcpy(next, voxel.block, 4 * std::size_t{voxel.count} * sizeof(float));
+    voxel.block = next;
+    next += voxel.blockSize();
+    if (!radii) continue;
+    std::memcpy(radii.get() + voxel.begin, voxel.radii, voxel.count * sizeof(float));
+    voxel.radii = radii.get() + voxel.begin;
+  }
+  storage.buffers.clear();
+  storage.buffers.push_back(std::move(buffer));
+  storage.radii_buffers.clear();
+  if (radii) storage.radii_buffers.push_back(std::move(radii));
+  storage.floats_unused = 0;
+}
+
+/// Around all voxels' points.
+LocalFrame frameOfAll(const SphereHierarchy::Storage& storage)
+{
+  std::array<double, 3> low, high;
+  low.fill(std::numeric_limits<double>::infinity());
+  high.fill(-std::numeric_limits<double>::infinity());
+  for (std::size_t v = 0; v < storage.voxel_count; ++v) {
+    const LocalFrame& f = storage.voxels[v].frame;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double half = (f.reach[k] + f.slack(static_cast<int>(k))) * f.unit * (1.0 + 0x1p-40);
+      low[k] = std::min(low[k], f.origin[k] - half);
+      high[k] = std::max(high[k], f.origin[k] + half);
+    }
+  }
+  return frameBetween(low, high, storage.view.scalar == Scalar::float32);
+}
+
+} // namespace
+
+HierarchyUpdate::HierarchyUpdate(SphereHierarchy& hierarchy, const std::int32_t* records, std::size_t count)
+: hierarchy_(hierarchy)
+{
+  const PointsView& view = hierarchy.view();
+  if (view.indices) refuse("a hierarchy of a subset cannot be updated: take the whole cloud, NaN where a point is out");
+  records_.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (records[i] < 0) refuse("record " + std::to_string(records[i]) + " is negative");
+    records_.push_back(static_cast<std::uint32_t>(records[i]));
+  }
+  if (!std::is_sorted(records_.begin(), records_.end())) std::sort(records_.begin(), records_.end());
+  records_.erase(std::unique(records_.begin(), records_.end()), records_.end());
+  if (hierarchy.empty()) return;
+  const DefaultFloatEnvironment environment;
+  const auto end = std::lower_bound(records_.begin(), records_.end(), static_cast<std::uint32_t>(view.count));
+  std::uint64_t last_key = kOutside;
+  std::size_t* leaving = nullptr;
+  eachPoint(view, std::vector<std::uint32_t>(records_.begin(), end), [&](std::uint32_t, const Point3& p) {
+    if (!isFinite(p)) return;
+    const std::uint64_t key = voxelOf(p);
+    if (key != last_key || !leaving) leaving = &leaving_[last_key = key];
+    ++*leaving;
+  });
+}
+
+std::uint64_t HierarchyUpdate::voxelOf(const Point3& point) const
+{
+  const SphereHierarchy::Storage& storage = hierarchy_.storage();
+  return storage.view.scalar == Scalar::float32 ? cellKey<float>(point, storage.voxel_edge, storage.base)
+                                                : cellKey<double>(point, storage.voxel_edge, storage.base);
+}
+
+UpdateReport HierarchyUpdate::sortAnew(const PointsView& now)
+{
+  hierarchy_ = SphereHierarchy(now, hierarchy_.options());
+  UpdateReport report;
+  report.sorted_anew = true;
+  report.points_read = hierarchy_.size();
+  report.voxels_touched = hierarchy_.storage().voxel_count;
+  return report;
+}
+
+UpdateReport HierarchyUpdate::commit(const PointsView& now)
+{
+  SphereHierarchy::Storage& storage = *hierarchy_.storage_;
+  const PointsView before = storage.view;
+  if (now.indices) refuse("the new view is a subset: give all records, NaN where a point is out");
+  if (now.scalar != before.scalar) refuse("the new view has coordinates of another type");
+  if (before.count > 0 && !now.radii != !before.radii)
+    refuse("the new view has radii and the old one none, or the other way round");
+  if (now.count < before.count)
+    refuse("the new view has " + std::to_string(now.count) + " records, fewer than the " +
+           std::to_string(before.count) + " before: keep them, NaN where a point is gone");
+  if (now.count > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+    refuse(std::to_string(now.count) + " records are more than an index can name");
+  const std::size_t announced = static_cast<std::size_t>(
+      records_.end() - std::lower_bound(records_.begin(), records_.end(), static_cast<std::uint32_t>(before.count)));
+  if (announced < now.count - before.count || (!records_.empty() && records_.back() >= now.count))
+    refuse("the new view has " + std::to_string(now.count - before.count) + " more records, of which " +
+           std::to_string(announced) + " were announced: announce each of them, and no others");
+  for (const std::uint32_t record : records_)
+    if (now.radii && !(now.radii[record] >= 0.0f && now.radii[record] <= std::numeric_limits<float>::max()))
+      refuse("radius " + std::to_string(now.radii[record]) + " of point " + std::to_string(record) +
+             " is not finite and >= 0");
+  if (hierarchy_.empty()) return sortAnew(now);
+
+  const DefaultFloatEnvironment environment;
+  // Which voxels are touched, and what they hold afterwards.
+  UpdateReport report;
+  std::vector<Touched> touched;
+  std::unordered_map<std::uint64_t, std::size_t> touched_by_key;
+  const auto touch = [&](std::uint64_t key) -> Touched& {
+    const auto [entry, is_new] = touched_by_key.try_emplace(key, touched.size());
+    if (is_new) touched.emplace_back().key = key;
+    return touched[entry->second];
+  };
+  for (const auto& [key, count] : leaving_) touch(key).leaving = count;
+  bool outside = leaving_.count(kOutside) > 0;
+  for (Touched& voxel : touched) { // about as many come as go
+    voxel.records.reserve(voxel.leaving + voxel.leaving / 8);
+    voxel.points.reserve(voxel.leaving + voxel.leaving / 8);
+  }
+  std::uint64_t last_key = kOutside;
+  Touched* last = nullptr;
+  eachPoint(now, records_, [&](std::uint32_t record, const Point3& p) {
+    if (!isFinite(p)) return;
+    const std::uint64_t key = voxelOf(p);
+    outside = outside || key == kOutside;
+    if (outside) return;
+    if (key != last_key) last = &touch(last_key = key);
+    last->add(record, p);
+  });
+  if (outside) return sortAnew(now);
+  std::sort(touched.begin(), touched.end(), [](const Touched& l, const Touched& r) { return l.key < r.key; });
+
+  for (Touched& voxel : touched) {
+    Voxel* const end = storage.voxels.get() + storage.voxel_count;
+    Voxel* const found = std::lower_bound(storage.voxels.get(), end, voxel.key,
+                                          [](const Voxel& v, std::uint64_t key) { return v.key < key; });
+    if (found != end && found->key == voxel.key) voxel.old = found;
+    const std::size_t count = voxel.old ? voxel.old->count : 0;
+    // A point that is not where its coordinates say has moved since (SphereHierarchy::refit()).
+    if (voxel.leaving > count) return sortAnew(now);
+    report.points_read += voxel.records.size() + count - voxel.leaving;
+  }
+  if (2 * report.points_read > storage.size) return sortAnew(now);
+
+  std::vector<bool> changed(before.count, false);
+  for (const std::uint32_t record : records_)
+    if (record < before.count) changed[record] = true;
+  std::size_t floats = 0;
+  std::vector<std::uint32_t> staying;
+  for (Touched& voxel : touched) {
+    staying.clear();
+    for (std::uint32_t i = 0; voxel.old && i < voxel.old->count; ++i) {
+      const std::uint32_t record = recordOf(*voxel.old, i);
+      if (!changed[record]) staying.push_back(record);
+    }
+    if ((voxel.old ? voxel.old->count : 0) - staying.size() != voxel.leaving) return sortAnew(now);
+    eachPoint(now, staying, [&](std::uint32_t record, const Point3& p) { voxel.add(record, p); });
+    if (!voxel.records.empty()) floats += 4 * voxel.records.size() + kBlockPadding;
+  }
+
+  // The voxels afterwards: those untouched, and the touched ones that hold something.
+  storage.view = now;
+  LargeBuffer<float> buffer = makeBuffer<float>(std::max<std::size_t>(floats, 1));
+  std::unique_ptr<float[]> radii = now.radii ? std::make_unique<float[]>(report.points_read) : nullptr;
+  float* next_block = buffer.get();
+  float* next_radii = radii.get();
+  std::size_t count = storage.voxel_count;
+  for (const Touched& t : touched) {
+    count += t.old == nullptr && !t.records.empty() ? 1 : 0;
+    count -= t.old != nullptr && t.records.empty() ? 1 : 0;
+  }
+  auto voxels = std::make_unique<Voxel[]>(count);
+  std::size_t target = 0, begin = 0, source = 0;
+  const auto takeUntil = [&](const Voxel* end) {
+    for (; storage.voxels.get() + source != end; ++source) voxels[target++].adopt(storage.voxels[source]);
+  };
+  for (const Touched& t : touched) {
+    Voxel* const all = storage.voxels.get();
+    takeUntil(t.old ? t.old
+                    : std::lower_bound(all + source, all + storage.voxel_count, t.key,
+                                       [](const Voxel& v, std::uint64_t key) { return v.key < key; }));
+    ++report.voxels_touched;
+    report.voxels_added += t.old == nullptr ? 1 : 0;
+    report.voxels_removed += t.records.empty() ? 1 : 0;
+    if (t.old) {
+      storage.floats_unused += t.old->blockSize();
+      ++source;
+    }
+    if (t.records.empty()) continue;
+    Voxel& voxel = voxels[target++];
+    fill(voxel, t, now, next_block, next_radii);
+    storage.measure(voxel);
+    next_block += voxel.blockSize();
+    if (next_radii) next_radii += voxel.count;
+  }
+  takeUntil(storage.voxels.get() + storage.voxel_count);
+  for (std::size_t v = 0; v < count; ++v) {
+    voxels[v].begin = static_cast<std::uint32_t>(begin);
+    begin += voxels[v].count;
+  }
+  storage.voxels = std::move(voxels);
+  storage.voxel_count = count;
+  storage.size = begin;
+  storage.buffers.push_back(std::move(buffer));
+  if (radii) storage.radii_buffers.push_back(std::move(radii));
+  storage.frame = storage.size > 0 ? frameOfAll(storage) : LocalFrame();
+  storage.extent = storage.sumOfRadii();
+  storage.raiseTop();
+  compact(storage);
+  leaving_.clear();
+  return report;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where an object can be: boxes that hold all of its points, whatever rounding does.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <limits>
+
+namespace pcl_bsh {
+
+struct SceneObject;
+struct ScenePart;
+
+/// Closed; empty when low > high.
+struct Box3 {
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d high = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
+
+  bool empty() const { return !(low.array() <= high.array()).all(); }
+  Eigen::Vector3d center() const { return 0.5 * low + 0.5 * high; }
+  Eigen::Vector3d half() const { return 0.5 * high - 0.5 * low; }
+
+  void merge(const Box3& other)
+  {
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+  }
+
+  void grow(double reach)
+  {
+    low.array() -= reach;
+    high.array() += reach;
+  }
+
+  bool meets(const Box3& other) const
+  {
+    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+  }
+};
+
+/// The box of a box under a pose.
+Box3 moved(const Box3& box, const Eigen::Isometry3d& pose);
+
+/// Of a part's points and their radii, in the frame of its cloud.
+Box3 boxOf(const ScenePart& part);
+
+/// Of all parts, in the object's frame.
+Box3 boxOf(const SceneObject& object);
+
+/// No point of a box moves farther than this when its pose changes.
+double motionBound(const Box3& box, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
+
+} // namespace pcl_bsh

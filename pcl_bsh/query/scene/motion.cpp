@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/query/scene/motion.h>
+
+#include <pcl_bsh/query/request_check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace pcl_bsh {
+namespace {
+
+Eigen::Matrix3d turn(const Eigen::Vector3d& axis_times_angle)
+{
+  const double angle = axis_times_angle.norm();
+  if (angle == 0.0) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, axis_times_angle / angle).toRotationMatrix();
+}
+
+struct At {
+  const Eigen::Isometry3d& start;
+  double time;
+
+  Eigen::Isometry3d operator()(const NoMotion&) const { return start; }
+
+  Eigen::Isometry3d operator()(const VelocityMotion& motion) const
+  {
+    Eigen::Isometry3d pose = start;
+    pose.translation() += time * motion.linear;
+    pose.linear() = turn(time * motion.angular) * start.linear();
+    return pose;
+  }
+
+  Eigen::Isometry3d operator()(const CircularMotion& motion) const
+  {
+    const Eigen::Matrix3d rotation = turn(time * motion.speed * motion.axis.normalized());
+    Eigen::Isometry3d pose = start;
+    pose.translation() = motion.center + rotation * (start.translation() - motion.center);
+    if (motion.turning) pose.linear() = rotation * start.linear();
+    return pose;
+  }
+
+  Eigen::Isometry3d operator()(const WaypointMotion& motion) const
+  {
+    const auto after = std::upper_bound(motion.times.begin(), motion.times.end(), time) - motion.times.begin();
+    if (after == 0) return motion.poses.front();
+    const auto i = static_cast<std::size_t>(after);
+    if (i == motion.times.size() || motion.times[i - 1] == time) return motion.poses[i - 1];
+    const Eigen::Isometry3d &from = motion.poses[i - 1], &to = motion.poses[i];
+    const double s = (time - motion.times[i - 1]) / (motion.times[i] - motion.times[i - 1]);
+    Eigen::Isometry3d pose = from;
+    pose.translation() += s * (to.translation() - from.translation());
+    if (from.linear() != to.linear()) {
+      const Eigen::Quaterniond q(from.linear()), r(to.linear());
+      pose.linear() = q.slerp(s, r).normalized().toRotationMatrix();
+    }
+    return pose;
+  }
+};
+
+struct Check {
+  void operator()(const NoMotion&) const {}
+
+  void operator()(const VelocityMotion& motion) const
+  {
+    if (!motion.linear.allFinite() || !motion.angular.allFinite()) fail("a velocity is not finite");
+  }
+
+  void operator()(const CircularMotion& motion) const
+  {
+    if (!motion.center.allFinite() || !std::isfinite(motion.speed)) fail("a circle's centre or speed is not finite");
+    if (!(motion.axis.allFinite() && motion.axis.norm() > 0.0)) fail("a circle's axis is not finite or of length 0");
+  }
+
+  void operator()(const WaypointMotion& motion) const
+  {
+    if (motion.poses.empty()) fail("waypoints without a pose");
+    if (motion.poses.size() != motion.times.size())
+      fail(std::to_string(motion.poses.size()) + " waypoints for " + std::to_string(motion.times.size()) + " times");
+    for (std::size_t i = 0; i < motion.times.size(); ++i)
+      if (!std::isfinite(motion.times[i]) || (i > 0 && motion.times[i] <= motion.times[i - 1]))
+        fail("time " + std::to_string(motion.times[i]) + " of waypoint " + std::to_string(i) + " does not ascend");
+    for (std::size_t i = 0; i < motion.poses.size(); ++i) checkPose("waypoint " + std::to_string(i), motion.poses[i]);
+  }
+
+  [[noreturn]] static void fail(const std::string& what) { throw std::invalid_argument("motion: " + what); }
+};
+
+} // namespace
+
+Eigen::Isometry3d poseAt(const Motion& motion, const Eigen::Isometry3d& start, double time)
+{
+  return std::visit(At{start, time}, motion);
+}
+
+void check(const Motion& motion)
+{
+  std::visit(Check{}, motion);
+}
+
+} // namespace pcl_bsh

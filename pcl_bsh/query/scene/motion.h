@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How an object of a scene moves by itself. Times in seconds, angles in radians, lengths in the clouds' unit.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <variant>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// At rest, until somebody sets its pose.
+struct NoMotion {};
+
+/// Straight on, turning about its own origin; both as the world sees them.
+struct VelocityMotion {
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero();  ///< per second
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero(); ///< axis times radians per second
+};
+
+/// Around an axis of the world.
+struct CircularMotion {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ(); ///< any length but 0
+  double speed = 0.0;                              ///< radians per second
+  bool turning = true;                             ///< false: keeps its rotation, as a gondola does
+};
+
+/// From pose to pose: origins on straight lines, rotations at constant speed. Rests before the first and after the
+/// last.
+struct WaypointMotion {
+  std::vector<double> times; ///< strictly ascending, as many as poses
+  std::vector<Eigen::Isometry3d> poses;
+};
+
+using Motion = std::variant<NoMotion, VelocityMotion, CircularMotion, WaypointMotion>;
+
+/// Where `motion` has an object at `time`, which stood at `start` at time 0. Waypoints are in the world: they do not
+/// look at `start`.
+Eigen::Isometry3d poseAt(const Motion& motion, const Eigen::Isometry3d& start, double time);
+
+/// @throws std::invalid_argument saying what is wrong: numbers that are not finite, an axis of length 0, waypoints
+///   without poses, with times that do not ascend or are not as many, with a pose that is not rigid.
+void check(const Motion& motion);
+
+} // namespace pcl_bsh

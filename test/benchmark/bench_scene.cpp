@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scenes of many objects: what a step costs, the grid against comparing all pairs of root spheres, a scene's one effect
+// against its bare query, and an update against building anew.
+#include "program.h"
+
+#include <pcl_bsh/hierarchy/update.h>
+#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/scene.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+using namespace pcl_bsh;
+using namespace pcl_bsh::bench;
+
+namespace {
+
+struct Options : ProgramOptions {
+  std::size_t objects = 1000;
+  std::size_t points = 10000;
+  std::size_t steps = 100;
+  std::size_t many = 5000;
+  std::size_t cloud = 10000000;
+  unsigned threads = 2;
+  std::string part = "all";
+  std::string order = "scan";
+};
+
+double uniform(std::uint64_t& state)
+{
+  state = state * 6364136223846793005u + 1442695040888963407u;
+  return std::ldexp(static_cast<double>(state >> 11), -53);
+}
+
+/// x y z of points on a sphere's surface.
+std::vector<float> ball(std::size_t count, double radius)
+{
+  std::vector<float> xyz;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double z = 1.0 - 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    const double r = std::sqrt(1.0 - z * z), angle = 2.399963229728653 * static_cast<double>(i);
+    for (const double x : {r * std::cos(angle), r * std::sin(angle), z}) xyz.push_back(static_cast<float>(radius * x));
+  }
+  return xyz;
+}
+
+/// Balls of radius 0.5 at random places, about one to three units of volume: many of them touch.
+class Crowd {
+public:
+  Crowd(std::size_t count, std::size_t points, const SceneOptions& options, bool shared)
+  : scene(options),
+    side_(1.5 * std::cbrt(static_cast<double>(count))),
+    poses_(count, Eigen::Isometry3d::Identity())
+  {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i == 0 || !shared) {
+        clouds_.push_back(ball(points, 0.5));
+        hierarchies_.push_back(
+            std::make_shared<SphereHierarchy>(viewOf(clouds_.back().data(), clouds_.back().size() / 3)));
+      }
+      for (int k = 0; k < 3; ++k) poses_[i].translation()[k] = side_ * uniform(state_);
+      scene.add(object("ball " + std::to_string(i), hierarchies_.back(), poses_[i]));
+    }
+  }
+
+  /// Moves a share of the balls by up to 0.1 along each axis.
+  void stir(double share)
+  {
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      if (uniform(state_) >= share) continue;
+      for (int k = 0; k < 3; ++k)
+        poses_[i].translation()[k] =
+            std::clamp(poses_[i].translation()[k] + 0.1 * (2.0 * uniform(state_) - 1.0), 0.0, side_);
+      scene.setPose(static_cast<ObjectId>(i), poses_[i]);
+    }
+  }
+
+  Scene scene;
+
+  const std::vector<Eigen::Isometry3d>& poses() const { return poses_; }
+
+private:
+  double side_;
+  std::uint64_t state_ = 1;
+  std::vector<std::vector<float>> clouds_;
+  std::vector<std::shared_ptr<SphereHierarchy>> hierarchies_;
+  std::vector<Eigen::Isometry3d> poses_;
+};
+
+SceneOptions anyOnly(unsigned threads)
+{
+  SceneOptions options;
+  options.effects.any = true;
+  options.clearance = 0.01;
+  options.threads = threads;
+  return options;
+}
+
+void measureSteps(const Options& options, Table& table)
+{
+  for (const unsigned threads : {1u, options.threads}) {
+    progress("steps, " + std::to_string(threads) + " threads");
+    Crowd crowd(options.objects, options.points, anyOnly(threads), false);
+    crowd.scene.query();
+    std::vector<double> seconds;
+    std::size_t colliding = 0, asked = 0, reused = 0;
+    for (std::size_t step = 0; step < options.steps; ++step) {
+      const Stopwatch watch;
+      crowd.stir(0.1);
+      const SceneResult result = crowd.scene.query();
+      seconds.push_back(watch.seconds());
+      colliding += result.any.size();
+      asked += result.cost(Effect::any).pairs;
+      reused += result.cost(Effect::any).reused;
+    }
+    table.add({"step, 10 % moving, any", std::to_string(options.objects) + " x " + std::to_string(options.points),
+               std::to_string(threads), text(1e3 * median(seconds)), text(1.0 / median(seconds)) + " steps/s",
+               std::to_string(colliding / options.steps) + " pairs collide, " + std::to_string(asked / options.steps) +
+                   " asked, " + std::to_string(reused / options.steps) + " known"});
+    if (options.threads == 1) break;
+  }
+}
+
+/// All pairs of root spheres, as four arrays: the fair rival of a grid.
+std::size_t compareAllPairs(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z,
+                            float reach)
+{
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    unsigned count = 0;
+    for (std::size_t j = i + 1; j < x.size(); ++j) {
+      const float dx = x[i] - x[j], dy = y[i] - y[j], dz = z[i] - z[j];
+      count += dx * dx + dy * dy + dz * dz <= reach * reach ? 1u : 0u;
+    }
+    near += count;
+  }
+  return near;
+}
+
+/// The same as one would write it without a thought for vectors: a pair, two poses, a test.
+std::size_t comparePairByPair(const std::vector<Eigen::Isometry3d>& poses, double reach)
+{
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    for (std::size_t j = i + 1; j < poses.size(); ++j)
+      near += (poses[i].translation() - poses[j].translation()).squaredNorm() <= reach * reach ? 1 : 0;
+  return near;
+}
+
+void measureBroadPhase(const Options& options, Table& table)
+{
+  for (const double share : {0.1, 1.0}) {
+    progress("broad phase, " + text(100 * share) + " % moving");
+    Crowd crowd(options.many, 200, anyOnly(1), true);
+    crowd.scene.query();
+    std::vector<double> grid, all, plain;
+    std::size_t candidates = 0, near = 0;
+    for (std::size_t step = 0; step < std::max<std::size_t>(options.steps / 5, 3); ++step) {
+      crowd.stir(share);
+      const SceneResult result = crowd.scene.query();
+      grid.push_back(result.broad_phase.seconds);
+      candidates = result.broad_phase.candidates;
+      std::vector<float> x, y, z;
+      for (const Eigen::Isometry3d& pose : crowd.poses()) {
+        x.push_back(static_cast<float>(pose.translation().x()));
+        y.push_back(static_cast<float>(pose.translation().y()));
+        z.push_back(static_cast<float>(pose.translation().z()));
+      }
+      const Stopwatch watch;
+      near = compareAllPairs(x, y, z, 1.01f);
+      all.push_back(watch.seconds());
+      const Stopwatch plain_watch;
+      near = std::max(near, comparePairByPair(crowd.poses(), 1.01));
+      plain.push_back(plain_watch.seconds());
+    }
+    // The grid's own clock is the wall's: the fastest tenth is what a busy machine disturbs least.
+    const double of_grid = quantile(grid, 0.1), of_all = quantile(all, 0.1), of_plain = quantile(plain, 0.1);
+    table.add({"grid, " + text(100 * share) + " % moving", std::to_string(options.many), "1", text(1e3 * of_grid),
+               text(of_plain / of_grid) + " and " + text(of_all / of_grid) + " x cheaper than all pairs",
+               std::to_string(candidates) + " candidates"});
+    table.add({"all pairs of root spheres, one by one", std::to_string(options.many), "1", text(1e3 * of_plain), "",
+               std::to_string(near) + " near"});
+    table.add({"the same, vectorised", std::to_string(options.many), "1", text(1e3 * of_all), "", ""});
+  }
+}
+
+/// The same queries, as a scene of one effect asks them and without a scene.
+void measureOneEffect(const Options& options, Table& table)
+{
+  progress("one effect");
+  SceneOptions forgetful = anyOnly(1);
+  forgetful.remember = false;
+  const std::size_t count = std::max<std::size_t>(options.objects / 2, 2);
+  Crowd crowd(count, options.points / 4, forgetful, true);
+  crowd.scene.query();
+  CollisionRequest request;
+  request.clearance = forgetful.clearance;
+  std::vector<double> scene_seconds, bare_seconds;
+  bool same = true;
+  for (std::size_t step = 0; step < std::max<std::size_t>(options.steps / 5, 3); ++step) {
+    crowd.stir(1.0);
+    const Stopwatch scene_watch;
+    const SceneResult result = crowd.scene.query();
+    scene_seconds.push_back(scene_watch.seconds());
+    const Stopwatch bare_watch;
+    std::size_t colliding = 0;
+    const SphereHierarchy& hierarchy = *crowd.scene[0].parts[0].hierarchy;
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = i + 1; j < count; ++j) {
+        // What a box test amounts to for balls.
+        const Eigen::Vector3d apart = crowd.poses()[i].translation() - crowd.poses()[j].translation();
+        if (apart.cwiseAbs().maxCoeff() > 1.0 + request.clearance) continue;
+        colliding +=
+            anyCollision({hierarchy, crowd.poses()[i]}, {hierarchy, crowd.poses()[j]}, request).witness.has_value();
+      }
+    bare_seconds.push_back(bare_watch.seconds());
+    same = same && colliding == result.any.size();
+  }
+  table.add({"scene with one effect, any", std::to_string(count), "1", text(1e3 * median(scene_seconds)),
+             text(median(scene_seconds) / median(bare_seconds)) + " of the bare queries",
+             same ? "same answers" : "other answers"});
+}
+
+void measureUpdate(const Options& options, Table& table)
+{
+  progress("update, " + std::to_string(options.cloud) + " points");
+  const double side = std::sqrt(static_cast<double>(options.cloud)) * 0.05; // terrain, a point each 5 cm
+  std::uint64_t state = 3;
+  std::vector<float> xyz;
+  xyz.reserve(3 * options.cloud);
+  const auto height = [](double x, double y) { return 2.0 * std::sin(0.11 * x) * std::cos(0.07 * y); };
+  for (std::size_t i = 0; i < options.cloud; ++i) {
+    double x = side * uniform(state), y = side * uniform(state);
+    if (options.order == "scan") { // row by row, as scanners go
+      const double row = std::floor(std::sqrt(static_cast<double>(options.cloud)));
+      y = 0.05 * std::floor(static_cast<double>(i) / row);
+      x = 0.05 * (static_cast<double>(i) - row * std::floor(static_cast<double>(i) / row)) + 0.02 * uniform(state);
+    }
+    for (const double c : {x, y, height(x, y)}) xyz.push_back(static_cast<float>(c));
+  }
+  const PointsView view = viewOf(xyz.data(), options.cloud);
+  std::vector<double> sort_seconds, build_seconds, update_seconds, rebuild_seconds, scattered_seconds;
+  UpdateReport report, scattered;
+  for (unsigned repetition = 0; repetition < options.repeat; ++repetition) {
+    progress("update, " + std::to_string(repetition + 1) + '/' + std::to_string(options.repeat));
+    const Stopwatch sorting;
+    SphereHierarchy hierarchy(view);
+    sort_seconds.push_back(sorting.seconds());
+    hierarchy.buildAll();
+    build_seconds.push_back(sorting.seconds());
+
+    // A tenth of either side: 1 % of the points get new heights, as from a new scan of the place.
+    std::vector<std::int32_t> changed;
+    const double low = side * (0.1 + 0.2 * repetition / options.repeat);
+    for (std::size_t i = 0; i < options.cloud; ++i)
+      if (xyz[3 * i] > low && xyz[3 * i] < low + 0.1 * side && xyz[3 * i + 1] > low &&
+          xyz[3 * i + 1] < low + 0.1 * side)
+        changed.push_back(static_cast<std::int32_t>(i));
+    const auto change = [&](const std::vector<std::int32_t>& records, UpdateReport& done) {
+      const Stopwatch before;
+      HierarchyUpdate update(hierarchy, records.data(), records.size());
+      const double first = before.seconds();
+      for (const std::int32_t i : records) {
+        const auto at = 3 * static_cast<std::size_t>(i) + 2;
+        xyz[at] += static_cast<float>(0.02 * (uniform(state) - 0.5));
+      }
+      const Stopwatch after;
+      done = update.commit(view);
+      return first + after.seconds();
+    };
+    double seconds = change(changed, report);
+    update_seconds.push_back(seconds);
+    const Stopwatch building;
+    hierarchy.buildAll(); // what is left to build: the touched voxels
+    rebuild_seconds.push_back(seconds + building.seconds());
+
+    std::vector<std::int32_t> anywhere;
+    for (std::size_t i = 0; i < options.cloud / 100; ++i) anywhere.push_back(static_cast<std::int32_t>(100 * i));
+    const double spread = change(anywhere, scattered);
+    const Stopwatch all;
+    hierarchy.buildAll();
+    scattered_seconds.push_back(spread + all.seconds());
+  }
+  const std::string size = std::to_string(options.cloud) + ", " + options.order;
+  const double sort = median(sort_seconds), build = median(build_seconds), update = median(update_seconds),
+               rebuild = median(rebuild_seconds), spread = median(scattered_seconds);
+  table.add({"sort into voxels", size, "1", text(1e3 * sort), "", ""});
+  table.add({"sort and build all", size, "1", text(1e3 * build), "", ""});
+  table.add(
+      {"replace 1 % in one place", size, "1", text(1e3 * update), text(sort / update) + " x faster than sorting",
+       std::to_string(report.voxels_touched) + " voxels, " + std::to_string(report.points_read) + " points read"});
+  table.add(
+      {"the same, and build it", size, "1", text(1e3 * rebuild), text(build / rebuild) + " x faster than all", ""});
+  table.add({"replace 1 % anywhere, and build it", size, "1", text(1e3 * spread),
+             text(build / spread) + " x faster than all",
+             scattered.sorted_anew ? "sorted anew" : std::to_string(scattered.voxels_touched) + " voxels"});
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  Options options;
+  CLI::App app(
+      "Scenes of many objects: steps with 10 % of the objects moving; the grid against comparing all pairs of\n"
+      "root spheres; a scene of one effect against its bare queries; replacing points of a large cloud against\n"
+      "building anew.",
+      "bench_scene");
+  app.footer("Example: bench_scene --part steps --objects 1000 --points 10000 --threads 2");
+  app.add_option("--part", options.part, "what to measure")
+      ->check(CLI::IsMember({"all", "steps", "grid", "effect", "update"}))
+      ->capture_default_str();
+  app.add_option("--objects", options.objects, "objects that are queried")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--points", options.points, "of each object")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--steps", options.steps, "steps")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--many", options.many, "objects in the grid")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--cloud", options.cloud, "points of the cloud that is updated")
+      ->check(CLI::Range(std::size_t{100}, std::size_t{2000000000}))
+      ->capture_default_str();
+  app.add_option("--order", options.order, "of that cloud: scan or shuffled")
+      ->check(CLI::IsMember({"scan", "shuffled"}))
+      ->capture_default_str();
+  app.add_option("--threads", options.threads, "threads")->check(CLI::PositiveNumber)->capture_default_str();
+  Table table({"what", "size", "threads", "median [ms]", "that is", "counted"});
+  return runProgram(app, argc, argv, options, table, [&](Table& rows) {
+    const auto asked = [&](const char* part) { return options.part == "all" || options.part == part; };
+    if (asked("steps")) measureSteps(options, rows);
+    if (asked("grid")) measureBroadPhase(options, rows);
+    if (asked("effect")) measureOneEffect(options, rows);
+    if (asked("update")) measureUpdate(options, rows);
+    return true;
+  });
+}

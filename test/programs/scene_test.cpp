@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "program_run.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::HasSubstr;
+using Json = nlohmann::json;
+
+constexpr auto crash = R"({
+  "clouds": { "ball": { "sphere": { "radius": 0.5 }, "spacing": 0.1 } },
+  "objects": [ { "name": "still", "cloud": "ball", "fixed": true },
+               { "name": "moving ball", "cloud": "ball", "pose": [-2, 0, 0], "motion": { "velocity": [1, 0, 0] } } ],
+  "clearance": 0.05, "tolerance": 0.001, "steps": 4, "dt": 0.5,
+  "effects": { EFFECTS },
+  "outputs": { "clouds": "CLOUDS" }
+})";
+
+std::string crashWith(const std::string& effects, const std::string& clouds = "none")
+{
+  std::string text = crash;
+  text.replace(text.find("EFFECTS"), 7, effects);
+  text.replace(text.find("CLOUDS"), 6, clouds);
+  return text;
+}
+
+TEST(SceneProgram, RunsAScene)
+{
+  const io::TemporaryFolder folder;
+  const std::string scene = folder.write("crash.json", crashWith(R"("any": true, "flags": true)", "last")).string();
+  const std::string out = (folder / "out").string();
+  const Outcome done = run("pcl_bsh_scene", scene + " --out " + out);
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("5 steps"));
+  EXPECT_THAT(done.out, HasSubstr("pairs collide in 3 of them"));
+  const std::string csv = io::contentOf(folder / "out" / "steps.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
+  EXPECT_THAT(csv, HasSubstr("step,time_s,moved_objects,candidate_pairs,colliding_pairs,any_queries"));
+  EXPECT_THAT(csv, testing::Not(HasSubstr("slide")));
+  const std::string lines = io::contentOf(folder / "out" / "steps.jsonl");
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 5);
+  const Json last = Json::parse(lines.substr(lines.rfind('\n', lines.size() - 2) + 1));
+  EXPECT_EQ(last["any"][0]["b"], "moving ball");
+  const Json summary = Json::parse(io::contentOf(folder / "out" / "summary.json"));
+  EXPECT_EQ(summary["effects"].size(), 2u);
+  EXPECT_GT(summary["effects"]["any"]["work"]["node_pairs"], 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "out" / "moving_ball_000004.pcd"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out" / "moving_ball_000003.pcd"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out" / "steps.csv.part"));
+}
+
+TEST(SceneProgram, ResponsesKeepObjectsApart)
+{
+  const io::TemporaryFolder folder;
+  const std::string scene = folder.write("crash.json", crashWith(R"("any": true, "response": "stop")")).string();
+  const Outcome done = run("pcl_bsh_scene", scene);
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("pairs collide in 0 of them"));
+  EXPECT_THAT(done.out, HasSubstr("moves met something"));
+}
+
+TEST(SceneProgram, ExplainsAndValidatesWithoutRunning)
+{
+  const io::TemporaryFolder folder;
+  const std::string scene = folder.write("crash.json", crashWith(R"("any": true)")).string();
+  const Outcome explained = run("pcl_bsh_scene", scene + " --explain");
+  EXPECT_EQ(explained.exit_code, 0);
+  EXPECT_THAT(explained.out, HasSubstr("any: which pairs collide"));
+  EXPECT_THAT(explained.out, HasSubstr("flags distance contacts first_contact swept self stop slide gravity deform"));
+  const Outcome valid = run("pcl_bsh_scene", scene + " --validate");
+  EXPECT_EQ(valid.exit_code, 0);
+  EXPECT_THAT(valid.out, HasSubstr("is sound: 2 objects"));
+}
+
+TEST(SceneProgram, FailsInOneLine)
+{
+  const io::TemporaryFolder folder;
+  const std::string scene = folder.write("crash.json", crashWith(R"("ani": true)")).string();
+  const Outcome wrong = run("pcl_bsh_scene", scene + " --out " + (folder / "out").string());
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_EQ(wrong.err, "pcl_bsh_scene: " + scene + ": effects: key 'ani' is unknown: did you mean 'any'?\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+  EXPECT_EQ(run("pcl_bsh_scene", "nowhere.json").exit_code, 1);
+  EXPECT_EQ(run("pcl_bsh_scene", "").exit_code, 2);
+  EXPECT_EQ(run("pcl_bsh_scene", scene + " --fast").exit_code, 2);
+  EXPECT_EQ(run("pcl_bsh_scene", "--help").exit_code, 0);
+}
+
+TEST(SceneProgram, SamplesAreSound)
+{
+  for (const char* sample : {"drift.json", "tunnel.json"}) {
+    const Outcome valid = run("pcl_bsh_scene", std::string(PCL_BSH_SCENES_DIR) + "/" + sample + " --validate");
+    EXPECT_EQ(valid.exit_code, 0) << valid.err;
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh

@@ -1,0 +1,723 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Objects, pairs and the effects that only look; what moves by itself is in scene_response_test.cpp.
+#include <pcl_bsh/query/brute_force.h>
+#include <pcl_bsh/query/scene.h>
+
+#include "allocations.h"
+#include "scene_worlds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+namespace pcl_bsh {
+namespace {
+
+using test::at;
+using test::Random;
+using test::Shape;
+using test::sheet;
+using test::Shelf;
+
+const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A scene of random objects, some of several parts, some fixed, some in groups, and its rules.
+class RandomWorld {
+public:
+  explicit RandomWorld(std::uint64_t seed) : random_(seed)
+  {
+    const int clouds = random_.integer(2, 5);
+    for (int i = 0; i < clouds; ++i) {
+      const auto count = static_cast<std::size_t>(random_.integer(i == 0 ? 0 : 1, 60));
+      hierarchies_.push_back(shelf_.add(test::anyCloud(count, random_.uniform(0.3, 1.5), {0, 0, 0}, random_)));
+    }
+    const int objects = random_.integer(2, 14);
+    for (int i = 0; i < objects; ++i) {
+      SceneObject object;
+      object.name = "object " + std::to_string(i);
+      object.group = random_.chance(0.3) ? "some" : "";
+      object.fixed = random_.chance(0.3);
+      object.pose = random_.pose(3.0);
+      const int parts = random_.chance(0.3) ? 3 : 1;
+      for (int p = 0; p < parts; ++p)
+        object.parts.push_back({"part", hierarchies_[static_cast<std::size_t>(random_.integer(0, clouds - 1))],
+                                parts == 1 ? identity : random_.pose(0.5)});
+      if (parts == 3) object.adjacent.emplace_back(1, 0);
+      objects_.push_back(object);
+    }
+    clearance_ = random_.uniform(0, 0.3);
+    for (int i = 0; i < objects / 3; ++i) {
+      const auto any = [&] { return static_cast<ObjectId>(random_.integer(0, objects - 1)); };
+      PairRule rule;
+      if (random_.chance(0.5)) rule.tested = random_.chance(0.5);
+      if (random_.chance(0.5)) rule.clearance = random_.uniform(0, 0.6);
+      const ObjectId a = any(), b = any();
+      if (a != b) rules_.push_back({a, b, rule});
+    }
+    if (random_.chance(0.5)) group_rule_.tested = random_.chance(0.5);
+    test_pairs_ = random_.chance(0.8);
+  }
+
+  Scene scene(const Effects& effects, unsigned threads = 1, bool remember = true) const
+  {
+    SceneOptions options;
+    options.effects = effects;
+    options.clearance = clearance_;
+    options.test_pairs = test_pairs_;
+    options.threads = threads;
+    options.remember = remember;
+    Scene scene(options);
+    for (const SceneObject& object : objects_) scene.add(object);
+    scene.setGroupRule("some", "some", group_rule_);
+    for (const auto& [a, b, rule] : rules_) scene.setRule(a, b, rule);
+    return scene;
+  }
+
+  /// The same rules, said the other way: the clearance of a pair that is tested.
+  std::optional<double> clearanceOf(ObjectId a, ObjectId b) const
+  {
+    bool tested = test_pairs_ && !(objects_[a].fixed && objects_[b].fixed);
+    double clearance = clearance_;
+    const auto apply = [&](const PairRule& rule) {
+      tested = rule.tested.value_or(tested);
+      clearance = rule.clearance.value_or(clearance);
+    };
+    if (objects_[a].group == "some" && objects_[b].group == "some") apply(group_rule_);
+    for (const auto& [c, d, rule] : rules_)
+      if ((a == c && b == d) || (a == d && b == c)) apply(rule);
+    return tested ? std::optional(clearance) : std::nullopt;
+  }
+
+  /// Moves some objects, the same way in every scene.
+  void shuffle(std::vector<Scene*> scenes)
+  {
+    for (ObjectId i = 0; i < objects_.size(); ++i) {
+      if (random_.chance(0.5)) continue;
+      Eigen::Isometry3d pose = (*scenes.front())[i].pose;
+      const Eigen::Isometry3d turn = random_.pose(0.0);
+      const double reach = random_.chance(0.2) ? 3.0 : 0.05;
+      if (random_.chance(0.3)) pose.linear() = turn.linear() * pose.linear();
+      const Point3 shift = random_.point([&] { return random_.uniform(-reach, reach); });
+      pose.translation() += Eigen::Vector3d(shift[0], shift[1], shift[2]);
+      for (Scene* scene : scenes) scene->setPose(i, pose);
+    }
+  }
+
+private:
+  struct Rule {
+    ObjectId a, b;
+    PairRule rule;
+  };
+
+  Random random_;
+  Shelf shelf_;
+  std::vector<std::shared_ptr<SphereHierarchy>> hierarchies_;
+  std::vector<SceneObject> objects_;
+  double clearance_ = 0.0;
+  bool test_pairs_ = true;
+  std::vector<Rule> rules_;
+  PairRule group_rule_;
+};
+
+Placed placed(const Scene& scene, ObjectId object, std::uint32_t part)
+{
+  return {*scene[object].parts[part].hierarchy, scene.worldPose(object, part)};
+}
+
+/// Calls visit(a, b, part_a, part_b, clearance) for all pairs of parts of pairs to be tested.
+template <class Visit>
+void eachPartPair(const RandomWorld& world, const Scene& scene, const Visit& visit)
+{
+  for (ObjectId a = 0; a < scene.size(); ++a)
+    for (ObjectId b = a + 1; b < scene.size(); ++b)
+      if (const auto clearance = world.clearanceOf(a, b))
+        for (std::uint32_t i = 0; i < scene[a].parts.size(); ++i)
+          for (std::uint32_t j = 0; j < scene[b].parts.size(); ++j) visit(a, b, i, j, *clearance);
+}
+
+CollisionRequest within(double clearance)
+{
+  CollisionRequest request;
+  request.clearance = clearance;
+  request.flagged = Side::both;
+  return request;
+}
+
+using IdPair = std::pair<ObjectId, ObjectId>;
+
+void expectAnyAsBruteForce(const RandomWorld& world, const Scene& scene, const SceneResult& result)
+{
+  std::set<IdPair> expected, found;
+  eachPartPair(world, scene, [&](ObjectId a, ObjectId b, std::uint32_t i, std::uint32_t j, double clearance) {
+    if (brute_force::anyCollision(placed(scene, a, i), placed(scene, b, j), within(clearance)).witness)
+      expected.insert({a, b});
+  });
+  for (const CollidingPair& pair : result.any) {
+    EXPECT_TRUE(found.insert({pair.a, pair.b}).second) << "twice";
+    const PointsView &a = scene[pair.a].parts[pair.part_a].hierarchy->view(),
+                     &b = scene[pair.b].parts[pair.part_b].hierarchy->view();
+    const ExactDistance distance(scene.worldPose(pair.a, pair.part_a), scene.worldPose(pair.b, pair.part_b));
+    EXPECT_LE(distance.compare(a.point(pair.witness.a), b.point(pair.witness.b), *world.clearanceOf(pair.a, pair.b),
+                               a.radius(pair.witness.a), b.radius(pair.witness.b)),
+              0);
+  }
+  EXPECT_EQ(found, expected);
+}
+
+void expectFlagsAsBruteForce(const RandomWorld& world, const Scene& scene, const SceneResult& result)
+{
+  std::map<IdPair, std::vector<std::uint8_t>> expected, found;
+  const auto merge = [](std::vector<std::uint8_t>& into, const std::vector<std::uint8_t>& flags) {
+    into.resize(flags.size());
+    for (std::size_t i = 0; i < flags.size(); ++i) into[i] |= flags[i];
+  };
+  eachPartPair(world, scene, [&](ObjectId a, ObjectId b, std::uint32_t i, std::uint32_t j, double clearance) {
+    const FlagsResult flags = brute_force::collisionFlags(placed(scene, a, i), placed(scene, b, j), within(clearance));
+    if (flags.colliding_a == 0) return;
+    merge(expected[{a, i}], flags.a);
+    merge(expected[{b, j}], flags.b);
+  });
+  for (const FlaggedPart& part : result.flags) {
+    found[{part.object, part.part}] = part.flags;
+    EXPECT_EQ(part.colliding, static_cast<std::size_t>(std::count(part.flags.begin(), part.flags.end(), 1)));
+  }
+  EXPECT_EQ(found, expected);
+}
+
+void expectDistancesAsBruteForce(const RandomWorld& world, const Scene& scene, const SceneResult& result, double limit)
+{
+  std::map<IdPair, double> expected, found;
+  eachPartPair(world, scene, [&](ObjectId a, ObjectId b, std::uint32_t i, std::uint32_t j, double) {
+    const DistanceResult closest = brute_force::closestPair(placed(scene, a, i), placed(scene, b, j));
+    if (!closest.pair || closest.distance > limit) return;
+    const auto entry = expected.emplace(IdPair{a, b}, closest.distance).first;
+    entry->second = std::min(entry->second, closest.distance);
+  });
+  for (const DistantPair& pair : result.distance) found[{pair.a, pair.b}] = pair.distance;
+  EXPECT_EQ(found, expected);
+}
+
+void expectSelfAsBruteForce(const Scene& scene, const SceneResult& result)
+{
+  std::set<std::pair<ObjectId, IdPair>> expected, found;
+  for (ObjectId o = 0; o < scene.size(); ++o) {
+    const SceneObject& whole = scene[o];
+    for (std::uint32_t i = 0; i < whole.parts.size(); ++i)
+      for (std::uint32_t j = i + 1; j < whole.parts.size(); ++j) {
+        if (i == 0 && j == 1) continue; // adjacent
+        if (brute_force::anyCollision({*whole.parts[i].hierarchy, whole.parts[i].pose},
+                                      {*whole.parts[j].hierarchy, whole.parts[j].pose},
+                                      within(scene.options().clearance))
+                .witness)
+          expected.insert({o, {i, j}});
+      }
+  }
+  for (const SelfCollision& hit : result.self) found.insert({hit.object, {hit.part_a, hit.part_b}});
+  EXPECT_EQ(found, expected);
+}
+
+void expectContactsAsQueried(const RandomWorld& world, const Scene& scene, const SceneResult& result, std::size_t most)
+{
+  std::vector<std::vector<Contact>> expected;
+  eachPartPair(world, scene, [&](ObjectId a, ObjectId b, std::uint32_t i, std::uint32_t j, double clearance) {
+    const ContactsResult contacts = nearestContacts(placed(scene, a, i), placed(scene, b, j), within(clearance), most);
+    if (!contacts.contacts.empty()) expected.push_back(contacts.contacts);
+  });
+  ASSERT_EQ(result.contacts.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    ASSERT_EQ(result.contacts[k].contacts.size(), expected[k].size());
+    for (std::size_t c = 0; c < expected[k].size(); ++c)
+      EXPECT_EQ(result.contacts[k].contacts[c].pair, expected[k][c].pair);
+  }
+}
+
+TEST(Scene, SameAsBruteForceOverAllObjectsInAllSteps)
+{
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    RandomWorld world(seed);
+    Effects effects;
+    effects.any = seed % 4 != 3; // flags and contacts use it when it is there
+    effects.flags = effects.self = true;
+    effects.distance = seed % 3 == 0 ? infinity : 0.2;
+    effects.contacts = 3;
+    Scene scene = world.scene(effects);
+    for (int step = 0; step < 5; ++step) {
+      SCOPED_TRACE("step " + std::to_string(step));
+      const SceneResult result = scene.query();
+      if (effects.any) expectAnyAsBruteForce(world, scene, result);
+      expectFlagsAsBruteForce(world, scene, result);
+      expectDistancesAsBruteForce(world, scene, result, *effects.distance);
+      expectSelfAsBruteForce(scene, result);
+      expectContactsAsQueried(world, scene, result, 3);
+      if (HasFailure()) return;
+      world.shuffle({&scene});
+    }
+  }
+}
+
+std::string answers(const SceneResult& result)
+{
+  std::string text;
+  for (const CollidingPair& pair : result.any) text += std::to_string(pair.a) + "x" + std::to_string(pair.b) + " ";
+  for (const DistantPair& pair : result.distance)
+    text += std::to_string(pair.a) + "-" + std::to_string(pair.b) + ":" + std::to_string(pair.distance) + " ";
+  return text;
+}
+
+TEST(Scene, RememberingNeverChangesAnAnswer)
+{
+  std::uint64_t reused = 0;
+  for (std::uint64_t seed = 100; seed < 140; ++seed) {
+    RandomWorld world(seed);
+    Effects effects;
+    effects.any = true;
+    effects.distance = 0.1;
+    Scene remembering = world.scene(effects), forgetful = world.scene(effects, 1, false);
+    for (int step = 0; step < 15; ++step) {
+      const SceneResult result = remembering.query();
+      ASSERT_EQ(answers(result), answers(forgetful.query())) << "seed " << seed << ", step " << step;
+      reused += result.cost(Effect::any).reused;
+      world.shuffle({&remembering, &forgetful});
+    }
+  }
+  EXPECT_GT(reused, 300u);
+}
+
+TEST(Scene, SameForAnyNumberOfThreads)
+{
+  for (std::uint64_t seed = 200; seed < 215; ++seed) {
+    RandomWorld world(seed), twin(seed);
+    Effects effects;
+    effects.any = effects.flags = effects.first_contact = effects.swept = true;
+    effects.distance = 0.3;
+    effects.contacts = 5;
+    Scene one = world.scene(effects), two = twin.scene(effects, 2);
+    for (int step = 0; step < 4; ++step) {
+      const SceneResult a = one.query(), b = two.query();
+      ASSERT_EQ(answers(a), answers(b));
+      ASSERT_EQ(a.any.size(), b.any.size());
+      for (std::size_t i = 0; i < a.any.size(); ++i) ASSERT_EQ(a.any[i].witness, b.any[i].witness);
+      ASSERT_EQ(a.flags.size(), b.flags.size());
+      for (std::size_t i = 0; i < a.flags.size(); ++i) ASSERT_EQ(a.flags[i].flags, b.flags[i].flags);
+      ASSERT_EQ(a.swept.size(), b.swept.size());
+      for (std::size_t i = 0; i < a.swept.size(); ++i) ASSERT_EQ(a.swept[i].flags, b.swept[i].flags);
+      ASSERT_EQ(a.first_contact.size(), b.first_contact.size());
+      for (std::size_t i = 0; i < a.first_contact.size(); ++i)
+        ASSERT_EQ(a.first_contact[i].fraction, b.first_contact[i].fraction);
+      for (std::size_t e = 0; e < kEffects; ++e) {
+        ASSERT_EQ(a.costs[e].work.node_pairs, b.costs[e].work.node_pairs) << nameOf(static_cast<Effect>(e));
+        ASSERT_EQ(a.costs[e].work.exact_decisions, b.costs[e].work.exact_decisions);
+      }
+      world.shuffle({&one, &two});
+    }
+  }
+}
+
+TEST(Scene, AMovedObjectUpdatesOnlyTheVoxelsItLeavesAndEnters)
+{
+  Shelf shelf;
+  const auto cube = shelf.add({{0, 0, 0}, {0.9, 0.9, 0.9}});
+  SceneOptions options;
+  options.effects.any = true;
+  options.voxel_edge = 1.0;
+  Scene scene(options);
+  for (int i = 0; i < 100; ++i) scene.add(object("cube " + std::to_string(i), cube, at(2.0 * i + 0.05, 0.05, 0.05)));
+  SceneResult result = scene.query();
+  EXPECT_EQ(result.broad_phase.moved, 100u);
+  EXPECT_EQ(result.broad_phase.voxels_entered, 100u);
+  EXPECT_EQ(result.broad_phase.voxels_left, 0u);
+  EXPECT_EQ(result.broad_phase.pairs_sharing, 0u);
+  EXPECT_EQ(result.broad_phase.box_tests, 0u);
+
+  scene.setPose(3, at(6.5, 0.05, 0.05)); // into one more voxel
+  result = scene.query();
+  EXPECT_EQ(result.broad_phase.moved, 1u);
+  EXPECT_EQ(result.broad_phase.voxels_entered, 1u);
+  EXPECT_EQ(result.broad_phase.voxels_left, 0u);
+
+  scene.setPose(3, at(8.02, 0.05, 0.05)); // onto its neighbour
+  result = scene.query();
+  EXPECT_EQ(result.broad_phase.voxels_entered, 1u);
+  EXPECT_EQ(result.broad_phase.voxels_left, 2u);
+  EXPECT_EQ(result.broad_phase.pairs_sharing, 1u);
+  EXPECT_EQ(result.broad_phase.box_tests, 1u);
+
+  result = scene.query(); // nothing moved
+  EXPECT_EQ(result.broad_phase.moved + result.broad_phase.voxels_entered + result.broad_phase.box_tests, 0u);
+}
+
+TEST(Scene, FindsWhatIsNearAcrossTheVoxelsBorders)
+{
+  Shelf shelf;
+  const auto point = shelf.add({{0, 0, 0}});
+  SceneOptions options;
+  options.effects.any = true;
+  options.effects.distance = 0.3;
+  options.clearance = 0.25;
+  options.voxel_edge = 0.5;
+  Scene scene(options);
+  scene.add(object("one", point));
+  scene.add(object("other", point));
+  Random random(11);
+  for (int i = 0; i < 500; ++i) {
+    const Point3 p = random.point([&] { return random.uniform(-1, 1); });
+    const Point3 d = random.point([&] { return random.uniform(-0.25, 0.25); });
+    scene.setPose(0, at(p[0], p[1], p[2]));
+    scene.setPose(1, at(p[0] + d[0], p[1] + d[1], p[2] + d[2]));
+    const SceneResult result = scene.query();
+    const double apart = brute_force::closestPair(placed(scene, 0, 0), placed(scene, 1, 0)).distance;
+    ASSERT_EQ(result.any.size(), apart <= 0.25 ? 1u : 0u) << i;
+    ASSERT_EQ(result.distance.size(), apart <= 0.3 ? 1u : 0u) << i;
+  }
+}
+
+TEST(Scene, WhatIsRememberedLastsNoLongerThanItHolds)
+{
+  Shelf shelf;
+  const auto point = shelf.add({{0, 0, 0}}), bar = shelf.add({{-2, 0, 0}, {2, 0, 0}, {0, -2.1, 0}, {0, 2.1, 0}});
+  SceneOptions options;
+  options.effects.any = true;
+  options.clearance = 0.1;
+  for (const bool turning : {false, true}) {
+    Scene scene(options);
+    SceneObject mover = object("mover", turning ? bar : point, turning ? at(0, 0, 0) : at(-3, 0, 0));
+    mover.motion = turning ? VelocityMotion{{0, 0, 0}, {0, 0, 0.5}} : VelocityMotion{{1, 0, 0}};
+    scene.add(mover);
+    scene.add(object("target", point, turning ? at(1.45, 1.45, 0) : at(0, 0.05, 0)));
+    std::uint64_t reused = 0;
+    int colliding = 0;
+    for (int step = 0; step < 60; ++step) {
+      const SceneResult result = scene.step(0.1);
+      CollisionRequest request = within(options.clearance);
+      const bool expected =
+          brute_force::anyCollision(placed(scene, 0, 0), placed(scene, 1, 0), request).witness.has_value();
+      ASSERT_EQ(result.any.size(), expected ? 1u : 0u) << step;
+      reused += result.cost(Effect::any).reused;
+      colliding += expected;
+    }
+    EXPECT_GT(colliding, 0);
+    EXPECT_TRUE(!turning || reused > 10) << reused; // boxes meet long before the points
+  }
+}
+
+/// Two rows of cubes that touch pairwise, one row moving; made to be asked for any set of effects.
+Scene busyScene(Shelf& shelf, const Effects& effects)
+{
+  SceneOptions options;
+  options.effects = effects;
+  options.clearance = 0.2;
+  Scene scene(options);
+  Random random(5);
+  const auto cloud = shelf.add(test::makePoints(Shape::uniform, 200, 0.5, random));
+  for (int i = 0; i < 6; ++i) {
+    scene.add(fixedObject("wall " + std::to_string(i), cloud, at(2 * i, 0, 0)));
+    SceneObject mover = object("mover " + std::to_string(i), cloud, at(2 * i, 1.1, 0));
+    mover.parts.push_back({"arm", cloud, at(0, 0.2, 0)});
+    mover.motion = VelocityMotion{{0, -0.1, 0}, {0, 0, 0.1}};
+    scene.add(mover);
+  }
+  return scene;
+}
+
+Effects only(Effect effect)
+{
+  Effects effects;
+  switch (effect) {
+  case Effect::any:
+    effects.any = true;
+    break;
+  case Effect::flags:
+    effects.flags = true;
+    break;
+  case Effect::distance:
+    effects.distance = 1.0;
+    break;
+  case Effect::contacts:
+    effects.contacts = 4;
+    break;
+  case Effect::first_contact:
+    effects.first_contact = true;
+    break;
+  case Effect::swept:
+    effects.swept = true;
+    break;
+  case Effect::self:
+    effects.self = true;
+    break;
+  case Effect::stop:
+    effects.response = Response::stop;
+    break;
+  case Effect::slide:
+    effects.response = Response::slide;
+    break;
+  case Effect::gravity:
+    effects.gravity = Gravity{};
+    break;
+  case Effect::deform:
+    effects.deform = 1.5;
+    break;
+  }
+  return effects;
+}
+
+bool isZero(const EffectCost& cost)
+{
+  return cost.pairs == 0 && cost.reused == 0 && cost.seconds == 0.0 && cost.work.node_pairs == 0 &&
+         cost.work.leaf_pairs == 0 && cost.work.exact_decisions == 0 && cost.work.voxels_built == 0;
+}
+
+TEST(Scene, AnEffectThatIsNotListedDoesNothing)
+{
+  for (std::size_t e = 0; e < kEffects; ++e) {
+    const auto effect = static_cast<Effect>(e);
+    SCOPED_TRACE(nameOf(effect));
+    Shelf shelf;
+    Scene scene = busyScene(shelf, only(effect));
+    EXPECT_TRUE(only(effect).has(effect));
+    EffectCost spent;
+    for (int step = 0; step < 3; ++step) {
+      const SceneResult result = scene.step(0.5);
+      for (std::size_t other = 0; other < kEffects; ++other) {
+        EXPECT_TRUE(other == e || isZero(result.costs[other])) << nameOf(static_cast<Effect>(other));
+      }
+      spent.pairs += result.costs[e].pairs;
+      spent.seconds += result.costs[e].seconds;
+      EXPECT_EQ(result.any.empty(), effect != Effect::any || result.any.empty());
+      EXPECT_EQ(result.any.capacity() > 0, effect == Effect::any && !result.any.empty());
+      EXPECT_EQ(result.flags.capacity() > 0, effect == Effect::flags && !result.flags.empty());
+      EXPECT_EQ(result.distance.capacity() > 0, effect == Effect::distance && !result.distance.empty());
+      EXPECT_EQ(result.contacts.capacity() > 0, effect == Effect::contacts && !result.contacts.empty());
+      EXPECT_EQ(result.first_contact.capacity() > 0, effect == Effect::first_contact && !result.first_contact.empty());
+      EXPECT_EQ(result.swept.capacity() > 0, effect == Effect::swept && !result.swept.empty());
+      EXPECT_EQ(result.self.capacity() > 0, effect == Effect::self && !result.self.empty());
+    }
+    if (effect != Effect::deform) {
+      EXPECT_GT(spent.pairs, 0u);
+      EXPECT_GT(spent.seconds, 0.0);
+    }
+  }
+}
+
+TEST(Scene, AnEffectThatIsNotListedAllocatesAndBuildsNothing)
+{
+  Shelf shelf;
+  Scene idle = busyScene(shelf, Effects());
+  EXPECT_TRUE(Effects().none());
+  const std::size_t before = test::allocations();
+  for (int step = 0; step < 4; ++step) idle.step(0.5);
+  EXPECT_EQ(test::allocations(), before);
+  EXPECT_EQ(idle[0].parts[0].hierarchy->statistics().voxels_built, 0u);
+
+  // A scene of one effect allocates as often, whatever the library could do besides: as often as its own queries, and
+  // none of the others' results or tables.
+  const auto allocationsOf = [&](const Effects& effects) {
+    Shelf own;
+    Scene scene = busyScene(own, effects);
+    scene.step(0.5);
+    scene.step(0.5);
+    const std::size_t start = test::allocations();
+    scene.query(); // nothing has moved: all answers are known
+    return test::allocations() - start;
+  };
+  EXPECT_LE(allocationsOf(only(Effect::any)), 4u); // the list of colliding pairs grows
+  EXPECT_EQ(allocationsOf(only(Effect::stop)), 0u);
+  EXPECT_EQ(allocationsOf(only(Effect::gravity)), 0u);
+  EXPECT_EQ(allocationsOf(only(Effect::deform)), 0u);
+}
+
+TEST(Scene, FixedObjectsMeetOnlyWhereARuleSaysSo)
+{
+  Shelf shelf;
+  const auto point = shelf.add({{0, 0, 0}});
+  SceneOptions options;
+  options.effects.any = true;
+  Scene scene(options);
+  SceneObject left = fixedObject("left", point), right = fixedObject("right", point);
+  left.group = right.group = "walls";
+  const ObjectId a = scene.add(left), b = scene.add(right);
+  EXPECT_TRUE(scene.query().any.empty());
+  scene.setGroupRule("walls", "walls", {true, std::nullopt});
+  EXPECT_EQ(scene.query().any.size(), 1u);
+  scene.setRule(b, a, {false, std::nullopt});
+  EXPECT_TRUE(scene.query().any.empty());
+  scene.setRule(a, b, {true, 0.5});
+  scene.setPose(b, at(0.5, 0, 0));
+  EXPECT_EQ(scene.query().any.size(), 1u);
+  scene.setPose(b, at(0.51, 0, 0));
+  EXPECT_TRUE(scene.query().any.empty());
+}
+
+TEST(Scene, OnlyListedPairs)
+{
+  Shelf shelf;
+  const auto point = shelf.add({{0, 0, 0}});
+  SceneOptions options;
+  options.effects.any = true;
+  options.test_pairs = false;
+  Scene scene(options);
+  for (const char* name : {"a", "b", "c"}) scene.add(object(name, point));
+  EXPECT_TRUE(scene.query().any.empty());
+  scene.setRule(0, 2, {true, std::nullopt});
+  const SceneResult result = scene.query();
+  ASSERT_EQ(result.any.size(), 1u);
+  EXPECT_EQ(result.any[0].a, 0u);
+  EXPECT_EQ(result.any[0].b, 2u);
+}
+
+TEST(Scene, FirstContactWithAKnownAnswer)
+{
+  Shelf shelf;
+  const auto point = shelf.add({{0, 0, 0}}), bar = shelf.add({{-1, 0, 0}, {1, 0, 0}});
+  SceneOptions options;
+  options.effects.first_contact = true;
+  options.clearance = 0.5;
+  options.tolerance = 1e-6;
+  Scene scene(options);
+  SceneObject bullet = object("bullet", point, at(-10, 0, 0));
+  bullet.motion = VelocityMotion{{20, 0, 0}};
+  scene.add(bullet);
+  scene.add(object("target", point)); // passed right through
+  EXPECT_TRUE(scene.query().first_contact.empty());
+  SceneResult result = scene.step(1.0);
+  ASSERT_EQ(result.first_contact.size(), 1u);
+  EXPECT_NEAR(result.first_contact[0].fraction, 9.5 / 20, 1e-6);
+  EXPECT_TRUE(scene.step(1.0).first_contact.empty());
+
+  // A bar turning about its middle meets a point at (0, 1.2) when it has turned by an angle known from the triangle.
+  Scene turning(options);
+  SceneObject beam = object("beam", bar);
+  beam.motion = VelocityMotion{{0, 0, 0}, {0, 0, 1}};
+  turning.add(beam);
+  turning.add(object("point", point, at(0, 1.2, 0)));
+  turning.query();
+  result = turning.step(1.5);
+  ASSERT_EQ(result.first_contact.size(), 1u);
+  // |(cos t, sin t) - (0, 1.2)|^2 = 1 + 1.44 - 2.4 sin t = 0.25
+  EXPECT_NEAR(result.first_contact[0].fraction, std::asin(2.19 / 2.4) / 1.5, 1e-6);
+}
+
+TEST(Scene, FirstContactIsNeverLateAndSweptPointsAreAllFound)
+{
+  for (std::uint64_t seed = 300; seed < 316; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    Shelf shelf;
+    const auto shape = [&] { // without outliers, which go too far in a step of the check
+      return test::all_shapes[static_cast<std::size_t>(random.integer(0, 6))];
+    };
+    const auto a = shelf.add(test::makePoints(shape(), 40, 1, random)),
+               b = shelf.add(test::makePoints(shape(), 40, 1, random));
+    SceneOptions options;
+    options.effects.first_contact = options.effects.swept = true;
+    options.clearance = random.uniform(0.05, 0.3);
+    options.tolerance = 1e-4;
+    Scene scene(options);
+    const Eigen::Isometry3d start = random.pose(4), goal = random.pose(4);
+    SceneObject moving = object("moving", a, start);
+    const bool turning = random.chance(0.7);
+    Eigen::Isometry3d end = goal;
+    if (!turning) end.linear() = start.linear();
+    moving.motion = WaypointMotion{{0, 1}, {start, end}};
+    scene.add(moving);
+    scene.add(object("other", b, random.pose(1)));
+    scene.query();
+    const SceneResult result = scene.step(1);
+
+    // The same way in small steps. Turning about the box's centre and about the origin differ: use the box's centre.
+    Eigen::Vector3d low = Eigen::Vector3d::Constant(infinity), high = -low;
+    for (std::size_t i = 0; i < 40; ++i) {
+      const Point3 p = a->view().point(static_cast<std::uint32_t>(i));
+      low = low.cwiseMin(Eigen::Vector3d(p[0], p[1], p[2]));
+      high = high.cwiseMax(Eigen::Vector3d(p[0], p[1], p[2]));
+    }
+    const Eigen::Vector3d center = 0.5 * (low + high);
+    double first = infinity, nearest_at_contact = infinity;
+    std::vector<std::uint8_t> swept(40, 0), maybe(40, 0);
+    const auto poseOf = [&](double s) {
+      Eigen::Isometry3d pose = start;
+      const Eigen::Quaterniond q(start.linear()), r(end.linear());
+      pose.linear() = q.slerp(s, r).toRotationMatrix();
+      pose.translation() = (1 - s) * (start * center) + s * (end * center) - pose.linear() * center;
+      return pose;
+    };
+    const Eigen::Isometry3d other = scene.worldPose(1);
+    constexpr int steps = 200;
+    for (int i = 0; i <= steps; ++i) {
+      const double s = static_cast<double>(i) / steps;
+      const FlagsResult flags = brute_force::collisionFlags({*a, poseOf(s)}, {*b, other}, within(options.clearance));
+      if (flags.colliding_a > 0) first = std::min(first, s);
+      const FlagsResult wide =
+          brute_force::collisionFlags({*a, poseOf(s)}, {*b, other}, within(options.clearance + 0.1));
+      for (std::size_t k = 0; k < 40; ++k) {
+        swept[k] |= flags.a[k];
+        maybe[k] |= wide.a[k];
+      }
+    }
+    const double fraction = result.first_contact.empty() ? infinity : result.first_contact[0].fraction;
+    EXPECT_LE(fraction, first);
+    if (fraction <= 1) {
+      nearest_at_contact = brute_force::closestPair({*a, poseOf(fraction)}, {*b, other}).distance;
+      EXPECT_LE(nearest_at_contact, options.clearance + options.tolerance + 1e-9);
+    }
+    const auto flagged = std::find_if(result.swept.begin(), result.swept.end(),
+                                      [](const FlaggedPart& part) { return part.object == 0; });
+    for (std::size_t k = 0; k < 40; ++k) {
+      const bool is = flagged != result.swept.end() && flagged->flags[k] == 1;
+      EXPECT_TRUE(is || swept[k] == 0) << k;
+      EXPECT_TRUE(!is || maybe[k] == 1) << k;
+    }
+    EXPECT_EQ(flagged == result.swept.end(), result.first_contact.empty());
+  }
+}
+
+TEST(Scene, RefusesWhatMakesNoSense)
+{
+  Shelf shelf;
+  const auto point = shelf.add({{0, 0, 0}});
+  SceneOptions options;
+  options.clearance = -1;
+  EXPECT_THROW(Scene{options}, std::invalid_argument);
+  options = {};
+  options.tolerance = 0;
+  EXPECT_THROW(Scene{options}, std::invalid_argument);
+  options = {};
+  options.effects.gravity = Gravity{-1, {0, 0, -1}};
+  EXPECT_THROW(Scene{options}, std::invalid_argument);
+  options = {};
+  options.effects.deform = 0.5;
+  EXPECT_THROW(Scene{options}, std::invalid_argument);
+  options = {};
+  options.effects.distance = std::nan("");
+  EXPECT_THROW(Scene{options}, std::invalid_argument);
+
+  Scene scene({});
+  EXPECT_THROW(scene.add(object("", point)), std::invalid_argument);
+  EXPECT_THROW(scene.add(object("nothing", nullptr)), std::invalid_argument);
+  EXPECT_THROW(scene.add(SceneObject{"no parts", "", {}, identity, false, {}, {}}), std::invalid_argument);
+  scene.add(object("one", point));
+  EXPECT_THROW(scene.add(object("one", point)), std::invalid_argument);
+  Eigen::Isometry3d scaled = identity;
+  scaled.linear() *= 2;
+  EXPECT_THROW(scene.add(object("scaled", point, scaled)), std::invalid_argument);
+  EXPECT_THROW(scene.setPose(0, scaled), std::invalid_argument);
+  EXPECT_THROW(scene.setPose(7, identity), std::invalid_argument);
+  EXPECT_THROW(scene.setMotion(0, CircularMotion{{0, 0, 0}, {0, 0, 0}, 1, true}), std::invalid_argument);
+  EXPECT_THROW(scene.setMotion(0, WaypointMotion{{1, 1}, {identity, identity}}), std::invalid_argument);
+  EXPECT_THROW(scene.step(-1), std::invalid_argument);
+  EXPECT_THROW(scene.step(std::nan("")), std::invalid_argument);
+  EXPECT_THROW(scene.setRule(0, 0, {true, std::nullopt}), std::invalid_argument);
+  SceneObject joined = object("joined", point);
+  joined.adjacent = {{0, 1}};
+  EXPECT_THROW(scene.add(joined), std::invalid_argument);
+  EXPECT_EQ(scene.size(), 1u);
+  EXPECT_EQ(scene.find("one"), ObjectId{0});
+  EXPECT_EQ(scene.find("two"), std::nullopt);
+}
+
+} // namespace
+} // namespace pcl_bsh
