@@ -109,6 +109,13 @@ DistanceBand RelativeFrame::band(double clearance) const noexcept
   return skewedBand(clearance / unit_b_, error, skew_);
 }
 
+DistanceBand RelativeFrame::bandUnproven(double clearance) const noexcept
+{
+  const double d = clearance / unit_b_;
+  const auto squared = static_cast<float>(d * d);
+  return {squared, squared};
+}
+
 float RelativeFrame::pruneReach(double clearance) const noexcept
 {
   // At least 2^-60, so that the cast errs by u at most; the factor rounds outward again.

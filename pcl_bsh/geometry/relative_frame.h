@@ -33,6 +33,9 @@ public:
   /// The band for a clearance >= 0 given in the clouds' unit. @pre finite or infinite, not NaN.
   DistanceBand band(double clearance) const noexcept;
 
+  /// A band without width: the float distance decides, right or wrong.
+  DistanceBand bandUnproven(double clearance) const noexcept;
+
   /// At least (clearance + error) in b's units: two nodes whose centres' float distance exceeds the sum of their
   /// stretched radii and this, by more than rounding, hold no colliding pair.
   float pruneReach(double clearance) const noexcept;

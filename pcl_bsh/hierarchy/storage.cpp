@@ -63,26 +63,36 @@ double SphereHierarchy::Storage::sumOfRadii() const
   return sum;
 }
 
-void SphereHierarchy::Storage::build(std::size_t index, std::uint64_t& built_now) const
+bool SphereHierarchy::Storage::claim(Voxel& voxel)
 {
-  Voxel& voxel = voxels[index];
   std::uint8_t state = Voxel::sorted;
   while (!voxel.state.compare_exchange_weak(state, Voxel::building, std::memory_order_acq_rel)) {
-    if (state == Voxel::built) return;
+    if (state == Voxel::built) return false;
     if (state == Voxel::building) voxel.state.wait(Voxel::building, std::memory_order_acquire);
     state = Voxel::sorted;
   }
+  return true;
+}
+
+void SphereHierarchy::Storage::release(Voxel& voxel, Voxel::State state)
+{
+  voxel.state.store(state, std::memory_order_release);
+  voxel.state.notify_all();
+}
+
+void SphereHierarchy::Storage::build(std::size_t index, std::uint64_t& built_now) const
+{
+  Voxel& voxel = voxels[index];
+  if (!claim(voxel)) return;
   try {
     buildVoxel(voxel, view, options.fit);
   }
   catch (...) {
-    voxel.state.store(Voxel::sorted, std::memory_order_release);
-    voxel.state.notify_all();
+    release(voxel, Voxel::sorted);
     throw;
   }
   ++built_now;
-  voxel.state.store(Voxel::built, std::memory_order_release);
-  voxel.state.notify_all();
+  release(voxel, Voxel::built);
 }
 
 } // namespace pcl_bsh

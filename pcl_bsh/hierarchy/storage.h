@@ -84,6 +84,27 @@ public:
     return v;
   }
 
+  /// How many points a visit to the voxel would have to build.
+  std::size_t pointsToBuild(std::size_t voxel) const
+  {
+    return voxels[voxel].state.load(std::memory_order_relaxed) == Voxel::built ? 0 : voxels[voxel].count;
+  }
+
+  /// Calls visit(record) for each point of a voxel, built or not.
+  template <class Visit>
+  void forEachRecord(std::size_t voxel, const Visit& visit) const
+  {
+    Voxel& v = voxels[voxel];
+    if (claim(v)) {
+      const auto* sorted = reinterpret_cast<const PointRecord*>(v.block);
+      for (std::uint32_t i = 0; i < v.count; ++i) visit(sorted[i].record);
+      release(v, Voxel::sorted);
+    }
+    else {
+      for (std::uint32_t i = 0; i < v.count; ++i) visit(v.records()[i]);
+    }
+  }
+
   PointsView view;
   HierarchyOptions options;
   double voxel_edge = 1.0;
@@ -115,6 +136,10 @@ public:
 
 private:
   void build(std::size_t voxel, std::uint64_t& built_now) const;
+
+  /// Waits for whoever has the voxel. @return false when it is built, and nobody's to change
+  static bool claim(Voxel& voxel);
+  static void release(Voxel& voxel, Voxel::State state);
 };
 
 /// Floats of padding behind each voxel's block: a whole leaf can be loaded from any point of it.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Any pair: depth first, nearest children first, done at the first witness.
+#include <pcl_bsh/query/acceptance.h>
 #include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/interval_search.h>
 #include <pcl_bsh/query/request_check.h>
 
 #include <algorithm>
@@ -21,13 +23,22 @@ namespace {
 
 class AnySearch {
 public:
-  AnySearch(const Placed& a, const Placed& b, double clearance) : walk_(a, b), pairs_(a, b, clearance) {}
+  AnySearch(const Placed& a, const Placed& b, const CollisionRequest& request)
+  : walk_(a, b),
+    pairs_(a, b, request.clearance),
+    acceptance_(request)
+  {
+    walk_.accepted_beyond = acceptance_.accepted - acceptance_.clearance;
+  }
 
   AnyResult run()
   {
     AnyResult result;
     result.witness = search();
     result.verdict = result.witness ? Verdict::colliding : Verdict::free;
+    if (acceptance_.proven)
+      (result.witness ? result.distance.upper : result.distance.lower) =
+          result.witness ? acceptance_.accepted : acceptance_.clearance;
     result.work = walk_.work;
     return result;
   }
@@ -83,7 +94,7 @@ private:
                        [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, -1.0f); });
     }
     else {
-      const DistanceBand band = frame.band(pairs_.clearance);
+      const DistanceBand band = acceptance_.band(frame);
       alignas(64) float nearest[kLeafPoints];
       std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
       nearestSquared(points, b.x(), b.y(), b.z(), b.count, nearest);
@@ -103,14 +114,15 @@ private:
 
   PairWalk walk_;
   PointPairs pairs_;
+  Acceptance acceptance_;
   std::vector<LanePair> stack_;
 };
 
 } // namespace
 
-AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, double clearance)
+AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const CollisionRequest& request)
 {
-  return AnySearch(a, b, clearance).run();
+  return AnySearch(a, b, request).run();
 }
 
 } // namespace HWY_NAMESPACE
@@ -126,7 +138,12 @@ AnyResult anyCollision(const Placed& a, const Placed& b, const CollisionRequest&
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
-  return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request.clearance);
+  if (request.accuracy.stopsEarly()) {
+    const IntervalFinding found = searchInterval(a, b, request.accuracy, request.clearance);
+    const bool colliding = found.verdict == Verdict::colliding;
+    return {found.verdict, colliding ? found.pair : std::nullopt, found.distance, found.work};
+  }
+  return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request);
 }
 
 } // namespace pcl_bsh

@@ -2,6 +2,7 @@
 // The closest pair: depth first, nearest children first, until nothing left can be nearer. (A heap of pairs, best
 // first, visits as many nodes and spends more than half of the time on itself.)
 #include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/interval_search.h>
 #include <pcl_bsh/query/request_check.h>
 
 #include <algorithm>
@@ -24,7 +25,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class ClosestSearch {
 public:
-  ClosestSearch(const Placed& a, const Placed& b) : walk_(a, b), pairs_(a, b, 0.0) {}
+  ClosestSearch(const Placed& a, const Placed& b, const Accuracy& accuracy)
+  : walk_(a, b),
+    pairs_(a, b, 0.0),
+    tolerance_(accuracy.mode == Accuracy::Mode::tolerance ? accuracy.value : 0.0),
+    proven_(accuracy.isProven())
+  {
+  }
 
   DistanceResult run()
   {
@@ -37,7 +44,7 @@ public:
       stack_.pop_back();
       if (canImprove(pair)) visit(pair);
     }
-    return {best_gap_, best_, walk_.work};
+    return {best_gap_, best_, proven_ ? interval() : Interval{}, walk_.work};
   }
 
 private:
@@ -61,15 +68,24 @@ private:
     if (canImprove(pair)) stack_.push_back(pair);
   }
 
+  /// Nothing was passed over but what is no nearer than the best less the tolerance.
+  Interval interval() const
+  {
+    if (!best_) return {kInfinity, kInfinity};
+    const double lower = std::nextafter(best_gap_, -kInfinity) - tolerance_;
+    return {std::max(tolerance_ > 0.0 ? std::nextafter(lower, -kInfinity) : lower, static_cast<double>(lowestKey())),
+            best_high_};
+  }
+
   /// Distances above this are of no interest.
-  double clearanceToBeat() const { return std::max(best_high_, 0.0); }
+  double clearanceToBeat() const { return std::max(to_beat_, 0.0); }
 
   /// A pair is worth a visit if it may be nearer, or as near with smaller record numbers.
   bool canImprove(const LanePair& pair) const
   {
     const double bound = std::max(pair.key, lowestKey());
-    if (bound < best_high_) return true;
-    if (bound > best_high_) return false;
+    if (bound < to_beat_) return true;
+    if (bound > to_beat_ || tolerance_ > 0.0) return false;
     return PointPair{lowest(walk_.a, pair.a), lowest(walk_.b, pair.b)} < *best_;
   }
 
@@ -101,12 +117,17 @@ private:
     const RelativeFrame& frame = walk_.frames.find(pair.a.space, pair.b.space);
     LeafPoints points;
     carryLeaf(frame, a, points);
-    const auto found = [&](std::uint32_t i, std::uint32_t j, float) {
-      consider({a.record(i), b.record(j)});
+    const double unit = walk_.b.frame(pair.b.space).unit;
+    const auto found = [&](std::uint32_t i, std::uint32_t j, float squared) {
+      const PointPair candidate{a.record(i), b.record(j)};
+      if (proven_)
+        consider(candidate);
+      else
+        believe(candidate, std::sqrt(static_cast<double>(squared)) * unit - a.radius(i) - b.radius(j));
       return false;
     };
     if (pairs_.haveRadii()) {
-      eachBallPairNear(frame, points, firstBits(a.count), a, b, best_high_, found);
+      eachBallPairNear(frame, points, firstBits(a.count), a, b, to_beat_, found);
       return;
     }
     // The nearest pair in float bounds what is worth an exact look.
@@ -114,7 +135,6 @@ private:
     std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
     nearestSquared(points, b.x(), b.y(), b.z(), b.count, nearest);
     const float least = *std::min_element(nearest, nearest + a.count);
-    const double unit = walk_.b.frame(pair.b.space).unit;
     const double within =
         (std::sqrt(static_cast<double>(least)) * (1.0 + 0x1p-20) + frame.error) * (1.0 + frame.skew()) * unit;
     const double to_beat = std::isnan(within) ? clearanceToBeat() : std::min(within, clearanceToBeat());
@@ -138,6 +158,15 @@ private:
     const bool zero =
         best_gap_ == 0.0 && pairs_.distance.compare(posed.p, posed.q, 0.0, -posed.radius_p, -posed.radius_q) == 0;
     best_high_ = zero ? 0.0 : std::nextafter(best_gap_, kInfinity);
+    to_beat_ = tolerance_ > 0.0 ? std::nextafter(best_high_ - tolerance_, -kInfinity) : best_high_;
+  }
+
+  /// The same on the word of float arithmetic.
+  void believe(PointPair candidate, double gap)
+  {
+    if (best_ && !(gap < best_gap_)) return;
+    best_ = candidate;
+    best_gap_ = best_high_ = to_beat_ = gap;
   }
 
   PairWalk walk_;
@@ -146,13 +175,16 @@ private:
   std::optional<PointPair> best_;
   double best_gap_ = kInfinity;  // of best_, rounded
   double best_high_ = kInfinity; // at least the gap of best_
+  double to_beat_ = kInfinity;   // what is not nearer than this is passed over
+  double tolerance_;
+  bool proven_;
 };
 
 } // namespace
 
-DistanceResult closestPairOnTarget(const Placed& a, const Placed& b)
+DistanceResult closestPairOnTarget(const Placed& a, const Placed& b, const Accuracy& accuracy)
 {
-  return ClosestSearch(a, b).run();
+  return ClosestSearch(a, b, accuracy).run();
 }
 
 } // namespace HWY_NAMESPACE
@@ -168,7 +200,12 @@ DistanceResult closestPair(const Placed& a, const Placed& b, const CollisionRequ
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
-  return HWY_DYNAMIC_DISPATCH(closestPairOnTarget)(a, b);
+  if (request.accuracy.stopsEarly()) {
+    const IntervalFinding found = searchInterval(a, b, request.accuracy, std::nullopt);
+    const double gap = found.pair ? PointPairs(a, b, 0.0).gap(*found.pair) : std::numeric_limits<double>::infinity();
+    return {gap, found.pair, found.distance, found.work};
+  }
+  return HWY_DYNAMIC_DISPATCH(closestPairOnTarget)(a, b, request.accuracy);
 }
 
 } // namespace pcl_bsh

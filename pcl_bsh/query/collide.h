@@ -11,6 +11,7 @@
 #pragma once
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/result.h>
 
 #include <Eigen/Geometry>
@@ -29,6 +30,7 @@ struct CollisionRequest {
   double clearance = 0.0; ///< finite, >= 0; inclusive
   Side flagged = Side::a; ///< whose points collisionFlags() flags
   unsigned threads = 1;   ///< 0: all of the machine's
+  Accuracy accuracy;      ///< exact, unless the caller asks for less
 };
 
 /// Does any pair of points collide? Stops at the first witness.

@@ -3,8 +3,10 @@
 // is settled at its first neighbour, a node as soon as its farthest point must be within the clearance of something.
 #include <pcl_bsh/hierarchy/crowded_cell.h>
 #include <pcl_bsh/hierarchy/parallel.h>
+#include <pcl_bsh/query/acceptance.h>
 #include <pcl_bsh/query/collide.h>
 #include <pcl_bsh/query/request_check.h>
+#include <pcl_bsh/query/stop_rule.h>
 
 #include <algorithm>
 #include <numeric>
@@ -16,6 +18,31 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/query/leaf_pair-inl.h>
+
+#ifndef PCL_BSH_QUERY_COLLISION_FLAGS_ONCE
+#define PCL_BSH_QUERY_COLLISION_FLAGS_ONCE
+namespace pcl_bsh {
+namespace {
+
+constexpr auto kFree = static_cast<std::uint8_t>(Verdict::free);
+constexpr auto kColliding = static_cast<std::uint8_t>(Verdict::colliding);
+constexpr auto kUndecided = static_cast<std::uint8_t>(Verdict::undecided);
+
+struct FlagQuery {
+  const Placed& a;
+  const Placed& b;
+  const PointPairs& pairs;
+  Acceptance acceptance;
+};
+
+struct FlaggedVoxel {
+  Work work;
+  bool undecided = false; ///< whether points were left so
+};
+
+} // namespace
+} // namespace pcl_bsh
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -33,10 +60,15 @@ struct Meeting {
 /// A sphere of b that the points of some node of a may collide with: a child of `node`, in the voxel of a meeting.
 struct Candidate {
   const Node* node;
-  std::uint32_t lane;
+  std::uint16_t lane;
+  std::uint16_t level; ///< of `node` below its voxel, from 1
   std::uint32_t meeting;
 
   bool isLeaf() const { return node->isLeaf(lane); }
+  Candidate below(const Node& child, std::uint32_t i) const
+  {
+    return {&child, static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(level + 1), meeting};
+  }
   LeafRange leaf(const Meeting& m) const { return {m.voxel, node->begin[lane], node->comparedPoints(lane)}; }
 };
 
@@ -59,14 +91,17 @@ struct Visit {
   std::vector<Candidate> near[kLanes]; ///< what each child has to be compared with; of leaves, in this meeting
 
   std::uint32_t open_points[kLanes] = {}; ///< of leaves: bits of the points not flagged yet
+  std::uint32_t unsure = 0;               ///< bits of leaves that met spheres which were not to be opened
 };
 
 class FlagWalk {
 public:
-  FlagWalk(const Placed& a, const Placed& b, const PointPairs& pairs, std::uint8_t* flags, std::deque<Visit>& visits)
-  : a_(a),
-    b_(b),
-    pairs_(pairs),
+  FlagWalk(const FlagQuery& query, const StopRule& rule, std::uint8_t* flags, std::deque<Visit>& visits)
+  : a_(query.a),
+    b_(query.b),
+    pairs_(query.pairs),
+    acceptance_(query.acceptance),
+    rule_(rule),
     flags_(flags),
     visits_(visits)
   {
@@ -76,36 +111,58 @@ public:
   void run(std::uint32_t voxel)
   {
     const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose);
-    if (above.separates(pairs_.clearance + a_.storage.largest_radius + b_.storage.largest_radius)) return;
+    if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs)) {
+      found.undecided = true;
+      return;
+    }
     std::vector<std::uint32_t> reached;
-    const bool all = !reach(voxel, above, b_.storage.top[0], reached);
-    if (!all && reached.empty()) return;
-    a_voxel_ = &a_.voxel(voxel, work);
-    if (all) return settle(0, a_voxel_->count);
+    const bool apart = above.separates(pairs_.clearance + a_.storage.largest_radius + b_.storage.largest_radius);
+    const bool all = !apart && !reach(voxel, above, b_.storage.top[0], reached);
+    if (all) return a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { flags_[record] = kColliding; });
+    if (apart || reached.empty()) {
+      if (rule_.mayStop()) a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { flags_[record] = kFree; });
+      return;
+    }
+    if (!mayEnter(voxel, reached)) {
+      found.undecided = true;
+      return;
+    }
+    a_voxel_ = &a_.voxel(voxel, found.work);
 
     std::vector<Candidate> candidates;
     for (const std::uint32_t other : reached) {
       const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose);
-      const Node& root = b_.voxel(other, work).nodes[0];
+      const Node& root = b_.voxel(other, found.work).nodes[0];
       for (std::uint32_t lane = 0; lane < root.count; ++lane)
-        candidates.push_back({&root, lane, static_cast<std::uint32_t>(meetings_.size())});
+        candidates.push_back(
+            {&root, static_cast<std::uint16_t>(lane), 1, static_cast<std::uint32_t>(meetings_.size())});
       meetings_.push_back({&b_.storage.voxels[other], frame, frame.pruneReach(pairs_.clearance),
-                           frame.acceptReach(pairs_.clearance), frame.bluntRadius(), frame.band(pairs_.clearance)});
+                           frame.acceptReach(acceptance_.accepted), frame.bluntRadius(), acceptance_.band(frame)});
     }
     descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, candidates, 0);
   }
 
-  Work work;
+  FlaggedVoxel found;
 
 private:
+  /// Whether the walk may go below voxels, and has the time to build those that it needs.
+  bool mayEnter(std::uint32_t voxel, const std::vector<std::uint32_t>& reached) const
+  {
+    if (rule_.deepest == 0 || rule_.isSpent(found.work.node_pairs)) return false;
+    if (!rule_.isTimed()) return true;
+    std::size_t points = a_.storage.pointsToBuild(voxel);
+    for (const std::uint32_t other : reached) points += b_.storage.pointsToBuild(other);
+    return rule_.leavesTimeToBuild(points);
+  }
+
   /// Collects the voxels of b that the voxel of a can reach. @return false when all of its points collide.
   bool reach(std::uint32_t voxel, const RelativeFrame& frame, const Node& node, std::vector<std::uint32_t>& reached)
   {
     const float radius = a_.storage.voxels[voxel].radius * frame.stretch_a;
     const Ball ball{frame.g[0], frame.g[1], frame.g[2], radius + frame.pruneReach(pairs_.clearance),
-                    frame.acceptReach(pairs_.clearance) - radius * (1.0f + kSphereMargin)};
+                    frame.acceptReach(acceptance_.accepted) - radius * (1.0f + kSphereMargin)};
     const SphereLanes spheres{node.x, node.y, node.z, node.r, frame.stretch_b};
-    work.node_pairs += node.count;
+    found.work.node_pairs += node.count;
     if ((spheresInside(spheres, ball) & firstBits(node.count)) != 0) return false;
     for (std::uint32_t near = spheresNear(spheres, ball, nullptr) & firstBits(node.count); near != 0;
          near &= near - 1) {
@@ -121,6 +178,10 @@ private:
   /// Takes a node of a, all its children at once, through its candidates; then its inner children through theirs.
   void descend(const Node& node, const Sphere& around, const std::vector<Candidate>& candidates, std::size_t depth)
   {
+    if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs)) {
+      found.undecided = true;
+      return;
+    }
     if (visits_.size() == depth) visits_.emplace_back();
     Visit& visit = visits_[depth];
     begin(visit, node, around);
@@ -133,16 +194,46 @@ private:
       compareLeaves(visit);
       from = to;
     }
+    if (rule_.mayStop()) clear(visit);
     for (std::uint32_t bits = visit.open & ~visit.leaves; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
+      if (depth + 1 >= rule_.deepest) {
+        found.undecided = true;
+        continue;
+      }
       const Sphere child{{node.x[lane], node.y[lane], node.z[lane]}, node.r[lane]};
       descend(a_voxel_->nodes[node.child[lane]], child, visit.near[lane], depth + 1);
     }
   }
 
+  /// Where flags start as undecided: what has met nothing of b is free.
+  void clear(const Visit& visit)
+  {
+    for (std::uint32_t bits = visit.open; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const std::uint32_t begin = visit.node->begin[lane], end = visit.node->begin[lane + 1];
+      if ((visit.leaves >> lane & 1) == 0) {
+        if (visit.near[lane].empty()) set(begin, end, kFree);
+      }
+      else if ((visit.unsure >> lane & 1) != 0) {
+        found.undecided = true;
+      }
+      else if (visit.node->isCoincident(lane)) {
+        set(begin, end, kFree);
+      }
+      else {
+        for (std::uint32_t points = visit.open_points[lane]; points != 0; points &= points - 1) {
+          const std::uint32_t i = begin + static_cast<std::uint32_t>(std::countr_zero(points));
+          set(i, i + 1, kFree);
+        }
+      }
+    }
+  }
+
   static void begin(Visit& visit, const Node& node, const Sphere& around)
   {
+    visit.unsure = 0;
     visit.around = around;
     visit.node = &node;
     visit.open = firstBits(node.count);
@@ -184,7 +275,7 @@ private:
     const Ball ball{node.x[k], node.y[k], node.z[k], radius + meeting.prune_reach,
                     meeting.accept_reach - radius * (1.0f + kSphereMargin)};
     const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
-    work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes & visit.open));
+    found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes & visit.open));
     std::uint32_t near = spheresNear(spheres, ball, nullptr) & lanes & visit.open;
     if (near == 0) return;
     if (radius <= meeting.blunt_radius && (near &= ~apartAsGiven(visit, candidate, ball, near)) == 0) return;
@@ -193,10 +284,16 @@ private:
         settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
       near &= visit.open;
     }
+    const bool opens = !candidate.isLeaf() && candidate.level < rule_.deepest;
     std::uint32_t opening = candidate.isLeaf() ? 0 : near & visit.leaves;
+    if (opening != 0 && !opens) {
+      visit.unsure |= opening;
+      near &= ~opening;
+      opening = 0;
+    }
     for (std::uint32_t bits = near & ~opening; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (!candidate.isLeaf() && radius > visit.r[lane])
+      if (opens && radius > visit.r[lane])
         opening |= 1u << lane;
       else
         visit.near[lane].push_back(candidate);
@@ -204,11 +301,11 @@ private:
     if (opening == 0) return;
     const Node& below = meeting.voxel->nodes[node.child[k]];
     const SphereLanes children{below.x, below.y, below.z, below.r, meeting.frame.stretch_b};
-    work.node_pairs += below.count;
+    found.work.node_pairs += below.count;
     for (std::uint32_t bits = spheresNear(children, visit.ball, nullptr) & firstBits(below.count); bits != 0;
          bits &= bits - 1) {
       if ((opening & visit.open) == 0) return;
-      take(visit, {&below, static_cast<std::uint32_t>(std::countr_zero(bits)), candidate.meeting}, opening);
+      take(visit, candidate.below(below, static_cast<std::uint32_t>(std::countr_zero(bits))), opening);
     }
   }
 
@@ -243,7 +340,7 @@ private:
     // A point of the candidate can be that near only if its sphere comes within the clearance less the child's radius.
     const SphereLanes less_radius{visit.x, visit.y, visit.z, visit.r, -1.0f};
     const Ball ball{node.x[k], node.y[k], node.z[k], node.r[k] * meeting.frame.stretch_b + meeting.accept_reach, 0.0f};
-    work.node_pairs += static_cast<std::uint64_t>(std::popcount(visit.open));
+    found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(visit.open));
     for (std::uint32_t bits = spheresNear(less_radius, ball, nullptr) & visit.open; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       const float reach = meeting.accept_reach - visit.r[lane] * (1.0f + kSphereMargin);
@@ -261,7 +358,7 @@ private:
     }
     const Node& below = meeting.voxel->nodes[candidate.node->child[candidate.lane]];
     float gap[kLanes];
-    work.node_pairs += below.count;
+    found.work.node_pairs += below.count;
     std::uint32_t near =
         spheresNear({below.x, below.y, below.z, below.r, meeting.frame.stretch_b}, ball, gap) & firstBits(below.count);
     while (near != 0) {
@@ -270,7 +367,7 @@ private:
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
         if (gap[lane] < gap[nearest]) nearest = lane;
       }
-      if (hasPointWithin(meeting, {&below, nearest, candidate.meeting}, ball)) return true;
+      if (hasPointWithin(meeting, candidate.below(below, nearest), ball)) return true;
       near &= ~(1u << nearest);
     }
     return false;
@@ -288,7 +385,7 @@ private:
       const std::uint32_t hit =
           pairs_.haveRadii() ? hitBalls(visit, lane, leaf, points) : hitPoints(visit, lane, leaf, points);
       for (std::uint32_t set = hit; set != 0; set &= set - 1)
-        flags_[leaf.record(static_cast<std::uint32_t>(std::countr_zero(set)))] = 1;
+        flags_[leaf.record(static_cast<std::uint32_t>(std::countr_zero(set)))] = kColliding;
       visit.open_points[lane] &= ~hit;
       if (visit.open_points[lane] == 0) settleChild(visit, lane); // with it whatever its points stand for
     }
@@ -303,7 +400,7 @@ private:
     std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
     std::uint32_t hit = 0;
     for (const Candidate& candidate : visit.near[lane]) {
-      ++work.leaf_pairs;
+      ++found.work.leaf_pairs;
       const LeafRange other = candidate.leaf(meeting);
       nearestSquared(points, other.x(), other.y(), other.z(), other.count, nearest);
       hit = open & atMost(nearest, meeting.band.hit);
@@ -314,7 +411,7 @@ private:
       if ((undecided & ~hit) == 0) break;
       const LeafRange other = candidate.leaf(meeting);
       eachPairNotBeyond(points, undecided, other, meeting.band.miss, [&](std::uint32_t i, std::uint32_t j, float) {
-        if ((hit >> i & 1) == 0 && pairs_.collide({leaf.record(i), other.record(j)}, work)) hit |= 1u << i;
+        if ((hit >> i & 1) == 0 && pairs_.collide({leaf.record(i), other.record(j)}, found.work)) hit |= 1u << i;
         return (undecided & ~hit) == 0;
       });
     }
@@ -329,11 +426,11 @@ private:
     std::uint32_t hit = 0;
     for (const Candidate& candidate : visit.near[lane]) {
       if (hit == open) break;
-      ++work.leaf_pairs;
+      ++found.work.leaf_pairs;
       const LeafRange other = candidate.leaf(meeting);
       eachBallPairNear(meeting.frame, points, open, leaf, other, pairs_.clearance,
                        [&](std::uint32_t i, std::uint32_t j, float) {
-                         if ((hit >> i & 1) == 0 && pairs_.collide({leaf.record(i), other.record(j)}, work))
+                         if ((hit >> i & 1) == 0 && pairs_.collide({leaf.record(i), other.record(j)}, found.work))
                            hit |= 1u << i;
                          return hit == open;
                        });
@@ -344,17 +441,18 @@ private:
   void settleChild(Visit& visit, std::uint32_t lane)
   {
     visit.open &= ~(1u << lane);
-    settle(visit.node->begin[lane], visit.node->begin[lane + 1]);
+    set(visit.node->begin[lane], visit.node->begin[lane + 1], kColliding);
   }
 
-  /// Flags all points of a range.
-  void settle(std::uint32_t begin, std::uint32_t end)
+  void set(std::uint32_t begin, std::uint32_t end, std::uint8_t flag)
   {
-    for (std::uint32_t i = begin; i < end; ++i) flags_[a_voxel_->records()[i]] = 1;
+    for (std::uint32_t i = begin; i < end; ++i) flags_[a_voxel_->records()[i]] = flag;
   }
 
   const Spaces a_, b_;
   const PointPairs& pairs_;
+  const Acceptance& acceptance_;
+  const StopRule& rule_;
   std::uint8_t* flags_;
   const Voxel* a_voxel_ = nullptr;
   std::vector<Meeting> meetings_;
@@ -363,13 +461,12 @@ private:
 
 } // namespace
 
-Work flagVoxelOnTarget(const Placed& a, const Placed& b, const PointPairs& pairs, std::uint32_t voxel,
-                       std::uint8_t* flags)
+FlaggedVoxel flagVoxelOnTarget(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, std::uint8_t* flags)
 {
   thread_local std::deque<Visit> visits; // kept from voxel to voxel for their storage only
-  FlagWalk walk(a, b, pairs, flags, visits);
+  FlagWalk walk(query, rule, flags, visits);
   walk.run(voxel);
-  return walk.work;
+  return walk.found;
 }
 
 } // namespace HWY_NAMESPACE
@@ -382,23 +479,75 @@ namespace {
 
 HWY_EXPORT(flagVoxelOnTarget);
 
+/// Walks the given voxels of a. @return those that were left with undecided points
+std::vector<std::uint32_t> flagVoxels(const FlagQuery& query, const StopRule& rule,
+                                      const std::vector<std::uint32_t>& voxels, unsigned threads,
+                                      std::vector<std::uint8_t>& flags, Work& work)
+{
+  std::vector<FlaggedVoxel> parts(voxels.size());
+  const auto flag = [&](std::size_t i, const StopRule& own) {
+    parts[i] = HWY_DYNAMIC_DISPATCH(flagVoxelOnTarget)(query, own, voxels[i], flags.data());
+  };
+  if (rule.node_pairs == StopRule::kNever) {
+    parallelFor(voxels.size(), threads, [&](std::size_t i) { flag(i, rule); });
+  }
+  else { // one after another: what one leaves is the next one's
+    StopRule own = rule;
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+      flag(i, own);
+      own.node_pairs -= std::min(own.node_pairs, parts[i].work.node_pairs);
+    }
+  }
+  std::vector<std::uint32_t> left;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    work += parts[i].work;
+    if (parts[i].undecided) left.push_back(voxels[i]);
+  }
+  return left;
+}
+
+/// All that the hierarchy holds is undecided.
+void markUndecided(const SphereHierarchy& hierarchy, std::vector<std::uint8_t>& flags)
+{
+  if (hierarchy.size() == flags.size()) {
+    std::fill(flags.begin(), flags.end(), kUndecided);
+    return;
+  }
+  for (std::size_t v = 0; v < hierarchy.storage().voxel_count; ++v)
+    hierarchy.storage().forEachRecord(v, [&](std::uint32_t record) { flags[record] = kUndecided; });
+}
+
 std::vector<std::uint8_t> flagsOf(const Placed& a, const Placed& b, const CollisionRequest& request, Work& work)
 {
-  std::vector<std::uint8_t> flags(a.hierarchy.view().count, 0);
+  StopRule rule(request.accuracy);
+  const std::uint64_t deepest = rule.deepest, node_pairs = rule.node_pairs;
+  std::vector<std::uint8_t> flags(a.hierarchy.view().count, kFree);
   if (a.hierarchy.empty() || b.hierarchy.empty()) return flags;
   const PointPairs pairs(a, b, request.clearance);
-  const std::size_t voxels = a.hierarchy.storage().voxel_count;
-  std::vector<Work> parts(voxels);
-  parallelFor(voxels, threadCount(request.threads), [&](std::size_t v) {
-    parts[v] = HWY_DYNAMIC_DISPATCH(flagVoxelOnTarget)(a, b, pairs, static_cast<std::uint32_t>(v), flags.data());
-  });
-  for (const Work& part : parts) work += part;
+  const FlagQuery query{a, b, pairs, Acceptance(request)};
+  std::vector<std::uint32_t> voxels(a.hierarchy.storage().voxel_count);
+  std::iota(voxels.begin(), voxels.end(), 0u);
+  const unsigned threads = threadCount(request.threads);
+  if (!rule.mayStop()) {
+    flagVoxels(query, rule, voxels, threads, flags, work);
+    return flags;
+  }
+
+  // Level by level, so that there is an answer for all when the budget ends. The levels above cost a fraction each.
+  markUndecided(a.hierarchy, flags);
+  Work spent;
+  for (rule.deepest = request.accuracy.mode == Accuracy::Mode::level ? deepest : 0;; ++rule.deepest) {
+    voxels = flagVoxels(query, rule, voxels, threads, flags, spent);
+    if (node_pairs != StopRule::kNever) rule.node_pairs = node_pairs - std::min(node_pairs, spent.node_pairs);
+    if (voxels.empty() || rule.deepest >= deepest || rule.isSpent(0)) break;
+  }
+  work += spent;
   return flags;
 }
 
-std::size_t countSet(const std::vector<std::uint8_t>& flags)
+std::size_t countOf(std::uint8_t flag, const std::vector<std::uint8_t>& flags)
 {
-  return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), std::uint8_t{1}));
+  return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flag));
 }
 
 } // namespace
@@ -410,8 +559,12 @@ FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequ
   FlagsResult result;
   if (request.flagged != Side::b) result.a = flagsOf(a, b, request, result.work);
   if (request.flagged != Side::a) result.b = flagsOf(b, a, request, result.work);
-  result.colliding_a = countSet(result.a);
-  result.colliding_b = countSet(result.b);
+  result.colliding_a = countOf(kColliding, result.a);
+  result.colliding_b = countOf(kColliding, result.b);
+  if (request.accuracy.stopsEarly()) {
+    result.undecided_a = countOf(kUndecided, result.a);
+    result.undecided_b = countOf(kUndecided, result.b);
+  }
   return result;
 }
 

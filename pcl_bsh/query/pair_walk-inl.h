@@ -59,6 +59,7 @@ public:
   FrameTable frames;
   ExactDistance distance;
   Work work;
+  double accepted_beyond = 0.0; ///< pairs at this much more than the clearance may count as colliding too
 
   const Node& nodeOf(const Spaces& side, const Lane& lane) const { return side.node(lane.space, lane.node); }
 
@@ -214,7 +215,7 @@ private:
             float radius, double clearance, Step& out)
   {
     const Ball ball{center.x, center.y, center.z, radius + frame.pruneReach(clearance),
-                    frame.acceptReach(clearance) - radius * (1.0f + kSphereMargin)};
+                    frame.acceptReach(clearance + accepted_beyond) - radius * (1.0f + kSphereMargin)};
     out.frame = &frame;
     out.radii = spheres.r;
     out.stretch = spheres.stretch;

@@ -28,6 +28,8 @@ public:
     return {a_.point(pair.a), b_.point(pair.b), a_.radius(pair.a), b_.radius(pair.b)};
   }
 
+  double gap(PointPair pair) const { return distance.gap(posed(pair)); }
+
   bool haveRadii() const { return a_.radii || b_.radii; }
 
   const double clearance;

@@ -47,6 +47,10 @@ void checkPose(const std::string& name, const Eigen::Isometry3d& pose)
 void check(const Placed& a, const Placed& b, const CollisionRequest& request)
 {
   checkClearance(request.clearance);
+  const Accuracy& accuracy = request.accuracy;
+  if (!(std::isfinite(accuracy.value) && accuracy.value >= 0.0)) {
+    refuse("accuracy: ", accuracy.text(), ": give a finite number >= 0");
+  }
   checkPose("pose of a", a.pose);
   checkPose("pose of b", b.pose);
 }

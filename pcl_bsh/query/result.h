@@ -37,17 +37,28 @@ struct PointPair {
   bool operator<(const PointPair& other) const noexcept { return a != other.a ? a < other.a : b < other.b; }
 };
 
+/// Holds a length for certain: lower <= length <= upper.
+struct Interval {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+};
+
 struct AnyResult {
-  Verdict verdict = Verdict::free;
+  Verdict verdict = Verdict::free;  ///< undecided only when the request's accuracy lets the walk stop early
   std::optional<PointPair> witness; ///< a colliding pair, when colliding
+  Interval distance;                ///< of the clouds, as far as the walk had to learn it
   Work work;
 };
 
 struct FlagsResult {
-  std::vector<std::uint8_t> a; ///< one per record of a's view, 1 = collides; empty when not asked for
+  /// One per record of a's view, a Verdict as a number: 0 free, 1 collides, 2 undecided, the latter only when the
+  /// request's accuracy lets the walk stop early. Empty when not asked for.
+  std::vector<std::uint8_t> a;
   std::vector<std::uint8_t> b; ///< likewise for b
   std::size_t colliding_a = 0;
   std::size_t colliding_b = 0;
+  std::size_t undecided_a = 0;
+  std::size_t undecided_b = 0;
   Work work;
 };
 
@@ -56,6 +67,9 @@ struct DistanceResult {
   /// the nearest double. Infinity when a cloud has no finite point.
   double distance = std::numeric_limits<double>::infinity();
   std::optional<PointPair> pair; ///< the pair that realises it; of several, the smallest (a, b)
+  /// Holds the smallest distance for certain. The neighbouring doubles of `distance` when the request's accuracy is
+  /// exact; otherwise `distance` and `pair` are those of the nearest pair that was found, and the upper end.
+  Interval interval;
   Work work;
 };
 

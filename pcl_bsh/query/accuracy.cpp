@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/query/accuracy.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+namespace pcl_bsh {
+namespace {
+
+struct ModeName {
+  Accuracy::Mode mode;
+  const char* name;
+  bool counts;
+};
+
+constexpr std::array<ModeName, 6> mode_names = {{{Accuracy::Mode::exact, "exact", false},
+                                                 {Accuracy::Mode::float_only, "float", false},
+                                                 {Accuracy::Mode::tolerance, "tolerance", true},
+                                                 {Accuracy::Mode::level, "level", true},
+                                                 {Accuracy::Mode::node_pairs, "pairs", true},
+                                                 {Accuracy::Mode::time, "time", true}}};
+
+[[noreturn]] void refuse(const std::string& text)
+{
+  throw std::invalid_argument("accuracy: '" + text +
+                              "' is none: give exact, float, tolerance=LENGTH, level=N, pairs=N or time=SECONDS");
+}
+
+bool isWhole(Accuracy::Mode mode)
+{
+  return mode == Accuracy::Mode::level || mode == Accuracy::Mode::node_pairs;
+}
+
+} // namespace
+
+Accuracy Accuracy::parse(const std::string& text)
+{
+  const std::size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  for (const ModeName& known : mode_names) {
+    if (name != known.name) continue;
+    Accuracy accuracy{known.mode, 0.0};
+    if (known.counts != (equals != std::string::npos)) refuse(text);
+    if (!known.counts) return accuracy;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data() + equals + 1, end, accuracy.value);
+    const bool number = error == std::errc() && stop == end && std::isfinite(accuracy.value) && accuracy.value >= 0.0;
+    if (!number || (isWhole(known.mode) && accuracy.value != std::floor(accuracy.value))) refuse(text);
+    return accuracy;
+  }
+  refuse(text);
+}
+
+std::string Accuracy::text() const
+{
+  for (const ModeName& known : mode_names) {
+    if (known.mode != mode) continue;
+    if (!known.counts) return known.name;
+    std::array<char, 32> digits;
+    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    return std::string(known.name) + "=" + std::string(digits.data(), error == std::errc() ? end : digits.data());
+  }
+  return {};
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The dial: what a caller gives up for time, and what stays guaranteed.
+//
+//   request.accuracy = Accuracy::time(0.001); // the best certified answer that a millisecond buys
+//
+// Every answer is proven, whatever the setting, but for floatOnly(): what is not known is Undecided, or an interval
+// that holds the truth.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace pcl_bsh {
+
+/// How sure an answer has to be. Lengths in the clouds' unit.
+struct Accuracy {
+  enum class Mode : std::uint8_t { exact, float_only, tolerance, level, node_pairs, time };
+
+  Mode mode = Mode::exact;
+  double value = 0.0; ///< what the mode counts; 0 where it counts nothing
+
+  /// The answer of exact arithmetic on the given numbers.
+  static Accuracy exact() noexcept { return {Mode::exact, 0.0}; }
+
+  /// Points are compared in float alone, in local frames: right but within some 1e-7 of a voxel's edge of the
+  /// clearance. The only mode whose answers carry no proof.
+  static Accuracy floatOnly() noexcept { return {Mode::float_only, 0.0}; }
+
+  /// Pairs at distances in (clearance, clearance + length] may go either way, all others are right; a distance is found
+  /// to within `length`. @param length finite, >= 0
+  static Accuracy tolerance(double length) noexcept { return {Mode::tolerance, length}; }
+
+  /// The descent opens the sphere trees below the voxels down to this level: 0 compares the voxels' spheres and builds
+  /// nothing, each level more opens nodes of eight children. What spheres cannot tell is left undecided.
+  static Accuracy level(unsigned depth) noexcept { return {Mode::level, static_cast<double>(depth)}; }
+
+  /// Stops after about so many sphere tests: the same answer on every machine.
+  static Accuracy nodePairs(std::uint64_t count) noexcept { return {Mode::node_pairs, static_cast<double>(count)}; }
+
+  /// Stops when the seconds are spent. @param seconds finite, >= 0
+  static Accuracy time(double seconds) noexcept { return {Mode::time, seconds}; }
+
+  /// `exact`, `float`, `tolerance=LENGTH`, `level=N`, `pairs=N` or `time=SECONDS`.
+  /// @throws std::invalid_argument quoting the text when it is none of these
+  static Accuracy parse(const std::string& text);
+
+  /// What parse() reads.
+  std::string text() const;
+
+  bool isExact() const noexcept { return mode == Mode::exact; }
+
+  /// Whether answers may stay undecided: the modes that stop before the end.
+  bool stopsEarly() const noexcept { return mode == Mode::level || mode == Mode::node_pairs || mode == Mode::time; }
+
+  bool isProven() const noexcept { return mode != Mode::float_only; }
+};
+
+} // namespace pcl_bsh

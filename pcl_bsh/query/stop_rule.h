@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When a walk stops before it knows all.
+#pragma once
+
+#include <pcl_bsh/query/accuracy.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace pcl_bsh {
+
+class StopRule {
+public:
+  explicit StopRule(const Accuracy& accuracy) : may_stop_(accuracy.stopsEarly())
+  {
+    const std::uint64_t count = accuracy.value < 0x1p63 ? static_cast<std::uint64_t>(accuracy.value) : kNever;
+    if (accuracy.mode == Accuracy::Mode::level) deepest = count;
+    if (accuracy.mode == Accuracy::Mode::node_pairs) node_pairs = count;
+    if (accuracy.mode == Accuracy::Mode::time) {
+      constexpr double year = 86400.0 * 365; // more would overflow the clock
+      const std::chrono::duration<double> seconds(std::min(accuracy.value, year));
+      deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(seconds);
+    }
+  }
+
+  static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+
+  std::uint64_t deepest = kNever;    ///< level below the voxels whose nodes are not opened
+  std::uint64_t node_pairs = kNever; ///< sphere tests that may be spent
+
+  bool mayStop() const noexcept { return may_stop_; }
+  bool isTimed() const noexcept { return deadline_ != Clock::time_point::max(); }
+  bool isOver() const { return isTimed() && Clock::now() >= deadline_; }
+  bool isSpent(std::uint64_t tested) const { return tested >= node_pairs || isOver(); }
+
+  /// Whether so many points can be built into trees before the time is over. What is not begun is not overrun.
+  bool leavesTimeToBuild(std::size_t points) const
+  {
+    constexpr double seconds_per_point = 60e-9; // a generous figure
+    return !isTimed() ||
+           Clock::now() + std::chrono::duration<double>(seconds_per_point * static_cast<double>(points)) < deadline_;
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  bool may_stop_;
+  Clock::time_point deadline_ = Clock::time_point::max();
+};
+
+} // namespace pcl_bsh
