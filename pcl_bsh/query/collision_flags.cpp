@@ -53,7 +53,10 @@ namespace {
 struct Meeting {
   const Voxel* voxel;
   RelativeFrame frame;
-  float prune_reach, accept_reach, blunt_radius;
+  float prune_reach;
+  float sure_reach;   ///< what comes within it collides
+  float accept_reach; ///< what comes within it may count as colliding; no less
+  float blunt_radius;
   DistanceBand band;
 };
 
@@ -137,7 +140,8 @@ public:
         candidates.push_back(
             {&root, static_cast<std::uint16_t>(lane), 1, static_cast<std::uint32_t>(meetings_.size())});
       meetings_.push_back({&b_.storage.voxels[other], frame, frame.pruneReach(pairs_.clearance),
-                           frame.acceptReach(acceptance_.accepted), frame.bluntRadius(), acceptance_.band(frame)});
+                           frame.acceptReach(pairs_.clearance), frame.acceptReach(acceptance_.accepted),
+                           frame.bluntRadius(), acceptance_.band(frame)});
     }
     descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, candidates, 0);
   }
@@ -322,7 +326,7 @@ private:
       if (visit.r[lane] > meeting.blunt_radius ||
           !meeting.frame.isUndecided(dx * dx + dy * dy + dz * dz, visit.r[lane] + ball.near_reach))
         continue;
-      ++work.exact_decisions;
+      ++found.work.exact_decisions;
       if (!other.isKnown()) other = givenSphereOf(b_.storage.view, *meeting.voxel, *candidate.node, candidate.lane);
       const GivenSphere own = givenSphereOf(a_.storage.view, *a_voxel_, *visit.node, lane);
       if (areApart(pairs_.distance, own, other, pairs_.clearance)) apart |= 1u << lane;
@@ -334,16 +338,16 @@ private:
   void settleByPoints(Visit& visit, const Candidate& candidate)
   {
     const Meeting& meeting = meetings_[visit.meeting];
-    if (!(meeting.accept_reach > visit.smallest)) return;
+    if (!(meeting.sure_reach > visit.smallest)) return;
     const Node& node = *candidate.node;
     const std::uint32_t k = candidate.lane;
     // A point of the candidate can be that near only if its sphere comes within the clearance less the child's radius.
     const SphereLanes less_radius{visit.x, visit.y, visit.z, visit.r, -1.0f};
-    const Ball ball{node.x[k], node.y[k], node.z[k], node.r[k] * meeting.frame.stretch_b + meeting.accept_reach, 0.0f};
+    const Ball ball{node.x[k], node.y[k], node.z[k], node.r[k] * meeting.frame.stretch_b + meeting.sure_reach, 0.0f};
     found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(visit.open));
     for (std::uint32_t bits = spheresNear(less_radius, ball, nullptr) & visit.open; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      const float reach = meeting.accept_reach - visit.r[lane] * (1.0f + kSphereMargin);
+      const float reach = meeting.sure_reach - visit.r[lane] * (1.0f + kSphereMargin);
       const Ball center{visit.x[lane], visit.y[lane], visit.z[lane], reach, 0.0f};
       if (reach > 0.0f && hasPointWithin(meeting, candidate, center)) settleChild(visit, lane);
     }
@@ -517,10 +521,17 @@ void markUndecided(const SphereHierarchy& hierarchy, std::vector<std::uint8_t>& 
     hierarchy.storage().forEachRecord(v, [&](std::uint32_t record) { flags[record] = kUndecided; });
 }
 
+/// The levels to walk to, one pass after another.
+std::vector<std::uint64_t> passes(const StopRule& rule)
+{
+  if (rule.deepest != StopRule::kNever) return {rule.deepest};
+  return {0, 2, StopRule::kNever};
+}
+
 std::vector<std::uint8_t> flagsOf(const Placed& a, const Placed& b, const CollisionRequest& request, Work& work)
 {
   StopRule rule(request.accuracy);
-  const std::uint64_t deepest = rule.deepest, node_pairs = rule.node_pairs;
+  const std::uint64_t node_pairs = rule.node_pairs;
   std::vector<std::uint8_t> flags(a.hierarchy.view().count, kFree);
   if (a.hierarchy.empty() || b.hierarchy.empty()) return flags;
   const PointPairs pairs(a, b, request.clearance);
@@ -533,13 +544,14 @@ std::vector<std::uint8_t> flagsOf(const Placed& a, const Placed& b, const Collis
     return flags;
   }
 
-  // Level by level, so that there is an answer for all when the budget ends. The levels above cost a fraction each.
+  // First coarsely, so that there is an answer for all when the budget ends, then voxel by voxel to the end. (Every
+  // level in turn costs three times what the last one does.)
   markUndecided(a.hierarchy, flags);
   Work spent;
-  for (rule.deepest = request.accuracy.mode == Accuracy::Mode::level ? deepest : 0;; ++rule.deepest) {
+  for (const std::uint64_t deepest : passes(rule)) {
+    rule.deepest = deepest;
     voxels = flagVoxels(query, rule, voxels, threads, flags, spent);
     if (node_pairs != StopRule::kNever) rule.node_pairs = node_pairs - std::min(node_pairs, spent.node_pairs);
-    if (voxels.empty() || rule.deepest >= deepest || rule.isSpent(0)) break;
   }
   work += spent;
   return flags;

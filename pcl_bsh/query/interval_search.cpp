@@ -44,19 +44,15 @@ public:
 
   IntervalFinding run()
   {
-    const double asked = clearance_.value_or(kInfinity);
-    walk_.seed(asked, [this](const LanePair& pair, const PairWalk::Step& step, std::uint32_t lane) {
-      push({walk_.lowerBound(pair, step, lane), pair, 0, 0});
-    });
-    if (clearance_) seen_lower_ = asked; // what seed() leaves out lies beyond
-    if (!open_.empty()) measure(open_.front().pair);
-    for (bool first = true; !open_.empty(); first = false) {
-      const Open next = open_.front();
-      if (!matters(next.lower) || isSettled() || isSpent()) break;
-      std::pop_heap(open_.begin(), open_.end(), laterThan);
-      open_.pop_back();
-      visit(next, first);
-    }
+    walk_.seed(clearance_.value_or(kInfinity),
+               [this](const LanePair& pair, const PairWalk::Step& step, std::uint32_t lane) {
+                 open_.push_back({lowerOr(-kInfinity, walk_.lowerBound(pair, step, lane)), pair, 0, 0});
+               });
+    if (!open_.empty()) measure(open_.front());
+    if (rule_.deepest != StopRule::kNever)
+      searchDepthFirst();
+    else
+      searchBestFirst();
     return conclude();
   }
 
@@ -72,43 +68,76 @@ private:
     return rule_.isTimed() && steps_++ % 16 == 0 && rule_.isOver(); // a clock costs as much as a step
   }
 
-  /// Opens a pair. The first one is followed down to points by its nearest children, for an upper bound to begin with.
-  void visit(Open open, bool to_the_points)
+  /// To a level there is no way around, and a stack is cheaper than a heap.
+  void searchDepthFirst()
   {
-    for (;;) {
-      const Opened opened = walk_.choose(open.pair);
-      if (opened == Opened::neither) return compareLeaves(open);
-      measure(open.pair);
-      if (!mayOpen(open, opened)) {
-        cut_lower_ = std::min(cut_lower_, open.lower);
-        return;
-      }
-      PairWalk::Step step;
-      walk_.step(open.pair, opened, std::max(std::min(upper_, clearance_.value_or(kInfinity)), 0.0), step);
-      std::optional<Open> nearest;
-      for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
-        const Open child = childOf(open, opened, step, static_cast<std::uint32_t>(std::countr_zero(near)));
-        if (!matters(child.lower)) continue;
-        if (!to_the_points) {
-          push(child);
-          continue;
-        }
-        if (nearest && nearest->pair.key <= child.pair.key) {
-          push(child);
-          continue;
-        }
-        if (nearest) push(*nearest);
-        nearest = child;
-      }
-      if (!nearest) return;
-      open = *nearest;
+    nearestLast(0);
+    while (!open_.empty() && !isSettled()) {
+      const Open next = open_.back();
+      open_.pop_back();
+      if (!matters(next.lower)) continue;
+      const std::size_t from = open_.size();
+      expand(next, [this](const Open& child) { open_.push_back(child); });
+      nearestLast(from);
+    }
+  }
+
+  /// Within a budget, what bounds the distance from below is opened first.
+  void searchBestFirst()
+  {
+    if (!open_.empty()) dive();
+    std::make_heap(open_.begin(), open_.end(), laterThan);
+    while (!open_.empty() && matters(open_.front().lower) && !isSettled() && !isSpent()) {
+      std::pop_heap(open_.begin(), open_.end(), laterThan);
+      const Open next = open_.back();
+      open_.pop_back();
+      measure(next);
+      expand(next, [this](const Open& child) {
+        open_.push_back(child);
+        std::push_heap(open_.begin(), open_.end(), laterThan);
+      });
+    }
+  }
+
+  /// By the nearest children down to a first pair of points, for an upper bound to begin with. The others stay open.
+  void dive()
+  {
+    nearestLast(0);
+    std::optional<Open> nearest = open_.back();
+    open_.pop_back();
+    while (nearest) {
+      const Open next = *nearest;
+      nearest.reset();
+      expand(next, [&](const Open& child) {
+        if (nearest) open_.push_back(child.pair.key < nearest->pair.key ? *nearest : child);
+        if (!nearest || child.pair.key < nearest->pair.key) nearest = child;
+      });
+    }
+  }
+
+  /// Compares two leaves, or opens a pair and hands on what matters of it, or leaves it where the rule says so.
+  template <class Take>
+  void expand(const Open& open, const Take& take)
+  {
+    const Opened opened = walk_.choose(open.pair);
+    if (opened == Opened::neither) return compareLeaves(open);
+    if (!mayOpen(open, opened)) {
+      measure(open);
+      cut_lower_ = std::min(cut_lower_, open.lower);
+      return;
+    }
+    if (isAboveVoxels(open.pair)) measure(open); // the points that stand for it are others below
+    PairWalk::Step step;
+    walk_.step(open.pair, opened, std::max(std::min(upper_, clearance_.value_or(kInfinity)), 0.0), step);
+    for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
+      const Open child = childOf(open, opened, step, static_cast<std::uint32_t>(std::countr_zero(near)));
+      if (matters(child.lower)) take(child);
     }
   }
 
   Open childOf(const Open& open, Opened opened, const PairWalk::Step& step, std::uint32_t lane) const
   {
-    const double lower = walk_.lowerBound(open.pair, step, lane);
-    return {std::isnan(lower) ? open.lower : std::max(lower, open.lower),
+    return {std::max(open.lower, lowerOr(open.lower, walk_.lowerBound(open.pair, step, lane))),
             PairWalk::childOf(open.pair, opened, step, lane),
             open.level_a + (opened == Opened::a && isBelowVoxels(step) ? 1 : 0),
             open.level_b + (opened == Opened::b && isBelowVoxels(step) ? 1 : 0)};
@@ -126,18 +155,27 @@ private:
     return lane.space != kAboveVoxels || rule_.leavesTimeToBuild(side.storage.pointsToBuild(node.begin[lane.lane]));
   }
 
-  void push(const Open& open)
+  /// NaN is no bound.
+  static double lowerOr(double otherwise, double bound) { return std::isnan(bound) ? otherwise : bound; }
+
+  /// Orders what was opened last by nearness, the nearest to be taken first.
+  void nearestLast(std::size_t from)
   {
-    open_.push_back(open);
-    if (std::isnan(open.lower)) open_.back().lower = -kInfinity;
-    std::push_heap(open_.begin(), open_.end(), laterThan);
+    std::stable_sort(open_.begin() + static_cast<std::ptrdiff_t>(from), open_.end(),
+                     [](const Open& x, const Open& y) { return x.pair.key > y.pair.key; });
+  }
+
+  static bool isAboveVoxels(const LanePair& pair)
+  {
+    return pair.a.space == kAboveVoxels || pair.b.space == kAboveVoxels;
   }
 
   /// Takes some pair of points below the lanes for an upper bound.
-  void measure(const LanePair& pair)
+  void measure(const Open& open)
   {
-    if (pair.a.space == kAboveVoxels || pair.b.space == kAboveVoxels) {
-      lowerTo({lowest(walk_.a, pair.a), lowest(walk_.b, pair.b)});
+    const LanePair& pair = open.pair;
+    if (isAboveVoxels(pair)) {
+      lowerTo({lowest(walk_.a, pair.a), lowest(walk_.b, pair.b)}, open.lower);
       return;
     }
     const LeafRange a = walk_.leaf(walk_.a, pair.a), b = walk_.leaf(walk_.b, pair.b);
@@ -148,7 +186,7 @@ private:
     const double dz = static_cast<double>(p.z) - static_cast<double>(b.z()[0]);
     const double least = std::sqrt(dx * dx + dy * dy + dz * dz) - frame.error; // in b's units
     if (least * (1.0 - frame.skew()) * walk_.b.frame(pair.b.space).unit - a.radius(0) - b.radius(0) < upper_)
-      lowerTo({a.record(0), b.record(0)});
+      lowerTo({a.record(0), b.record(0)}, open.lower);
   }
 
   std::uint32_t lowest(const Spaces& side, const Lane& lane) const
@@ -156,26 +194,17 @@ private:
     return walk_.nodeOf(side, lane).lowest[lane.lane];
   }
 
-  /// Lowers the upper bound to the gap of a pair, if that is less. @return a lower bound of the gap
-  double lowerTo(PointPair candidate)
+  /// Lowers the upper bound to the gap of a pair, if that is less. @param lower bounds the gap from below
+  void lowerTo(PointPair candidate, double lower)
   {
     ++walk_.work.exact_decisions;
+    if (pair_ && !pairs_.isNearer(candidate, upper_)) return;
     const double gap = pairs_.gap(candidate);
-    const bool zero = gap == 0.0 && !pairs_.haveRadii();
-    const double upper = zero ? 0.0 : std::nextafter(gap, kInfinity);
-    if (upper < upper_ || !pair_) {
-      upper_ = upper;
-      pair_ = candidate;
-    }
-    if (clearance_ && upper > *clearance_ && gap <= *clearance_ && pairs_.collide(candidate, walk_.work))
-      collide(candidate);
-    return zero ? 0.0 : std::nextafter(gap, -kInfinity);
-  }
-
-  void collide(PointPair candidate)
-  {
-    upper_ = *clearance_;
     pair_ = candidate;
+    pair_lower_ = std::max(lower, std::nextafter(gap, -kInfinity));
+    upper_ = gap == 0.0 && !pairs_.haveRadii() ? 0.0 : std::nextafter(gap, kInfinity);
+    if (clearance_ && upper_ > *clearance_ && gap <= *clearance_ && pairs_.collide(candidate, walk_.work))
+      upper_ = *clearance_;
   }
 
   void compareLeaves(const Open& open)
@@ -187,7 +216,8 @@ private:
     carryLeaf(frame, a, points);
     const double asked = std::min(upper_, clearance_.value_or(kInfinity));
     const auto found = [&](std::uint32_t i, std::uint32_t j, float) {
-      seen_lower_ = std::min(seen_lower_, std::max(open.lower, lowerTo({a.record(i), b.record(j)})));
+      lowerTo({a.record(i), b.record(j)}, open.lower);
+      if (isSettled()) cut_lower_ = std::min(cut_lower_, open.lower); // the rest is not looked at
       return isSettled();
     };
     if (pairs_.haveRadii()) {
@@ -210,10 +240,10 @@ private:
   IntervalFinding conclude()
   {
     IntervalFinding finding;
-    const double open = open_.empty() ? kInfinity : open_.front().lower;
-    const double undecided = std::min(cut_lower_, open);
+    double undecided = cut_lower_;
+    for (const Open& open : open_) undecided = std::min(undecided, open.lower);
     finding.distance.upper = upper_;
-    finding.distance.lower = std::min({undecided, seen_lower_, upper_});
+    finding.distance.lower = std::min({undecided, pair_lower_, clearance_.value_or(kInfinity)});
     if (!pairs_.haveRadii()) finding.distance.lower = std::max(finding.distance.lower, 0.0);
     finding.pair = pair_;
     if (clearance_) {
@@ -227,11 +257,11 @@ private:
   const std::optional<double> clearance_;
   PairWalk walk_;
   PointPairs pairs_;
-  std::vector<Open> open_; // a heap, the least lower bound first
+  std::vector<Open> open_; // a stack, the nearest last, or a heap, the least lower bound first
   std::optional<PointPair> pair_;
+  double pair_lower_ = kInfinity; // at most the gap of pair_, the least of all that were looked at
   double upper_ = kInfinity;      // at least the gap of pair_
   double cut_lower_ = kInfinity;  // of what was not to be opened
-  double seen_lower_ = kInfinity; // of the pairs of points that were looked at
   std::uint64_t steps_ = 0;
 };
 

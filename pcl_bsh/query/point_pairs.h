@@ -30,6 +30,12 @@ public:
 
   double gap(PointPair pair) const { return distance.gap(posed(pair)); }
 
+  /// Whether the gap of a pair is less than this.
+  bool isNearer(PointPair pair, double gap) const
+  {
+    return distance.compare(a_.point(pair.a), b_.point(pair.b), gap, a_.radius(pair.a), b_.radius(pair.b)) < 0;
+  }
+
   bool haveRadii() const { return a_.radii || b_.radii; }
 
   const double clearance;
