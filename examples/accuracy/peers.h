@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What users of PCL do today to be faster, on the same clouds.
+#pragma once
+
+#include "study.h"
+
+namespace pcl_bsh::accuracy {
+
+/// FLANN's kd-tree exact and approximate, PCL's octree, and a kd-tree over clouds thinned by pcl::VoxelGrid, one thread
+/// as PCL has them; warm, like ours. Coordinates are float, as PCL's are, about the middle of the first cloud.
+std::vector<Measurement> measurePeers(const Subject& subject, unsigned repetitions, const Progress& progress);
+
+} // namespace pcl_bsh::accuracy

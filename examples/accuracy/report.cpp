@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report.h"
+
+#include <pcl_bsh/filters/io/replace_file.h>
+#include <pcl_bsh/vtk/chart.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <optional>
+
+namespace pcl_bsh::accuracy {
+namespace {
+
+template <class... Values>
+std::string format(const char* pattern, Values... values)
+{
+  std::array<char, 256> text;
+  std::snprintf(text.data(), text.size(), pattern, values...);
+  return text.data();
+}
+
+std::string milliseconds(double seconds)
+{
+  return format("%.4g", 1e3 * seconds);
+}
+
+bool isPeer(const Measurement& m)
+{
+  return m.knob.rfind("PCL", 0) == 0 || m.knob.rfind("VoxelGrid", 0) == 0;
+}
+
+void writeCsv(std::ostream& out, const Study& study)
+{
+  out << "query,knob,setting,poses,time_median_s,time_low_s,time_high_s,node_pairs,leaf_pairs,exact_decisions,"
+         "certified,certified_error,actual_error,wrong\n";
+  for (const Measurement& m : study.measurements) {
+    out << m.query << ",\"" << m.knob << "\"," << m.setting << ',' << m.poses << ','
+        << format("%.6e,%.6e,%.6e", m.seconds.median, m.seconds.low, m.seconds.high) << ',' << m.work.node_pairs << ','
+        << m.work.leaf_pairs << ',' << m.work.exact_decisions << ',' << (m.certified ? 1 : 0) << ','
+        << format("%.9g,%.9g", m.certified_error, m.actual_error) << ',' << m.wrong << '\n';
+  }
+}
+
+void writeTable(std::ostream& out, const Study& study, const std::string& query)
+{
+  const bool distance = query == "distance";
+  out << "| knob | setting | time [ms], median | low .. high | "
+      << (distance ? "interval [unit], mean width" : "undecided [%]") << " | "
+      << (distance ? "off exact [unit], mean" : "wrong [answers]") << " | sphere tests a query |\n"
+      << "|---|---|---:|---:|---:|---:|---:|\n";
+  for (const Measurement& m : study.measurements) {
+    if (m.query != query) continue;
+    const std::string error = !m.certified ? "no proof"
+                              : distance   ? format("%.3g", m.certified_error)
+                                           : format("%.3g", 100 * m.certified_error);
+    out << "| " << m.knob << " | `" << m.setting << "` | " << milliseconds(m.seconds.median) << " | "
+        << milliseconds(m.seconds.low) << " .. " << milliseconds(m.seconds.high) << " | " << error << " | "
+        << (distance ? format("%.3g", m.actual_error) : std::to_string(m.wrong)) << " | "
+        << (isPeer(m) ? std::string("-") : std::to_string(m.work.node_pairs / std::max<std::size_t>(m.poses, 1)))
+        << " |\n";
+  }
+}
+
+/// The certified distance settings that nothing beats in both time and error, by time.
+std::vector<const Measurement*> front(const Study& study)
+{
+  std::vector<const Measurement*> all;
+  for (const Measurement& m : study.measurements)
+    if (m.query == "distance" && m.certified) all.push_back(&m);
+  std::sort(all.begin(), all.end(),
+            [](const Measurement* x, const Measurement* y) { return x->seconds.median < y->seconds.median; });
+  std::vector<const Measurement*> best;
+  for (const Measurement* m : all)
+    if (best.empty() || m->certified_error < best.back()->certified_error) best.push_back(m);
+  return best;
+}
+
+/// Where the front turns: farthest below the straight line between its ends, both axes logarithmic.
+const Measurement* knee(std::vector<const Measurement*> best, double floor)
+{
+  while (!best.empty() && best.back()->certified_error <= floor) best.pop_back(); // exact has no place on such an axis
+  if (best.size() < 3) return nullptr;
+  const auto x = [](const Measurement* m) { return std::log(m->seconds.median); };
+  const auto y = [](const Measurement* m) { return std::log(m->certified_error); };
+  const double x0 = x(best.front()), x1 = x(best.back()), y0 = y(best.front()), y1 = y(best.back());
+  const Measurement* turn = nullptr;
+  double deepest = 0.0;
+  for (const Measurement* m : best) {
+    const double below = y0 + (y1 - y0) * (x(m) - x0) / (x1 - x0) - y(m);
+    if (below > deepest) {
+      deepest = below;
+      turn = m;
+    }
+  }
+  return turn;
+}
+
+const Measurement* bestWithin(const Study& study, const std::string& query, double seconds)
+{
+  const Measurement* best = nullptr;
+  for (const Measurement& m : study.measurements) {
+    if (m.query != query || !m.certified || m.seconds.median > seconds) continue;
+    if (m.knob == "tolerance" && query != "distance") continue; // no share undecided, yet another question
+    if (!best || m.certified_error < best->certified_error ||
+        (m.certified_error == best->certified_error && m.seconds.median < best->seconds.median))
+      best = &m;
+  }
+  return best;
+}
+
+const Measurement* exactOf(const Study& study, const std::string& query)
+{
+  for (const Measurement& m : study.measurements)
+    if (m.query == query && m.knob == "exact") return &m;
+  return nullptr;
+}
+
+void writeMarkdown(std::ostream& out, const std::string& heading, const Subject& subject, const Study& study)
+{
+  out << "# What accuracy costs in time\n\n"
+      << heading << "\n\n"
+      << format("Clearance %g, %zu poses, diameter of the first cloud %.4g (the clouds' unit). ", subject.clearance,
+                subject.poses.size(), subject.diameter)
+      << "Trees are built before; times are of one query, averaged over the poses: the median of the repetitions, and "
+         "from their tenth to their nine tenths.\n\n"
+      << advice(subject, study) << "\n![error against time](accuracy.png)\n";
+  out << "\n## Smallest distance\n\nThe interval is certified to hold the exact distance.\n\n";
+  writeTable(out, study, "distance");
+  out << "\n## Flags per point\n\nUndecided points are neither called free nor colliding. With a tolerance, answers "
+         "that differ from exact are those the tolerance allows.\n\n";
+  writeTable(out, study, "flags");
+  out << "\n## Any collision\n\nUndecided counts poses.\n\n";
+  writeTable(out, study, "any");
+  out << "\n## Fits of spheres\n\n| fit | build, both clouds [ms] | mean leaf radius [unit] | exact flags [ms] | exact "
+         "distance [ms] |\n|---|---:|---:|---:|---:|\n";
+  for (const FitMeasurement& m : study.fits) {
+    out << "| " << m.fit << " | " << milliseconds(m.build.median) << " | " << format("%.4g", m.mean_leaf_radius)
+        << " | " << milliseconds(m.flags.median) << " | " << milliseconds(m.distance.median) << " |\n";
+  }
+}
+
+/// One curve a knob: what is certified, and dashed, what it was off.
+vtk::Chart chartOf(const Study& study, const std::string& query, const std::string& title, const std::string& y_label,
+                   double scale)
+{
+  vtk::Chart chart;
+  chart.title = title;
+  chart.x_label = "time of a query [ms], median";
+  chart.y_label = y_label;
+  std::map<std::string, std::size_t> colors;
+  std::vector<std::string> knobs;
+  for (const Measurement& m : study.measurements) {
+    if (m.query == query && colors.emplace(m.knob, colors.size()).second) knobs.push_back(m.knob);
+  }
+  for (const std::string& knob : knobs) {
+    vtk::Curve certified, actual;
+    certified.color = actual.color = vtk::distinctColor(colors[knob]);
+    bool peer = false;
+    for (const Measurement& m : study.measurements) {
+      if (m.query != query || m.knob != knob) continue;
+      peer = isPeer(m);
+      if (m.certified && m.knob != "exact" && !(query == "flags" && m.knob == "tolerance")) {
+        certified.x.push_back(1e3 * m.seconds.median);
+        certified.y.push_back(scale * m.certified_error);
+      }
+      actual.x.push_back(1e3 * m.seconds.median);
+      actual.y.push_back(scale * m.actual_error);
+    }
+    actual.dashed = true;
+    actual.line = actual.x.size() > 1 && !peer;
+    certified.name = knob + ", certified";
+    actual.name = knob == "exact" || peer ? knob : knob + ", actual";
+    if (!certified.x.empty()) chart.curves.push_back(certified);
+    chart.curves.push_back(actual);
+  }
+  return chart;
+}
+
+} // namespace
+
+std::string advice(const Subject& subject, const Study& study)
+{
+  std::string text;
+  const auto describe = [&](const Measurement* m) {
+    return "`" + m->setting + "` (" + milliseconds(m->seconds.median) + " ms, interval " +
+           format("%.3g", m->certified_error) +
+           format(" = %.2g %% of the diameter)", 100 * m->certified_error / subject.diameter);
+  };
+  const std::vector<const Measurement*> best = front(study);
+  if (const Measurement* turn = knee(best, 1e-9 * subject.diameter)) {
+    text += "The knee for the smallest distance is " + describe(turn) +
+            ": less time costs much accuracy, more buys little.\n\n";
+  }
+  text += "| time for one query | smallest distance | flags per point |\n|---|---|---|\n";
+  for (const double seconds : {1e-3, 1e-2}) {
+    const Measurement *distance = bestWithin(study, "distance", seconds), *flags = bestWithin(study, "flags", seconds);
+    text +=
+        format("| within %g ms | ", 1e3 * seconds) + (distance ? describe(distance) : "nothing measured is as fast");
+    text += " | ";
+    text += flags ? "`" + flags->setting + "` (" + milliseconds(flags->seconds.median) + " ms, " +
+                        format("%.3g %% undecided)", 100 * flags->certified_error)
+                  : "nothing measured is as fast";
+    text += " |\n";
+  }
+  const Measurement *distance = exactOf(study, "distance"), *flags = exactOf(study, "flags");
+  if (distance && flags) {
+    text += "| exact | `exact` (" + milliseconds(distance->seconds.median) + " ms) | `exact` (" +
+            milliseconds(flags->seconds.median) + " ms) |\n";
+  }
+  return text;
+}
+
+void writeReports(const std::filesystem::path& folder, const std::string& heading, const Subject& subject,
+                  const Study& study)
+{
+  io::replaceFile(folder / "accuracy.csv", [&](std::ostream& out) { writeCsv(out, study); });
+  io::replaceFile(folder / "accuracy.md", [&](std::ostream& out) { writeMarkdown(out, heading, subject, study); });
+  vtk::writeChartsPng({chartOf(study, "distance", "Smallest distance: error against time",
+                               "error [the clouds' unit]; bottom line: 0", 1.0),
+                       chartOf(study, "flags", "Flags: undecided (certified) and wrong (actual) points against time",
+                               "points [%]; bottom line: 0", 100.0)},
+                      1100, 620, folder / "accuracy.png");
+}
+
+} // namespace pcl_bsh::accuracy

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "study.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace pcl_bsh::accuracy {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+enum class Query { any, flags, distance };
+
+const char* nameOf(Query query)
+{
+  return query == Query::any ? "any" : query == Query::flags ? "flags" : "distance";
+}
+
+const char* knobOf(const Accuracy& accuracy)
+{
+  switch (accuracy.mode) {
+  case Accuracy::Mode::float_only:
+    return "float only";
+  case Accuracy::Mode::tolerance:
+    return "tolerance";
+  case Accuracy::Mode::level:
+    return "level of detail";
+  case Accuracy::Mode::node_pairs:
+    return "budget of tests";
+  case Accuracy::Mode::time:
+    return "time budget";
+  case Accuracy::Mode::exact:
+    break;
+  }
+  return "exact";
+}
+
+/// What is true at a pose, to judge the others by.
+struct Truth {
+  Verdict any;
+  std::vector<std::uint8_t> flags;
+  double distance;
+};
+
+/// One setting on its way through the repetitions.
+struct Trial {
+  Accuracy accuracy;
+  Query query;
+  Measurement measurement;
+  std::vector<double> seconds;
+};
+
+class Laboratory {
+public:
+  Laboratory(const Subject& subject, unsigned threads)
+  : subject_(subject),
+    a_(subject.a),
+    b_(subject.b),
+    threads_(threads)
+  {
+    a_.buildAll(threads);
+    b_.buildAll(threads);
+    for (const Eigen::Isometry3d& pose : subject.poses) {
+      const CollisionRequest exact = request({});
+      FlagsResult flags = collisionFlags({a_}, {b_, pose}, exact);
+      truths_.push_back({anyCollision({a_}, {b_, pose}, exact).verdict, std::move(flags.a),
+                         closestPair({a_}, {b_, pose}, exact).distance});
+    }
+  }
+
+  /// Mean over the poses, in seconds.
+  double time(Query query, const Accuracy& accuracy) const
+  {
+    const auto start = Clock::now();
+    for (const Eigen::Isometry3d& pose : subject_.poses) {
+      if (query == Query::any) anyCollision({a_}, {b_, pose}, request(accuracy));
+      if (query == Query::flags) collisionFlags({a_}, {b_, pose}, request(accuracy));
+      if (query == Query::distance) closestPair({a_}, {b_, pose}, request(accuracy));
+    }
+    return std::chrono::duration<double>(Clock::now() - start).count() / static_cast<double>(subject_.poses.size());
+  }
+
+  /// What the answers at a setting are worth.
+  Measurement judge(Query query, const Accuracy& accuracy) const
+  {
+    Measurement m;
+    m.query = nameOf(query);
+    m.knob = knobOf(accuracy);
+    m.setting = accuracy.text();
+    m.certified = accuracy.isProven();
+    m.poses = subject_.poses.size();
+    double answers = 0.0, undecided = 0.0;
+    for (std::size_t i = 0; i < subject_.poses.size(); ++i) {
+      const Placed b{b_, subject_.poses[i]};
+      const Truth& truth = truths_[i];
+      if (query == Query::any) {
+        const AnyResult result = anyCollision({a_}, b, request(accuracy));
+        answers += 1;
+        undecided += result.verdict == Verdict::undecided ? 1 : 0;
+        m.wrong += result.verdict != Verdict::undecided && result.verdict != truth.any ? 1 : 0;
+        m.work += result.work;
+      }
+      else if (query == Query::flags) {
+        const FlagsResult result = collisionFlags({a_}, b, request(accuracy));
+        answers += static_cast<double>(a_.size());
+        undecided += static_cast<double>(result.undecided_a);
+        for (std::size_t k = 0; k < result.a.size(); ++k)
+          m.wrong += result.a[k] != static_cast<std::uint8_t>(Verdict::undecided) && result.a[k] != truth.flags[k];
+        m.work += result.work;
+      }
+      else {
+        const DistanceResult result = closestPair({a_}, b, request(accuracy));
+        answers += 1;
+        m.certified_error += result.interval.upper - result.interval.lower;
+        m.actual_error += std::abs(result.distance - truth.distance);
+        m.work += result.work;
+      }
+    }
+    if (query == Query::distance) {
+      m.certified_error = m.certified ? m.certified_error / answers : 0.0;
+      m.actual_error /= answers;
+      if (accuracy.isExact()) m.certified_error = 0.0; // but for the rounding of the number given
+    }
+    else {
+      m.certified_error = undecided / answers;
+      m.actual_error = static_cast<double>(m.wrong) / answers;
+    }
+    return m;
+  }
+
+private:
+  CollisionRequest request(const Accuracy& accuracy) const
+  {
+    CollisionRequest request;
+    request.clearance = subject_.clearance;
+    request.threads = threads_;
+    request.accuracy = accuracy;
+    return request;
+  }
+
+  const Subject& subject_;
+  SphereHierarchy a_, b_;
+  unsigned threads_;
+  std::vector<Truth> truths_;
+};
+
+/// Tolerances from a millionth of the object up, levels until nothing is left open, budgets up to twice the exact time.
+std::vector<Accuracy> dialOf(Query query, const Laboratory& laboratory, double diameter)
+{
+  std::vector<Accuracy> dial = {Accuracy::exact(), Accuracy::floatOnly()};
+  for (const double part : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) {
+    const double length = part * diameter;
+    dial.push_back(Accuracy::tolerance(std::pow(10.0, std::round(std::log10(length)))));
+  }
+  for (unsigned level = 0; level <= 16; ++level) {
+    dial.push_back(Accuracy::level(level));
+    if (laboratory.judge(query, dial.back()).certified_error <= 1e-9 * diameter) break;
+  }
+  const double exact = laboratory.time(query, Accuracy::exact());
+  for (const char* text : {"1e-5", "3e-5", "1e-4", "3e-4", "0.001", "0.003", "0.01", "0.03", "0.1", "0.3", "1", "3"}) {
+    const Accuracy budget = Accuracy::parse(std::string("time=") + text);
+    if (budget.value >= exact / 300.0 && budget.value <= 2.0 * exact) dial.push_back(budget);
+  }
+  const std::uint64_t tests = laboratory.judge(query, Accuracy::exact()).work.node_pairs;
+  for (std::uint64_t count = 100; count < tests; count *= 10) dial.push_back(Accuracy::nodePairs(count));
+  return dial;
+}
+
+FitMeasurement measureFit(const Subject& subject, SphereFit fit, const char* name, unsigned repetitions,
+                          unsigned threads)
+{
+  FitMeasurement m;
+  m.fit = name;
+  std::vector<double> build, flags, distance;
+  for (unsigned i = 0; i < repetitions; ++i) {
+    HierarchyOptions options;
+    options.fit = fit;
+    options.threads = threads;
+    const auto start = Clock::now();
+    const SphereHierarchy a(subject.a, options), b(subject.b, options);
+    a.buildAll(threads);
+    b.buildAll(threads);
+    build.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    CollisionRequest request;
+    request.clearance = subject.clearance;
+    request.threads = threads;
+    const auto timed = [&](const auto& ask) {
+      const auto begin = Clock::now();
+      for (const Eigen::Isometry3d& pose : subject.poses) ask(Placed{b, pose});
+      return std::chrono::duration<double>(Clock::now() - begin).count() / static_cast<double>(subject.poses.size());
+    };
+    flags.push_back(timed([&](const Placed& placed) { collisionFlags({a}, placed, request); }));
+    distance.push_back(timed([&](const Placed& placed) { closestPair({a}, placed, request); }));
+    m.mean_leaf_radius = a.statistics().mean_leaf_radius;
+  }
+  m.build = spreadOf(build);
+  m.flags = spreadOf(flags);
+  m.distance = spreadOf(distance);
+  return m;
+}
+
+} // namespace
+
+Spread spreadOf(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double part) {
+    return values[static_cast<std::size_t>(std::lround(part * static_cast<double>(values.size() - 1)))];
+  };
+  return {at(0.1), at(0.5), at(0.9)};
+}
+
+Study runStudy(const Subject& subject, unsigned repetitions, unsigned threads, const Progress& progress)
+{
+  Study study;
+  progress("building and exact answers", 0.0);
+  const Laboratory laboratory(subject, threads);
+  std::vector<Trial> trials;
+  for (const Query query : {Query::any, Query::flags, Query::distance}) {
+    progress(std::string("range of the dial for ") + nameOf(query), 0.05);
+    for (const Accuracy& accuracy : dialOf(query, laboratory, subject.diameter))
+      trials.push_back({accuracy, query, laboratory.judge(query, accuracy), {}});
+  }
+  for (unsigned repetition = 0; repetition < repetitions; ++repetition) {
+    progress("repetition " + std::to_string(repetition + 1) + " of " + std::to_string(repetitions),
+             0.1 + 0.7 * repetition / repetitions);
+    for (Trial& trial : trials) {
+      trial.seconds.push_back(laboratory.time(trial.query, trial.accuracy));
+    }
+  }
+  for (Trial& trial : trials) {
+    trial.measurement.seconds = spreadOf(trial.seconds);
+    study.measurements.push_back(std::move(trial.measurement));
+  }
+  progress("fits of spheres", 0.8);
+  const unsigned few = std::min(repetitions, 3u);
+  study.fits.push_back(measureFit(subject, SphereFit::box_center, "box centre", few, threads));
+  study.fits.push_back(measureFit(subject, SphereFit::ritter, "Ritter", few, threads));
+  study.fits.push_back(measureFit(subject, SphereFit::minimal, "minimal", few, threads));
+  return study;
+}
+
+} // namespace pcl_bsh::accuracy

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What does accuracy cost in time, on these two clouds? A table, a plot, and which setting to choose.
+#include "accuracy/peers.h"
+#include "accuracy/report.h"
+#include "cli/collide_options.h"
+#include "cli/pose.h"
+#include "cli/program.h"
+#include "cli/step.h"
+
+#include <pcl_bsh/filters/io/cloud_file.h>
+#include <pcl_bsh/filters/io/replace_file.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <iostream>
+#include <random>
+
+namespace {
+
+using namespace pcl_bsh;
+
+constexpr auto program = "pcl_bsh_accuracy";
+constexpr auto footer =
+    R"(Asks whether, where and how near the clouds are, at every setting of the dial: exact, float only, tolerance, level of
+detail, budgets. Writes accuracy.csv, accuracy.md and accuracy.png.
+Exit code: 0 done; 1 failed; 2 command line not understood.
+
+Example: a robot in a hall, at ten poses about (1.5, 2, 0)
+  pcl_bsh_accuracy hall.ply robot.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.57 --poses 10 --out study)";
+
+struct Options {
+  std::filesystem::path a, b, out;
+  double clearance = 0.0;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  unsigned poses = 1, repetitions = 5, threads = 1;
+  bool peers = false;
+};
+
+std::optional<Options> parse(int argc, char** argv)
+{
+  std::string a, b, out, clearance, pose, poses = "1", repetitions = "5", threads = "1";
+  Options options;
+  CLI::App app("Measures what accuracy costs in time, on two clouds of yours.", program);
+  app.footer(footer);
+  app.add_option("A", a, "cloud whose points are asked about")->type_name("")->required();
+  app.add_option("B", b, "cloud to collide with")->type_name("")->required();
+  app.add_option("--clearance", clearance, "greatest distance that counts as collision, in the clouds' unit")
+      ->type_name("D")
+      ->required();
+  app.add_option("--out", out, "folder for the results; made if it is not there")->type_name("DIR")->required();
+  app.add_option("--pose", pose, "of B in A's frame, as for pcl_bsh_collide (default: no motion)")->type_name("POSE");
+  app.add_option("--poses", poses,
+                 "that pose, and N - 1 about it: up to 5 % of A's diameter and 10 degrees off (default 1)")
+      ->type_name("N");
+  app.add_option("--repeat", repetitions, "repetitions of every measurement (default 5)")->type_name("N");
+  app.add_option("--threads", threads, "0: all of the machine's (default 1)")->type_name("N");
+  app.add_flag("--peers", options.peers, "measure PCL's kd-tree, octree and VoxelGrid on the same clouds, too");
+  try {
+    app.parse(argc, argv);
+  }
+  catch (const CLI::CallForHelp&) {
+    std::cout << app.help();
+    return std::nullopt;
+  }
+  catch (const CLI::ParseError& error) {
+    throw cli::UsageError(std::string("command line: ") + error.what() + ": see " + program + " --help");
+  }
+  options.a = a;
+  options.b = b;
+  options.out = out;
+  options.clearance = cli::parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
+  options.poses = cli::parseOption<unsigned>("--poses", poses, "give a number of poses, 1 or more");
+  options.repetitions = cli::parseOption<unsigned>("--repeat", repetitions, "give a number, 1 or more");
+  options.threads = cli::parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
+  if (options.poses == 0) throw cli::UsageError("--poses: 0: give a number of poses, 1 or more");
+  if (options.repetitions == 0) throw cli::UsageError("--repeat: 0: give a number, 1 or more");
+  if (!pose.empty()) options.pose = cli::parsePose(pose);
+  return options;
+}
+
+pcl::PCLPointCloud2 load(const std::filesystem::path& path)
+{
+  cli::Step step("Loading " + path.string());
+  pcl::PCLPointCloud2 cloud = io::readCloud(path);
+  step.done(std::to_string(std::size_t{cloud.width} * cloud.height) + " points");
+  return cloud;
+}
+
+struct Box {
+  Eigen::AlignedBox3d box;
+  explicit Box(const PointsView& view)
+  {
+    for (std::size_t i = 0; i < view.count; ++i) {
+      const Point3 p = view.point(static_cast<std::uint32_t>(i));
+      const Eigen::Vector3d v(p[0], p[1], p[2]);
+      if (v.allFinite()) box.extend(v);
+    }
+  }
+};
+
+/// The pose, then others about it: turned about the middle of B, so that far coordinates do not swing away.
+std::vector<Eigen::Isometry3d> posesAbout(const Options& options, double diameter, const Eigen::Vector3d& middle)
+{
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<Eigen::Isometry3d> poses = {options.pose};
+  while (poses.size() < options.poses) {
+    const Eigen::Vector3d axis = Eigen::Vector3d(unit(random), unit(random), unit(random)).normalized();
+    const Eigen::Vector3d shift = 0.05 * diameter * Eigen::Vector3d(unit(random), unit(random), unit(random));
+    const double angle = unit(random) * 10.0 * 3.14159265358979323846 / 180.0;
+    poses.push_back(Eigen::Translation3d(shift) * options.pose * Eigen::Translation3d(middle) *
+                    Eigen::AngleAxisd(angle, axis) * Eigen::Translation3d(-middle));
+  }
+  return poses;
+}
+
+int study(const Options& options)
+{
+  std::filesystem::create_directories(options.out);
+  for (const char* name : {"accuracy.csv", "accuracy.md", "accuracy.png"}) io::requireWritable(options.out / name);
+  const pcl::PCLPointCloud2 cloud_a = load(options.a), cloud_b = load(options.b);
+  accuracy::Subject subject{viewOf(cloud_a), viewOf(cloud_b), options.clearance, {}, 0.0};
+  const Box a(subject.a), b(subject.b);
+  if (a.box.isEmpty() || b.box.isEmpty())
+    throw std::runtime_error((a.box.isEmpty() ? options.a : options.b).string() +
+                             ": has no finite point: there is nothing to measure: give another cloud");
+  subject.diameter = a.box.diagonal().norm();
+  subject.poses = posesAbout(options, subject.diameter, b.box.center());
+
+  const auto progress = [](const std::string& what, double done) {
+    std::cerr << "> " << static_cast<int>(100 * done) << " %: " << what << '\n';
+  };
+  accuracy::Study result = accuracy::runStudy(subject, options.repetitions, options.threads, progress);
+  if (options.peers) {
+    for (accuracy::Measurement& m : accuracy::measurePeers(subject, std::min(options.repetitions, 3u), progress))
+      result.measurements.push_back(std::move(m));
+  }
+
+  const std::string heading = "`" + options.a.filename().string() + "` (" + std::to_string(subject.a.count) +
+                              " points) against `" + options.b.filename().string() + "` (" +
+                              std::to_string(subject.b.count) + " points).";
+  accuracy::writeReports(options.out, heading, subject, result);
+  std::cout << accuracy::advice(subject, result) << "\nWrote " << (options.out / "accuracy.md").string()
+            << ", accuracy.csv and accuracy.png beside it.\n";
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(program, [&] {
+    const std::optional<Options> options = parse(argc, argv);
+    return options ? study(*options) : 0;
+  });
+}

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/vtk/offscreen_window.h>
+
+#include <vtkCallbackCommand.h>
+#include <vtkCommand.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkNew.h>
+#include <vtkPNGWriter.h>
+#include <vtkRendererCollection.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkWindowToImageFilter.h>
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+namespace pcl_bsh::vtk {
+namespace {
+
+/// The program's only OpenGL context without a display; made once, kept to the end.
+class EglContext {
+public:
+  static void makeCurrent()
+  {
+    static const EglContext context;
+    if (!eglMakeCurrent(context.display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context.context_))
+      throw std::runtime_error("drawing without a display: EGL's context cannot be made current: set DISPLAY");
+  }
+
+private:
+  EglContext()
+  {
+    const auto platform_display =
+        reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
+    display_ = platform_display ? platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)
+                                : EGL_NO_DISPLAY;
+    if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API))
+      throw std::runtime_error("drawing without a display: EGL cannot be had: install libegl-mesa0, or set DISPLAY");
+    constexpr EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+    constexpr EGLint version[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    EGLConfig config = nullptr;
+    EGLint count = 0;
+    eglChooseConfig(display_, wanted, &config, 1, &count);
+    context_ = eglCreateContext(display_, count > 0 ? config : nullptr, EGL_NO_CONTEXT, version);
+    if (context_ == EGL_NO_CONTEXT)
+      throw std::runtime_error("drawing without a display: EGL gives no OpenGL 3.3: install libgl1-mesa-dri");
+  }
+
+  EGLDisplay display_ = EGL_NO_DISPLAY;
+  EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+/// VTK asks its generic window whether the context is current; it is.
+void answerThatItIsCurrent(vtkObject*, unsigned long, void*, void* answer)
+{
+  EglContext::makeCurrent();
+  *static_cast<bool*>(answer) = true;
+}
+
+void makeCurrent(vtkObject*, unsigned long, void*, void*)
+{
+  EglContext::makeCurrent();
+}
+
+/// GLEW reports the missing GLX display on stderr, and works all the same: nobody should read that.
+class QuietStderr {
+public:
+  QuietStderr() : saved_(dup(STDERR_FILENO))
+  {
+    const int null = open("/dev/null", O_WRONLY);
+    if (null < 0) return;
+    dup2(null, STDERR_FILENO);
+    close(null);
+  }
+  ~QuietStderr()
+  {
+    if (saved_ < 0) return;
+    dup2(saved_, STDERR_FILENO);
+    close(saved_);
+  }
+  QuietStderr(const QuietStderr&) = delete;
+  QuietStderr& operator=(const QuietStderr&) = delete;
+
+private:
+  int saved_;
+};
+
+vtkSmartPointer<vtkRenderWindow> makeEglWindow()
+{
+  EglContext::makeCurrent();
+  vtkNew<vtkGenericOpenGLRenderWindow> window;
+  window->SetOwnContext(0);
+  window->SetSupportsOpenGL(1);
+  window->SetIsDirect(1);
+  window->SetReadyForRendering(true);
+  window->SetMapped(1);
+  vtkNew<vtkCallbackCommand> is_current, make_current;
+  is_current->SetCallback(answerThatItIsCurrent);
+  make_current->SetCallback(makeCurrent);
+  window->AddObserver(vtkCommand::WindowIsCurrentEvent, is_current);
+  window->AddObserver(vtkCommand::WindowMakeCurrentEvent, make_current);
+  return window;
+}
+
+bool haveDisplay()
+{
+  const char* display = std::getenv("DISPLAY");
+  return display != nullptr && *display != '\0';
+}
+
+} // namespace
+
+vtkSmartPointer<vtkRenderWindow> makeOffscreenWindow(int width, int height)
+{
+  vtkSmartPointer<vtkRenderWindow> window = haveDisplay() ? vtkSmartPointer<vtkRenderWindow>::New() : makeEglWindow();
+  window->SetOffScreenRendering(1);
+  window->SetMultiSamples(0); // what a picture shows should not depend on the driver
+  window->SetSize(width, height);
+  return window;
+}
+
+void writePng(vtkRenderWindow& window, const std::filesystem::path& path)
+{
+  vtkNew<vtkWindowToImageFilter> image;
+  {
+    const QuietStderr quiet;
+    window.Render();
+    image->SetInput(&window);
+    image->ReadFrontBufferOff();
+    image->Update();
+  }
+  vtkNew<vtkPNGWriter> writer;
+  writer->WriteToMemoryOn();
+  writer->SetInputConnection(image->GetOutputPort());
+  writer->Write();
+  const vtkUnsignedCharArray* const bytes = writer->GetResult();
+
+  const std::filesystem::path unfinished = path.string() + ".part";
+  std::ofstream out(unfinished, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(const_cast<vtkUnsignedCharArray*>(bytes)->GetPointer(0)),
+            static_cast<std::streamsize>(bytes->GetNumberOfValues()));
+  out.close();
+  std::error_code failed;
+  if (out) std::filesystem::rename(unfinished, path, failed);
+  if (!out || failed) {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished, ignored);
+    throw std::runtime_error(path.string() + ": cannot be written: give a folder that exists and may be written to");
+  }
+}
+
+} // namespace pcl_bsh::vtk

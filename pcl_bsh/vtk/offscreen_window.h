@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A window to draw into that nobody sees, with or without a display.
+#pragma once
+
+#include <vtkRenderWindow.h>
+#include <vtkSmartPointer.h>
+
+#include <filesystem>
+
+namespace pcl_bsh::vtk {
+
+/// A window of width x height pixels for vtkRenderers. Needs no display: without one it draws through EGL, where an
+/// ordinary window of VTK would end the program.
+/// @throws std::runtime_error when neither is to be had
+vtkSmartPointer<vtkRenderWindow> makeOffscreenWindow(int width, int height);
+
+/// Renders the window and writes it as a PNG file; through a temporary one, so that nothing is left half-written.
+/// @throws std::runtime_error naming the file
+void writePng(vtkRenderWindow& window, const std::filesystem::path& path);
+
+} // namespace pcl_bsh::vtk
