@@ -93,7 +93,7 @@ public:
       pcl::KdTreeFLANN<pcl::PointXYZ> tree;
       tree.setEpsilon(epsilon);
       tree.setInputCloud(b_.cloud);
-      const std::string knob = epsilon == 0.0f ? "PCL kd-tree" : "PCL kd-tree, approximate";
+      const std::string knob = epsilon == 0.0f ? "PCL kd-tree" : "PCL approximate kd-tree";
       measure(knob, "epsilon=" + trimmed(epsilon), *a_.cloud, tree, true);
     }
     {
@@ -108,8 +108,8 @@ public:
       pcl::KdTreeFLANN<pcl::PointXYZ> tree;
       tree.setInputCloud(thin_b.makeShared());
       // Flags are wanted of every point; a distance is not.
-      measure("VoxelGrid, kd-tree", "leaf=" + trimmed(leaf), *a_.cloud, tree, true, false);
-      measure("VoxelGrid, kd-tree", "leaf=" + trimmed(leaf), thin_a, tree, false);
+      measure("VoxelGrid + kd-tree", "leaf=" + trimmed(leaf), *a_.cloud, tree, true, false);
+      measure("VoxelGrid + kd-tree", "leaf=" + trimmed(leaf), thin_a, tree, false);
     }
     return std::move(measurements_);
   }

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "program_run.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+#include <sstream>
+
+namespace pcl_bsh {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+namespace fs = std::filesystem;
+
+/// Two bumpy sheets, one above the other.
+class AccuracyProgram : public testing::Test {
+protected:
+  static std::string sheet(double height, unsigned seed)
+  {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    std::ostringstream text;
+    for (int i = 0; i < 4000; ++i) {
+      const double x = unit(random), y = unit(random);
+      text << x << ' ' << y << ' ' << height + 0.05 * std::sin(9 * x) * std::cos(7 * y) << '\n';
+    }
+    return text.str();
+  }
+
+  using Row = std::map<std::string, std::string>;
+
+  static std::vector<std::string> cells(const std::string& line)
+  {
+    std::istringstream text(line);
+    std::vector<std::string> all;
+    for (std::string cell; std::getline(text, cell, ',');) all.push_back(cell);
+    return all;
+  }
+
+  std::vector<Row> rows() const
+  {
+    std::istringstream csv(io::contentOf(folder / "study" / "accuracy.csv"));
+    std::string line;
+    std::getline(csv, line);
+    const std::vector<std::string> names = cells(line);
+    std::vector<Row> all;
+    while (std::getline(csv, line)) {
+      const std::vector<std::string> values = cells(line);
+      EXPECT_EQ(values.size(), names.size()) << line;
+      Row row;
+      for (std::size_t i = 0; i < values.size(); ++i) row[names[i]] = values[i];
+      all.push_back(row);
+    }
+    return all;
+  }
+
+  io::TemporaryFolder folder;
+  fs::path a = folder.write("a.xyz", sheet(0.0, 1));
+  fs::path b = folder.write("b.xyz", sheet(0.02, 2));
+};
+
+TEST_F(AccuracyProgram, MeasuresEveryKnobAndIsNeverWrongWhereCertified)
+{
+  const Outcome done =
+      run("pcl_bsh_accuracy", a.string() + " " + b.string() + " --clearance 0.01 --poses 2 --repeat 1 " +
+                                  "--peers --out " + (folder / "study").string());
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("| exact | `exact`"));
+  std::map<std::string, int> knobs;
+  for (const Row& row : rows()) {
+    ++knobs[row.at("knob")];
+    const double certified = std::stod(row.at("certified_error")), actual = std::stod(row.at("actual_error"));
+    EXPECT_GT(std::stod(row.at("time_median_s")), 0.0);
+    if (row.at("certified") != "1" || row.at("knob") == "tolerance") continue;
+    if (row.at("query") == "distance")
+      EXPECT_LE(actual, certified + 1e-12) << row.at("setting");
+    else
+      EXPECT_EQ(row.at("wrong"), "0") << row.at("query") << ' ' << row.at("setting");
+  }
+  for (const char* knob : {"exact", "float only", "tolerance", "level of detail", "budget of tests", "PCL kd-tree",
+                           "PCL approximate kd-tree", "PCL octree", "VoxelGrid + kd-tree"})
+    EXPECT_EQ(knobs.count(knob), 1u) << knob;
+  const std::string text = io::contentOf(folder / "study" / "accuracy.md");
+  for (const char* part :
+       {"## Smallest distance", "## Flags per point", "## Any collision", "## Fits of spheres", "minimal"})
+    EXPECT_THAT(text, HasSubstr(part));
+  EXPECT_THAT(io::contentOf(folder / "study" / "accuracy.png"), StartsWith("\x89PNG"));
+}
+
+TEST_F(AccuracyProgram, RefusesWhatItCannotMeasure)
+{
+  const auto fails = [&](const std::string& arguments, int code, const std::string& message) {
+    const Outcome failed = run("pcl_bsh_accuracy", arguments);
+    EXPECT_EQ(failed.exit_code, code) << arguments;
+    EXPECT_THAT(failed.err, HasSubstr(message));
+    EXPECT_FALSE(fs::exists(folder / "study" / "accuracy.csv"));
+  };
+  const std::string clouds = a.string() + " " + b.string() + " --out " + (folder / "study").string();
+  fails(clouds, 2, "--clearance");
+  fails(clouds + " --clearance 1 --poses 0", 2, "--poses: 0");
+  fails(clouds + " --clearance x", 2, "--clearance");
+  fails(clouds + " --clearance -1", 1, "clearance: -1");
+  const fs::path nothing = folder.write("nothing.xyz", "nan nan nan\n");
+  fails(nothing.string() + " " + b.string() + " --clearance 1 --out " + (folder / "study").string(), 1,
+        "no finite point");
+}
+
+} // namespace pcl_bsh
