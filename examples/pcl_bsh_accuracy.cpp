@@ -76,7 +76,7 @@ std::optional<Options> parse(int argc, char** argv)
   options.threads = cli::parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
   if (options.poses == 0) throw cli::UsageError("--poses: 0: give a number of poses, 1 or more");
   if (options.repetitions == 0) throw cli::UsageError("--repeat: 0: give a number, 1 or more");
-  if (!pose.empty()) options.pose = cli::parsePose(pose);
+  if (!pose.empty()) options.pose = cli::parsePose("--pose", pose);
   return options;
 }
 
