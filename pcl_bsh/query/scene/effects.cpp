@@ -416,7 +416,7 @@ void Scene::State::findFirstContacts()
   EffectCost& spent = cost(Effect::first_contact);
   const Timed timed(spent.seconds);
   const std::vector<BroadPair*>& pairs = grid.pairs();
-  std::vector<std::optional<FirstContact>> found(pairs.size());
+  std::vector<std::optional<PartFirstContact>> found(pairs.size());
   eachPair(pairs, spent, [&](std::size_t k) {
     const BroadPair& pair = *pairs[k];
     const Path path_a = pathOf(pair.a), path_b = pathOf(pair.b);
@@ -431,7 +431,7 @@ void Scene::State::findFirstContacts()
                          pair.clearance, options.tolerance, pairs[k]->memory.work);
         ++pairs[k]->memory.asked;
         if (met && (!found[k] || met->s < found[k]->fraction))
-          found[k] = FirstContact{{pair.a, pair.b, i, j}, met->s, met->pair};
+          found[k] = PartFirstContact{{pair.a, pair.b, i, j}, met->s, met->pair};
       }
   });
   for (const auto& contact : found)

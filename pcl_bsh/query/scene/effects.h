@@ -105,7 +105,7 @@ struct ContactPair : PartPair {
   bool complete = true;          ///< no contact of these two parts was left out
 };
 
-struct FirstContact : PartPair {
+struct PartFirstContact : PartPair {
   double fraction =
       0.0;        ///< of the step, in [0, 1]: before it no pair of points collides, at it one is within tolerance
   PointPair pair; ///< the points that meet
@@ -143,7 +143,7 @@ struct SceneResult {
   std::vector<FlaggedPart> flags;
   std::vector<DistantPair> distance;
   std::vector<ContactPair> contacts;
-  std::vector<FirstContact> first_contact;
+  std::vector<PartFirstContact> first_contact;
   std::vector<FlaggedPart> swept;
   std::vector<SelfCollision> self;
   std::vector<Outcome> outcomes; ///< of moved objects, with a response or gravity
