@@ -6,11 +6,12 @@ cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
 # From the bottom up: a room may include itself and those before it.
 set(rooms pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/certify pcl_bsh/search filters filters/io
-    filters/pipeline pcl_bsh/vtk examples)
+    filters/pipeline pcl_bsh/vtk examples examples/view)
 set(core pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/certify) # without PCL
 
 set(never "^vtk")                     # nowhere in these rooms, but for
 set(allowed_pcl_bsh/vtk "^vtk")       # a room made for it, which only programs see
+set(allowed_examples/view "^vtk")     # and the program that shows things
 set(gpl "^(CGAL/|pcl_bsh/certify/)")  # only in pcl_bsh/certify, and in its program what that offers
 set(gpl_program "^examples/(pcl_bsh_certify\\.cpp|cli/certify_[a-z]+\\.h)$")
 set(never_in_core "^(pcl/|iostream$|fstream$)")

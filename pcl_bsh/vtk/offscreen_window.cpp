@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/vtk/display.h>
 #include <pcl_bsh/vtk/offscreen_window.h>
 
 #include <vtkCallbackCommand.h>
@@ -16,7 +17,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 #include <string>
@@ -109,12 +109,6 @@ vtkSmartPointer<vtkRenderWindow> makeEglWindow()
   window->AddObserver(vtkCommand::WindowIsCurrentEvent, is_current);
   window->AddObserver(vtkCommand::WindowMakeCurrentEvent, make_current);
   return window;
-}
-
-bool haveDisplay()
-{
-  const char* display = std::getenv("DISPLAY");
-  return display != nullptr && *display != '\0';
 }
 
 } // namespace

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clouds, where they collide, and the spheres that find it: in a window, as a picture, or as files for ParaView.
+#include "cli/program.h"
+#include "view/options.h"
+#include "view/picture.h"
+#include "view/viewer.h"
+#include "view/world.h"
+
+#include <pcl_bsh/filters/io/replace_file.h>
+#include <pcl_bsh/vtk/display.h>
+
+namespace {
+
+using namespace pcl_bsh;
+
+/// What can be known to fail is known before the first cloud is loaded.
+void check(const view::Options& options)
+{
+  if (options.screenshot) io::requireWritable(*options.screenshot);
+  if (options.export_to) io::requireWritable(*options.export_to);
+  if (!options.screenshot && !options.export_to && !vtk::haveDisplay())
+    throw std::runtime_error("DISPLAY: no X server answers there, so no window can open: set DISPLAY, or give "
+                             "--screenshot FILE.png, which needs none");
+}
+
+int show(const view::Options& options)
+{
+  check(options);
+  const view::World world(options);
+  if (options.screenshot || options.export_to)
+    view::drawFiles(world);
+  else
+    view::Viewer(world).run();
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(view::program, [&] {
+    const std::optional<view::Options> options = view::parseOptions(argc, argv);
+    return options ? show(*options) : 0;
+  });
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line of pcl_bsh_view.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::view {
+
+inline constexpr auto program = "pcl_bsh_view";
+
+enum class Coloring { collision, distance, first_pose, height, rgb, intensity };
+
+/// Where one looks from.
+struct Camera {
+  enum class Kind { slanted, top, front, side, colliding, given };
+
+  Kind kind = Kind::slanted;
+  std::array<double, 3> eye = {}, focus = {}, up = {0, 0, 1}; ///< of a given one
+};
+
+struct Options {
+  std::vector<std::filesystem::path> clouds; ///< the first is the one asked about, the others are obstacles
+  std::optional<std::filesystem::path> model;
+  std::optional<std::filesystem::path> trajectory;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< of the model, without a trajectory
+  std::optional<double> clearance;
+  std::optional<Coloring> color;
+  std::optional<unsigned> level;
+  unsigned step = 0;
+  bool voxels = false, cells = false, trace = false, closest = false;
+  std::string unit; ///< of lengths, for titles
+  std::optional<std::filesystem::path> screenshot;
+  int width = 1280, height = 960;
+  Camera camera;
+  std::optional<std::filesystem::path> export_to;
+  unsigned threads = 0;
+};
+
+/// The options, checked one by one; none when only help was asked for. @throws cli::UsageError
+std::optional<Options> parseOptions(int argc, char** argv);
+
+} // namespace pcl_bsh::view

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "picture.h"
+
+#include "cli/step.h"
+#include "stage.h"
+
+#include <pcl_bsh/vtk/offscreen_window.h>
+
+#include <vtkNew.h>
+#include <vtkRenderer.h>
+
+#include <iostream>
+
+namespace pcl_bsh::view {
+
+void drawFiles(const World& world)
+{
+  const Options& options = world.options();
+  const auto window = vtk::makeOffscreenWindow(options.width, options.height);
+  vtkNew<vtkRenderer> renderer;
+  window->AddRenderer(renderer);
+  Stage stage(world, *renderer);
+  if (options.screenshot) {
+    cli::Step step("Drawing " + options.screenshot->string());
+    vtk::writePng(*window, *options.screenshot);
+    step.done(std::to_string(options.width) + " x " + std::to_string(options.height) + " pixels");
+    std::cout << "wrote " << options.screenshot->string() << '\n';
+  }
+  if (options.export_to) {
+    stage.exportTo(*options.export_to);
+    std::cout << "wrote " << options.export_to->string() << '\n';
+  }
+}
+
+} // namespace pcl_bsh::view

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The window: mouse, keys, a slider along the poses, picking.
+#pragma once
+
+#include "stage.h"
+
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkSliderWidget.h>
+#include <vtkSmartPointer.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace pcl_bsh::view {
+
+inline constexpr auto keys = R"(+ -    spheres one level finer, coarser (none)
+v  o    voxels, octree cells
+t       what the query tested and pruned
+left right   pose before, after
+click   point: number, place, distance, first pose
+r  s    reset the camera, save a picture
+h  q    hide this, quit)";
+
+class Viewer {
+public:
+  /// @throws std::runtime_error when there is no display
+  explicit Viewer(const World& world);
+  ~Viewer();
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+
+  /// Shows the window until the user leaves.
+  void run();
+
+  vtkRenderWindow& window() { return *window_; }
+  vtkRenderWindowInteractor& interactor() { return *interactor_; }
+  vtkSliderWidget* slider() { return slider_; } ///< null where there is one pose
+  Stage& stage() { return *stage_; }
+
+  // What events end in.
+  bool press(const std::string& key); ///< @return false for a key that means nothing here
+  void pick(int x, int y);
+  void showStep(std::size_t step);
+  void setMoving(bool moving);
+  const std::string& picked() const { return picked_; }
+  const std::filesystem::path& saved() const { return saved_; } ///< the last picture that was saved
+
+private:
+  void addSlider();
+  void save();
+
+  const World& world_;
+  vtkSmartPointer<vtkRenderWindow> window_;
+  vtkSmartPointer<vtkRenderer> renderer_;
+  vtkSmartPointer<vtkRenderWindowInteractor> interactor_;
+  vtkSmartPointer<vtkSliderWidget> slider_;
+  std::unique_ptr<Stage> stage_;
+  std::string picked_;
+  std::filesystem::path saved_;
+  bool help_ = false;
+};
+
+} // namespace pcl_bsh::view

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace pcl_bsh::vtk {
+
+/// Whether the X server that DISPLAY names answers. Where it does not, VTK's ordinary windows end the program.
+bool haveDisplay();
+
+} // namespace pcl_bsh::vtk
