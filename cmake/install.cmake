@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# For find_package(pcl_bsh). Components: libs, dev (headers, CMake package), with the programs tools, and with CGAL
-# certify, which is all that falls under the GPL.
+# For find_package(pcl_bsh). Components: libs, dev (headers, CMake package), with the programs tools, with VTK vtk, its
+# library and headers, and with CGAL certify, which is all that falls under the GPL.
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pcl_bsh")
@@ -36,4 +36,14 @@ if(PCL_BSH_BUILD_CERTIFY) # find_package(pcl_bsh COMPONENTS certify)
           COMPONENT certify)
   install(FILES "${PROJECT_SOURCE_DIR}/pcl_bsh/certify/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}/certify"
           COMPONENT certify)
+endif()
+
+if(TARGET pcl_bsh_vtk) # find_package(pcl_bsh COMPONENTS vtk)
+  install(
+    TARGETS pcl_bsh_vtk
+    EXPORT pcl_bsh_vtk
+    LIBRARY COMPONENT vtk
+    ARCHIVE COMPONENT vtk
+    FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT vtk)
+  install(EXPORT pcl_bsh_vtk FILE pcl_bsh_vtkTargets.cmake NAMESPACE pcl_bsh:: DESTINATION "${package_dir}" COMPONENT vtk)
 endif()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Three .deb packages, with CGAL a fourth, by `cmake --workflow --preset package` or, from any build, by `cpack -G DEB`.
+# Three .deb packages, with VTK and with CGAL one more each, by `cmake --workflow --preset package` or, from any build,
+# by `cpack -G DEB`.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The pcl_bsh authors")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
@@ -13,6 +14,9 @@ if(PCL_BSH_BUILD_EXAMPLES)
 endif()
 if(PCL_BSH_BUILD_CERTIFY)
   list(APPEND CPACK_COMPONENTS_ALL certify)
+endif()
+if(TARGET pcl_bsh_vtk)
+  list(APPEND CPACK_COMPONENTS_ALL vtk)
 endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -38,10 +42,18 @@ set(CPACK_DEBIAN_CERTIFY_PACKAGE_SECTION science)
 set(CPACK_COMPONENT_CERTIFY_DESCRIPTION "Exact certification of sphere hierarchies; under GPL-3.0-or-later, by CGAL.")
 set(CPACK_COMPONENT_CERTIFY_DEPENDS libs)
 
+set(CPACK_DEBIAN_VTK_PACKAGE_NAME libpcl-bsh-vtk)
+set(CPACK_DEBIAN_VTK_PACKAGE_SECTION libs)
+set(CPACK_COMPONENT_VTK_DESCRIPTION "Hierarchies and flags as VTK's data, pictures of them; library and headers.")
+set(CPACK_COMPONENT_VTK_DEPENDS libs)
+if(TARGET pcl_bsh_vtk) # for the programs that draw
+  set(CPACK_COMPONENT_TOOLS_DEPENDS libs vtk)
+endif()
+
 # What the binaries link to becomes what the packages depend on; our own libraries are found where they were built.
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/pcl_bsh"
-    "${PROJECT_BINARY_DIR}/pcl_bsh/certify" "${PROJECT_BINARY_DIR}/filters")
+    "${PROJECT_BINARY_DIR}/pcl_bsh/certify" "${PROJECT_BINARY_DIR}/pcl_bsh/vtk" "${PROJECT_BINARY_DIR}/filters")
 
 include(CPack)

@@ -18,7 +18,7 @@ void check(const view::Options& options)
 {
   if (options.screenshot) io::requireWritable(*options.screenshot);
   if (options.export_to) io::requireWritable(*options.export_to);
-  if (!options.screenshot && !options.export_to && !vtk::haveDisplay())
+  if (!options.screenshot && !options.export_to && !pcl_bsh::vtk::haveDisplay())
     throw std::runtime_error("DISPLAY: no X server answers there, so no window can open: set DISPLAY, or give "
                              "--screenshot FILE.png, which needs none");
 }

@@ -26,8 +26,9 @@ namespace {
 /// The trackball, with our keys instead of VTK's, and a click that picks.
 class Style : public vtkInteractorStyleTrackballCamera {
 public:
-  static Style* New();
-  vtkTypeMacro(Style, vtkInteractorStyleTrackballCamera);
+  using Superclass = vtkInteractorStyleTrackballCamera;
+
+  static Style* New() { VTK_STANDARD_NEW_BODY(Style); }
 
   Viewer* viewer = nullptr;
 
@@ -73,7 +74,6 @@ public:
 private:
   int pressed_[2] = {0, 0};
 };
-vtkStandardNewMacro(Style);
 
 void onSlider(vtkObject* slider, unsigned long, void* viewer, void*)
 {

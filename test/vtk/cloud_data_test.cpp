@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/vtk/cloud_data.h>
+#include <pcl_bsh/vtk/path_data.h>
+
+#include <gtest/gtest.h>
+
+#include <vtkDataArray.h>
+#include <vtkPointData.h>
+
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+namespace pcl_bsh::vtk {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(CloudData, KeepsFinitePointsWithTheirNumbersAndType)
+{
+  const double xyz[] = {500000.125, 1, 2, nan, 0, 0, 3, 4, 5};
+  const auto data = cloudData(viewOf(xyz, 3));
+  ASSERT_EQ(data->GetNumberOfPoints(), 2);
+  EXPECT_EQ(data->GetNumberOfVerts(), 1) << "one poly-vertex cell";
+  EXPECT_EQ(data->GetPoints()->GetDataType(), VTK_DOUBLE);
+  EXPECT_EQ(data->GetPoint(0)[0], 500000.125);
+  EXPECT_EQ(data->GetPointData()->GetArray("index")->GetTuple1(1), 2);
+  const float near[] = {1, 2, 3};
+  EXPECT_EQ(cloudData(viewOf(near, 1))->GetPoints()->GetDataType(), VTK_FLOAT);
+  EXPECT_EQ(cloudData(PointsView{})->GetNumberOfPoints(), 0);
+}
+
+TEST(CloudData, ArraysAndSubsetsFollowTheNumbers)
+{
+  const float xyz[] = {0, 0, 0, static_cast<float>(nan), 0, 0, 2, 0, 0, 3, 0, 0};
+  const auto data = cloudData(viewOf(xyz, 4));
+  addArray(*data, "collision", std::vector<std::uint8_t>{0, 1, 1, 0});
+  addArray(*data, "first_pose", std::vector<std::int32_t>{-1, 8, 7, -1});
+  addArray(*data, "distance", std::vector<float>{0.5f, 1.5f, 2.5f, 3.5f});
+  EXPECT_EQ(data->GetPointData()->GetArray("first_pose")->GetTuple1(1), 7);
+  const auto some = subset(*data, {0, 1, 1, 0});
+  ASSERT_EQ(some->GetNumberOfPoints(), 1) << "the point that is not finite is not there";
+  EXPECT_EQ(some->GetPoint(0)[0], 2);
+  EXPECT_EQ(some->GetPointData()->GetArray("distance")->GetTuple1(0), 2.5);
+  EXPECT_EQ(some->GetPointData()->GetArray("index")->GetTuple1(0), 2);
+  EXPECT_THROW(addArray(*data, "short", std::vector<float>{1.0f}), std::invalid_argument);
+}
+
+TEST(CloudData, ThinsEvenly)
+{
+  std::vector<float> xyz(3000, 0.0f);
+  for (std::size_t i = 0; i < 1000; ++i) xyz[3 * i] = static_cast<float>(i);
+  const auto data = cloudData(viewOf(xyz.data(), 1000));
+  const auto few = thinned(*data, 100);
+  ASSERT_EQ(few->GetNumberOfPoints(), 100);
+  EXPECT_EQ(few->GetPoint(50)[0], 500);
+  EXPECT_EQ(thinned(*data, 1000), data);
+}
+
+TEST(PathData, IsALineWithTimes)
+{
+  std::vector<Eigen::Isometry3d> poses(3, Eigen::Isometry3d::Identity());
+  poses[1].translation().x() = 1;
+  poses[2].translation().x() = 3;
+  const auto path = pathData(poses, {0.0, 0.5, 2.0}, {0, 1, 0});
+  ASSERT_EQ(path->GetNumberOfPoints(), 3);
+  EXPECT_EQ(path->GetNumberOfLines(), 1);
+  EXPECT_EQ(path->GetPoint(2)[0], 3);
+  EXPECT_EQ(path->GetPoint(2)[1], 1);
+  EXPECT_EQ(path->GetPointData()->GetArray("time")->GetTuple1(1), 0.5);
+  EXPECT_EQ(path->GetPointData()->GetArray("pose")->GetTuple1(2), 2);
+  EXPECT_EQ(pathData(poses)->GetPointData()->GetArray("time")->GetTuple1(2), 2);
+  EXPECT_THROW(pathData(poses, {1.0}), std::invalid_argument);
+}
+
+} // namespace
+} // namespace pcl_bsh::vtk
