@@ -31,6 +31,7 @@
 #include <cmath>
 #include <iomanip>
 #include <limits>
+#include <numbers>
 #include <sstream>
 
 namespace pcl_bsh::view {
@@ -63,6 +64,13 @@ void setColor(vtkActor& actor, const Color& color)
   actor.GetProperty()->SetColor(c[0], c[1], c[2]);
 }
 
+Color bytes(const double* color)
+{
+  return {static_cast<unsigned char>(std::lround(255 * color[0])),
+          static_cast<unsigned char>(std::lround(255 * color[1])),
+          static_cast<unsigned char>(std::lround(255 * color[2]))};
+}
+
 void setData(vtkActor& actor, vtkPolyData* data)
 {
   vtkPolyDataMapper::SafeDownCast(actor.GetMapper())->SetInputData(data);
@@ -81,6 +89,43 @@ void setColors(vtkPolyData& data, const std::vector<Color>& colors)
   data.GetPointData()->SetScalars(array);
 }
 
+/// The colour, darker for lower points: a cloud of one colour would look flat.
+std::vector<Color> shaded(vtkPolyData& data, std::size_t records, const Color& color)
+{
+  std::vector<Color> colors(records, color);
+  auto* const index = vtkIntArray::SafeDownCast(data.GetPointData()->GetArray("index"));
+  if (data.GetNumberOfPoints() == 0) return colors;
+  const double* const bounds = data.GetBounds();
+  const double low = bounds[4], height = std::max(bounds[5] - bounds[4], std::numeric_limits<double>::min());
+  for (vtkIdType i = 0; i < data.GetNumberOfPoints(); ++i) {
+    const double share = 0.55 + 0.45 * (data.GetPoint(i)[2] - low) / height;
+    Color& shade = colors[static_cast<std::size_t>(index->GetValue(i))];
+    for (unsigned char& channel : shade) channel = static_cast<unsigned char>(channel * share);
+  }
+  return colors;
+}
+
+/// Three great circles of radius 1: they outline a sphere from every side.
+vtkSmartPointer<vtkPolyData> circles()
+{
+  constexpr int corners = 96;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> lines;
+  for (int axis = 0; axis < 3; ++axis) {
+    lines->InsertNextCell(corners + 1);
+    for (int i = 0; i <= corners; ++i) {
+      double p[3] = {0, 0, 0};
+      p[axis] = std::cos(2 * std::numbers::pi * i / corners);
+      p[(axis + 1) % 3] = std::sin(2 * std::numbers::pi * i / corners);
+      lines->InsertCellPoint(points->InsertNextPoint(p));
+    }
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetLines(lines);
+  return data;
+}
+
 vtkSmartPointer<vtkTextActor> textAt(double x, double y, bool from_top)
 {
   auto text = vtkSmartPointer<vtkTextActor>::New();
@@ -89,6 +134,7 @@ vtkSmartPointer<vtkTextActor> textAt(double x, double y, bool from_top)
   vtkTextProperty* const look = text->GetTextProperty();
   look->SetFontSize(text_size);
   look->SetFontFamilyToArial();
+  look->SetLineSpacing(1.25);
   const std::array<double, 3> c = fractions(text_color);
   look->SetColor(c[0], c[1], c[2]);
   if (from_top)
@@ -141,7 +187,6 @@ vtkSmartPointer<vtkPolyData> posed(vtkPolyData* data, const Eigen::Isometry3d& p
 
 CloudActor::CloudActor(const Thing& thing, vtkRenderer& renderer, const Color& marked)
 : data_(vtk::cloudData(thing.points())),
-  few_(data_),
   marked_(vtkSmartPointer<vtkPolyData>::New()),
   points_(actorOf(data_)),
   marks_(actorOf(marked_))
@@ -159,8 +204,7 @@ CloudActor::CloudActor(const Thing& thing, vtkRenderer& renderer, const Color& m
 void CloudActor::paint(const std::vector<Color>& colors)
 {
   setColors(*data_, colors);
-  few_ = vtk::thinned(*data_, points_while_moving);
-  if (few_ != data_) few_->GetPointData()->SetActiveScalars("colors");
+  few_ = nullptr;
 }
 
 void CloudActor::mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors)
@@ -171,6 +215,17 @@ void CloudActor::mark(const std::vector<std::uint8_t>& flags, const std::vector<
   marked_->GetPointData()->RemoveArray("colors");
   if (!colors.empty() && !flags.empty()) setColors(*marked_, colors);
   setData(*marks_, marked_);
+
+  // The same points among all others: what is marked must not shine through its mark in another colour.
+  if (flags.empty()) return;
+  const Color mark = bytes(marks_->GetProperty()->GetColor());
+  auto* const index = vtkIntArray::SafeDownCast(data_->GetPointData()->GetArray("index"));
+  auto* const shown = vtkUnsignedCharArray::SafeDownCast(data_->GetPointData()->GetScalars());
+  for (vtkIdType i = 0; i < data_->GetNumberOfPoints(); ++i) {
+    const auto record = static_cast<std::size_t>(index->GetValue(i));
+    if (flags[record] != 0) shown->SetTypedTuple(i, colors.empty() ? mark.data() : colors[record].data());
+  }
+  shown->Modified();
 }
 
 void CloudActor::place(const Eigen::Isometry3d& pose)
@@ -182,6 +237,10 @@ void CloudActor::place(const Eigen::Isometry3d& pose)
 
 void CloudActor::setMoving(bool moving)
 {
+  if (moving && !few_) {
+    few_ = vtk::thinned(*data_, points_while_moving);
+    few_->GetPointData()->SetActiveScalars("colors");
+  }
   setData(*points_, moving ? few_ : data_);
 }
 
@@ -257,7 +316,7 @@ std::string Stage::lengthTitle(const std::string& name) const
 void Stage::paint()
 {
   const Thing& scan = world_.scan();
-  const std::vector<Color> plain(scan.points().count, scan_color);
+  const std::vector<Color> plain = shaded(clouds_[0].data(), scan.points().count, scan_color);
   bar_->VisibilityOff();
   const auto require = [&](const char* option, const auto& values, const char* fields) {
     if (!values)
@@ -312,7 +371,7 @@ void Stage::paint()
   }
   }
   for (std::size_t i = 1; i < clouds_.size(); ++i) {
-    clouds_[i].paint(std::vector<Color>(world_.things()[i].points().count, obstacle_color));
+    clouds_[i].paint(shaded(clouds_[i].data(), world_.things()[i].points().count, obstacle_color));
     if (findings_.known) clouds_[i].mark(findings_.other[i - 1], {});
   }
 }
@@ -347,7 +406,7 @@ void Stage::paintByValue(const std::vector<float>& values, const std::string& ti
     known[i] = 1;
   }
   if (only_marked) {
-    clouds_[0].paint(std::vector<Color>(values.size(), scan_color));
+    clouds_[0].paint(shaded(clouds_[0].data(), values.size(), scan_color));
     clouds_[0].mark(known, colors);
   }
   else {
@@ -355,8 +414,10 @@ void Stage::paintByValue(const std::vector<float>& values, const std::string& ti
   }
   bar_->SetLookupTable(table);
   bar_->SetTitle(title.c_str());
-  bar_->SetLabelFormat("%-#.4g");
-  bar_->VisibilityOn();
+  const bool counts = coloring_ == Coloring::first_pose;
+  bar_->SetLabelFormat(counts ? "%.0f" : "%-#.4g");
+  bar_->SetNumberOfLabels(counts ? static_cast<int>(std::clamp(high - low + 1.0, 2.0, 5.0)) : 5);
+  bar_->SetVisibility(!finite.empty());
 }
 
 void Stage::writeTexts()
@@ -428,26 +489,35 @@ void Stage::addSpheres(vtkPolyData& spheres, const Eigen::Isometry3d& pose, cons
 {
   if (spheres.GetNumberOfPoints() == 0) return;
   setColors(spheres, colors);
-  vtkNew<vtkSphereSource> source;
-  source->SetRadius(1.0);
-  const int corners = spheres.GetNumberOfPoints() > 20'000 ? 8 : 20;
-  source->SetThetaResolution(corners);
-  source->SetPhiResolution(corners);
-  vtkNew<vtkGlyph3DMapper> mapper;
-  mapper->SetInputData(&spheres);
-  mapper->SetSourceConnection(source->GetOutputPort());
-  mapper->SetScaleArray("radius");
-  mapper->SetScaleModeToScaleByMagnitude();
-  mapper->SetScaleFactor(1.0);
-  mapper->ScalarVisibilityOn();
-  mapper->SetScalarModeToUsePointFieldData();
-  mapper->SelectColorArray("colors");
-  mapper->SetColorModeToDirectScalars();
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetOpacity(opacity);
-  actor->SetUserMatrix(matrixOf(pose));
-  addExtra(actor.Get());
+  const auto add = [&](vtkPolyData* shape, double how_opaque) {
+    vtkNew<vtkGlyph3DMapper> mapper;
+    mapper->SetInputData(&spheres);
+    mapper->SetSourceData(shape);
+    mapper->SetScaleArray("radius");
+    mapper->SetScaleModeToScaleByMagnitude();
+    mapper->SetScaleFactor(1.0);
+    mapper->ScalarVisibilityOn();
+    mapper->SetScalarModeToUsePointFieldData();
+    mapper->SelectColorArray("colors");
+    mapper->SetColorModeToDirectScalars();
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    actor->GetProperty()->LightingOff();
+    actor->GetProperty()->SetOpacity(how_opaque);
+    actor->SetUserMatrix(matrixOf(pose));
+    addExtra(actor.Get());
+  };
+  vtkNew<vtkSphereSource> ball;
+  ball->SetRadius(1.0);
+  const vtkIdType count = spheres.GetNumberOfPoints();
+  const int corners = count > 20'000 ? 8 : count > 500 ? 20 : 48;
+  ball->SetThetaResolution(corners);
+  ball->SetPhiResolution(corners);
+  ball->Update();
+  // The more there are, the less each may hide.
+  const double crowd = std::clamp(40.0 / std::sqrt(static_cast<double>(count)), 0.15, 1.0);
+  add(ball->GetOutput(), opacity * crowd);
+  if (count <= 20'000) add(circles(), std::min(1.0, 0.15 + 2.5 * opacity * crowd));
 }
 
 void Stage::addWires(vtkPolyData& boxes, const Eigen::Isometry3d& pose, const Color& color)
@@ -470,7 +540,7 @@ void Stage::drawExtras()
     if (extras_.level) {
       const auto spheres = vtk::sphereData(hierarchy, *extras_.level);
       const std::vector<Color> colors(static_cast<std::size_t>(spheres->GetNumberOfPoints()), sphere_color);
-      addSpheres(*spheres, pose, colors, 0.18);
+      addSpheres(*spheres, pose, colors, 0.16);
     }
     if (extras_.voxels) addWires(*vtk::voxelBoxes(hierarchy), pose, voxel_color);
     if (extras_.cells) addWires(*vtk::cellBoxes(hierarchy, extras_.level.value_or(1)), pose, cell_color);
@@ -549,22 +619,32 @@ void Stage::look(const Camera& camera)
     const auto at = posed(&clouds_[i].data(), world_.poseOf(i, step_));
     if (at->GetNumberOfPoints() > 0) seen.AddBounds(at->GetBounds());
   }
-  if (camera.kind == Camera::Kind::colliding && findings_.colliding > 0) {
+  if (camera.kind == Camera::Kind::colliding && (findings_.colliding > 0 || world_.model())) {
     const double whole = seen.GetDiagonalLength();
     seen.Reset();
-    seen.AddBounds(vtk::subset(clouds_[0].data(), findings_.scan)->GetBounds());
-    if (const auto model = world_.model())
+    if (findings_.colliding > 0) seen.AddBounds(vtk::subset(clouds_[0].data(), findings_.scan)->GetBounds());
+    if (const auto model = world_.model(); model && clouds_[*model].data().GetNumberOfPoints() > 0)
       seen.AddBounds(posed(&clouds_[*model].data(), world_.poseOf(*model, step_))->GetBounds());
-    seen.Inflate(std::max(0.02 * whole, 0.2 * seen.GetDiagonalLength()));
+    seen.Inflate(std::max(0.01 * whole, 0.25 * seen.GetDiagonalLength()));
   }
-  double bounds[6], focus[3];
-  seen.GetBounds(bounds);
+  double focus[3];
   seen.GetCenter(focus);
+  const Eigen::Vector3d toward_eye = Eigen::Vector3d(from.data()).normalized();
+  const Eigen::Vector3d right = Eigen::Vector3d(up.data()).cross(toward_eye).normalized();
+  const double tall = std::tan(eye.GetViewAngle() * std::numbers::pi / 360.0);
+  const double wide = tall * world_.options().width / world_.options().height;
+  double away = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    double at[3];
+    seen.GetCorner(corner, at);
+    const Eigen::Vector3d p = Eigen::Vector3d(at) - Eigen::Vector3d(focus);
+    away = std::max({away, std::abs(p.dot(right)) / wide + p.dot(toward_eye),
+                     std::abs(p.dot(toward_eye.cross(right))) / tall + p.dot(toward_eye)});
+  }
+  const Eigen::Vector3d position = Eigen::Vector3d(focus) + 1.1 * std::max(away, 1e-6) * toward_eye;
   eye.SetFocalPoint(focus);
-  eye.SetPosition(focus[0] + from[0], focus[1] + from[1], focus[2] + from[2]);
+  eye.SetPosition(position.data());
   eye.SetViewUp(up.data());
-  renderer_.ResetCamera(bounds);
-  eye.Zoom(1.25);
   renderer_.ResetCameraClippingRange();
 }
 

@@ -9,6 +9,7 @@
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
+#include <vtkInformation.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>

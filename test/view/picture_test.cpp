@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What pictures show, pixel by pixel; without a display.
+#include "pixels.h"
+
+#include <view/options.h>
+#include <view/stage.h>
+#include <view/world.h>
+
+#include <pcl_bsh/vtk/hierarchy_data.h>
+#include <pcl_bsh/vtk/offscreen_window.h>
+
+#include <gmock/gmock.h>
+
+#include <vtkDataArray.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkRenderer.h>
+#include <vtkXMLMultiBlockDataReader.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <cmath>
+
+namespace pcl_bsh::view {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class Picture : public ViewTest {
+protected:
+  Picture() { unsetenv("DISPLAY"); }
+
+  /// What a program run draws.
+  Pixels drawn(const std::string& arguments) const
+  {
+    const Outcome done = run("pcl_bsh_view", arguments + " --size 400x300 --screenshot " + (folder / "p.png").string());
+    EXPECT_EQ(done.exit_code, 0) << arguments << '\n' << done.err;
+    return readPng(folder / "p.png");
+  }
+
+  /// A stage to ask where things are.
+  struct Set {
+    explicit Set(const Options& options) : world(options)
+    {
+      window = vtk::makeOffscreenWindow(options.width, options.height);
+      window->AddRenderer(renderer);
+      stage = std::make_unique<Stage>(world, *renderer);
+    }
+
+    Pixels draw() { return pixelsOf(*window); }
+
+    /// Where a point of the world lands, in pixels from the lower left.
+    std::array<int, 2> seen(const double* p)
+    {
+      renderer->SetWorldPoint(p[0], p[1], p[2], 1.0);
+      renderer->WorldToDisplay();
+      const double* const at = renderer->GetDisplayPoint();
+      return {static_cast<int>(std::lround(at[0])), static_cast<int>(std::lround(at[1]))};
+    }
+
+    World world;
+    vtkNew<vtkRenderer> renderer;
+    vtkSmartPointer<vtkRenderWindow> window;
+    std::unique_ptr<Stage> stage;
+  };
+
+  Options options() const
+  {
+    Options made;
+    made.clouds = {floor};
+    made.model = ball;
+    made.pose.translation() = Eigen::Vector3d(0.5, -0.5, 0.2);
+    made.clearance = 0.1;
+    made.width = 400;
+    made.height = 300;
+    made.camera.kind = Camera::Kind::top;
+    made.threads = 1;
+    return made;
+  }
+};
+
+TEST_F(Picture, MarksWhatCollidesWhereItIs)
+{
+  Options touching = options();
+  Set set(touching);
+  const Pixels pixels = set.draw();
+  ASSERT_GT(set.stage->findings().colliding, 0u);
+  EXPECT_GT(pixels.count(scan_color, 60), 1000u) << "the floor, shaded";
+  EXPECT_GT(pixels.count(ground), 1000u);
+
+  // Seen from above, the ball hides its contact; from below it cannot.
+  touching.camera.kind = Camera::Kind::given;
+  touching.camera.eye = {0, 0, -6};
+  touching.camera.focus = {0, 0, 0};
+  touching.camera.up = {0, 1, 0};
+  Set below(touching);
+  const Pixels under = below.draw();
+  const double contact[3] = {0.5, -0.5, 0.0};
+  const auto [x, y] = below.seen(contact);
+  EXPECT_GT(under.countNear(colliding_color, x, y, 12), 20u);
+  EXPECT_GT(under.countNear(colliding_color, x, y, 40), under.count(colliding_color) * 9 / 10 - 200) << "legend apart";
+  touching.pose.translation().z() = 2.0;
+  Set apart(touching);
+  ASSERT_EQ(apart.stage->findings().colliding, 0u);
+  EXPECT_EQ(apart.draw().countNear(colliding_color, x, y, 40), 0u);
+}
+
+TEST_F(Picture, TheProgramDrawsTheSameWithAndWithoutADisplay)
+{
+  const std::string arguments =
+      floor.string() + " --model " + ball.string() + " --pose 0.5,-0.5,0.2,0,0,0 --clearance 0.1";
+  const Pixels without = drawn(arguments);
+  EXPECT_GT(without.count(colliding_color), 5u);
+  const Xvfb display;
+  const Pixels with = drawn(arguments);
+  EXPECT_EQ(with.bytes, without.bytes);
+}
+
+TEST_F(Picture, ADeadDisplayIsNoneAtAll)
+{
+  setenv("DISPLAY", ":987", 1);
+  EXPECT_GT(drawn(floor.string()).count(ground), 100u);
+}
+
+TEST_F(Picture, SpheresAreOutlinedWhereTheirCentresSay)
+{
+  Options plain = options();
+  plain.clouds = {ball};
+  plain.model.reset();
+  plain.clearance.reset();
+  plain.pose = Eigen::Isometry3d::Identity();
+  plain.color = Coloring::height;
+  Set set(plain);
+  const Pixels none = set.draw();
+  set.stage->setExtras({0, false, false, false});
+  const Pixels some = set.draw();
+  const auto spheres = vtk::sphereData(*set.world.scan().hierarchy, 0);
+  for (vtkIdType i = 0; i < spheres->GetNumberOfPoints(); ++i) {
+    double rim[3];
+    spheres->GetPoint(i, rim);
+    rim[0] += spheres->GetPointData()->GetArray("radius")->GetTuple1(i);
+    const auto [x, y] = set.seen(rim);
+    EXPECT_GT(some.differing(none, x, y, 2), 0u) << "sphere " << i;
+  }
+  set.stage->setExtras({2, false, false, false});
+  EXPECT_GT(set.draw().differing(some), 200u) << "a level changes the picture";
+  set.stage->setExtras({});
+  EXPECT_EQ(set.draw().bytes, none.bytes);
+}
+
+TEST_F(Picture, ExtrasChangeThePictureAndTheLegend)
+{
+  Set set(options());
+  const Pixels plain = set.draw();
+  const auto count = [&](const Extras& extras, const Color& color) {
+    set.stage->setExtras(extras);
+    return set.draw().countNear(color, 40, 60, 80); // the legend's corner
+  };
+  EXPECT_GT(plain.countNear(colliding_color, 40, 60, 80), 10u);
+  EXPECT_GT(count({{}, true, false, false}, voxel_color), 10u);
+  EXPECT_GT(count({{}, false, true, false}, cell_color), 10u);
+  set.stage->setExtras({{}, false, false, true});
+  EXPECT_GT(set.draw().differing(plain), 500u) << "the trace";
+}
+
+TEST_F(Picture, EveryColouringHasItsBarAndNeedsItsField)
+{
+  const std::string both = floor.string() + " --model " + ball.string() + " --pose 0.5,-0.5,0.2,0,0,0 --clearance 0.1 ";
+  const Pixels collision = drawn(both);
+  for (const char* name : {"distance", "first_pose", "height", "intensity"}) {
+    const Pixels pixels = drawn(both + "--color " + name);
+    EXPECT_GT(pixels.differing(collision, 370, 150, 29), 300u) << name << ": a bar at the right";
+  }
+  EXPECT_GT(drawn(both + "--color rgb").count({255, 0, 0}), 50u);
+  const Outcome lacking =
+      run("pcl_bsh_view", ball.string() + " --color rgb --screenshot " + (folder / "x.png").string());
+  EXPECT_EQ(lacking.exit_code, 2);
+  EXPECT_THAT(lacking.err, HasSubstr("no colours"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "x.png"));
+}
+
+TEST_F(Picture, TheClosestPairIsDrawn)
+{
+  Options apart = options();
+  apart.pose.translation() = Eigen::Vector3d(3.0, 0, 0);
+  apart.closest = true;
+  Set set(apart);
+  const Pixels pixels = set.draw();
+  ASSERT_TRUE(set.stage->findings().closest);
+  const Eigen::Vector3d middle = (set.stage->findings().closest->a + set.stage->findings().closest->b) / 2;
+  const auto [x, y] = set.seen(middle.data());
+  EXPECT_GT(pixels.countNear(segment_color, x, y, 3), 3u);
+}
+
+TEST_F(Picture, ExportsReadBack)
+{
+  const std::string both = floor.string() + " --model " + ball.string() + " --pose 0.5,-0.5,0.2,0,0,0 --clearance 0.1 ";
+  ASSERT_EQ(run("pcl_bsh_view", both + "--export " + (folder / "f.vtp").string()).exit_code, 0);
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName((folder / "f.vtp").c_str());
+  reader->Update();
+  const World world(options());
+  const Findings found = world.findings(0);
+  vtkPointData* const values = reader->GetOutput()->GetPointData();
+  ASSERT_EQ(reader->GetOutput()->GetNumberOfPoints(), static_cast<vtkIdType>(found.scan.size()));
+  for (const char* name : {"index", "collision", "distance", "first_pose", "intensity"})
+    ASSERT_NE(values->GetArray(name), nullptr) << name;
+  for (vtkIdType i = 0; i < reader->GetOutput()->GetNumberOfPoints(); ++i) {
+    const bool collides = found.scan[static_cast<std::size_t>(i)] != 0;
+    ASSERT_EQ(values->GetArray("collision")->GetTuple1(i), collides);
+    ASSERT_EQ(values->GetArray("first_pose")->GetTuple1(i), collides ? 0 : -1);
+    if (collides)
+      ASSERT_LE(values->GetArray("distance")->GetTuple1(i), 0.1f);
+    else
+      ASSERT_TRUE(std::isnan(values->GetArray("distance")->GetTuple1(i)));
+  }
+  ASSERT_EQ(run("pcl_bsh_view", floor.string() + " --model " + ball.string() + " --trajectory " + path.string() +
+                                    " --clearance 0.1 --level 1 --export " + (folder / "f.vtm").string())
+                .exit_code,
+            0);
+  vtkNew<vtkXMLMultiBlockDataReader> blocks;
+  blocks->SetFileName((folder / "f.vtm").c_str());
+  blocks->Update();
+  EXPECT_EQ(vtkMultiBlockDataSet::SafeDownCast(blocks->GetOutput())->GetNumberOfBlocks(), 11u)
+      << "floor and ball; spheres, glyphs, voxels, cells of both; the path";
+}
+
+TEST_F(Picture, RefusesWhatItCannotShow)
+{
+  const auto fails = [&](const std::string& arguments, int code, const std::string& message) {
+    const std::size_t files = folder.files();
+    const Outcome failed = run("pcl_bsh_view", arguments);
+    EXPECT_EQ(failed.exit_code, code) << arguments;
+    EXPECT_THAT(failed.err, StartsWith("pcl_bsh_view: "));
+    EXPECT_THAT(failed.err, HasSubstr(message)) << arguments;
+    EXPECT_EQ(std::count(failed.err.begin(), failed.err.end(), '\n'), 1) << failed.err;
+    EXPECT_EQ(folder.files(), files) << arguments;
+  };
+  const std::string png = " --screenshot " + (folder / "p.png").string(), one = floor.string();
+  fails(one, 1, "DISPLAY");
+  fails("", 2, "CLOUD");
+  fails((folder / "none.pcd").string() + png, 1, "none.pcd");
+  fails(one + " --clearance 1" + png, 2, "--clearance");
+  fails(one + " --color green" + png, 2, "--color: 'green'");
+  fails(one + " --color collision" + png, 2, "--color");
+  fails(one + " --camera behind" + png, 2, "--camera");
+  fails(one + " --size 10" + png, 2, "--size");
+  fails(one + " --trajectory " + path.string() + png, 2, "--model");
+  fails(one + " --model " + ball.string() + " --trajectory " + path.string() + " --step 99" + png, 2, "--step");
+  fails(one + " --model " + ball.string() + " --clearance -1" + png, 1, "clearance");
+  fails(one + " --screenshot " + (folder / "p.jpg").string(), 2, "--screenshot");
+  fails(one + " --export " + (folder / "p.obj").string(), 2, "--export");
+  fails(one + " --screenshot " + (folder / "none" / "p.png").string(), 1, "p.png");
+  const std::string nothing = folder.write("nothing.xyz", "nan nan nan\n").string();
+  fails(nothing + png, 1, "no finite point");
+}
+
+} // namespace
+} // namespace pcl_bsh::view
