@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The demonstration, from a fresh clone: installs what is missing, builds, fetches two clouds, and lets a man walk through
-# a scanned building. Run again, it takes seconds.
+# The demonstration, from a fresh clone: installs what is missing, builds, fetches two clouds, lets a man walk through a
+# scanned building, and draws where he collides. Run again, it takes seconds.
 #   bash examples/run.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -11,3 +11,7 @@ bash cmake/setup.sh release programs
 bash examples/demo/fetch_scans.sh "$scans"
 printf '\n'
 build/release/examples/pcl_bsh_demo "$scans/building.ply" "$scans/man.off" "$scans/building_collision.pcd"
+
+if [[ -x build/release/examples/pcl_bsh_view ]]; then # where VTK is
+  build/release/examples/pcl_bsh_view "$scans/building_collision.pcd" --screenshot "$scans/building_collision.png"
+fi

@@ -38,7 +38,7 @@ inline std::array<double, 3> fractions(const Color& color)
 inline vtkSmartPointer<vtkLookupTable> colorTable(double low, double high, bool reversed)
 {
   constexpr std::array<std::array<double, 3>, 6> stops = {
-      {{88, 60, 150}, {66, 100, 160}, {38, 140, 142}, {60, 185, 115}, {160, 218, 57}, {253, 231, 37}}};
+      {{122, 88, 196}, {72, 116, 186}, {38, 148, 150}, {60, 185, 115}, {160, 218, 57}, {253, 231, 37}}};
   constexpr int count = 256;
   auto table = vtkSmartPointer<vtkLookupTable>::New();
   table->SetNumberOfTableValues(count);

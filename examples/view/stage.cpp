@@ -458,7 +458,7 @@ void Stage::writeTexts()
   if (extras_.cells) entries.push_back({"octree cells", cell_color});
   if (extras_.trace) {
     entries.push_back({"query: pruned", fate_colors[0]});
-    entries.push_back({"query: not needed", fate_colors[1]});
+    entries.push_back({"query: near, not needed", fate_colors[1]});
     entries.push_back({"query: points compared", fate_colors[3]});
   }
   vtkNew<vtkPlaneSource> square;

@@ -111,6 +111,11 @@ CollisionTrace traceOnTarget(const Placed& a, const Placed& b, const CollisionRe
   trace.result = AnySearch(a, b, request, Watch{&met_a, &met_b}).run();
   trace.a = met_a.spheres();
   trace.b = met_b.spheres();
+  if (trace.result.verdict == Verdict::free) { // nothing waits any more: what met it was opened, and is out of reach
+    for (std::vector<TracedSphere>* const side : {&trace.a, &trace.b})
+      for (TracedSphere& sphere : *side)
+        if (sphere.fate == SphereFate::kept) sphere.fate = SphereFate::pruned;
+  }
   return trace;
 }
 

@@ -11,7 +11,7 @@ namespace pcl_bsh {
 
 /// What became of a sphere during a walk; of several meetings, the furthest.
 enum class SphereFate : std::uint8_t {
-  pruned,   ///< tested, and out of reach of everything it was tested against
+  pruned,   ///< tested, and it or all children of what it was tested against out of reach
   kept,     ///< within reach, but the walk was done before its turn came
   opened,   ///< its children, or its voxel's, were tested
   compared, ///< a leaf whose points were compared

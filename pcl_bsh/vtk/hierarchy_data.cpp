@@ -203,10 +203,10 @@ vtkSmartPointer<vtkPolyData> voxelBoxes(const SphereHierarchy& hierarchy)
   Wires wires;
   const auto voxel = intArray("voxel");
   for (std::size_t v = 0; v < storage.voxel_count; ++v) {
-    const Point3 p = storage.view.point(storage.voxels[v].lowest);
+    const Point3& middle = storage.voxels[v].frame.origin; // rounding may put single points next door
     Box cube;
     for (std::size_t k = 0; k < 3; ++k) {
-      cube.low[k] = std::floor(p[k] / storage.voxel_edge) * storage.voxel_edge;
+      cube.low[k] = std::floor(middle[k] / storage.voxel_edge) * storage.voxel_edge;
       cube.high[k] = cube.low[k] + storage.voxel_edge;
     }
     wires.add(cube);

@@ -30,7 +30,8 @@ vtkSmartPointer<vtkPolyData> traceData(const std::vector<TracedSphere>& spheres)
 /// @param resolution corners around the equator, at least 3
 vtkSmartPointer<vtkPolyData> sphereGlyphs(vtkPolyData& spheres, int resolution = 12);
 
-/// The occupied cubes of the voxel grid, twelve lines each. Cell array `voxel`.
+/// The occupied cubes of the voxel grid, twelve lines each. Cell array `voxel`. Rounding may put a point into the next
+/// cube, from which it is then within 1e-4 of an edge.
 vtkSmartPointer<vtkPolyData> voxelBoxes(const SphereHierarchy& hierarchy);
 
 /// The boxes around the points of the level's octree cells, twelve lines each. Cell arrays: `voxel`, `level`.

@@ -70,7 +70,7 @@ protected:
     Options made;
     made.clouds = {floor};
     made.model = ball;
-    made.pose.translation() = Eigen::Vector3d(0.5, -0.5, 0.2);
+    made.pose.translation() = Eigen::Vector3d(-0.5, 0.5, 0.2);
     made.clearance = 0.1;
     made.width = 400;
     made.height = 300;
@@ -96,7 +96,7 @@ TEST_F(Picture, MarksWhatCollidesWhereItIs)
   touching.camera.up = {0, 1, 0};
   Set below(touching);
   const Pixels under = below.draw();
-  const double contact[3] = {0.5, -0.5, 0.0};
+  const double contact[3] = {-0.5, 0.5, 0.0};
   const auto [x, y] = below.seen(contact);
   EXPECT_GT(under.countNear(colliding_color, x, y, 12), 20u);
   EXPECT_GT(under.countNear(colliding_color, x, y, 40), under.count(colliding_color) * 9 / 10 - 200) << "legend apart";
@@ -109,7 +109,7 @@ TEST_F(Picture, MarksWhatCollidesWhereItIs)
 TEST_F(Picture, TheProgramDrawsTheSameWithAndWithoutADisplay)
 {
   const std::string arguments =
-      floor.string() + " --model " + ball.string() + " --pose 0.5,-0.5,0.2,0,0,0 --clearance 0.1";
+      floor.string() + " --model " + ball.string() + " --pose=-0.5,0.5,0.2,0,0,0 --clearance 0.1";
   const Pixels without = drawn(arguments);
   EXPECT_GT(without.count(colliding_color), 5u);
   const Xvfb display;
@@ -166,7 +166,7 @@ TEST_F(Picture, ExtrasChangeThePictureAndTheLegend)
 
 TEST_F(Picture, EveryColouringHasItsBarAndNeedsItsField)
 {
-  const std::string both = floor.string() + " --model " + ball.string() + " --pose 0.5,-0.5,0.2,0,0,0 --clearance 0.1 ";
+  const std::string both = floor.string() + " --model " + ball.string() + " --pose=-0.5,0.5,0.2,0,0,0 --clearance 0.1 ";
   const Pixels collision = drawn(both);
   for (const char* name : {"distance", "first_pose", "height", "intensity"}) {
     const Pixels pixels = drawn(both + "--color " + name);
@@ -195,7 +195,7 @@ TEST_F(Picture, TheClosestPairIsDrawn)
 
 TEST_F(Picture, ExportsReadBack)
 {
-  const std::string both = floor.string() + " --model " + ball.string() + " --pose 0.5,-0.5,0.2,0,0,0 --clearance 0.1 ";
+  const std::string both = floor.string() + " --model " + ball.string() + " --pose=-0.5,0.5,0.2,0,0,0 --clearance 0.1 ";
   ASSERT_EQ(run("pcl_bsh_view", both + "--export " + (folder / "f.vtp").string()).exit_code, 0);
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName((folder / "f.vtp").c_str());

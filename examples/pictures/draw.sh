@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Draws the pictures beside this file anew, from the demonstration's clouds. Needs no display.
+#   bash examples/pictures/draw.sh [BUILD]     default: build/release
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+programs="${1:-build/release}/examples"
+scans=build/demo
+bash examples/demo/fetch_scans.sh "$scans"
+work="$(mktemp -d)"
+trap 'rm -rf "$work"' EXIT
+
+view() { "$programs/pcl_bsh_view" "$@" --unit m --size 1200x800; }
+
+# The building, and what the grown man touches at x = -6.5.
+"$programs/pcl_bsh_demo" "$scans/building.ply" "$scans/man.off" "$work/building.pcd" >/dev/null
+view "$work/building.pcd" --screenshot examples/pictures/building.png
+
+# The query at work: most spheres are out of reach, two leaves are compared.
+man=("$scans/building.ply" --model "$scans/man.off")
+view "${man[@]}" --pose=-7,0,-2.6,0,0,0 --clearance 0.5 --trace --camera=-9.4,-2.6,-1.2,-7,0,-2.2 \
+  --screenshot examples/pictures/query.png
+
+# A walk: when does the man first come near?
+for x in $(seq -10 0.25 0); do printf '1 0 0 %s  0 1 0 0  0 0 1 -2.6\n' "$x"; done >"$work/walk.txt"
+view "${man[@]}" --trajectory "$work/walk.txt" --step 14 --clearance 1.5 --color first_pose \
+  --camera=-17,-9,4,-5,0,-1 --screenshot examples/pictures/walk.png
