@@ -256,7 +256,7 @@ Stage::Stage(const World& world, vtkRenderer& renderer) : world_(world), rendere
   note_->GetTextProperty()->SetJustificationToCentered();
   bar_ = vtkSmartPointer<vtkScalarBarActor>::New();
   bar_->UnconstrainedFontSizeOn();
-  bar_->SetPosition(0.9, 0.3);
+  bar_->SetPosition(0.885, 0.3);
   bar_->SetWidth(0.085);
   bar_->SetHeight(0.45);
   bar_->SetNumberOfLabels(5);
@@ -310,7 +310,7 @@ void Stage::setExtras(const Extras& extras)
 
 std::string Stage::lengthTitle(const std::string& name) const
 {
-  return name + " [" + (world_.options().unit.empty() ? "cloud's unit" : world_.options().unit) + "]";
+  return name + "\n[" + (world_.options().unit.empty() ? "cloud's unit" : world_.options().unit) + "]";
 }
 
 void Stage::paint()
@@ -344,7 +344,7 @@ void Stage::paint()
     std::vector<float> values;
     for (const std::int32_t pose : world_.firstPoses())
       values.push_back(pose < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(pose));
-    paintByValue(values, "first pose [number]", false, true);
+    paintByValue(values, "first pose\n[number]", false, true);
     break;
   }
   case Coloring::height: {
@@ -358,7 +358,7 @@ void Stage::paint()
   case Coloring::intensity: {
     const auto values = scan.field("intensity");
     require("intensity", values, "field 'intensity'");
-    paintByValue(*values, "intensity [as given]", false, false);
+    paintByValue(*values, "intensity\n[as given]", false, false);
     clouds_[0].mark(findings_.scan, {});
     break;
   }
@@ -415,7 +415,7 @@ void Stage::paintByValue(const std::vector<float>& values, const std::string& ti
   bar_->SetLookupTable(table);
   bar_->SetTitle(title.c_str());
   const bool counts = coloring_ == Coloring::first_pose;
-  bar_->SetLabelFormat(counts ? "%.0f" : "%-#.4g");
+  bar_->SetLabelFormat(counts ? "%.0f" : "%-.3g");
   bar_->SetNumberOfLabels(counts ? static_cast<int>(std::clamp(high - low + 1.0, 2.0, 5.0)) : 5);
   bar_->SetVisibility(!finite.empty());
 }
@@ -632,7 +632,8 @@ void Stage::look(const Camera& camera)
   const Eigen::Vector3d toward_eye = Eigen::Vector3d(from.data()).normalized();
   const Eigen::Vector3d right = Eigen::Vector3d(up.data()).cross(toward_eye).normalized();
   const double tall = std::tan(eye.GetViewAngle() * std::numbers::pi / 360.0);
-  const double wide = tall * world_.options().width / world_.options().height;
+  const double free_width = bar_->GetVisibility() != 0 ? 0.78 : 1.0; // the bar should not hide anything
+  const double wide = free_width * tall * world_.options().width / world_.options().height;
   double away = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     double at[3];
