@@ -119,7 +119,9 @@ std::optional<Options> parseOptions(int argc, char** argv)
   app.add_option("--model", model, "an obstacle that has poses")->type_name("CLOUD");
   app.add_option("--pose", pose, "of the model: x,y,z,roll,pitch,yaw (radians), or a file of a\nmatrix (default: none)")
       ->type_name("POSE");
-  app.add_option("--trajectory", trajectory, "poses of the model, one a line")->type_name("FILE");
+  app.add_option("--trajectory", trajectory,
+                 "poses of the model, one a line: 12 or 16 numbers of its matrix, or\ntime tx ty tz qx qy qz qw")
+      ->type_name("FILE");
   app.add_option("--step", step, "the pose of the trajectory to begin with, from 0")->type_name("N");
   app.add_option("--clearance", clearance, "greatest distance that counts as collision, in the clouds' unit")
       ->type_name("D");
@@ -161,7 +163,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
   set(export_to, options.export_to);
   if (!pose.empty()) {
     if (options.trajectory) throw UsageError("--pose: a model has one pose or a --trajectory: give one of the two");
-    options.pose = cli::parsePose(pose);
+    options.pose = cli::parsePose("--pose", pose);
   }
   if (!clearance.empty())
     options.clearance = cli::parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");

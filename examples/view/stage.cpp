@@ -337,7 +337,7 @@ void Stage::paint()
     break;
   case Coloring::distance:
     requireFindings("distance");
-    paintByValue(world_.distances(findings_.scan, step_), lengthTitle("distance"), true, true);
+    paintByValue(world_.distances(step_), lengthTitle("distance"), true, true);
     break;
   case Coloring::first_pose: {
     requireFindings("first_pose");
@@ -693,7 +693,7 @@ void Stage::exportTo(const std::filesystem::path& path)
   scan->ShallowCopy(&clouds_[0].data());
   if (findings_.known) {
     vtk::addArray(*scan, "collision", findings_.scan);
-    vtk::addArray(*scan, "distance", world_.distances(findings_.scan, step_));
+    vtk::addArray(*scan, "distance", world_.distances(step_));
     vtk::addArray(*scan, "first_pose", world_.firstPoses());
   }
   if (const auto values = world_.scan().field("intensity")) vtk::addArray(*scan, "intensity", *values);

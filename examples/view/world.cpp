@@ -1,22 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "world.h"
 
-#include "cli/pose.h"
 #include "cli/program.h"
 #include "cli/step.h"
-#include "poses.h"
 
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/io/cloud_file.h>
 #include <pcl_bsh/filters/io/field_type.h>
+#include <pcl_bsh/filters/io/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <future>
 #include <limits>
-#include <thread>
 
 namespace pcl_bsh::view {
 namespace {
@@ -99,7 +96,7 @@ std::optional<std::vector<std::array<unsigned char, 3>>> Thing::colors() const
 
 World::World(const Options& options) : options_(options), poses_{options.pose}
 {
-  if (options.trajectory) poses_ = readPoses(*options.trajectory);
+  if (options.trajectory) poses_ = io::readPoses(*options.trajectory);
   if (options.step >= poses_.size())
     throw cli::UsageError("--step: " + std::to_string(options.step) + ": the trajectory has " +
                           std::to_string(poses_.size()) + " poses, counted from 0");
@@ -122,6 +119,15 @@ CollisionRequest World::request() const
   request.clearance = options_.clearance.value_or(0.0);
   request.threads = options_.threads;
   request.flagged = Side::both;
+  return request;
+}
+
+TrajectoryRequest World::along() const
+{
+  TrajectoryRequest request;
+  request.clearance = options_.clearance.value_or(0.0);
+  request.threads = options_.threads;
+  request.flags = false;
   return request;
 }
 
@@ -166,23 +172,19 @@ std::optional<double> World::distanceOf(std::uint32_t record, std::size_t step) 
   return nearest;
 }
 
-std::vector<float> World::distances(const std::vector<std::uint8_t>& flags, std::size_t step) const
+std::vector<float> World::distances(std::size_t step) const
 {
   if (!options_.clearance)
     if (auto field = scan().field("distance")) return *field;
   std::vector<float> distances(scan().points().count, std::numeric_limits<float>::quiet_NaN());
-  std::vector<std::uint32_t> asked;
-  for (std::uint32_t i = 0; i < flags.size(); ++i)
-    if (flags[i] != 0) asked.push_back(i);
-  const std::size_t workers =
-      std::max<std::size_t>(1, options_.threads == 0 ? std::thread::hardware_concurrency() : options_.threads);
-  std::vector<std::future<void>> running;
-  for (std::size_t worker = 0; worker < workers; ++worker)
-    running.push_back(std::async(std::launch::async, [&, worker] {
-      for (std::size_t i = worker; i < asked.size(); i += workers)
-        distances[asked[i]] = static_cast<float>(distanceOf(asked[i], step).value_or(std::nan("")));
-    }));
-  for (std::future<void>& one : running) one.get();
+  if (!options_.clearance) return distances;
+  TrajectoryRequest asked = along();
+  asked.distances = true;
+  for (std::size_t other = 1; other < things_.size(); ++other) {
+    const TrajectoryResult found =
+        collideAlong(placed(0, step), *things_[other].hierarchy, {poseOf(other, step)}, asked);
+    for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = std::fmin(distances[i], found.distance[i]);
+  }
   return distances;
 }
 
@@ -196,12 +198,17 @@ const std::vector<std::int32_t>& World::firstPoses() const
   }
   else if (options_.clearance) {
     cli::Step step("Following " + std::to_string(steps()) + " poses");
-    for (std::size_t k = steps(); k-- > 0;)
-      for (std::size_t other = 1; other < things_.size(); ++other) {
-        const FlagsResult flags = collisionFlags(placed(0, k), placed(other, k), request());
-        for (std::size_t i = 0; i < first.size(); ++i)
-          if (flags.a[i] != 0) first[i] = static_cast<std::int32_t>(k);
+    TrajectoryRequest asked = along();
+    asked.first_poses = true;
+    for (std::size_t other = 1; other < things_.size(); ++other) {
+      const std::vector<Eigen::Isometry3d> still = {poseOf(other, 0)};
+      const TrajectoryResult found =
+          collideAlong(placed(0, 0), *things_[other].hierarchy, other == model_ ? poses_ : still, asked);
+      for (std::size_t i = 0; i < first.size(); ++i) {
+        const std::int32_t pose = found.first_pose[i];
+        if (pose >= 0 && (first[i] < 0 || pose < first[i])) first[i] = pose;
       }
+    }
     step.done(std::to_string(steps()) + " poses");
   }
   return *(first_poses_ = std::move(first));

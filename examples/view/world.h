@@ -6,6 +6,7 @@
 
 #include <pcl_bsh/query/collide.h>
 #include <pcl_bsh/query/trace.h>
+#include <pcl_bsh/query/trajectory.h>
 
 #include <pcl/PCLPointCloud2.h>
 
@@ -66,8 +67,8 @@ public:
   /// Exact, to the nearest point of any obstacle. @return none when there is no obstacle
   std::optional<double> distanceOf(std::uint32_t record, std::size_t step) const;
 
-  /// Of points with flags[record] != 0, NaN for others; or the scan's field `distance`.
-  std::vector<float> distances(const std::vector<std::uint8_t>& flags, std::size_t step) const;
+  /// Per record, NaN where free; or the scan's field `distance`.
+  std::vector<float> distances(std::size_t step) const;
 
   /// Per record the first pose at which it collides, or -1; or the scan's field `first_pose`. Asked once, then kept.
   const std::vector<std::int32_t>& firstPoses() const;
@@ -79,6 +80,7 @@ public:
 private:
   Placed placed(std::size_t thing, std::size_t step) const { return {*things_[thing].hierarchy, poseOf(thing, step)}; }
   CollisionRequest request() const;
+  TrajectoryRequest along() const;
 
   Options options_;
   std::vector<Thing> things_;
