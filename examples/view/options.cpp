@@ -5,6 +5,8 @@
 #include "cli/pose.h"
 #include "cli/program.h"
 
+#include <pcl_bsh/filters/io/pose_text.h>
+
 #include <CLI/CLI.hpp>
 
 #include <iostream>
@@ -53,7 +55,7 @@ Camera parseCamera(const std::string& text)
   }
   std::vector<double> n;
   try {
-    n = cli::numbersOf(text);
+    n = io::numbersOf(text);
   }
   catch (const io::FormatError&) {
     // Neither a name nor numbers.
