@@ -21,6 +21,7 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/query/trajectory_leaf-inl.h>
+#include <pcl_bsh/query/trajectory_patches-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -33,7 +34,7 @@ constexpr float kBoxSize = 1.0f;   // of a node's radius: a larger box of the mo
 
 /// One node of the scan on its way through the model, its children tested all at once.
 struct Visit {
-  Segments<kLanes> children;
+  Segments<kLanes, 3> children;
   Segment around;
   float radius[kLanes];
   std::vector<Candidate> near[kLanes];
@@ -46,6 +47,7 @@ public:
   : course_(course),
     index_(voxel),
     sight_(course, voxel),
+    patches_(sight_),
     findings_(course),
     model_(course.boxes, findings_.work),
     leaves_(course, sight_, model_, findings_),
@@ -66,7 +68,7 @@ public:
       model_.collect(span, sight_.aroundVoxel(span), kSeedSize * static_cast<float>(sight_.radius), model_.root(),
                      candidates);
       if (candidates.empty()) continue;
-      if (!voxel_) enter();
+      if (!voxel_) enter(span);
       if (open_lanes_[0] == 0) break;
       descend(0, span, candidates, 0);
     }
@@ -77,11 +79,12 @@ public:
   }
 
 private:
-  void enter()
+  void enter(const Span& span)
   {
     voxel_ = &course_.scan.hierarchy.storage().built(index_, findings_.work.voxels_built);
     for (const Node& node : voxel_->nodes) open_lanes_.push_back(static_cast<std::uint8_t>(firstBits(node.count)));
     findings_.begin(*voxel_);
+    patches_.fit(*voxel_, span.from);
   }
 
   /// Takes a node, all its children at once, through its candidates; then each child through its own.
@@ -99,7 +102,7 @@ private:
     }
     if (visits_.size() <= depth) visits_.resize(depth + 1);
     Visit& visit = visits_[depth];
-    begin(visit, node, span);
+    begin(visit, index, span);
     for (const Candidate& candidate : candidates) take(visit, candidate, span, open_lanes_[index]);
     for (std::uint32_t bits = open_lanes_[index]; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
@@ -117,35 +120,23 @@ private:
     }
   }
 
-  void begin(Visit& visit, const Node& node, const Span& span)
+  void begin(Visit& visit, std::uint32_t index, const Span& span)
   {
+    const Node& node = voxel_->nodes[index];
     alignas(64) float from[3][kLanes], to[3][kLanes];
     carry(span.from.m, span.from.g, node.x, node.y, node.z, kLanes, from[0], from[1], from[2]);
     carry(span.to.m, span.to.g, node.x, node.y, node.z, kLanes, to[0], to[1], to[2]);
     visit.children.set(from, to, span.smallest);
-    float low[3], high[3];
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
       visit.near[lane].clear();
       visit.radius[lane] = sight_.seenRadius(node.r[lane]);
-      visit.children.reach[lane] = (span.reach + visit.radius[lane]) * (1.0f + 0x1p-21f);
     }
-    // A ball around all of them.
-    const float* coordinates[3] = {node.x, node.y, node.z};
-    float widest = 0.0f;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::numeric_limits<float>::infinity();
-      high[axis] = -low[axis];
-      for (std::uint32_t lane = 0; lane < node.count; ++lane) {
-        low[axis] = std::min(low[axis], coordinates[axis][lane]);
-        high[axis] = std::max(high[axis], coordinates[axis][lane]);
-      }
-    }
-    const Point middle{0.5f * (low[0] + high[0]), 0.5f * (low[1] + high[1]), 0.5f * (low[2] + high[2])};
-    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
-      const float dx = node.x[lane] - middle.x, dy = node.y[lane] - middle.y, dz = node.z[lane] - middle.z;
-      widest = std::max(widest, std::sqrt(dx * dx + dy * dy + dz * dz) * (1.0f + 0x1p-20f) + node.r[lane]);
-    }
-    visit.around = sight_.ballOn(span, middle, sight_.seenRadius(widest));
+    float room[3][kLanes];
+    patches_.see(index, span, visit.radius, room);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane)
+        visit.children.reach[axis][lane] = (span.reach + room[axis][lane]) * (1.0f + 0x1p-21f);
+    visit.around = sight_.aroundWays(span, from, to, room, node.count);
   }
 
   /// Compares a box of the model with those children of the visit that are in `lanes`: drops it, keeps it for their own
@@ -181,6 +172,7 @@ private:
   const Course& course_;
   const std::uint32_t index_;
   const VoxelSight sight_;
+  Patches patches_;
   Findings findings_;
   ModelWalk model_;
   LeafWalk leaves_;

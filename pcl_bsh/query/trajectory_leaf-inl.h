@@ -70,11 +70,12 @@ public:
     }
     leaf.ways.set(from, to, span.smallest);
     if (path_.is_swept || span.steps >= kFewPoses) leaf.motions.set(from, to, span.smallest, span.rounding);
-    std::fill(leaf.ways.reach, leaf.ways.reach + kLeafPoints, span.reach);
+    std::fill(leaf.ways.reach[0], leaf.ways.reach[0] + kLeafPoints, span.reach);
     if (course_.closestOnly())
       for (std::uint32_t i = 0; i < points.count; ++i)
-        leaf.ways.reach[i] = std::min(span.reach, sight_.reachOf(span, findings_.best[points.begin + i].reach));
-    leaf.around = sight_.ballOn(span, {node.x[lane], node.y[lane], node.z[lane]}, sight_.seenRadius(node.r[lane]));
+        leaf.ways.reach[0][i] = std::min(span.reach, sight_.reachOf(span, findings_.best[points.begin + i].reach));
+    const float no_room[3][kLeafPoints] = {};
+    leaf.around = sight_.aroundWays(span, from, to, no_room, points.count);
     if (course_.request.pose_summaries) pose_hits_.assign(span.interval->last - span.interval->first + 1, 0);
 
     for (const Candidate& candidate : candidates) {
@@ -263,7 +264,8 @@ private:
         const double high = sight_.highOf(nearest[i]);
         best->limit = std::min(best->limit, sight_.notBeyond(nearest[i]));
         best->reach = std::min(best->reach, roundUp(high));
-        if (course_.closestOnly()) leaf.ways.reach[i] = std::min(leaf.ways.reach[i], sight_.reachOf(span, best->reach));
+        if (course_.closestOnly())
+          leaf.ways.reach[0][i] = std::min(leaf.ways.reach[0][i], sight_.reachOf(span, best->reach));
       }
       if (for_pose && certain) findings_.lowerPoseLimit(k, sight_.notBeyond(nearest[i]));
     }
@@ -297,7 +299,7 @@ private:
       if (course_.closest && course_.radii == 0.0) {
         Best& best = findings_.best[leaf.points.begin + i];
         best.reach = std::min(best.reach, roundUp(best.gap));
-        leaf.ways.reach[i] = std::min(leaf.ways.reach[i], sight_.reachOf(span, best.reach));
+        leaf.ways.reach[0][i] = std::min(leaf.ways.reach[0][i], sight_.reachOf(span, best.reach));
       }
     }
   }

@@ -110,6 +110,34 @@ public:
     return segment;
   }
 
+  /// Around `count` straight ways, each with room of its own along the axes.
+  template <std::size_t Count>
+  static Segment aroundWays(const Span& span, const float (&from)[3][Count], const float (&to)[3][Count],
+                            const float (&room)[3][Count], std::size_t count)
+  {
+    float start[3], end[3], reach[3];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      float low[2], high[2];
+      const float* ends[2] = {from[axis], to[axis]};
+      for (std::size_t k = 0; k < 2; ++k) {
+        low[k] = std::numeric_limits<float>::infinity();
+        high[k] = -low[k];
+        for (std::size_t i = 0; i < count; ++i) {
+          low[k] = std::min(low[k], ends[k][i] - room[axis][i]);
+          high[k] = std::max(high[k], ends[k][i] + room[axis][i]);
+        }
+      }
+      start[axis] = 0.5f * (low[0] + high[0]);
+      end[axis] = 0.5f * (low[1] + high[1]);
+      const float half =
+          std::max({high[0] - start[axis], start[axis] - low[0], high[1] - end[axis], end[axis] - low[1]});
+      reach[axis] = (span.reach + span.rounding + half) * (1.0f + 0x1p-20f);
+    }
+    Segment segment = segmentOf({start[0], start[1], start[2]}, {end[0], end[1], end[2]}, span.smallest);
+    std::copy(reach, reach + 3, segment.reach);
+    return segment;
+  }
+
   /// A radius in the voxel's unit as the model sees it.
   float seenRadius(float own) const
   {

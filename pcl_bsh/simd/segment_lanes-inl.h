@@ -17,11 +17,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// Ways from start to end, each to be held against boxes that are widened by a reach of its own. Rounding here is the
 /// caller's to make good, in the reach; so is taking a motion for one of `smallest` that is smaller (kSegmentRounding).
-template <std::size_t Count>
+/// @tparam Reaches 3: along each axis another, 1: the same along all.
+template <std::size_t Count, std::size_t Reaches = 1>
 struct Segments {
   alignas(64) float inverse[3][Count]; ///< of end - start
   alignas(64) float start[3][Count];
-  alignas(64) float reach[Count];
+  alignas(64) float reach[Reaches][Count];
 
   HWY_INLINE void set(const float (&from)[3][Count], const float (&to)[3][Count], float smallest)
   {
@@ -71,18 +72,17 @@ HWY_INLINE std::uint32_t staysAtStep(LaneTag d, const ClippedLanes& stay, float 
 }
 
 /// Bit i: segment i may be in the box at an instant j / steps; at any instant when steps is 0.
-template <std::size_t Count>
-HWY_INLINE std::uint32_t segmentsInBox(const Segments<Count>& segments, const float* low, const float* high,
+template <std::size_t Count, std::size_t Reaches>
+HWY_INLINE std::uint32_t segmentsInBox(const Segments<Count, Reaches>& segments, const float* low, const float* high,
                                        float steps, Stays<Count>* stays)
 {
   const LaneTag d;
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < Count; i += hn::Lanes(d)) {
     ClippedLanes stay{hn::Zero(d), hn::Set(d, 1.0f)};
-    const LaneVector reach = hn::Load(d, segments.reach + i);
     for (std::size_t axis = 0; axis < 3; ++axis)
-      clipAxis(hn::Load(d, segments.start[axis] + i), hn::Load(d, segments.inverse[axis] + i), reach,
-               hn::Set(d, low[axis]), hn::Set(d, high[axis]), stay);
+      clipAxis(hn::Load(d, segments.start[axis] + i), hn::Load(d, segments.inverse[axis] + i),
+               hn::Load(d, segments.reach[axis % Reaches] + i), hn::Set(d, low[axis]), hn::Set(d, high[axis]), stay);
     bits |= staysAtStep(d, stay, steps) << i;
     if (stays) {
       hn::Store(stay.from, d, stays->from + i);
@@ -154,7 +154,7 @@ HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, con
     const LaneVector sx = hn::Sub(hn::Load(d, segments.start[0] + i), hn::Set(d, shift[0]));
     const LaneVector sy = hn::Sub(hn::Load(d, segments.start[1] + i), hn::Set(d, shift[1]));
     const LaneVector sz = hn::Sub(hn::Load(d, segments.start[2] + i), hn::Set(d, shift[2]));
-    const LaneVector reach = hn::Add(hn::Load(d, segments.reach + i), hn::Set(d, ways.rounding));
+    const LaneVector reach = hn::Add(hn::Load(d, segments.reach[0] + i), hn::Set(d, ways.rounding));
     const LaneVector limit = hn::Mul(reach, reach);
     const LaneVector slack = hn::Mul(hn::Set(d, ways.rounding), inverse);
     LaneVector from = one, to = zero;
