@@ -51,6 +51,9 @@ public:
     findings_(course),
     model_(course.boxes, findings_.work),
     leaves_(course, sight_, model_, findings_),
+    settling_(!course.everything() && !course.first && course.radii == 0.0 && sight_.frame.unit == 1.0 &&
+              sight_.band.hit > 0.0f),
+    settled_reach_(settling_ ? std::sqrt(sight_.band.hit) * (1.0f - 0x1p-20f) : 0.0f),
     visits_(visits)
   {
   }
@@ -103,6 +106,7 @@ private:
     if (visits_.size() <= depth) visits_.resize(depth + 1);
     Visit& visit = visits_[depth];
     begin(visit, index, span);
+    if (settling_) settleByPoints(visit, index, span, candidates);
     for (const Candidate& candidate : candidates) take(visit, candidate, span, open_lanes_[index]);
     for (std::uint32_t bits = open_lanes_[index]; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
@@ -137,6 +141,117 @@ private:
       for (std::uint32_t lane = 0; lane < kLanes; ++lane)
         visit.children.reach[axis][lane] = (span.reach + room[axis][lane]) * (1.0f + 0x1p-21f);
     visit.around = sight_.aroundWays(span, from, to, room, node.count);
+  }
+
+  /// Settles children that a single point of the model is near enough to, at one pose, for all that they hold.
+  void settleByPoints(Visit& visit, std::uint32_t index, const Span& span, const std::vector<Candidate>& candidates)
+  {
+    const Node& node = voxel_->nodes[index];
+    float smallest = std::numeric_limits<float>::infinity();
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) smallest = std::min(smallest, visit.radius[lane]);
+    if (!(settled_reach_ > smallest)) return;
+    Stays<kLanes> stays;
+    for (const Candidate& candidate : candidates) {
+      const BoxEnds box(candidate);
+      findings_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(open_lanes_[index]));
+      std::uint32_t near = open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, span.steps, &stays);
+      for (; near != 0; near &= near - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+        const float reach = settled_reach_ - visit.radius[lane] * (1.0f + 0x1p-18f);
+        if (!(reach > 0.0f)) continue;
+        const double middle = 0.5 * (std::max(stays.from[lane], 0.0f) + std::min(stays.to[lane], 1.0f));
+        const auto pose = span.interval->first + static_cast<std::uint32_t>(std::lround(middle * span.steps));
+        const Ball ball{{node.x[lane], node.y[lane], node.z[lane]}, reach, pose};
+        const Sight sight = sight_.sightOf(poseAt(pose), {0, 0, 0}, 1.0);
+        const Point center = carryPoint(sight.m, sight.g, ball.center);
+        if (box.squaredDistance(center) > reach * reach || !hasPointWithin(candidate, ball, center)) continue;
+        settle(index, lane);
+        open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
+      }
+      if (open_lanes_[index] == 0) return;
+    }
+  }
+
+  /// A ball of the scan's voxel, at a pose; its reach in the clouds' unit.
+  struct Ball {
+    Point center;
+    float reach;
+    std::uint32_t pose;
+  };
+
+  struct BoxEnds {
+    float low[3], high[3];
+
+    explicit BoxEnds(const Candidate& candidate)
+    {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = candidate.box().low[axis][candidate.lane];
+        high[axis] = candidate.box().high[axis][candidate.lane];
+      }
+    }
+
+    float squaredDistance(const Point& p) const
+    {
+      const float at[3] = {p.x, p.y, p.z};
+      float squared = 0.0f;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float away = std::max({low[axis] - at[axis], at[axis] - high[axis], 0.0f});
+        squared += away * away;
+      }
+      return squared;
+    }
+  };
+
+  const PathPose& poseAt(std::uint32_t k) const { return course_.path.poses[k]; }
+
+  /// Whether the candidate has a point in the ball; the nearest boxes are asked first.
+  /// @param center of the ball, about where the model sees it.
+  bool hasPointWithin(const Candidate& candidate, const Ball& ball, const Point& center)
+  {
+    if (candidate.isLeaf()) {
+      const Voxel& voxel = course_.boxes.storage.voxels[candidate.voxel];
+      if (voxel.frame.unit != 1.0) return false;
+      const Node& node = candidate.nodes[candidate.node];
+      const Sight sight = sight_.sightOf(poseAt(ball.pose), course_.boxes.offset(candidate.voxel), 1.0);
+      for (const float g : sight.g)
+        if (!(std::abs(g) <= sight_.far)) return false;
+      const Point at = carryPoint(sight.m, sight.g, ball.center);
+      const std::uint32_t begin = node.begin[candidate.lane];
+      return anyPointWithin(voxel.x() + begin, voxel.y() + begin, voxel.z() + begin,
+                            node.comparedPoints(candidate.lane), at.x, at.y, at.z, ball.reach);
+    }
+    Candidate child = model_.below(candidate);
+    const std::uint32_t count = child.nodes[child.node].count;
+    findings_.work.node_pairs += count;
+    float distance[kLanes];
+    std::uint32_t near = 0;
+    for (child.lane = 0; child.lane < count; ++child.lane) {
+      distance[child.lane] = BoxEnds(child).squaredDistance(center);
+      if (distance[child.lane] <= ball.reach * ball.reach) near |= 1u << child.lane;
+    }
+    while (near != 0) {
+      child.lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      for (std::uint32_t bits = near & (near - 1); bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+        if (distance[lane] < distance[child.lane]) child.lane = lane;
+      }
+      if (hasPointWithin(child, ball, center)) return true;
+      near &= ~(1u << child.lane);
+    }
+    return false;
+  }
+
+  /// All points of a child collide.
+  void settle(std::uint32_t index, std::uint32_t lane)
+  {
+    const Node& node = voxel_->nodes[index];
+    if (node.isLeaf(lane)) {
+      const auto all = static_cast<std::uint16_t>(firstBits(node.comparedPoints(lane)));
+      findings_.hit[index * kLanes + lane] = findings_.settled[index * kLanes + lane] = all;
+      return;
+    }
+    const std::uint32_t below = node.child[lane];
+    for (std::uint32_t i = 0; i < voxel_->nodes[below].count; ++i) settle(below, i);
   }
 
   /// Compares a box of the model with those children of the visit that are in `lanes`: drops it, keeps it for their own
@@ -176,6 +291,8 @@ private:
   Findings findings_;
   ModelWalk model_;
   LeafWalk leaves_;
+  const bool settling_;                  // whether any pose, and any point of the model, says all that is asked
+  const float settled_reach_;            // a pair nearer than this, in floats, collides
   const Voxel* voxel_ = nullptr;         // once it was entered
   std::vector<std::uint8_t> open_lanes_; // per node: children that are not settled
   std::deque<Visit>& visits_;            // by depth; a deque, for references to shallower visits stay in use

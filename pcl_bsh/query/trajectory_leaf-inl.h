@@ -30,6 +30,7 @@ struct LeafVisit {
   Segments<kLeafPoints> ways;
   Ways<kLeafPoints> motions;
   Segment around;
+  float low[3], high[3]; ///< of the model's box that it is held against
 };
 
 /// Compares leaves of the scan with what they may meet of the model.
@@ -78,6 +79,7 @@ public:
     leaf.around = sight_.aroundWays(span, from, to, no_room, points.count);
     if (course_.request.pose_summaries) pose_hits_.assign(span.interval->last - span.interval->first + 1, 0);
 
+    ++visit_;
     for (const Candidate& candidate : candidates) {
       stack_.push_back(candidate);
       while (!stack_.empty() && leaf.open != 0) {
@@ -103,6 +105,8 @@ private:
     const float high[3] = {box.high[0][k], box.high[1][k], box.high[2][k]};
     Stays<kLeafPoints> stays;
     findings_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(leaf.open));
+    std::copy(low, low + 3, leaf.low);
+    std::copy(high, high + 3, leaf.high);
     const std::uint32_t lanes = leaf.open & segmentsInBox(leaf.ways, low, high, span.steps, &stays);
     if (lanes == 0) return;
     if (!candidate.isLeaf()) {
@@ -199,6 +203,9 @@ private:
   void compareAt(LeafVisit& leaf, std::uint32_t lanes, const LeafRange& other, std::uint32_t voxel, std::uint32_t k,
                  const Span& span)
   {
+    const LeafPoints& at = placesAt(leaf, k, span);
+    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, leaf.low, leaf.high, span.near_squared);
+    if (lanes == 0) return;
     ++findings_.work.leaf_pairs;
     const double unit = other.voxel->frame.unit;
     const Sight sight = sight_.sightOf(path_.poses[k], tree_.offset(voxel), unit);
@@ -228,6 +235,19 @@ private:
       }
     }
     if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, span);
+  }
+
+  /// The leaf's points as seen at pose k; kept, for many boxes ask at the same few poses.
+  const LeafPoints& placesAt(const LeafVisit& leaf, std::uint32_t k, const Span& span)
+  {
+    Places& places = places_[(k - span.interval->first) % kKeptPlaces];
+    if (places.visit == visit_ && places.pose == k) return places.points;
+    places.visit = visit_;
+    places.pose = k;
+    const Sight sight = sight_.sightOf(path_.poses[k], {0, 0, 0}, 1.0);
+    carry(sight.m, sight.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, places.points.x,
+          places.points.y, places.points.z);
+    return places.points;
   }
 
   /// What follows from the points in `hit`, which collide at pose k.
@@ -371,7 +391,16 @@ private:
   const VoxelSight& sight_;
   ModelWalk& model_;
   Findings& findings_;
+  struct Places {
+    std::uint64_t visit = 0;
+    std::uint32_t pose = 0;
+    LeafPoints points{};
+  };
+  static constexpr std::uint32_t kKeptPlaces = 16;
+
   std::vector<Candidate> stack_;
+  std::uint64_t visit_ = 0; // how many leaves were compared
+  Places places_[kKeptPlaces];
   std::vector<std::uint16_t> pose_hits_; // per pose of a span: points of a leaf
 };
 

@@ -25,11 +25,12 @@ struct Sight {
 struct Span {
   const PathInterval* interval;
   Sight from, to;
-  double stray;   ///< of any point of the voxel from its straight line
-  float steps;    ///< poses after the first; 0 where all instants count
-  float reach;    ///< of points: within this of a straight line, in floats, is all that collides
-  float smallest; ///< motion that floats can tell from none
-  float rounding; ///< of places in floats
+  double stray;       ///< of any point of the voxel from its straight line
+  float steps;        ///< poses after the first; 0 where all instants count
+  float reach;        ///< of points: within this of a straight line, in floats, is all that collides
+  float near_squared; ///< farther from a box than the root of this, in floats at one pose, nothing in it collides
+  float smallest;     ///< motion that floats can tell from none
+  float rounding;     ///< of places in floats
 
   /// Whether it has halves, and strays farther than `stray_limit`.
   bool divides(double stray_limit) const { return interval->divided() && stray > stray_limit; }
@@ -98,6 +99,8 @@ public:
         static_cast<double>(kSegmentRounding) * (coordinate + 2.01 * radius + tree.radius + reach) + 0x1p-100;
     span.reach = roundUp(reach + rounding);
     span.rounding = roundUp(rounding);
+    const float near = roundUp(reach - span.stray + 2 * rounding);
+    span.near_squared = near * near * (1.0f + 0x1p-18f) + 0x1p-120f;
     span.smallest = span.rounding * 0x1p-8f;
     return span;
   }

@@ -113,6 +113,24 @@ HWY_INLINE std::uint32_t boxesOnSegment(const Segment& segment, const float (*lo
   return bits;
 }
 
+/// Bit i: point i of `count`, a multiple of the lanes, is within the limit of the box, in squared distances.
+HWY_INLINE std::uint32_t pointsNearBox(const float* x, const float* y, const float* z, std::size_t count,
+                                       const float* low, const float* high, float squared_limit)
+{
+  const LaneTag d;
+  const auto beside = [&](const float* at, std::size_t axis) {
+    const LaneVector place = hn::Load(d, at);
+    const LaneVector under = hn::Sub(hn::Set(d, low[axis]), place), over = hn::Sub(place, hn::Set(d, high[axis]));
+    return hn::Max(hn::Max(under, over), hn::Zero(d));
+  };
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d))
+    bits |=
+        bitsOf(d, hn::Le(squaredNorm(beside(x + i, 0), beside(y + i, 1), beside(z + i, 2)), hn::Set(d, squared_limit)))
+        << i;
+  return bits;
+}
+
 /// The same ways, to be held against points.
 template <std::size_t Count>
 struct Ways {
