@@ -448,6 +448,33 @@ TEST(Trajectory, CostsLessPerPoseAsPosesGetDenser)
     EXPECT_LT(workOf(10 * poses, flagsOnly(0.1)), 3 * workOf(poses, flagsOnly(0.1))) << poses;
 }
 
+TEST(Trajectory, LargeClearancesCostLittle)
+{
+  const Corridor corridor;
+  const SphereHierarchy scan(corridor.walls.view()), model(corridor.cart.view());
+  const Poses poses = alongCorridor(2, 58, 200);
+  for (const double clearance : {0.3, 1.0, 2.0, 10.0}) {
+    const TrajectoryResult result = collideAlong({scan}, model, poses, flagsOnly(clearance));
+    EXPECT_LT(result.work.node_pairs + 20 * result.work.leaf_pairs, 30 * result.flags.size()) << clearance;
+  }
+}
+
+/// Flags settle nodes by single points, first poses do not.
+TEST(Trajectory, LargeClearancesFlagTheSamePoints)
+{
+  const Corridor corridor;
+  const SphereHierarchy scan(corridor.walls.view()), model(corridor.cart.view());
+  const Poses poses = alongCorridor(10, 12, 7);
+  for (const double clearance : {0.7, 1.0, 1.5}) {
+    TrajectoryRequest request = flagsOnly(clearance);
+    const TrajectoryResult flags = collideAlong({scan}, model, poses, request);
+    request.first_poses = true;
+    EXPECT_GT(flags.colliding, 0u);
+    EXPECT_LT(flags.colliding, flags.flags.size());
+    EXPECT_EQ(flags.flags, collideAlong({scan}, model, poses, request).flags) << clearance;
+  }
+}
+
 TEST(Trajectory, MorePosesHitNoLess)
 {
   const Corridor corridor;
