@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
+#include <variant>
 
 namespace pcl_bsh::pipeline {
 namespace {
@@ -48,6 +50,13 @@ const Option* StageType::findOption(const std::string& option) const
 {
   const auto found = std::find_if(options.begin(), options.end(), [&](const Option& o) { return o.name == option; });
   return found == options.end() ? nullptr : &*found;
+}
+
+void StageType::addOption(Option option)
+{
+  option.standard = option.get(*make());
+  option.nullable = std::holds_alternative<std::monostate>(option.standard);
+  options.push_back(std::move(option));
 }
 
 bool registerStage(StageType type)

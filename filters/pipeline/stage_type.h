@@ -55,6 +55,9 @@ struct StageType {
   bool isReader() const { return most_inputs == 0; }
   bool isWriter() const { return name.rfind("writers.", 0) == 0; }
   const Option* findOption(const std::string& option) const;
+
+  /// Its standard is what a new stage has. Not inline: GCC 12 sees a Value free what it never held.
+  void addOption(Option option);
 };
 
 /// Fills in a StageType. Each option() is a member of S, whose type and initial value are the option's; what follows
@@ -97,8 +100,6 @@ public:
     option.name = std::move(name);
     option.doc = std::move(doc);
     option.kind = OptionType<T>::kind;
-    option.standard = OptionType<T>::to(S().*member);
-    option.nullable = std::holds_alternative<std::monostate>(option.standard);
     option.least = NumberLimits<T>::least;
     option.most = NumberLimits<T>::most;
     option.set = [member](Stage& stage, const Value& value) {
@@ -108,7 +109,7 @@ public:
     if constexpr (std::is_same_v<T, OtherCloud>) {
       option.cloud = [member](Stage& stage) { return &(static_cast<S&>(stage).*member); };
     }
-    type_.options.push_back(std::move(option));
+    type_.addOption(std::move(option));
     return *this;
   }
 
