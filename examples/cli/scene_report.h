@@ -93,7 +93,7 @@ public:
         for (const ContactPair& pair : result.contacts) count += pair.contacts.size();
         out << ',' << count;
       }
-      if (effect == Effect::first_contact) writeSmallest(out, result.first_contact, &FirstContact::fraction);
+      if (effect == Effect::first_contact) writeSmallest(out, result.first_contact, &PartFirstContact::fraction);
       if (effect == Effect::swept) out << ',' << flaggedPoints(result.swept);
       if (effect == Effect::self) out << ',' << result.self.size();
       const EffectCost& cost = result.cost(effect);
@@ -191,7 +191,7 @@ inline nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result
                                {"normal", {contact.normal[0], contact.normal[1], contact.normal[2]}}});
     });
   if (effects.first_contact)
-    list("first_contact", result.first_contact, [&](Json& e, const FirstContact& contact) {
+    list("first_contact", result.first_contact, [&](Json& e, const PartFirstContact& contact) {
       e["fraction"] = contact.fraction;
       e["pair"] = points(contact.pair);
     });
