@@ -15,7 +15,7 @@ namespace pcl_bsh::io {
 namespace {
 
 /// The lines before the points, as written.
-struct Header {
+struct PcdHeader {
   std::vector<std::string> names;
   std::vector<std::uint32_t> sizes;
   std::vector<char> types;
@@ -35,9 +35,9 @@ char typeLetter(TextCursor& text)
 }
 
 /// Reads up to and including the DATA line.
-Header readHeader(TextCursor& text)
+PcdHeader readPcdHeader(TextCursor& text)
 {
-  Header header;
+  PcdHeader header;
   while (text.nextLine()) {
     const std::string_view key = text.word();
     const auto list = [&](auto& values, auto read) {
@@ -81,7 +81,7 @@ Header readHeader(TextCursor& text)
 }
 
 /// Field by field, with its place in the record. Fields named "_" are padding, which only binary records have to keep.
-void layOut(const Header& header, pcl::PCLPointCloud2& cloud)
+void layOut(const PcdHeader& header, pcl::PCLPointCloud2& cloud)
 {
   const std::size_t fields = header.names.size();
   const bool counted = !header.counts.empty();
@@ -108,7 +108,7 @@ void layOut(const Header& header, pcl::PCLPointCloud2& cloud)
 }
 
 /// Width and height that agree with POINTS, where both are given.
-std::pair<std::uint32_t, std::uint32_t> extent(const Header& header)
+std::pair<std::uint32_t, std::uint32_t> extent(const PcdHeader& header)
 {
   const std::uint64_t rows = header.height.value_or(1);
   const std::uint64_t points = header.points.value_or(header.width.value_or(0) * rows);
@@ -122,7 +122,7 @@ std::pair<std::uint32_t, std::uint32_t> extent(const Header& header)
   return {static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows)};
 }
 
-void readAscii(TextCursor& text, pcl::PCLPointCloud2& cloud, const Header& header)
+void readAscii(TextCursor& text, pcl::PCLPointCloud2& cloud, const PcdHeader& header)
 {
   for (std::uint8_t* record = cloud.data.data(); record != cloud.data.data() + cloud.data.size();
        record += cloud.point_step) {
@@ -190,7 +190,7 @@ void readCompressed(std::string_view body, pcl::PCLPointCloud2& cloud, std::size
 }
 
 /// The fields and the size of the cloud that the header promises.
-pcl::PCLPointCloud2 promised(const Header& header)
+pcl::PCLPointCloud2 promised(const PcdHeader& header)
 {
   pcl::PCLPointCloud2 cloud;
   layOut(header, cloud);
@@ -203,13 +203,13 @@ pcl::PCLPointCloud2 promised(const Header& header)
 pcl::PCLPointCloud2 parsePcdHeader(std::string_view file)
 {
   TextCursor text(file, '#');
-  return promised(readHeader(text));
+  return promised(readPcdHeader(text));
 }
 
 pcl::PCLPointCloud2 parsePcd(std::string_view file, Viewpoint& viewpoint)
 {
   TextCursor text(file, '#');
-  const Header header = readHeader(text);
+  const PcdHeader header = readPcdHeader(text);
   viewpoint = header.viewpoint;
 
   pcl::PCLPointCloud2 cloud = promised(header);

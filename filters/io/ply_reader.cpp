@@ -27,7 +27,7 @@ struct Element {
   std::vector<Property> properties;
 };
 
-struct Header {
+struct PlyHeader {
   std::string format;
   std::vector<Element> elements; ///< in the order of the file
   std::uint64_t columns = 0;     ///< of an organised cloud, else 0
@@ -57,9 +57,9 @@ Property readProperty(TextCursor& text)
 }
 
 /// Reads up to and including end_header.
-Header readHeader(TextCursor& text)
+PlyHeader readPlyHeader(TextCursor& text)
 {
-  Header header;
+  PlyHeader header;
   if (!text.nextLine() || text.word() != "ply") throw FormatError("is not a PLY file: it does not start with 'ply'");
   while (text.nextLine()) {
     const std::string_view key = text.word();
@@ -172,7 +172,7 @@ pcl::PCLPointCloud2 readVertices(Rows& rows, const Element& vertices, Part part)
 
 /// Reads all elements, also those that are not wanted: a file cut off behind its vertices is damaged, too.
 template <typename Rows>
-pcl::PCLPointCloud2 readElements(Rows rows, const Header& header, Part part)
+pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part)
 {
   std::optional<pcl::PCLPointCloud2> cloud;
   for (const Element& element : header.elements) {
@@ -194,7 +194,7 @@ pcl::PCLPointCloud2 readElements(Rows rows, const Header& header, Part part)
 pcl::PCLPointCloud2 parse(std::string_view file, Part part)
 {
   TextCursor text(file);
-  const Header header = readHeader(text);
+  const PlyHeader header = readPlyHeader(text);
   pcl::PCLPointCloud2 cloud;
   if (header.format == "ascii") {
     cloud = readElements(AsciiRows(text), header, part);
