@@ -56,6 +56,9 @@ TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& 
   if (trajectory_ && trajectory_->empty()) {
     throw std::invalid_argument("trajectory has no pose: give one at least, or call setPose()");
   }
+  if (!accuracy_.isExact()) {
+    throw std::invalid_argument("accuracy: " + accuracy_.text() + ": answers along a trajectory are exact: give exact");
+  }
   const SphereHierarchy& obstacle = obstacleHierarchy();
   HierarchyOptions options;
   options.threads = threads_;
@@ -70,6 +73,7 @@ TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& 
   TrajectoryResult result =
       collideAlong({hierarchy}, obstacle, trajectory_ ? *trajectory_ : std::vector{pose_}, request);
   work_ = result.work;
+  undecided_ = 0;
   return result;
 }
 
@@ -99,8 +103,10 @@ std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input)
   request.clearance = clearance_;
   request.flagged = Side::a;
   request.threads = threads_;
+  request.accuracy = accuracy_;
   FlagsResult result = pcl_bsh::collisionFlags({hierarchy}, {obstacle, pose_}, request);
   work_ = result.work;
+  undecided_ = result.undecided_a;
   return std::move(result.a);
 }
 

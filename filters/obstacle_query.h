@@ -2,6 +2,7 @@
 // The obstacle, where it stands and how close is too close: all of CollisionFilter that knows no point type.
 #pragma once
 
+#include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -9,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -63,6 +65,17 @@ public:
   void setSwept(double tolerance) { swept_ = tolerance; }
   double getSwept() const { return swept_; }
 
+  /// How sure the answer has to be: less is faster. Default: exact. Unless it is floatOnly(), no point is called free
+  /// or colliding that is not, within the tolerance if one was given. What an early stop leaves undecided is never kept
+  /// as free: it counts as colliding wherever points are kept or removed, and its flag is 2. A time is that of the
+  /// query alone, after both clouds are sorted into voxels. Its number is finite and >= 0, or filtering throws; so it
+  /// does for any accuracy but exact along a trajectory.
+  void setAccuracy(const Accuracy& accuracy) { accuracy_ = accuracy; }
+  const Accuracy& getAccuracy() const { return accuracy_; }
+
+  /// How many points of the input the last query left undecided. 0 unless its accuracy let it stop early.
+  std::size_t getUndecidedCount() const { return undecided_; }
+
   /// Default 1; 0: all of the machine's. The answer is the same for any number.
   void setNumberOfThreads(unsigned threads) { threads_ = threads; }
   unsigned getNumberOfThreads() const { return threads_; }
@@ -76,7 +89,7 @@ protected:
   ObstacleQuery(const ObstacleQuery&) = default;
   ObstacleQuery& operator=(const ObstacleQuery&) = default;
 
-  /// One per record of the input, 1 = collides.
+  /// One per record of the input: 1 collides, 2 is undecided, 0 is free.
   /// @throws std::invalid_argument when a setting is missing or not what its declaration asks for.
   std::vector<std::uint8_t> collisionFlags(const PointsView& input);
 
@@ -84,7 +97,7 @@ protected:
   /// Throws as collisionFlags() does.
   TrajectoryResult alongTrajectory(const PointsView& input);
 
-  /// Parts the input's points, in their order, into those that do not collide (if `negative`: that do) and the rest.
+  /// Parts the input's points, in their order, into those that are free (if `negative`: that are not) and the rest.
   /// Points that are not finite are always of the rest. Throws as collisionFlags() does.
   /// @param removed may be null
   void select(const PointsView& input, bool negative, pcl::Indices& kept, pcl::Indices* removed);
@@ -101,8 +114,10 @@ private:
   std::optional<std::vector<Eigen::Isometry3d>> trajectory_; ///< instead of pose_
   double swept_ = 0.0;
   double clearance_ = 0.0;
+  Accuracy accuracy_;
   unsigned threads_ = 1;
   Work work_;
+  std::size_t undecided_ = 0;
   bool warned_ = false; ///< of coordinates too coarse for the clearance; once, for clouds come in streams
 
 public:

@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -148,6 +149,21 @@ TEST_F(CollisionFilterPcl2Test, TrajectoryAddsItsFields)
     EXPECT_EQ(along.first_pose[i], flags_[i] ? 1 : -1);
     EXPECT_EQ(record(output, i), bytes) << i;
   }
+}
+
+TEST_F(CollisionFilterPcl2Test, UndecidedPointsHaveAFlagOfTheirOwn)
+{
+  filter_.setAccuracy(Accuracy::nodePairs(300));
+  std::vector<std::uint8_t> flags;
+  filter_.computeFlags(flags);
+  const auto undecided = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 2));
+  EXPECT_GT(undecided, 0u);
+  EXPECT_EQ(filter_.getUndecidedCount(), undecided);
+  expectRecords(filtered(), *original_, where(flags, false, points_));
+  filter_.setNegative(true);
+  expectRecords(filtered(), *original_, where(flags, true, points_));
+  filter_.setKeepFlagged(true);
+  expectFlagged(filtered(), flags);
 }
 
 TEST_F(CollisionFilterPcl2Test, AgreesWithTheTypedFilter)

@@ -435,6 +435,78 @@ TEST_F(CollisionFilterTest, ThreadsChangeNothing)
   }
 }
 
+TEST_F(CollisionFilterTest, UndecidedPointsAreNeverKeptAsFree)
+{
+  EXPECT_TRUE(filter_.getAccuracy().isExact());
+  std::vector<std::uint8_t> flags;
+  std::size_t undecided = 0;
+  for (const char* setting : {"exact", "level=0", "level=1", "level=2", "level=9", "pairs=0", "pairs=300", "time=0"}) {
+    SCOPED_TRACE(setting);
+    filter_.setAccuracy(Accuracy::parse(setting));
+    filter_.computeFlags(flags);
+    ASSERT_EQ(flags.size(), flags_.size());
+    std::vector<std::uint8_t> colliding_side;
+    std::size_t counted = 0;
+    for (std::size_t i = 0; i < flags.size(); ++i) {
+      counted += flags[i] == 2;
+      EXPECT_TRUE(flags[i] == 2 || flags[i] == flags_[i]) << i;
+      colliding_side.push_back(flags[i] != 0);
+    }
+    EXPECT_EQ(filter_.getUndecidedCount(), counted);
+    undecided += counted;
+
+    if (filter_.getAccuracy().mode == Accuracy::Mode::time) continue; // another run decides other points
+    for (const bool negative : {false, true}) {
+      filter_.setNegative(negative);
+      EXPECT_EQ(filtered(), where(colliding_side, negative, points_));
+      EXPECT_EQ(filter_.getUndecidedCount(), counted);
+    }
+  }
+  EXPECT_GT(undecided, 700u) << "hardly anything was ever undecided";
+  filter_.setAccuracy(Accuracy::exact());
+  filter_.computeFlags(flags);
+  EXPECT_EQ(filter_.getUndecidedCount(), 0u);
+}
+
+TEST_F(CollisionFilterTest, UndecidedPointsAreOverwrittenWhereTheCloudStaysOrganized)
+{
+  filter_.setAccuracy(Accuracy::nodePairs(0));
+  filter_.setKeepOrganized(true);
+  filter_.setUserFilterValue(9.0f);
+  Cloud output;
+  filter_.filter(output);
+  for (const pcl::PointXYZI& point : output) EXPECT_EQ(point.z, 9.0f);
+}
+
+TEST_F(CollisionFilterTest, ToleranceAndFloatDecideEveryPoint)
+{
+  const double tolerance = 0.02;
+  filter_.setAccuracy(Accuracy::tolerance(tolerance));
+  const std::vector<std::uint8_t> most = doubleLoop(points_, obstacle_, pose_, clearance + tolerance);
+  std::vector<std::uint8_t> flags;
+  filter_.computeFlags(flags);
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    EXPECT_GE(flags[i], flags_[i]) << i;
+    EXPECT_LE(flags[i], most[i]) << i;
+  }
+  EXPECT_EQ(filter_.getUndecidedCount(), 0u);
+  filter_.setAccuracy(Accuracy::floatOnly());
+  filter_.computeFlags(flags);
+  EXPECT_EQ(flags, flags_) << "no distance of these clouds is within float's error of the clearance";
+}
+
+TEST_F(CollisionFilterTest, AccuracyThatMakesNoSenseIsAnError)
+{
+  std::vector<std::uint8_t> flags;
+  for (const double wrong : {-1.0, static_cast<double>(nan)}) {
+    filter_.setAccuracy(Accuracy::tolerance(wrong));
+    EXPECT_THAT([&] { filter_.computeFlags(flags); }, refusedWith("accuracy: tolerance="));
+  }
+  filter_.setAccuracy(Accuracy::level(1));
+  filter_.setTrajectory({pose_});
+  EXPECT_THAT([&] { filter_.computeFlags(flags); }, refusedWith("accuracy: level=1"));
+}
+
 /// Poses that carry the obstacle through the input.
 std::vector<Eigen::Isometry3d> somePath(const Eigen::Isometry3d& start)
 {
