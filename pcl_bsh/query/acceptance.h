@@ -4,27 +4,33 @@
 #include <pcl_bsh/geometry/relative_frame.h>
 #include <pcl_bsh/query/collide.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace pcl_bsh {
 
 /// At which distances a request lets points collide: always up to `clearance`, never beyond `accepted`.
 struct Acceptance {
-  explicit Acceptance(const CollisionRequest& request)
-  : clearance(request.clearance),
-    accepted(request.clearance),
-    proven(request.accuracy.isProven())
+  Acceptance(double asked, const Accuracy& accuracy) : clearance(asked), accepted(asked), proven(accuracy.isProven())
   {
-    if (request.accuracy.mode == Accuracy::Mode::tolerance && request.accuracy.value > 0.0)
-      accepted = std::max(clearance, std::nextafter(clearance + request.accuracy.value, 0.0));
+    if (accuracy.mode == Accuracy::Mode::tolerance && accuracy.value > 0.0)
+      accepted = std::max(clearance, std::nextafter(clearance + accuracy.value, 0.0));
   }
+
+  explicit Acceptance(const CollisionRequest& request) : Acceptance(request.clearance, request.accuracy) {}
 
   DistanceBand band(const RelativeFrame& frame) const
   {
-    if (!proven) return frame.bandUnproven(clearance);
-    if (accepted == clearance) return frame.band(clearance);
+    return proven ? provenBand([&](double distance) { return frame.band(distance); }) : frame.bandUnproven(clearance);
+  }
+
+  /// @param bandOf a distance
+  template <class BandOf>
+  DistanceBand provenBand(const BandOf& bandOf) const
+  {
+    if (accepted == clearance) return bandOf(clearance);
     // Whatever lies between is one or the other; pairs that neither bound can tell are still decided exactly.
-    return {frame.band(accepted).hit, frame.band(clearance).miss};
+    return {bandOf(accepted).hit, bandOf(clearance).miss};
   }
 
   double clearance;

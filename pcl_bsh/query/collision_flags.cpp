@@ -24,9 +24,9 @@
 namespace pcl_bsh {
 namespace {
 
-constexpr auto kFree = static_cast<std::uint8_t>(Verdict::free);
-constexpr auto kColliding = static_cast<std::uint8_t>(Verdict::colliding);
-constexpr auto kUndecided = static_cast<std::uint8_t>(Verdict::undecided);
+constexpr auto kFree = flagOf(Verdict::free);
+constexpr auto kColliding = flagOf(Verdict::colliding);
+constexpr auto kUndecided = flagOf(Verdict::undecided);
 
 struct FlagQuery {
   const Placed& a;
@@ -521,13 +521,6 @@ void markUndecided(const SphereHierarchy& hierarchy, std::vector<std::uint8_t>& 
     hierarchy.storage().forEachRecord(v, [&](std::uint32_t record) { flags[record] = kUndecided; });
 }
 
-/// The levels to walk to, one pass after another.
-std::vector<std::uint64_t> passes(const StopRule& rule)
-{
-  if (rule.deepest != StopRule::kNever) return {rule.deepest};
-  return {0, 2, StopRule::kNever};
-}
-
 std::vector<std::uint8_t> flagsOf(const Placed& a, const Placed& b, const CollisionRequest& request, Work& work)
 {
   StopRule rule(request.accuracy);
@@ -544,11 +537,9 @@ std::vector<std::uint8_t> flagsOf(const Placed& a, const Placed& b, const Collis
     return flags;
   }
 
-  // First coarsely, so that there is an answer for all when the budget ends, then voxel by voxel to the end. (Every
-  // level in turn costs three times what the last one does.)
   markUndecided(a.hierarchy, flags);
   Work spent;
-  for (const std::uint64_t deepest : passes(rule)) {
+  for (const std::uint64_t deepest : rule.passes()) {
     rule.deepest = deepest;
     voxels = flagVoxels(query, rule, voxels, threads, flags, spent);
     if (node_pairs != StopRule::kNever) rule.node_pairs = node_pairs - std::min(node_pairs, spent.node_pairs);

@@ -38,6 +38,7 @@ public:
   : rule_(accuracy),
     clearance_(clearance),
     walk_(a, b),
+    watch_(rule_, walk_.work.node_pairs),
     pairs_(a, b, clearance.value_or(0.0))
   {
   }
@@ -62,12 +63,6 @@ private:
 
   bool isSettled() const { return clearance_ && upper_ <= *clearance_; }
 
-  bool isSpent()
-  {
-    if (walk_.work.node_pairs >= rule_.node_pairs) return true;
-    return rule_.isTimed() && steps_++ % 16 == 0 && rule_.isOver(); // a clock costs as much as a step
-  }
-
   /// To a level there is no way around, and a stack is cheaper than a heap.
   void searchDepthFirst()
   {
@@ -87,7 +82,7 @@ private:
   {
     if (!open_.empty()) dive();
     std::make_heap(open_.begin(), open_.end(), laterThan);
-    while (!open_.empty() && matters(open_.front().lower) && !isSettled() && !isSpent()) {
+    while (!open_.empty() && matters(open_.front().lower) && !isSettled() && !watch_.isOver()) {
       std::pop_heap(open_.begin(), open_.end(), laterThan);
       const Open next = open_.back();
       open_.pop_back();
@@ -256,13 +251,13 @@ private:
   StopRule rule_;
   const std::optional<double> clearance_;
   PairWalk walk_;
+  Watch watch_;
   PointPairs pairs_;
   std::vector<Open> open_; // a stack, the nearest last, or a heap, the least lower bound first
   std::optional<PointPair> pair_;
   double pair_lower_ = kInfinity; // at most the gap of pair_, the least of all that were looked at
   double upper_ = kInfinity;      // at least the gap of pair_
   double cut_lower_ = kInfinity;  // of what was not to be opened
-  std::uint64_t steps_ = 0;
 };
 
 } // namespace

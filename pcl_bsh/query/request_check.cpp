@@ -25,6 +25,12 @@ void checkClearance(double clearance)
   if (!(std::isfinite(clearance) && clearance >= 0.0)) refuse("clearance: ", clearance, ": give a finite length >= 0");
 }
 
+void checkAccuracy(const Accuracy& accuracy)
+{
+  if (!(std::isfinite(accuracy.value) && accuracy.value >= 0.0))
+    refuse("accuracy: ", accuracy.text(), ": give a finite number >= 0");
+}
+
 } // namespace
 
 void checkPose(const std::string& name, const Eigen::Isometry3d& pose)
@@ -47,10 +53,7 @@ void checkPose(const std::string& name, const Eigen::Isometry3d& pose)
 void check(const Placed& a, const Placed& b, const CollisionRequest& request)
 {
   checkClearance(request.clearance);
-  const Accuracy& accuracy = request.accuracy;
-  if (!(std::isfinite(accuracy.value) && accuracy.value >= 0.0)) {
-    refuse("accuracy: ", accuracy.text(), ": give a finite number >= 0");
-  }
+  checkAccuracy(request.accuracy);
   checkPose("pose of a", a.pose);
   checkPose("pose of b", b.pose);
 }
@@ -58,6 +61,14 @@ void check(const Placed& a, const Placed& b, const CollisionRequest& request)
 void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
 {
   checkClearance(request.clearance);
+  checkAccuracy(request.accuracy);
+  if (request.swept && !request.accuracy.isExact())
+    refuse("accuracy: ", request.accuracy.text(), ": swept motion has a tolerance of its own: give exact");
+  const bool more = request.distances || request.first_poses || request.closest_poses || request.pose_summaries;
+  if (request.accuracy.stopsEarly() && more)
+    refuse("accuracy: ", request.accuracy.text(),
+           ": decides which points collide, not when and how near: ask for flags alone, or give exact, float or "
+           "tolerance=LENGTH");
   if (request.swept && !(std::isfinite(*request.swept) && *request.swept > 0.0))
     refuse("tolerance of the swept motion: ", *request.swept, ": give a finite length > 0");
   if (request.swept && request.pose_summaries)

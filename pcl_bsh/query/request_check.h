@@ -12,7 +12,8 @@ namespace pcl_bsh {
 ///   finite, whose last row is not 0 0 0 1, that mirrors, or whose rotation R has |R'R - I| > 1e-6 (Frobenius norm).
 void check(const Placed& a, const Placed& b, const CollisionRequest& request);
 
-/// The same for a trajectory, with its tolerance and its pivot; a pose of the model is named by its index.
+/// The same for a trajectory, with its tolerance, its pivot, and what its accuracy cannot tell; a pose of the model is
+/// named by its index.
 void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
 
 /// Whether a trajectory's result would hold anything.

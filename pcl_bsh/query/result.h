@@ -12,6 +12,12 @@ namespace pcl_bsh {
 
 enum class Verdict : std::uint8_t { free, colliding, undecided };
 
+/// As it stands among flags.
+constexpr std::uint8_t flagOf(Verdict verdict) noexcept
+{
+  return static_cast<std::uint8_t>(verdict);
+}
+
 /// Noise-free cost of a query. The same for any number of threads.
 struct Work {
   std::uint64_t node_pairs = 0;      ///< sphere-sphere tests of two nodes

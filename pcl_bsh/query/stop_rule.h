@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace pcl_bsh {
 
@@ -44,11 +45,40 @@ public:
            Clock::now() + std::chrono::duration<double>(seconds_per_point * static_cast<double>(points)) < deadline_;
   }
 
+  /// The levels to walk to, one pass after another: within a budget first coarsely, so that there is an answer for all
+  /// when it ends, then to the end. (Every level in turn costs three times what the last one does.)
+  std::vector<std::uint64_t> passes() const
+  {
+    if (deepest != kNever) return {deepest};
+    return {0, 2, kNever};
+  }
+
 private:
   using Clock = std::chrono::steady_clock;
 
   bool may_stop_;
   Clock::time_point deadline_ = Clock::time_point::max();
+};
+
+/// Tells a walk whether it has to end now.
+class Watch {
+public:
+  /// @param tested counts the walk's sphere tests
+  Watch(const StopRule& rule, const std::uint64_t& tested) : rule_(rule), tested_(tested) {}
+
+  /// Once over, always over.
+  bool isOver()
+  {
+    if (over_ || !rule_.mayStop()) return over_;
+    over_ = tested_ >= rule_.node_pairs || (rule_.isTimed() && asked_++ % 16 == 0 && rule_.isOver());
+    return over_; // a clock costs as much as a step
+  }
+
+private:
+  const StopRule& rule_;
+  const std::uint64_t& tested_;
+  std::uint64_t asked_ = 0;
+  bool over_ = false;
 };
 
 } // namespace pcl_bsh

@@ -43,14 +43,16 @@ struct Visit {
 /// Takes one voxel of the scan along the trajectory.
 class TrajectoryWalk {
 public:
-  TrajectoryWalk(const Course& course, std::uint32_t voxel, std::deque<Visit>& visits)
+  TrajectoryWalk(const Course& course, const StopRule& rule, std::uint32_t voxel, std::deque<Visit>& visits)
   : course_(course),
+    rule_(rule),
     index_(voxel),
     sight_(course, voxel),
     patches_(sight_),
     findings_(course),
-    model_(course.boxes, findings_.work),
-    leaves_(course, sight_, model_, findings_),
+    watch_(rule, findings_.work.node_pairs),
+    model_(course.boxes, rule, findings_.work),
+    leaves_(course, sight_, model_, watch_, findings_),
     settling_(!course.everything() && !course.first && course.radii == 0.0 && sight_.frame.unit == 1.0 &&
               sight_.band.hit > 0.0f),
     settled_reach_(settling_ ? std::sqrt(sight_.band.hit) * (1.0f - 0x1p-20f) : 0.0f),
@@ -66,22 +68,40 @@ public:
                            course_.path.intervals[intervals.back()].last);
     std::vector<Candidate> candidates;
     for (const std::uint32_t interval : intervals) {
+      if (watch_.isOver()) return leave(true);
       const Span span = sight_.spanOf(interval);
       candidates.clear();
       model_.collect(span, sight_.aroundVoxel(span), kSeedSize * static_cast<float>(sight_.radius), model_.root(),
                      candidates);
       if (candidates.empty()) continue;
+      if (!voxel_ && !mayEnter()) return leave(true);
       if (!voxel_) enter(span);
       if (open_lanes_[0] == 0) break;
       descend(0, span, candidates, 0);
     }
+    return leave(watch_.isOver());
+  }
+
+private:
+  bool mayEnter() const
+  {
+    return !rule_.mayStop() ||
+           (rule_.deepest > 0 && rule_.leavesTimeToBuild(course_.scan.hierarchy.storage().pointsToBuild(index_)));
+  }
+
+  /// @param unsure not all was looked at.
+  VoxelAnswer leave(bool unsure)
+  {
     VoxelAnswer answer;
-    if (voxel_) answer = findings_.finish(*voxel_);
+    if (voxel_ && !rule_.mayStop()) answer = findings_.finish(*voxel_);
+    if (rule_.mayStop()) answer.undecided = voxel_ ? findings_.decide(*voxel_, unsure) : unsure;
+    if (rule_.mayStop() && !voxel_ && !unsure)
+      course_.scan.hierarchy.storage().forEachRecord(
+          index_, [this](std::uint32_t i) { course_.result.flags[i] = flagOf(Verdict::free); });
     answer.work = findings_.work;
     return answer;
   }
 
-private:
   void enter(const Span& span)
   {
     voxel_ = &course_.scan.hierarchy.storage().built(index_, findings_.work.voxels_built);
@@ -93,6 +113,7 @@ private:
   /// Takes a node, all its children at once, through its candidates; then each child through its own.
   void descend(std::uint32_t index, const Span& span, const std::vector<Candidate>& candidates, std::size_t depth)
   {
+    if (watch_.isOver()) return;
     const Node& node = voxel_->nodes[index];
     float largest = 0.0f;
     for (std::uint32_t lane = 0; lane < node.count; ++lane) largest = std::max(largest, node.r[lane]);
@@ -115,6 +136,9 @@ private:
       if (node.isLeaf(lane)) {
         const LeafRange points{voxel_, node.begin[lane], node.comparedPoints(lane)};
         open = leaves_.compare(index * kLanes + lane, points, node, lane, span, visit.near[lane]);
+      }
+      else if (depth + 1 >= rule_.deepest) {
+        findings_.undecided[index * kLanes + lane] = 0xffff;
       }
       else {
         descend(node.child[lane], span, visit.near[lane], depth + 1);
@@ -220,6 +244,7 @@ private:
       return anyPointWithin(voxel.x() + begin, voxel.y() + begin, voxel.z() + begin,
                             node.comparedPoints(candidate.lane), at.x, at.y, at.z, ball.reach);
     }
+    if (!model_.mayOpen(candidate)) return false;
     Candidate child = model_.below(candidate);
     const std::uint32_t count = child.nodes[child.node].count;
     findings_.work.node_pairs += count;
@@ -266,12 +291,12 @@ private:
     const std::uint32_t near_lanes =
         lanes & segmentsInBox(visit.children, low, high, span.steps, static_cast<Stays<kLanes>*>(nullptr));
     if (near_lanes == 0) return;
-    const bool leaf = candidate.isLeaf();
+    const bool opens = !candidate.isLeaf() && model_.mayOpen(candidate);
     const float size = candidate.size();
     std::uint32_t opening = 0;
     for (std::uint32_t bits = near_lanes; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (!leaf && size > kBoxSize * visit.radius[lane])
+      if (opens && size > kBoxSize * visit.radius[lane])
         opening |= 1u << lane;
       else
         visit.near[lane].push_back(candidate);
@@ -285,10 +310,12 @@ private:
   }
 
   const Course& course_;
+  const StopRule& rule_;
   const std::uint32_t index_;
   const VoxelSight sight_;
   Patches patches_;
   Findings findings_;
+  Watch watch_;
   ModelWalk model_;
   LeafWalk leaves_;
   const bool settling_;                  // whether any pose, and any point of the model, says all that is asked
@@ -300,10 +327,11 @@ private:
 
 } // namespace
 
-VoxelAnswer walkVoxelOnTarget(const Course& course, std::uint32_t voxel, const std::vector<std::uint32_t>& intervals)
+VoxelAnswer walkVoxelOnTarget(const Course& course, const StopRule& rule, std::uint32_t voxel,
+                              const std::vector<std::uint32_t>& intervals)
 {
   thread_local std::deque<Visit> visits; // kept from voxel to voxel for their storage only
-  return TrajectoryWalk(course, voxel, visits).run(intervals);
+  return TrajectoryWalk(course, rule, voxel, visits).run(intervals);
 }
 
 } // namespace HWY_NAMESPACE
@@ -322,6 +350,9 @@ public:
   Progress(const std::function<bool(double)>& report, std::size_t total) : report_(report), total_(total) {}
 
   bool stopped() const { return stopped_; }
+
+  /// So many are done, or need not be.
+  void skipTo(std::size_t done) { done_ = done; }
 
   void step()
   {
@@ -396,6 +427,62 @@ FirstContact instantOf(const PosePath& path, double time)
   return {pose.given, std::min(fraction, 1.0 - 0x1p-53)};
 }
 
+/// Takes the given voxels along the trajectory.
+std::vector<VoxelAnswer> follow(const Course& course, const StopRule& rule,
+                                const std::vector<std::vector<std::uint32_t>>& meetings,
+                                const std::vector<std::uint32_t>& voxels, Progress& progress)
+{
+  std::vector<VoxelAnswer> answers(voxels.size());
+  const auto walk = [&](std::size_t i, const StopRule& own) {
+    if (progress.stopped()) return;
+    answers[i] = HWY_DYNAMIC_DISPATCH(walkVoxelOnTarget)(course, own, voxels[i], meetings[voxels[i]]);
+    progress.step();
+  };
+  if (rule.node_pairs == StopRule::kNever) {
+    parallelFor(voxels.size(), threadCount(course.request.threads), [&](std::size_t i) { walk(i, rule); });
+  }
+  else { // one after another: what one leaves is the next one's
+    StopRule own = rule;
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+      walk(i, own);
+      own.node_pairs -= std::min(own.node_pairs, answers[i].work.node_pairs);
+    }
+  }
+  if (progress.stopped()) throw Cancelled();
+  return answers;
+}
+
+/// The same in passes, each for the voxels that the one before left with undecided points.
+void followUntilStopped(const Course& course, StopRule rule, const std::vector<std::vector<std::uint32_t>>& meetings,
+                        std::vector<std::uint32_t> voxels, Progress& progress)
+{
+  std::vector<std::uint8_t>& flags = course.result.flags;
+  for (const std::uint32_t voxel : voxels)
+    course.scan.hierarchy.storage().forEachRecord(voxel,
+                                                  [&](std::uint32_t i) { flags[i] = flagOf(Verdict::undecided); });
+  const std::size_t all = voxels.size();
+  const std::uint64_t budget = rule.node_pairs;
+  std::uint64_t spent = 0;
+  std::size_t passed = 0;
+  for (const std::uint64_t deepest : rule.passes()) {
+    rule.deepest = deepest;
+    std::vector<std::uint32_t> left;
+    const std::vector<VoxelAnswer> answers = follow(course, rule, meetings, voxels, progress);
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+      course.result.work += answers[i].work;
+      spent += answers[i].work.node_pairs;
+      if (answers[i].undecided) left.push_back(voxels[i]);
+    }
+    if (budget != StopRule::kNever) rule.node_pairs = budget - std::min(budget, spent);
+    voxels = std::move(left);
+    progress.skipTo(++passed * all);
+  }
+  course.result.colliding =
+      static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flagOf(Verdict::colliding)));
+  course.result.undecided =
+      static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flagOf(Verdict::undecided)));
+}
+
 } // namespace
 
 TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
@@ -406,6 +493,7 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   TrajectoryResult result;
   allocate(result, request, scan.hierarchy.view().count, model_poses.size());
   if (!asksForAnything(request) || scan.hierarchy.empty() || model.empty() || model_poses.empty()) return result;
+  StopRule rule(request.accuracy);
   Course course(scan, model, model_poses, request, result);
   if (request.swept) checkTolerance(course);
   if (!course.inFloatRange()) return brute_force::collideAlong(scan, model, model_poses, request);
@@ -413,25 +501,22 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
     course.pose_best.resize(course.path.poses.size());
     course.pose_counts.resize(course.path.poses.size());
   }
-  const std::vector<std::vector<std::uint32_t>> meetings = course.meetings();
+  const std::vector<std::vector<std::uint32_t>> meetings = course.meetings(rule);
   std::vector<std::uint32_t> voxels;
   for (std::uint32_t v = 0; v < meetings.size(); ++v)
     if (!meetings[v].empty()) voxels.push_back(v);
 
-  std::vector<VoxelAnswer> answers(voxels.size());
-  Progress progress(request.progress, voxels.size());
-  parallelFor(voxels.size(), threadCount(request.threads), [&](std::size_t i) {
-    if (progress.stopped()) return;
-    answers[i] = HWY_DYNAMIC_DISPATCH(walkVoxelOnTarget)(course, voxels[i], meetings[voxels[i]]);
-    progress.step();
-  });
-  if (progress.stopped()) throw Cancelled();
-
+  Progress progress(request.progress, voxels.size() * (rule.mayStop() ? rule.passes().size() : 1));
   double first_contact = std::numeric_limits<double>::infinity();
-  for (const VoxelAnswer& answer : answers) {
-    result.work += answer.work;
-    result.colliding += answer.colliding;
-    first_contact = std::min(first_contact, answer.first_contact);
+  if (rule.mayStop()) {
+    followUntilStopped(course, rule, meetings, std::move(voxels), progress);
+  }
+  else {
+    for (const VoxelAnswer& answer : follow(course, rule, meetings, voxels, progress)) {
+      result.work += answer.work;
+      result.colliding += answer.colliding;
+      first_contact = std::min(first_contact, answer.first_contact);
+    }
   }
   if (request.swept && std::isfinite(first_contact)) result.first_contact = instantOf(course.path, first_contact);
   if (request.pose_summaries) summarize(course, result);

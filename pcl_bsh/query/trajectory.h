@@ -28,7 +28,12 @@
 namespace pcl_bsh {
 
 struct TrajectoryRequest {
-  double clearance = 0.0;      ///< finite, >= 0; inclusive
+  double clearance = 0.0; ///< finite, >= 0; inclusive
+  /// A tolerance: pairs at distances in (clearance, clearance + tolerance] may count or not, at each pose anew; of
+  /// points that nothing else comes near to, the distance is within the tolerance of the smallest. Those that stop
+  /// early (level, pairs, time) decide flags only, and leave the others undecided. Swept motion has a tolerance of its
+  /// own: exact only.
+  Accuracy accuracy;
   bool flags = true;           ///< per scan point: does it collide at any pose?
   bool distances = false;      ///< per colliding scan point: the smallest distance over all poses
   bool first_poses = false;    ///< per colliding scan point: the first pose at which it collides
@@ -60,11 +65,12 @@ struct FirstContact {
 /// When swept, a distance is within half the tolerance of the smallest during the motion, and a pose's number k stands
 /// for the motion from pose k to pose k + 1.
 struct TrajectoryResult {
-  std::vector<std::uint8_t> flags;          ///< 1 = collides
-  std::size_t colliding = 0;                ///< points that collide; 0 when nothing is asked for
-  std::vector<float> distance;              ///< less the radii; the float nearest to the distance in double; NaN: free
-  std::vector<std::int32_t> first_pose;     ///< -1 where free
-  std::vector<std::int32_t> closest_pose;   ///< -1 where free
+  std::vector<std::uint8_t> flags;        ///< 1 = collides, 2 = undecided, where the accuracy lets the walk stop early
+  std::size_t colliding = 0;              ///< points that collide; 0 when nothing is asked for
+  std::size_t undecided = 0;              ///< points that are
+  std::vector<float> distance;            ///< less the radii; the float nearest to the distance in double; NaN: free
+  std::vector<std::int32_t> first_pose;   ///< -1 where free
+  std::vector<std::int32_t> closest_pose; ///< -1 where free
   std::vector<std::uint32_t> closest_point; ///< with distances or closest_poses: the record of the model that realises
                                             ///< the distance at the closest pose, of several the smallest;
                                             ///< 0xffffffff where free
@@ -81,7 +87,7 @@ public:
 };
 
 /// The model at each of `model_poses` (T_world_model, rigid within 1e-6), against the scan at its pose.
-/// @throws std::invalid_argument naming the value: a clearance, tolerance, pivot or pose that is not what its
+/// @throws std::invalid_argument naming the value: a clearance, accuracy, tolerance, pivot or pose that is not what its
 ///   declaration asks for (a pose by its index); a tolerance too small for the size of the coordinates or the turns
 ///   between poses. Cancelled.
 TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,

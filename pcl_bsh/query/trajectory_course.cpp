@@ -94,7 +94,7 @@ bool Course::near(const Ball& ball, const PathInterval& interval, double& stray)
   return !(enter > leave);
 }
 
-void Course::meet(std::uint32_t node, std::uint32_t lane, std::uint32_t index,
+void Course::meet(std::uint32_t node, std::uint32_t lane, std::uint32_t index, const StopRule& rule,
                   std::vector<std::vector<std::uint32_t>>& meetings) const
 {
   const SphereHierarchy::Storage& storage = scan.hierarchy.storage();
@@ -109,27 +109,27 @@ void Course::meet(std::uint32_t node, std::uint32_t lane, std::uint32_t index,
   const double radius = (is_voxel ? storage.voxels[of.begin[lane]].radius : of.r[lane]) * frame.unit;
   const Ball ball{carried(scan.pose, center), radius * (1.0 + path.skew + 0x1p-40)};
   const PathInterval& interval = path.intervals[index];
-  double stray;
-  if (!near(ball, interval, stray)) return;
+  double stray = 0.0;
+  if (!rule.isOver() && !near(ball, interval, stray)) return;
   if (interval.divided() && stray > (is_voxel ? 0.5 : 1.0) * ball.radius) {
-    meet(node, lane, interval.left, meetings);
-    meet(node, lane, interval.right, meetings);
+    meet(node, lane, interval.left, rule, meetings);
+    meet(node, lane, interval.right, rule, meetings);
   }
   else if (is_voxel) {
     meetings[of.begin[lane]].push_back(index);
   }
   else {
     const std::uint32_t below = of.child[lane];
-    for (std::uint32_t i = 0; i < storage.top[below].count; ++i) meet(below, i, index, meetings);
+    for (std::uint32_t i = 0; i < storage.top[below].count; ++i) meet(below, i, index, rule, meetings);
   }
 }
 
-std::vector<std::vector<std::uint32_t>> Course::meetings() const
+std::vector<std::vector<std::uint32_t>> Course::meetings(const StopRule& rule) const
 {
   const SphereHierarchy::Storage& storage = scan.hierarchy.storage();
   std::vector<std::vector<std::uint32_t>> meetings(storage.voxel_count);
   if (storage.size == 0 || boxes.storage.size == 0 || path.poses.empty()) return meetings;
-  for (std::uint32_t lane = 0; lane < storage.top[0].count; ++lane) meet(0, lane, 0, meetings);
+  for (std::uint32_t lane = 0; lane < storage.top[0].count; ++lane) meet(0, lane, 0, rule, meetings);
   return meetings;
 }
 

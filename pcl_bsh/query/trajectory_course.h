@@ -7,6 +7,7 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/box_tree.h>
 #include <pcl_bsh/query/pose_path.h>
+#include <pcl_bsh/query/stop_rule.h>
 #include <pcl_bsh/query/trajectory.h>
 
 #include <mutex>
@@ -45,8 +46,9 @@ struct Course {
   /// Whether floats can hold the places and lengths that a walk compares. Where not, every pair is looked at.
   bool inFloatRange() const;
 
-  /// The intervals of the path during which each voxel may be near the model, in their order.
-  std::vector<std::vector<std::uint32_t>> meetings() const;
+  /// The intervals of the path during which each voxel may be near the model, in their order. Once the rule's time is
+  /// over, whatever was not looked at may be.
+  std::vector<std::vector<std::uint32_t>> meetings(const StopRule& rule) const;
 
   mutable std::mutex mutex; ///< of the two below
   mutable std::vector<PoseBest> pose_best;
@@ -59,7 +61,7 @@ private:
   };
 
   bool near(const Ball& ball, const PathInterval& interval, double& stray) const;
-  void meet(std::uint32_t node, std::uint32_t lane, std::uint32_t interval,
+  void meet(std::uint32_t node, std::uint32_t lane, std::uint32_t interval, const StopRule& rule,
             std::vector<std::vector<std::uint32_t>>& meetings) const;
 };
 
@@ -67,6 +69,7 @@ private:
 struct VoxelAnswer {
   Work work;
   std::size_t colliding = 0;
+  bool undecided = false;                                         ///< whether points were left so
   double first_contact = std::numeric_limits<double>::infinity(); ///< swept: pose of the path, and fraction of the way
 };
 

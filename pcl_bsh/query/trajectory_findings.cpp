@@ -5,11 +5,31 @@
 #include <bit>
 
 namespace pcl_bsh {
+namespace {
+
+/// Visits the leaves' points whose bits are set: each by its place, and where the places end for which it answers.
+template <class Visit>
+void eachPoint(const Voxel& voxel, const std::vector<std::uint16_t>& bits_of, const Visit& visit)
+{
+  for (std::uint32_t n = 0; n < voxel.nodes.size(); ++n) {
+    const Node& node = voxel.nodes[n];
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+      if (!node.isLeaf(lane)) continue;
+      for (std::uint32_t bits = bits_of[n * kNodeChildren + lane]; bits != 0; bits &= bits - 1) {
+        const std::uint32_t i = node.begin[lane] + static_cast<std::uint32_t>(std::countr_zero(bits));
+        visit(i, node.isCoincident(lane) ? node.begin[lane + 1] : i + 1);
+      }
+    }
+  }
+}
+
+} // namespace
 
 void Findings::begin(const Voxel& voxel)
 {
   hit.assign(voxel.nodes.size() * kNodeChildren, 0);
   settled.assign(voxel.nodes.size() * kNodeChildren, 0);
+  undecided.assign(voxel.nodes.size() * kNodeChildren, 0);
   if (course_.first) first.assign(voxel.count, std::numeric_limits<double>::infinity());
   if (course_.closest) best.assign(voxel.count, Best{});
 }
@@ -27,31 +47,47 @@ VoxelAnswer Findings::finish(const Voxel& voxel)
   const TrajectoryRequest& request = course_.request;
   TrajectoryResult& result = course_.result;
   VoxelAnswer answer;
-  for (std::uint32_t n = 0; n < voxel.nodes.size(); ++n) {
-    const Node& node = voxel.nodes[n];
-    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
-      if (!node.isLeaf(lane)) continue;
-      for (std::uint32_t bits = hit[n * kNodeChildren + lane]; bits != 0; bits &= bits - 1) {
-        const std::uint32_t i = node.begin[lane] + static_cast<std::uint32_t>(std::countr_zero(bits));
-        float distance = 0.0f;
-        if (course_.first) answer.first_contact = std::min(answer.first_contact, first[i]);
-        if (request.distances) distance = distanceOf(voxel.records()[i], best[i]);
-        // A point that stands for others of its place answers for them.
-        const std::uint32_t end = node.isCoincident(lane) ? node.begin[lane + 1] : i + 1;
-        for (std::uint32_t p = i; p < end; ++p) {
-          const std::uint32_t record = voxel.records()[p];
-          ++answer.colliding;
-          if (request.flags) result.flags[record] = 1;
-          if (request.first_poses) result.first_pose[record] = givenPose(first[i]);
-          if (request.distances) result.distance[record] = distance;
-          if (request.closest_poses) result.closest_pose[record] = givenPose(best[i].time);
-          if (course_.closest) result.closest_point[record] = best[i].record;
-        }
-      }
+  eachPoint(voxel, hit, [&](std::uint32_t i, std::uint32_t end) {
+    float distance = 0.0f;
+    if (course_.first) answer.first_contact = std::min(answer.first_contact, first[i]);
+    if (request.distances) distance = distanceOf(voxel.records()[i], best[i]);
+    for (std::uint32_t p = i; p < end; ++p) {
+      const std::uint32_t record = voxel.records()[p];
+      ++answer.colliding;
+      if (request.flags) result.flags[record] = 1;
+      if (request.first_poses) result.first_pose[record] = givenPose(first[i]);
+      if (request.distances) result.distance[record] = distance;
+      if (request.closest_poses) result.closest_pose[record] = givenPose(best[i].time);
+      if (course_.closest) result.closest_point[record] = best[i].record;
     }
-  }
+  });
   if (request.pose_summaries) mergePoses();
   return answer;
+}
+
+bool Findings::decide(const Voxel& voxel, bool unsure)
+{
+  const auto mark = [this](std::uint32_t begin, std::uint32_t end, Verdict verdict) {
+    std::fill(verdicts_.begin() + begin, verdicts_.begin() + end, verdict);
+  };
+  verdicts_.assign(voxel.count, unsure ? Verdict::undecided : Verdict::free);
+  for (std::uint32_t n = 0; n < voxel.nodes.size(); ++n) {
+    const Node& node = voxel.nodes[n];
+    for (std::uint32_t lane = 0; lane < node.count; ++lane)
+      if (!node.isLeaf(lane) && undecided[n * kNodeChildren + lane] != 0)
+        mark(node.begin[lane], node.begin[lane + 1], Verdict::undecided);
+  }
+  eachPoint(voxel, undecided, [&](std::uint32_t begin, std::uint32_t end) { mark(begin, end, Verdict::undecided); });
+  eachPoint(voxel, hit, [&](std::uint32_t begin, std::uint32_t end) { mark(begin, end, Verdict::colliding); });
+
+  bool left = false;
+  for (std::uint32_t p = 0; p < voxel.count; ++p) {
+    std::uint8_t& flag = course_.result.flags[voxel.records()[p]];
+    if (flag != flagOf(Verdict::undecided)) continue; // as an earlier pass found
+    flag = flagOf(verdicts_[p]);
+    left = left || verdicts_[p] == Verdict::undecided;
+  }
+  return left;
 }
 
 void Findings::mergePoses() const

@@ -32,7 +32,12 @@ public:
   /// Writes to the course's result. @return colliding points, and the first contact.
   VoxelAnswer finish(const Voxel& voxel);
 
+  /// Where flags start as undecided: writes those of the voxel that are decided now.
+  /// @param unsure nothing but a hit is. @return whether points were left undecided.
+  bool decide(const Voxel& voxel, bool unsure);
+
   std::vector<std::uint16_t> hit, settled; ///< per slot: bits of the leaf's points
+  std::vector<std::uint16_t> undecided;    ///< per slot: likewise, of a child that is no leaf any bit stands for all
   std::vector<double> first;               ///< per point: when it collides first, if that is asked for
   std::vector<Best> best;                  ///< per point, if that is asked for
   Work work;
@@ -64,6 +69,7 @@ private:
   std::vector<PoseBest> pose_best_;
   std::vector<float> pose_limit_;
   std::vector<std::size_t> pose_counts_;
+  std::vector<Verdict> verdicts_; // per point
 };
 
 } // namespace pcl_bsh

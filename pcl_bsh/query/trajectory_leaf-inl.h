@@ -36,12 +36,13 @@ struct LeafVisit {
 /// Compares leaves of the scan with what they may meet of the model.
 class LeafWalk {
 public:
-  LeafWalk(const Course& course, const VoxelSight& sight, ModelWalk& model, Findings& findings)
+  LeafWalk(const Course& course, const VoxelSight& sight, ModelWalk& model, Watch& watch, Findings& findings)
   : course_(course),
     path_(course.path),
     tree_(course.boxes),
     sight_(sight),
     model_(model),
+    watch_(watch),
     findings_(findings)
   {
   }
@@ -82,7 +83,7 @@ public:
     ++visit_;
     for (const Candidate& candidate : candidates) {
       stack_.push_back(candidate);
-      while (!stack_.empty() && leaf.open != 0) {
+      while (!stack_.empty() && leaf.open != 0 && !watch_.isOver()) {
         const Candidate next = stack_.back();
         stack_.pop_back();
         compareBox(leaf, next, span);
@@ -110,6 +111,11 @@ private:
     const std::uint32_t lanes = leaf.open & segmentsInBox(leaf.ways, low, high, span.steps, &stays);
     if (lanes == 0) return;
     if (!candidate.isLeaf()) {
+      if (!model_.mayOpen(candidate)) {
+        std::uint16_t& undecided = findings_.undecided[leaf.slot];
+        undecided = static_cast<std::uint16_t>(undecided | lanes);
+        return;
+      }
       Candidate child = model_.below(candidate);
       for (std::uint32_t bits = model_.near(leaf.around, child, span.steps); bits != 0; bits &= bits - 1) {
         child.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
@@ -145,7 +151,7 @@ private:
         }
       }
     }
-    for (std::uint32_t k = ranges.begin; k < ranges.end && (lanes & leaf.open) != 0; ++k) {
+    for (std::uint32_t k = ranges.begin; k < ranges.end && (lanes & leaf.open) != 0 && !watch_.isOver(); ++k) {
       std::uint32_t here = ranges.at(k, lanes & leaf.open);
       if (course_.first && !course_.everything())
         for (std::uint32_t bits = here; bits != 0; bits &= bits - 1) {
@@ -390,6 +396,7 @@ private:
   const BoxTree& tree_;
   const VoxelSight& sight_;
   ModelWalk& model_;
+  Watch& watch_;
   Findings& findings_;
   struct Places {
     std::uint64_t visit = 0;

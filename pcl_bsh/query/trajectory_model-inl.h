@@ -8,6 +8,7 @@
 #define PCL_BSH_QUERY_TRAJECTORY_MODEL_INL_H_
 #endif
 
+#include <pcl_bsh/query/stop_rule.h>
 #include <pcl_bsh/query/trajectory_sight-inl.h>
 
 #include <vector>
@@ -23,6 +24,7 @@ struct Candidate {
   std::uint32_t voxel;
   std::uint32_t node;
   std::uint32_t lane;
+  std::uint32_t level; ///< of `node` below its voxel, from 1; 0: above
 
   const BoxNode& box() const { return boxes[node]; }
   bool isLeaf() const { return voxel != kAboveVoxels && nodes[node].isLeaf(lane); }
@@ -38,19 +40,29 @@ struct Candidate {
 /// Opens the model's boxes.
 class ModelWalk {
 public:
-  ModelWalk(const BoxTree& tree, Work& work) : tree_(tree), work_(work) {}
+  ModelWalk(const BoxTree& tree, const StopRule& rule, Work& work) : tree_(tree), rule_(rule), work_(work) {}
 
   /// The node above all boxes, as its first child.
-  Candidate root() const { return {tree_.top().data(), tree_.storage.top.data(), kAboveVoxels, 0, 0}; }
+  Candidate root() const { return {tree_.top().data(), tree_.storage.top.data(), kAboveVoxels, 0, 0, 0}; }
+
+  /// Whether a candidate that is not a leaf may be opened: not below the level where to stop, nor without the time to
+  /// build a voxel.
+  bool mayOpen(const Candidate& c) const
+  {
+    if (!rule_.mayStop()) return true;
+    if (c.voxel != kAboveVoxels) return c.level < rule_.deepest;
+    if (!c.nodes[c.node].isLeaf(c.lane)) return true;
+    return rule_.deepest > 0 && rule_.leavesTimeToBuild(tree_.storage.pointsToBuild(c.nodes[c.node].begin[c.lane]));
+  }
 
   /// The node below a candidate that is not a leaf, as its first child.
   Candidate below(const Candidate& c)
   {
     if (c.voxel != kAboveVoxels || !c.nodes[c.node].isLeaf(c.lane))
-      return {c.boxes, c.nodes, c.voxel, c.nodes[c.node].child[c.lane], 0};
+      return {c.boxes, c.nodes, c.voxel, c.nodes[c.node].child[c.lane], 0, c.voxel == kAboveVoxels ? 0 : c.level + 1};
     const std::uint32_t voxel = c.nodes[c.node].begin[c.lane];
     const std::vector<BoxNode>& boxes = tree_.voxel(voxel, work_);
-    return {boxes.data(), tree_.storage.voxels[voxel].nodes.data(), voxel, 0, 0};
+    return {boxes.data(), tree_.storage.voxels[voxel].nodes.data(), voxel, 0, 0, 1};
   }
 
   /// Bits of the children of a node that a thick segment may meet.
@@ -66,7 +78,7 @@ public:
   {
     for (std::uint32_t bits = near(segment, node, span.steps); bits != 0; bits &= bits - 1) {
       node.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (node.isLeaf() || node.size() < size)
+      if (node.isLeaf() || node.size() < size || !mayOpen(node))
         into.push_back(node);
       else
         collect(span, segment, size, below(node), into);
@@ -75,6 +87,7 @@ public:
 
 private:
   const BoxTree& tree_;
+  const StopRule& rule_;
   Work& work_;
 };
 

@@ -8,6 +8,7 @@
 #define PCL_BSH_QUERY_TRAJECTORY_SIGHT_INL_H_
 #endif
 
+#include <pcl_bsh/query/acceptance.h>
 #include <pcl_bsh/query/leaf_pair-inl.h>
 #include <pcl_bsh/query/trajectory_course.h>
 #include <pcl_bsh/simd/segment_lanes-inl.h>
@@ -55,7 +56,10 @@ public:
     placing_ = course.error(origin) + (1.0 + skew) * (slack + tree.voxel_slack);
     far = (radius + course.reach) * (1.0 + skew) + placing_ + tree.voxel_reach;
     error = placing_ + 4.001 * kFloatUnit * 1.7321 * (far + 1.7321 * (1.0 + skew) * radius) + 0x1p-60;
-    band = skewedBand(course.request.clearance, error, skew);
+    const Acceptance acceptance(course.request.clearance, course.request.accuracy);
+    const auto squared = static_cast<float>(acceptance.clearance * acceptance.clearance);
+    band = acceptance.proven ? acceptance.provenBand([&](double distance) { return skewedBand(distance, error, skew); })
+                             : DistanceBand{squared, squared};
   }
 
   const Voxel& voxel; ///< sorted at least

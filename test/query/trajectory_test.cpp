@@ -653,6 +653,251 @@ TEST(Trajectory, RefusesWhatMakesNoSense)
   EXPECT_THAT(refusal(poses, swept), HasSubstr("from pose 1 to the next"));
 }
 
+// --- accuracy ---
+
+/// A journey, its hierarchies, and what is true of it.
+struct TrueJourney {
+  TrueJourney(std::uint64_t seed, int max_points, int max_poses)
+  : run(anyJourney(seed, max_points, max_poses)),
+    scan(run.scene.a.view()),
+    model(run.scene.b.view()),
+    truth(within(0.0))
+  {
+  }
+
+  /// By brute force, with so much more clearance.
+  TrajectoryResult within(double more) const
+  {
+    return brute_force::collideAlong({scan, run.scene.pose_a}, model, run.poses,
+                                     everything(std::max(0.0, run.scene.clearance + more)));
+  }
+
+  TrajectoryResult at(const Accuracy& accuracy, TrajectoryRequest request, unsigned threads = 1) const
+  {
+    request.accuracy = accuracy;
+    request.threads = threads;
+    return collideAlong({scan, run.scene.pose_a}, model, run.poses, request);
+  }
+
+  TrajectoryResult flagsAt(const Accuracy& accuracy, unsigned threads = 1) const
+  {
+    return at(accuracy, flagsOnly(run.scene.clearance), threads);
+  }
+
+  Journey run;
+  SphereHierarchy scan, model;
+  TrajectoryResult truth;
+};
+
+/// None wrong, and counted; `before` holds what coarser settings decided, and takes what this one does.
+std::size_t expectNoneWrong(const TrueJourney& journey, const Accuracy& accuracy, std::vector<std::uint8_t>* before)
+{
+  SCOPED_TRACE(journey.run.name + " at " + accuracy.text());
+  const TrajectoryResult result = journey.flagsAt(accuracy);
+  const std::vector<std::uint8_t>& flags = result.flags;
+  EXPECT_EQ(flags.size(), journey.truth.flags.size());
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    EXPECT_TRUE(flags[i] == 2 || flags[i] == journey.truth.flags[i]) << "point " << i;
+    if (before && (*before)[i] != 2) {
+      EXPECT_EQ(flags[i], (*before)[i]) << "point " << i << " was decided";
+    }
+  }
+  EXPECT_EQ(result.colliding, static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1)));
+  EXPECT_EQ(result.undecided, static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 2)));
+  if (before) *before = flags;
+  return result.undecided;
+}
+
+void expectNarrowing(const TrueJourney& journey, const std::vector<Accuracy>& settings, std::size_t& undecided)
+{
+  std::vector<std::uint8_t> flags(journey.truth.flags.size(), 2);
+  for (const Accuracy& accuracy : settings) undecided += expectNoneWrong(journey, accuracy, &flags);
+  EXPECT_EQ(flags, journey.truth.flags) << journey.run.name;
+}
+
+TEST(TrajectoryAccuracy, LevelsAreNeverWrongAndNarrow)
+{
+  std::vector<Accuracy> levels;
+  for (const unsigned level : {0u, 1u, 2u, 3u, 4u, 5u, 100u}) levels.push_back(Accuracy::level(level));
+  std::size_t undecided = 0;
+  for (std::uint64_t seed = 3000; seed < 3080 && !::testing::Test::HasFailure(); ++seed)
+    expectNarrowing(TrueJourney(seed, seed % 4 == 0 ? 600 : 60, 20), levels, undecided);
+  EXPECT_GT(undecided, 2000u) << "hardly anything was ever undecided";
+}
+
+TEST(TrajectoryAccuracy, BudgetsAreNeverWrongAndNarrow)
+{
+  std::vector<Accuracy> budgets = {Accuracy::nodePairs(0)};
+  for (std::uint64_t count = 1; count <= (1u << 20); count *= 4) budgets.push_back(Accuracy::nodePairs(count));
+  budgets.push_back(Accuracy::nodePairs(std::uint64_t{1} << 50));
+  std::size_t undecided = 0;
+  for (std::uint64_t seed = 3100; seed < 3180 && !::testing::Test::HasFailure(); ++seed)
+    expectNarrowing(TrueJourney(seed, seed % 4 == 0 ? 600 : 60, 20), budgets, undecided);
+  EXPECT_GT(undecided, 5000u) << "hardly anything was ever undecided";
+}
+
+TEST(TrajectoryAccuracy, TimesAreNeverWrong)
+{
+  for (std::uint64_t seed = 3200; seed < 3230; ++seed) {
+    const TrueJourney journey(seed, 200, 20);
+    for (const double seconds : {0.0, 1e-6, 1e-5, 1e-4}) expectNoneWrong(journey, Accuracy::time(seconds), nullptr);
+    EXPECT_EQ(expectNoneWrong(journey, Accuracy::time(60), nullptr), 0u);
+  }
+}
+
+TEST(TrajectoryAccuracy, ToleranceErrsOnlyWithinIt)
+{
+  std::size_t earlier = 0;
+  for (std::uint64_t seed = 3300; seed < 3400 && !::testing::Test::HasFailure(); ++seed) {
+    const TrueJourney journey(seed, 60, 20);
+    const TrajectoryResult& truth = journey.truth;
+    for (const double part : {0.0, 1e-9, 0.01, 0.3, 2.0}) {
+      const double length = part * (journey.run.scene.clearance + 1e-3);
+      SCOPED_TRACE(journey.run.name + " within " + std::to_string(length));
+      const TrajectoryResult most = journey.within(length);
+      const TrajectoryResult flags = journey.flagsAt(Accuracy::tolerance(length));
+      const TrajectoryResult all = journey.at(Accuracy::tolerance(length), everything(journey.run.scene.clearance));
+      EXPECT_EQ(all.undecided, 0u);
+      for (std::size_t i = 0; i < truth.flags.size(); ++i) {
+        for (const TrajectoryResult* result : {&flags, &all}) {
+          ASSERT_LE(truth.flags[i], result->flags[i]) << i;
+          ASSERT_LE(result->flags[i], most.flags[i]) << i;
+        }
+        earlier += flags.flags[i] != truth.flags[i];
+        if (all.flags[i] == 0) continue;
+        ASSERT_GE(all.first_pose[i], most.first_pose[i]);
+        if (truth.flags[i] != 0) {
+          ASSERT_LE(all.first_pose[i], truth.first_pose[i]);
+          ASSERT_EQ(all.distance[i], truth.distance[i]) << i;
+          ASSERT_EQ(all.closest_pose[i], truth.closest_pose[i]) << i;
+        }
+        else {
+          ASSERT_GE(all.distance[i], most.distance[i]);
+          ASSERT_LE(static_cast<double>(all.distance[i]),
+                    (journey.run.scene.clearance + length) * (1 + 1e-6)); // floats
+        }
+      }
+      for (std::size_t k = 0; k < truth.poses.size(); ++k) {
+        ASSERT_LE(truth.poses[k].colliding_points, all.poses[k].colliding_points);
+        ASSERT_LE(all.poses[k].colliding_points, most.poses[k].colliding_points);
+        if (truth.poses[k].colliding) {
+          ASSERT_EQ(all.poses[k].distance, truth.poses[k].distance);
+        }
+      }
+    }
+  }
+  EXPECT_GT(earlier, 0u) << "no tolerance ever made a difference: nothing was tested";
+}
+
+TEST(TrajectoryAccuracy, FloatAloneErrsOnlyNearTheClearance)
+{
+  for (std::uint64_t seed = 3400; seed < 3460; ++seed) {
+    const TrueJourney journey(seed, 60, 20);
+    const double near = 1e-5 * (journey.run.scene.clearance + 1500); // scales go up to 2^10
+    const TrajectoryResult most = journey.within(near), least = journey.within(-near);
+    const TrajectoryResult result = journey.flagsAt(Accuracy::floatOnly());
+    for (std::size_t i = 0; i < result.flags.size(); ++i) {
+      EXPECT_LE(result.flags[i], most.flags[i]);
+      if (journey.run.scene.clearance > near) {
+        EXPECT_GE(result.flags[i], least.flags[i]);
+      }
+    }
+  }
+}
+
+TEST(TrajectoryAccuracy, SameForAnyNumberOfThreads)
+{
+  for (std::uint64_t seed = 3500; seed < 3510; ++seed) {
+    const TrueJourney journey(seed, 600, 20);
+    for (const char* setting : {"level=1", "level=2", "pairs=2000", "float", "tolerance=0.1"}) {
+      const Accuracy accuracy = Accuracy::parse(setting);
+      EXPECT_EQ(journey.flagsAt(accuracy, 4).flags, journey.flagsAt(accuracy).flags) << setting;
+    }
+  }
+}
+
+// Noise-free: what a setting saves.
+TEST(TrajectoryAccuracy, LessAccuracyIsLessWork)
+{
+  const Corridor corridor;
+  HierarchyOptions options;
+  options.voxel_edge = 1.0;
+  const Poses poses = alongCorridor(2, 58, 200);
+  const SphereHierarchy untouched(corridor.walls.view(), options), unbuilt(corridor.cart.view());
+  TrajectoryRequest request = flagsOnly(0.1);
+  request.accuracy = Accuracy::level(0);
+  const TrajectoryResult coarsest = collideAlong({untouched}, unbuilt, poses, request);
+  EXPECT_EQ(coarsest.work.voxels_built, 0u);
+  EXPECT_EQ(untouched.statistics().voxels_built + unbuilt.statistics().voxels_built, 0u);
+  EXPECT_GT(coarsest.undecided, 0u);
+  EXPECT_LT(coarsest.undecided, coarsest.flags.size()) << "some voxels are out of reach";
+
+  const SphereHierarchy scan(corridor.walls.view(), options), model(corridor.cart.view());
+  const auto resultAt = [&](const Accuracy& accuracy) {
+    request.accuracy = accuracy;
+    return collideAlong({scan}, model, poses, request);
+  };
+  const auto cost = [](const TrajectoryResult& result) { return result.work.node_pairs + 20 * result.work.leaf_pairs; };
+  const TrajectoryResult exact = resultAt(Accuracy::exact());
+  EXPECT_LT(10 * cost(resultAt(Accuracy::tolerance(0.01))), 11 * cost(exact)); // other nodes are settled whole
+  EXPECT_LT(cost(resultAt(Accuracy::tolerance(0.2))), cost(exact));
+  EXPECT_LT(4 * cost(resultAt(Accuracy::level(1))), cost(exact));
+  EXPECT_LE(cost(resultAt(Accuracy::level(1))), cost(resultAt(Accuracy::level(2))));
+  for (const std::uint64_t budget : {0u, 1000u, 10000u}) {
+    const TrajectoryResult spent = resultAt(Accuracy::nodePairs(budget));
+    EXPECT_LE(spent.work.node_pairs, budget + 1000);
+    EXPECT_LE(spent.work.leaf_pairs, budget);
+  }
+  EXPECT_EQ(resultAt(Accuracy::exact()).flags, exact.flags);
+}
+
+TEST(TrajectoryAccuracy, ReportsProgressThroughItsPasses)
+{
+  const Corridor corridor;
+  const SphereHierarchy scan(corridor.walls.view()), model(corridor.cart.view());
+  TrajectoryRequest request = flagsOnly(0.1);
+  request.accuracy = Accuracy::nodePairs(1u << 30);
+  std::vector<double> fractions;
+  request.progress = [&](double fraction) {
+    fractions.push_back(fraction);
+    return true;
+  };
+  collideAlong({scan}, model, alongCorridor(2, 58, 100), request);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_GT(fractions.back(), 0.66);
+  EXPECT_LE(fractions.back(), 1.0);
+  request.progress = [](double) { return false; };
+  EXPECT_THROW(collideAlong({scan}, model, alongCorridor(2, 58, 100), request), Cancelled);
+}
+
+TEST(TrajectoryAccuracy, RefusesWhatItCannotTell)
+{
+  using testing::AllOf;
+  using testing::HasSubstr;
+  const Poses poses(2, identity);
+  TrajectoryRequest request = flagsOnly(0.1);
+  for (const char* setting : {"level=2", "pairs=10", "time=1"}) {
+    request.accuracy = Accuracy::parse(setting);
+    EXPECT_EQ(refusal(poses, request), "nothing");
+    for (bool TrajectoryRequest::*more : {&TrajectoryRequest::distances, &TrajectoryRequest::first_poses,
+                                          &TrajectoryRequest::closest_poses, &TrajectoryRequest::pose_summaries}) {
+      TrajectoryRequest asking = request;
+      asking.*more = true;
+      EXPECT_THAT(refusal(poses, asking), AllOf(HasSubstr("accuracy: " + std::string(setting)),
+                                                HasSubstr("give exact, float or tolerance=LENGTH")));
+    }
+  }
+  for (const char* setting : {"float", "tolerance=0.1", "level=2"}) {
+    request = flagsOnly(0.1);
+    request.swept = 0.1;
+    request.accuracy = Accuracy::parse(setting);
+    EXPECT_THAT(refusal(poses, request), HasSubstr("swept motion has a tolerance of its own: give exact"));
+  }
+  request = flagsOnly(0.1);
+  request.accuracy = Accuracy::tolerance(-1);
+  EXPECT_THAT(refusal(poses, request), HasSubstr("accuracy: tolerance=-1: give a finite number >= 0"));
+}
+
 TEST(TrajectorySwept, CatchesAThinPoleBetweenPoses)
 {
   std::vector<Point3> pole;
