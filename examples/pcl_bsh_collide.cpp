@@ -161,7 +161,8 @@ pcl::PCLPointCloud2 marked(const fs::path& path, const pcl::PCLPointCloud2& clou
 /// What the output gets beside all the input had.
 std::vector<NewField> newFields(const Options& options, const TrajectoryResult& found)
 {
-  return options.moves() ? fieldsOf(found) : std::vector<NewField>{{collision_field_name, &found.flags}};
+  const bool all = options.moves() && !options.request.accuracy.stopsEarly();
+  return all ? fieldsOf(found) : std::vector<NewField>{{collision_field_name, &found.flags}};
 }
 
 /// The input's points that are wanted, as one row.
@@ -191,12 +192,25 @@ void write(const Options& options, const Scan& input, const TrajectoryResult& fo
   seconds += step.done(std::to_string(std::size_t{cloud.width} * cloud.height) + " points");
 }
 
+/// As sure as it is.
+std::string distanceText(const cli::CollisionReport& report)
+{
+  std::ostringstream text;
+  text << report.closest.distance;
+  if (!report.accuracy.isProven()) return text.str() + " without proof";
+  if (report.accuracy.isExact()) return text.str();
+  if (report.path) return text.str() + " within the tolerance";
+  text << " or less, certainly in [" << report.closest.interval.lower << ", " << report.closest.interval.upper << "]";
+  return text.str();
+}
+
 void summarise(const Options& options, const cli::CollisionReport& report, const std::vector<Clash>& clashes)
 {
   for (const std::string& warning : report.warnings) std::cerr << program << ": warning: " << warning << '\n';
   std::cout << report.colliding << " of " << report.input.points << " points collide";
+  if (report.accuracy.stopsEarly()) std::cout << ", " << report.undecided << " are undecided";
   if (report.closest.pair) {
-    std::cout << "; smallest distance " << report.closest.distance << ", between point " << report.closest.pair->a
+    std::cout << "; smallest distance " << distanceText(report) << ", between point " << report.closest.pair->a
               << " of the input and point " << report.closest.pair->b << " of the obstacle";
   }
   if (report.path) std::cout << "; " << report.path->poses << " poses";
@@ -223,6 +237,7 @@ TrajectoryResult atPose(const Options& options, const SphereHierarchy& a, const 
   report.seconds.query = query.done(std::to_string(flags.colliding_a) + " colliding");
   report.work = flags.work;
   report.work += report.closest.work;
+  report.undecided = flags.undecided_a;
   TrajectoryResult found;
   found.flags = std::move(flags.a);
   found.colliding = flags.colliding_a;
@@ -248,9 +263,11 @@ TrajectoryResult alongPath(const Options& options, const std::vector<Eigen::Isom
   cli::Step query("Following " + std::to_string(poses.size()) + " poses");
   TrajectoryRequest request;
   request.clearance = options.request.clearance;
-  request.distances = request.first_poses = request.closest_poses = true;
+  request.accuracy = options.request.accuracy;
+  const bool all = !request.accuracy.stopsEarly(); // that leaves times and distances open
+  request.distances = request.first_poses = request.closest_poses = all;
   request.swept = options.swept;
-  request.pose_summaries = !options.swept; // swept motion is of what lies between poses
+  request.pose_summaries = all && !options.swept; // swept motion is of what lies between poses
   request.threads = options.request.threads;
   request.progress = [&](double fraction) {
     query.share(fraction);
@@ -259,6 +276,7 @@ TrajectoryResult alongPath(const Options& options, const std::vector<Eigen::Isom
   TrajectoryResult found = collideAlong({a}, b, poses, request);
   report.seconds.query = query.done(std::to_string(found.colliding) + " colliding");
   report.work = found.work;
+  report.undecided = found.undecided;
   report.closest = closestOf(found);
   if (options.moves()) report.path = cli::PathReport{poses.size(), options.swept, found.poses, found.first_contact};
   return found;
@@ -327,6 +345,7 @@ int collide(const Options& options)
   const std::vector<Clash> earlier = options.previous ? cli::readClashes(*options.previous) : std::vector<Clash>();
   cli::CollisionReport report;
   report.clearance = options.request.clearance;
+  report.accuracy = options.request.accuracy;
 
   const Scan input = load(options.input, report.seconds.load);
   if (options.keep == Keep::flagged) marked(options.input, emptyLike(input.cloud), newFields(options, {})); // fails now

@@ -56,9 +56,6 @@ TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& 
   if (trajectory_ && trajectory_->empty()) {
     throw std::invalid_argument("trajectory has no pose: give one at least, or call setPose()");
   }
-  if (!accuracy_.isExact()) {
-    throw std::invalid_argument("accuracy: " + accuracy_.text() + ": answers along a trajectory are exact: give exact");
-  }
   const SphereHierarchy& obstacle = obstacleHierarchy();
   HierarchyOptions options;
   options.threads = threads_;
@@ -69,11 +66,12 @@ TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& 
 
   request.clearance = clearance_;
   request.threads = threads_;
+  request.accuracy = accuracy_;
   if (swept_ != 0.0) request.swept = swept_;
   TrajectoryResult result =
       collideAlong({hierarchy}, obstacle, trajectory_ ? *trajectory_ : std::vector{pose_}, request);
   work_ = result.work;
-  undecided_ = 0;
+  undecided_ = result.undecided;
   return result;
 }
 

@@ -69,7 +69,7 @@ public:
   /// or colliding that is not, within the tolerance if one was given. What an early stop leaves undecided is never kept
   /// as free: it counts as colliding wherever points are kept or removed, and its flag is 2. A time is that of the
   /// query alone, after both clouds are sorted into voxels. Its number is finite and >= 0, or filtering throws; so it
-  /// does for any accuracy but exact along a trajectory.
+  /// does for what TrajectoryRequest::accuracy says that a trajectory cannot tell.
   void setAccuracy(const Accuracy& accuracy) { accuracy_ = accuracy; }
   const Accuracy& getAccuracy() const { return accuracy_; }
 

@@ -54,7 +54,7 @@ struct CollideOptions {
 };
 
 inline constexpr auto collide_footer =
-    R"(Point p of INPUT and q of OBSTACLE collide iff |p - POSE q| <= D, decided exactly.
+    R"(Point p of INPUT and q of OBSTACLE collide iff |p - POSE q| <= D, decided exactly, or as --accuracy says.
 Reads .pcd .ply .obj .off .xyz .txt, writes all of these but .off.
 Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
@@ -74,6 +74,16 @@ Number parseOption(const std::string& option, const std::string& text, const cha
   }
 }
 
+inline Accuracy parseAccuracy(const std::string& text)
+{
+  try {
+    return Accuracy::parse(text);
+  }
+  catch (const std::invalid_argument& error) {
+    throw UsageError(std::string("--") + error.what());
+  }
+}
+
 inline Keep parseKeep(const std::string& text)
 {
   if (text == "flagged") return Keep::flagged;
@@ -85,8 +95,8 @@ inline Keep parseKeep(const std::string& text)
 /// The options, checked one by one; none when only help was asked for.
 inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
 {
-  std::string input, obstacle, output, clearance, pose, report, cluster_distance, previous, keep = "flagged",
-                                                                                            threads = "0";
+  std::string input, obstacle, output, clearance, pose, report, cluster_distance, previous;
+  std::string keep = "flagged", threads = "0", accuracy = "exact";
   std::vector<std::string> clashes;
   PathOptions path;
   CLI::App app("Flags, keeps or removes the points of a cloud that collide with an obstacle.", collide_program);
@@ -107,9 +117,16 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   path.addTo(app);
   app.add_option("--keep", keep,
                  "flagged: all points, with a field 'collision' of 0 or 1 (default)\n"
-                 "colliding: only these\n"
+                 "colliding: only these, and those that are undecided\n"
                  "free: only finite points that do not collide")
       ->type_name("WHICH");
+  app.add_option("--accuracy", accuracy,
+                 "what may be given up for time: exact (default); float: without proof;\n"
+                 "tolerance=LENGTH: pairs up to that much beyond D may count; level=N:\n"
+                 "spheres are opened so deep; pairs=N or time=SECONDS: each query stops\n"
+                 "there. What is then not known is undecided: 2 in the field 'collision';\n"
+                 "along a path, level, pairs and time tell no distances and no poses")
+      ->type_name("HOW");
   app.add_option("--threads", threads, "0: all of the machine's (default); any number gives the same result")
       ->type_name("N");
   app.add_option("--report", report, "JSON file for what was found and what it cost")->type_name("FILE");
@@ -143,6 +160,7 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   options.keep = parseKeep(keep);
   options.request.clearance = parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
   options.request.threads = parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
+  options.request.accuracy = parseAccuracy(accuracy);
   path.requireSense(pose);
   if (!pose.empty()) options.pose = parsePose("--pose", pose);
   options.trajectory = path.file;
@@ -164,6 +182,10 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
     }
   }
   if (!previous.empty()) options.previous = previous;
+  if (options.request.accuracy.stopsEarly() && !clashes.empty())
+    throw UsageError("--accuracy: " + accuracy + ": clashes need distances: give exact, float or tolerance=LENGTH");
+  if (!options.request.accuracy.isExact() && options.swept)
+    throw UsageError("--accuracy: " + accuracy + ": swept motion has a tolerance of its own: give exact");
   return options;
 }
 

@@ -57,7 +57,9 @@ struct CollisionReport {
   CloudReport input;
   CloudReport obstacle;
   double clearance = 0;
+  Accuracy accuracy;
   std::size_t colliding = 0; ///< points of the input
+  std::size_t undecided = 0; ///< likewise
   DistanceResult closest;    ///< a: the input, b: the obstacle; along a path within the clearance only
   Density density;
   std::optional<PathReport> path;
@@ -100,7 +102,8 @@ inline nlohmann::ordered_json toJson(const PathReport& path)
   return json;
 }
 
-/// `distance` and `closest_pair` are null when a cloud has no finite point, or nothing collides along a path.
+/// `distance` and `closest_pair` are null when a cloud has no finite point, or nothing collides along a path;
+/// `distance_interval` along a path, and each of its ends where it is not known.
 inline nlohmann::ordered_json toJson(const CollisionReport& report)
 {
   nlohmann::ordered_json json;
@@ -108,13 +111,19 @@ inline nlohmann::ordered_json toJson(const CollisionReport& report)
   json["obstacle"] = toJson(report.obstacle);
   json["clearance"] = report.clearance;
   json["colliding"] = report.colliding;
+  json["undecided"] = report.undecided;
   json["distance"] = nullptr;
   json["closest_pair"] = nullptr;
   if (report.closest.pair) {
     json["distance"] = report.closest.distance;
     json["closest_pair"] = {report.closest.pair->a, report.closest.pair->b};
   }
-  json["accuracy"] = report.path && report.path->swept ? "swept" : "exact";
+  json["distance_interval"] = nullptr;
+  if (!report.path) {
+    json["distance_interval"] = {orNull(report.closest.interval.lower), orNull(report.closest.interval.upper)};
+  }
+  json["accuracy"] = report.path && report.path->swept ? "swept" : report.accuracy.text();
+  json["proven"] = report.accuracy.isProven();
   json["density"] = {{"input", toJson(report.density.input)},
                      {"obstacle", toJson(report.density.obstacle)},
                      {"blind", report.density.blind()},

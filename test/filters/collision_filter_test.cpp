@@ -502,9 +502,6 @@ TEST_F(CollisionFilterTest, AccuracyThatMakesNoSenseIsAnError)
     filter_.setAccuracy(Accuracy::tolerance(wrong));
     EXPECT_THAT([&] { filter_.computeFlags(flags); }, refusedWith("accuracy: tolerance="));
   }
-  filter_.setAccuracy(Accuracy::level(1));
-  filter_.setTrajectory({pose_});
-  EXPECT_THAT([&] { filter_.computeFlags(flags); }, refusedWith("accuracy: level=1"));
 }
 
 /// Poses that carry the obstacle through the input.
@@ -557,6 +554,29 @@ TEST_F(CollisionFilterTest, TrajectoryCollidesAtAnyOfItsPoses)
     else
       EXPECT_TRUE(std::isnan(along.distance[i])) << i;
   }
+}
+
+TEST_F(CollisionFilterTest, AccuracyAlongATrajectory)
+{
+  filter_.setTrajectory(somePath(pose_));
+  std::vector<std::uint8_t> exact, flags;
+  filter_.computeFlags(exact);
+  filter_.setAccuracy(Accuracy::level(0));
+  filter_.computeFlags(flags);
+  const auto undecided = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 2));
+  EXPECT_GT(undecided, 0u);
+  EXPECT_EQ(filter_.getUndecidedCount(), undecided);
+  for (std::size_t i = 0; i < flags.size(); ++i) EXPECT_TRUE(flags[i] == 2 || flags[i] == exact[i]) << i;
+  EXPECT_EQ(filtered(), where(flags, false, points_));
+
+  TrajectoryResult along;
+  EXPECT_THAT([&] { filter_.computeTrajectory(along); },
+              refusedWith("accuracy: level=0: decides which points collide"));
+  filter_.setAccuracy(Accuracy::tolerance(0.01));
+  filter_.computeTrajectory(along);
+  EXPECT_EQ(filter_.getUndecidedCount(), 0u);
+  filter_.setSwept(0.01);
+  EXPECT_THAT([&] { filter_.computeFlags(flags); }, refusedWith("accuracy: tolerance=0.01: swept motion"));
 }
 
 TEST_F(CollisionFilterTest, PoseAndTrajectoryReplaceEachOther)

@@ -240,6 +240,115 @@ TEST_F(Collide, ThreadsChangeNothing)
   EXPECT_GT(found["colliding"], 0);
 }
 
+/// Two sheets, one over the other: many voxels, and a distance that a coarse look cannot tell.
+class CollideAccuracy : public Collide {
+protected:
+  CollideAccuracy()
+  {
+    std::string low = "x y z\n", high = "x y z\n";
+    for (int i = 0; i < 6400; ++i) {
+      const std::string at = std::to_string(0.1 * (i % 80)) + ' ' + std::to_string(0.1 * (i / 80)) + ' ';
+      low += at + "0\n";
+      high += at + (i % 80 < 20 ? "0.25\n" : "3\n");
+    }
+    folder.write("low.txt", low);
+    folder.write("high.txt", high);
+    expectDone(job + "{exact.ply} --clearance 0.3 --report {report.json}");
+    exact = report();
+    exact_flags = flags("exact.ply");
+  }
+
+  const std::string job = "{low.txt} {high.txt} ";
+  Json exact;
+  std::vector<int> exact_flags;
+};
+
+TEST_F(CollideAccuracy, IsCertifiedInTheReport)
+{
+  EXPECT_EQ(exact["accuracy"], "exact");
+  EXPECT_EQ(exact["proven"], true);
+  EXPECT_EQ(exact["undecided"], 0);
+  EXPECT_LE(exact["distance_interval"][0], 0.25);
+  EXPECT_GE(exact["distance_interval"][1], 0.25);
+  EXPECT_EQ(std::count(exact_flags.begin(), exact_flags.end(), 1), exact["colliding"]);
+
+  int undecided = 0;
+  for (const std::string setting : {"level=0", "level=1", "level=8", "pairs=100", "time=1e-04", "tolerance=0.1"}) {
+    const Outcome done = collide(job + "{out.ply} --clearance 0.3 --report {report.json} --accuracy " + setting);
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    const Json json = report();
+    EXPECT_EQ(json["accuracy"], setting);
+    EXPECT_EQ(json["proven"], true);
+    EXPECT_LE(json["distance_interval"][0], 0.25) << setting;
+    EXPECT_GE(json["distance_interval"][1], 0.25) << setting;
+    EXPECT_THAT(done.out, HasSubstr("or less, certainly in [")) << setting;
+    const std::vector<int> found = flags("out.ply");
+    const bool tolerant = setting == "tolerance=0.1"; // what lies a little farther may count
+    for (std::size_t i = 0; i < found.size(); ++i)
+      ASSERT_TRUE(found[i] == 2 || found[i] == exact_flags[i] || (tolerant && found[i] == 1))
+          << setting << ", point " << i;
+    EXPECT_EQ(std::count(found.begin(), found.end(), 1), json["colliding"]);
+    EXPECT_EQ(std::count(found.begin(), found.end(), 2), json["undecided"]);
+    EXPECT_EQ(done.out.find(std::to_string(json["undecided"].get<int>()) + " are undecided") != std::string::npos,
+              !tolerant);
+    undecided += json["undecided"].get<int>();
+  }
+  EXPECT_GT(undecided, 0) << "nothing was ever undecided";
+
+  const Outcome done = collide(job + "{out.ply} --clearance 0.3 --report {report.json} --accuracy float");
+  EXPECT_THAT(done.out, HasSubstr("smallest distance 0.25 without proof"));
+  EXPECT_EQ(report()["proven"], false);
+  EXPECT_EQ(report()["distance_interval"], (Json{nullptr, nullptr}));
+}
+
+TEST_F(CollideAccuracy, UndecidedPointsAreNeverKeptAsFree)
+{
+  expectDone(job + "{free.ply} --clearance 0.3 --accuracy pairs=0 --keep free");
+  expectDone(job + "{rest.ply} --clearance 0.3 --accuracy pairs=0 --keep colliding");
+  EXPECT_EQ(io::readCloud(folder / "free.ply").width, 0U);
+  EXPECT_EQ(io::readCloud(folder / "rest.ply").width, 6400U);
+}
+
+TEST_F(CollideAccuracy, HoldsAlongAPath)
+{
+  const std::string path = "--clearance 0.3 --from 0,0,0,0,0,0 --to 0,0,0.5,0,0,0 --steps 9 --report {report.json} ";
+  expectDone(job + "{exact.ply} " + path);
+  const std::vector<int> expected = flags("exact.ply");
+  int undecided = 0;
+  for (const std::string setting : {"level=0", "level=1", "level=9", "pairs=500", "time=1e-04"}) {
+    const Outcome done = collide(job + "{out.ply} " + path + "--accuracy " + setting);
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    const std::vector<int> found = flags("out.ply");
+    for (std::size_t i = 0; i < found.size(); ++i)
+      ASSERT_TRUE(found[i] == 2 || found[i] == expected[i]) << setting << ", point " << i;
+    const Json json = report();
+    EXPECT_EQ(json["accuracy"], setting);
+    EXPECT_EQ(std::count(found.begin(), found.end(), 2), json["undecided"]);
+    EXPECT_TRUE(json["distance"].is_null());
+    EXPECT_EQ(json["path"]["poses"], 10);
+    EXPECT_EQ(json["path"]["table"].size(), 0U);
+    EXPECT_EQ(io::readCloud(folder / "out.ply").fields.back().name, "collision") << "and no more than that";
+    undecided += json["undecided"].get<int>();
+  }
+  EXPECT_GT(undecided, 0) << "nothing was ever undecided";
+  const Outcome done = collide(job + "{out.ply} " + path + "--accuracy tolerance=0.01 --clashes {a.json}");
+  EXPECT_THAT(done.out, HasSubstr("smallest distance 0.25 within the tolerance"));
+}
+
+TEST_F(CollideAccuracy, Refuses)
+{
+  for (const std::string wrong : {"roughly", "level", "level=1.5", "tolerance=-1", "time=1s", "exact=1"}) {
+    expectFailure(job + "{out.ply} --clearance 0.3 --accuracy " + wrong, 2,
+                  "--accuracy: '" + wrong +
+                      "' is none: give exact, float, tolerance=LENGTH, level=N, pairs=N or time=");
+  }
+  expectFailure(job + "{out.ply} --clearance 0.3 --accuracy level=1 --clashes {a.csv}", 2,
+                "--accuracy: level=1: clashes need distances: give exact, float or tolerance=LENGTH");
+  expectFailure(job + "{out.ply} --clearance 0.3 --accuracy level=1 --swept 0.1 --from 0,0,0,0,0,0 --to 1,0,0,0,0,0 " +
+                    "--steps 2",
+                2, "--accuracy: level=1: swept motion has a tolerance of its own: give exact");
+}
+
 /// A wall of points along x, and a probe of one point that passes it at a distance that depends on where it is.
 class CollideAlong : public Collide {
 protected:
