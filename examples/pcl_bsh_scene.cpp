@@ -148,7 +148,7 @@ nlohmann::ordered_json summaryOf(const io::SceneFile& file, const cli::SceneTota
                                  {"objects", file.objects.size()},
                                  {"points", points},
                                  {"steps", totals.step_seconds.size()},
-                                 {"accuracy", "exact"},
+                                 {"accuracy", file.options.accuracy.text()},
                                  {"load_seconds", load_seconds},
                                  {"median_step_seconds", median(totals.step_seconds)}};
   const BroadPhaseCost& grid = totals.broad_phase;
@@ -180,6 +180,7 @@ void printSummary(const io::SceneFile& file, const cli::SceneTotals& totals)
               1e3 * grid.seconds);
   std::printf("%zu steps, median %.3f ms", totals.step_seconds.size(), 1e3 * median(totals.step_seconds));
   if (file.options.effects.any) std::printf("; pairs collide in %zu of them", totals.colliding_steps);
+  if (totals.undecided_steps > 0) std::printf(", are undecided in %zu", totals.undecided_steps);
   if (totals.wanted > 0.0)
     std::printf("; travelled %.3f of %.3f, %zu moves met something", totals.travelled, totals.wanted,
                 totals.touched_moves);

@@ -51,6 +51,8 @@ inline void explain(const io::SceneFile& file, std::ostream& out)
     const auto effect = static_cast<Effect>(e);
     if (effects.has(effect)) out << "  " << nameOf(effect) << ": " << explanationOf(effect) << '\n';
   }
+  if (!file.options.accuracy.isExact())
+    out << "  accuracy of any, flags, distance and self: " << file.options.accuracy.text() << '\n';
   if (effects.none()) out << "  none: objects move, nothing is tested, no voxel is built\n";
   out << "\nEffects that are off (no code runs for them, nothing is allocated or built):\n ";
   for (std::size_t e = 0; e < kEffects; ++e)

@@ -20,6 +20,7 @@ struct SceneTotals {
   BroadPhaseCost broad_phase;
   std::vector<double> step_seconds;
   std::size_t colliding_steps = 0; ///< in which `any` found a pair
+  std::size_t undecided_steps = 0; ///< in which it left one undecided
   std::size_t touched_moves = 0;
   double travelled = 0.0, wanted = 0.0;
 
@@ -39,6 +40,7 @@ struct SceneTotals {
     broad_phase.candidates += result.broad_phase.candidates;
     broad_phase.seconds += result.broad_phase.seconds;
     colliding_steps += result.any.empty() ? 0 : 1;
+    undecided_steps += result.undecided.empty() ? 0 : 1;
     for (const Outcome& outcome : result.outcomes) {
       touched_moves += outcome.touched ? 1 : 0;
       travelled += outcome.travelled;
@@ -149,6 +151,8 @@ inline nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result
 {
   using Json = nlohmann::ordered_json;
   const Effects& effects = scene.options().effects;
+  const Accuracy& accuracy = scene.options().accuracy;
+  const bool early = accuracy.stopsEarly();
   const auto names = [&](const PartPair& pair) {
     Json json = {{"a", scene[pair.a].name}, {"b", scene[pair.b].name}};
     if (scene[pair.a].parts.size() > 1) json["part_a"] = scene[pair.a].parts[pair.part_a].name;
@@ -162,6 +166,7 @@ inline nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result
       list.push_back({{"object", scene[part.object].name},
                       {"part", scene[part.object].parts[part.part].name},
                       {"points", part.colliding}});
+    for (std::size_t i = 0; early && i < parts.size(); ++i) list[i]["undecided"] = parts[i].undecided;
     return list;
   };
   Json json = {{"step", step}, {"time", result.time}};
@@ -175,11 +180,13 @@ inline nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result
   };
   if (effects.any)
     list("any", result.any, [&](Json& e, const CollidingPair& pair) { e["witness"] = points(pair.witness); });
+  if (early && (effects.any || effects.self)) list("undecided", result.undecided, [](Json&, const PartPair&) {});
   if (effects.flags) json["flags"] = flagged(result.flags);
   if (effects.distance)
     list("distance", result.distance, [&](Json& e, const DistantPair& pair) {
       e["distance"] = pair.distance;
       e["pair"] = points(pair.pair);
+      if (accuracy.isProven() && !accuracy.isExact()) e["interval"] = {pair.interval.lower, pair.interval.upper};
     });
   if (effects.contacts)
     list("contacts", result.contacts, [&](Json& e, const ContactPair& pair) {

@@ -55,9 +55,21 @@ private:
     if (root_.has("tolerance")) options.tolerance = root_.at("tolerance").number(kSmallest);
     if (root_.has("voxel_edge")) options.voxel_edge = root_.at("voxel_edge").number(0);
     if (root_.has("threads")) options.threads = static_cast<unsigned>(root_.at("threads").whole(0, 1024));
-    if (root_.has("accuracy")) root_.at("accuracy").oneOf({"exact"});
+    if (root_.has("accuracy")) options.accuracy = parseAccuracy(root_.at("accuracy"));
     if (root_.has("steps")) file_.steps = root_.at("steps").whole(0, 1000000000);
     if (root_.has("dt")) file_.dt = root_.at("dt").number(kSmallest);
+  }
+
+  static Accuracy parseAccuracy(const JsonReader& reader)
+  {
+    const std::string text = reader.text();
+    try {
+      return Accuracy::parse(text);
+    }
+    catch (const std::invalid_argument&) {
+      reader.fail("'" + text + "' is no accuracy",
+                  "give exact, float, tolerance=LENGTH, level=N, pairs=N or time=SECONDS");
+    }
   }
 
   void parseEffects(const JsonReader& reader)

@@ -12,11 +12,13 @@
 //   for (int i = 0; i < 100; ++i) report(scene.step(0.1));
 //
 // A voxel grid over the scene finds the pairs worth a query: only objects that share a voxel are tested, and an object
-// that moves updates only the voxels it leaves and enters. Answers are those of the queries in collide.h: exact, and
-// the same for any number of threads. What is remembered from step to step changes times, never answers.
+// that moves updates only the voxels it leaves and enters. Answers are those of the queries in collide.h: exact unless
+// the options ask for less, and the same for any number of threads. What is remembered from step to step changes times,
+// never answers.
 #pragma once
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/scene/effects.h>
 #include <pcl_bsh/query/scene/motion.h>
 
@@ -74,8 +76,11 @@ struct PairRule {
 
 struct SceneOptions {
   Effects effects;
-  double clearance = 0.0;  ///< of pairs without a rule; finite, >= 0; inclusive
-  bool test_pairs = true;  ///< pairs without a rule are tested; false: only those a rule asks for
+  double clearance = 0.0; ///< of pairs without a rule; finite, >= 0; inclusive
+  bool test_pairs = true; ///< pairs without a rule are tested; false: only those a rule asks for
+  /// Of any, flags, distance and self. Those that stop early do so in each query of two parts, and leave pairs, points
+  /// and distances undecided, or known within an interval; everything else is as exact as ever.
+  Accuracy accuracy;
   double tolerance = 1e-4; ///< of first contacts, swept motion and responses, in the clouds' unit; > 0
   double voxel_edge = 0.0; ///< of the grid over the scene; 0: from the sizes of what moves
   unsigned threads = 1;    ///< 0: all of the machine's

@@ -40,7 +40,7 @@ constexpr auto whole = R"({
                                              { "objects": ["moon", "lift"], "tested": false } ] },
   "effects": { "any": true, "flags": true, "distance": "all", "contacts": 3, "first_contact": true, "swept": true,
                "self": true, "response": "slide", "gravity": { "step_height": 0.2 }, "deform": 1.5 },
-  "clearance": 0.1, "tolerance": 0.001, "accuracy": "exact", "threads": 1, "steps": 20, "dt": 0.5,
+  "clearance": 0.1, "tolerance": 0.001, "accuracy": "level=3", "threads": 1, "steps": 20, "dt": 0.5,
   "outputs": { "clouds": "last" }
 })";
 
@@ -52,6 +52,7 @@ TEST(SceneFile, ReadsEverything)
   EXPECT_EQ(file.steps, 20u);
   EXPECT_EQ(file.dt, 0.5);
   EXPECT_EQ(file.options.clearance, 0.1);
+  EXPECT_EQ(file.options.accuracy.text(), "level=3");
   EXPECT_TRUE(std::isinf(*file.options.effects.distance));
   for (std::size_t e = 0; e < kEffects; ++e)
     EXPECT_EQ(file.options.effects.has(static_cast<Effect>(e)), static_cast<Effect>(e) != Effect::stop);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 namespace pcl_bsh {
 namespace {
@@ -64,6 +65,42 @@ TEST(SceneProgram, ResponsesKeepObjectsApart)
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("pairs collide in 0 of them"));
   EXPECT_THAT(done.out, HasSubstr("moves met something"));
+}
+
+TEST(SceneProgram, SaysWhatLessAccuracyLeavesOpen)
+{
+  const io::TemporaryFolder folder;
+  const auto sceneAt = [&](const std::string& accuracy) {
+    std::string text = crashWith(R"("any": true, "flags": true, "distance": "all")");
+    text.insert(text.find("\"steps\""), "\"accuracy\": \"" + accuracy + "\", ");
+    return folder.write("crash.json", text).string();
+  };
+  const std::string out = (folder / "out").string();
+  const Outcome done = run("pcl_bsh_scene", sceneAt("pairs=0") + " --out " + out);
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("of them, are undecided in 1"));
+  const std::string lines = io::contentOf(folder / "out" / "steps.jsonl");
+  std::istringstream each(lines);
+  std::size_t open = 0;
+  for (std::string line; std::getline(each, line);) {
+    const Json step = Json::parse(line);
+    EXPECT_EQ(step["distance"][0]["interval"].size(), 2u);
+    if (step["undecided"].empty()) continue;
+    ++open;
+    EXPECT_TRUE(step["any"].empty());
+    EXPECT_EQ(step["undecided"][0], (Json{{"a", "still"}, {"b", "moving ball"}}));
+    ASSERT_FALSE(step["flags"].empty());
+    EXPECT_GT(step["flags"][0]["undecided"], 0);
+    EXPECT_EQ(step["flags"][0]["points"], 0);
+  }
+  EXPECT_EQ(open, 1u);
+  EXPECT_EQ(Json::parse(io::contentOf(folder / "out" / "summary.json"))["accuracy"], "pairs=0");
+  EXPECT_THAT(run("pcl_bsh_scene", sceneAt("level=2") + " --explain").out,
+              HasSubstr("accuracy of any, flags, distance and self: level=2"));
+
+  const Outcome wrong = run("pcl_bsh_scene", sceneAt("roughly") + " --out " + out);
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("crash.json: accuracy: 'roughly' is no accuracy: give exact, float, "));
 }
 
 TEST(SceneProgram, ExplainsAndValidatesWithoutRunning)

@@ -62,7 +62,7 @@ public:
     test_pairs_ = random_.chance(0.8);
   }
 
-  Scene scene(const Effects& effects, unsigned threads = 1, bool remember = true) const
+  Scene scene(const Effects& effects, unsigned threads = 1, bool remember = true, const Accuracy& accuracy = {}) const
   {
     SceneOptions options;
     options.effects = effects;
@@ -70,6 +70,7 @@ public:
     options.test_pairs = test_pairs_;
     options.threads = threads;
     options.remember = remember;
+    options.accuracy = accuracy;
     Scene scene(options);
     for (const SceneObject& object : objects_) scene.add(object);
     scene.setGroupRule("some", "some", group_rule_);
@@ -256,6 +257,123 @@ TEST(Scene, SameAsBruteForceOverAllObjectsInAllSteps)
       expectContactsAsQueried(world, scene, result, 3);
       if (HasFailure()) return;
       world.shuffle({&scene});
+    }
+  }
+}
+
+// --- accuracy ---
+
+using PartKey = std::pair<IdPair, IdPair>; ///< two objects, their parts
+
+template <class Items>
+std::set<IdPair> objectsOf(const Items& items, bool of_self = false)
+{
+  std::set<IdPair> pairs;
+  for (const PartPair& item : items)
+    if ((item.a == item.b) == of_self) pairs.insert({item.a, item.b});
+  return pairs;
+}
+
+/// What is said, is so; what is so, is said or left open. @return how much was left open
+std::size_t expectSubset(const std::set<IdPair>& said, const std::set<IdPair>& open, const std::set<IdPair>& truth)
+{
+  for (const IdPair& pair : said) EXPECT_TRUE(truth.count(pair) == 1 && open.count(pair) == 0);
+  for (const IdPair& pair : truth) EXPECT_TRUE(said.count(pair) + open.count(pair) == 1);
+  return open.size();
+}
+
+/// @return how many pairs and points were left open
+std::size_t expectNoneWrong(const SceneResult& result, const SceneResult& truth)
+{
+  std::size_t open = expectSubset(objectsOf(result.any), objectsOf(result.undecided), objectsOf(truth.any));
+
+  std::set<PartKey> said, left, so;
+  const auto keyOf = [](const PartPair& pair) { return PartKey{{pair.a, pair.b}, {pair.part_a, pair.part_b}}; };
+  for (const SelfCollision& hit : result.self) said.insert(keyOf({hit.object, hit.object, hit.part_a, hit.part_b}));
+  for (const SelfCollision& hit : truth.self) so.insert(keyOf({hit.object, hit.object, hit.part_a, hit.part_b}));
+  for (const PartPair& pair : result.undecided)
+    if (pair.a == pair.b) left.insert(keyOf(pair));
+  for (const PartKey& key : said) EXPECT_EQ(so.count(key), 1u);
+  for (const PartKey& key : so) EXPECT_EQ(said.count(key) + left.count(key), 1u);
+  open += left.size();
+
+  std::map<IdPair, std::vector<std::uint8_t>> flags;
+  for (const FlaggedPart& part : result.flags) {
+    flags[{part.object, part.part}] = part.flags;
+    EXPECT_EQ(part.colliding, static_cast<std::size_t>(std::count(part.flags.begin(), part.flags.end(), 1)));
+    EXPECT_EQ(part.undecided, static_cast<std::size_t>(std::count(part.flags.begin(), part.flags.end(), 2)));
+    open += part.undecided;
+  }
+  for (const FlaggedPart& part : truth.flags) {
+    EXPECT_EQ(flags.count({part.object, part.part}), 1u);
+    std::vector<std::uint8_t>& found = flags[{part.object, part.part}];
+    found.resize(part.flags.size());
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_TRUE(found[i] == 2 || found[i] == part.flags[i]);
+    flags.erase({part.object, part.part});
+  }
+  for (const auto& entry : flags) // of parts where nothing collides
+    EXPECT_EQ(std::count(entry.second.begin(), entry.second.end(), 1), 0);
+
+  std::map<IdPair, Interval> intervals;
+  for (const DistantPair& pair : result.distance) intervals[{pair.a, pair.b}] = pair.interval;
+  for (const DistantPair& pair : truth.distance) {
+    EXPECT_EQ(intervals.count({pair.a, pair.b}), 1u);
+    EXPECT_LE((intervals[{pair.a, pair.b}].lower), pair.distance);
+    EXPECT_GE((intervals[{pair.a, pair.b}].upper), pair.distance);
+  }
+  return open;
+}
+
+TEST(SceneAccuracy, NothingIsEverWrong)
+{
+  std::size_t open = 0;
+  for (std::uint64_t seed = 600; seed < 616; ++seed) {
+    for (const char* setting : {"level=0", "level=1", "level=100", "pairs=0", "pairs=50", "time=1e-05"}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + " at " + setting);
+      RandomWorld world(seed), twin(seed);
+      Effects effects;
+      effects.any = seed % 4 != 3;
+      effects.flags = effects.self = true;
+      effects.distance = seed % 3 == 0 ? infinity : 0.2;
+      effects.contacts = 3;
+      Scene exact = world.scene(effects), scene = twin.scene(effects, 1, true, Accuracy::parse(setting));
+      for (int step = 0; step < 3; ++step) {
+        const SceneResult truth = exact.query(), result = scene.query();
+        EXPECT_TRUE(effects.any || objectsOf(result.undecided).empty());
+        open += expectNoneWrong(result, truth);
+        expectContactsAsQueried(world, exact, result, 3); // exact as ever
+        if (HasFailure()) return;
+        world.shuffle({&exact, &scene});
+      }
+    }
+  }
+  EXPECT_GT(open, 1000u) << "hardly anything was ever undecided";
+}
+
+TEST(SceneAccuracy, ToleranceErrsOnlyWithinIt)
+{
+  for (std::uint64_t seed = 620; seed < 636; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    RandomWorld world(seed);
+    Effects effects;
+    effects.any = effects.flags = true;
+    effects.distance = infinity;
+    Scene exact = world.scene(effects), scene = world.scene(effects, 1, true, Accuracy::tolerance(0.05));
+    for (int step = 0; step < 3; ++step) {
+      const SceneResult truth = exact.query(), result = scene.query();
+      const std::set<IdPair> found = objectsOf(result.any);
+      for (const IdPair& pair : objectsOf(truth.any)) EXPECT_EQ(found.count(pair), 1u);
+      std::map<IdPair, double> distances;
+      for (const DistantPair& pair : truth.distance) distances[{pair.a, pair.b}] = pair.distance;
+      for (const IdPair& pair : found) EXPECT_LE(distances[pair], *world.clearanceOf(pair.first, pair.second) + 0.05);
+      EXPECT_EQ(result.distance.size(), truth.distance.size());
+      for (const DistantPair& pair : result.distance) {
+        EXPECT_LE(pair.interval.lower, (distances[{pair.a, pair.b}]));
+        EXPECT_GE(pair.interval.upper, (distances[{pair.a, pair.b}]));
+        EXPECT_LE(pair.distance, (distances[{pair.a, pair.b}] + 0.05 + 1e-12));
+      }
+      EXPECT_TRUE(result.undecided.empty());
+      world.shuffle({&exact, &scene});
     }
   }
 }

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct PairMemory {
 
   std::uint64_t any_a = 0, any_b = 0; ///< likewise of `colliding`
   bool colliding = false;
-  CollidingPair witness; ///< of the last collision found
+  std::optional<PartPair> undecided; ///< parts that may collide, if none are known to
+  CollidingPair witness;             ///< of the last collision found
   bool has_witness = false;
   double apart = 0.0; ///< no points were nearer than this when the objects stood at the two poses below
   Eigen::Isometry3d apart_a, apart_b;

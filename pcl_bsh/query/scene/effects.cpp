@@ -33,10 +33,11 @@ private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-CollisionRequest requestFor(double clearance)
+CollisionRequest requestFor(double clearance, const Accuracy& accuracy = {})
 {
   CollisionRequest request;
   request.clearance = clearance;
+  request.accuracy = accuracy;
   return request;
 }
 
@@ -191,8 +192,10 @@ void Scene::State::findAny()
   EffectCost& spent = cost(Effect::any);
   const Timed timed(spent.seconds);
   eachPair(near, spent, [this](std::size_t i) { decideAny(*near[i]); });
-  for (const BroadPair* pair : near)
+  for (const BroadPair* pair : near) {
     if (pair->memory.colliding) result.any.push_back(pair->memory.witness);
+    if (pair->memory.undecided) result.undecided.push_back(*pair->memory.undecided);
+  }
 }
 
 void Scene::State::decideAny(BroadPair& pair) const
@@ -205,19 +208,25 @@ void Scene::State::decideAny(BroadPair& pair) const
   }
   memory.any_a = a.version;
   memory.any_b = b.version;
-  if (options.remember && remembersAny(pair)) {
+  const bool remember = options.remember && options.accuracy.isExact(); // else memory would change answers
+  if (remember && remembersAny(pair)) {
     memory.reused = true;
     return;
   }
 
-  /// Whether any parts collide at the clearance; if so, notes the witness.
+  /// Whether any parts collide at the clearance; if so, notes the witness; if not, who may.
   const auto ask = [&](double clearance) {
+    memory.undecided.reset();
     for (std::uint32_t i = 0; i < a.world.size(); ++i)
       for (std::uint32_t j = 0; j < b.world.size(); ++j) {
-        const AnyResult found = anyCollision(placed(pair.a, i), placed(pair.b, j), requestFor(clearance));
+        const AnyResult found =
+            anyCollision(placed(pair.a, i), placed(pair.b, j), requestFor(clearance, options.accuracy));
         memory.work += found.work;
         ++memory.asked;
+        const PartPair parts{pair.a, pair.b, i, j};
+        if (found.verdict == Verdict::undecided && !memory.undecided) memory.undecided = parts;
         if (!found.witness) continue;
+        memory.undecided.reset();
         memory.witness = {{pair.a, pair.b, i, j}, *found.witness};
         return true;
       }
@@ -225,7 +234,7 @@ void Scene::State::decideAny(BroadPair& pair) const
   };
   memory.has_witness = false;
   memory.apart = 0.0;
-  const double ahead = options.remember ? kAhead * (a.last_motion + b.last_motion) : 0.0;
+  const double ahead = remember ? kAhead * (a.last_motion + b.last_motion) : 0.0;
   if (ahead > 0.0 && memory.patience == 0) {
     // What is free at a wider clearance need not be asked again until it has moved that far.
     memory.colliding = ask(pair.clearance + ahead);
@@ -265,6 +274,12 @@ bool Scene::State::remembersAny(BroadPair& pair) const
   return memory.colliding;
 }
 
+/// As `any` has just found.
+bool Scene::State::isKnownFree(const BroadPair& pair) const
+{
+  return options.effects.any && options.accuracy.isProven() && !pair.memory.colliding && !pair.memory.undecided;
+}
+
 // ---- flags -------------------------------------------------------------------------------------------------------
 
 namespace {
@@ -276,14 +291,15 @@ public:
 
   void merge(ObjectId object, std::uint32_t part, const std::vector<std::uint8_t>& flags)
   {
-    if (std::find(flags.begin(), flags.end(), 1) == flags.end()) return;
+    if (std::all_of(flags.begin(), flags.end(), isFree)) return;
     FlaggedPart& target = parts_[std::uint64_t{object} << 32 | part];
     if (target.flags.empty()) {
       target.object = object;
       target.part = part;
       target.flags.assign(bodies_[object].object.parts[part].hierarchy->view().count, 0);
     }
-    for (std::size_t i = 0; i < flags.size(); ++i) target.flags[i] |= flags[i];
+    for (std::size_t i = 0; i < flags.size(); ++i)
+      if (!isFree(flags[i]) && target.flags[i] != flagOf(Verdict::colliding)) target.flags[i] = flags[i];
   }
 
   std::vector<FlaggedPart> take()
@@ -291,13 +307,19 @@ public:
     std::vector<FlaggedPart> list;
     for (auto& entry : parts_) {
       FlaggedPart& part = entry.second;
-      part.colliding = static_cast<std::size_t>(std::count(part.flags.begin(), part.flags.end(), 1));
+      const auto count = [&part](Verdict verdict) {
+        return static_cast<std::size_t>(std::count(part.flags.begin(), part.flags.end(), flagOf(verdict)));
+      };
+      part.colliding = count(Verdict::colliding);
+      part.undecided = count(Verdict::undecided);
       list.push_back(std::move(part));
     }
     return list;
   }
 
 private:
+  static bool isFree(std::uint8_t flag) { return flag == flagOf(Verdict::free); }
+
   const std::vector<Body>& bodies_;
   std::map<std::uint64_t, FlaggedPart> parts_;
 };
@@ -318,18 +340,19 @@ void Scene::State::findFlags()
   eachPair(near, spent, [&](std::size_t k) {
     const BroadPair& pair = *near[k];
     PairMemory& memory = near[k]->memory;
-    if (options.effects.any && !memory.colliding) { // as has just been found
+    if (isKnownFree(pair)) {
       memory.reused = true;
       return;
     }
-    CollisionRequest request = requestFor(pair.clearance);
+    CollisionRequest request = requestFor(pair.clearance, options.accuracy);
     request.flagged = Side::both;
     for (std::uint32_t i = 0; i < bodies[pair.a].world.size(); ++i)
       for (std::uint32_t j = 0; j < bodies[pair.b].world.size(); ++j) {
         FlagsResult flags = collisionFlags(placed(pair.a, i), placed(pair.b, j), request);
         memory.work += flags.work;
         ++memory.asked;
-        if (flags.colliding_a > 0) found[k].push_back({{pair.a, pair.b, i, j}, std::move(flags.a), std::move(flags.b)});
+        const std::size_t not_free = flags.colliding_a + flags.colliding_b + flags.undecided_a + flags.undecided_b;
+        if (not_free > 0) found[k].push_back({{pair.a, pair.b, i, j}, std::move(flags.a), std::move(flags.b)});
       }
   });
   FlagTable table(bodies);
@@ -365,20 +388,26 @@ void Scene::State::decideDistance(BroadPair& pair, double within) const
   memory.distance_a = a.version;
   memory.distance_b = b.version;
   memory.within = false;
+  Interval& interval = memory.distance.interval;
+  interval = {kInfinity, kInfinity};
   Box3 box = a.world_box;
   box.grow(within * (1.0 + kRounding));
   if (a.box.empty() || b.box.empty() || !box.meets(b.world_box)) return;
   bool first = true;
   for (std::uint32_t i = 0; i < a.world.size(); ++i)
     for (std::uint32_t j = 0; j < b.world.size(); ++j) {
-      const DistanceResult found = closestPair(placed(pair.a, i), placed(pair.b, j));
+      const DistanceResult found =
+          closestPair(placed(pair.a, i), placed(pair.b, j), requestFor(pair.clearance, options.accuracy));
       memory.work += found.work;
       ++memory.asked;
+      interval.lower = std::min(interval.lower, found.interval.lower);
+      interval.upper = std::min(interval.upper, found.interval.upper);
       if (!found.pair || (!first && !(found.distance < memory.distance.distance))) continue;
-      memory.distance = {{pair.a, pair.b, i, j}, found.distance, *found.pair};
+      memory.distance = {{pair.a, pair.b, i, j}, found.distance, interval, *found.pair};
       first = false;
     }
-  memory.within = !first && memory.distance.distance <= within;
+  const bool certain = options.accuracy.isExact() || !options.accuracy.isProven();
+  memory.within = !first && (certain ? memory.distance.distance : interval.lower) <= within;
 }
 
 // ---- contacts ----------------------------------------------------------------------------------------------------
@@ -391,7 +420,7 @@ void Scene::State::findContacts()
   eachPair(near, spent, [&](std::size_t k) {
     const BroadPair& pair = *near[k];
     PairMemory& memory = near[k]->memory;
-    if (options.effects.any && !memory.colliding) { // as has just been found
+    if (isKnownFree(pair)) {
       memory.reused = true;
       return;
     }
@@ -484,12 +513,13 @@ void Scene::State::findSelf()
         if (std::find(whole.adjacent.begin(), whole.adjacent.end(), std::make_pair(i, j)) != whole.adjacent.end())
           continue;
         // In the object's own frame, where only the parts' poses count.
-        const AnyResult found =
-            anyCollision({*whole.parts[i].hierarchy, whole.parts[i].pose},
-                         {*whole.parts[j].hierarchy, whole.parts[j].pose}, requestFor(options.clearance));
+        const AnyResult found = anyCollision({*whole.parts[i].hierarchy, whole.parts[i].pose},
+                                             {*whole.parts[j].hierarchy, whole.parts[j].pose},
+                                             requestFor(options.clearance, options.accuracy));
         spent.work += found.work;
         ++spent.pairs;
         if (found.witness) result.self.push_back({object, i, j, *found.witness});
+        if (found.verdict == Verdict::undecided) result.undecided.push_back({object, object, i, j});
       }
   }
 }

@@ -50,7 +50,8 @@ struct Gravity {
 struct Effects {
   bool any = false;   ///< which pairs of objects collide
   bool flags = false; ///< which points collide with another object
-  /// The smallest distance of each pair that is no farther apart than this; infinity: of every pair to be tested.
+  /// The smallest distance of each pair that is (or may be, for all that is certain) no farther apart than this;
+  /// infinity: of every pair to be tested.
   std::optional<double> distance;
   std::optional<std::size_t> contacts; ///< at most so many per pair of parts, the nearest
   bool first_contact = false;          ///< when, within the step, a pair first meets
@@ -97,7 +98,8 @@ struct CollidingPair : PartPair {
 
 struct DistantPair : PartPair {
   double distance = 0.0;
-  PointPair pair; ///< that realises it; of several, of the smallest parts, then the smallest (a, b)
+  Interval interval; ///< holds it for certain, where the scene's accuracy is less than exact
+  PointPair pair;    ///< that realises it; of several, of the smallest parts, then the smallest (a, b)
 };
 
 struct ContactPair : PartPair {
@@ -111,12 +113,13 @@ struct PartFirstContact : PartPair {
   PointPair pair; ///< the points that meet
 };
 
-/// The points of a part that collide. Parts without any are not listed.
+/// The points of a part that collide, or are undecided. Parts without any are not listed.
 struct FlaggedPart {
   ObjectId object = 0;
   std::uint32_t part = 0;
   std::size_t colliding = 0;
-  std::vector<std::uint8_t> flags; ///< one per record of the part's view
+  std::size_t undecided = 0;       ///< 0 unless the scene's accuracy lets a query stop early
+  std::vector<std::uint8_t> flags; ///< one per record of the part's view, as in FlagsResult
 };
 
 /// Parts of one object, part_a < part_b.
@@ -140,6 +143,8 @@ struct Outcome {
 struct SceneResult {
   double time = 0.0; ///< of the scene, seconds
   std::vector<CollidingPair> any;
+  /// Of `any`, or where a == b of `self`: who may collide or not, as far as the scene's accuracy goes.
+  std::vector<PartPair> undecided;
   std::vector<FlaggedPart> flags;
   std::vector<DistantPair> distance;
   std::vector<ContactPair> contacts;

@@ -30,6 +30,8 @@ void check(const SceneOptions& options)
     refuse("clearance " + std::to_string(options.clearance) + " is not finite and >= 0");
   if (!(std::isfinite(options.tolerance) && options.tolerance > 0.0))
     refuse("tolerance " + std::to_string(options.tolerance) + " is not finite and > 0");
+  if (!isLength(options.accuracy.value))
+    refuse("accuracy " + options.accuracy.text() + " has a number that is not finite and >= 0");
   if (!isLength(options.voxel_edge))
     refuse("voxel edge " + std::to_string(options.voxel_edge) + " is not finite and >= 0");
   if (effects.distance && !(*effects.distance >= 0.0))

@@ -78,6 +78,7 @@ private:
 
   void decideAny(BroadPair& pair) const;
   bool remembersAny(BroadPair& pair) const;
+  bool isKnownFree(const BroadPair& pair) const;
   void decideDistance(BroadPair& pair, double within) const;
   void compareBoxes(BroadPair& pair);
   template <class Decide>
