@@ -59,7 +59,10 @@ std::string Accuracy::text() const
     if (known.mode != mode) continue;
     if (!known.counts) return known.name;
     std::array<char, 32> digits;
-    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    char *const begin = digits.data(), *const room = begin + digits.size();
+    const bool whole = isWhole(mode) && value < 0x1p63; // without an exponent, as people write counts
+    const auto [end, error] =
+        whole ? std::to_chars(begin, room, static_cast<std::uint64_t>(value)) : std::to_chars(begin, room, value);
     return std::string(known.name) + "=" + std::string(digits.data(), error == std::errc() ? end : digits.data());
   }
   return {};
