@@ -8,6 +8,7 @@
 #include "cli/step.h"
 
 #include <pcl_bsh/filters/io/cloud_file.h>
+#include <pcl_bsh/filters/io/pose_file.h>
 #include <pcl_bsh/filters/io/replace_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -28,10 +29,14 @@ detail, budgets. Writes accuracy.csv, accuracy.md and accuracy.png.
 Exit code: 0 done; 1 failed; 2 command line not understood.
 
 Example: a robot in a hall, at ten poses about (1.5, 2, 0)
-  pcl_bsh_accuracy hall.ply robot.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.57 --poses 10 --out study)";
+  pcl_bsh_accuracy hall.ply robot.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.57 --poses 10 --out study
+Example: a wagon on its way
+  pcl_bsh_accuracy tunnel.ply wagon.ply --clearance 0.05 --trajectory poses.txt --out study)";
+
+constexpr std::size_t most_poses = 20; // of a trajectory's; every setting is measured at each, several times
 
 struct Options {
-  std::filesystem::path a, b, out;
+  std::filesystem::path a, b, out, trajectory;
   double clearance = 0.0;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   unsigned poses = 1, repetitions = 5, threads = 1;
@@ -40,7 +45,7 @@ struct Options {
 
 std::optional<Options> parse(int argc, char** argv)
 {
-  std::string a, b, out, clearance, pose, poses = "1", repetitions = "5", threads = "1";
+  std::string a, b, out, clearance, pose, poses, trajectory, repetitions = "5", threads = "1";
   Options options;
   CLI::App app("Measures what accuracy costs in time, on two clouds of yours.", program);
   app.footer(footer);
@@ -54,6 +59,10 @@ std::optional<Options> parse(int argc, char** argv)
   app.add_option("--poses", poses,
                  "that pose, and N - 1 about it: up to 5 % of A's diameter and 10 degrees off (default 1)")
       ->type_name("N");
+  app.add_option("--trajectory", trajectory,
+                 "instead: a file of B's poses, as for pcl_bsh_collide; of more than 20,\n"
+                 "20 in even steps")
+      ->type_name("FILE");
   app.add_option("--repeat", repetitions, "repetitions of every measurement (default 5)")->type_name("N");
   app.add_option("--threads", threads, "0: all of the machine's (default 1)")->type_name("N");
   app.add_flag("--peers", options.peers, "measure PCL's kd-tree, octree and VoxelGrid on the same clouds, too");
@@ -71,7 +80,10 @@ std::optional<Options> parse(int argc, char** argv)
   options.b = b;
   options.out = out;
   options.clearance = cli::parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
-  options.poses = cli::parseOption<unsigned>("--poses", poses, "give a number of poses, 1 or more");
+  if (!trajectory.empty() && !(pose.empty() && poses.empty()))
+    throw cli::UsageError(std::string(pose.empty() ? "--poses" : "--pose") + ": --trajectory is given too: give one");
+  options.trajectory = trajectory;
+  if (!poses.empty()) options.poses = cli::parseOption<unsigned>("--poses", poses, "give a number of poses, 1 or more");
   options.repetitions = cli::parseOption<unsigned>("--repeat", repetitions, "give a number, 1 or more");
   options.threads = cli::parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
   if (options.poses == 0) throw cli::UsageError("--poses: 0: give a number of poses, 1 or more");
@@ -116,8 +128,20 @@ std::vector<Eigen::Isometry3d> posesAbout(const Options& options, double diamete
   return poses;
 }
 
+/// The file's poses, or some of them.
+std::vector<Eigen::Isometry3d> posesOfFile(const std::filesystem::path& file)
+{
+  const std::vector<Eigen::Isometry3d> all = io::readPoses(file);
+  if (all.size() <= most_poses) return all;
+  std::vector<Eigen::Isometry3d> some;
+  for (std::size_t i = 0; i < most_poses; ++i) some.push_back(all[i * (all.size() - 1) / (most_poses - 1)]);
+  return some;
+}
+
 int study(const Options& options)
 {
+  const std::vector<Eigen::Isometry3d> given =
+      options.trajectory.empty() ? std::vector<Eigen::Isometry3d>() : posesOfFile(options.trajectory);
   std::filesystem::create_directories(options.out);
   for (const char* name : {"accuracy.csv", "accuracy.md", "accuracy.png"}) io::requireWritable(options.out / name);
   const pcl::PCLPointCloud2 cloud_a = load(options.a), cloud_b = load(options.b);
@@ -127,7 +151,7 @@ int study(const Options& options)
     throw std::runtime_error((a.box.isEmpty() ? options.a : options.b).string() +
                              ": has no finite point: there is nothing to measure: give another cloud");
   subject.diameter = a.box.diagonal().norm();
-  subject.poses = posesAbout(options, subject.diameter, b.box.center());
+  subject.poses = given.empty() ? posesAbout(options, subject.diameter, b.box.center()) : given;
 
   const auto progress = [](const std::string& what, double done) {
     std::cerr << "> " << static_cast<int>(100 * done) << " %: " << what << '\n';

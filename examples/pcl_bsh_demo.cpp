@@ -26,6 +26,7 @@ constexpr double clearance = 0.5; // metres, as everything here
 constexpr double height = 1.8;    // of the man, whose model is 1 high
 constexpr double floor_z = -3.1;
 constexpr double marked_x = -6.5; // the pose whose flags are written
+constexpr double dial_x = -5.5;   // the pose whose distance is asked for at several accuracies
 
 /// Where the man stands, and what an independent program found there by comparing all pairs of points.
 struct Stand {
@@ -79,6 +80,29 @@ void printRow(const Stand& stand, const FlagsResult& flags, const DistanceResult
   std::printf("\n");
 }
 
+/// The smallest distance at one pose, as sure as each setting of the dial makes it, and what it costs.
+void showDial(const SphereHierarchy& building, const Placed& man)
+{
+  std::printf("\nWhat accuracy costs: the smallest distance with the man at x = %.1f\n\n", dial_x);
+  std::printf(" setting          at least [m]  at most [m]  sphere tests  time [ms]\n");
+  for (const char* setting :
+       {"level=0", "level=2", "pairs=300", "pairs=1000", "pairs=2000", "tolerance=0.01", "exact"}) {
+    CollisionRequest request;
+    request.accuracy = Accuracy::parse(setting);
+    std::vector<double> milliseconds;
+    DistanceResult found = closestPair({building}, man, request); // builds what it visits
+    for (int i = 0; i < 9; ++i) {
+      const auto start = std::chrono::steady_clock::now();
+      found = closestPair({building}, man, request);
+      milliseconds.push_back(
+          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    }
+    std::nth_element(milliseconds.begin(), milliseconds.begin() + 4, milliseconds.end());
+    std::printf(" %-16s %12.4f %12.4f %13llu %10.3f\n", setting, std::max(found.interval.lower, 0.0),
+                found.interval.upper, static_cast<unsigned long long>(found.work.node_pairs), milliseconds[4]);
+  }
+}
+
 void writeMarked(const char* path, const pcl::PCLPointCloud2& building, const FlagsResult& flags)
 {
   io::writeCloud(path, withField(building, collision_field_name, flags.a));
@@ -115,6 +139,7 @@ int demonstrate(const char* building_path, const char* man_path, const char* out
     agreeing += agrees(stand, flags, closest) ? 1 : 0;
     if (stand.x == marked_x) marked = std::move(flags);
   }
+  showDial(building_spheres, {man_spheres, Eigen::Isometry3d(Eigen::Translation3d(dial_x, 0, floor_z))});
   writeMarked(output, building, marked);
   std::printf("%zu of %zu rows agree with the reference, a comparison of all pairs of points.\n", agreeing,
               walk.size());

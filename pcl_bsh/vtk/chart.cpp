@@ -90,7 +90,7 @@ vtkNew<vtkChartXY> draw(const Chart& content)
   chart->GetLegend()->SetLabelSize(13);
   setAxis(*chart, vtkAxis::BOTTOM, content.x_label, x_decades);
   setAxis(*chart, vtkAxis::LEFT, content.y_label, y_decades);
-  int mark = vtkPlotPoints::CROSS;
+  int mark = vtkPlotPoints::SQUARE;
   for (const Curve& curve : content.curves) {
     const vtkNew<vtkTable> table = tableOf(curve, x_decades, y_decades);
     auto* const plot = vtkPlotLine::SafeDownCast(chart->AddPlot(vtkChart::LINE));
@@ -98,9 +98,9 @@ vtkNew<vtkChartXY> draw(const Chart& content)
     plot->SetColor(curve.color[0], curve.color[1], curve.color[2], 255);
     plot->SetWidth(2.0f);
     plot->GetPen()->SetLineType(!curve.line ? vtkPen::NO_PEN : curve.dashed ? vtkPen::DASH_LINE : vtkPen::SOLID_LINE);
-    plot->SetMarkerStyle(curve.dashed ? vtkPlotPoints::PLUS : mark);
+    plot->SetMarkerStyle(curve.dashed && curve.line ? vtkPlotPoints::PLUS : mark);
     plot->SetMarkerSize(9.0f);
-    mark = mark == vtkPlotPoints::DIAMOND ? vtkPlotPoints::CROSS : mark + 1;
+    mark = mark == vtkPlotPoints::DIAMOND ? vtkPlotPoints::SQUARE : mark + 1;
   }
   return chart;
 }

@@ -89,6 +89,17 @@ TEST_F(AccuracyProgram, MeasuresEveryKnobAndIsNeverWrongWhereCertified)
   EXPECT_THAT(io::contentOf(folder / "study" / "accuracy.png"), StartsWith("\x89PNG"));
 }
 
+TEST_F(AccuracyProgram, TakesPosesFromAFile)
+{
+  std::string lines;
+  for (int i = 0; i < 50; ++i) lines += "0 " + std::to_string(0.001 * i) + " 0 0 0 0 0 1\n";
+  const fs::path poses = folder.write("poses.txt", lines);
+  const Outcome done = run("pcl_bsh_accuracy", a.string() + " " + b.string() + " --clearance 0.01 --repeat 1 --out " +
+                                                   (folder / "study").string() + " --trajectory " + poses.string());
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(io::contentOf(folder / "study" / "accuracy.md"), HasSubstr(", 20 poses, "));
+}
+
 TEST_F(AccuracyProgram, RefusesWhatItCannotMeasure)
 {
   const auto fails = [&](const std::string& arguments, int code, const std::string& message) {
@@ -101,6 +112,9 @@ TEST_F(AccuracyProgram, RefusesWhatItCannotMeasure)
   fails(clouds, 2, "--clearance");
   fails(clouds + " --clearance 1 --poses 0", 2, "--poses: 0");
   fails(clouds + " --clearance x", 2, "--clearance");
+  const fs::path poses = folder.write("poses.txt", "0 0 0 0 0 0 0 1\n");
+  fails(clouds + " --clearance 1 --poses 2 --trajectory " + poses.string(), 2, "--poses: --trajectory is given too");
+  fails(clouds + " --clearance 1 --trajectory " + (folder / "none.txt").string(), 1, "none.txt: no such file");
   fails(clouds + " --clearance -1", 1, "clearance: -1");
   const fs::path nothing = folder.write("nothing.xyz", "nan nan nan\n");
   fails(nothing.string() + " " + b.string() + " --clearance 1 --out " + (folder / "study").string(), 1,
