@@ -33,6 +33,7 @@ struct FlagQuery {
   const Placed& b;
   const PointPairs& pairs;
   Acceptance acceptance;
+  bool marked; ///< whether flags start as undecided, rather than free
 };
 
 struct FlaggedVoxel {
@@ -105,6 +106,7 @@ public:
     pairs_(query.pairs),
     acceptance_(query.acceptance),
     rule_(rule),
+    marked_(query.marked),
     flags_(flags),
     visits_(visits)
   {
@@ -123,9 +125,11 @@ public:
     const bool all = !apart && !reach(voxel, above, b_.storage.top[0], reached);
     if (all) return a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { flags_[record] = kColliding; });
     if (apart || reached.empty()) {
-      if (rule_.mayStop()) a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { flags_[record] = kFree; });
+      if (marked_) a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { flags_[record] = kFree; });
       return;
     }
+    if (rule_.mayStop() && !marked_)
+      a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { flags_[record] = kUndecided; });
     if (!mayEnter(voxel, reached)) {
       found.undecided = true;
       return;
@@ -457,6 +461,7 @@ private:
   const PointPairs& pairs_;
   const Acceptance& acceptance_;
   const StopRule& rule_;
+  const bool marked_;
   std::uint8_t* flags_;
   const Voxel* a_voxel_ = nullptr;
   std::vector<Meeting> meetings_;
@@ -528,7 +533,9 @@ std::vector<std::uint8_t> flagsOf(const Placed& a, const Placed& b, const Collis
   std::vector<std::uint8_t> flags(a.hierarchy.view().count, kFree);
   if (a.hierarchy.empty() || b.hierarchy.empty()) return flags;
   const PointPairs pairs(a, b, request.clearance);
-  const FlagQuery query{a, b, pairs, Acceptance(request)};
+  // A budget may end before a voxel is looked at. A level looks at all, and has to mark only those that come near.
+  const bool marked = rule.mayStop() && rule.deepest == StopRule::kNever;
+  const FlagQuery query{a, b, pairs, Acceptance(request), marked};
   std::vector<std::uint32_t> voxels(a.hierarchy.storage().voxel_count);
   std::iota(voxels.begin(), voxels.end(), 0u);
   const unsigned threads = threadCount(request.threads);
@@ -537,7 +544,7 @@ std::vector<std::uint8_t> flagsOf(const Placed& a, const Placed& b, const Collis
     return flags;
   }
 
-  markUndecided(a.hierarchy, flags);
+  if (marked) markUndecided(a.hierarchy, flags);
   Work spent;
   for (const std::uint64_t deepest : rule.passes()) {
     rule.deepest = deepest;
