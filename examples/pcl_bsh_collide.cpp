@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which points of a cloud collide with an obstacle, at a pose or along a path? From two files to a third, with reports.
-#include "cli/clash_html.h"
 #include "cli/collide_options.h"
 #include "cli/interruption.h"
 #include "cli/program.h"
@@ -8,6 +7,7 @@
 #include "cli/step.h"
 
 #include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/io/clash_report.h>
 #include <pcl_bsh/filters/io/cloud_file.h>
 #include <pcl_bsh/query/trajectory.h>
 #include <pcl_bsh/search/cloud_view.h>
@@ -59,6 +59,16 @@ void requireOwnFile(const char* option, const fs::path& path, const Options& opt
   io::requireWritable(path);
 }
 
+void requireClashFormat(const fs::path& list)
+{
+  try {
+    io::requireClashFormat(list);
+  }
+  catch (const io::CloudFileError& error) {
+    throw UsageError(std::string("--clashes: ") + error.what());
+  }
+}
+
 /// Everything that can be known to fail is known before the first cloud is loaded.
 void check(const Options& options)
 {
@@ -85,11 +95,7 @@ void check(const Options& options)
   io::requireWritableCloud(options.output);
   if (options.report) requireOwnFile("--report", *options.report, options);
   for (const fs::path& list : options.clashes) {
-    const std::string extension = list.extension().string();
-    if (extension != ".json" && extension != ".csv" && extension != ".html") {
-      throw UsageError("--clashes: " + list.string() + ": unknown extension '" + extension +
-                       "': give a .json, .csv or .html file");
-    }
+    requireClashFormat(list);
     if (!(options.previous && fs::weakly_canonical(list) == fs::weakly_canonical(*options.previous))) {
       requireOwnFile("--clashes", list, options);
     }
@@ -282,14 +288,6 @@ TrajectoryResult alongPath(const Options& options, const std::vector<Eigen::Isom
   return found;
 }
 
-/// The default distance within which colliding points are one clash.
-double clusterDistance(const Options& options, const cli::Density& density)
-{
-  if (options.cluster_distance > 0) return options.cluster_distance;
-  const double least = std::max(options.request.clearance, 4 * density.input.median);
-  return least > 0 ? std::exp2(std::ceil(std::log2(least))) : 1.0;
-}
-
 void warnOfHoles(cli::CollisionReport& report)
 {
   if (!report.density.couldHide(report.clearance)) return;
@@ -306,28 +304,25 @@ std::vector<Clash> listClashes(const Options& options, const std::vector<Eigen::
                                const std::vector<Clash>& earlier, cli::CollisionReport& report)
 {
   cli::Step step("Listing clashes");
-  const double distance = clusterDistance(options, report.density);
-  cli::ClashReport list{options.input.string(),
-                        options.obstacle.string(),
-                        report.clearance,
-                        distance,
-                        {},
-                        findClashes(a.view(), found, distance),
-                        a.view(),
-                        b.view(),
-                        poses,
-                        found,
-                        options.swept};
+  const double distance = options.cluster_distance > 0
+                              ? options.cluster_distance
+                              : io::clusterDistanceFor(options.request.clearance, report.density.input);
+  io::ClashReport list{options.input.string(),
+                       options.obstacle.string(),
+                       report.clearance,
+                       distance,
+                       {},
+                       findClashes(a.view(), found, distance),
+                       a.view(),
+                       b.view(),
+                       poses,
+                       found,
+                       options.swept};
   if (options.previous) {
     list.previous = options.previous->string();
     compareWithEarlier(list.clashes, earlier, distance);
   }
-  for (const fs::path& file : options.clashes) {
-    const std::string text = file.extension() == ".json"  ? cli::clashJson(list)
-                             : file.extension() == ".csv" ? cli::clashCsv(list)
-                                                          : cli::ClashPage(list).html();
-    io::replaceFile(file, [&](std::ostream& out) { out << text; });
-  }
+  for (const fs::path& file : options.clashes) io::writeClashes(file, list);
   report.seconds.clashes = step.done(std::to_string(list.clashes.size()) + " clashes");
   return list.clashes;
 }
@@ -342,7 +337,7 @@ int collide(const Options& options)
 {
   check(options);
   const std::vector<Eigen::Isometry3d> poses = posesOf(options);
-  const std::vector<Clash> earlier = options.previous ? cli::readClashes(*options.previous) : std::vector<Clash>();
+  const std::vector<Clash> earlier = options.previous ? io::readClashes(*options.previous) : std::vector<Clash>();
   cli::CollisionReport report;
   report.clearance = options.request.clearance;
   report.accuracy = options.request.accuracy;

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clashes as a page that opens alone in a browser: a chart of the path, a table, and two pictures of each clash.
-#pragma once
-
-#include "clash_report.h"
+#include <pcl_bsh/filters/io/clash_report.h>
 
 #include <cmath>
 #include <iomanip>
@@ -10,7 +7,8 @@
 #include <sstream>
 #include <string>
 
-namespace pcl_bsh::cli {
+namespace pcl_bsh::io {
+namespace {
 
 /// Builds the page. Pictures thin out clashes of many points; beyond so many clashes there is only the table.
 class ClashPage {
@@ -358,4 +356,11 @@ svg{width:100%;height:auto;display:block}svg text{font:11px system-ui,"DejaVu Sa
   const ClashReport& report_;
 };
 
-} // namespace pcl_bsh::cli
+} // namespace
+
+std::string clashPage(const ClashReport& report)
+{
+  return ClashPage(report).html();
+}
+
+} // namespace pcl_bsh::io

@@ -1,64 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clashes as a list for programs (.json, .csv), and read back to compare with.
-#pragma once
-
+#include <pcl_bsh/filters/io/clash_report.h>
 #include <pcl_bsh/filters/io/cloud_file_error.h>
 #include <pcl_bsh/filters/io/file_bytes.h>
-#include <pcl_bsh/query/clashes.h>
+#include <pcl_bsh/filters/io/replace_file.h>
 
-#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
-#include <filesystem>
+#include <cmath>
 #include <limits>
-#include <optional>
 #include <sstream>
-#include <string>
-#include <vector>
+#include <stdexcept>
 
-namespace pcl_bsh::cli {
+namespace pcl_bsh::io {
+namespace {
 
-/// All that a list of clashes tells, in the frame of the input. Clouds and result are borrowed.
-struct ClashReport {
-  std::string input, obstacle; ///< file names
-  double clearance = 0;
-  double cluster_distance = 0;
-  std::optional<std::string> previous; ///< file name
-  std::vector<Clash> clashes;
-  const PointsView& scan;
-  const PointsView& model;
-  const std::vector<Eigen::Isometry3d>& poses;
-  const TrajectoryResult& found;
-  std::optional<double> swept;
-
-  std::size_t count(ClashStatus status) const
-  {
-    return static_cast<std::size_t>(
-        std::count_if(clashes.begin(), clashes.end(), [&](const Clash& clash) { return clash.status == status; }));
-  }
-
-  Eigen::Vector3d scanPoint(const Clash& clash) const { return vectorOf(scan.point(clash.scan_point)); }
-
-  /// Where the obstacle's point of the closest pair is at the closest pose (swept: when the motion from there begins).
-  Eigen::Vector3d modelPoint(const Clash& clash) const
-  {
-    return poses[static_cast<std::size_t>(clash.closest_pose)] * vectorOf(model.point(clash.model_point));
-  }
-
-  static Eigen::Vector3d vectorOf(const Point3& p) { return {p[0], p[1], p[2]}; }
-};
-
-inline constexpr std::array<std::pair<ClashStatus, const char*>, 3> status_names = {
-    {{ClashStatus::fresh, "new"}, {ClashStatus::persisting, "persisting"}, {ClashStatus::resolved, "resolved"}}};
-
-inline const char* nameOf(ClashStatus status)
-{
-  return status_names[static_cast<std::size_t>(status)].second;
-}
-
-inline nlohmann::ordered_json toJson(const ClashReport& report, const Clash& clash)
+nlohmann::ordered_json toJson(const ClashReport& report, const Clash& clash)
 {
   nlohmann::ordered_json json = {{"id", clash.id},
                                  {"status", nameOf(clash.status)},
@@ -76,7 +32,20 @@ inline nlohmann::ordered_json toJson(const ClashReport& report, const Clash& cla
   return json;
 }
 
-inline std::string clashJson(const ClashReport& report)
+using Format = std::string (*)(const ClashReport&);
+
+Format formatOf(const std::filesystem::path& path)
+{
+  const std::string extension = path.extension().string();
+  if (extension == ".json") return clashJson;
+  if (extension == ".csv") return clashCsv;
+  if (extension == ".html") return clashPage;
+  throw CloudFileError(path, "unknown extension '" + extension + "'", "give a .json, .csv or .html file");
+}
+
+} // namespace
+
+std::string clashJson(const ClashReport& report)
 {
   using Json = nlohmann::ordered_json;
   Json json = {{"input", report.input},
@@ -91,8 +60,7 @@ inline std::string clashJson(const ClashReport& report)
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-/// One clash a line, lengths in the clouds' unit. A resolved one has no pair.
-inline std::string clashCsv(const ClashReport& report)
+std::string clashCsv(const ClashReport& report)
 {
   std::ostringstream csv;
   csv.precision(std::numeric_limits<double>::max_digits10);
@@ -115,11 +83,9 @@ inline std::string clashCsv(const ClashReport& report)
   return csv.str();
 }
 
-/// What an earlier run listed, for compareWithEarlier(): without points and pairs.
-/// @throws io::CloudFileError when it is no such list
-inline std::vector<Clash> readClashes(const std::filesystem::path& path)
+std::vector<Clash> readClashes(const std::filesystem::path& path)
 {
-  const io::FileBytes file(path);
+  const FileBytes file(path);
   try {
     const nlohmann::json list = nlohmann::json::parse(file.view());
     std::vector<Clash> clashes;
@@ -142,9 +108,26 @@ inline std::vector<Clash> readClashes(const std::filesystem::path& path)
     return clashes;
   }
   catch (const std::exception& error) {
-    throw io::CloudFileError(path, std::string("is no list of clashes (") + error.what() + ")",
-                             "give a .json file that --clashes wrote");
+    throw CloudFileError(path, std::string("is no list of clashes (") + error.what() + ")",
+                         "give a .json list that an earlier run wrote");
   }
 }
 
-} // namespace pcl_bsh::cli
+double clusterDistanceFor(double clearance, const Spacing& scan)
+{
+  const double least = std::max(clearance, 4 * scan.median);
+  return least > 0 ? std::exp2(std::ceil(std::log2(least))) : 1.0;
+}
+
+void writeClashes(const std::filesystem::path& path, const ClashReport& report)
+{
+  const std::string text = formatOf(path)(report);
+  replaceFile(path, [&](std::ostream& out) { out << text; });
+}
+
+void requireClashFormat(const std::filesystem::path& path)
+{
+  formatOf(path);
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clashes as lists for programs (.json, .csv), read back to compare with, and as a page for people (.html).
+#pragma once
+
+#include <pcl_bsh/query/clashes.h>
+#include <pcl_bsh/query/spacing.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// All that a list of clashes tells, in the frame of the input. Clouds and result are borrowed.
+struct ClashReport {
+  std::string input, obstacle; ///< file names
+  double clearance = 0;
+  double cluster_distance = 0;
+  std::optional<std::string> previous; ///< file name
+  std::vector<Clash> clashes;
+  const PointsView& scan;
+  const PointsView& model;
+  const std::vector<Eigen::Isometry3d>& poses;
+  const TrajectoryResult& found;
+  std::optional<double> swept;
+
+  std::size_t count(ClashStatus status) const
+  {
+    return static_cast<std::size_t>(
+        std::count_if(clashes.begin(), clashes.end(), [&](const Clash& clash) { return clash.status == status; }));
+  }
+
+  Eigen::Vector3d scanPoint(const Clash& clash) const { return vectorOf(scan.point(clash.scan_point)); }
+
+  /// Where the obstacle's point of the closest pair is at the closest pose (swept: when the motion from there begins).
+  Eigen::Vector3d modelPoint(const Clash& clash) const
+  {
+    return poses[static_cast<std::size_t>(clash.closest_pose)] * vectorOf(model.point(clash.model_point));
+  }
+
+  static Eigen::Vector3d vectorOf(const Point3& p) { return {p[0], p[1], p[2]}; }
+};
+
+inline constexpr std::array<std::pair<ClashStatus, const char*>, 3> status_names = {
+    {{ClashStatus::fresh, "new"}, {ClashStatus::persisting, "persisting"}, {ClashStatus::resolved, "resolved"}}};
+
+inline const char* nameOf(ClashStatus status)
+{
+  return status_names[static_cast<std::size_t>(status)].second;
+}
+
+/// One object per clash, with its closest pair unless it is resolved.
+std::string clashJson(const ClashReport& report);
+
+/// One clash a line, lengths in the clouds' unit. A resolved one has no pair.
+std::string clashCsv(const ClashReport& report);
+
+/// A page that opens alone in a browser: a chart of the path, a table, and two pictures of each clash.
+std::string clashPage(const ClashReport& report);
+
+/// Writes what the extension says: .json, .csv or .html. The file appears complete or not at all.
+/// @throws CloudFileError
+void writeClashes(const std::filesystem::path& path, const ClashReport& report);
+
+/// @throws CloudFileError when writeClashes() knows no such extension
+void requireClashFormat(const std::filesystem::path& path);
+
+/// What an earlier run listed, for compareWithEarlier(): without points and pairs.
+/// @throws CloudFileError when it is no such list
+std::vector<Clash> readClashes(const std::filesystem::path& path);
+
+/// The distance within which colliding points are one clash where the user says none: a power of two of at least the
+/// clearance and four times the scan's spacing, so that it stays the same from run to run.
+double clusterDistanceFor(double clearance, const Spacing& scan);
+
+} // namespace pcl_bsh::io
