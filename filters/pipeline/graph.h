@@ -6,6 +6,7 @@
 #include <pcl_bsh/filters/pipeline/pipeline.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -25,7 +26,8 @@ struct Node {
   bool in_document = true;                                 ///< else it reads a file that another stage's option names
   StageCloudPtr given;                                     ///< instead of a reader's file
 
-  const Value* findOption(Kind kind) const;
+  /// The files of that kind that options name: option and file.
+  std::vector<std::pair<std::string, std::filesystem::path>> filesOf(Kind kind) const;
 };
 
 struct Graph {

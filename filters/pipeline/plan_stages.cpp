@@ -43,21 +43,21 @@ void requireFilesApart(const Graph& graph)
 {
   const auto ancestors = ancestorsOf(graph);
   std::map<fs::path, std::size_t> written;
-  const auto file = [](const Value& name) { return fs::weakly_canonical(std::get<std::string>(name)); };
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
     const Node& writer = graph.nodes[i];
-    const Value* output = writer.findOption(Kind::output_file);
-    if (output == nullptr) continue;
-    const auto [other, is_new] = written.emplace(file(*output), i);
-    if (!is_new) {
-      throw stageError(graph, writer, "filename",
-                       "is what " + graph.nodes[other->second].tag + " writes, too: choose another name");
-    }
-    for (std::size_t k = 0; k < graph.nodes.size(); ++k) {
-      const Value* input = graph.nodes[k].findOption(Kind::input_file);
-      if (input != nullptr && !ancestors[i][k] && file(*input) == file(*output)) {
-        throw stageError(graph, writer, "filename",
-                         "is what " + graph.nodes[k].tag + " reads, maybe later: choose another name");
+    for (const auto& [option, output] : writer.filesOf(Kind::output_file)) {
+      const auto [other, is_new] = written.emplace(output, i);
+      if (!is_new) {
+        throw stageError(graph, writer, option,
+                         "is what " + graph.nodes[other->second].tag + " writes, too: choose another name");
+      }
+      for (std::size_t k = 0; k < graph.nodes.size(); ++k) {
+        if (k == i || ancestors[i][k]) continue; // has read it by then
+        for (const auto& input : graph.nodes[k].filesOf(Kind::input_file)) {
+          if (input.second != output) continue;
+          throw stageError(graph, writer, option,
+                           "is what " + graph.nodes[k].tag + " reads, maybe later: choose another name");
+        }
       }
     }
   }
@@ -65,12 +65,14 @@ void requireFilesApart(const Graph& graph)
 
 } // namespace
 
-const Value* Node::findOption(Kind kind) const
+std::vector<std::pair<std::string, fs::path>> Node::filesOf(Kind kind) const
 {
+  std::vector<std::pair<std::string, fs::path>> files;
   for (std::size_t i = 0; i < options.size(); ++i) {
-    if (type->options[i].kind == kind && std::holds_alternative<std::string>(options[i])) return &options[i];
+    if (type->options[i].kind != kind || !std::holds_alternative<std::string>(options[i])) continue;
+    files.emplace_back(type->options[i].name, fs::weakly_canonical(std::get<std::string>(options[i])));
   }
-  return nullptr;
+  return files;
 }
 
 std::vector<std::unique_ptr<Stage>> planStages(const Graph& graph)

@@ -146,6 +146,54 @@ TEST_F(PipelineProgram, SampleWhatChanged)
   for (std::size_t i = 0; i < come.width; ++i) EXPECT_EQ(valueOf(come, i, "x"), 7);
 }
 
+TEST_F(PipelineProgram, SampleWagonClearance)
+{
+  // A wall 35 cm from the wagon's side, a post 10 cm from it that no pose of the track comes near, and a bracket at 5
+  // cm.
+  std::vector<Place> tunnel, wagon;
+  for (int i = 0; i <= 200; ++i) {
+    for (int k = 0; k <= 10; ++k) tunnel.push_back({0.1 * i, 1.6, 0.1 * k});
+  }
+  const std::size_t post = tunnel.size();
+  for (int k = 5; k < 9; ++k) tunnel.push_back({8.5, 1.35, 0.1 * k});
+  const std::size_t bracket = tunnel.size();
+  for (int k = 2; k < 4; ++k) tunnel.push_back({15, 1.3, 0.1 * k});
+  for (int i = -2; i <= 2; ++i) {
+    for (int k = 0; k <= 10; ++k) {
+      for (const double side : {-1.25, 1.25}) wagon.push_back({0.1 * i, side, 0.1 * k});
+    }
+  }
+  put("tunnel.pcd", cloudOf(tunnel));
+  put("wagon.pcd", cloudOf(wagon));
+  std::string track;
+  for (int pose = 0; pose <= 20; ++pose) track += "1 0 0 " + std::to_string(pose) + " 0 1 0 0 0 0 1 0\n";
+  folder.write("track.txt", track);
+  runSample("wagon_clearance.json");
+
+  const auto list = nlohmann::json::parse(contentOf(folder / "clashes.json"));
+  EXPECT_EQ(list["input"], "tunnel.pcd");
+  EXPECT_EQ(list["poses"], 21);
+  const auto& clashes = list["clashes"];
+  ASSERT_EQ(clashes.size(), 2U);
+  EXPECT_EQ(clashes[0]["points"], 2);
+  EXPECT_NEAR(clashes[0]["distance"].get<double>(), 0.05, 0.005);
+  EXPECT_EQ(clashes[0]["first_pose"], 14) << "on the way from pose 14 to the next";
+  EXPECT_EQ(clashes[1]["points"], 4);
+  EXPECT_NEAR(clashes[1]["distance"].get<double>(), 0.1, 0.005);
+  EXPECT_EQ(clashes[1]["first_pose"], 8);
+  const std::string page = contentOf(folder / "clashes.html");
+  EXPECT_THAT(page, HasSubstr("<h1>2 clashes</h1>"));
+  EXPECT_THAT(page, HasSubstr("wagon along 21 poses through tunnel.pcd"));
+
+  const pcl::PCLPointCloud2 flagged = readCloud(folder / "tunnel_clearance.pcd");
+  ASSERT_EQ(flagged.width, tunnel.size());
+  for (std::size_t i = 0; i < tunnel.size(); ++i) {
+    EXPECT_EQ(valueOf(flagged, i, "collision"), i < post ? 0 : 1) << i;
+    EXPECT_EQ(valueOf(flagged, i, "first_pose"), i < post ? -1 : i < bracket ? 8 : 14) << i;
+    EXPECT_EQ(std::isnan(valueOf(flagged, i, "distance")), i < post) << i;
+  }
+}
+
 TEST_F(PipelineProgram, SampleGeoreferenced)
 {
   // A row of ground points in a UTM zone, and a wire that sags past it: 4 cm away at one end, 6 cm at the other.

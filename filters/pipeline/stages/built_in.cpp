@@ -26,7 +26,8 @@ std::deque<StageType> builtInStages()
           pcdWriter(),
           plyWriter(),
           objWriter(),
-          textWriter()};
+          textWriter(),
+          clashWriter()};
 }
 
 } // namespace pcl_bsh::pipeline

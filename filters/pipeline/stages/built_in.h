@@ -31,6 +31,7 @@ StageType pcdWriter();
 StageType plyWriter();
 StageType objWriter();
 StageType textWriter();
+StageType clashWriter();
 
 /// All of them, in the order of the documentation.
 std::deque<StageType> builtInStages();

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What collides, place by place, as a list.
+#include <pcl_bsh/filters/io/clash_report.h>
+#include <pcl_bsh/filters/io/cloud_file_error.h>
+#include <pcl_bsh/filters/io/replace_file.h>
+#include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/filters/pipeline/stages/collision_question.h>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+struct ClashWriter : Stage, CollisionQuestion {
+  OutputFile filename;
+  std::optional<OutputFile> also;
+  std::optional<double> cluster_distance;
+  std::optional<InputFile> previous;
+  std::string input_name = "input";
+
+  CloudHeader plan(const std::vector<CloudHeader>& inputs) override
+  {
+    check();
+    requireWritable("filename", filename);
+    if (also) requireWritable("also", *also);
+    if (previous) earlier_ = readEarlier(*previous);
+    return inputs[0];
+  }
+
+  StageCloudPtr run(StageClouds&& inputs) override
+  {
+    Filter filter;
+    setUp(filter, inputs[0]);
+    TrajectoryResult found;
+    filter.computeTrajectory(found);
+    write(viewOf(inputs[0]->cloud), found);
+    return inputs[0];
+  }
+
+private:
+  static void requireWritable(const std::string& option, const OutputFile& file)
+  {
+    try {
+      io::requireClashFormat(file.path);
+      io::requireWritable(file.path);
+    }
+    catch (const io::CloudFileError& error) {
+      throw OptionError(option, error.what());
+    }
+  }
+
+  static std::vector<Clash> readEarlier(const InputFile& file)
+  {
+    try {
+      return io::readClashes(file.path);
+    }
+    catch (const io::CloudFileError& error) {
+      throw OptionError("previous", error.what());
+    }
+  }
+
+  double clusterDistance(const PointsView& scan) const
+  {
+    if (cluster_distance) return *cluster_distance;
+    HierarchyOptions options;
+    options.threads = number_of_threads;
+    return io::clusterDistanceFor(clearance, spacingOf(SphereHierarchy(scan, options)));
+  }
+
+  void write(const PointsView& scan, const TrajectoryResult& found) const
+  {
+    const double distance = clusterDistance(scan);
+    const PointsView model = viewOf(obstacle.cloud->cloud);
+    io::ClashReport report{input_name,
+                           obstacle.name,
+                           clearance,
+                           distance,
+                           {},
+                           findClashes(scan, found, distance),
+                           scan,
+                           model,
+                           poses(),
+                           found,
+                           swept > 0 ? std::optional(swept) : std::nullopt};
+    if (previous) {
+      report.previous = previous->path;
+      compareWithEarlier(report.clashes, earlier_, distance);
+    }
+    io::writeClashes(filename.path, report);
+    if (also) io::writeClashes(also->path, report);
+  }
+
+  std::vector<Clash> earlier_;
+};
+
+} // namespace
+
+StageType clashWriter()
+{
+  auto description = describe<ClashWriter>(
+      "writers.clashes",
+      "Lists where the input's points collide with an obstacle, place by place, the nearest first: as JSON or CSV for "
+      "programs, or as a page for browsers. Asks what `filters.bsh_flag` asks with these options; the cloud passes "
+      "unchanged.");
+  return withCollisionOptions(description
+                                  .option(&ClashWriter::filename, "filename",
+                                          "the .json, .csv or .html file to write; it appears complete or not at all")
+                                  .required()
+                                  .option(&ClashWriter::also, "also", "another such file, of the same clashes"))
+      .option(&ClashWriter::cluster_distance, "cluster_distance",
+              "colliding points farther apart are two clashes; null: from clearance and spacing")
+      .unit("m")
+      .above(0)
+      .option(&ClashWriter::previous, "previous",
+              "the .json of an earlier run: tells new, persisting and resolved clashes; may be `filename`")
+      .option(&ClashWriter::input_name, "input_name", "what the list calls the input");
+}
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the stages of this project's own filter ask: an obstacle, where it is, and how near is too near.
+#pragma once
+
+#include <pcl_bsh/filters/collision_filter.h>
+#include <pcl_bsh/filters/pipeline/stage_type.h>
+
+#include <Eigen/Geometry>
+
+#include <optional>
+#include <vector>
+
+namespace pcl_bsh::pipeline {
+
+/// The options of a stage that derives from it, beside Stage.
+struct CollisionQuestion {
+  OtherCloud obstacle;
+  double clearance = 0;
+  std::optional<Pose> pose;
+  std::optional<InputFile> trajectory;
+  double swept = 0;
+  unsigned number_of_threads = 1;
+
+protected:
+  using Filter = CollisionFilter<pcl::PCLPointCloud2>;
+
+  /// For plan(): reads the trajectory, and refuses what the query would refuse.
+  /// @throws OptionError
+  void check();
+
+  /// For run().
+  void setUp(Filter& filter, const StageCloudPtr& input) const;
+
+  /// After check(): at least one.
+  const std::vector<Eigen::Isometry3d>& poses() const noexcept { return poses_; }
+
+private:
+  std::vector<Eigen::Isometry3d> poses_;
+};
+
+template <typename S>
+StageDescription<S>& withCollisionOptions(StageDescription<S>& description)
+{
+  return description.option(&S::obstacle, "obstacle", "the cloud to collide with")
+      .required()
+      .option(&S::clearance, "clearance", "greatest distance that counts as collision, touching included")
+      .unit("m")
+      .atLeast(0)
+      .option(&S::pose, "pose", "of the obstacle in the input's frame; rigid; null: the frames are one")
+      .option(&S::trajectory, "trajectory",
+              "instead of `pose`, a file of poses, one a line: a point collides if it does at any; 12 or 16 numbers of "
+              "a matrix, row by row, or time tx ty tz qx qy qz qw")
+      .option(&S::swept, "swept",
+              "above 0, points collide with the motion between poses, too, to this tolerance; 0: with the poses alone")
+      .unit("m")
+      .atLeast(0)
+      .option(&S::number_of_threads, "number_of_threads", "0: all of the machine's; the result is the same")
+      .atMost(1024);
+}
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The stages that ask for collisions, along trajectories, and the list of clashes: against the filter called directly.
+#include "../filters/clouds.h"
+#include "../io/samples.h"
+#include "run_stage.h"
+
+#include <pcl_bsh/filters/collision_filter.h>
+#include <pcl_bsh/filters/io/clash_report.h>
+#include <pcl_bsh/filters/io/cloud_file.h>
+#include <pcl_bsh/filters/io/pose_file.h>
+#include <pcl_bsh/query/clashes.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <nlohmann/json.hpp>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+using Poses = std::vector<Eigen::Isometry3d>;
+
+std::shared_ptr<const pcl::PCLPointCloud2> pointsOf(const StageCloudPtr& cloud)
+{
+  return {cloud, &cloud->cloud};
+}
+
+std::string quoted(const std::filesystem::path& path)
+{
+  return '"' + path.string() + '"';
+}
+
+/// A cloud in a cube about the origin, and a smaller one that turns and passes through a part of it.
+class CollisionStages : public testing::Test {
+protected:
+  CollisionStages()
+  {
+    auto scan_cloud = std::make_shared<StageCloud>();
+    scan_cloud->cloud = *test::fieldCloud<double>(test::randomPoints(2000, 1));
+    scan = scan_cloud;
+    test::Points model_points = test::randomPoints(200, 2);
+    for (Eigen::Vector3d& p : model_points) p *= 0.2;
+    auto model_cloud = std::make_shared<StageCloud>();
+    model_cloud->cloud = *test::fieldCloud<float>(model_points);
+    model = model_cloud;
+    for (int i = 0; i < 4; ++i) {
+      Eigen::Isometry3d pose(Eigen::AngleAxisd(0.3 * i, Eigen::Vector3d::UnitZ()));
+      pose.translation() = Eigen::Vector3d(0.5 * i - 0.75, 0.1 * i, 0);
+      poses.push_back(pose);
+    }
+    io::writePoses(track, poses);
+  }
+
+  CollisionFilter<pcl::PCLPointCloud2> filter(double swept = 0) const
+  {
+    CollisionFilter<pcl::PCLPointCloud2> direct;
+    direct.setInputCloud(pointsOf(scan));
+    direct.setObstacleCloud(pointsOf(model));
+    direct.setClearance(0.03);
+    direct.setTrajectory(poses);
+    direct.setSwept(swept);
+    return direct;
+  }
+
+  /// @param options after those that say what filter() is told
+  StageCloudPtr output(const std::string& type, const std::string& options = "") const
+  {
+    return outputOf(scan, stage(type, R"("clearance": 0.03, "trajectory": )" + quoted(track) + options), model);
+  }
+
+  static std::string stage(const std::string& type, const std::string& options)
+  {
+    return R"({"type": ")" + type + R"(", "obstacle": "other", )" + options + "}";
+  }
+
+  std::string error(const std::string& type, const std::string& options) const
+  {
+    return errorOf([&] { runStage(scan, stage(type, options), model); });
+  }
+
+  const io::TemporaryFolder folder;
+  const std::filesystem::path track = folder / "track.txt";
+  StageCloudPtr scan, model;
+  Poses poses;
+};
+
+TEST_F(CollisionStages, FlagAlongATrajectory)
+{
+  for (const double swept : {0.0, 0.01}) {
+    auto direct = filter(swept);
+    direct.setKeepFlagged(true);
+    pcl::PCLPointCloud2 expected;
+    direct.filter(expected);
+    const StageCloudPtr flagged = output("filters.bsh_flag", R"(, "swept": )" + std::to_string(swept));
+    ASSERT_EQ(flagged->cloud.fields.size(), scan->cloud.fields.size() + 4);
+    EXPECT_EQ(flagged->cloud.fields.back().name, "closest_pose");
+    EXPECT_TRUE(flagged->cloud.data == expected.data) << swept;
+  }
+}
+
+TEST_F(CollisionStages, SelectAlongATrajectory)
+{
+  for (const double swept : {0.0, 0.01}) {
+    auto direct = filter(swept);
+    for (const bool colliding : {false, true}) {
+      direct.setNegative(colliding);
+      pcl::PCLPointCloud2 expected;
+      direct.filter(expected);
+      ASSERT_GT(expected.width, 0U);
+      const std::string options = R"(, "swept": )" + std::to_string(swept);
+      for (const char* const keep : {R"(, "keep": "colliding")", R"(, "negative": true)"}) {
+        const StageCloudPtr kept = output("filters.bsh_collision", options + (colliding ? keep : ""));
+        EXPECT_TRUE(kept->cloud.data == expected.data) << swept << keep;
+      }
+    }
+  }
+}
+
+TEST_F(CollisionStages, SweptFindsMoreThanPosesAlone)
+{
+  const auto colliding = [&](double swept) {
+    std::vector<std::uint8_t> flags;
+    filter(swept).computeFlags(flags);
+    return std::count(flags.begin(), flags.end(), std::uint8_t{1});
+  };
+  EXPECT_LT(colliding(0), colliding(0.01));
+}
+
+TEST_F(CollisionStages, FieldsOfATrajectoryAreKnownBeforehand)
+{
+  io::writeCloud(folder / "scan.pcd", scan->cloud);
+  const auto validate = [&](const std::string& options) {
+    Pipeline::parse("[" + quoted(folder / "scan.pcd") + R"(, {"type": "filters.bsh_flag", "obstacle": )" +
+                    quoted(folder / "scan.pcd") + options +
+                    R"(}, {"type": "filters.pass_through", "filter_field_name": "first_pose"}, )" +
+                    quoted(folder / "out.pcd") + "]")
+        .validate();
+  };
+  EXPECT_NO_THROW(validate(R"(, "trajectory": )" + quoted(track)));
+  EXPECT_THAT(errorOf([&] { validate(""); }), HasSubstr("/2/filter_field_name: "));
+}
+
+TEST_F(CollisionStages, RefuseWhatMakesNoSense)
+{
+  const std::string along = R"("trajectory": )" + quoted(track);
+  for (const std::string type : {"filters.bsh_flag", "filters.bsh_collision", "writers.clashes"}) {
+    const std::string file = type == "writers.clashes" ? R"("filename": )" + quoted(folder / "a.csv") + ", " : "";
+    EXPECT_THAT(error(type, file + along + R"(, "pose": [0, 0, 0, 0, 0, 0])"),
+                EndsWith("/trajectory: and `pose` are both given: give one of them"));
+    EXPECT_THAT(error(type, file + R"("swept": 0.1)"),
+                EndsWith("/swept: is given, but nothing moves: give a `trajectory`, too"));
+    EXPECT_THAT(error(type, file + along + R"(, "swept": -1)"),
+                HasSubstr("/swept: is -1: give a number of at least 0"));
+    EXPECT_THAT(error(type, file + R"("trajectory": "none.txt")"),
+                EndsWith("/trajectory: none.txt: no such file: check the name"));
+    EXPECT_THAT(error(type, file + R"("pose": [1,0,0,0, 0,2,0,0, 0,0,1,0])"), HasSubstr("/pose: "));
+    EXPECT_THAT(error(type, file + R"("clearance": -0.1)"), HasSubstr("/clearance: is -0.1: give a number"));
+    const auto skewed = folder.write("skewed.txt", "1 0 0 0 0 2 0 0 0 0 1 0\n");
+    EXPECT_THAT(error(type, file + R"("trajectory": )" + quoted(skewed)),
+                HasSubstr("skewed.txt: line 1 holds no pose, not rigid"));
+  }
+}
+
+/// Tests of the list.
+class ClashWriter : public CollisionStages {
+protected:
+  nlohmann::json listOf(const std::string& options) const
+  {
+    const std::string merge = R"(, {"type": "filters.merge"})";
+    const std::string writer = stage("writers.clashes", R"("clearance": 0.03, "trajectory": )" + quoted(track) +
+                                                            R"(, "filename": )" + quoted(list) + options);
+    EXPECT_TRUE(outputOf(scan, writer + merge, model)->cloud.data == scan->cloud.data) << "the cloud passes";
+    return nlohmann::json::parse(io::contentOf(list));
+  }
+
+  const std::filesystem::path list = folder / "clashes.json";
+};
+
+TEST_F(ClashWriter, ListsWhatTheFilterFinds)
+{
+  for (const double swept : {0.0, 0.01}) {
+    TrajectoryResult found;
+    filter(swept).computeTrajectory(found);
+    const std::vector<Clash> expected = findClashes(viewOf(scan->cloud), found, 0.05);
+    ASSERT_GT(expected.size(), 5U);
+    const nlohmann::json written =
+        listOf(R"(, "input_name": "hall", "cluster_distance": 0.05, "swept": )" + std::to_string(swept));
+    EXPECT_EQ(written["input"], "hall");
+    EXPECT_EQ(written["obstacle"], "other");
+    EXPECT_EQ(written["clearance"], 0.03);
+    EXPECT_EQ(written["poses"], 4);
+    EXPECT_EQ(written["swept"], swept > 0 ? nlohmann::json(swept) : nlohmann::json());
+    ASSERT_EQ(written["clashes"].size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const nlohmann::json& clash = written["clashes"][i];
+      EXPECT_EQ(clash["id"], expected[i].id);
+      EXPECT_EQ(clash["points"], expected[i].points);
+      EXPECT_EQ(clash["distance"], expected[i].distance);
+      EXPECT_EQ(clash["first_pose"], expected[i].first_pose);
+      EXPECT_EQ(clash["closest_pose"], expected[i].closest_pose);
+      EXPECT_EQ(clash["closest_pair"]["obstacle"]["point"], expected[i].model_point);
+    }
+  }
+}
+
+TEST_F(ClashWriter, WritesEveryFormatAndComparesRuns)
+{
+  const std::string near = R"(, "cluster_distance": 0.05)";
+  const nlohmann::json first = listOf(near + R"(, "also": )" + quoted(folder / "a.html"));
+  EXPECT_THAT(io::contentOf(folder / "a.html"), HasSubstr("<h1>" + std::to_string(first["clashes"].size())));
+  EXPECT_EQ(first["clashes"][0]["status"], "new");
+  const nlohmann::json again =
+      listOf(near + R"(, "previous": )" + quoted(list) + R"(, "also": )" + quoted(folder / "a.csv"));
+  EXPECT_EQ(again["clashes"][0]["status"], "persisting") << "the list is brought up to date";
+  EXPECT_EQ(again["previous"], list.string());
+  const std::string csv = io::contentOf(folder / "a.csv");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), first["clashes"].size() + 1);
+  EXPECT_THAT(csv, Not(HasSubstr(",new,")));
+}
+
+TEST_F(ClashWriter, HasASensibleClusterDistance)
+{
+  EXPECT_EQ(listOf("")["cluster_distance"],
+            io::clusterDistanceFor(0.03, spacingOf(SphereHierarchy(viewOf(scan->cloud)))));
+  EXPECT_EQ(io::clusterDistanceFor(0.3, {}), 0.5);
+  EXPECT_EQ(io::clusterDistanceFor(0.1, {100, 0.25, 0.25}), 1.0);
+  EXPECT_EQ(io::clusterDistanceFor(0, {}), 1.0);
+}
+
+TEST_F(ClashWriter, RefusesFilesItCannotWriteOrRead)
+{
+  const std::string type = "writers.clashes";
+  const auto file = [&](const std::string& name) { return R"("filename": )" + quoted(folder / name); };
+  EXPECT_THAT(error(type, R"("clearance": 0)"), HasSubstr("/filename: is missing"));
+  EXPECT_THAT(error(type, R"("filename": "a.txt")"),
+              EndsWith("/filename: a.txt: unknown extension '.txt': give a .json, .csv or .html file"));
+  EXPECT_THAT(error(type, file("none/a.csv")), HasSubstr("there is no folder"));
+  EXPECT_THAT(error(type, file("a.csv") + R"(, "also": "a.pdf")"), HasSubstr("/also: a.pdf: unknown extension"));
+  EXPECT_THAT(error(type, file("a.csv") + R"(, "also": )" + quoted(folder / "a.csv")),
+              EndsWith("/also: is what writers_clashes1 writes, too: choose another name"));
+  EXPECT_THAT(error(type, file("a.csv") + R"(, "previous": "none.json")"), HasSubstr("/previous: none.json: no such"));
+  folder.write("odd.json", R"({"clashes": [{"id": 7}]})");
+  EXPECT_THAT(error(type, file("a.csv") + R"(, "previous": )" + quoted(folder / "odd.json")),
+              HasSubstr("odd.json: is no list of clashes ("));
+  EXPECT_THAT(error(type, file("a.csv") + R"(, "cluster_distance": 0)"), HasSubstr("give a number above 0, in m"));
+  EXPECT_EQ(folder.files(), 2U) << "the track and the odd list: nothing is half written";
+}
+
+} // namespace
+} // namespace pcl_bsh::pipeline
