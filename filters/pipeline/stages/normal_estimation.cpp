@@ -2,10 +2,10 @@
 #include <pcl_bsh/filters/pipeline/stages/added_fields.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/float_cloud.h>
+#include <pcl_bsh/search/bounding_sphere_search.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <pcl/features/normal_3d_omp.h>
-#include <pcl/search/kdtree.h>
 
 #include <algorithm>
 #include <cstring>
@@ -15,7 +15,7 @@
 namespace pcl_bsh::pipeline {
 namespace {
 
-using Search = pcl::search::KdTree<pcl::PointXYZ>;
+using Search = search::BoundingSphereSearch<pcl::PointXYZ>;
 
 const std::vector<std::string> normal_fields = {"normal_x", "normal_y", "normal_z", "curvature"};
 
