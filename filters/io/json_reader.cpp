@@ -1,49 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/io/cloud_file_error.h>
 #include <pcl_bsh/filters/io/json_reader.h>
+#include <pcl_bsh/filters/io/nearest_name.h>
+#include <pcl_bsh/filters/io/pose_text.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <numeric>
-#include <set>
 
 namespace pcl_bsh::io {
 namespace {
-
-/// On one line, without anything that steers a terminal, and not too long.
-std::string shown(const Json& json)
-{
-  std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
-  if (text.size() > 60) text = text.substr(0, 57) + "...";
-  return text;
-}
 
 std::string printable(std::string line)
 {
   const auto steers = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
   std::replace_if(line.begin(), line.end(), steers, '?');
   return line;
-}
-
-bool alike(char a, char b)
-{
-  return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-}
-
-std::size_t lettersBetween(std::string_view a, std::string_view b)
-{
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (alike(a[i], b[j]) ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
 }
 
 std::string listed(const std::vector<std::string>& names)
@@ -61,41 +32,13 @@ JsonError::JsonError(const std::string& file, const std::string& place, const st
 {
 }
 
-std::string nearestName(std::string_view name, const std::vector<std::string>& valid)
+Json parseJson(std::string_view text, const std::string& file)
 {
-  name = name.substr(0, 64);
-  std::string nearest;
-  std::size_t least = 1000;
-  for (const std::string& candidate : valid) {
-    const std::size_t letters = lettersBetween(name, candidate);
-    if (letters >= least) continue;
-    least = letters;
-    nearest = candidate;
-  }
-  return nearest;
-}
-
-Json parseJson(const std::string& text, const std::string& file)
-{
-  std::vector<std::set<std::string>> keys; // of the objects that are open
-  std::string twice;
-  const Json::parser_callback_t watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
-    if (depth > 100) throw JsonError(file, "", "is nested more than 100 deep", "write it flatter");
-    if (event == Json::parse_event_t::object_start) keys.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys.pop_back();
-    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-      twice = parsed.get<std::string>();
-    return true;
-  };
   try {
-    Json json = Json::parse(text, watch, true, true);
-    if (!twice.empty()) throw JsonError(file, "", "key '" + twice + "' is twice in one object", "keep one of them");
-    return json;
+    return parseJson(text);
   }
-  catch (const Json::parse_error& error) {
-    const std::size_t end = std::min<std::size_t>(error.byte, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
-    throw JsonError(file, "line " + std::to_string(line), "is no JSON", "mend what stands there or just before");
+  catch (const FormatError& error) {
+    throw JsonError(file, "", error.what(), error.remedy());
   }
 }
 
@@ -116,7 +59,7 @@ void JsonReader::requireKeys(const std::vector<std::string>& valid) const
   if (!json_->is_object()) fail(shown(*json_) + " is no object", "give { ... } with any of " + listed(valid));
   for (const auto& [key, value] : json_->items())
     if (std::find(valid.begin(), valid.end(), key) == valid.end())
-      fail("key '" + key + "' is unknown", "did you mean '" + nearestName(key, valid) + "'?");
+      fail("key '" + key + "' is unknown", suggestion(key, valid));
 }
 
 JsonReader JsonReader::at(const char* key) const
@@ -174,7 +117,7 @@ std::string JsonReader::oneOf(const std::vector<std::string>& valid) const
 {
   const std::string name = text();
   if (std::find(valid.begin(), valid.end(), name) == valid.end())
-    fail("'" + name + "' is unknown", "did you mean '" + nearestName(name, valid) + "'?");
+    fail("'" + name + "' is unknown", suggestion(name, valid));
   return name;
 }
 
@@ -199,19 +142,10 @@ Eigen::Isometry3d JsonReader::pose() const
   if (count != 3 && count != 6 && count != 12 && count != 16)
     fail(shown(*json_) + " is no pose",
          "give [x, y, z], [x, y, z, roll, pitch, yaw] with radians, or the 12 or 16 numbers of a matrix, row by row");
-  const std::vector<double> n = numbers(count);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  if (count <= 6) {
-    pose.translation() = Eigen::Vector3d(n[0], n[1], n[2]);
-    using Eigen::AngleAxisd, Eigen::Vector3d;
-    if (count == 6)
-      pose.linear() = (AngleAxisd(n[5], Vector3d::UnitZ()) * AngleAxisd(n[4], Vector3d::UnitY()) *
-                       AngleAxisd(n[3], Vector3d::UnitX()))
-                          .toRotationMatrix();
-    return pose;
-  }
-  for (std::size_t i = 0; i < count; ++i)
-    pose.matrix()(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = n[i];
+  std::vector<double> n = numbers(count);
+  if (count == 3) n.resize(6);
+  const Eigen::Isometry3d pose = poseFrom(n);
+  if (count <= 6) return pose;
   const Eigen::Matrix3d r = pose.linear();
   const bool last_row = pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
   if (!last_row || !((r.transpose() * r - Eigen::Matrix3d::Identity()).norm() <= 1e-6) || r.determinant() < 0.0)

@@ -2,7 +2,7 @@
 // A JSON document read strictly: whatever is wrong is named with its place in the document.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <pcl_bsh/filters/io/json_document.h>
 
 #include <Eigen/Geometry>
 
@@ -15,20 +15,14 @@
 
 namespace pcl_bsh::io {
 
-using Json = nlohmann::ordered_json;
-
 /// what() is one line: `file: place: what is wrong: what to do`.
 class JsonError : public std::runtime_error {
 public:
   JsonError(const std::string& file, const std::string& place, const std::string& wrong, const std::string& remedy);
 };
 
-/// The valid name that takes the fewest letters to get to from `name`; empty when there is none.
-std::string nearestName(std::string_view name, const std::vector<std::string>& valid);
-
-/// Parses a text; // and /* */ comments are allowed, a key twice in one object is not.
-/// @throws JsonError
-Json parseJson(const std::string& text, const std::string& file);
+/// parseJson() of what a file holds. @throws JsonError
+Json parseJson(std::string_view text, const std::string& file);
 
 /// A value of the document, and where it stands: `objects[3].motion`.
 class JsonReader {

@@ -5,6 +5,7 @@
 #include <pcl_bsh/filters/io/cloud_file_error.h>
 #include <pcl_bsh/filters/io/file_bytes.h>
 #include <pcl_bsh/filters/io/json_reader.h>
+#include <pcl_bsh/filters/io/nearest_name.h>
 #include <pcl_bsh/filters/io/pose_file.h>
 #include <pcl_bsh/filters/io/shape_points.h>
 
@@ -176,9 +177,8 @@ private:
   {
     const std::string name = reader.text();
     if (std::find(cloud_names_.begin(), cloud_names_.end(), name) == cloud_names_.end())
-      reader.fail("no cloud is called '" + name + "'", cloud_names_.empty()
-                                                           ? "add it to 'clouds'"
-                                                           : "did you mean '" + nearestName(name, cloud_names_) + "'?");
+      reader.fail("no cloud is called '" + name + "'",
+                  cloud_names_.empty() ? "add it to 'clouds'" : suggestion(name, cloud_names_));
     return name;
   }
 

@@ -149,7 +149,7 @@ std::string jsonSchema()
                        {"definitions", Json{{"pipeline", list}}}};
   Json complete = schema;
   complete["definitions"].update(definitions);
-  return printed(complete);
+  return io::printed(complete);
 }
 
 std::string stageDocumentation()

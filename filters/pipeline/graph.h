@@ -2,7 +2,7 @@
 // A document, understood: which stages there are, with which options, and who reads whom.
 #pragma once
 
-#include <pcl_bsh/filters/pipeline/json_document.h>
+#include <pcl_bsh/filters/io/json_document.h>
 #include <pcl_bsh/filters/pipeline/pipeline.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 
@@ -14,6 +14,8 @@
 #include <vector>
 
 namespace pcl_bsh::pipeline {
+
+using io::Json;
 
 struct Node {
   const StageType* type = nullptr;

@@ -13,7 +13,7 @@ namespace {
 
 [[noreturn]] void refuse(const Json& json, const Option& option)
 {
-  throw std::invalid_argument("is " + shown(json) + ": give " + expectation(option));
+  throw std::invalid_argument("is " + io::shown(json) + ": give " + expectation(option));
 }
 
 /// A limit as people write it.
@@ -120,7 +120,7 @@ Value poseOf(const Json& json, const Option& option)
     pose.matrix = io::poseFrom(numbersOf(json, json.size(), option)).matrix();
   }
   if (!pose.matrix.allFinite() || pose.matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    throw std::invalid_argument("is " + shown(json) + ": give finite numbers, and 0 0 0 1 as the last row");
+    throw std::invalid_argument("is " + io::shown(json) + ": give finite numbers, and 0 0 0 1 as the last row");
   }
   return OptionType<Pose>::to(pose);
 }
@@ -212,9 +212,9 @@ Json jsonOfText(const std::string& text, const Option& option)
   if (is_name && !(option.nullable && text == "null")) return text;
   for (const std::string& json : {text, "[" + text + "]"}) {
     try {
-      return parseJson(json);
+      return io::parseJson(json);
     }
-    catch (const JsonError&) {
+    catch (const io::FormatError&) {
       // A text, then: the name of a pose's file, or what valueOf() will refuse.
     }
   }

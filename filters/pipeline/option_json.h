@@ -2,12 +2,14 @@
 // Options between JSON and their values.
 #pragma once
 
-#include <pcl_bsh/filters/pipeline/json_document.h>
+#include <pcl_bsh/filters/io/json_document.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 
 #include <string>
 
 namespace pcl_bsh::pipeline {
+
+using io::Json;
 
 /// What may be written: "a number above 0", "one of free, colliding".
 std::string expectation(const Option& option);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/io/cloud_file_error.h>
+#include <pcl_bsh/filters/io/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
-#include <pcl_bsh/filters/pipeline/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/option_json.h>
 
 #include <algorithm>
@@ -87,7 +88,7 @@ public:
     readTopLevel(document);
     const std::string list = bare ? "" : "/pipeline";
     const Json& stages = document["pipeline"];
-    if (!stages.is_array() || stages.empty()) fail(list, "is " + shown(stages) + ": give a list of stages");
+    if (!stages.is_array() || stages.empty()) fail(list, "is " + io::shown(stages) + ": give a list of stages");
 
     noteTags(stages);
     for (std::size_t i = 0; i < stages.size(); ++i) {
@@ -107,21 +108,21 @@ private:
   Json read(std::string_view text) const
   {
     try {
-      return parseJson(text);
+      return io::parseJson(text);
     }
-    catch (const JsonError& error) {
-      fail("", error.what());
+    catch (const io::FormatError& error) {
+      fail("", error.what() + (": " + error.remedy()));
     }
   }
 
   void readTopLevel(const Json& document)
   {
-    if (!document.is_object()) fail("", "is " + shown(document) + ": give {\"pipeline\": [...]}");
+    if (!document.is_object()) fail("", "is " + io::shown(document) + ": give {\"pipeline\": [...]}");
     // `metadata` is what a run adds to the pipeline it reports; it says nothing about what to do.
     const std::vector<std::string> keys = {"pipeline", "user_data", "metadata", "$schema"};
     for (const auto& item : document.items()) {
       if (std::find(keys.begin(), keys.end(), item.key()) == keys.end()) {
-        fail("/" + escaped(item.key()), "is no key of a pipeline: " + suggestion(item.key(), keys));
+        fail("/" + escaped(item.key()), "is no key of a pipeline: " + io::suggestion(item.key(), keys));
       }
     }
     if (!document.contains("pipeline")) fail("/pipeline", "is missing: give a list of stages");
@@ -141,7 +142,7 @@ private:
   void readStage(Json stage, const std::string& path, bool last)
   {
     if (stage.is_string()) stage = Json{{"filename", stage}};
-    if (!stage.is_object()) fail(path, "is " + shown(stage) + ": give a file name or {\"type\": ...}");
+    if (!stage.is_object()) fail(path, "is " + io::shown(stage) + ": give a file name or {\"type\": ...}");
     Node node;
     node.path = path;
     node.type = &readType(stage, path, last);
@@ -160,18 +161,18 @@ private:
     if (stage.contains("type")) {
       const Json& name = stage["type"];
       const std::vector<std::string> names = typeNames();
-      if (!name.is_string()) fail(path + "/type", "is " + shown(name) + ": give the name of a stage");
+      if (!name.is_string()) fail(path + "/type", "is " + io::shown(name) + ": give the name of a stage");
       const StageType* type = findStageType(name.get<std::string>());
       if (type != nullptr) return *type;
       fail(path + "/type",
-           shown(name) + " is no type of stage: " + suggestion(name.get_ref<const std::string&>(), names));
+           io::shown(name) + " is no type of stage: " + io::suggestion(name.get_ref<const std::string&>(), names));
     }
     if (!stage.contains("filename")) fail(path + "/type", "is missing: give the type of the stage");
     const Json& file = stage["filename"];
-    if (!file.is_string()) fail(path + "/filename", "is " + shown(file) + ": give the name of a file");
+    if (!file.is_string()) fail(path + "/filename", "is " + io::shown(file) + ": give the name of a file");
     const StageType* type = typeOfFile(file.get<std::string>(), last);
     if (type != nullptr) return *type;
-    fail(path, shown(file) + " has none of the extensions that can be " + (last ? "written" : "read") + ": give " +
+    fail(path, io::shown(file) + " has none of the extensions that can be " + (last ? "written" : "read") + ": give " +
                    knownExtensions(last) + ", or a type");
   }
 
@@ -180,10 +181,10 @@ private:
     if (!stage.contains("tag")) return madeUpTag(*node.type);
     const Json& tag = stage["tag"];
     if (!tag.is_string() || !isTag(tag.get<std::string>())) {
-      fail(node.path + "/tag", "is " + shown(tag) + ": give letters, digits and underscores, no digit first");
+      fail(node.path + "/tag", "is " + io::shown(tag) + ": give letters, digits and underscores, no digit first");
     }
     const auto text = tag.get<std::string>();
-    if (findTag(text) != nullptr) fail(node.path + "/tag", "is " + shown(tag) + " a second time: rename one");
+    if (findTag(text) != nullptr) fail(node.path + "/tag", "is " + io::shown(tag) + " a second time: rename one");
     return text;
   }
 
@@ -233,7 +234,7 @@ private:
     for (const Option& valid : node.type->options) names.push_back(valid.name);
     names.insert(names.end(), common_keys.begin(), common_keys.end());
     fail(node.tag + ": " + node.path + "/" + escaped(name),
-         "is no option of " + node.type->name + ": " + suggestion(name, names));
+         "is no option of " + node.type->name + ": " + io::suggestion(name, names));
   }
 
   void readOptions(const Json& stage, Node& node) const
@@ -270,7 +271,7 @@ private:
         }
       }
       else {
-        throw stageError(graph_, node, "inputs", "is " + shown(inputs) + ": give a list of tags");
+        throw stageError(graph_, node, "inputs", "is " + io::shown(inputs) + ": give a list of tags");
       }
     }
     else if (!node.type->isReader() && !graph_.nodes.empty()) {
@@ -294,16 +295,16 @@ private:
 
   std::size_t inputOf(const Json& tag, const Node& node, const std::string& option) const
   {
-    if (!tag.is_string()) throw stageError(graph_, node, option, "is " + shown(tag) + ": give the tag of a stage");
+    if (!tag.is_string()) throw stageError(graph_, node, option, "is " + io::shown(tag) + ": give the tag of a stage");
     const Node* input = findTag(tag.get<std::string>());
     if (input != nullptr) return positionOf(input);
     if (given_tags_.count(tag.get<std::string>()) != 0) {
       throw stageError(graph_, node, option,
-                       "is " + shown(tag) + ", which comes later: put that stage before this one");
+                       "is " + io::shown(tag) + ", which comes later: put that stage before this one");
     }
     throw stageError(graph_, node, option,
-                     "is " + shown(tag) + ", which is no earlier stage's tag: " +
-                         suggestion(tag.get_ref<const std::string&>(), earlierTags()));
+                     "is " + io::shown(tag) + ", which is no earlier stage's tag: " +
+                         io::suggestion(tag.get_ref<const std::string&>(), earlierTags()));
   }
 
   /// Options that name other clouds: the tag of a stage or else a file, which gets a reader of its own.
@@ -320,8 +321,8 @@ private:
       const StageType* type = typeOfFile(name, false);
       if (type == nullptr) {
         throw stageError(graph_, node, option.name,
-                         "is " + shown(name) +
-                             ", neither an earlier stage's tag nor a cloud file: " + suggestion(name, earlierTags()));
+                         "is " + io::shown(name) + ", neither an earlier stage's tag nor a cloud file: " +
+                             io::suggestion(name, earlierTags()));
       }
       Node reader;
       reader.type = type;
@@ -340,7 +341,7 @@ private:
       if (used_[i]) continue;
       const OptionOverride& given = overrides_[i];
       fail("--stage." + given.tag + "." + given.option,
-           "no stage has the tag '" + given.tag + "': " + suggestion(given.tag, earlierTags()));
+           "no stage has the tag '" + given.tag + "': " + io::suggestion(given.tag, earlierTags()));
     }
   }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/io/cloud_file_error.h>
 #include <pcl_bsh/filters/io/file_bytes.h>
+#include <pcl_bsh/filters/io/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
-#include <pcl_bsh/filters/pipeline/nearest_name.h>
 
 #include <algorithm>
 #include <utility>
@@ -58,7 +58,7 @@ void Pipeline::setCloud(const std::string& tag, pipeline::StageCloudPtr cloud)
     node.given = std::move(cloud);
     return;
   }
-  throw PipelineError(graph_->name + ": no reader has the tag '" + tag + "': " + pipeline::suggestion(tag, readers));
+  throw PipelineError(graph_->name + ": no reader has the tag '" + tag + "': " + io::suggestion(tag, readers));
 }
 
 void Pipeline::setNumberOfThreads(unsigned threads)

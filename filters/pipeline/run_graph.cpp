@@ -208,7 +208,7 @@ private:
     Json metadata = documentOf(graph_);
     metadata["metadata"] = {
         {"document", graph_.name}, {"seconds", seconds}, {"peak_bytes", peakBytes()}, {"stages", stages}};
-    result.metadata = printed(metadata);
+    result.metadata = io::printed(metadata);
     return result;
   }
 

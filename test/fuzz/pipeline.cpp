@@ -58,7 +58,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
   try {
     Graph graph = parseGraph(std::string_view(reinterpret_cast<const char*>(data), size), {}, "fuzzed");
     const Json document = documentOf(graph);
-    fuzz::require(documentOf(parseGraph(printed(document), {}, "again")) == document,
+    fuzz::require(documentOf(parseGraph(io::printed(document), {}, "again")) == document,
                   "another pipeline when read again");
     if (!isHarmless(graph)) return 0;
     static const StageCloudPtr cloud = smallCloud();

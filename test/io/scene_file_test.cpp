@@ -134,10 +134,12 @@ TEST(SceneFile, NamesThePlaceOfWhatIsWrong)
   expect("\"radius\": 0.5 }, \"spacing\": 0.2", "\"radius\": 0.5 }, \"spacing\": 1e-9",
          "clouds.ball: would have more than 1e8 points: give a larger 'spacing'");
   expect(", \"deform\": 1.5", "", "objects[4].wave: needs the effect 'deform': add \"deform\": 1.5 to 'effects'");
-  expect("\"steps\": 20, ", "\"steps\": 20, \"steps\": 21, ", "key 'steps' is twice in one object: keep one of them");
+  expect("\"steps\": 20, ", "\"steps\": 20, \"steps\": 21, ", "says the key \"steps\" twice in one object: remove one");
   expect("{ \"sphere\": { \"radius\": 0.5 }, \"spacing\": 0.2 }", "\"nowhere.ply\"",
          "clouds.ball: no such file: nowhere.ply: check the name");
-  expect("\"dt\": 0.5", "\"dt\" 0.5", "line 26: is no JSON: mend what stands there or just before");
+  expect("\"dt\": 0.5", "\"dt\" 0.5",
+         "is no JSON: line 26, column 96: syntax error while parsing object separator - unexpected number literal; "
+         "expected ':': mend what stands there or just before");
 }
 
 TEST(SceneFile, RefusesWhatIsNoScene)
@@ -146,7 +148,8 @@ TEST(SceneFile, RefusesWhatIsNoScene)
   EXPECT_THAT(errorOf("[]"), HasSubstr("is no object"));
   EXPECT_THAT(errorOf("{}"), HasSubstr("'clouds' is missing"));
   EXPECT_THAT(errorOf(R"({"clouds": {}, "objects": []})"), HasSubstr("objects: the scene has no objects"));
-  EXPECT_THAT(errorOf(std::string(200, '[') + std::string(200, ']')), HasSubstr("nested more than 100 deep"));
+  EXPECT_THAT(errorOf(std::string(200, '[') + std::string(200, ']')),
+              HasSubstr("nests deeper than 100 levels: flatten it"));
 }
 
 TEST(SceneFile, FindsCloudsBesideItself)

@@ -63,14 +63,14 @@ std::string through(const std::string& name, const std::string& json)
 {
   const Option& option = *everything().findOption(name);
   Everything stage;
-  option.set(stage, valueOf(parseJson(json), option));
+  option.set(stage, valueOf(io::parseJson(json), option));
   return jsonOf(option.get(stage)).dump();
 }
 
 std::string refusal(const std::string& name, const std::string& json)
 {
   try {
-    valueOf(parseJson(json), *everything().findOption(name));
+    valueOf(io::parseJson(json), *everything().findOption(name));
   }
   catch (const std::invalid_argument& error) {
     return error.what();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How stages run: in which order, at the same time, what they hold and what they report.
-#include <pcl_bsh/filters/pipeline/json_document.h>
+#include <pcl_bsh/filters/io/json_document.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 
 #include "../filters/clouds.h"
@@ -212,11 +212,11 @@ TEST_F(RunGraph, MetadataSaysWhatRanAndRunsAgain)
   const PipelineResult first = Pipeline::parse(json).run();
   const pcl::PCLPointCloud2 expected = io::readCloud(file("out.pcd"));
 
-  const Json metadata = parseJson(first.metadata);
+  const io::Json metadata = io::parseJson(first.metadata);
   EXPECT_EQ(metadata["pipeline"].size(), 5U);
   EXPECT_EQ(metadata["pipeline"][1]["minimum_points_number_per_voxel"], 0);
   EXPECT_EQ(metadata["pipeline"][1]["user_data"], "kept");
-  const Json& stages = metadata["metadata"]["stages"];
+  const io::Json& stages = metadata["metadata"]["stages"];
   ASSERT_EQ(stages.size(), 6U) << "the obstacle's reader is a stage, too";
   EXPECT_EQ(stages[0]["points_out"], 500);
   EXPECT_EQ(stages[1]["points_in"], 500);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/io/field_type.h>
-#include <pcl_bsh/filters/pipeline/nearest_name.h>
+#include <pcl_bsh/filters/io/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/selecting_stage.h>
 
@@ -63,7 +63,7 @@ private:
       if (field.count <= 1) names.push_back(field.name);
     }
     throw OptionError("filter_field_name", "is '" + filter_field_name + "', which is no field with one value: " +
-                                               suggestion(filter_field_name, names));
+                                               io::suggestion(filter_field_name, names));
   }
 };
 

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/pipeline/json_document.h>
+#include <pcl_bsh/filters/io/cloud_file_error.h>
+#include <pcl_bsh/filters/io/json_document.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pcl_bsh::pipeline {
+namespace pcl_bsh::io {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 auto refusedWith(const std::string& text)
 {
-  return ThrowsMessage<JsonError>(HasSubstr(text));
+  return ThrowsMessage<FormatError>(HasSubstr(text));
 }
 
 TEST(JsonDocument, CommentsAreIgnored)
@@ -47,4 +48,4 @@ TEST(JsonDocument, ShowsValuesOnOneShortLine)
   EXPECT_LT(shown(Json(std::string(1000, 'a'))).size(), 70U);
 }
 
-} // namespace pcl_bsh::pipeline
+} // namespace pcl_bsh::io

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/pipeline/nearest_name.h>
+#include <pcl_bsh/filters/io/nearest_name.h>
 
 #include <gtest/gtest.h>
 
-namespace pcl_bsh::pipeline {
+namespace pcl_bsh::io {
 
 TEST(NearestName, EditDistance)
 {
@@ -27,4 +27,4 @@ TEST(NearestName, IsFoundWithAndWithoutPrefix)
   EXPECT_EQ(suggestion("crop", {}), "there is none to name");
 }
 
-} // namespace pcl_bsh::pipeline
+} // namespace pcl_bsh::io

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/pipeline/json_document.h>
+#include <pcl_bsh/filters/io/cloud_file_error.h>
+#include <pcl_bsh/filters/io/json_document.h>
 
 #include <algorithm>
 #include <set>
 #include <vector>
 
-namespace pcl_bsh::pipeline {
+namespace pcl_bsh::io {
 namespace {
 
 constexpr int deepest = 100;
@@ -27,11 +28,11 @@ Json parseJson(std::string_view text)
 {
   std::vector<std::set<std::string>> keys; // of the objects that are open
   const auto inspect = [&keys](int depth, Json::parse_event_t event, Json& value) {
-    if (depth > deepest) throw JsonError("nests deeper than " + std::to_string(deepest) + " levels: flatten it");
+    if (depth > deepest) throw FormatError("nests deeper than " + std::to_string(deepest) + " levels", "flatten it");
     if (event == Json::parse_event_t::object_start) keys.emplace_back();
     if (event == Json::parse_event_t::object_end) keys.pop_back();
     if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second) {
-      throw JsonError("says the key " + shown(value) + " twice in one object: remove one");
+      throw FormatError("says the key " + shown(value) + " twice in one object", "remove one");
     }
     return true;
   };
@@ -39,7 +40,7 @@ Json parseJson(std::string_view text)
     return Json::parse(text.begin(), text.end(), inspect, true, true);
   }
   catch (const Json::exception& error) {
-    throw JsonError("is no JSON: " + reasonOf(error));
+    throw FormatError("is no JSON: " + reasonOf(error), "mend what stands there or just before");
   }
 }
 
@@ -56,4 +57,4 @@ std::string printed(const Json& json)
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-} // namespace pcl_bsh::pipeline
+} // namespace pcl_bsh::io

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace pcl_bsh::pipeline {
+namespace pcl_bsh::io {
 
 /// How many letters must be added, dropped or replaced to turn one word into the other; case does not count.
 std::size_t editDistance(std::string_view a, std::string_view b);
@@ -18,4 +18,4 @@ std::string nearestName(std::string_view name, const std::vector<std::string>& v
 /// "did you mean 'x'?", or what to do where nothing is valid.
 std::string suggestion(std::string_view name, const std::vector<std::string>& valid);
 
-} // namespace pcl_bsh::pipeline
+} // namespace pcl_bsh::io

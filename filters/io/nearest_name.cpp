@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/pipeline/nearest_name.h>
+#include <pcl_bsh/filters/io/nearest_name.h>
 
 #include <algorithm>
 #include <cctype>
 #include <limits>
 #include <numeric>
 
-namespace pcl_bsh::pipeline {
+namespace pcl_bsh::io {
 namespace {
 
 bool alike(char a, char b)
@@ -69,4 +69,4 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& va
   return "did you mean '" + nearestName(name, valid) + "'?";
 }
 
-} // namespace pcl_bsh::pipeline
+} // namespace pcl_bsh::io

@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A JSON text with comments, refused where a lenient parser would guess.
+// A JSON text with comments, refused where a lenient parser would guess, and values as messages quote them.
 #pragma once
 
 #include <nlohmann/json.hpp>
 
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
-namespace pcl_bsh::pipeline {
+namespace pcl_bsh::io {
 
 using Json = nlohmann::ordered_json; // keys stay in the order they were written
 
-/// The text is no JSON, says a key of an object twice, or nests deeper than any pipeline does.
-class JsonError : public std::runtime_error {
-public:
-  using std::runtime_error::runtime_error;
-};
-
-/// @throws JsonError, with line and column where the text breaks off
+/// // and /* */ comments are allowed.
+/// @throws FormatError for what is no JSON, with line and column where it breaks off; for a key that an object says
+///   twice, or nesting of more than a hundred levels
 Json parseJson(std::string_view text);
 
 /// A value as an error message quotes it: on one line, shortened.
@@ -27,4 +22,4 @@ std::string shown(const Json& value);
 /// Indented; bytes that are no UTF-8, as file names may hold, are replaced.
 std::string printed(const Json& json);
 
-} // namespace pcl_bsh::pipeline
+} // namespace pcl_bsh::io
