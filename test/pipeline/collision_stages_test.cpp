@@ -127,6 +127,36 @@ TEST_F(CollisionStages, SweptFindsMoreThanPosesAlone)
   EXPECT_LT(colliding(0), colliding(0.01));
 }
 
+TEST_F(CollisionStages, AccuracyIsTheFilters)
+{
+  const std::string at_pose = R"("clearance": 0.03, "accuracy": )";
+  for (const std::string accuracy : {"exact", "float", "tolerance=0.01", "level=1", "pairs=20"}) {
+    auto direct = filter();
+    direct.setPose(Eigen::Isometry3d::Identity());
+    direct.setAccuracy(Accuracy::parse(accuracy));
+    std::vector<std::uint8_t> flags;
+    direct.computeFlags(flags);
+    const auto undecided = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), std::uint8_t{2}));
+    EXPECT_EQ(undecided > 0, direct.getAccuracy().stopsEarly()) << accuracy;
+
+    const std::string options = at_pose + '"' + accuracy + '"';
+    const PipelineResult result = runStage(scan, stage("filters.bsh_flag", options), model);
+    const pcl::PCLPointCloud2& flagged = result.clouds.begin()->second->cloud;
+    for (std::size_t i = 0; i < flags.size(); ++i) {
+      ASSERT_EQ(flagged.data[i * flagged.point_step + flagged.fields.back().offset], flags[i]) << accuracy;
+    }
+    EXPECT_EQ(result.warnings.size(), undecided > 0 ? 1U : 0U);
+    const auto free = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), std::uint8_t{0}));
+    const PipelineResult kept = runStage(scan, stage("filters.bsh_collision", options), model);
+    EXPECT_EQ(kept.clouds.begin()->second->cloud.width, free) << accuracy << ": what is undecided is not free";
+    EXPECT_EQ(kept.warnings.size(), undecided > 0 ? 1U : 0U);
+    for (const char* const keep : {R"(, "keep": "colliding")", R"(, "negative": true)"}) {
+      EXPECT_EQ(outputOf(scan, stage("filters.bsh_collision", options + keep), model)->cloud.width, flags.size() - free)
+          << accuracy << keep;
+    }
+  }
+}
+
 TEST_F(CollisionStages, FieldsOfATrajectoryAreKnownBeforehand)
 {
   io::writeCloud(folder / "scan.pcd", scan->cloud);
@@ -160,6 +190,18 @@ TEST_F(CollisionStages, RefuseWhatMakesNoSense)
     EXPECT_THAT(error(type, file + R"("trajectory": )" + quoted(skewed)),
                 HasSubstr("skewed.txt: line 1 holds no pose, not rigid"));
   }
+}
+
+TEST_F(CollisionStages, RefuseAccuraciesThatAreNone)
+{
+  for (const std::string type : {"filters.bsh_flag", "filters.bsh_collision"}) {
+    EXPECT_THAT(error(type, R"("accuracy": "fast")"), EndsWith("/accuracy: 'fast' is none: give exact, float, "
+                                                               "tolerance=LENGTH, level=N, pairs=N or time=SECONDS"));
+    EXPECT_THAT(error(type, R"("accuracy": "float", "trajectory": )" + quoted(track)),
+                EndsWith("/accuracy: is \"float\", but answers along a trajectory are exact: remove it"));
+  }
+  EXPECT_THAT(error("writers.clashes", R"("filename": "a.csv", "accuracy": "float")"),
+              HasSubstr("/accuracy: is no option of writers.clashes"));
 }
 
 /// Tests of the list.

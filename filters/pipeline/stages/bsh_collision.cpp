@@ -24,6 +24,7 @@ struct BshFlag : Stage, CollisionQuestion {
     setUp(filter, inputs[0]);
     filter.setKeepFlagged(true);
     filter.filter(output->cloud);
+    if (const std::string warning = undecidedWarning(filter); !warning.empty()) warn(warning);
     return output;
   }
 };
@@ -44,8 +45,9 @@ protected:
     setUp(filter, cloud);
     std::vector<std::uint8_t> flags;
     filter.computeFlags(flags);
-    const std::uint8_t wanted = keep == "colliding" ? 1 : 0;
-    for (std::uint8_t& flag : flags) flag = flag == wanted;
+    if (const std::string warning = undecidedWarning(filter); !warning.empty()) warn(warning);
+    const bool colliding = keep == "colliding";
+    for (std::uint8_t& flag : flags) flag = (flag != 0) == colliding; // what is undecided is not free
     return flags;
   }
 };
@@ -54,10 +56,10 @@ protected:
 
 StageType bshCollision()
 {
-  auto description = describe<BshCollision>(
-      "filters.bsh_collision",
-      "Keeps the points that do not collide with an obstacle, or those that do. Exact, for float64 coordinates too.");
-  withCollisionOptions(description.alias("pcl_bsh::CollisionFilter"))
+  auto description = describe<BshCollision>("filters.bsh_collision",
+                                            "Keeps the points that do not collide with an obstacle, or those that do. "
+                                            "Exact unless `accuracy` says otherwise, for float64 coordinates too.");
+  withAccuracyOption(withCollisionOptions(description.alias("pcl_bsh::CollisionFilter")))
       .option(&BshCollision::keep, "keep", "which points")
       .choices({"free", "colliding"});
   return withSelectionOptions(description);
@@ -67,10 +69,11 @@ StageType bshFlag()
 {
   auto description = describe<BshFlag>(
       "filters.bsh_flag",
-      "Keeps all points and adds a field `collision` (uint8): 1 for those that collide with an obstacle; along a "
+      "Keeps all points and adds a field `collision` (uint8): 1 for those that collide with an obstacle, 2 for those "
+      "that `accuracy` leaves undecided; along a "
       "trajectory also `distance` (float32, the smallest; NaN where free), `first_pose` and `closest_pose` (int32, "
-      "numbers of poses from 0; -1 where free). Exact, for float64 coordinates too.");
-  return withCollisionOptions(description);
+      "numbers of poses from 0; -1 where free). Exact unless `accuracy` says otherwise, for float64 coordinates too.");
+  return withAccuracyOption(withCollisionOptions(description));
 }
 
 } // namespace pcl_bsh::pipeline

@@ -27,12 +27,11 @@ std::vector<Eigen::Isometry3d> posesOf(const std::optional<Pose>& pose, const st
 }
 
 /// The core names what is wrong with a request as `what: wrong: remedy`; users know it by the option.
-void requireAccepted(const std::string& option, const TrajectoryRequest& request,
-                     const std::vector<Eigen::Isometry3d>& poses)
+template <typename Ask>
+void requireAccepted(const std::string& option, const Ask& ask)
 {
   try {
-    const SphereHierarchy nothing{PointsView{}};
-    collideAlong({nothing}, nothing, poses, request);
+    ask();
   }
   catch (const std::invalid_argument& error) {
     const std::string message = error.what();
@@ -53,13 +52,21 @@ void CollisionQuestion::check()
 {
   poses_ = posesOf(pose, trajectory);
   TrajectoryRequest request;
-  requireAccepted(trajectory ? "trajectory" : "pose", request, poses_);
+  const auto follow = [&] {
+    const SphereHierarchy nothing{PointsView{}};
+    collideAlong({nothing}, nothing, poses_, request);
+  };
+  requireAccepted(trajectory ? "trajectory" : "pose", follow);
   request.clearance = clearance;
-  requireAccepted("clearance", request, poses_);
+  requireAccepted("clearance", follow);
+  requireAccepted("accuracy", [this] { Accuracy::parse(accuracy); });
+  if (trajectory && !Accuracy::parse(accuracy).isExact()) {
+    throw OptionError("accuracy", "is \"" + accuracy + "\", but answers along a trajectory are exact: remove it");
+  }
   if (swept == 0) return;
   if (!trajectory) throw OptionError("swept", "is given, but nothing moves: give a `trajectory`, too");
   request.swept = swept;
-  requireAccepted("swept", request, poses_);
+  requireAccepted("swept", follow);
 }
 
 void CollisionQuestion::setUp(Filter& filter, const StageCloudPtr& input) const
@@ -70,7 +77,15 @@ void CollisionQuestion::setUp(Filter& filter, const StageCloudPtr& input) const
   filter.setPose(poses_.front());
   if (trajectory) filter.setTrajectory(poses_);
   filter.setSwept(swept);
+  filter.setAccuracy(Accuracy::parse(accuracy));
   filter.setNumberOfThreads(number_of_threads);
+}
+
+std::string CollisionQuestion::undecidedWarning(const Filter& filter)
+{
+  const std::size_t undecided = filter.getUndecidedCount();
+  if (undecided == 0) return {};
+  return std::to_string(undecided) + " points stay undecided with this accuracy: they are not taken for free";
 }
 
 } // namespace pcl_bsh::pipeline

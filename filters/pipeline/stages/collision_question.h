@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace pcl_bsh::pipeline {
@@ -20,6 +21,7 @@ struct CollisionQuestion {
   std::optional<InputFile> trajectory;
   double swept = 0;
   unsigned number_of_threads = 1;
+  std::string accuracy = "exact"; ///< an option of stages that do no more than flag
 
 protected:
   using Filter = CollisionFilter<pcl::PCLPointCloud2>;
@@ -30,6 +32,9 @@ protected:
 
   /// For run().
   void setUp(Filter& filter, const StageCloudPtr& input) const;
+
+  /// What to tell the user after a query; empty when every point is decided.
+  static std::string undecidedWarning(const Filter& filter);
 
   /// After check(): at least one.
   const std::vector<Eigen::Isometry3d>& poses() const noexcept { return poses_; }
@@ -56,6 +61,16 @@ StageDescription<S>& withCollisionOptions(StageDescription<S>& description)
       .atLeast(0)
       .option(&S::number_of_threads, "number_of_threads", "0: all of the machine's; the result is the same")
       .atMost(1024);
+}
+
+template <typename S>
+StageDescription<S>& withAccuracyOption(StageDescription<S>& description)
+{
+  return description.option(&S::accuracy, "accuracy",
+                            "how sure the answer has to be, less is faster: `exact`; `tolerance=LENGTH`: distances in "
+                            "(clearance, clearance + LENGTH] may count, too; `level=N`, `pairs=N`, `time=SECONDS`: "
+                            "stops early, and what stays undecided is not free; `float`: without proof. Along a "
+                            "trajectory `exact`");
 }
 
 } // namespace pcl_bsh::pipeline
