@@ -69,7 +69,7 @@ Point3 CellGrid::centreOf(const Cell& cell) const
   return centre;
 }
 
-std::vector<CellEntry> sortIntoCells(const PointsView& points, const CellGrid& grid)
+SortedCells::SortedCells(const PointsView& points, const CellGrid& grid)
 {
   Cell cells;
   long double total = 1;
@@ -80,43 +80,54 @@ std::vector<CellEntry> sortIntoCells(const PointsView& points, const CellGrid& g
   if (total > 9.2e18L) {
     throw std::invalid_argument("a grid of " + sizeOf(cells) + " cells is too large to be numbered: give larger cells");
   }
-  std::vector<CellEntry> entries;
-  entries.reserve(points.count);
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    const Point3 p = points.point(i);
-    if (!isFinite(p)) continue;
-    const Cell cell = grid.cellOf(p);
-    const std::int64_t number =
-        cell[0] - grid.least()[0] + cells[0] * (cell[1] - grid.least()[1] + cells[1] * (cell[2] - grid.least()[2]));
-    entries.push_back({static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32), i});
-  }
-  namespace spreadsort = boost::sort::spreadsort;
-  spreadsort::integer_sort(
-      entries.begin(), entries.end(), [](const CellEntry& entry, unsigned shift) { return entry.cell() >> shift; },
-      [](const CellEntry& a, const CellEntry& b) { return a.cell() < b.cell(); });
-  return entries;
+  constexpr long double narrow_counts_to = 4294967296; // 2^32
+  if (total > narrow_counts_to) entries_.emplace<std::vector<WideEntry>>();
+
+  const auto numberOf = [&](const Cell& cell) {
+    return static_cast<std::uint64_t>(cell[0] - grid.least()[0] +
+                                      cells[0] * (cell[1] - grid.least()[1] + cells[1] * (cell[2] - grid.least()[2])));
+  };
+  std::visit(
+      [&](auto& entries) {
+        entries.reserve(points.count);
+        for (std::uint32_t i = 0; i < points.count; ++i) {
+          const Point3 p = points.point(i);
+          if (isFinite(p)) entries.emplace_back(numberOf(grid.cellOf(p)), i);
+        }
+        boost::sort::spreadsort::integer_sort(
+            entries.begin(), entries.end(), [](const auto& entry, unsigned shift) { return entry.cell() >> shift; },
+            [](const auto& a, const auto& b) { return a.cell() < b.cell(); });
+      },
+      entries_);
 }
 
-std::size_t countCells(const std::vector<CellEntry>& sorted)
+std::size_t SortedCells::count() const
 {
-  std::size_t cells = sorted.empty() ? 0 : 1;
-  for (std::size_t i = 1; i < sorted.size(); ++i) cells += sorted[i].cell() != sorted[i - 1].cell() ? 1 : 0;
-  return cells;
+  return std::visit(
+      [](const auto& entries) {
+        std::size_t cells = entries.empty() ? 0 : 1;
+        for (std::size_t i = 1; i < entries.size(); ++i) cells += entries[i].cell() != entries[i - 1].cell() ? 1 : 0;
+        return cells;
+      },
+      entries_);
 }
 
-void forEachCell(const std::vector<CellEntry>& sorted,
-                 const std::function<void(const std::vector<std::uint32_t>&)>& use)
+void SortedCells::forEach(const std::function<void(const std::vector<std::uint32_t>&)>& use) const
 {
-  std::vector<std::uint32_t> records;
-  for (std::size_t begin = 0; begin < sorted.size();) {
-    records.clear();
-    std::size_t end = begin;
-    for (; end < sorted.size() && sorted[end].cell() == sorted[begin].cell(); ++end)
-      records.push_back(sorted[end].record);
-    std::sort(records.begin(), records.end());
-    use(records);
-    begin = end;
-  }
+  std::visit(
+      [&](const auto& entries) {
+        std::vector<std::uint32_t> records;
+        for (std::size_t begin = 0; begin < entries.size();) {
+          records.clear();
+          std::size_t end = begin;
+          for (; end < entries.size() && entries[end].cell() == entries[begin].cell(); ++end)
+            records.push_back(entries[end].record);
+          std::sort(records.begin(), records.end());
+          use(records);
+          begin = end;
+        }
+      },
+      entries_);
 }
 
 } // namespace pcl_bsh::pipeline

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <variant>
 #include <vector>
 
 namespace pcl_bsh::pipeline {
@@ -37,24 +38,48 @@ private:
   Cell most_ = {0, 0, 0};
 };
 
-/// A point's record and the number of its cell, in two halves: without padding, a fourth less memory.
-struct CellEntry {
-  std::uint32_t low;
-  std::uint32_t high;
-  std::uint32_t record;
+/// The finite points by cell. Of a cloud of many points this is the largest part of what a stage needs beside the
+/// cloud, so that its entries are as narrow as the number of cells allows.
+class SortedCells {
+public:
+  /// @throws std::invalid_argument when the cells are too many for 64 bits
+  SortedCells(const PointsView& points, const CellGrid& grid);
 
-  std::uint64_t cell() const { return std::uint64_t{high} << 32 | low; }
+  /// How many cells hold something.
+  std::size_t count() const;
+
+  /// Calls `use` with the records of each cell in turn, in ascending order; of the cells, x grows fastest and z
+  /// slowest.
+  void forEach(const std::function<void(const std::vector<std::uint32_t>&)>& use) const;
+
+private:
+  /// A point's record and the number of its cell.
+  struct NarrowEntry {
+    std::uint32_t number;
+    std::uint32_t record;
+
+    NarrowEntry() = default;
+    NarrowEntry(std::uint64_t cell, std::uint32_t i) : number(static_cast<std::uint32_t>(cell)), record(i) {}
+    std::uint64_t cell() const { return number; }
+  };
+
+  /// In two halves: without padding, a fourth less memory.
+  struct WideEntry {
+    std::uint32_t low;
+    std::uint32_t high;
+    std::uint32_t record;
+
+    WideEntry() = default;
+    WideEntry(std::uint64_t cell, std::uint32_t i)
+    : low(static_cast<std::uint32_t>(cell)),
+      high(static_cast<std::uint32_t>(cell >> 32)),
+      record(i)
+    {
+    }
+    std::uint64_t cell() const { return std::uint64_t{high} << 32 | low; }
+  };
+
+  std::variant<std::vector<NarrowEntry>, std::vector<WideEntry>> entries_;
 };
-
-/// The finite points by cell, x growing fastest and z slowest; those of one cell in any order.
-/// @throws std::invalid_argument when the cells are too many for 64 bits
-std::vector<CellEntry> sortIntoCells(const PointsView& points, const CellGrid& grid);
-
-/// How many cells hold something.
-std::size_t countCells(const std::vector<CellEntry>& sorted);
-
-/// Calls `use` with the records of each cell in turn, in ascending order.
-void forEachCell(const std::vector<CellEntry>& sorted,
-                 const std::function<void(const std::vector<std::uint32_t>&)>& use);
 
 } // namespace pcl_bsh::pipeline

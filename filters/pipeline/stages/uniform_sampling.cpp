@@ -20,7 +20,7 @@ protected:
     std::vector<std::uint8_t> passes(points.count, 0);
     try {
       const CellGrid grid(points, {radius_search, radius_search, radius_search});
-      forEachCell(sortIntoCells(points, grid), [&](const std::vector<std::uint32_t>& records) {
+      SortedCells(points, grid).forEach([&](const std::vector<std::uint32_t>& records) {
         passes[nearestToCentre(points, grid, records)] = 1;
       });
     }

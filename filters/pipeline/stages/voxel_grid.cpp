@@ -15,20 +15,20 @@ struct VoxelGrid : Stage {
   StageCloudPtr run(StageClouds&& inputs) override
   {
     const StageCloud& input = *inputs[0];
-    const std::vector<CellEntry> entries = sorted(viewOf(input.cloud));
+    const SortedCells cells = sorted(viewOf(input.cloud));
     RecordMeans output(input, downsample_all_data);
-    output.reserve(countCells(entries));
-    forEachCell(entries, [&](const std::vector<std::uint32_t>& records) {
+    output.reserve(cells.count());
+    cells.forEach([&](const std::vector<std::uint32_t>& records) {
       if (records.size() >= minimum_points_number_per_voxel) output.add(records);
     });
     return output.finished();
   }
 
 private:
-  std::vector<CellEntry> sorted(const PointsView& points) const
+  SortedCells sorted(const PointsView& points) const
   {
     try {
-      return sortIntoCells(points, CellGrid(points, leaf_size.xyz));
+      return {points, CellGrid(points, leaf_size.xyz)};
     }
     catch (const std::invalid_argument& error) {
       throw OptionError("leaf_size", error.what());
