@@ -229,6 +229,39 @@ TEST(Stages, NeighbourSearchSaysWhatFloatLoses)
   EXPECT_THAT(errorOf([&] { runStage(wide(1e200), stage); }), HasSubstr("too large for float32"));
 }
 
+TEST(Stages, CountingNeighboursSaysWhatFloatLoses)
+{
+  // Two heaps of neighbours some centimetres apart: nothing of that is seen in the box around both.
+  const auto heaps = [](double apart) {
+    Points points = test::randomPoints(400, 4);
+    for (std::size_t i = 0; i < points.size(); i += 2) points[i] += Eigen::Vector3d(apart, apart, 0);
+    return cloudOf<double>(points);
+  };
+  for (const std::string stage : {R"({"type": "filters.normal_estimation", "k_search": 8})",
+                                  R"({"type": "filters.statistical_outlier_removal", "mean_k": 8})"}) {
+    EXPECT_THAT(runStage(heaps(5), stage).warnings, IsEmpty());
+    EXPECT_THAT(runStage(heaps(2e3), stage).warnings, ElementsAre(HasSubstr("moves points of this float64 cloud by")));
+    EXPECT_THAT(errorOf([&] { runStage(heaps(5e5), stage); }), EndsWith(": crop the cloud first"));
+  }
+}
+
+TEST(Stages, KeepFloat64BesideWhatTheyAdd)
+{
+  const StageCloudPtr in = cloudOf<double>(utmPoints(400));
+  for (const char* const type :
+       {"filters.bsh_flag", "filters.merge", "filters.normal_estimation", "filters.euclidean_cluster"}) {
+    const PipelineResult result = runStage(in, stageOf(type));
+    const pcl::PCLPointCloud2& out = result.clouds.begin()->second->cloud;
+    ASSERT_EQ(out.width, in->cloud.width) << type;
+    EXPECT_THAT(result.warnings, IsEmpty()) << type;
+    for (std::size_t i = 0; i < out.width; ++i) {
+      ASSERT_EQ(
+          std::memcmp(&out.data[i * out.point_step], &in->cloud.data[i * in->cloud.point_step], 3 * sizeof(double)), 0)
+          << type;
+    }
+  }
+}
+
 TEST(Stages, TransformWarnsWhereFloatIsCoarse)
 {
   const StageCloudPtr local = cloudOf<float>(test::randomPoints(50, 5));

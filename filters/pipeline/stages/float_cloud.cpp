@@ -2,6 +2,8 @@
 #include <pcl_bsh/filters/pipeline/stages/finite_point.h>
 #include <pcl_bsh/filters/pipeline/stages/float_cloud.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/query/spacing.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +57,12 @@ FloatCloud floatCloud(const PointsView& points)
   }
   cloud.points->is_dense = true;
   return cloud;
+}
+
+double neighbourSpacing(const PointsView& points, const FloatCloud& cloud)
+{
+  if (cloud.moved == 0) return std::numeric_limits<double>::infinity();
+  return spacingOf(SphereHierarchy(points)).median;
 }
 
 std::string roundingWarning(const FloatCloud& cloud, double length)

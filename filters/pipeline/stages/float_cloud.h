@@ -24,6 +24,10 @@ struct FloatCloud {
 
 FloatCloud floatCloud(const PointsView& points);
 
+/// How far neighbours are apart, half of them or more, where a search counts neighbours instead of naming a length.
+/// Infinite where nothing was rounded.
+double neighbourSpacing(const PointsView& points, const FloatCloud& cloud);
+
 /// What to tell the user when distances are compared with `length`: nothing when rounding does not matter.
 /// @throws std::invalid_argument when rounding moved points by more than a hundredth of the length: results would be
 ///   wrong

@@ -40,7 +40,10 @@ struct NormalEstimation : Stage {
   {
     const auto output = ownCloud(std::move(inputs[0]));
     const auto offsets = addFields(output->cloud, normal_fields, pcl::PCLPointField::FLOAT32);
-    const FloatCloud points = floatCloud(viewOf(output->cloud));
+    const PointsView view = viewOf(output->cloud);
+    const FloatCloud points = floatCloud(view);
+    const double length = radius_search ? *radius_search : neighbourSpacing(view, points);
+    if (const std::string warning = roundingWarning(points, length); !warning.empty()) warn(warning);
     const pcl::PointCloud<pcl::Normal> normals = normalsOf(points, output->viewpoint);
 
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
@@ -66,9 +69,6 @@ private:
   {
     pcl::PointCloud<pcl::Normal> normals;
     if (points.points->empty()) return normals;
-    const std::string warning = roundingWarning(points, radius_search ? *radius_search : points.moved * 1e4);
-    if (!warning.empty()) warn(warning);
-
     const Numbers<3> view = view_point.value_or(Numbers<3>{sensor[0], sensor[1], sensor[2]});
     pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> estimation(number_of_threads);
     estimation.setInputCloud(points.points);

@@ -26,7 +26,7 @@ protected:
       throw OptionError("mean_k", "is " + std::to_string(mean_k) + ", but there are only " +
                                       std::to_string(points.points->size()) + " finite points: give less");
     }
-    const std::string warning = roundingWarning(points, spacingOf(*points.points));
+    const std::string warning = roundingWarning(points, neighbourSpacing(view, points));
     if (!warning.empty()) warn(warning);
 
     pcl::StatisticalOutlierRemoval<pcl::PointXYZ> filter;
@@ -37,22 +37,6 @@ protected:
     filter.filter(kept);
     for (const pcl::index_t i : kept) passes[points.records[static_cast<std::size_t>(i)]] = 1;
     return passes;
-  }
-
-private:
-  /// About how far neighbours are apart, were the points spread evenly over the largest face of their box.
-  static double spacingOf(const pcl::PointCloud<pcl::PointXYZ>& points)
-  {
-    Eigen::Array3f least = points[0].getArray3fMap();
-    Eigen::Array3f most = least;
-    for (const pcl::PointXYZ& point : points) {
-      least = least.min(point.getArray3fMap());
-      most = most.max(point.getArray3fMap());
-    }
-    Eigen::Array3d size = (most - least).cast<double>();
-    std::sort(size.begin(), size.end());
-    const double area = size[2] * std::max(size[1], size[2] / static_cast<double>(points.size()));
-    return std::sqrt(area / static_cast<double>(points.size()));
   }
 };
 
