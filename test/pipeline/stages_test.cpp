@@ -190,6 +190,17 @@ TEST(Stages, VoxelGridIsRightWherePclOverflows)
       3U);
 }
 
+TEST(Stages, GridsTellCellsApartWhoseNumbersAgreeIn32Bits)
+{
+  // 65536 x 65536 cells to a layer: the first cell of the second layer has number 2^32.
+  const Points points = {{0.5, 0.5, 0.5}, {65535.5, 65535.5, 0.5}, {0.5, 0.5, 1.5}};
+  for (const std::string stage : {R"({"type": "filters.voxel_grid", "leaf_size": 1})",
+                                  R"({"type": "filters.uniform_sampling", "radius_search": 1})"}) {
+    EXPECT_EQ(outputOf(cloudOf<double>(points), stage)->cloud.width, 3U) << stage;
+    EXPECT_EQ(outputOf(cloudOf<double>({points[0], points[1], points[0]}), stage)->cloud.width, 2U) << stage;
+  }
+}
+
 TEST(Stages, VoxelGridCountsBeyondFloat)
 {
   // 2^25 cells from the origin, where float counts by twos.
