@@ -192,16 +192,32 @@ TEST_F(CollisionStages, RefuseWhatMakesNoSense)
   }
 }
 
+TEST_F(CollisionStages, AccuracyAlongATrajectory)
+{
+  const auto kept = [&](const std::string& accuracy, const std::string& keep) {
+    return output("filters.bsh_collision", R"(, "accuracy": ")" + accuracy + R"(", "keep": ")" + keep + '"')
+        ->cloud.width;
+  };
+  EXPECT_LT(kept("level=0", "free"), kept("exact", "free")) << "what is undecided is not free";
+  EXPECT_GT(kept("level=0", "colliding"), kept("exact", "colliding"));
+  EXPECT_GE(kept("tolerance=0.05", "colliding"), kept("exact", "colliding"));
+  EXPECT_GE(output("filters.bsh_flag", R"(, "accuracy": "tolerance=0.05")")->cloud.fields.size(), 4U);
+}
+
 TEST_F(CollisionStages, RefuseAccuraciesThatAreNone)
 {
-  for (const std::string type : {"filters.bsh_flag", "filters.bsh_collision"}) {
-    EXPECT_THAT(error(type, R"("accuracy": "fast")"), EndsWith("/accuracy: 'fast' is none: give exact, float, "
-                                                               "tolerance=LENGTH, level=N, pairs=N or time=SECONDS"));
-    EXPECT_THAT(error(type, R"("accuracy": "float", "trajectory": )" + quoted(track)),
-                EndsWith("/accuracy: is \"float\", but answers along a trajectory are exact: remove it"));
+  const std::string along = R"("trajectory": )" + quoted(track);
+  for (const std::string type : {"filters.bsh_flag", "filters.bsh_collision", "writers.clashes"}) {
+    const std::string file = type == "writers.clashes" ? R"("filename": )" + quoted(folder / "a.csv") + ", " : "";
+    EXPECT_THAT(error(type, file + R"("accuracy": "fast")"),
+                EndsWith("/accuracy: 'fast' is none: give exact, float, tolerance=LENGTH, level=N, pairs=N or "
+                         "time=SECONDS"));
+    EXPECT_THAT(error(type, file + along + R"(, "accuracy": "float", "swept": 0.01)"),
+                EndsWith("/accuracy: float: swept motion has a tolerance of its own: give exact"));
+    if (type == "filters.bsh_collision") continue;
+    EXPECT_THAT(error(type, file + along + R"(, "accuracy": "level=1")"),
+                HasSubstr("/accuracy: level=1: decides which points collide, not when and how near"));
   }
-  EXPECT_THAT(error("writers.clashes", R"("filename": "a.csv", "accuracy": "float")"),
-              HasSubstr("/accuracy: is no option of writers.clashes"));
 }
 
 /// Tests of the list.

@@ -11,7 +11,7 @@ namespace {
 struct BshFlag : Stage, CollisionQuestion {
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    check();
+    check(trajectory.has_value());
     const TrajectoryResult nothing;
     return trajectory ? withFields(inputs[0], fieldsOf(nothing)) : withField(inputs[0], collision_field_name, {});
   }
@@ -34,7 +34,7 @@ struct BshCollision : SelectingStage, CollisionQuestion {
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    check();
+    check(false);
     return inputs[0];
   }
 
@@ -59,7 +59,7 @@ StageType bshCollision()
   auto description = describe<BshCollision>("filters.bsh_collision",
                                             "Keeps the points that do not collide with an obstacle, or those that do. "
                                             "Exact unless `accuracy` says otherwise, for float64 coordinates too.");
-  withAccuracyOption(withCollisionOptions(description.alias("pcl_bsh::CollisionFilter")))
+  withCollisionOptions(description.alias("pcl_bsh::CollisionFilter"))
       .option(&BshCollision::keep, "keep", "which points")
       .choices({"free", "colliding"});
   return withSelectionOptions(description);
@@ -70,10 +70,10 @@ StageType bshFlag()
   auto description = describe<BshFlag>(
       "filters.bsh_flag",
       "Keeps all points and adds a field `collision` (uint8): 1 for those that collide with an obstacle, 2 for those "
-      "that `accuracy` leaves undecided; along a "
-      "trajectory also `distance` (float32, the smallest; NaN where free), `first_pose` and `closest_pose` (int32, "
-      "numbers of poses from 0; -1 where free). Exact unless `accuracy` says otherwise, for float64 coordinates too.");
-  return withAccuracyOption(withCollisionOptions(description));
+      "that `accuracy` leaves undecided; along a trajectory also `distance` (float32, the smallest; NaN where free), "
+      "`first_pose` and `closest_pose` (int32, numbers of poses from 0; -1 where free). Exact unless `accuracy` says "
+      "otherwise, for float64 coordinates too.");
+  return withCollisionOptions(description);
 }
 
 } // namespace pcl_bsh::pipeline

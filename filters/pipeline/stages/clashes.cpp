@@ -18,7 +18,7 @@ struct ClashWriter : Stage, CollisionQuestion {
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    check();
+    check(true);
     requireWritable("filename", filename);
     if (also) requireWritable("also", *also);
     if (previous) earlier_ = readEarlier(*previous);

@@ -48,7 +48,7 @@ std::shared_ptr<const pcl::PCLPointCloud2> pointsOf(const StageCloudPtr& cloud)
 
 } // namespace
 
-void CollisionQuestion::check()
+void CollisionQuestion::check(bool distances)
 {
   poses_ = posesOf(pose, trajectory);
   TrajectoryRequest request;
@@ -59,14 +59,15 @@ void CollisionQuestion::check()
   requireAccepted(trajectory ? "trajectory" : "pose", follow);
   request.clearance = clearance;
   requireAccepted("clearance", follow);
-  requireAccepted("accuracy", [this] { Accuracy::parse(accuracy); });
-  if (trajectory && !Accuracy::parse(accuracy).isExact()) {
-    throw OptionError("accuracy", "is \"" + accuracy + "\", but answers along a trajectory are exact: remove it");
-  }
+  request.distances = distances;
+  requireAccepted("accuracy", [&] {
+    request.accuracy = Accuracy::parse(accuracy);
+    follow();
+  });
   if (swept == 0) return;
   if (!trajectory) throw OptionError("swept", "is given, but nothing moves: give a `trajectory`, too");
   request.swept = swept;
-  requireAccepted("swept", follow);
+  requireAccepted(request.accuracy.isExact() ? "swept" : "accuracy", follow);
 }
 
 void CollisionQuestion::setUp(Filter& filter, const StageCloudPtr& input) const

@@ -21,14 +21,15 @@ struct CollisionQuestion {
   std::optional<InputFile> trajectory;
   double swept = 0;
   unsigned number_of_threads = 1;
-  std::string accuracy = "exact"; ///< an option of stages that do no more than flag
+  std::string accuracy = "exact";
 
 protected:
   using Filter = CollisionFilter<pcl::PCLPointCloud2>;
 
   /// For plan(): reads the trajectory, and refuses what the query would refuse.
+  /// @param distances whether the stage asks how near and when, beside which points collide
   /// @throws OptionError
-  void check();
+  void check(bool distances);
 
   /// For run().
   void setUp(Filter& filter, const StageCloudPtr& input) const;
@@ -59,18 +60,12 @@ StageDescription<S>& withCollisionOptions(StageDescription<S>& description)
               "above 0, points collide with the motion between poses, too, to this tolerance; 0: with the poses alone")
       .unit("m")
       .atLeast(0)
+      .option(&S::accuracy, "accuracy",
+              "how sure the answer has to be, less is faster: `exact`; `tolerance=LENGTH`: distances in (clearance, "
+              "clearance + LENGTH] may count, too; `level=N`, `pairs=N`, `time=SECONDS`: stops early, and what stays "
+              "undecided is not free; `float`: without proof. With `swept` `exact`")
       .option(&S::number_of_threads, "number_of_threads", "0: all of the machine's; the result is the same")
       .atMost(1024);
-}
-
-template <typename S>
-StageDescription<S>& withAccuracyOption(StageDescription<S>& description)
-{
-  return description.option(&S::accuracy, "accuracy",
-                            "how sure the answer has to be, less is faster: `exact`; `tolerance=LENGTH`: distances in "
-                            "(clearance, clearance + LENGTH] may count, too; `level=N`, `pairs=N`, `time=SECONDS`: "
-                            "stops early, and what stays undecided is not free; `float`: without proof. Along a "
-                            "trajectory `exact`");
 }
 
 } // namespace pcl_bsh::pipeline
