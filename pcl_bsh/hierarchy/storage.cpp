@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/hierarchy/morton.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
 #include <algorithm>
+#include <bit>
 
 namespace pcl_bsh {
 
@@ -54,6 +56,38 @@ void SphereHierarchy::Storage::raiseTop()
   }
   top.clear();
   if (size > 0) top = buildTop(voxels.get(), voxel_count, frame, view.radii ? largest_radii.data() : nullptr);
+  fillSlots();
+}
+
+void SphereHierarchy::Storage::fillSlots()
+{
+  slots_.assign(std::bit_ceil(2 * voxel_count + 1), kNoVoxel);
+  for (std::uint32_t v = 0; v < voxel_count; ++v) {
+    std::size_t slot = slotOf(voxels[v].key);
+    while (slots_[slot] != kNoVoxel) slot = (slot + 1) & (slots_.size() - 1);
+    slots_[slot] = v;
+  }
+}
+
+SphereHierarchy::Storage::Home SphereHierarchy::Storage::homeOf(const Point3& place) const noexcept
+{
+  // Cells were counted in the cloud's scalar type: rounding may have put a point that is so near to a face, in cells
+  // counted from the base, into the neighbouring voxel.
+  constexpr double kStray = 0x1p-23;
+  const double inverse = 1.0 / voxel_edge;
+  std::array<std::uint64_t, 3> cell;
+  double room = 1.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double cells = place[k] * inverse - base[k];
+    if (!(cells >= 0.0 && cells < 0x1p21)) return {kNoVoxel, -1.0};
+    cell[k] = static_cast<std::uint64_t>(cells);
+    const double past = cells - static_cast<double>(cell[k]);
+    room = std::min(room, std::min(past, 1.0 - past) - kStray * (cells + 2.0));
+  }
+  const std::uint64_t key = mortonCode(cell[0], cell[1], cell[2]);
+  std::size_t slot = slotOf(key);
+  while (slots_[slot] != kNoVoxel && voxels[slots_[slot]].key != key) slot = (slot + 1) & (slots_.size() - 1);
+  return {slots_[slot], room * voxel_edge * (1.0 - 0x1p-40)};
 }
 
 double SphereHierarchy::Storage::sumOfRadii() const

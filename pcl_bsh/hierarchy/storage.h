@@ -90,6 +90,15 @@ public:
     return voxels[voxel].state.load(std::memory_order_relaxed) == Voxel::built ? 0 : voxels[voxel].count;
   }
 
+  /// The voxel around a place, or kNoVoxel, and how far the place is from the points of all other voxels: at least
+  /// `room`, in the cloud's unit; negative where nothing is known.
+  struct Home {
+    std::uint32_t voxel;
+    double room;
+  };
+  Home homeOf(const Point3& place) const noexcept;
+  static constexpr std::uint32_t kNoVoxel = 0xffffffffu;
+
   /// Calls visit(record) for each point of a voxel, built or not.
   template <class Visit>
   void forEachRecord(std::size_t voxel, const Visit& visit) const
@@ -136,6 +145,15 @@ public:
 
 private:
   void build(std::size_t voxel, std::uint64_t& built_now) const;
+
+  /// Makes voxels findable by their keys: open addressing, at most half full.
+  void fillSlots();
+  std::size_t slotOf(std::uint64_t key) const noexcept
+  {
+    return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15u >> 32) & (slots_.size() - 1);
+  }
+
+  std::vector<std::uint32_t> slots_; ///< voxels, or kNoVoxel
 
   /// Waits for whoever has the voxel. @return false when it is built, and nobody's to change
   static bool claim(Voxel& voxel);

@@ -14,6 +14,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <pcl_bsh/simd/compress-inl.h>
 #include <pcl_bsh/simd/point_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -24,7 +25,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// The query in one frame, and what a squared float distance s there says of the squared distance in the cloud's frame:
-/// it is within [s * below - slack, s * above + slack].
+/// it is within [s / inverse_below - slack, s * above + slack].
 ///
 /// With rho the frame's error and any e > 0, (sqrt(s) + rho)^2 <= s (1 + e) + rho^2 (1 + 1/e), and likewise below.
 /// Here e = 2^-20, and 2^-19 pays for float arithmetic as well.
@@ -36,23 +37,20 @@ struct NearFrame {
     const double unit = point.unit == cloud_unit ? 1.0 : point.unit / cloud_unit;
     const double scale = unit * unit;
     inverse_unit = static_cast<float>(1.0 / unit);
-    below = static_cast<float>(scale) * (1.0f - 0x1p-19f);
+    inverse_below = static_cast<float>(1.0 / scale) * (1.0f + 0x1p-18f);
     above = static_cast<float>(scale) * (1.0f + 0x1p-19f);
     slack = static_cast<float>(scale * point.error * point.error * 0x1p20) * (1.0f + 0x1p-15f) + 0x1p-100f;
     if (!(point.inRange() && scale > 0x1p-60 && scale < 0x1p60)) error = slack = kInfinity;
   }
 
   /// Squared float distances above this are beyond `bound`.
-  float miss(float bound) const { return (bound + slack) / below * (1.0f + 0x1p-20f); }
+  float miss(float bound) const { return (bound + slack) * inverse_below; }
 
   /// Spheres farther than this and their radius are beyond `distance`.
-  Ball ball(float distance) const
-  {
-    return {at.x, at.y, at.z, (distance * inverse_unit + error) * (1.0f + 0x1p-20f), -1.0f};
-  }
+  float reach(float distance) const { return (distance * inverse_unit + error) * (1.0f + 0x1p-20f); }
 
   Point at;
-  float error, inverse_unit, below, above, slack;
+  float error, inverse_unit, inverse_below, above, slack;
 };
 
 class NearestWalk {
@@ -62,6 +60,7 @@ public:
   : cloud_(cloud),
     query_(query),
     k_(std::min(k, cloud.size)),
+    wanted_(k_),
     radius_(radius),
     records_(scratch.records),
     highs_(scratch.squared),
@@ -74,69 +73,50 @@ public:
   void run()
   {
     if (k_ == 0) return;
-    wanted_ = k_;
     const double reach = radius_ / cloud_.frame.unit;
     lower(roundUp(reach * reach * (1.0 + 0x1p-50) + 0x1p-140));
-    const PointFrame point(cloud_.frame, query_);
-    if (point.separates(cloud_.frame, reach)) return;
-    const NearFrame frame(point, cloud_.frame.unit);
-    guess(frame);
-    visitAbove(frame, 0);
+    home_ = cloud_.homeOf(query_);
+    if (home_.voxel != SphereHierarchy::Storage::kNoVoxel) visitVoxel(home_.voxel);
+    if (!(static_cast<double>(distance_) * cloud_.frame.unit < home_.room)) visitTop();
     collect();
   }
 
 private:
   static SphereLanes spheresOf(const Node& node) { return {node.x, node.y, node.z, node.r, 1.0f}; }
 
-  /// Goes straight down to where the nearest points most likely are, and bounds their distances by those of at least k
-  /// points found there.
-  void guess(const NearFrame& above)
+  void visitTop()
   {
-    std::uint32_t index = 0, child = likeliestSphere(spheresOf(cloud_.top[0]), above.at);
-    while (!cloud_.top[index].isLeaf(child)) {
-      index = cloud_.top[index].child[child];
-      child = likeliestSphere(spheresOf(cloud_.top[index]), above.at);
+    const PointFrame point(cloud_.frame, query_);
+    if (point.separates(cloud_.frame, static_cast<double>(distance_))) return;
+    visitAbove(NearFrame(point, cloud_.frame.unit), 0);
+  }
+
+  /// Calls visit(i) for the children that may hold points within the bound, the nearest first.
+  template <class Visit>
+  void eachChild(const NearFrame& frame, const Node& node, const Visit& visit)
+  {
+    work_.node_pairs += node.count;
+    alignas(32) float squared[kLanes];
+    centersSquared(spheresOf(node), frame.at, squared);
+    for (std::uint32_t open = firstBits(node.count);;) {
+      open &= spheresNear(squared, node.r, frame.reach(distance_));
+      if (open == 0) return;
+      const std::uint32_t i =
+          (open & (open - 1)) == 0 ? static_cast<std::uint32_t>(std::countr_zero(open)) : smallestLane(squared, open);
+      open &= ~(1u << i);
+      visit(i);
     }
-    const Voxel& voxel = cloud_.built(cloud_.top[index].begin[child], work_.voxels_built);
-    const NearFrame frame(PointFrame(voxel.frame, query_), cloud_.frame.unit);
-    std::uint32_t begin = 0, end = voxel.count; // the smallest node around the query that holds k points
-    std::uint32_t begin_of_child = begin, end_of_child = end;
-    for (index = 0;;) {
-      const Node& node = voxel.nodes[index];
-      child = likeliestSphere(spheresOf(node), frame.at);
-      begin_of_child = node.begin[child], end_of_child = node.begin[child + 1];
-      if (node.points(child) < k_) break;
-      begin = begin_of_child, end = end_of_child;
-      if (node.isLeaf(child)) break;
-      index = node.child[child];
-    }
-    if (end - begin < k_) return;
-    // Points are in the order of their cells: those before and after the child's are near it too.
-    const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(end - begin, kGuessed + 2 * k_));
-    const std::uint32_t middle = begin_of_child + (end_of_child - begin_of_child) / 2;
-    begin = std::clamp(middle - std::min(middle, count / 2), begin, end - count);
-    highs_.room(count + kLeafPoints);
-    for (std::size_t i = 0; i < count; i += kLeafPoints) {
-      alignas(64) float squared[kLeafPoints];
-      leafSquaredDistances(voxel.x() + begin + i, voxel.y() + begin + i, voxel.z() + begin + i, frame.at.x, frame.at.y,
-                           frame.at.z, squared);
-      for (std::size_t j = 0; j < kLeafPoints; ++j) highs_.end()[i + j] = squared[j] * frame.above + frame.slack;
-    }
-    tighten(highs_.data(), count);
   }
 
   void visitAbove(const NearFrame& frame, std::uint32_t index)
   {
     const Node& node = cloud_.top[index];
-    work_.node_pairs += node.count;
-    for (std::uint32_t near = spheresNear(spheresOf(node), frame.ball(distance_), nullptr) & firstBits(node.count);
-         near != 0; near &= near - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
-      if (node.isLeaf(i))
-        visitVoxel(node.begin[i]);
-      else
+    eachChild(frame, node, [&](std::uint32_t i) {
+      if (!node.isLeaf(i))
         visitAbove(frame, node.child[i]);
-    }
+      else if (node.begin[i] != home_.voxel)
+        visitVoxel(node.begin[i]);
+    });
   }
 
   void visitVoxel(std::uint32_t index)
@@ -152,70 +132,123 @@ private:
   void visit(const NearFrame& frame, const Voxel& voxel, std::uint32_t index)
   {
     const Node& node = voxel.nodes[index];
-    work_.node_pairs += node.count;
-    for (std::uint32_t near = spheresNear(spheresOf(node), frame.ball(distance_), nullptr) & firstBits(node.count);
-         near != 0; near &= near - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
-      if (node.isLeaf(i))
-        compare(frame, voxel, node.begin[i], node.points(i));
-      else
+    eachChild(frame, node, [&](std::uint32_t i) {
+      // Before there are k points to go by, a few more of them cost less than a descent.
+      const bool few = records_.size() < k_ && node.points(i) <= kScanned * k_ && k_ > 1;
+      if (!node.isLeaf(i) && !few)
         visit(frame, voxel, node.child[i]);
-    }
+      else if (node.isLeaf(i) && node.isCoincident(i))
+        compareOne(frame, voxel, node.begin[i], node.points(i));
+      else if (k_ == 1)
+        compareForOne(frame, voxel, node.begin[i], node.points(i));
+      else
+        compare(frame, voxel, node.begin[i], node.begin[i + 1]);
+    });
   }
 
-  void compare(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t count)
+  /// A crowded place, where one point answers for all; the smallest record numbers count, and come first.
+  void compareOne(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t count)
   {
     ++work_.leaf_pairs;
     alignas(64) float squared[kLeafPoints];
     leafSquaredDistances(voxel.x() + begin, voxel.y() + begin, voxel.z() + begin, frame.at.x, frame.at.y, frame.at.z,
                          squared);
-    const std::uint32_t* const records = voxel.records() + begin;
-    // Of a crowded place one point answers for all; among equals the smallest record numbers count, and come first.
-    const bool coincident = count > kMaxLeafPoints;
-    const std::size_t same = coincident ? std::min<std::size_t>(count, k_) : 0;
-    records_.room(same + kLeafPoints);
-    highs_.room(same + kLeafPoints);
-    std::uint32_t near = ~above(squared, frame.miss(bound_)) & firstBits(coincident ? 1 : count);
-    if (near == 0) return;
-    if (coincident) {
-      const float high = squared[0] * frame.above + frame.slack;
-      for (std::size_t i = 0; i < same; ++i) note(records[i], high);
+    if (squared[0] > frame.miss(bound_)) return;
+    const std::size_t same = std::min<std::size_t>(count, k_);
+    records_.room(same);
+    highs_.room(same);
+    for (std::size_t i = 0; i < same; ++i) {
+      records_.push(voxel.records()[begin + i]);
+      highs_.push(squared[0] * frame.above + frame.slack);
     }
-    else {
-      for (; near != 0; near &= near - 1) {
-        const int i = std::countr_zero(near);
-        note(records[i], squared[i] * frame.above + frame.slack);
+    countAndTighten();
+  }
+
+  void compareForOne(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t count)
+  {
+    ++work_.leaf_pairs;
+    alignas(64) float squared[kLeafPoints];
+    leafSquaredDistances(voxel.x() + begin, voxel.y() + begin, voxel.z() + begin, frame.at.x, frame.at.y, frame.at.z,
+                         squared);
+    const std::uint32_t open = firstBits(count);
+    std::uint32_t near = ~above(squared, frame.miss(bound_)) & open;
+    if (near == 0) return;
+    const float least = smallestOf(squared, count) * frame.above + frame.slack;
+    if (least < bound_) {
+      lower(least);
+      near = ~above(squared, frame.miss(bound_)) & open;
+    }
+    records_.room(kLeafPoints);
+    highs_.room(kLeafPoints);
+    const std::uint32_t* const records = voxel.records() + begin;
+    for (; near != 0; near &= near - 1) {
+      const int i = std::countr_zero(near);
+      records_.push(records[i]);
+      highs_.push(squared[i] * frame.above + frame.slack);
+    }
+  }
+
+  void compare(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
+  {
+    ++work_.leaf_pairs;
+    records_.room(end - begin + kLanes);
+    highs_.room(end - begin + kLanes);
+    const LaneTag d;
+    const LaneVector x = hn::Set(d, frame.at.x), y = hn::Set(d, frame.at.y), z = hn::Set(d, frame.at.z);
+    const LaneVector scale = hn::Set(d, frame.above), slack = hn::Set(d, frame.slack);
+    const LaneVector miss = hn::Set(d, frame.miss(bound_));
+    std::size_t size = records_.size();
+    for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
+      const LaneVector squared =
+          squaredNorm(hn::Sub(hn::LoadU(d, voxel.x() + i), x), hn::Sub(hn::LoadU(d, voxel.y() + i), y),
+                      hn::Sub(hn::LoadU(d, voxel.z() + i), z));
+      const std::uint32_t near =
+          ~bitsOf(d, hn::Gt(squared, miss)) & firstBits(std::min<std::size_t>(end - i, hn::Lanes(d)));
+      const Compress kept(near);
+      kept.store(hn::Add(hn::Mul(squared, scale), slack), highs_.data() + size);
+      kept.store(voxel.records() + i, records_.data() + size);
+      size += static_cast<std::size_t>(std::popcount(near));
+    }
+    records_.resize(size);
+    highs_.resize(size);
+    countAndTighten();
+  }
+
+  /// Lowers the bound when enough candidates have come since that was last done, and forgets those beyond it.
+  void countAndTighten()
+  {
+    if (records_.size() < wanted_) return;
+    tighten();
+    wanted_ = records_.size() + std::max<std::size_t>(kMore, k_ / 2);
+  }
+
+  /// Lowers the bound to where k candidates lie within it: to the k-th smallest, or a little above.
+  void tighten()
+  {
+    const float* const highs = highs_.data();
+    const std::size_t count = highs_.size(), enough_said = k_ + k_ / 8;
+    float enough = largestOf(highs, count), few = 0.0f;
+    if (!(enough < kInfinity)) return;
+    if (k_ == 1) enough = smallestOf(highs, count);
+    double within = static_cast<double>(count), beyond = 0.0; // candidates at most `enough`, at most `few`
+    for (int step = 0; step < kSteps && k_ > 1; ++step) {
+      // Interpolation, for squared distances are spread evenly on a surface; every other time halfway.
+      const double share = (static_cast<double>(k_ + enough_said) * 0.5 - beyond) / (within - beyond);
+      const float guess = step % 2 == 0 ? few + static_cast<float>(share) * (enough - few) : 0.5f * (few + enough);
+      const float middle = std::min(std::max(guess, few), enough);
+      const std::size_t at_most = countAtMost(highs, count, middle);
+      if (at_most >= k_) {
+        enough = middle;
+        within = static_cast<double>(at_most);
+        if (at_most <= enough_said) break;
+      }
+      else {
+        few = middle;
+        beyond = static_cast<double>(at_most);
       }
     }
-    if (records_.size() >= wanted_) {
-      tighten(highs_.data(), highs_.size());
-      wanted_ = records_.size() + std::max<std::size_t>(1, std::min<std::size_t>(k_ / 2, 16));
-    }
-  }
-
-  void note(std::uint32_t record, float high)
-  {
-    records_.push(record);
-    highs_.push(high);
-  }
-
-  /// Lowers the bound to where k of the values lie within it: to the k-th smallest, or a little above.
-  void tighten(const float* highs, std::size_t count)
-  {
-    if (k_ == 1) {
-      const float least = *std::min_element(highs, highs + count);
-      if (least < bound_) lower(least);
-      return;
-    }
-    float enough = bound_ < kInfinity ? bound_ : largestOf(highs, count), few = 0.0f;
-    if (enough == kInfinity) return;
-    for (int step = 0; step < kBisections; ++step) {
-      const float middle = 0.5f * (few + enough);
-      const std::size_t within = countAtMost(highs, count, middle);
-      (within >= k_ ? enough : few) = middle;
-      if (within == k_) break;
-    }
-    if (enough < bound_ && countAtMost(highs, count, enough) >= k_) lower(enough);
+    if (enough < bound_) lower(enough);
+    forgetFarther();
   }
 
   void lower(float bound)
@@ -224,31 +257,53 @@ private:
     distance_ = std::sqrt(bound) * (1.0f + 0x1p-20f);
   }
 
+  /// No candidate's lower bound is less than its upper one by more than that: above / below is less than 1 + 2^-17.
+  float missOfHighs() const { return (bound_ + most_slack_) * (1.0f + 0x1p-17f) + most_slack_; }
+
+  void forgetFarther()
+  {
+    const float miss = missOfHighs();
+    const LaneTag d;
+    std::size_t kept = 0;
+    const std::size_t count = records_.size();
+    records_.room(kLanes);
+    highs_.room(kLanes);
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+      const LaneVector highs = hn::LoadU(d, highs_.data() + i);
+      const std::uint32_t near =
+          bitsOf(d, hn::Le(highs, hn::Set(d, miss))) & firstBits(std::min<std::size_t>(count - i, hn::Lanes(d)));
+      const Compress keep(near);
+      keep.store(records_.data() + i, records_.data() + kept);
+      keep.store(highs, highs_.data() + kept);
+      kept += static_cast<std::size_t>(std::popcount(near));
+    }
+    records_.resize(kept);
+    highs_.resize(kept);
+  }
+
   /// Keeps the candidates that may be within the bound, and of them those within the radius.
   void collect()
   {
-    if (records_.size() > k_) tighten(highs_.data(), highs_.size());
+    if (records_.size() > k_) tighten();
+    if (radius_ == std::numeric_limits<double>::infinity()) return;
     const double reach = radius_ / cloud_.frame.unit;
     const float surely = roundDown(std::min(reach * reach * (1.0 - 0x1p-50), 0x1p120));
-    const bool any_distance = radius_ == std::numeric_limits<double>::infinity();
-    // A candidate's lower bound is at least that: above / below is less than 1 + 2^-17.
-    const float miss = (bound_ + most_slack_) * (1.0f + 0x1p-17f) + most_slack_;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < records_.size(); ++i) {
-      if (highs_[i] > miss) continue;
       const std::uint32_t record = records_[i];
-      if (any_distance || highs_[i] < surely || isWithin(cloud_.view.point(record), query_, radius_, work_))
-        records_[kept++] = record;
+      if (highs_[i] < surely || isWithin(cloud_.view.point(record), query_, radius_, work_)) records_[kept++] = record;
     }
     records_.resize(kept);
   }
 
-  static constexpr int kBisections = 7;       ///< of the k-th smallest bound; any that is not too low will do
-  static constexpr std::size_t kGuessed = 16; ///< points that a first guess looks at, and two for each of k
+  static constexpr int kSteps = 6;           ///< towards the k-th smallest bound; any that is not too low will do
+  static constexpr std::size_t kScanned = 4; ///< times k: nodes of at most so many points are not descended at first
+  static constexpr std::size_t kMore = 4;    ///< candidates, or half of k, after which the bound is looked at again
 
   const SphereHierarchy::Storage& cloud_;
   const Point3& query_;
   const std::size_t k_;
+  std::size_t wanted_; ///< candidates at which the bound is looked at again
   const double radius_;
   Pile<std::uint32_t>& records_; ///< points that may be among the nearest
   Pile<float>& highs_;           ///< upper bounds of their squared distances, in the cloud's frame
@@ -256,7 +311,7 @@ private:
   float bound_ = kInfinity;    ///< squared; points that are farther do not count
   float distance_ = kInfinity; ///< at least its root
   float most_slack_ = 0.0f;    ///< of the frames visited
-  std::size_t wanted_ = 0;     ///< candidates at which the bound is looked at again
+  SphereHierarchy::Storage::Home home_ = {};
 };
 
 } // namespace

@@ -161,6 +161,19 @@ HWY_INLINE float largestOf(const float* values, std::size_t count)
   return largest;
 }
 
+/// Smallest of `count` > 0 values.
+HWY_INLINE float smallestOf(const float* values, std::size_t count)
+{
+  const LaneTag d;
+  const std::size_t step = hn::Lanes(d);
+  LaneVector least = hn::Set(d, values[0]);
+  std::size_t i = 0;
+  for (; i + step <= count; i += step) least = hn::Min(least, hn::LoadU(d, values + i));
+  float smallest = hn::GetLane(hn::MinOfLanes(d, least));
+  for (; i < count; ++i) smallest = std::min(smallest, values[i]);
+  return smallest;
+}
+
 /// How many of `count` values are at most `limit`.
 HWY_INLINE std::size_t countAtMost(const float* values, std::size_t count, float limit)
 {

@@ -141,27 +141,49 @@ HWY_INLINE std::uint32_t spheresNear(const SphereLanes& spheres, const Ball& bal
   return apart ^ ((1u << kLanes) - 1);
 }
 
-/// The sphere in which the point's nearest neighbours are most likely found: of those around the point the one in which
-/// it lies deepest for its size, else the one whose surface is nearest.
-HWY_INLINE std::uint32_t likeliestSphere(const SphereLanes& spheres, const Point& point)
+/// Squared distances of the eight centres to a point.
+HWY_INLINE void centersSquared(const SphereLanes& spheres, const Point& point, float* squared)
 {
   const LaneTag d;
-  alignas(32) float rank[kLanes];
-  LaneVector best = hn::Set(d, std::numeric_limits<float>::max());
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
+    hn::Store(squaredNorm(hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, point.x)),
+                          hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, point.y)),
+                          hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, point.z))),
+              d, squared + i);
+}
+
+/// spheresNear(), where the squared distances of the centres are known; `reach` is what near_reach is there.
+HWY_INLINE std::uint32_t spheresNear(const float* squared, const float* radii, float reach)
+{
+  const LaneTag d;
+  std::uint32_t apart = 0;
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
-    const LaneVector s = squaredNorm(hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, point.x)),
-                                     hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, point.y)),
-                                     hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, point.z)));
-    const LaneVector radius = hn::LoadU(d, spheres.r + i), distance = hn::Sqrt(s);
-    const LaneVector outside = hn::Sub(distance, radius), depth = hn::Sub(hn::Div(distance, radius), hn::Set(d, 1.0f));
-    const LaneVector ranks = hn::IfThenElse(hn::Gt(outside, hn::Zero(d)), outside, depth);
-    hn::Store(ranks, d, rank + i);
-    best = hn::Min(best, ranks);
+    const LaneVector sum = hn::Add(hn::LoadU(d, radii + i), hn::Set(d, reach));
+    const LaneVector limit = hn::Mul(hn::Mul(sum, sum), hn::Set(d, 1.0f + kSphereMargin));
+    apart |= bitsOf(d, hn::Gt(hn::Load(d, squared + i), limit)) << i;
+  }
+  return apart ^ ((1u << kLanes) - 1);
+}
+
+/// The lane of the smallest value among those with their bit set, of which there is at least one.
+HWY_INLINE std::uint32_t smallestLane(const float* values, std::uint32_t among)
+{
+  const LaneTag d;
+  LaneVector best = hn::Set(d, std::numeric_limits<float>::infinity());
+  alignas(32) float candidate[kLanes];
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(among >> i)};
+    const LaneVector value = hn::IfThenElse(hn::LoadMaskBits(d, bits), hn::Load(d, values + i),
+                                            hn::Set(d, std::numeric_limits<float>::infinity()));
+    hn::Store(value, d, candidate + i);
+    best = hn::Min(best, value);
   }
   best = hn::MinOfLanes(d, best);
   std::uint32_t lanes = 0;
-  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) lanes |= bitsOf(d, hn::Eq(hn::Load(d, rank + i), best)) << i;
-  return lanes == 0 ? 0 : static_cast<std::uint32_t>(std::countr_zero(lanes)); // 0 where all are NaN
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
+    lanes |= bitsOf(d, hn::Eq(hn::Load(d, candidate + i), best)) << i;
+  lanes &= among;
+  return static_cast<std::uint32_t>(std::countr_zero(lanes != 0 ? lanes : among)); // NaN and infinity: any
 }
 
 } // namespace HWY_NAMESPACE
