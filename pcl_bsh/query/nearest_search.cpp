@@ -36,9 +36,11 @@ struct NearFrame {
   {
     const double unit = point.unit == cloud_unit ? 1.0 : point.unit / cloud_unit;
     const double scale = unit * unit;
-    inverse_unit = static_cast<float>(1.0 / unit);
-    inverse_below = static_cast<float>(1.0 / scale) * (1.0f + 0x1p-18f);
-    above = static_cast<float>(scale) * (1.0f + 0x1p-19f);
+    if (unit != 1.0) {
+      inverse_unit = static_cast<float>(1.0 / unit);
+      inverse_below *= static_cast<float>(1.0 / scale);
+      above *= static_cast<float>(scale);
+    }
     slack = static_cast<float>(scale * point.error * point.error * 0x1p20) * (1.0f + 0x1p-15f) + 0x1p-100f;
     if (!(point.inRange() && scale > 0x1p-60 && scale < 0x1p60)) error = slack = kInfinity;
   }
@@ -50,7 +52,8 @@ struct NearFrame {
   float reach(float distance) const { return (distance * inverse_unit + error) * (1.0f + 0x1p-20f); }
 
   Point at;
-  float error, inverse_unit, inverse_below, above, slack;
+  float error, slack;
+  float inverse_unit = 1.0f, inverse_below = 1.0f + 0x1p-18f, above = 1.0f + 0x1p-19f;
 };
 
 class NearestWalk {
@@ -73,8 +76,10 @@ public:
   void run()
   {
     if (k_ == 0) return;
-    const double reach = radius_ / cloud_.frame.unit;
-    lower(roundUp(reach * reach * (1.0 + 0x1p-50) + 0x1p-140));
+    if (radius_ < std::numeric_limits<double>::infinity()) {
+      const double reach = radius_ / cloud_.frame.unit;
+      lower(roundUp(reach * reach * (1.0 + 0x1p-50) + 0x1p-140));
+    }
     home_ = cloud_.homeOf(query_);
     if (home_.voxel != SphereHierarchy::Storage::kNoVoxel) visitVoxel(home_.voxel);
     if (!(static_cast<double>(distance_) * cloud_.frame.unit < home_.room)) visitTop();
@@ -134,13 +139,13 @@ private:
     const Node& node = voxel.nodes[index];
     eachChild(frame, node, [&](std::uint32_t i) {
       // Before there are k points to go by, a few more of them cost less than a descent.
-      const bool few = records_.size() < k_ && node.points(i) <= kScanned * k_ && k_ > 1;
-      if (!node.isLeaf(i) && !few)
+      const bool few = node.points(i) <= kScanned && records_.size() < k_;
+      if (!few && !node.isLeaf(i))
         visit(frame, voxel, node.child[i]);
-      else if (node.isLeaf(i) && node.isCoincident(i))
+      else if (!few && node.isCoincident(i))
         compareOne(frame, voxel, node.begin[i], node.points(i));
       else if (k_ == 1)
-        compareForOne(frame, voxel, node.begin[i], node.points(i));
+        compareForOne(frame, voxel, node.begin[i], node.begin[i + 1]);
       else
         compare(frame, voxel, node.begin[i], node.begin[i + 1]);
     });
@@ -164,27 +169,50 @@ private:
     countAndTighten();
   }
 
-  void compareForOne(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t count)
+  /// compare() for k = 1, at most kScanned points.
+  void compareForOne(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
   {
     ++work_.leaf_pairs;
-    alignas(64) float squared[kLeafPoints];
-    leafSquaredDistances(voxel.x() + begin, voxel.y() + begin, voxel.z() + begin, frame.at.x, frame.at.y, frame.at.z,
-                         squared);
-    const std::uint32_t open = firstBits(count);
-    std::uint32_t near = ~above(squared, frame.miss(bound_)) & open;
-    if (near == 0) return;
-    const float least = smallestOf(squared, count) * frame.above + frame.slack;
-    if (least < bound_) {
-      lower(least);
-      near = ~above(squared, frame.miss(bound_)) & open;
+    const LaneTag d;
+    const std::uint32_t count = end - begin, step = static_cast<std::uint32_t>(hn::Lanes(d));
+    alignas(64) float squared[kScanned + kLanes];
+    const LaneVector x = hn::Set(d, frame.at.x), y = hn::Set(d, frame.at.y), z = hn::Set(d, frame.at.z);
+    LaneVector least = hn::Set(d, kInfinity);
+    const auto measured = [&](std::uint32_t i) {
+      const LaneVector s =
+          squaredNorm(hn::Sub(hn::LoadU(d, voxel.x() + begin + i), x), hn::Sub(hn::LoadU(d, voxel.y() + begin + i), y),
+                      hn::Sub(hn::LoadU(d, voxel.z() + begin + i), z));
+      return s;
+    };
+    std::uint32_t i = 0;
+    for (; i + step <= count; i += step) {
+      const LaneVector s = measured(i);
+      hn::Store(s, d, squared + i);
+      least = hn::Min(least, s);
     }
-    records_.room(kLeafPoints);
-    highs_.room(kLeafPoints);
+    if (i < count) {
+      const LaneVector s = hn::IfThenElse(hn::FirstN(d, count - i), measured(i), hn::Set(d, kInfinity));
+      hn::Store(s, d, squared + i);
+      least = hn::Min(least, s);
+    }
+    const float nearest = hn::GetLane(hn::MinOfLanes(d, least));
+    if (nearest > frame.miss(bound_)) return;
+    const float high = nearest * frame.above + frame.slack;
+    if (high < bound_) lower(high);
+    records_.room(count);
+    highs_.room(count);
+    const LaneVector miss = hn::Set(d, frame.miss(bound_));
     const std::uint32_t* const records = voxel.records() + begin;
-    for (; near != 0; near &= near - 1) {
-      const int i = std::countr_zero(near);
-      records_.push(records[i]);
-      highs_.push(squared[i] * frame.above + frame.slack);
+    for (i = 0; i < count; i += 64) {
+      std::uint64_t near = 0;
+      for (std::uint32_t j = 0; j < 64 && i + j < count; j += step)
+        near |= std::uint64_t{~bitsOf(d, hn::Gt(hn::Load(d, squared + i + j), miss)) & firstBits(step)} << j;
+      if (count - i < 64) near &= (std::uint64_t{1} << (count - i)) - 1;
+      for (; near != 0; near &= near - 1) {
+        const std::uint32_t j = i + static_cast<std::uint32_t>(std::countr_zero(near));
+        records_.push(records[j]);
+        highs_.push(squared[j] * frame.above + frame.slack);
+      }
     }
   }
 
@@ -296,9 +324,9 @@ private:
     records_.resize(kept);
   }
 
-  static constexpr int kSteps = 6;           ///< towards the k-th smallest bound; any that is not too low will do
-  static constexpr std::size_t kScanned = 4; ///< times k: nodes of at most so many points are not descended at first
-  static constexpr std::size_t kMore = 4;    ///< candidates, or half of k, after which the bound is looked at again
+  static constexpr int kSteps = 6;             ///< towards the k-th smallest bound; any that is not too low will do
+  static constexpr std::size_t kScanned = 128; ///< points that are compared without a descent at first
+  static constexpr std::size_t kMore = 4;      ///< candidates, or half of k, after which the bound is looked at again
 
   const SphereHierarchy::Storage& cloud_;
   const Point3& query_;

@@ -11,6 +11,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <pcl_bsh/simd/compress-inl.h>
 #include <pcl_bsh/simd/point_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -27,8 +28,9 @@ public:
   bool take(const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
   {
     const std::size_t before = records_.size(), count = end - begin;
-    records_.room(count);
-    std::copy_n(voxel.records() + begin, count, records_.end());
+    records_.room(count + kLanes);
+    for (std::size_t i = 0; i < count; i += hn::Lanes(Unsigned()))
+      hn::StoreU(hn::LoadU(Unsigned(), voxel.records() + begin + i), Unsigned(), records_.end() + i);
     records_.resize(before + count);
     return false;
   }
@@ -37,14 +39,20 @@ public:
   bool take(const Voxel& voxel, std::uint32_t begin, std::uint32_t, std::uint32_t bits)
   {
     const std::uint32_t* const from = voxel.records() + begin;
-    records_.room(kLeafPoints);
-    for (; bits != 0; bits &= bits - 1) records_.push(from[std::countr_zero(bits)]);
+    records_.room(kLeafPoints + kLanes);
+    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(Unsigned())) {
+      const std::uint32_t kept = bits >> i & firstBits(hn::Lanes(Unsigned()));
+      Compress(kept).store(from + i, records_.end());
+      records_.resize(records_.size() + static_cast<std::size_t>(std::popcount(kept)));
+    }
     return false;
   }
 
   static constexpr bool kNeedsRecords = true;
 
 private:
+  using Unsigned = hn::RebindToUnsigned<LaneTag>;
+
   Pile<std::uint32_t>& records_;
 };
 
@@ -73,6 +81,14 @@ public:
   bool run()
   {
     if (cloud_.size == 0) return false;
+    const SphereHierarchy::Storage::Home home = cloud_.homeOf(query_);
+    const bool at_home = home.voxel != SphereHierarchy::Storage::kNoVoxel, alone = radius_ < home.room;
+    if (alone) return at_home && visitVoxel(home.voxel);
+    // Where one point is enough, the nearest voxel is the first to ask.
+    if (!Sink::kNeedsRecords && at_home) {
+      if (visitVoxel(home.voxel)) return true;
+      done_ = home.voxel;
+    }
     const PointFrame frame(cloud_.frame, query_);
     const double length = radius_ / frame.unit;
     return !frame.separates(cloud_.frame, length) && visitAbove(ballOf(frame, length), 0);
@@ -108,7 +124,8 @@ private:
     }
     for (std::uint32_t bits = children.near & ~children.inside; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (node.isLeaf(i) ? visitVoxel(node.begin[i]) : visitAbove(ball, node.child[i])) return true;
+      if (node.isLeaf(i) ? node.begin[i] != done_ && visitVoxel(node.begin[i]) : visitAbove(ball, node.child[i]))
+        return true;
     }
     return false;
   }
@@ -172,6 +189,7 @@ private:
   const double radius_;
   Sink& sink_;
   Work& work_;
+  std::uint32_t done_ = SphereHierarchy::Storage::kNoVoxel; ///< a voxel known to hold nothing within the radius
 };
 
 } // namespace
