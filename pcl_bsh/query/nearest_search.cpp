@@ -169,10 +169,13 @@ private:
     countAndTighten();
   }
 
+  /// In leaves, whether they were reached one by one or not.
+  void noteCompared(std::uint32_t points) { work_.leaf_pairs += (points + kMaxLeafPoints - 1) / kMaxLeafPoints; }
+
   /// compare() for k = 1, at most kScanned points.
   void compareForOne(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
   {
-    ++work_.leaf_pairs;
+    noteCompared(end - begin);
     const LaneTag d;
     const std::uint32_t count = end - begin, step = static_cast<std::uint32_t>(hn::Lanes(d));
     alignas(64) float squared[kScanned + kLanes];
@@ -218,7 +221,7 @@ private:
 
   void compare(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
   {
-    ++work_.leaf_pairs;
+    noteCompared(end - begin);
     records_.room(end - begin + kLanes);
     highs_.room(end - begin + kLanes);
     const LaneTag d;

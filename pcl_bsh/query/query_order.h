@@ -6,22 +6,35 @@
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
+#include <hwy/cache_control.h>
+
 namespace pcl_bsh {
 
 /// The numbers [0, queries.size()) by the Morton code of the query's place in the cloud's bounds; queries that are not
 /// finite come last.
 std::vector<std::uint32_t> queryOrder(const SphereHierarchy::Storage& cloud, const PointsView& queries);
 
+/// What a query reads of its record: in another order than the records', each would be waited for.
+inline void prefetch(const PointsView& queries, std::uint32_t record)
+{
+  hwy::Prefetch(static_cast<const unsigned char*>(queries.data) + queries.stride * record + queries.offset[0]);
+  if (queries.radii) hwy::Prefetch(queries.radii + record);
+}
+
 /// Calls body(i, point) for the i-th point that the view names, for all of them, in the DefaultFloatEnvironment.
 template <class Body>
 void forEachQuery(const SphereHierarchy::Storage& cloud, const PointsView& queries, unsigned threads, const Body& body)
 {
+  constexpr std::size_t kAhead = 8;   // queries between a record's being fetched and its use
   constexpr std::size_t kShare = 256; // enough to make up for handing it to a thread, few enough to share out evenly
   const DefaultFloatEnvironment environment;
   const std::vector<std::uint32_t> order = queryOrder(cloud, queries);
   parallelFor((order.size() + kShare - 1) / kShare, threadCount(threads), [&](std::size_t share) {
     const std::size_t end = std::min(order.size(), (share + 1) * kShare);
-    for (std::size_t k = share * kShare; k < end; ++k) body(order[k], queries.point(queries.record(order[k])));
+    for (std::size_t k = share * kShare; k < end; ++k) {
+      if (k + kAhead < end) prefetch(queries, queries.record(order[k + kAhead]));
+      body(order[k], queries.point(queries.record(order[k])));
+    }
   });
 }
 

@@ -23,6 +23,11 @@
 
 namespace pcl_bsh::search {
 
+/// What setInputCloud() of a search class returns: PCL changed it.
+template <typename Search>
+using SetInputCloudResultOf = decltype(std::declval<Search&>().setInputCloud(
+    std::declval<const typename Search::PointCloudConstPtr&>(), pcl::IndicesConstPtr()));
+
 /// A bounding-sphere hierarchy behind PCL's interface, for point types whose x, y, z are float or double.
 ///
 /// Of every search, in all overloads:
@@ -53,8 +58,7 @@ public:
   using ConstPtr = std::shared_ptr<const BoundingSphereSearch<PointT>>;
 
   /// void up to PCL 1.13, bool from 1.14 on (then: true).
-  using SetInputCloudResult =
-      decltype(std::declval<Base&>().setInputCloud(std::declval<const PointCloudConstPtr&>(), IndicesConstPtr()));
+  using SetInputCloudResult = SetInputCloudResultOf<Base>;
 
   using Base::nearestKSearch;
   using Base::radiusSearch;

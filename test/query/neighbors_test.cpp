@@ -41,6 +41,15 @@ struct Questions {
 
   PointsView view() const { return cloud->view(); }
 
+  /// Half of the clouds are cut into many voxels, grids at places where points lie.
+  HierarchyOptions options()
+  {
+    constexpr double edges[] = {0, 0, 0.25, 0.5};
+    HierarchyOptions options;
+    options.voxel_edge = scale * random.pick(edges);
+    return options;
+  }
+
   Point3 query()
   {
     Point3 q = random.point([&] { return 2 * scale * random.uniform(-1, 1); });
@@ -94,7 +103,7 @@ void expectLikeBruteForce(std::uint64_t seed, int max_points, int queries)
 {
   SCOPED_TRACE("seed " + std::to_string(seed));
   Questions ask(seed, max_points);
-  const SphereHierarchy cloud(ask.view());
+  const SphereHierarchy cloud(ask.view(), ask.options());
   Neighbors found, expected;
   for (int i = 0; i < queries; ++i) {
     const Point3 q = ask.query();
@@ -142,6 +151,81 @@ TEST(Neighbors, LikeBruteForceOnLargerClouds)
     expectLikeBruteForce(seed, 6000, 5);
     if (HasFailure()) return;
   }
+}
+
+/// Points and queries at, and one float beside, the faces of voxels so far from the first one that counting cells in
+/// float32 rounds: points lie in the voxel beside theirs, or the nearest one is across a face.
+TEST(Neighbors, AcrossTheFacesOfVoxels)
+{
+  test::Random random(5);
+  std::vector<float> xyz = {0, 0, 0};
+  for (int i = 0; i < 3000; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const auto face = static_cast<float>(random.integer(16000, 16004));
+      const int side = random.integer(-2, 2);
+      xyz.push_back(side == -2 ? face + static_cast<float>(random.uniform(0, 1))
+                               : std::nextafter(face, side < 0 ? 0.0f : face * static_cast<float>(1 + side)));
+    }
+  }
+  HierarchyOptions options;
+  options.voxel_edge = 1.0;
+  const SphereHierarchy cloud(viewOf(xyz.data(), xyz.size() / 3), options);
+  Neighbors found, expected;
+  for (int i = 0; i < 400; ++i) {
+    const auto record = static_cast<std::size_t>(3 * random.integer(1, 3000));
+    Point3 q = {xyz[record], xyz[record + 1], xyz[record + 2]};
+    if (random.chance(0.5)) q[0] += random.uniform(-0.01, 0.01);
+    const double radius = random.pick({0.0, 0x1p-9, 0.01, 0.1});
+    EXPECT_EQ(radiusSearch(cloud, q, radius, found), brute_force::radiusSearch(cloud, q, radius, expected));
+    expectEqual(found, expected);
+    EXPECT_EQ(anyInRadius(cloud, q, radius), !expected.indices.empty());
+    for (const std::size_t k : {1u, 3u, 20u}) {
+      nearestKSearch(cloud, q, k, found);
+      brute_force::nearestKSearch(cloud, q, k, expected);
+      expectEqual(found, expected);
+    }
+    if (HasFailure()) FAIL() << "query " << i;
+  }
+}
+
+/// What a query costs on average, on the surface of a scan with stray points above it. A first guess that leads to a
+/// stray, or a bound that does not shrink, would cost a sweep over much of the cloud.
+TEST(Neighbors, LookAtFewPoints)
+{
+  test::Random random(9);
+  std::vector<float> xyz;
+  for (int i = 0; i < 100000; ++i) {
+    const auto x = static_cast<float>(random.uniform(0, 316)), y = static_cast<float>(random.uniform(0, 316));
+    const float height = i % 50 == 0 ? static_cast<float>(random.uniform(0, 60)) : 0.0f;
+    xyz.insert(xyz.end(), {x, y, 3.0f * std::sin(0.05f * x) + height});
+  }
+  const SphereHierarchy cloud(viewOf(xyz.data(), xyz.size() / 3));
+  constexpr std::size_t queries = 2000;
+  Neighbors found;
+  const auto cost = [&](const auto& search) {
+    Work work;
+    for (std::size_t i = 0; i < queries; ++i) {
+      const float* p = xyz.data() + 3 * 25 * i; // every other one is a stray
+      search(Point3{p[0], p[1], p[2]}, work);
+    }
+    return std::array<double, 2>{static_cast<double>(work.node_pairs) / queries,
+                                 static_cast<double>(work.leaf_pairs) / queries};
+  };
+  const auto nearest = [&](std::size_t k) {
+    return cost([&, k](const Point3& q, Work& work) { nearestKSearch(cloud, q, k, found, &work); });
+  };
+  const auto within = [&](double radius, std::size_t most) {
+    return cost(
+        [&, radius, most](const Point3& q, Work& work) { radiusSearch(cloud, q, radius, found, {most}, &work); });
+  };
+  const auto atMost = [](double nodes, double leaves) {
+    return testing::ElementsAre(testing::Le(nodes), testing::Le(leaves));
+  };
+  EXPECT_THAT(nearest(1), atMost(28, 6));
+  EXPECT_THAT(nearest(8), atMost(96, 15));
+  EXPECT_THAT(nearest(30), atMost(165, 30));
+  EXPECT_THAT(within(3.0, 1), atMost(27, 6));
+  EXPECT_THAT(within(3.0, 0), atMost(72, 6));
 }
 
 /// A grid of doubles where float32 would see nothing but rounding.

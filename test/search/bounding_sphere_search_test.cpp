@@ -14,6 +14,7 @@
 #include <random>
 #include <stdexcept>
 #include <thread>
+#include <type_traits>
 
 namespace pcl_bsh::search {
 namespace {
@@ -27,6 +28,35 @@ using testing::ThrowsMessage;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// PCL's face as it is up to 1.13 (Result: void) and from 1.14 on (bool).
+template <typename Result>
+class FaceOfPcl {
+public:
+  using PointCloudConstPtr = Cloud::ConstPtr;
+  virtual ~FaceOfPcl() = default;
+  virtual Result setInputCloud(const PointCloudConstPtr& cloud,
+                               const pcl::IndicesConstPtr& indices = pcl::IndicesConstPtr()) = 0;
+};
+
+/// Overrides as our class does.
+template <typename Base>
+class OverFace : public Base {
+public:
+  SetInputCloudResultOf<Base> setInputCloud(const typename Base::PointCloudConstPtr& cloud,
+                                            const pcl::IndicesConstPtr&) override
+  {
+    size = cloud->size();
+    if constexpr (!std::is_void_v<SetInputCloudResultOf<Base>>) return true;
+  }
+
+  std::size_t size = 0;
+};
+
+static_assert(std::is_void_v<SetInputCloudResultOf<FaceOfPcl<void>>>);
+static_assert(std::is_same_v<SetInputCloudResultOf<FaceOfPcl<bool>>, bool>);
+static_assert(std::is_same_v<BoundingSphereSearch<Point>::SetInputCloudResult,
+                             SetInputCloudResultOf<pcl::search::KdTree<Point>>>);
 
 Cloud::Ptr cloudOf(std::initializer_list<Point> points)
 {
@@ -101,6 +131,17 @@ bool findsEverything(const pcl::search::Search<Point>& search, const Cloud& clou
   }
   search.radiusSearch(Point(2, 2, 2), 10.0, indices, squared);
   return indices.size() == bruteForce(cloud, nullptr, Point(2, 2, 2), 10.0).size();
+}
+
+TEST(BoundingSphereSearch, OverridesEitherFaceOfPcl)
+{
+  const auto cloud = cloudOf({{1, 2, 3}});
+  OverFace<FaceOfPcl<void>> older;
+  OverFace<FaceOfPcl<bool>> newer;
+  static_cast<FaceOfPcl<void>&>(older).setInputCloud(cloud);
+  EXPECT_TRUE(static_cast<FaceOfPcl<bool>&>(newer).setInputCloud(cloud));
+  EXPECT_EQ(older.size, 1u);
+  EXPECT_EQ(newer.size, 1u);
 }
 
 TEST(BoundingSphereSearch, LikeBruteForceWithAndWithoutIndices)
