@@ -26,11 +26,11 @@ void check(const view::Options& options)
 int show(const view::Options& options)
 {
   check(options);
-  const view::World world(options);
+  const std::unique_ptr<view::World> world = view::makeWorld(options);
   if (options.screenshot || options.export_to)
-    view::drawFiles(world);
+    view::drawFiles(*world);
   else
-    view::Viewer(world).run();
+    view::Viewer(*world).run();
   return 0;
 }
 

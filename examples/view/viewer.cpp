@@ -91,7 +91,7 @@ Viewer::Viewer(const World& world) : world_(world)
                              "--screenshot FILE.png, which needs none");
   window_ = vtkSmartPointer<vtkRenderWindow>::New();
   window_->SetSize(world.options().width, world.options().height);
-  window_->SetWindowName((std::string(program) + ": " + world.scan().file.filename().string()).c_str());
+  window_->SetWindowName((std::string(program) + ": " + world.name()).c_str());
   window_->SetMultiSamples(0);
   renderer_ = vtkSmartPointer<vtkRenderer>::New();
   window_->AddRenderer(renderer_);
@@ -118,7 +118,7 @@ void Viewer::addSlider()
   look->SetMinimumValue(0.0);
   look->SetMaximumValue(static_cast<double>(world_.steps() - 1));
   look->SetValue(static_cast<double>(stage_->step()));
-  look->SetTitleText("pose");
+  look->SetTitleText(world_.stepName());
   look->SetLabelFormat("%.0f");
   look->GetPoint1Coordinate()->SetCoordinateSystemToNormalizedViewport();
   look->GetPoint1Coordinate()->SetValue(0.35, 0.07);

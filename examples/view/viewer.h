@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The window: mouse, keys, a slider along the poses, picking.
+// The window: mouse, keys, a slider along the steps, picking.
 #pragma once
 
 #include "stage.h"
@@ -18,7 +18,7 @@ namespace pcl_bsh::view {
 inline constexpr auto keys = R"(+ -    spheres one level finer, coarser (none)
 v  o    voxels, octree cells
 t       what the query tested and pruned
-left right   pose before, after
+left right   step before, after
 click   point: number, place, distance, first pose
 r  s    reset the camera, save a picture
 h  q    hide this, quit)";

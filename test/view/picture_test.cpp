@@ -4,7 +4,7 @@
 
 #include <view/options.h>
 #include <view/stage.h>
-#include <view/world.h>
+#include <view/clouds_world.h>
 
 #include <pcl_bsh/vtk/hierarchy_data.h>
 #include <pcl_bsh/vtk/offscreen_window.h>
@@ -59,7 +59,7 @@ protected:
       return {static_cast<int>(std::lround(at[0])), static_cast<int>(std::lround(at[1]))};
     }
 
-    World world;
+    CloudsWorld world;
     vtkNew<vtkRenderer> renderer;
     vtkSmartPointer<vtkRenderWindow> window;
     std::unique_ptr<Stage> stage;
@@ -200,14 +200,14 @@ TEST_F(Picture, ExportsReadBack)
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName((folder / "f.vtp").c_str());
   reader->Update();
-  const World world(options());
+  const CloudsWorld world(options());
   const Findings found = world.findings(0);
   vtkPointData* const values = reader->GetOutput()->GetPointData();
-  ASSERT_EQ(reader->GetOutput()->GetNumberOfPoints(), static_cast<vtkIdType>(found.scan.size()));
+  ASSERT_EQ(reader->GetOutput()->GetNumberOfPoints(), static_cast<vtkIdType>(found.flags[0].size()));
   for (const char* name : {"index", "collision", "distance", "first_pose", "intensity"})
     ASSERT_NE(values->GetArray(name), nullptr) << name;
   for (vtkIdType i = 0; i < reader->GetOutput()->GetNumberOfPoints(); ++i) {
-    const bool collides = found.scan[static_cast<std::size_t>(i)] != 0;
+    const bool collides = found.flags[0][static_cast<std::size_t>(i)] != 0;
     ASSERT_EQ(values->GetArray("collision")->GetTuple1(i), collides);
     ASSERT_EQ(values->GetArray("first_pose")->GetTuple1(i), collides ? 0 : -1);
     if (collides)

@@ -2,6 +2,7 @@
 // The window, driven by events as a mouse and a keyboard make them.
 #include "pixels.h"
 
+#include <view/clouds_world.h>
 #include <view/viewer.h>
 
 #include <gmock/gmock.h>
@@ -50,7 +51,7 @@ protected:
 TEST_F(ViewerTest, KeysChangeWhatIsShown)
 {
   const Xvfb display;
-  const World world(options());
+  const CloudsWorld world(options());
   Viewer viewer(world);
   const Pixels plain = pixelsOf(viewer.window());
   press(viewer, '+', "plus");
@@ -78,7 +79,7 @@ TEST_F(ViewerTest, KeysChangeWhatIsShown)
 TEST_F(ViewerTest, TheSliderMovesTheModelAndFlagsFollow)
 {
   const Xvfb display;
-  const World world(options());
+  const CloudsWorld world(options());
   Viewer viewer(world);
   ASSERT_NE(viewer.slider(), nullptr);
   EXPECT_EQ(viewer.stage().findings().colliding, 0u);
@@ -87,7 +88,7 @@ TEST_F(ViewerTest, TheSliderMovesTheModelAndFlagsFollow)
   knob->SetValue(2.0);
   viewer.slider()->InvokeEvent(vtkCommand::InteractionEvent);
   EXPECT_EQ(viewer.stage().step(), 2u);
-  EXPECT_EQ(viewer.stage().findings().scan, world.findings(2).scan);
+  EXPECT_EQ(viewer.stage().findings().flags, world.findings(2).flags);
   EXPECT_GT(viewer.stage().findings().colliding, 0u);
   EXPECT_GT(pixelsOf(viewer.window()).differing(before), 100u);
 
@@ -112,7 +113,7 @@ TEST_F(ViewerTest, AClickTellsOfThePoint)
   const Xvfb display;
   Options from_above = options();
   from_above.camera.kind = Camera::Kind::top;
-  const World world(from_above);
+  const CloudsWorld world(from_above);
   Viewer viewer(world);
   pixelsOf(viewer.window());
   vtkRenderer* const renderer = viewer.window().GetRenderers()->GetFirstRenderer();
@@ -136,7 +137,7 @@ TEST_F(ViewerTest, AClickTellsOfThePoint)
 TEST_F(ViewerTest, DraggingTurnsTheCameraAndResetBringsItBack)
 {
   const Xvfb display;
-  const World world(options());
+  const CloudsWorld world(options());
   Viewer viewer(world);
   const Pixels before = pixelsOf(viewer.window());
   mouse(viewer, vtkCommand::LeftButtonPressEvent, 200, 250);
@@ -150,7 +151,7 @@ TEST_F(ViewerTest, DraggingTurnsTheCameraAndResetBringsItBack)
 TEST_F(ViewerTest, SavesPictures)
 {
   const Xvfb display;
-  const World world(options());
+  const CloudsWorld world(options());
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(folder / "");
   Viewer viewer(world);
@@ -164,7 +165,7 @@ TEST_F(ViewerTest, SavesPictures)
 
 TEST_F(ViewerTest, NoDisplayIsAnErrorNotAnEnd)
 {
-  const World world(options());
+  const CloudsWorld world(options());
   for (const char* display : {"", ":987"}) {
     setenv("DISPLAY", display, 1);
     EXPECT_THROW(Viewer{world}, std::runtime_error);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "palette.h"
+
+#include <pcl_bsh/hierarchy/points_view.h>
+
+#include <Eigen/Geometry>
+#include <vtkActor.h>
+#include <vtkPolyData.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace pcl_bsh::view {
+
+/// A cloud as points, with those that collide once more, larger; few points only while the picture moves.
+class CloudActor {
+public:
+  CloudActor(const PointsView& points, vtkRenderer& renderer, const Color& marked);
+
+  /// Takes the points as they are now; paint and mark them anew. For points that move in their own frame.
+  void setPoints(const PointsView& points);
+
+  /// @param colors one per record
+  void paint(const std::vector<Color>& colors);
+
+  /// One colour, darker for lower points: a cloud all of one would look flat.
+  void paint(const Color& color);
+
+  /// Draws points with flags[record] != 0 larger: in the mark's colour, or in `colors` where that is not empty.
+  /// @param flags empty: none
+  void mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors = {});
+  void place(const Eigen::Isometry3d& pose);
+  void setMoving(bool moving);
+
+  vtkPolyData& data() const { return *data_; }
+  vtkPolyData& marked() const { return *marked_; }
+
+  /// The record that a picked prop and point id are; none when they are not of this cloud.
+  std::optional<std::uint32_t> recordOf(const vtkProp* prop, vtkIdType id) const;
+
+private:
+  vtkSmartPointer<vtkPolyData> data_, few_, marked_;
+  vtkSmartPointer<vtkActor> points_, marks_;
+};
+
+} // namespace pcl_bsh::view

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "painting.h"
+
+#include "cli/program.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcl_bsh::view {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+/// What colours stand for, one value per record; none where it is NaN.
+struct Values {
+  std::vector<float> values;
+  std::string title;
+  bool marks_only = false; ///< where there is no value, the cloud stays as it is
+  bool reversed = false;   ///< the smallest is the brightest
+  bool counts = false;
+};
+
+struct Range {
+  double low = 0.0, high = 1.0;
+};
+
+/// A few outliers should not take all colours for themselves: `share` of the values is left out at either end.
+Range rangeOf(std::vector<float> values, double share)
+{
+  values.erase(std::remove_if(values.begin(), values.end(), [](float value) { return !std::isfinite(value); }),
+               values.end());
+  if (values.empty()) return {};
+  const auto at = [&](double where) {
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(where * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), nth, values.end());
+    return static_cast<double>(*nth);
+  };
+  return {at(share), at(1.0 - share)};
+}
+
+std::string lengthTitle(const std::string& name, const Options& options)
+{
+  return name + "\n[" + (options.unit.empty() ? "cloud's unit" : options.unit) + "]";
+}
+
+Values heights(const Thing& scan, const Options& options)
+{
+  Values heights{{}, lengthTitle("height z", options)};
+  heights.values.reserve(scan.points().count);
+  for (std::uint32_t i = 0; i < scan.points().count; ++i)
+    heights.values.push_back(static_cast<float>(scan.points().point(i)[2]));
+  return heights;
+}
+
+Values firstPoses(const World& world)
+{
+  Values first{{}, "first pose\n[number]", true, false, true};
+  for (const std::int32_t pose : world.firstPoses()) first.values.push_back(pose < 0 ? nan : static_cast<float>(pose));
+  return first;
+}
+
+void paintValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Range& range)
+{
+  const auto table = colorTable(range.low, range.high, shown.reversed);
+  std::vector<Color> colors(shown.values.size(), scan_color);
+  std::vector<std::uint8_t> known(shown.values.size(), 0);
+  for (std::size_t i = 0; i < shown.values.size(); ++i) {
+    if (!std::isfinite(shown.values[i])) continue;
+    const unsigned char* const c = table->MapValue(shown.values[i]);
+    colors[i] = {c[0], c[1], c[2]};
+    known[i] = 1;
+  }
+  if (shown.marks_only) {
+    cloud.paint(scan_color);
+    cloud.mark(known, colors);
+  }
+  else {
+    cloud.paint(colors);
+  }
+  if (std::find(known.begin(), known.end(), 1) != known.end()) bar.show(*table, shown.title, shown.counts);
+}
+
+template <class Value>
+const Value& required(const std::optional<Value>& value, const World& world, const std::string& what)
+{
+  if (!value)
+    throw cli::UsageError("--color: " + world.scan().file.string() + " has no " + what + ": give another colour");
+  return *value;
+}
+
+void requireFindings(const Findings& findings, const std::string& option)
+{
+  if (!findings.known)
+    throw cli::UsageError("--color: it is not known what collides: give an obstacle and --clearance, or a cloud with "
+                          "the field 'collision', for " +
+                          option);
+}
+
+void paintScan(CloudActor& cloud, ValueBar& bar, const World& world, const Findings& findings, Coloring coloring,
+               std::size_t step)
+{
+  const Thing& scan = world.scan();
+  const Options& options = world.options();
+  switch (coloring) {
+  case Coloring::collision:
+    requireFindings(findings, "collision");
+    cloud.paint(scan_color);
+    cloud.mark(findings.flags[0]);
+    return;
+  case Coloring::distance: {
+    requireFindings(findings, "distance");
+    const Values shown{world.distances(step), lengthTitle("distance", options), true, true};
+    paintValues(cloud, bar, shown, {0.0, options.clearance.value_or(rangeOf(shown.values, 0.0).high)});
+    return;
+  }
+  case Coloring::first_pose: {
+    requireFindings(findings, "first_pose");
+    const Values shown = firstPoses(world);
+    paintValues(cloud, bar, shown, rangeOf(shown.values, 0.0));
+    return;
+  }
+  case Coloring::height: {
+    const Values shown = heights(scan, options);
+    paintValues(cloud, bar, shown, rangeOf(shown.values, 0.005));
+    break;
+  }
+  case Coloring::intensity: {
+    const Values shown{required(scan.field("intensity"), world, "field 'intensity'"), "intensity\n[as given]"};
+    paintValues(cloud, bar, shown, rangeOf(shown.values, 0.005));
+    break;
+  }
+  case Coloring::rgb:
+    cloud.paint(required(scan.colors(), world, "colours (fields rgb, rgba or red, green, blue)"));
+    break;
+  }
+  cloud.mark(findings.flags[0]);
+}
+
+} // namespace
+
+Coloring coloringOf(const World& world, const Findings& findings)
+{
+  if (world.options().color) return *world.options().color;
+  if (findings.known) return Coloring::collision;
+  return world.scan().colors() ? Coloring::rgb : Coloring::height;
+}
+
+void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, const Findings& findings,
+           Coloring coloring, std::size_t step)
+{
+  bar.hide();
+  paintScan(clouds[0], bar, world, findings, coloring, step);
+  for (std::size_t i = 1; i < clouds.size(); ++i) {
+    clouds[i].paint(obstacle_color);
+    clouds[i].mark(findings.flags[i]);
+  }
+}
+
+} // namespace pcl_bsh::view

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cloud_actor.h"
+#include "value_bar.h"
+#include "world.h"
+
+#include <vector>
+
+namespace pcl_bsh::view {
+
+/// As the options say, or what fits best.
+Coloring coloringOf(const World& world, const Findings& findings);
+
+/// Gives all clouds their colours, marks what collides, and shows the bar where colours stand for values.
+/// @throws cli::UsageError when the clouds lack what the colours stand for
+void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, const Findings& findings,
+           Coloring coloring, std::size_t step);
+
+} // namespace pcl_bsh::view

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Numbers as they stand in titles.
+#pragma once
+
+#include <iomanip>
+#include <sstream>
+#include <string>
+
+namespace pcl_bsh::view {
+
+/// 1234567 as "1 234 567".
+inline std::string grouped(std::size_t number)
+{
+  std::string text = std::to_string(number);
+  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, " ");
+  return text;
+}
+
+/// Six digits at most.
+inline std::string shortest(double value)
+{
+  std::ostringstream text;
+  text << std::setprecision(6) << value;
+  return text.str();
+}
+
+} // namespace pcl_bsh::view

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One cloud of what there is to see, with its index.
+#pragma once
+
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::view {
+
+struct Thing {
+  /// A scan is drawn in grey and marked in orange, an obstacle in blue and yellow.
+  enum class Role { scan, obstacle };
+
+  std::string name;   ///< for titles
+  std::string legend; ///< things of the same role may share an entry
+  Role role = Role::scan;
+  std::filesystem::path file;
+  std::shared_ptr<const pcl::PCLPointCloud2> cloud; ///< as it was read
+  std::shared_ptr<SphereHierarchy> hierarchy;
+
+  const PointsView& points() const { return hierarchy->view(); }
+
+  /// A field's values, one per record; none where the cloud has no such field, or one of several values.
+  std::optional<std::vector<float>> field(const std::string& field_name) const;
+
+  /// Red, green, blue, per record; none where the cloud has no colours.
+  std::optional<std::vector<std::array<unsigned char, 3>>> colors() const;
+};
+
+} // namespace pcl_bsh::view

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "value_bar.h"
+
+#include "caption.h"
+
+#include <vtkTextProperty.h>
+
+#include <algorithm>
+
+namespace pcl_bsh::view {
+
+ValueBar::ValueBar(vtkRenderer& renderer) : bar_(vtkSmartPointer<vtkScalarBarActor>::New())
+{
+  bar_->UnconstrainedFontSizeOn();
+  bar_->SetPosition(0.885, 0.3);
+  bar_->SetWidth(0.085);
+  bar_->SetHeight(0.45);
+  bar_->SetNumberOfLabels(5);
+  bar_->SetVerticalTitleSeparation(10);
+  for (vtkTextProperty* look : {bar_->GetTitleTextProperty(), bar_->GetLabelTextProperty()}) {
+    setLook(*look, text_size - 2);
+    look->SetVerticalJustificationToTop();
+  }
+  hide();
+  renderer.AddActor2D(bar_);
+}
+
+void ValueBar::show(vtkLookupTable& table, const std::string& title, bool counts)
+{
+  bar_->SetLookupTable(&table);
+  bar_->SetTitle(title.c_str());
+  bar_->SetLabelFormat(counts ? "%.0f" : "%-.3g");
+  const double* const range = table.GetTableRange();
+  bar_->SetNumberOfLabels(counts ? static_cast<int>(std::clamp(range[1] - range[0] + 1.0, 2.0, 5.0)) : 5);
+  bar_->VisibilityOn();
+}
+
+} // namespace pcl_bsh::view
