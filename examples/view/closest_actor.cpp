@@ -26,7 +26,7 @@ void addClosest(PropGroup& group, const Closest& closest, const std::string& uni
   const Eigen::Vector3d middle = (closest.a + closest.b) / 2;
   label->SetPosition(middle.x(), middle.y(), middle.z());
   label->SetDisplayOffset(8, 8);
-  label->SetInput((shortest(closest.distance) + ' ' + unit).c_str());
+  label->SetInput(lengthOf(closest.distance, unit).c_str());
   const std::array<double, 3> c = fractions(segment_color);
   label->GetTextProperty()->SetColor(c[0], c[1], c[2]);
   label->GetTextProperty()->SetFontSize(text_size);

@@ -114,7 +114,7 @@ std::string CloudsWorld::heading(const Findings& findings, std::size_t step) con
   text << scan().name << ": " << grouped(scan().hierarchy->size()) << " points";
   if (findings.known) {
     text << ", " << grouped(findings.colliding) << " collide";
-    if (options_.clearance) text << "  (clearance " << shortest(*options_.clearance) << ' ' << options_.unit << ')';
+    if (options_.clearance) text << "  (clearance " << lengthOf(*options_.clearance, options_.unit) << ')';
   }
   if (steps() > 1) text << "\npose " << step << " of 0.." << steps() - 1;
   return text.str();
@@ -183,7 +183,7 @@ std::string CloudsWorld::details(std::size_t thing, std::uint32_t record, std::s
 {
   if (thing > 0) return {};
   std::string text;
-  if (const auto distance = distanceOf(record, step)) text += "; distance " + shortest(*distance) + ' ' + options_.unit;
+  if (const auto distance = distanceOf(record, step)) text += "; distance " + lengthOf(*distance, options_.unit);
   if (first_poses_ || steps() > 1) {
     const std::vector<std::int32_t> first = firstPoses();
     text += "; first pose " + (first[record] < 0 ? "none" : std::to_string(first[record]));

@@ -29,11 +29,10 @@ vtkSmartPointer<vtkPolyData> knownScan(CloudActor& cloud, const World& world, co
                                        std::size_t step)
 {
   const auto data = known(cloud, findings.flags[0]);
-  if (findings.known) {
-    vtk::addArray(*data, "distance", world.distances(step));
-    vtk::addArray(*data, "first_pose", world.firstPoses());
-  }
   if (const auto values = world.scan().field("intensity")) vtk::addArray(*data, "intensity", *values);
+  if (!findings.known) return data;
+  if (const auto distances = world.distances(step); !distances.empty()) vtk::addArray(*data, "distance", distances);
+  if (const auto poses = world.firstPoses(); !poses.empty()) vtk::addArray(*data, "first_pose", poses);
   return data;
 }
 

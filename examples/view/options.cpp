@@ -18,12 +18,15 @@ namespace {
 constexpr auto footer = R"(Points of the first CLOUD within D of another CLOUD or of the MODEL collide, decided exactly;
 they are drawn larger and in orange, all others dimmed. A cloud that holds the fields collision,
 distance or first_pose shows these as they are.
+A scene's objects are drawn where they are at a step, responses included: what is fixed in grey, what moves in
+blue, and what is within the scene's clearance, or D, in orange and yellow.
 Reads .pcd .ply .obj .off .xyz .txt. Without --screenshot and --export a window opens: h shows its keys.
 Exit code: 0 done; 1 failed; 2 command line not understood.
 
 Examples:
   pcl_bsh_view hall.ply --model robot.pcd --pose 1.5,2,0,0,0,1.57 --clearance 0.05 --unit m
   pcl_bsh_view tunnel.pcd --model wagon.ply --trajectory path.txt --clearance 0.1 --color first_pose
+  pcl_bsh_view --scene walk.json --step 80 --clearance 0.3
   pcl_bsh_view marked.pcd --camera colliding --screenshot marked.png --size 1600x1000
   pcl_bsh_view hall.ply --model robot.pcd --clearance 0.05 --level 2 --export hall.vtm)";
 
@@ -83,8 +86,25 @@ void parseSize(const std::string& text, Options& options)
   options.height = number(x == std::string::npos ? "" : text.substr(x + 1));
 }
 
-void checkTogether(const Options& options)
+void checkScene(const Options& options)
 {
+  const auto refuse = [](const char* option) {
+    throw UsageError(std::string(option) + ": a --scene says this itself: leave it out");
+  };
+  if (!options.clouds.empty()) refuse("CLOUD");
+  if (options.model) refuse("--model");
+  if (!options.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) refuse("--pose");
+  if (options.trajectory) refuse("--trajectory");
+  if (options.trace) throw UsageError("--trace: shows a query of clouds: give these in place of --scene");
+  if (options.color && *options.color != Coloring::collision)
+    throw UsageError("--color: a --scene is coloured by collision: leave it out");
+  if (options.export_to && options.export_to->extension() == ".vtp")
+    throw UsageError("--export: " + options.export_to->string() + ": holds one cloud: name a .vtm file");
+}
+
+void checkClouds(const Options& options)
+{
+  if (options.clouds.empty()) throw UsageError("CLOUD: is missing: name a cloud, or a scene with --scene");
   const bool moves = options.trajectory || !options.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0);
   if (moves && !options.model) throw UsageError("--model: is missing: say which cloud the poses are for");
   const bool obstacles = options.model || options.clouds.size() > 1;
@@ -97,6 +117,10 @@ void checkTogether(const Options& options)
   if (options.trace && !options.clearance) throw UsageError("--clearance: is missing: --trace shows a query");
   if (options.closest && !obstacles)
     throw UsageError("--closest: there is nothing to be close to: give a second cloud or --model");
+}
+
+void checkFiles(const Options& options)
+{
   if (options.export_to) {
     const std::string extension = options.export_to->extension().string();
     if (extension != ".vtp" && extension != ".vtm")
@@ -113,19 +137,24 @@ std::optional<Options> parseOptions(int argc, char** argv)
 {
   Options options;
   std::vector<std::string> clouds;
-  std::string model, trajectory, pose, clearance, color, level, step = "0", screenshot, size = "1280x960",
-                                                                camera = "slanted", export_to, threads = "0";
+  std::string scene, model, trajectory, pose, clearance, color, level, step = "0", screenshot, size = "1280x960",
+                                                                       camera = "slanted", export_to, threads = "0";
   CLI::App app("Shows clouds, where they collide, and the spheres that find it.", program);
   app.footer(footer);
-  app.add_option("CLOUD", clouds, "the cloud asked about, then obstacles in the same frame")->type_name("")->required();
+  app.add_option("CLOUD", clouds, "the cloud asked about, then obstacles in the same frame")->type_name("");
+  app.add_option("--scene", scene, "a scene file in place of clouds: objects, their motions and responses")
+      ->type_name("SCENE.json");
   app.add_option("--model", model, "an obstacle that has poses")->type_name("CLOUD");
   app.add_option("--pose", pose, "of the model: x,y,z,roll,pitch,yaw (radians), or a file of a\nmatrix (default: none)")
       ->type_name("POSE");
   app.add_option("--trajectory", trajectory,
                  "poses of the model, one a line: 12 or 16 numbers of its matrix, or\ntime tx ty tz qx qy qz qw")
       ->type_name("FILE");
-  app.add_option("--step", step, "the pose of the trajectory to begin with, from 0")->type_name("N");
-  app.add_option("--clearance", clearance, "greatest distance that counts as collision, in the clouds' unit")
+  app.add_option("--step", step,
+                 "the pose of the trajectory, or the step of the scene, to begin\nwith, from 0 (default: 0)")
+      ->type_name("N");
+  app.add_option("--clearance", clearance,
+                 "greatest distance that counts as collision, in the clouds' unit\n(default for a scene: its own)")
       ->type_name("D");
   app.add_option("--color", color, "collision (default where known), distance, first_pose, height,\nrgb or intensity")
       ->type_name("BY");
@@ -159,6 +188,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
   const auto set = [](const std::string& text, std::optional<std::filesystem::path>& path) {
     if (!text.empty()) path = text;
   };
+  set(scene, options.scene);
   set(model, options.model);
   set(trajectory, options.trajectory);
   set(screenshot, options.screenshot);
@@ -171,11 +201,12 @@ std::optional<Options> parseOptions(int argc, char** argv)
     options.clearance = cli::parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
   if (!color.empty()) options.color = parseColoring(color);
   if (!level.empty()) options.level = cli::parseOption<unsigned>("--level", level, "give 0 or more");
-  options.step = cli::parseOption<unsigned>("--step", step, "give the number of a pose, from 0");
+  options.step = cli::parseOption<unsigned>("--step", step, "give the number of a pose or step, from 0");
   options.threads = cli::parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
   parseSize(size, options);
   options.camera = parseCamera(camera);
-  checkTogether(options);
+  options.scene ? checkScene(options) : checkClouds(options);
+  checkFiles(options);
   return options;
 }
 

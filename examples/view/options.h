@@ -25,14 +25,15 @@ struct Camera {
 };
 
 struct Options {
-  std::vector<std::filesystem::path> clouds; ///< the first is the one asked about, the others are obstacles
+  std::vector<std::filesystem::path> clouds;  ///< the first is the one asked about, the others are obstacles
+  std::optional<std::filesystem::path> scene; ///< in place of clouds
   std::optional<std::filesystem::path> model;
   std::optional<std::filesystem::path> trajectory;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< of the model, without a trajectory
   std::optional<double> clearance;
   std::optional<Coloring> color;
   std::optional<unsigned> level;
-  unsigned step = 0;
+  unsigned step = 0; ///< of the trajectory or the scene
   bool voxels = false, cells = false, trace = false, closest = false;
   std::string unit; ///< of lengths, for titles
   std::optional<std::filesystem::path> screenshot;

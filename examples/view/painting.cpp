@@ -81,6 +81,11 @@ void paintValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Ra
   if (std::find(known.begin(), known.end(), 1) != known.end()) bar.show(*table, shown.title, shown.counts);
 }
 
+Color plainColor(const Thing& thing)
+{
+  return thing.role == Thing::Role::scan ? scan_color : obstacle_color;
+}
+
 template <class Value>
 const Value& required(const std::optional<Value>& value, const World& world, const std::string& what)
 {
@@ -105,7 +110,7 @@ void paintScan(CloudActor& cloud, ValueBar& bar, const World& world, const Findi
   switch (coloring) {
   case Coloring::collision:
     requireFindings(findings, "collision");
-    cloud.paint(scan_color);
+    cloud.paint(plainColor(scan));
     cloud.mark(findings.flags[0]);
     return;
   case Coloring::distance: {
@@ -152,7 +157,7 @@ void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, c
   bar.hide();
   paintScan(clouds[0], bar, world, findings, coloring, step);
   for (std::size_t i = 1; i < clouds.size(); ++i) {
-    clouds[i].paint(obstacle_color);
+    clouds[i].paint(plainColor(world.things()[i]));
     clouds[i].mark(findings.flags[i]);
   }
 }

@@ -96,8 +96,7 @@ void Stage::drawWays()
 void Stage::writeTexts()
 {
   std::string title = world_.heading(findings_, step_);
-  if (findings_.closest)
-    title += "\nsmallest distance " + shortest(findings_.closest->distance) + ' ' + world_.options().unit;
+  if (findings_.closest) title += "\nsmallest distance " + lengthOf(findings_.closest->distance, world_.options().unit);
   if (extras_.level) title += "\nspheres of level " + std::to_string(*extras_.level);
   caption_.setTitle(title);
   caption_.setLegend(legend());

@@ -24,4 +24,10 @@ inline std::string shortest(double value)
   return text.str();
 }
 
+/// A length with its unit, where that is known.
+inline std::string lengthOf(double value, const std::string& unit)
+{
+  return shortest(value) + (unit.empty() ? "" : " " + unit);
+}
+
 } // namespace pcl_bsh::view

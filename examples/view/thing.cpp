@@ -32,7 +32,7 @@ void eachValue(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field
 
 std::optional<std::vector<float>> Thing::field(const std::string& field_name) const
 {
-  const pcl::PCLPointField* const found = find(*cloud, field_name);
+  const pcl::PCLPointField* const found = cloud ? find(*cloud, field_name) : nullptr;
   if (!found) return std::nullopt;
   std::vector<float> values(std::size_t{cloud->width} * cloud->height);
   io::withFieldType(found->datatype, [&](auto zero) {

@@ -23,7 +23,7 @@ struct Thing {
   std::string legend; ///< things of the same role may share an entry
   Role role = Role::scan;
   std::filesystem::path file;
-  std::shared_ptr<const pcl::PCLPointCloud2> cloud; ///< as it was read
+  std::shared_ptr<const pcl::PCLPointCloud2> cloud; ///< as it was read; none where fields are not shown
   std::shared_ptr<SphereHierarchy> hierarchy;
 
   const PointsView& points() const { return hierarchy->view(); }

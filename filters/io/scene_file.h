@@ -81,6 +81,9 @@ SceneFile readSceneFile(const std::filesystem::path& path);
 /// The same, of a text; relative file names are looked for beside `path`.
 SceneFile parseScene(const std::string& text, const std::filesystem::path& path);
 
+/// Gives a scene the file's rules about pairs; the objects are there already.
+void setRules(Scene& scene, const std::vector<RuleEntry>& rules);
+
 /// The scene itself, and what it looks at.
 class SceneWorld {
 public:
@@ -94,7 +97,7 @@ public:
   const pcl::PCLPointCloud2& cloud(const std::string& name) const { return clouds_.at(name).points; }
   std::size_t points() const; ///< of all clouds
 
-  /// Lets the waves run on to the scene's time after the next step.
+  /// Puts the points of waving objects where they are at this time; at first they are where they are at 0.
   void deform(double time);
 
 private:

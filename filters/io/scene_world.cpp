@@ -61,6 +61,16 @@ std::vector<double> coordinatesOf(const PointsView& view)
 
 } // namespace
 
+void setRules(Scene& scene, const std::vector<RuleEntry>& rules)
+{
+  for (const RuleEntry& rule : rules) {
+    if (rule.of_groups)
+      scene.setGroupRule(rule.a, rule.b, rule.rule);
+    else
+      scene.setRule(*scene.find(rule.a), *scene.find(rule.b), rule.rule);
+  }
+}
+
 SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const CloudSource&)>& reading)
 {
   std::set<std::string> used;
@@ -103,12 +113,8 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
     }
     scene_->add(std::move(object));
   }
-  for (const RuleEntry& rule : file.rules) {
-    if (rule.of_groups)
-      scene_->setGroupRule(rule.a, rule.b, rule.rule);
-    else
-      scene_->setRule(*scene_->find(rule.a), *scene_->find(rule.b), rule.rule);
-  }
+  setRules(*scene_, file.rules);
+  deform(0.0);
 }
 
 std::size_t SceneWorld::points() const

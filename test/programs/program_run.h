@@ -12,11 +12,12 @@
 
 namespace pcl_bsh {
 
-struct Outcome {
+struct ProgramOutcome {
   int exit_code = -1;
   std::string out;
   std::string err;
 };
+using Outcome = ProgramOutcome; // a scene's move has an Outcome, too
 
 /// In the shell, so quote what it would change. @param place the folder to run in; empty: this one
 inline Outcome run(const std::string& program, const std::string& arguments, const std::filesystem::path& place = {})

@@ -2,12 +2,9 @@
 // What pictures show, pixel by pixel; without a display.
 #include "pixels.h"
 
-#include <view/options.h>
-#include <view/stage.h>
 #include <view/clouds_world.h>
 
 #include <pcl_bsh/vtk/hierarchy_data.h>
-#include <pcl_bsh/vtk/offscreen_window.h>
 
 #include <gmock/gmock.h>
 
@@ -15,7 +12,6 @@
 #include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkRenderer.h>
 #include <vtkXMLMultiBlockDataReader.h>
 #include <vtkXMLPolyDataReader.h>
 
@@ -39,32 +35,6 @@ protected:
     return readPng(folder / "p.png");
   }
 
-  /// A stage to ask where things are.
-  struct Set {
-    explicit Set(const Options& options) : world(options)
-    {
-      window = vtk::makeOffscreenWindow(options.width, options.height);
-      window->AddRenderer(renderer);
-      stage = std::make_unique<Stage>(world, *renderer);
-    }
-
-    Pixels draw() { return pixelsOf(*window); }
-
-    /// Where a point of the world lands, in pixels from the lower left.
-    std::array<int, 2> seen(const double* p)
-    {
-      renderer->SetWorldPoint(p[0], p[1], p[2], 1.0);
-      renderer->WorldToDisplay();
-      const double* const at = renderer->GetDisplayPoint();
-      return {static_cast<int>(std::lround(at[0])), static_cast<int>(std::lround(at[1]))};
-    }
-
-    CloudsWorld world;
-    vtkNew<vtkRenderer> renderer;
-    vtkSmartPointer<vtkRenderWindow> window;
-    std::unique_ptr<Stage> stage;
-  };
-
   Options options() const
   {
     Options made;
@@ -83,7 +53,7 @@ protected:
 TEST_F(Picture, MarksWhatCollidesWhereItIs)
 {
   Options touching = options();
-  Set set(touching);
+  OffscreenStage set(touching);
   const Pixels pixels = set.draw();
   ASSERT_GT(set.stage->findings().colliding, 0u);
   EXPECT_GT(pixels.count(scan_color, 60), 1000u) << "the floor, shaded";
@@ -94,14 +64,14 @@ TEST_F(Picture, MarksWhatCollidesWhereItIs)
   touching.camera.eye = {0, 0, -6};
   touching.camera.focus = {0, 0, 0};
   touching.camera.up = {0, 1, 0};
-  Set below(touching);
+  OffscreenStage below(touching);
   const Pixels under = below.draw();
   const double contact[3] = {-0.5, 0.5, 0.0};
   const auto [x, y] = below.seen(contact);
   EXPECT_GT(under.countNear(colliding_color, x, y, 30), 200u) << "around the ball's dip";
   EXPECT_GT(under.countNear(colliding_color, x, y, 40), under.count(colliding_color) * 3 / 4) << "legend apart";
   touching.pose.translation().z() = 2.0;
-  Set apart(touching);
+  OffscreenStage apart(touching);
   ASSERT_EQ(apart.stage->findings().colliding, 0u);
   EXPECT_EQ(apart.draw().countNear(colliding_color, x, y, 40), 0u);
 }
@@ -131,11 +101,11 @@ TEST_F(Picture, SpheresAreOutlinedWhereTheirCentresSay)
   plain.clearance.reset();
   plain.pose = Eigen::Isometry3d::Identity();
   plain.color = Coloring::height;
-  Set set(plain);
+  OffscreenStage set(plain);
   const Pixels none = set.draw();
   set.stage->setExtras({0, false, false, false});
   const Pixels some = set.draw();
-  const auto spheres = vtk::sphereData(*set.world.scan().hierarchy, 0);
+  const auto spheres = vtk::sphereData(*set.world->scan().hierarchy, 0);
   for (vtkIdType i = 0; i < spheres->GetNumberOfPoints(); ++i) {
     double rim[3];
     spheres->GetPoint(i, rim);
@@ -151,7 +121,7 @@ TEST_F(Picture, SpheresAreOutlinedWhereTheirCentresSay)
 
 TEST_F(Picture, ExtrasChangeThePictureAndTheLegend)
 {
-  Set set(options());
+  OffscreenStage set(options());
   const Pixels plain = set.draw();
   const auto count = [&](const Extras& extras, const Color& color) {
     set.stage->setExtras(extras);
@@ -185,7 +155,7 @@ TEST_F(Picture, TheClosestPairIsDrawn)
   Options apart = options();
   apart.pose.translation() = Eigen::Vector3d(3.0, 0, 0);
   apart.closest = true;
-  Set set(apart);
+  OffscreenStage set(apart);
   const Pixels pixels = set.draw();
   ASSERT_TRUE(set.stage->findings().closest);
   const Eigen::Vector3d middle = (set.stage->findings().closest->a + set.stage->findings().closest->b) / 2;

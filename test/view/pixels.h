@@ -4,7 +4,12 @@
 
 #include "../programs/program_run.h"
 
+#include <view/options.h>
 #include <view/palette.h>
+#include <view/stage.h>
+#include <view/world.h>
+
+#include <pcl_bsh/vtk/offscreen_window.h>
 
 #include <gtest/gtest.h>
 
@@ -12,6 +17,7 @@
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
 #include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <signal.h>
@@ -20,6 +26,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -87,6 +94,32 @@ inline Pixels readPng(const std::filesystem::path& path)
   pixels.bytes.assign(data, data + 3 * static_cast<std::size_t>(pixels.width * pixels.height));
   return pixels;
 }
+
+/// A stage to ask where things are.
+struct OffscreenStage {
+  explicit OffscreenStage(const Options& options) : world(makeWorld(options))
+  {
+    window = vtk::makeOffscreenWindow(options.width, options.height);
+    window->AddRenderer(renderer);
+    stage = std::make_unique<Stage>(*world, *renderer);
+  }
+
+  Pixels draw() { return pixelsOf(*window); }
+
+  /// Where a point of the world lands, in pixels from the lower left.
+  std::array<int, 2> seen(const double* p)
+  {
+    renderer->SetWorldPoint(p[0], p[1], p[2], 1.0);
+    renderer->WorldToDisplay();
+    const double* const at = renderer->GetDisplayPoint();
+    return {static_cast<int>(std::lround(at[0])), static_cast<int>(std::lround(at[1]))};
+  }
+
+  std::unique_ptr<World> world;
+  vtkNew<vtkRenderer> renderer;
+  vtkSmartPointer<vtkRenderWindow> window;
+  std::unique_ptr<Stage> stage;
+};
 
 /// An X server of the test's own, for as long as it lives; DISPLAY names it.
 class Xvfb {
