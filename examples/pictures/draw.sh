@@ -26,3 +26,7 @@ view "${man[@]}" --pose=-7,0,-2.6,0,0,0 --clearance 0.5 --trace --camera=-9.4,-2
 for x in $(seq -10 0.25 0); do printf '1 0 0 %s  0 1 0 0  0 0 1 -2.6\n' "$x"; done >"$work/walk.txt"
 view "${man[@]}" --trajectory "$work/walk.txt" --step 14 --clearance 1.5 --color first_pose \
   --camera=-17,-9,4,-5,0,-1 --screenshot examples/pictures/walk.png
+
+# A scene: the visitor walks up a step and along the wall; what is within 0.3 m of him stands out.
+view --scene examples/scenes/walk.json --step 90 --clearance 0.3 --camera=-13,-5,-0.8,-6.5,1.5,-1.6 \
+  --screenshot examples/pictures/scene.png

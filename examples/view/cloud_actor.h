@@ -2,14 +2,9 @@
 #pragma once
 
 #include "palette.h"
+#include "point_layer.h"
 
 #include <pcl_bsh/hierarchy/points_view.h>
-
-#include <Eigen/Geometry>
-#include <vtkActor.h>
-#include <vtkPolyData.h>
-#include <vtkRenderer.h>
-#include <vtkSmartPointer.h>
 
 #include <cstdint>
 #include <optional>
@@ -17,7 +12,7 @@
 
 namespace pcl_bsh::view {
 
-/// A cloud as points, with those that collide once more, larger; few points only while the picture moves.
+/// A cloud as points, with those that collide once more, larger.
 class CloudActor {
 public:
   CloudActor(const PointsView& points, vtkRenderer& renderer, const Color& marked);
@@ -37,15 +32,14 @@ public:
   void place(const Eigen::Isometry3d& pose);
   void setMoving(bool moving);
 
-  vtkPolyData& data() const { return *data_; }
-  vtkPolyData& marked() const { return *marked_; }
+  vtkPolyData& data() const { return points_.data(); }
+  vtkPolyData& marked() const { return marks_.data(); }
 
   /// The record that a picked prop and point id are; none when they are not of this cloud.
   std::optional<std::uint32_t> recordOf(const vtkProp* prop, vtkIdType id) const;
 
 private:
-  vtkSmartPointer<vtkPolyData> data_, few_, marked_;
-  vtkSmartPointer<vtkActor> points_, marks_;
+  PointLayer points_, marks_;
 };
 
 } // namespace pcl_bsh::view

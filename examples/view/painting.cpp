@@ -16,8 +16,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 struct Values {
   std::vector<float> values;
   std::string title;
-  bool marks_only = false; ///< where there is no value, the cloud stays as it is
-  bool reversed = false;   ///< the smallest is the brightest
+  bool reversed = false; ///< the smallest is the brightest
   bool counts = false;
 };
 
@@ -55,30 +54,42 @@ Values heights(const Thing& scan, const Options& options)
 
 Values firstPoses(const World& world)
 {
-  Values first{{}, "first pose\n[number]", true, false, true};
+  Values first{{}, "first pose\n[number]", false, true};
   for (const std::int32_t pose : world.firstPoses()) first.values.push_back(pose < 0 ? nan : static_cast<float>(pose));
   return first;
 }
 
-void paintValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Range& range)
+std::vector<Color> colorsOf(const Values& shown, vtkLookupTable& table)
 {
-  const auto table = colorTable(range.low, range.high, shown.reversed);
   std::vector<Color> colors(shown.values.size(), scan_color);
-  std::vector<std::uint8_t> known(shown.values.size(), 0);
   for (std::size_t i = 0; i < shown.values.size(); ++i) {
     if (!std::isfinite(shown.values[i])) continue;
-    const unsigned char* const c = table->MapValue(shown.values[i]);
+    const unsigned char* const c = table.MapValue(shown.values[i]);
     colors[i] = {c[0], c[1], c[2]};
-    known[i] = 1;
   }
-  if (shown.marks_only) {
-    cloud.paint(scan_color);
-    cloud.mark(known, colors);
-  }
-  else {
-    cloud.paint(colors);
-  }
-  if (std::find(known.begin(), known.end(), 1) != known.end()) bar.show(*table, shown.title, shown.counts);
+  return colors;
+}
+
+void paintValues(CloudActor& cloud, ValueBar& bar, const Values& shown)
+{
+  const Range range = rangeOf(shown.values, 0.005);
+  const auto table = colorTable(range.low, range.high, false);
+  cloud.paint(colorsOf(shown, *table));
+  bar.show(*table, shown.title, false);
+}
+
+/// Marks the points that have a value.
+void markValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Range& range)
+{
+  const auto table = colorTable(range.low, range.high, shown.reversed);
+  std::vector<std::uint8_t> known;
+  known.reserve(shown.values.size());
+  for (const float value : shown.values) known.push_back(std::isfinite(value) ? 1 : 0);
+  cloud.mark(known, colorsOf(shown, *table));
+  if (std::find(known.begin(), known.end(), 1) != known.end())
+    bar.show(*table, shown.title, shown.counts);
+  else
+    bar.hide();
 }
 
 Color plainColor(const Thing& thing)
@@ -102,44 +113,24 @@ void requireFindings(const Findings& findings, const std::string& option)
                           option);
 }
 
-void paintScan(CloudActor& cloud, ValueBar& bar, const World& world, const Findings& findings, Coloring coloring,
-               std::size_t step)
+void paintScan(CloudActor& cloud, ValueBar& bar, const World& world, Coloring coloring)
 {
   const Thing& scan = world.scan();
-  const Options& options = world.options();
   switch (coloring) {
   case Coloring::collision:
-    requireFindings(findings, "collision");
+  case Coloring::distance:
+  case Coloring::first_pose:
     cloud.paint(plainColor(scan));
-    cloud.mark(findings.flags[0]);
     return;
-  case Coloring::distance: {
-    requireFindings(findings, "distance");
-    const Values shown{world.distances(step), lengthTitle("distance", options), true, true};
-    paintValues(cloud, bar, shown, {0.0, options.clearance.value_or(rangeOf(shown.values, 0.0).high)});
+  case Coloring::height:
+    paintValues(cloud, bar, heights(scan, world.options()));
     return;
-  }
-  case Coloring::first_pose: {
-    requireFindings(findings, "first_pose");
-    const Values shown = firstPoses(world);
-    paintValues(cloud, bar, shown, rangeOf(shown.values, 0.0));
+  case Coloring::intensity:
+    paintValues(cloud, bar, {required(scan.field("intensity"), world, "field 'intensity'"), "intensity\n[as given]"});
     return;
-  }
-  case Coloring::height: {
-    const Values shown = heights(scan, options);
-    paintValues(cloud, bar, shown, rangeOf(shown.values, 0.005));
-    break;
-  }
-  case Coloring::intensity: {
-    const Values shown{required(scan.field("intensity"), world, "field 'intensity'"), "intensity\n[as given]"};
-    paintValues(cloud, bar, shown, rangeOf(shown.values, 0.005));
-    break;
-  }
   case Coloring::rgb:
     cloud.paint(required(scan.colors(), world, "colours (fields rgb, rgba or red, green, blue)"));
-    break;
   }
-  cloud.mark(findings.flags[0]);
 }
 
 } // namespace
@@ -151,15 +142,31 @@ Coloring coloringOf(const World& world, const Findings& findings)
   return world.scan().colors() ? Coloring::rgb : Coloring::height;
 }
 
-void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, const Findings& findings,
-           Coloring coloring, std::size_t step)
+void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, Coloring coloring)
 {
-  bar.hide();
-  paintScan(clouds[0], bar, world, findings, coloring, step);
-  for (std::size_t i = 1; i < clouds.size(); ++i) {
-    clouds[i].paint(plainColor(world.things()[i]));
-    clouds[i].mark(findings.flags[i]);
+  paintScan(clouds[0], bar, world, coloring);
+  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].paint(plainColor(world.things()[i]));
+}
+
+void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, const Findings& findings,
+          Coloring coloring, std::size_t step)
+{
+  const Options& options = world.options();
+  if (coloring == Coloring::distance) {
+    requireFindings(findings, "distance");
+    const Values shown{world.distances(step), lengthTitle("distance", options), true};
+    markValues(clouds[0], bar, shown, {0.0, options.clearance.value_or(rangeOf(shown.values, 0.0).high)});
   }
+  else if (coloring == Coloring::first_pose) {
+    requireFindings(findings, "first_pose");
+    const Values shown = firstPoses(world);
+    markValues(clouds[0], bar, shown, rangeOf(shown.values, 0.0));
+  }
+  else {
+    if (coloring == Coloring::collision) requireFindings(findings, "collision");
+    clouds[0].mark(findings.flags[0]);
+  }
+  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].mark(findings.flags[i]);
 }
 
 } // namespace pcl_bsh::view

@@ -12,9 +12,13 @@ namespace pcl_bsh::view {
 /// As the options say, or what fits best.
 Coloring coloringOf(const World& world, const Findings& findings);
 
-/// Gives all clouds their colours, marks what collides, and shows the bar where colours stand for values.
+/// Gives all clouds their colours, and shows the bar where these stand for values.
 /// @throws cli::UsageError when the clouds lack what the colours stand for
-void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, const Findings& findings,
-           Coloring coloring, std::size_t step);
+void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, Coloring coloring);
+
+/// Marks what collides at this step; where the marks' colours stand for values, the bar says which.
+/// @throws cli::UsageError when it is not known what collides
+void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, const Findings& findings,
+          Coloring coloring, std::size_t step);
 
 } // namespace pcl_bsh::view

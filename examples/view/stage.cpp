@@ -37,6 +37,7 @@ Stage::Stage(const World& world, vtkRenderer& renderer)
   findings_ = world.findings(options.step);
   coloring_ = coloringOf(world, findings_);
   step_ = options.step;
+  paint(clouds_, bar_, world, coloring_);
   show(options.step);
   look(options.camera);
 }
@@ -61,11 +62,15 @@ void Stage::setExtras(const Extras& extras)
 
 void Stage::drawClouds()
 {
+  bool deformed = false;
   for (std::size_t i = 0; i < clouds_.size(); ++i) {
-    if (world_.deforms(i)) clouds_[i].setPoints(world_.things()[i].points());
     clouds_[i].place(world_.poseOf(i, step_));
+    if (!world_.deforms(i)) continue;
+    clouds_[i].setPoints(world_.things()[i].points());
+    deformed = true;
   }
-  paint(clouds_, bar_, world_, findings_, coloring_, step_);
+  if (deformed) paint(clouds_, bar_, world_, coloring_);
+  mark(clouds_, bar_, world_, findings_, coloring_, step_);
 }
 
 void Stage::drawExtras()

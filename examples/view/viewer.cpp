@@ -82,6 +82,12 @@ void onSlider(vtkObject* slider, unsigned long, void* viewer, void*)
   static_cast<Viewer*>(viewer)->showStep(static_cast<std::size_t>(std::lround(std::max(0.0, value))));
 }
 
+void onSliderMoving(vtkObject*, unsigned long event, void* viewer, void*)
+{
+  static_cast<Viewer*>(viewer)->setMoving(event == vtkCommand::StartInteractionEvent);
+  if (event == vtkCommand::EndInteractionEvent) static_cast<Viewer*>(viewer)->interactor().Render();
+}
+
 } // namespace
 
 Viewer::Viewer(const World& world) : world_(world)
@@ -140,6 +146,11 @@ void Viewer::addSlider()
   follow->SetClientData(this);
   follow->SetCallback(onSlider);
   slider_->AddObserver(vtkCommand::InteractionEvent, follow);
+  vtkNew<vtkCallbackCommand> ease;
+  ease->SetClientData(this);
+  ease->SetCallback(onSliderMoving);
+  slider_->AddObserver(vtkCommand::StartInteractionEvent, ease);
+  slider_->AddObserver(vtkCommand::EndInteractionEvent, ease);
   slider_->EnabledOn();
 }
 
