@@ -10,8 +10,6 @@
 namespace pcl_bsh::view {
 namespace {
 
-constexpr double shade = 0.7;
-
 vtkSmartPointer<vtkTextActor> textAt(double x, double y)
 {
   auto text = vtkSmartPointer<vtkTextActor>::New();
@@ -30,9 +28,6 @@ void setLook(vtkTextProperty& look, int size)
   look.SetLineSpacing(1.25);
   const std::array<double, 3> c = fractions(text_color);
   look.SetColor(c[0], c[1], c[2]);
-  const std::array<double, 3> behind = fractions(ground);
-  look.SetBackgroundColor(behind[0], behind[1], behind[2]);
-  look.SetBackgroundOpacity(shade);
 }
 
 Caption::Caption(vtkRenderer& renderer, int width, int height)
@@ -46,10 +41,6 @@ Caption::Caption(vtkRenderer& renderer, int width, int height)
   note_->GetTextProperty()->SetVerticalJustificationToBottom();
   note_->GetTextProperty()->SetJustificationToCentered();
   legend_->BorderOff();
-  legend_->UseBackgroundOn(); // clouds may reach below the words
-  std::array<double, 3> c = fractions(ground);
-  legend_->SetBackgroundColor(c.data());
-  legend_->SetBackgroundOpacity(shade);
   legend_->SetPadding(4);
   legend_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   legend_->GetPosition2Coordinate()->SetCoordinateSystemToNormalizedViewport();
