@@ -28,5 +28,5 @@ view "${man[@]}" --trajectory "$work/walk.txt" --step 14 --clearance 1.5 --color
   --camera=-17,-9,4,-5,0,-1 --screenshot examples/pictures/walk.png
 
 # A scene: the visitor walks up a step and along the wall; what is within 0.3 m of him stands out.
-view --scene examples/scenes/walk.json --step 90 --clearance 0.3 --camera=-13,-5,-0.8,-6.5,1.5,-1.6 \
+view --scene examples/scenes/walk.json --step 90 --clearance 0.3 --camera=-17,-7.5,-0.4,-6.6,0.3,-2.9 \
   --screenshot examples/pictures/scene.png

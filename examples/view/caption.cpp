@@ -25,6 +25,9 @@ void setLook(vtkTextProperty& look, int size)
 {
   look.SetFontSize(size);
   look.SetFontFamilyToArial();
+  look.BoldOff(); // which a bar's words are, unless told
+  look.ItalicOff();
+  look.ShadowOff();
   look.SetLineSpacing(1.25);
   const std::array<double, 3> c = fractions(text_color);
   look.SetColor(c[0], c[1], c[2]);
