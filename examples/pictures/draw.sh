@@ -15,7 +15,7 @@ view() { "$programs/pcl_bsh_view" "$@" --unit m --size 1080x720; }
 
 # The building, and what the grown man touches at x = -6.5.
 "$programs/pcl_bsh_demo" "$scans/building.ply" "$scans/man.off" "$work/building.pcd" >/dev/null
-view "$work/building.pcd" --camera=-44,-30,24,1,1,-1 --screenshot examples/pictures/building.png
+view "$work/building.pcd" --camera=-44,-30,24,1,1,1.5 --screenshot examples/pictures/building.png
 
 # The query at work: most spheres are out of reach, two leaves are compared.
 man=("$scans/building.ply" --model "$scans/man.off")
