@@ -15,8 +15,9 @@ namespace pcl_bsh::io {
 
 namespace {
 
-constexpr auto remedy = "give 12 or 16 numbers of a rigid matrix, row by row, or time tx ty tz qx qy qz qw, a pose to "
-                        "a line";
+constexpr auto forms_of_a_pose =
+    "give 12 or 16 numbers of a rigid matrix, row by row, or time tx ty tz qx qy qz qw, a pose to "
+    "a line";
 
 std::vector<double> numbersOf(TextCursor& cursor)
 {
@@ -89,7 +90,7 @@ std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path)
     return parsePoses(file.view());
   }
   catch (const FormatError& error) {
-    throw CloudFileError(path, error.what(), remedy);
+    throw CloudFileError(path, error.what(), forms_of_a_pose);
   }
 }
 

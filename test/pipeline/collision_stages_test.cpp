@@ -21,7 +21,7 @@ using testing::HasSubstr;
 using testing::Not;
 using Poses = std::vector<Eigen::Isometry3d>;
 
-std::shared_ptr<const pcl::PCLPointCloud2> pointsOf(const StageCloudPtr& cloud)
+std::shared_ptr<const pcl::PCLPointCloud2> pcl2Of(const StageCloudPtr& cloud)
 {
   return {cloud, &cloud->cloud};
 }
@@ -55,8 +55,8 @@ protected:
   CollisionFilter<pcl::PCLPointCloud2> filter(double swept = 0) const
   {
     CollisionFilter<pcl::PCLPointCloud2> direct;
-    direct.setInputCloud(pointsOf(scan));
-    direct.setObstacleCloud(pointsOf(model));
+    direct.setInputCloud(pcl2Of(scan));
+    direct.setObstacleCloud(pcl2Of(model));
     direct.setClearance(0.03);
     direct.setTrajectory(poses);
     direct.setSwept(swept);
