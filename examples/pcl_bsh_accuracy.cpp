@@ -3,16 +3,14 @@
 #include "accuracy/peers.h"
 #include "accuracy/report.h"
 #include "cli/collide_options.h"
+#include "cli/command_line.h"
 #include "cli/pose.h"
-#include "cli/program.h"
 #include "cli/step.h"
 
 #include <pcl_bsh/filters/io/cloud_file.h>
 #include <pcl_bsh/filters/io/pose_file.h>
 #include <pcl_bsh/filters/io/replace_file.h>
 #include <pcl_bsh/search/cloud_view.h>
-
-#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <iostream>
@@ -66,16 +64,7 @@ std::optional<Options> parse(int argc, char** argv)
   app.add_option("--repeat", repetitions, "repetitions of every measurement (default 5)")->type_name("N");
   app.add_option("--threads", threads, "0: all of the machine's (default 1)")->type_name("N");
   app.add_flag("--peers", options.peers, "measure PCL's kd-tree, octree and VoxelGrid on the same clouds, too");
-  try {
-    app.parse(argc, argv);
-  }
-  catch (const CLI::CallForHelp&) {
-    std::cout << app.help();
-    return std::nullopt;
-  }
-  catch (const CLI::ParseError& error) {
-    throw cli::UsageError(std::string("command line: ") + error.what() + ": see " + program + " --help");
-  }
+  if (!cli::understood(app, program, argc, argv)) return std::nullopt;
   options.a = a;
   options.b = b;
   options.out = out;

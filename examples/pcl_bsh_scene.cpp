@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs a scene file: many objects in motion, and only the effects it lists.
-#include "cli/program.h"
+#include "cli/command_line.h"
 #include "cli/scene_explain.h"
 #include "cli/scene_report.h"
 #include "cli/step.h"
@@ -9,8 +9,6 @@
 #include <pcl_bsh/filters/io/cloud_file.h>
 #include <pcl_bsh/filters/io/replace_file.h>
 #include <pcl_bsh/filters/io/scene_file.h>
-
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -242,16 +240,7 @@ int main(int argc, char** argv)
     app.add_flag("--validate", options.validate, "only check the scene file");
     app.add_flag("--explain", options.explain,
                  "only say which effects are on, what each makes the program build, and why");
-    try {
-      app.parse(argc, argv);
-    }
-    catch (const CLI::CallForHelp&) {
-      std::cout << app.help();
-      return 0;
-    }
-    catch (const CLI::ParseError& error) {
-      throw cli::UsageError(std::string("command line: ") + error.what() + ": see " + program + " --help");
-    }
+    if (!cli::understood(app, program, argc, argv)) return 0;
     options.scene = scene;
     options.out = out;
     return runScene(options);

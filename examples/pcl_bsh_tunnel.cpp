@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Makes a question along a path to try the tools on: a tunnel, a wagon, and the wagon's poses on its way through.
+#include "cli/command_line.h"
 #include "cli/interruption.h"
-#include "cli/program.h"
 #include "cli/step.h"
 #include "tunnel/tunnel.h"
 
 #include <pcl_bsh/filters/io/cloud_file.h>
 #include <pcl_bsh/filters/io/pose_file.h>
 #include <pcl_bsh/filters/io/records.h>
-
-#include <CLI/CLI.hpp>
 
 #include <cstring>
 #include <filesystem>
@@ -63,24 +61,16 @@ int makeTunnel(const fs::path& folder, double scale)
 int main(int argc, char** argv)
 {
   cli::stopCleanlyWhenTold(program);
-  std::string folder;
-  double scale = 0.1;
-  CLI::App app("Makes a scanned railway tunnel, a wagon, and the wagon's way through.", program);
-  app.footer(footer);
-  app.add_option("FOLDER", folder, "where the three files go; made if it is not there")->type_name("")->required();
-  app.add_option("--scale", scale, "share of the full number of points and poses, above 0, 10 at most")
-      ->type_name("S")
-      ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  }
-  catch (const CLI::CallForHelp&) {
-    std::cout << app.help();
-    return 0;
-  }
-  catch (const CLI::ParseError& error) {
-    std::cerr << program << ": command line: " << error.what() << ": see " << program << " --help\n";
-    return 2;
-  }
-  return cli::runProgram(program, [&] { return makeTunnel(folder, scale); });
+  return cli::runProgram(program, [&] {
+    std::string folder;
+    double scale = 0.1;
+    CLI::App app("Makes a scanned railway tunnel, a wagon, and the wagon's way through.", program);
+    app.footer(footer);
+    app.add_option("FOLDER", folder, "where the three files go; made if it is not there")->type_name("")->required();
+    app.add_option("--scale", scale, "share of the full number of points and poses, above 0, 10 at most")
+        ->type_name("S")
+        ->capture_default_str();
+    if (!cli::understood(app, program, argc, argv)) return 0;
+    return makeTunnel(folder, scale);
+  });
 }

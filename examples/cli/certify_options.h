@@ -2,15 +2,12 @@
 // The command line of pcl_bsh_certify.
 #pragma once
 
-#include "program.h"
+#include "command_line.h"
 
 #include <pcl_bsh/certify/certify.h>
 #include <pcl_bsh/filters/io/field_type.h>
 
-#include <CLI/CLI.hpp>
-
 #include <filesystem>
-#include <iostream>
 #include <optional>
 #include <string>
 #include <utility>
@@ -75,16 +72,7 @@ inline std::optional<CertifyProgramOptions> parseCertifyOptions(int argc, char**
   app.add_option("--threads", threads, "0: all of the machine's (default); any number gives the same result")
       ->type_name("N");
   app.add_option("--report", report, "JSON file for what was found")->type_name("FILE");
-  try {
-    app.parse(argc, argv);
-  }
-  catch (const CLI::CallForHelp&) {
-    std::cout << app.help();
-    return std::nullopt;
-  }
-  catch (const CLI::ParseError& error) {
-    throw UsageError(std::string("command line: ") + error.what() + ": see " + certify_program + " --help");
-  }
+  if (!understood(app, certify_program, argc, argv)) return std::nullopt;
 
   CertifyProgramOptions options;
   options.cloud = cloud;

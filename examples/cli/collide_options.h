@@ -2,18 +2,15 @@
 // The command line of pcl_bsh_collide.
 #pragma once
 
+#include "command_line.h"
 #include "path.h"
-#include "program.h"
 
 #include <pcl_bsh/filters/io/field_type.h>
 #include <pcl_bsh/query/trajectory.h>
 
-#include <CLI/CLI.hpp>
-
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
@@ -141,16 +138,7 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("L");
   app.add_option("--previous", previous, "earlier .json list: clashes are new, persisting or resolved")
       ->type_name("FILE");
-  try {
-    app.parse(argc, argv);
-  }
-  catch (const CLI::CallForHelp&) {
-    std::cout << app.help();
-    return std::nullopt;
-  }
-  catch (const CLI::ParseError& error) {
-    throw UsageError(std::string("command line: ") + error.what() + ": see " + collide_program + " --help");
-  }
+  if (!understood(app, collide_program, argc, argv)) return std::nullopt;
 
   CollideOptions options;
   options.input = input;

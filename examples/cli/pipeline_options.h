@@ -2,14 +2,11 @@
 // The command line of pcl_bsh_pipeline.
 #pragma once
 
-#include "program.h"
+#include "command_line.h"
 
 #include <pcl_bsh/filters/pipeline/pipeline.h>
 
-#include <CLI/CLI.hpp>
-
 #include <filesystem>
-#include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
@@ -82,20 +79,14 @@ inline std::optional<PipelineOptions> parsePipelineOptions(int argc, char** argv
   app.add_flag("--progress", options.progress, "a line for each stage that is done");
   app.add_flag("--print-schema", schema, "write the JSON schema of pipelines, and end");
   app.add_flag("--print-stages", stages, "write the table of stages and their options, and end");
-  try {
+  const bool wanted = understood(app, pipeline_program, [&] {
     app.parse(others);
-    if (schema || stages) {
-      options.task = schema ? PipelineTask::print_schema : PipelineTask::print_stages;
-      return options;
-    }
-    if (document.empty()) throw CLI::RequiredError("PIPELINE.json");
-  }
-  catch (const CLI::CallForHelp&) {
-    std::cout << app.help();
-    return std::nullopt;
-  }
-  catch (const CLI::ParseError& error) {
-    throw UsageError(std::string("command line: ") + error.what() + ": see " + pipeline_program + " --help");
+    if (document.empty() && !schema && !stages) throw CLI::RequiredError("PIPELINE.json");
+  });
+  if (!wanted) return std::nullopt;
+  if (schema || stages) {
+    options.task = schema ? PipelineTask::print_schema : PipelineTask::print_stages;
+    return options;
   }
   if (validate) options.task = PipelineTask::validate;
   options.document = document;

@@ -2,14 +2,11 @@
 #include "options.h"
 
 #include "cli/collide_options.h"
+#include "cli/command_line.h"
 #include "cli/pose.h"
-#include "cli/program.h"
 
 #include <pcl_bsh/filters/io/pose_text.h>
 
-#include <CLI/CLI.hpp>
-
-#include <iostream>
 #include <map>
 
 namespace pcl_bsh::view {
@@ -173,16 +170,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
       ->type_name("HOW");
   app.add_option("--export", export_to, "write the cloud (.vtp) or everything (.vtm) for ParaView")->type_name("FILE");
   app.add_option("--threads", threads, "0: all of the machine's (default)")->type_name("N");
-  try {
-    app.parse(argc, argv);
-  }
-  catch (const CLI::CallForHelp&) {
-    std::cout << app.help();
-    return std::nullopt;
-  }
-  catch (const CLI::ParseError& error) {
-    throw UsageError(std::string("command line: ") + error.what() + ": see " + program + " --help");
-  }
+  if (!cli::understood(app, program, argc, argv)) return std::nullopt;
 
   options.clouds.assign(clouds.begin(), clouds.end());
   const auto set = [](const std::string& text, std::optional<std::filesystem::path>& path) {

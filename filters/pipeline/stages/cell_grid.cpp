@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/cell_grid.h>
+#include <pcl_bsh/filters/pipeline/stages/extent.h>
 #include <pcl_bsh/filters/pipeline/stages/finite_point.h>
 
 #include <boost/sort/spreadsort/integer_sort.hpp>
@@ -32,18 +33,7 @@ std::string sizeOf(const Cell& cells)
 
 CellGrid::CellGrid(const PointsView& points, const Numbers<3>& edge) : edge_(edge)
 {
-  Point3 least = {0, 0, 0};
-  Point3 most = {0, 0, 0};
-  bool first = true;
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    const Point3 p = points.point(i);
-    if (!isFinite(p)) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      least[k] = first ? p[k] : std::min(least[k], p[k]);
-      most[k] = first ? p[k] : std::max(most[k], p[k]);
-    }
-    first = false;
-  }
+  const auto [least, most] = extentOf(points);
   double farthest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     farthest = std::max({farthest, std::abs(least[k] / edge[k]), std::abs(most[k] / edge[k])});

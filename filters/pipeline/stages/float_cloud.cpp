@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/pipeline/stages/finite_point.h>
+#include <pcl_bsh/filters/pipeline/stages/extent.h>
 #include <pcl_bsh/filters/pipeline/stages/float_cloud.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
@@ -16,18 +16,7 @@ namespace {
 
 Point3 middleOf(const PointsView& points)
 {
-  Point3 least = {0, 0, 0};
-  Point3 most = {0, 0, 0};
-  bool first = true;
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    const Point3 p = points.point(i);
-    if (!isFinite(p)) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      least[k] = first ? p[k] : std::min(least[k], p[k]);
-      most[k] = first ? p[k] : std::max(most[k], p[k]);
-    }
-    first = false;
-  }
+  const auto [least, most] = extentOf(points);
   return {least[0] / 2 + most[0] / 2, least[1] / 2 + most[1] / 2, least[2] / 2 + most[2] / 2};
 }
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the files of a scene's effects share: each effect times itself, asks its pairs side by side, and adds up their
+// work.
+#pragma once
+
+#include <pcl_bsh/hierarchy/parallel.h>
+#include <pcl_bsh/query/scene/state.h>
+
+#include <chrono>
+#include <limits>
+
+namespace pcl_bsh {
+
+constexpr double scene_rounding = 0x1p-40; ///< relative; far above that of a few operations in double
+
+/// Adds the time until its end to a cost.
+class Timed {
+public:
+  explicit Timed(double& seconds) : seconds_(seconds) {}
+  ~Timed() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+inline CollisionRequest requestFor(double clearance, const Accuracy& accuracy = {})
+{
+  CollisionRequest request;
+  request.clearance = clearance;
+  request.accuracy = accuracy;
+  return request;
+}
+
+/// Whether an effect asks for the way of the last step.
+inline bool looksBack(const Effects& effects)
+{
+  return effects.first_contact || effects.swept;
+}
+
+/// Calls decide(i) for each pair, in parallel, and adds up what the pairs note of it.
+template <class Decide>
+void Scene::State::eachPair(const std::vector<BroadPair*>& pairs, EffectCost& cost, const Decide& decide)
+{
+  parallelFor(pairs.size(), threadCount(options.threads), [&](std::size_t i) {
+    pairs[i]->memory.work = Work();
+    pairs[i]->memory.asked = 0;
+    pairs[i]->memory.reused = false;
+    decide(i);
+  });
+  for (const BroadPair* pair : pairs) {
+    cost.pairs += pair->memory.asked;
+    cost.reused += pair->memory.reused ? 1 : 0;
+    cost.work += pair->memory.work;
+  }
+}
+
+} // namespace pcl_bsh
