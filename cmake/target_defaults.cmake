@@ -16,6 +16,21 @@ function(pcl_bsh_target_defaults target)
   endif()
 endfunction()
 
+# Other people's headers, which take longer to read than our files: once for all targets that name the same set. What
+# else these targets are compiled with must be alike.
+function(pcl_bsh_precompile target set)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -fpch-preprocess) # for ccache
+  endif()
+  get_property(first GLOBAL PROPERTY pcl_bsh_first_of_${set})
+  if(first)
+    target_precompile_headers(${target} REUSE_FROM ${first})
+  else()
+    set_property(GLOBAL PROPERTY pcl_bsh_first_of_${set} ${target})
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
 # A library named pcl_bsh_<name>, known inside and outside of the project as pcl_bsh::<name>. Its headers are C++17.
 function(pcl_bsh_add_library name)
   add_library(pcl_bsh_${name} ${ARGN})
@@ -35,6 +50,7 @@ if(PROJECT_IS_TOP_LEVEL)
   find_program(CCACHE_PROGRAM ccache)
   mark_as_advanced(CCACHE_PROGRAM)
   if(CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
-    set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+    # ccache must be told that it may trust precompiled headers
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${CCACHE_PROGRAM}")
   endif()
 endif()

@@ -138,7 +138,7 @@ TEST(SceneFile, NamesThePlaceOfWhatIsWrong)
   expect("{ \"sphere\": { \"radius\": 0.5 }, \"spacing\": 0.2 }", "\"nowhere.ply\"",
          "clouds.ball: no such file: nowhere.ply: check the name");
   expect("\"dt\": 0.5", "\"dt\" 0.5",
-         "is no JSON: line 26, column 96: syntax error while parsing object separator - unexpected number literal; "
+         "is no JSON: line 26, column 98: syntax error while parsing object separator - unexpected number literal; "
          "expected ':': mend what stands there or just before");
 }
 

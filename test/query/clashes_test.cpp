@@ -29,7 +29,7 @@ struct Scan {
     }
   }
 
-  PointsView view() const { return viewOf(&points.data()->x, points.size(), sizeof(Point)); }
+  PointsView view() const { return viewOf(points.empty() ? nullptr : &points[0].x, points.size(), sizeof(Point)); }
   std::vector<Clash> clashes(double distance = 1.0) const { return findClashes(view(), found, distance); }
 
   std::vector<Point> points;

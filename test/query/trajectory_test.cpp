@@ -45,7 +45,7 @@ TrajectoryRequest flagsOnly(double clearance)
 std::vector<std::uint32_t> bitsOf(const std::vector<float>& values)
 {
   std::vector<std::uint32_t> bits(values.size());
-  std::memcpy(bits.data(), values.data(), values.size() * sizeof(float));
+  if (!values.empty()) std::memcpy(bits.data(), values.data(), values.size() * sizeof(float));
   return bits;
 }
 
