@@ -96,7 +96,7 @@ using Ask = std::function<std::optional<SearchAnswer>(const SearchRacer&)>;
 /// Whether two racers found the same, but for what rounding may do at the end of a radius.
 bool agree(const SearchAnswer& x, const SearchAnswer& y)
 {
-  const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-4 * std::max(a, b); };
+  const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-3 * std::max(a, b); };
   return near(static_cast<double>(x.found), static_cast<double>(y.found)) &&
          (!x.squared_distances || !y.squared_distances || near(*x.squared_distances, *y.squared_distances));
 }
