@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# All that must hold: every test in a release build, those of the core and of what reads files under AddressSanitizer and
-# UndefinedBehaviorSanitizer, and those of the core that use threads under ThreadSanitizer. Installs what is missing.
+# All that must hold: every test in a release build, those of hierarchies and queries and the readers' fuzz targets under
+# AddressSanitizer and UndefinedBehaviorSanitizer, and those that use threads under ThreadSanitizer. Installs what is
+# missing.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
