@@ -16,6 +16,14 @@ function(pcl_bsh_target_defaults target)
   endif()
 endfunction()
 
+# For what takes longer to compile than to run.
+function(pcl_bsh_compile_fast target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-array-bounds) # GCC 12 suspects std::string and Eigen's vectors
+  endif()
+endfunction()
+
 # Other people's headers, which take longer to read than our files: once for all targets that name the same set. What
 # else these targets are compiled with must be alike.
 function(pcl_bsh_precompile target set)
