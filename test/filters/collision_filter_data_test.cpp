@@ -21,7 +21,8 @@ using Matrix = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
 std::string dataFile(const std::string& name)
 {
-  return std::string(PCL_BSH_SHARED_DIR) + "/data/" + name + ".pcd";
+  std::string path = PCL_BSH_SHARED_DIR "/data/";
+  return path.append(name).append(".pcd");
 }
 
 Cloud::Ptr load(const std::string& name)

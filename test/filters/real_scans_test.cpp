@@ -25,7 +25,8 @@ const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
 
 std::string dataFile(const std::string& name)
 {
-  return std::string(PCL_BSH_SHARED_DIR) + "/data/" + name + ".pcd";
+  std::string path = PCL_BSH_SHARED_DIR "/data/";
+  return path.append(name).append(".pcd");
 }
 
 pcl::PCLPointCloud2 load(const std::string& name)
