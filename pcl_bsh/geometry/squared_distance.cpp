@@ -10,7 +10,7 @@ namespace pcl_bsh {
 namespace {
 
 constexpr float kLargest = std::numeric_limits<float>::max();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 Dyadic squaredDistance(const Point3& p, const Point3& q)
 {
@@ -25,7 +25,7 @@ Dyadic squaredDistance(const Point3& p, const Point3& q)
 /// Halfway to the next float above x >= 0, as a double: exact. The one above the largest counts as 2^128.
 double halfwayAbove(float x)
 {
-  const double above = x < kLargest ? static_cast<double>(std::nextafter(x, kInfinity)) : 0x1p128;
+  const double above = x < kLargest ? static_cast<double>(std::nextafter(x, kFloatInfinity)) : 0x1p128;
   return (static_cast<double>(x) + above) / 2;
 }
 
@@ -41,7 +41,7 @@ float settleSquaredDistance(const Point3& p, const Point3& q, double approximate
     return side > 0 || (side == 0 && odd);
   };
   float rounded = approximate < static_cast<double>(kLargest) ? roundToFloat(approximate) : kLargest;
-  while (rounded < kInfinity && belongs_above(rounded)) rounded = std::nextafter(rounded, kInfinity);
+  while (rounded < kFloatInfinity && belongs_above(rounded)) rounded = std::nextafter(rounded, kFloatInfinity);
   while (rounded > 0.0f && !belongs_above(std::nextafter(rounded, 0.0f))) rounded = std::nextafter(rounded, 0.0f);
   return rounded;
 }

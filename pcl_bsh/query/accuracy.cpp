@@ -22,7 +22,7 @@ constexpr std::array<ModeName, 6> mode_names = {{{Accuracy::Mode::exact, "exact"
                                                  {Accuracy::Mode::node_pairs, "pairs", true},
                                                  {Accuracy::Mode::time, "time", true}}};
 
-[[noreturn]] void refuse(const std::string& text)
+[[noreturn]] void refuseText(const std::string& text)
 {
   throw std::invalid_argument("accuracy: '" + text +
                               "' is none: give exact, float, tolerance=LENGTH, level=N, pairs=N or time=SECONDS");
@@ -42,15 +42,15 @@ Accuracy Accuracy::parse(const std::string& text)
   for (const ModeName& known : mode_names) {
     if (name != known.name) continue;
     Accuracy accuracy{known.mode, 0.0};
-    if (known.counts != (equals != std::string::npos)) refuse(text);
+    if (known.counts != (equals != std::string::npos)) refuseText(text);
     if (!known.counts) return accuracy;
     const char* const end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(text.data() + equals + 1, end, accuracy.value);
     const bool number = error == std::errc() && stop == end && std::isfinite(accuracy.value) && accuracy.value >= 0.0;
-    if (!number || (isWhole(known.mode) && accuracy.value != std::floor(accuracy.value))) refuse(text);
+    if (!number || (isWhole(known.mode) && accuracy.value != std::floor(accuracy.value))) refuseText(text);
     return accuracy;
   }
-  refuse(text);
+  refuseText(text);
 }
 
 std::string Accuracy::text() const
