@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# All that must hold: every test in a release build, those of hierarchies and queries and the readers' fuzz targets under
-# AddressSanitizer and UndefinedBehaviorSanitizer, and those that use threads under ThreadSanitizer. Installs what is
-# missing.
+# All that must hold: every test in a release build, those of hierarchies and queries under AddressSanitizer and
+# UndefinedBehaviorSanitizer, and those of them that use threads under ThreadSanitizer. Installs what is missing.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
