@@ -10,15 +10,6 @@
 #include <utility>
 
 namespace pcl_bsh {
-namespace {
-
-bool isFinite(const Point3& p)
-{
-  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-}
-
-} // namespace
-
 void ObstacleQuery::setObstacle(std::function<PointsView()> view)
 {
   view(); // a cloud that cannot be read is refused here, not at the first use

@@ -2,6 +2,8 @@
 // The caller's points, seen in place: any array of records that holds x, y, z as float32 or float64.
 #pragma once
 
+#include <pcl_bsh/geometry/point3.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -10,9 +12,6 @@
 namespace pcl_bsh {
 
 enum class Scalar : std::uint8_t { float32, float64 };
-
-/// Three coordinates in double: exact for float32 and float64 input alike.
-using Point3 = std::array<double, 3>;
 
 /// A read-only view of `count` records. The memory must outlive whatever is built on it, unchanged: exact decisions
 /// return to the original coordinates. Records need not be aligned.

@@ -74,10 +74,7 @@ bool reread(Voxel& voxel, const PointsView& view, std::vector<PointRecord>& poin
 std::size_t countFinite(const PointsView& view)
 {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < view.size(); ++i) {
-    const Point3 p = view.point(view.record(i));
-    count += std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-  }
+  for (std::size_t i = 0; i < view.size(); ++i) count += isFinite(view.point(view.record(i)));
   return count;
 }
 

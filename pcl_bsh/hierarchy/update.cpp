@@ -24,11 +24,6 @@ constexpr double kMostUnused = 0.5; // of the floats in use, before blocks are m
   throw std::invalid_argument("HierarchyUpdate: " + what);
 }
 
-bool isFinite(const Point3& p)
-{
-  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-}
-
 /// The grid's cell as VoxelSorter numbers it, in the arithmetic of the cloud's scalar type.
 template <class T>
 std::uint64_t cellKey(const Point3& point, double edge, const std::array<double, 3>& base)

@@ -12,11 +12,6 @@
 namespace pcl_bsh::brute_force {
 namespace {
 
-bool isFinite(const Point3& p)
-{
-  return std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); });
-}
-
 /// The finite points that the view names, once each, by ascending record number.
 std::vector<std::uint32_t> recordsOf(const PointsView& view)
 {

@@ -71,11 +71,6 @@ NeighborScratch& NeighborScratch::ofThisThread()
   return scratch;
 }
 
-bool isFinite(const Point3& point) noexcept
-{
-  return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
-}
-
 void checkRadius(double radius)
 {
   if (!(radius >= 0.0)) throw std::invalid_argument("radius: " + std::to_string(radius) + ": give a length >= 0");

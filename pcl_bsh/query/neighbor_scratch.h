@@ -45,7 +45,6 @@ struct NeighborScratch {
   static NeighborScratch& ofThisThread();
 };
 
-bool isFinite(const Point3& point) noexcept;
 void checkRadius(double radius);
 
 /// Exact: |p - q| <= radius.

@@ -2,14 +2,13 @@
 // Real scans, where they are at hand, against an independent kd-tree.
 #include <pcl_bsh/filters/collision_filter.h>
 
-#include <pcl/io/pcd_io.h>
+#include "shared_scans.h"
 
 #include <gtest/gtest.h>
 #include <nanoflann.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -19,16 +18,10 @@ namespace {
 using Cloud = pcl::PCLPointCloud2;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-std::string dataFile(const std::string& name)
-{
-  std::string path = PCL_BSH_SHARED_DIR "/data/";
-  return path.append(name).append(".pcd");
-}
-
 Cloud::Ptr load(const std::string& name)
 {
   auto cloud = std::make_shared<Cloud>();
-  if (pcl::PCDReader().read(dataFile(name), *cloud) != 0) throw std::runtime_error("cannot read " + dataFile(name));
+  readScan(name, *cloud);
   return cloud;
 }
 
@@ -69,7 +62,7 @@ protected:
   void SetUp() override
   {
     for (const char* const name : {"tabletop_rgbd_organized", "robot_panda_sampled", "terrain_stbarth_utm20_f64"}) {
-      if (!std::filesystem::exists(dataFile(name))) GTEST_SKIP() << dataFile(name) << " is not there";
+      if (!hasScan(name)) GTEST_SKIP() << scanFile(name) << " is not there";
     }
   }
 };

@@ -5,17 +5,14 @@
 #include <pcl_bsh/search/cloud_view.h>
 
 #include "../query/kd_tree.h"
-
-#include <pcl/io/pcd_io.h>
+#include "shared_scans.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <map>
-#include <stdexcept>
 #include <string>
 
 namespace pcl_bsh {
@@ -23,16 +20,10 @@ namespace {
 
 const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
 
-std::string dataFile(const std::string& name)
-{
-  std::string path = PCL_BSH_SHARED_DIR "/data/";
-  return path.append(name).append(".pcd");
-}
-
 pcl::PCLPointCloud2 load(const std::string& name)
 {
   pcl::PCLPointCloud2 cloud;
-  if (pcl::PCDReader().read(dataFile(name), cloud) != 0) throw std::runtime_error("cannot read " + dataFile(name));
+  readScan(name, cloud);
   return cloud;
 }
 
@@ -50,7 +41,7 @@ class RealScans : public testing::Test {
 protected:
   void SetUp() override
   {
-    if (!std::filesystem::exists(dataFile("lidar_sweep_a"))) GTEST_SKIP() << dataFile("*") << " are not there";
+    if (!hasScan("lidar_sweep_a")) GTEST_SKIP() << scanFile("*") << " are not there";
   }
 
   static CollisionRequest within(double clearance)

@@ -20,11 +20,6 @@ using testing::ThrowsMessage;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-bool isFinite(const Point3& p)
-{
-  return std::isfinite(p[0] + p[1] + p[2]);
-}
-
 /// A cloud, and questions about it: some at its points, some near them, some far away.
 struct Questions {
   explicit Questions(std::uint64_t seed, int max_points) : random(seed)

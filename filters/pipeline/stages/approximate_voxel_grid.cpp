@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/cell_grid.h>
-#include <pcl_bsh/filters/pipeline/stages/finite_point.h>
 #include <pcl_bsh/filters/pipeline/stages/record_mean.h>
 #include <pcl_bsh/search/cloud_view.h>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/cell_grid.h>
 #include <pcl_bsh/filters/pipeline/stages/extent.h>
-#include <pcl_bsh/filters/pipeline/stages/finite_point.h>
 
 #include <boost/sort/spreadsort/integer_sort.hpp>
 

@@ -2,7 +2,6 @@
 // How far a cloud reaches.
 #pragma once
 
-#include <pcl_bsh/filters/pipeline/stages/finite_point.h>
 #include <pcl_bsh/geometry/point3.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/pipeline/stages/finite_point.h>
 #include <pcl_bsh/filters/pipeline/stages/selecting_stage.h>
 #include <pcl_bsh/filters/removed_points.h>
 #include <pcl_bsh/search/cloud_view.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How near pairs are: smallest distances, contacts, first contacts.
 #include <pcl_bsh/query/scene/effect.h>
-#include <pcl_bsh/query/scene/sweep.h>
 
 #include <algorithm>
 
@@ -81,25 +80,13 @@ void Scene::State::findFirstContacts()
 {
   EffectCost& spent = cost(Effect::first_contact);
   const Timed timed(spent.seconds);
-  const std::vector<BroadPair*>& pairs = grid.pairs();
-  std::vector<std::optional<PartFirstContact>> found(pairs.size());
-  eachPair(pairs, spent, [&](std::size_t k) {
-    const BroadPair& pair = *pairs[k];
-    const Path path_a = pathOf(pair.a), path_b = pathOf(pair.b);
-    Box3 box = path_a.swept();
-    box.grow((pair.clearance + options.tolerance) * (1.0 + scene_rounding));
-    if (!box.meets(path_b.swept())) return;
-    for (std::uint32_t i = 0; i < bodies[pair.a].world.size(); ++i)
-      for (std::uint32_t j = 0; j < bodies[pair.b].world.size(); ++j) {
-        const ScenePart &part_a = bodies[pair.a].object.parts[i], &part_b = bodies[pair.b].object.parts[j];
-        const auto met =
-            firstMeeting({*part_a.hierarchy, part_a.pose, path_a}, {*part_b.hierarchy, part_b.pose, path_b},
-                         pair.clearance, options.tolerance, pairs[k]->memory.work);
-        ++pairs[k]->memory.asked;
-        if (met && (!found[k] || met->s < found[k]->fraction))
-          found[k] = PartFirstContact{{pair.a, pair.b, i, j}, met->s, met->pair};
-      }
-  });
+  std::vector<std::optional<PartFirstContact>> found(grid.pairs().size());
+  eachSweptPair(spent,
+                [&](std::size_t k, BroadPair& pair, const PartPair& parts, const SweptPart& a, const SweptPart& b) {
+                  const auto met = firstMeeting(a, b, pair.clearance, options.tolerance, pair.memory.work);
+                  if (met && (!found[k] || met->s < found[k]->fraction))
+                    found[k] = PartFirstContact{parts, met->s, met->pair};
+                });
   for (const auto& contact : found)
     if (contact) result.first_contact.push_back(*contact);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which points collide, where things are and on their way there.
 #include <pcl_bsh/query/scene/effect.h>
-#include <pcl_bsh/query/scene/sweep.h>
 
 #include <algorithm>
 #include <map>
@@ -98,26 +97,15 @@ void Scene::State::findSwept()
 {
   EffectCost& spent = cost(Effect::swept);
   const Timed timed(spent.seconds);
-  const std::vector<BroadPair*>& pairs = grid.pairs();
-  std::vector<std::vector<PairFlags>> found(pairs.size());
-  eachPair(pairs, spent, [&](std::size_t k) {
-    const BroadPair& pair = *pairs[k];
-    const Path path_a = pathOf(pair.a), path_b = pathOf(pair.b);
-    Box3 box = path_a.swept();
-    box.grow((pair.clearance + options.tolerance) * (1.0 + scene_rounding));
-    if (!box.meets(path_b.swept())) return;
-    for (std::uint32_t i = 0; i < bodies[pair.a].world.size(); ++i)
-      for (std::uint32_t j = 0; j < bodies[pair.b].world.size(); ++j) {
-        const ScenePart &part_a = bodies[pair.a].object.parts[i], &part_b = bodies[pair.b].object.parts[j];
-        PairFlags flags{{pair.a, pair.b, i, j},
-                        std::vector<std::uint8_t>(part_a.hierarchy->view().count, 0),
-                        std::vector<std::uint8_t>(part_b.hierarchy->view().count, 0)};
-        flagMeetings({*part_a.hierarchy, part_a.pose, path_a}, {*part_b.hierarchy, part_b.pose, path_b}, pair.clearance,
-                     options.tolerance, flags.a, flags.b, pairs[k]->memory.work);
-        ++pairs[k]->memory.asked;
-        if (std::find(flags.a.begin(), flags.a.end(), 1) != flags.a.end()) found[k].push_back(std::move(flags));
-      }
-  });
+  std::vector<std::vector<PairFlags>> found(grid.pairs().size());
+  eachSweptPair(spent,
+                [&](std::size_t k, BroadPair& pair, const PartPair& parts, const SweptPart& a, const SweptPart& b) {
+                  PairFlags flags{parts, std::vector<std::uint8_t>(a.hierarchy.view().count, 0),
+                                  std::vector<std::uint8_t>(b.hierarchy.view().count, 0)};
+                  flagMeetings(a, b, pair.clearance, options.tolerance, flags.a, flags.b, pair.memory.work);
+                  if (std::find(flags.a.begin(), flags.a.end(), 1) != flags.a.end())
+                    found[k].push_back(std::move(flags));
+                });
   result.swept = mergedFlags(bodies, found);
 }
 

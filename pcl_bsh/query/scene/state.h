@@ -83,6 +83,8 @@ private:
   void compareBoxes(BroadPair& pair);
   template <class Decide>
   void eachPair(const std::vector<BroadPair*>& pairs, EffectCost& cost, const Decide& decide);
+  template <class Ask>
+  void eachSweptPair(EffectCost& cost, const Ask& ask);
   Path pathOf(ObjectId object) const;
 
   std::vector<Box3> boxes_;            // scratch
