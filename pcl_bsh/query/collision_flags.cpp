@@ -468,7 +468,34 @@ private:
   std::deque<Visit>& visits_; // by depth; a deque, for references to shallower visits stay in use
 };
 
+/// Appends the voxels below a node above a's voxels that may come near to anything of b, in their order.
+void findNearVoxels(const Spaces& a, const Node& others, const RelativeFrame& frame, float reach, const Node& node,
+                    std::vector<std::uint32_t>& near, Work& work)
+{
+  const SphereLanes spheres{others.x, others.y, others.z, others.r, frame.stretch_b};
+  work.node_pairs += std::uint64_t{node.count} * others.count;
+  for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+    const Point center = carriedCenter(frame, node, lane);
+    const Ball ball{center.x, center.y, center.z, node.r[lane] * frame.stretch_a + reach, 0.0f};
+    if ((spheresNear(spheres, ball, nullptr) & firstBits(others.count)) == 0) continue;
+    if (node.isLeaf(lane))
+      near.push_back(node.begin[lane]);
+    else
+      findNearVoxels(a, others, frame, reach, a.storage.top[node.child[lane]], near, work);
+  }
+}
+
 } // namespace
+
+std::vector<std::uint32_t> nearVoxelsOnTarget(const FlagQuery& query, Work& work)
+{
+  const Spaces a(query.a), b(query.b);
+  const RelativeFrame frame(a.frame(kAboveVoxels), a.pose, b.frame(kAboveVoxels), b.pose);
+  std::vector<std::uint32_t> near;
+  if (frame.separates(query.pairs.clearance + a.storage.largest_radius + b.storage.largest_radius)) return near;
+  findNearVoxels(a, b.storage.top[0], frame, frame.pruneReach(query.pairs.clearance), a.storage.top[0], near, work);
+  return near;
+}
 
 FlaggedVoxel flagVoxelOnTarget(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, std::uint8_t* flags)
 {
@@ -487,6 +514,7 @@ namespace pcl_bsh {
 namespace {
 
 HWY_EXPORT(flagVoxelOnTarget);
+HWY_EXPORT(nearVoxelsOnTarget);
 
 /// Walks the given voxels of a. @return those that were left with undecided points
 std::vector<std::uint32_t> flagVoxels(const FlagQuery& query, const StopRule& rule,
@@ -536,9 +564,15 @@ std::vector<std::uint8_t> flagsOf(const Placed& a, const Placed& b, const Collis
   // A budget may end before a voxel is looked at. A level looks at all, and has to mark only those that come near.
   const bool marked = rule.mayStop() && rule.deepest == StopRule::kNever;
   const FlagQuery query{a, b, pairs, Acceptance(request), marked};
-  std::vector<std::uint32_t> voxels(a.hierarchy.storage().voxel_count);
-  std::iota(voxels.begin(), voxels.end(), 0u);
   const unsigned threads = threadCount(request.threads);
+  std::vector<std::uint32_t> voxels;
+  if (marked) {
+    voxels.resize(a.hierarchy.storage().voxel_count);
+    std::iota(voxels.begin(), voxels.end(), 0u);
+  }
+  else { // what is not near is free, as flags are at first
+    voxels = HWY_DYNAMIC_DISPATCH(nearVoxelsOnTarget)(query, work);
+  }
   if (!rule.mayStop()) {
     flagVoxels(query, rule, voxels, threads, flags, work);
     return flags;
