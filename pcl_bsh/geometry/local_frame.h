@@ -14,6 +14,7 @@ struct LocalFrame {
   std::array<double, 3> origin = {0, 0, 0};
   double unit = 1.0;                       ///< a power of two; 1 unless the cloud is of extreme size
   std::array<double, 3> reach = {0, 0, 0}; ///< at least |x| of every stored point, per axis, in units
+  bool lossless = false;                   ///< origin + x is p, for every point
 
   double slack(int axis) const noexcept
   {

@@ -4,8 +4,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pcl_bsh {
+namespace {
+
+/// Whether every float of [low, high] less the origin, a float as well, is a float, when none of them is farther from
+/// the origin than `reach`: all are whole multiples of the last place of the one nearest to 0.
+bool keepsFloats(double low, double high, double origin, double reach)
+{
+  if (origin == 0.0) return true;
+  const double nearest = low > 0.0 ? low : -high;
+  return nearest >= static_cast<double>(std::numeric_limits<float>::min()) && std::abs(origin) >= nearest &&
+         reach <= std::exp2(std::ilogb(nearest) + 1);
+}
+
+/// Whether a frame had better have its origin at 0 on an axis, for no other keeps all floats: where it is so near that
+/// spheres around the origin stay small.
+bool belongsAtZero(double low, double high, double half)
+{
+  const double farthest = std::max(std::abs(low), std::abs(high));
+  const double nearest = low > 0.0 ? low : std::max(0.0, -high);
+  return farthest <= half / 2 && high / 2 - low / 2 > nearest;
+}
+
+} // namespace
 
 LocalFrame frameBetween(const std::array<double, 3>& low, const std::array<double, 3>& high, bool float_origin)
 {
@@ -23,10 +46,13 @@ LocalFrame frameBetween(const std::array<double, 3>& low, const std::array<doubl
     const int least = std::max(-1000, std::ilogb(largest) - 1000);
     frame.unit = std::exp2(std::clamp(std::ilogb(half) + 1, least, 1000));
   }
+  frame.lossless = float_origin && frame.unit == 1.0;
   const double inverse = 1.0 / frame.unit;
   for (std::size_t k = 0; k < 3; ++k) {
+    if (frame.lossless && belongsAtZero(low[k], high[k], half)) frame.origin[k] = 0.0;
     const double origin = frame.origin[k] * inverse;
     const double reach = std::max(high[k] * inverse - origin, origin - low[k] * inverse);
+    frame.lossless = frame.lossless && keepsFloats(low[k], high[k], frame.origin[k], reach);
     frame.reach[k] = reach * (1.0 + 0x1p-20) + 0x1p-140;
   }
   return frame;

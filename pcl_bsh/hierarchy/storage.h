@@ -58,6 +58,14 @@ struct Voxel {
     state.store(other.state.load(std::memory_order_relaxed), std::memory_order_relaxed);
   }
 
+  /// A point of a built voxel as it was given; read from the voxel, if it holds it like that.
+  Point3 point(const PointsView& view, std::uint32_t i) const noexcept
+  {
+    if (!frame.lossless) return view.point(records()[i]);
+    return {frame.origin[0] + static_cast<double>(x()[i]), frame.origin[1] + static_cast<double>(y()[i]),
+            frame.origin[2] + static_cast<double>(z()[i])};
+  }
+
   /// Floats of its block and the padding behind it.
   std::size_t blockSize() const noexcept;
 

@@ -67,6 +67,8 @@ private:
         if (std::abs(local - static_cast<double>(stored[k])) >
             f.slack(static_cast<int>(k)) * (1.0 + 0x1p-20) + std::abs(local) * 0x1p-50)
           defect("point " + std::to_string(record) + " stored too far from where it is");
+        if (f.lossless && f.origin[k] + static_cast<double>(stored[k]) != p[k])
+          defect("point " + std::to_string(record) + " not stored as given in a lossless frame");
       }
     }
   }
@@ -143,8 +145,7 @@ private:
     std::vector<std::uint32_t> expected(s_.view.count, 0);
     for (std::size_t i = 0; i < s_.view.size(); ++i) {
       const std::uint32_t record = s_.view.record(i);
-      const Point3 p = s_.view.point(record);
-      expected[record] += std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+      expected[record] += isFinite(s_.view.point(record));
     }
     for (std::size_t i = 0; i < expected.size(); ++i)
       if (seen_[i] != expected[i])

@@ -2,6 +2,7 @@
 // The k nearest points: a guess bounds their distance, then a descent shrinks the bound as it finds points within.
 // Float arithmetic keeps whatever may be among them; who is, the original coordinates say at the end.
 #include <pcl_bsh/geometry/point_frame.h>
+#include <pcl_bsh/geometry/squared_distance.h>
 #include <pcl_bsh/query/neighbor_scratch.h>
 
 #include <algorithm>
@@ -65,12 +66,14 @@ public:
     k_(std::min(k, cloud.size)),
     wanted_(k_),
     radius_(radius),
-    records_(scratch.records),
+    places_(scratch.records),
     highs_(scratch.squared),
+    voxels_(scratch.voxels),
     work_(work)
   {
-    records_.clear();
+    places_.clear();
     highs_.clear();
+    voxels_.clear();
   }
 
   void run()
@@ -131,7 +134,10 @@ private:
     const NearFrame frame(point, cloud_.frame.unit);
     if (point.separates(local, static_cast<double>(distance_) * static_cast<double>(frame.inverse_unit))) return;
     most_slack_ = std::max(most_slack_, frame.slack);
-    visit(frame, cloud_.built(index, work_.voxels_built), 0);
+    const Voxel& voxel = cloud_.built(index, work_.voxels_built);
+    voxels_.room(1);
+    voxels_.push(&voxel);
+    visit(frame, voxel, 0);
   }
 
   void visit(const NearFrame& frame, const Voxel& voxel, std::uint32_t index)
@@ -139,7 +145,7 @@ private:
     const Node& node = voxel.nodes[index];
     eachChild(frame, node, [&](std::uint32_t i) {
       // Before there are k points to go by, a few more of them cost less than a descent.
-      const bool few = node.points(i) <= kScanned && records_.size() < k_;
+      const bool few = node.points(i) <= kScanned && places_.size() < k_;
       if (!few && !node.isLeaf(i))
         visit(frame, voxel, node.child[i]);
       else if (!few && node.isCoincident(i))
@@ -160,10 +166,10 @@ private:
                          squared);
     if (squared[0] > frame.miss(bound_)) return;
     const std::size_t same = std::min<std::size_t>(count, k_);
-    records_.room(same);
+    places_.room(same);
     highs_.room(same);
-    for (std::size_t i = 0; i < same; ++i) {
-      records_.push(voxel.records()[begin + i]);
+    for (std::uint32_t i = 0; i < same; ++i) {
+      places_.push(voxel.begin + begin + i);
       highs_.push(squared[0] * frame.above + frame.slack);
     }
     countAndTighten();
@@ -202,10 +208,9 @@ private:
     if (nearest > frame.miss(bound_)) return;
     const float high = nearest * frame.above + frame.slack;
     if (high < bound_) lower(high);
-    records_.room(count);
+    places_.room(count);
     highs_.room(count);
     const LaneVector miss = hn::Set(d, frame.miss(bound_));
-    const std::uint32_t* const records = voxel.records() + begin;
     for (i = 0; i < count; i += 64) {
       std::uint64_t near = 0;
       for (std::uint32_t j = 0; j < 64 && i + j < count; j += step)
@@ -213,7 +218,7 @@ private:
       if (count - i < 64) near &= (std::uint64_t{1} << (count - i)) - 1;
       for (; near != 0; near &= near - 1) {
         const std::uint32_t j = i + static_cast<std::uint32_t>(std::countr_zero(near));
-        records_.push(records[j]);
+        places_.push(voxel.begin + begin + j);
         highs_.push(squared[j] * frame.above + frame.slack);
       }
     }
@@ -222,13 +227,13 @@ private:
   void compare(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
   {
     noteCompared(end - begin);
-    records_.room(end - begin + kLanes);
+    places_.room(end - begin + kLanes);
     highs_.room(end - begin + kLanes);
     const LaneTag d;
     const LaneVector x = hn::Set(d, frame.at.x), y = hn::Set(d, frame.at.y), z = hn::Set(d, frame.at.z);
     const LaneVector scale = hn::Set(d, frame.above), slack = hn::Set(d, frame.slack);
     const LaneVector miss = hn::Set(d, frame.miss(bound_));
-    std::size_t size = records_.size();
+    std::size_t size = places_.size();
     for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
       const LaneVector squared =
           squaredNorm(hn::Sub(hn::LoadU(d, voxel.x() + i), x), hn::Sub(hn::LoadU(d, voxel.y() + i), y),
@@ -237,10 +242,10 @@ private:
           ~bitsOf(d, hn::Gt(squared, miss)) & firstBits(std::min<std::size_t>(end - i, hn::Lanes(d)));
       const Compress kept(near);
       kept.store(hn::Add(hn::Mul(squared, scale), slack), highs_.data() + size);
-      kept.store(voxel.records() + i, records_.data() + size);
+      kept.storeNumbers(voxel.begin + static_cast<std::uint32_t>(i), places_.data() + size);
       size += static_cast<std::size_t>(std::popcount(near));
     }
-    records_.resize(size);
+    places_.resize(size);
     highs_.resize(size);
     countAndTighten();
   }
@@ -248,9 +253,9 @@ private:
   /// Lowers the bound when enough candidates have come since that was last done, and forgets those beyond it.
   void countAndTighten()
   {
-    if (records_.size() < wanted_) return;
+    if (places_.size() < wanted_) return;
     tighten();
-    wanted_ = records_.size() + std::max<std::size_t>(kMore, k_ / 2);
+    wanted_ = places_.size() + std::max<std::size_t>(kMore, k_ / 2);
   }
 
   /// Lowers the bound to where k candidates lie within it: to the k-th smallest, or a little above.
@@ -296,35 +301,42 @@ private:
     const float miss = missOfHighs();
     const LaneTag d;
     std::size_t kept = 0;
-    const std::size_t count = records_.size();
-    records_.room(kLanes);
+    const std::size_t count = places_.size();
+    places_.room(kLanes);
     highs_.room(kLanes);
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
       const LaneVector highs = hn::LoadU(d, highs_.data() + i);
       const std::uint32_t near =
           bitsOf(d, hn::Le(highs, hn::Set(d, miss))) & firstBits(std::min<std::size_t>(count - i, hn::Lanes(d)));
       const Compress keep(near);
-      keep.store(records_.data() + i, records_.data() + kept);
+      keep.store(places_.data() + i, places_.data() + kept);
       keep.store(highs, highs_.data() + kept);
       kept += static_cast<std::size_t>(std::popcount(near));
     }
-    records_.resize(kept);
+    places_.resize(kept);
     highs_.resize(kept);
   }
 
-  /// Keeps the candidates that may be within the bound, and of them those within the radius.
+  /// Of the candidates that may be within the bound, names and measures those within the radius.
   void collect()
   {
-    if (records_.size() > k_) tighten();
-    if (radius_ == std::numeric_limits<double>::infinity()) return;
+    if (places_.size() > k_) tighten();
     const double reach = radius_ / cloud_.frame.unit;
     const float surely = roundDown(std::min(reach * reach * (1.0 - 0x1p-50), 0x1p120));
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < records_.size(); ++i) {
-      const std::uint32_t record = records_[i];
-      if (highs_[i] < surely || isWithin(cloud_.view.point(record), query_, radius_, work_)) records_[kept++] = record;
+    const Voxel* const* home = voxels_.data();
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      while (places_[i] - (*home)->begin >= (*home)->count) ++home;
+      const std::uint32_t at = places_[i] - (*home)->begin;
+      const Point3 p = (*home)->point(cloud_.view, at);
+      if (!(highs_[i] < surely || radius_ == std::numeric_limits<double>::infinity() ||
+            isWithin(p, query_, radius_, work_)))
+        continue;
+      places_[kept] = (*home)->records()[at];
+      highs_[kept++] = squaredDistanceAsFloat(p, query_);
     }
-    records_.resize(kept);
+    places_.resize(kept);
+    highs_.resize(kept);
   }
 
   static constexpr int kSteps = 6;             ///< towards the k-th smallest bound; any that is not too low will do
@@ -336,8 +348,9 @@ private:
   const std::size_t k_;
   std::size_t wanted_; ///< candidates at which the bound is looked at again
   const double radius_;
-  Pile<std::uint32_t>& records_; ///< points that may be among the nearest
-  Pile<float>& highs_;           ///< upper bounds of their squared distances, in the cloud's frame
+  Pile<std::uint32_t>& places_; ///< points that may be among the nearest, counted over all voxels
+  Pile<float>& highs_;          ///< upper bounds of their squared distances, in the cloud's frame
+  Pile<const Voxel*>& voxels_;  ///< visited
   Work& work_;
   float bound_ = kInfinity;    ///< squared; points that are farther do not count
   float distance_ = kInfinity; ///< at least its root

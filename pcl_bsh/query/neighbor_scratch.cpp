@@ -2,11 +2,8 @@
 #include <pcl_bsh/query/neighbor_scratch.h>
 
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/geometry/squared_distance.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -17,27 +14,6 @@ const ExactDistance& unposed()
 {
   static const ExactDistance distance(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity());
   return distance;
-}
-
-/// PointsView::point() for one scalar type.
-template <class T>
-Point3 pointAt(const PointsView& view, std::uint32_t record)
-{
-  const auto* base = static_cast<const unsigned char*>(view.data) + view.stride * record;
-  Point3 p;
-  for (std::size_t k = 0; k < 3; ++k) {
-    T value;
-    std::memcpy(&value, base + view.offset[k], sizeof value);
-    p[k] = value;
-  }
-  return p;
-}
-
-template <class T>
-void measure(const PointsView& view, const Point3& query, const std::uint32_t* records, std::size_t count,
-             float* squared)
-{
-  for (std::size_t i = 0; i < count; ++i) squared[i] = squaredDistanceAsFloat(pointAt<T>(view, records[i]), query);
 }
 
 /// Squared distances that are one float need not be one number: puts those runs that begin among the first `most` in
@@ -86,13 +62,6 @@ void deliver(const PointsView& view, const Point3& query, const RadiusOptions& o
              Neighbors& found, Work& work)
 {
   const std::size_t count = scratch.records.size();
-  scratch.squared.clear();
-  scratch.squared.room(count);
-  scratch.squared.resize(count);
-  if (view.scalar == Scalar::float32)
-    measure<float>(view, query, scratch.records.data(), count, scratch.squared.data());
-  else
-    measure<double>(view, query, scratch.records.data(), count, scratch.squared.data());
   const std::size_t kept = options.most == 0 ? count : std::min(count, options.most);
   if (options.sorted || kept < count) {
     sortBySquared(scratch);

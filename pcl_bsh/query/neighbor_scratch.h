@@ -35,12 +35,14 @@ private:
 /// One per thread.
 struct NeighborScratch {
   Pile<std::uint32_t> records; ///< what was found
-  Pile<float> squared;         ///< how far it is: an upper bound while searching, then the value to deliver
+  Pile<float> squared;         ///< how far it is: perhaps an upper bound while searching, then the value to deliver
+  Pile<const Voxel*> voxels;   ///< where the candidates for the nearest are, in the order of those
 
   // of sorting
   Pile<std::uint32_t> sorted_records;
   Pile<float> sorted_squared;
-  Pile<std::uint64_t> keys;
+  Pile<std::uint64_t> keys, sorted_keys;
+  Pile<std::uint32_t> steps;
 
   static NeighborScratch& ofThisThread();
 };
@@ -53,11 +55,12 @@ bool isWithin(const Point3& p, const Point3& q, double radius, Work& work);
 /// Sorts scratch.records by scratch.squared, its equals in any order.
 void sortBySquared(NeighborScratch& scratch);
 
-/// Measures scratch.records, sorts them and keeps the first `most` (0: all). Expects the DefaultFloatEnvironment.
+/// Sorts what was found and keeps the first `most` (0: all). Expects the DefaultFloatEnvironment.
 void deliver(const PointsView& view, const Point3& query, const RadiusOptions& options, NeighborScratch& scratch,
              Neighbors& found, Work& work);
 
-/// One query each, arguments checked, environment set. The radius search ignores options.most.
+/// One query each, arguments checked, environment set: found and measured, in any order. The radius search ignores
+/// options.most.
 void findWithin(const SphereHierarchy::Storage& cloud, const Point3& query, double radius, NeighborScratch& scratch,
                 Work& work);
 bool findAny(const SphereHierarchy::Storage& cloud, const Point3& query, double radius, Work& work);

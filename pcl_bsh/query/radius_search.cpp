@@ -8,9 +8,11 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pcl_bsh/query/radius_search.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <pcl_bsh/query/measure-inl.h>
 #include <pcl_bsh/simd/compress-inl.h>
 #include <pcl_bsh/simd/point_lanes-inl.h>
 
@@ -19,31 +21,44 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Notes every point within the radius.
+/// Notes every point within the radius, and how far it is.
 class Collect {
 public:
-  explicit Collect(Pile<std::uint32_t>& records) : records_(records) {}
+  Collect(const PointsView& view, const Point3& query, NeighborScratch& scratch)
+  : view_(view),
+    query_(query),
+    records_(scratch.records),
+    squared_(scratch.squared)
+  {
+    records_.clear();
+    squared_.clear();
+  }
 
   /// Points [begin, end) of a voxel. @return whether that is all one wanted to know.
   bool take(const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
   {
-    const std::size_t before = records_.size(), count = end - begin;
-    records_.room(count + kLanes);
+    const std::size_t count = end - begin;
+    makeRoom(count);
     for (std::size_t i = 0; i < count; i += hn::Lanes(Unsigned()))
       hn::StoreU(hn::LoadU(Unsigned(), voxel.records() + begin + i), Unsigned(), records_.end() + i);
-    records_.resize(before + count);
+    measure(view_, query_, voxel, begin, end - begin, squared_.end());
+    add(count);
     return false;
   }
 
-  /// Those points from `begin` on, sixteen at most, that have their bit set.
-  bool take(const Voxel& voxel, std::uint32_t begin, std::uint32_t, std::uint32_t bits)
+  /// Those of the points from `begin` on, sixteen at most, that have their bit set.
+  bool take(const Voxel& voxel, std::uint32_t begin, std::uint32_t count, std::uint32_t bits)
   {
+    alignas(64) float squared[kLeafPoints + kLanes];
+    measure(view_, query_, voxel, begin, count, squared);
     const std::uint32_t* const from = voxel.records() + begin;
-    records_.room(kLeafPoints + kLanes);
-    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(Unsigned())) {
-      const std::uint32_t kept = bits >> i & firstBits(hn::Lanes(Unsigned()));
-      Compress(kept).store(from + i, records_.end());
-      records_.resize(records_.size() + static_cast<std::size_t>(std::popcount(kept)));
+    makeRoom(kLeafPoints);
+    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(LaneTag())) {
+      const std::uint32_t kept = bits >> i & firstBits(hn::Lanes(LaneTag()));
+      const Compress compress(kept);
+      compress.store(from + i, records_.end());
+      compress.store(hn::LoadU(LaneTag(), squared + i), squared_.end());
+      add(static_cast<std::size_t>(std::popcount(kept)));
     }
     return false;
   }
@@ -53,7 +68,22 @@ public:
 private:
   using Unsigned = hn::RebindToUnsigned<LaneTag>;
 
+  /// For `count` more points, and whole vectors.
+  void makeRoom(std::size_t count)
+  {
+    records_.room(count + kLanes);
+    squared_.room(count + kLanes);
+  }
+  void add(std::size_t count)
+  {
+    records_.resize(records_.size() + count);
+    squared_.resize(squared_.size() + count);
+  }
+
+  const PointsView& view_;
+  const Point3& query_;
   Pile<std::uint32_t>& records_;
+  Pile<float>& squared_;
 };
 
 /// Is content with the first.
@@ -151,6 +181,7 @@ private:
   {
     const Node& node = local.voxel.nodes[index];
     const Children children = test(node, local.ball);
+    fetch(local.voxel, node, children.near);
     for (std::uint32_t bits = children.inside; bits != 0; bits &= bits - 1) {
       const int i = std::countr_zero(bits);
       if (sink_.take(local.voxel, node.begin[i], node.begin[i + 1])) return true;
@@ -160,6 +191,26 @@ private:
       if (node.isLeaf(i) ? compare(local, node, i) : visit(local, node.child[i])) return true;
     }
     return false;
+  }
+
+  /// Has memory fetch what the children will be looked up in, all at once.
+  static HWY_INLINE void fetch(const Voxel& voxel, const Node& node, std::uint32_t children)
+  {
+    if ((children & (children - 1)) == 0) return;
+    for (std::uint32_t bits = children; bits != 0; bits &= bits - 1) {
+      const int i = std::countr_zero(bits);
+      if (!node.isLeaf(static_cast<std::size_t>(i))) {
+        hwy::Prefetch(voxel.nodes[node.child[i]].x);
+        hwy::Prefetch(voxel.nodes[node.child[i]].z);
+        hwy::Prefetch(voxel.nodes[node.child[i]].begin);
+        hwy::Prefetch(voxel.nodes[node.child[i]].child);
+        continue;
+      }
+      hwy::Prefetch(voxel.x() + node.begin[i]);
+      hwy::Prefetch(voxel.y() + node.begin[i]);
+      hwy::Prefetch(voxel.z() + node.begin[i]);
+      if (Sink::kNeedsRecords) hwy::Prefetch(voxel.records() + node.begin[i]);
+    }
   }
 
   bool compare(const Local& local, const Node& node, std::uint32_t child)
@@ -176,7 +227,7 @@ private:
       if (hits != 0) return true;
     for (; open != 0; open &= open - 1) {
       const int i = std::countr_zero(open);
-      const Point3 p = cloud_.view.point(voxel.records()[begin + static_cast<std::uint32_t>(i)]);
+      const Point3 p = voxel.point(cloud_.view, begin + static_cast<std::uint32_t>(i));
       if (isWithin(p, query_, radius_, work_)) hits |= 1u << i;
     }
     if (hits == 0) return false;
@@ -197,8 +248,7 @@ private:
 void findWithinOnTarget(const SphereHierarchy::Storage& cloud, const Point3& query, double radius,
                         NeighborScratch& scratch, Work& work)
 {
-  scratch.records.clear();
-  Collect sink(scratch.records);
+  Collect sink(cloud.view, query, scratch);
   RadiusWalk<Collect>(cloud, query, radius, sink, work).run();
 }
 

@@ -36,7 +36,8 @@ alignas(64) inline constexpr SetBits kSetBits = setBits();
 class Compress {
 public:
   HWY_INLINE explicit Compress(std::uint32_t bits)
-  : from_(hn::IndicesFromVec(LaneTag(), hn::PromoteTo(Unsigned(), hn::Load(Bytes(), kSetBits[bits].data()))))
+  : numbers_(hn::PromoteTo(Unsigned(), hn::Load(Bytes(), kSetBits[bits].data()))),
+    from_(hn::IndicesFromVec(LaneTag(), numbers_))
   {
   }
 
@@ -50,10 +51,17 @@ public:
     hn::StoreU(hn::BitCast(Unsigned(), hn::TableLookupLanes(lanes, from_)), Unsigned(), to);
   }
 
+  /// `first` plus the number of each lane.
+  HWY_INLINE void storeNumbers(std::uint32_t first, std::uint32_t* to) const
+  {
+    hn::StoreU(hn::Add(hn::Set(Unsigned(), first), numbers_), Unsigned(), to);
+  }
+
 private:
   using Unsigned = hn::RebindToUnsigned<LaneTag>;
   using Bytes = hn::Rebind<std::uint8_t, LaneTag>;
 
+  hn::Vec<Unsigned> numbers_;
   decltype(hn::IndicesFromVec(LaneTag(), hn::Zero(Unsigned()))) from_;
 };
 

@@ -308,6 +308,32 @@ TEST(ErrorBounds, StoredSpheresHoldTheGivenPoints)
   EXPECT_EQ(wrong, 0);
 }
 
+/// Where a frame says that it loses nothing, origin and stored point add up to the given one: near zero, where floats
+/// are finest, about powers of two, where they change, and far away.
+TEST(ErrorBounds, LosslessFramesKeepEveryFloat)
+{
+  Random random(29);
+  long wrong = 0, lossless = 0;
+  for (long n = 0; n < attacks(); n += 16) {
+    const double scale = std::ldexp(random.uniform(1, 2), random.integer(-24, 24));
+    const double place[] = {0.0, 1.0, -1.0, 0.5, random.uniform(-3, 3), 1024.0, -4097.0, 0x1p25};
+    const Point3 middle = random.point([&] { return scale * random.pick(place); });
+    const Point3 half = random.point([&] { return scale * random.pick({0.0, 1e-3, 0.25, 1.0}); });
+    std::vector<Point3> points(16);
+    for (Point3& p : points)
+      for (std::size_t k = 0; k < 3; ++k)
+        p[k] = middle[k] + half[k] * (random.chance(0.3) ? (random.chance(0.5) ? 1 : -1) : random.uniform(-1, 1));
+    const Cluster cluster(std::move(points), true);
+    if (!cluster.frame.lossless) continue;
+    ++lossless;
+    for (std::size_t i = 0; i < 16; ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        wrong += cluster.frame.origin[k] + static_cast<double>(cluster.stored[i][k]) != cluster.given[i][k];
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(16 * lossless, attacks() / 4);
+}
+
 TEST(ErrorBounds, GivenSpheresHoldTheirPoints)
 {
   Random random(28);
