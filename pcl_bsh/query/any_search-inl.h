@@ -112,7 +112,7 @@ private:
       const DistanceBand band = acceptance_.band(frame);
       alignas(64) float nearest[kLeafPoints];
       std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
-      nearestSquared(points, b.x(), b.y(), b.z(), b.count, nearest);
+      nearestSquared(points, b.x(), b.y(), b.z(), firstBits(b.count), nearest);
       eachPairNotBeyond(
           points, lanes & ~above(nearest, band.miss), b, band.miss,
           [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, band.hit); });

@@ -40,6 +40,9 @@ AnyResult anyCollision(const Placed& a, const Placed& b, const CollisionRequest&
 /// Which points collide with something of the other cloud? Throws as anyCollision() does.
 FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request);
 
+/// The same into a result whose memory is used again: for one pose after another.
+void collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request, FlagsResult& result);
+
 /// The smallest distance and the pair that realises it; the clearance plays no part. Throws as anyCollision() does.
 DistanceResult closestPair(const Placed& a, const Placed& b, const CollisionRequest& request = {});
 

@@ -38,7 +38,8 @@ struct FlagQuery {
 
 struct FlaggedVoxel {
   Work work;
-  bool undecided = false; ///< whether points were left so
+  std::size_t colliding = 0; ///< points flagged so that were not before
+  bool undecided = false;    ///< whether points were left so
 };
 
 } // namespace
@@ -123,7 +124,7 @@ public:
     std::vector<std::uint32_t> reached;
     const bool apart = above.separates(pairs_.clearance + a_.storage.largest_radius + b_.storage.largest_radius);
     const bool all = !apart && !reach(voxel, above, b_.storage.top[0], reached);
-    if (all) return a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { flags_[record] = kColliding; });
+    if (all) return a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { settle(record); });
     if (apart || reached.empty()) {
       if (marked_) a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { flags_[record] = kFree; });
       return;
@@ -222,18 +223,18 @@ private:
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       const std::uint32_t begin = visit.node->begin[lane], end = visit.node->begin[lane + 1];
       if ((visit.leaves >> lane & 1) == 0) {
-        if (visit.near[lane].empty()) set(begin, end, kFree);
+        if (visit.near[lane].empty()) free(begin, end);
       }
       else if ((visit.unsure >> lane & 1) != 0) {
         found.undecided = true;
       }
       else if (visit.node->isCoincident(lane)) {
-        set(begin, end, kFree);
+        free(begin, end);
       }
       else {
         for (std::uint32_t points = visit.open_points[lane]; points != 0; points &= points - 1) {
           const std::uint32_t i = begin + static_cast<std::uint32_t>(std::countr_zero(points));
-          set(i, i + 1, kFree);
+          free(i, i + 1);
         }
       }
     }
@@ -393,7 +394,7 @@ private:
       const std::uint32_t hit =
           pairs_.haveRadii() ? hitBalls(visit, lane, leaf, points) : hitPoints(visit, lane, leaf, points);
       for (std::uint32_t set = hit; set != 0; set &= set - 1)
-        flags_[leaf.record(static_cast<std::uint32_t>(std::countr_zero(set)))] = kColliding;
+        settle(leaf.record(static_cast<std::uint32_t>(std::countr_zero(set))));
       visit.open_points[lane] &= ~hit;
       if (visit.open_points[lane] == 0) settleChild(visit, lane); // with it whatever its points stand for
     }
@@ -410,7 +411,12 @@ private:
     for (const Candidate& candidate : visit.near[lane]) {
       ++found.work.leaf_pairs;
       const LeafRange other = candidate.leaf(meeting);
-      nearestSquared(points, other.x(), other.y(), other.z(), other.count, nearest);
+      // Of neighbouring leaves, only the points that face each other.
+      const std::uint32_t facing =
+          pointsNear(other.x(), other.y(), other.z(), other.count, visit.x[lane], visit.y[lane], visit.z[lane],
+                     visit.r[lane] + meeting.prune_reach, kSphereMargin);
+      if (facing == 0) continue;
+      nearestSquared(points, other.x(), other.y(), other.z(), facing, nearest);
       hit = open & atMost(nearest, meeting.band.hit);
       if (hit == open) return hit;
     }
@@ -449,12 +455,19 @@ private:
   void settleChild(Visit& visit, std::uint32_t lane)
   {
     visit.open &= ~(1u << lane);
-    set(visit.node->begin[lane], visit.node->begin[lane + 1], kColliding);
+    for (std::uint32_t i = visit.node->begin[lane]; i < visit.node->begin[lane + 1]; ++i)
+      settle(a_voxel_->records()[i]);
   }
 
-  void set(std::uint32_t begin, std::uint32_t end, std::uint8_t flag)
+  void settle(std::uint32_t record)
   {
-    for (std::uint32_t i = begin; i < end; ++i) flags_[a_voxel_->records()[i]] = flag;
+    found.colliding += flags_[record] != kColliding;
+    flags_[record] = kColliding;
+  }
+
+  void free(std::uint32_t begin, std::uint32_t end)
+  {
+    for (std::uint32_t i = begin; i < end; ++i) flags_[a_voxel_->records()[i]] = kFree;
   }
 
   const Spaces a_, b_;
@@ -516,14 +529,21 @@ namespace {
 HWY_EXPORT(flagVoxelOnTarget);
 HWY_EXPORT(nearVoxelsOnTarget);
 
+/// The flags of one side, where they are wanted, and what they took.
+struct FlagSheet {
+  std::vector<std::uint8_t>& flags;
+  std::size_t& colliding;
+  Work& work;
+};
+
 /// Walks the given voxels of a. @return those that were left with undecided points
 std::vector<std::uint32_t> flagVoxels(const FlagQuery& query, const StopRule& rule,
                                       const std::vector<std::uint32_t>& voxels, unsigned threads,
-                                      std::vector<std::uint8_t>& flags, Work& work)
+                                      const FlagSheet& sheet)
 {
   std::vector<FlaggedVoxel> parts(voxels.size());
   const auto flag = [&](std::size_t i, const StopRule& own) {
-    parts[i] = HWY_DYNAMIC_DISPATCH(flagVoxelOnTarget)(query, own, voxels[i], flags.data());
+    parts[i] = HWY_DYNAMIC_DISPATCH(flagVoxelOnTarget)(query, own, voxels[i], sheet.flags.data());
   };
   if (rule.node_pairs == StopRule::kNever) {
     parallelFor(voxels.size(), threads, [&](std::size_t i) { flag(i, rule); });
@@ -537,7 +557,8 @@ std::vector<std::uint32_t> flagVoxels(const FlagQuery& query, const StopRule& ru
   }
   std::vector<std::uint32_t> left;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    work += parts[i].work;
+    sheet.work += parts[i].work;
+    sheet.colliding += parts[i].colliding;
     if (parts[i].undecided) left.push_back(voxels[i]);
   }
   return left;
@@ -554,12 +575,12 @@ void markUndecided(const SphereHierarchy& hierarchy, std::vector<std::uint8_t>& 
     hierarchy.storage().forEachRecord(v, [&](std::uint32_t record) { flags[record] = kUndecided; });
 }
 
-std::vector<std::uint8_t> flagsOf(const Placed& a, const Placed& b, const CollisionRequest& request, Work& work)
+void flagAll(const Placed& a, const Placed& b, const CollisionRequest& request, const FlagSheet& sheet)
 {
   StopRule rule(request.accuracy);
   const std::uint64_t node_pairs = rule.node_pairs;
-  std::vector<std::uint8_t> flags(a.hierarchy.view().count, kFree);
-  if (a.hierarchy.empty() || b.hierarchy.empty()) return flags;
+  sheet.flags.assign(a.hierarchy.view().count, kFree);
+  if (a.hierarchy.empty() || b.hierarchy.empty()) return;
   const PointPairs pairs(a, b, request.clearance);
   // A budget may end before a voxel is looked at. A level looks at all, and has to mark only those that come near.
   const bool marked = rule.mayStop() && rule.deepest == StopRule::kNever;
@@ -569,46 +590,54 @@ std::vector<std::uint8_t> flagsOf(const Placed& a, const Placed& b, const Collis
   if (marked) {
     voxels.resize(a.hierarchy.storage().voxel_count);
     std::iota(voxels.begin(), voxels.end(), 0u);
+    markUndecided(a.hierarchy, sheet.flags);
   }
   else { // what is not near is free, as flags are at first
-    voxels = HWY_DYNAMIC_DISPATCH(nearVoxelsOnTarget)(query, work);
+    voxels = HWY_DYNAMIC_DISPATCH(nearVoxelsOnTarget)(query, sheet.work);
   }
   if (!rule.mayStop()) {
-    flagVoxels(query, rule, voxels, threads, flags, work);
-    return flags;
+    flagVoxels(query, rule, voxels, threads, sheet);
+    return;
   }
 
-  if (marked) markUndecided(a.hierarchy, flags);
   Work spent;
   for (const std::uint64_t deepest : rule.passes()) {
     rule.deepest = deepest;
-    voxels = flagVoxels(query, rule, voxels, threads, flags, spent);
+    voxels = flagVoxels(query, rule, voxels, threads, {sheet.flags, sheet.colliding, spent});
     if (node_pairs != StopRule::kNever) rule.node_pairs = node_pairs - std::min(node_pairs, spent.node_pairs);
   }
-  work += spent;
-  return flags;
+  sheet.work += spent;
 }
 
-std::size_t countOf(std::uint8_t flag, const std::vector<std::uint8_t>& flags)
+std::size_t countUndecided(const std::vector<std::uint8_t>& flags)
 {
-  return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flag));
+  return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), kUndecided));
 }
 
 } // namespace
 
-FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request)
+void collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request, FlagsResult& result)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
-  FlagsResult result;
-  if (request.flagged != Side::b) result.a = flagsOf(a, b, request, result.work);
-  if (request.flagged != Side::a) result.b = flagsOf(b, a, request, result.work);
-  result.colliding_a = countOf(kColliding, result.a);
-  result.colliding_b = countOf(kColliding, result.b);
+  FlagsResult found;
+  found.a.swap(result.a);
+  found.b.swap(result.b);
+  found.a.clear();
+  found.b.clear();
+  if (request.flagged != Side::b) flagAll(a, b, request, {found.a, found.colliding_a, found.work});
+  if (request.flagged != Side::a) flagAll(b, a, request, {found.b, found.colliding_b, found.work});
   if (request.accuracy.stopsEarly()) {
-    result.undecided_a = countOf(kUndecided, result.a);
-    result.undecided_b = countOf(kUndecided, result.b);
+    found.undecided_a = countUndecided(found.a);
+    found.undecided_b = countUndecided(found.b);
   }
+  result = std::move(found);
+}
+
+FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request)
+{
+  FlagsResult result;
+  collisionFlags(a, b, request, result);
   return result;
 }
 

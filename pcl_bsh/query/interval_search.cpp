@@ -222,7 +222,7 @@ private:
     // Only pairs that float arithmetic may call nearest are worth an exact look.
     alignas(64) float nearest[kLeafPoints];
     std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
-    nearestSquared(points, b.x(), b.y(), b.z(), b.count, nearest);
+    nearestSquared(points, b.x(), b.y(), b.z(), firstBits(b.count), nearest);
     const float least = *std::min_element(nearest, nearest + a.count);
     const double within = (std::sqrt(static_cast<double>(least)) * (1.0 + 0x1p-20) + frame.error) *
                           (1.0 + frame.skew()) * walk_.b.frame(open.pair.b.space).unit;

@@ -53,7 +53,8 @@ HWY_INLINE std::uint32_t pointsNearLeaf(const RelativeFrame& frame, const LeafPo
   if (a.voxel->radii)
     for (std::uint32_t i = 0; i < a.count; ++i) radius = std::max(radius, a.radius(i));
   const float reach = node.r[lane] * frame.stretch_b + frame.pruneReach(clearance + radius);
-  return firstBits(a.count) & pointsNear(points, node.x[lane], node.y[lane], node.z[lane], reach, kSphereMargin);
+  return pointsNear(points.x, points.y, points.z, a.count, node.x[lane], node.y[lane], node.z[lane], reach,
+                    kSphereMargin);
 }
 
 /// Calls found(i, j, squared) for the pairs among `lanes` of leaf a and the points of leaf b whose float distance does

@@ -224,7 +224,7 @@ private:
     std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
     std::uint32_t hit = 0;
     if (certain) {
-      nearestSquared(points, other.x(), other.y(), other.z(), other.count, nearest);
+      nearestSquared(points, other.x(), other.y(), other.z(), firstBits(other.count), nearest);
       hit = lanes & atMost(nearest, sight_.band.hit);
       const std::uint32_t undecided = lanes & ~hit & ~above(nearest, sight_.band.miss);
       if (undecided != 0)

@@ -33,25 +33,26 @@ struct LeafPoints {
   alignas(64) float z[kLeafPoints];
 };
 
-/// Which of the sixteen points are not proven to be farther than reach from (cx, cy, cz).
-HWY_INLINE std::uint32_t pointsNear(const LeafPoints& points, float cx, float cy, float cz, float reach, float margin)
+/// Which of a leaf's `count` points are not proven to be farther than reach from (cx, cy, cz); sixteen are read.
+HWY_INLINE std::uint32_t pointsNear(const float* x, const float* y, const float* z, std::size_t count, float cx,
+                                    float cy, float cz, float reach, float margin)
 {
   const LaneTag d;
   const LaneVector limit = hn::Set(d, reach * reach * (1.0f + margin));
   std::uint32_t far = 0;
   for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
-    const LaneVector dx = hn::Sub(hn::Load(d, points.x + i), hn::Set(d, cx));
-    const LaneVector dy = hn::Sub(hn::Load(d, points.y + i), hn::Set(d, cy));
-    const LaneVector dz = hn::Sub(hn::Load(d, points.z + i), hn::Set(d, cz));
+    const LaneVector dx = hn::Sub(hn::LoadU(d, x + i), hn::Set(d, cx));
+    const LaneVector dy = hn::Sub(hn::LoadU(d, y + i), hn::Set(d, cy));
+    const LaneVector dz = hn::Sub(hn::LoadU(d, z + i), hn::Set(d, cz));
     far |= bitsOf(d, hn::Gt(squaredNorm(dx, dy, dz), limit)) << i;
   }
-  return far ^ 0xffffu;
+  return ~far & firstBits(count);
 }
 
-/// Lowers nearest[i] to the smallest squared distance of point i to `count` points (x, y, z); none may be NaN where the
-/// result is used.
+/// Lowers nearest[i] to the smallest squared distance of point i to those points (x, y, z) that have their bit set; none
+/// may be NaN where the result is used.
 HWY_INLINE void nearestSquared(const LeafPoints& points, const float* x, const float* y, const float* z,
-                               std::size_t count, float* nearest)
+                               std::uint32_t others, float* nearest)
 {
   const LaneTag d;
   for (std::size_t i = 0; i < kLeafPoints; i += 2 * hn::Lanes(d)) {
@@ -59,7 +60,8 @@ HWY_INLINE void nearestSquared(const LeafPoints& points, const float* x, const f
     const LaneVector ax = hn::Load(d, points.x + i), ay = hn::Load(d, points.y + i), az = hn::Load(d, points.z + i);
     const LaneVector bx = hn::Load(d, points.x + k), by = hn::Load(d, points.y + k), bz = hn::Load(d, points.z + k);
     LaneVector best_a = hn::LoadU(d, nearest + i), best_b = hn::LoadU(d, nearest + k);
-    for (std::size_t j = 0; j < count; ++j) {
+    for (std::uint32_t bits = others; bits != 0; bits &= bits - 1) {
+      const int j = std::countr_zero(bits);
       const LaneVector qx = hn::Set(d, x[j]), qy = hn::Set(d, y[j]), qz = hn::Set(d, z[j]);
       best_a = hn::Min(best_a, squaredNorm(hn::Sub(ax, qx), hn::Sub(ay, qy), hn::Sub(az, qz)));
       best_b = hn::Min(best_b, squaredNorm(hn::Sub(bx, qx), hn::Sub(by, qy), hn::Sub(bz, qz)));

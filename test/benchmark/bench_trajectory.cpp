@@ -202,13 +202,14 @@ void showOnePose(const Options& options, const std::string& scene_name, Table& t
   pcl_bsh::CollisionRequest request;
   request.clearance = scene.clearance;
   std::vector<double> flags, any;
+  pcl_bsh::FlagsResult result;
   for (std::size_t i = 0; i < options.warm_poses; ++i) {
     const auto& pose = scene.poses[i * scene.poses.size() / options.warm_poses];
     const Stopwatch for_any;
     anyCollision({scan}, {model, pose}, request);
     any.push_back(for_any.seconds());
     const Stopwatch for_flags;
-    collisionFlags({scan}, {model, pose}, request);
+    collisionFlags({scan}, {model, pose}, request, result);
     flags.push_back(for_flags.seconds());
   }
   addOurs(scene_name, scene, "pcl_bsh warm", 0.0, median(flags), "-", "flags at one pose, median", table);

@@ -398,6 +398,43 @@ TEST(CollisionFlags, ManyThreadsOnOneFreshHierarchy)
   EXPECT_EQ(built, hall_shared.statistics().voxels_built + tool_shared.statistics().voxels_built); // each once
 }
 
+/// A result that comes with another answer in it, of the other side and larger, is as good as a new one.
+TEST(CollisionFlags, SameIntoAResultUsedBefore)
+{
+  const Scene large = test::anyScene(7, 400), small = test::anyScene(8, 60);
+  const SphereHierarchy a(large.a.view()), b(large.b.view()), c(small.a.view()), d(small.b.view());
+  FlagsResult result;
+  collisionFlags({a, large.pose_a}, {b, large.pose_b}, within(large.clearance, Side::both), result);
+  for (const Side side : {Side::a, Side::both, Side::b}) {
+    const CollisionRequest request = within(small.clearance, side);
+    collisionFlags({c, small.pose_a}, {d, small.pose_b}, request, result);
+    const FlagsResult expected = collisionFlags({c, small.pose_a}, {d, small.pose_b}, request);
+    EXPECT_EQ(result.a, expected.a);
+    EXPECT_EQ(result.b, expected.b);
+    EXPECT_EQ(result.colliding_a, expected.colliding_a);
+    EXPECT_EQ(result.colliding_b, expected.colliding_b);
+    EXPECT_EQ(result.work.node_pairs, expected.work.node_pairs);
+  }
+}
+
+TEST(CollisionFlags, LooksAtFewVoxelsOfALongCloud)
+{
+  Random random(32);
+  std::vector<Point3> road, car;
+  for (int i = 0; i < 50000; ++i) road.push_back({random.uniform(0, 1000), random.uniform(-2, 2), 0.0});
+  for (int i = 0; i < 100; ++i) car.push_back({random.uniform(500, 501), random.uniform(-1, 1), 10.0});
+  HierarchyOptions options;
+  options.voxel_edge = 2.0;
+  const SphereHierarchy a(viewOf(road[0].data(), road.size()), options), b(viewOf(car[0].data(), car.size()));
+  ASSERT_GE(a.statistics().voxels, 1000u);
+  const FlagsResult found = collisionFlags({a}, {b}, within(0.2));
+  EXPECT_EQ(found.colliding_a, 0u);
+  EXPECT_LT(found.work.node_pairs, 200u); // and not at least one for each voxel
+  const FlagsResult lowered = collisionFlags({a}, {b, Eigen::Isometry3d(Eigen::Translation3d(0, 0, -10))}, within(0.2));
+  EXPECT_GT(lowered.colliding_a, 10u);
+  EXPECT_EQ(lowered.colliding_a, ones(lowered.a));
+}
+
 TEST(CollisionFlags, RefusesWhatItCannotAnswer)
 {
   const Cloud one({{1, 2, 3}});
