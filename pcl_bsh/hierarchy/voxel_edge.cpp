@@ -13,7 +13,7 @@ namespace pcl_bsh {
 namespace {
 
 // Enough points that the work of a voxel outweighs its frame, few enough that building one stays in the cache.
-constexpr double kPointsPerVoxel = 4096.0;
+constexpr double kPointsPerVoxel = 6000.0;
 
 // Keep an edge and its inverse normal numbers; 2^20 of the largest hold any cloud of doubles.
 constexpr double kSmallestEdge = 0x1p-1000, kLargestEdge = 0x1p1006;
@@ -73,9 +73,10 @@ double voxelEdgeFromDensity(const PointsView& view, const Bounds& bounds)
   double edge = kLargestEdge;
   std::size_t occupied = 1;
   for (std::size_t b = kMortonBits; b-- > 0;) {
-    // Going down to voxels of cell * 2^b: stop before the mean falls too far below what is wanted.
+    // Going down to voxels of cell * 2^b: stop where that many would be farther from what is wanted than so few. Two
+    // are never too many: an outlier has one of its own.
     const std::size_t finer = occupied + split_at[b];
-    if (static_cast<double>(finer) > 2.0 * wanted) break;
+    if (static_cast<double>(finer) * static_cast<double>(occupied) > std::max(2.0, wanted * wanted)) break;
     occupied = finer;
     edge = cell * std::exp2(static_cast<double>(b));
   }

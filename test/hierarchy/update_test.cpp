@@ -128,7 +128,7 @@ TEST(HierarchyUpdate, EqualToBuildingAnew)
   for (std::uint64_t seed = 100; seed < 130; ++seed) replaceEraseAndInsert<double>(seed);
 }
 
-/// Four thousand points per voxel, as voxels are by default, on a plain of 16 x 16 voxels.
+/// Points on a plain of 16 x 16 voxels.
 std::vector<Point3> plain(std::size_t count, Random& random)
 {
   std::vector<Point3> points;
