@@ -28,26 +28,43 @@ std::array<double, 9> gram(const Eigen::Matrix3d& m)
           product(1, 2), product(2, 0), product(2, 1), product(2, 2)};
 }
 
+/// How far a frame's box reaches. Its squares are in range.
+double cornerOf(const LocalFrame& frame)
+{
+  const auto& [x, y, z] = frame.reach;
+  return std::sqrt(x * x + y * y + z * z);
+}
+
 } // namespace
 
-RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_a, const LocalFrame& b,
-                             const Eigen::Isometry3d& pose_b)
-: unit_b_(b.unit)
+RelativeRotation::RelativeRotation(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b)
 {
   const Eigen::Matrix3d ra = pose_a.linear(), rb = pose_b.linear();
+  matrix = rb.transpose() * ra;
+  if (rb != Eigen::Matrix3d::Identity()) {
+    const Eigen::Matrix3d excess = rb.transpose() * rb - Eigen::Matrix3d::Identity();
+    skew = excess.cwiseAbs().rowwise().sum().maxCoeff() + 0x1p-48;
+  }
+  if (matrix != Eigen::Matrix3d::Identity() || skew != 0.0)
+    stretch = std::sqrt(normOfSums(gram(matrix))) * (1.0 + 0x1p-40);
+}
+
+RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_a, const LocalFrame& b,
+                             const Eigen::Isometry3d& pose_b, const RelativeRotation& rotation)
+: unit_b_(b.unit),
+  skew_(rotation.skew)
+{
+  const auto &ra = pose_a.linear(), &rb = pose_b.linear();
   const double scale = a.unit / b.unit;
-  const Eigen::Matrix3d relative = rb.transpose() * ra;
-  const Eigen::Matrix3d excess = rb.transpose() * rb - Eigen::Matrix3d::Identity();
-  skew_ = excess.cwiseAbs().rowwise().sum().maxCoeff() + 0x1p-48;
-  if (rb == Eigen::Matrix3d::Identity()) skew_ = 0.0;
 
   // The vector between the origins, whose terms may be millions of times larger than it.
   std::array<double, 3> between, between_bound;
   for (int i = 0; i < 3; ++i) {
     CompensatedSum sum;
     for (int j = 0; j < 3; ++j) {
-      sum.addProduct(ra(i, j), a.origin[static_cast<unsigned>(j)]);
-      sum.addProduct(-rb(i, j), b.origin[static_cast<unsigned>(j)]);
+      // Upright poses are half zeros.
+      if (ra(i, j) != 0.0) sum.addProduct(ra(i, j), a.origin[static_cast<unsigned>(j)]);
+      if (rb(i, j) != 0.0) sum.addProduct(-rb(i, j), b.origin[static_cast<unsigned>(j)]);
     }
     sum.add(pose_a.translation()(i));
     sum.add(-pose_b.translation()(i));
@@ -70,7 +87,7 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
 
     double moved = 0.0, slack = 0.0; // sum |M_ij| reach_a_j, sum |M_ij| slack_a_j
     for (unsigned j = 0; j < 3; ++j) {
-      const double entry = relative(i, j) * scale;
+      const double entry = rotation.matrix(i, j) * scale;
       m[3 * i + j] = roundToFloat(entry);
       moved += (std::abs(entry) + 0x1p-50 * scale) * a.reach[j];
       slack += (std::abs(entry) + 0x1p-50 * scale) * a.slack(static_cast<int>(j));
@@ -90,11 +107,9 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
   }
   error = in_range ? float_error_ : kInfinity;
 
-  stretch_a = roundUp(std::sqrt(normOfSums(gram(relative))) * (1.0 + 0x1p-40) * scale);
-  if (relative == Eigen::Matrix3d::Identity() && skew_ == 0.0) stretch_a = roundUp(scale);
+  stretch_a = roundUp(rotation.stretch * scale);
   stretch_b = roundUp(1.0 + skew_);
-  span_ = stretch_a * std::hypot(a.reach[0], a.reach[1], a.reach[2]) +
-          stretch_b * std::hypot(b.reach[0], b.reach[1], b.reach[2]);
+  span_ = stretch_a * cornerOf(a) + stretch_b * cornerOf(b);
 }
 
 bool RelativeFrame::separates(double clearance) const noexcept

@@ -11,6 +11,15 @@
 
 namespace pcl_bsh {
 
+/// What all frames of two poses share.
+struct RelativeRotation {
+  RelativeRotation(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b);
+
+  Eigen::Matrix3d matrix; ///< R_b' R_a
+  double stretch = 1.0;   ///< at least its spectral norm
+  double skew = 0.0;      ///< at least ||R_b'R_b - I||
+};
+
 /// Carries points of frame a into frame b: y = M x + g, so that |y - x_b| times b's unit is the distance of the points.
 ///
 /// Let z = T_a p - T_b q be the true vector, w = R_b' z / unit_b. With E = R_b'R_b - I (zero for a perfect pose),
@@ -21,7 +30,14 @@ class RelativeFrame {
 public:
   RelativeFrame() = default;
   RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_a, const LocalFrame& b,
-                const Eigen::Isometry3d& pose_b);
+                const Eigen::Isometry3d& pose_b)
+  : RelativeFrame(a, pose_a, b, pose_b, RelativeRotation(pose_a, pose_b))
+  {
+  }
+
+  /// @param rotation of the same poses
+  RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_a, const LocalFrame& b,
+                const Eigen::Isometry3d& pose_b, const RelativeRotation& rotation);
 
   std::array<float, 9> m = {}; ///< row-major, float
   std::array<float, 3> g = {}; ///< float

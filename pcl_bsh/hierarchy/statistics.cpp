@@ -35,6 +35,7 @@ HierarchyStatistics SphereHierarchy::statistics() const
     ++result.voxels_built;
     result.nodes += voxel.nodes.size();
     result.bytes += voxel.nodes.capacity() * sizeof(Node);
+    if (voxel.slabs.isFitted()) result.bytes += voxel.nodes.size() * sizeof(Slabs);
     result.depth = std::max(result.depth, depthBelow(voxel.nodes, 0));
     for (const Node& node : voxel.nodes)
       for (std::uint32_t i = 0; i < node.count; ++i) {

@@ -33,6 +33,7 @@ SphereHierarchy::Storage::Storage(const PointsView& points, const HierarchyOptio
 
 void SphereHierarchy::Storage::measure(Voxel& voxel) const
 {
+  voxel.slabs.reset();
   voxel.largest_radius = 0.0f;
   if (view.radii) {
     const bool built = voxel.state.load(std::memory_order_relaxed) == Voxel::built;

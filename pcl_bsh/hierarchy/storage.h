@@ -7,6 +7,7 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/large_buffer.h>
 #include <pcl_bsh/hierarchy/node.h>
+#include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
 #include <atomic>
@@ -38,6 +39,7 @@ struct Voxel {
   float* radii = nullptr;  ///< one per point in the order of x, once built; null when points have none
   std::vector<Node> nodes; ///< nodes[0] is the root; empty until built
   std::vector<GivenSphere> given; ///< see givenSpheres(); empty unless the voxel has crowded cells
+  LazySlabs slabs;                ///< of the nodes, once built and asked for
   std::atomic<std::uint8_t> state{sorted};
 
   /// Takes over what another voxel is. Nobody may visit either meanwhile.
@@ -55,6 +57,7 @@ struct Voxel {
     radii = other.radii;
     nodes = std::move(other.nodes);
     given = std::move(other.given);
+    slabs.adopt(other.slabs);
     state.store(other.state.load(std::memory_order_relaxed), std::memory_order_relaxed);
   }
 
@@ -135,8 +138,8 @@ public:
 
   double extent = 0.0; ///< sum of the voxels' radii when the points were sorted into them, in the cloud's unit
 
-  /// Sets what is known of a voxel by its frame and points: `radius`, `largest_radius`. @pre its points' records are
-  /// set
+  /// Sets what is known of a voxel by its frame and points: `radius`, `largest_radius`; forgets its slabs. @pre its
+  /// points' records are set
   void measure(Voxel& voxel) const;
 
   /// Builds the tree above the voxels and what else depends on all of them, once each is measured.

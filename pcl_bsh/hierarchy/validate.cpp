@@ -85,6 +85,7 @@ private:
     for (std::uint32_t i = 0; i < node.count; ++i) {
       if (node.begin[i] >= node.begin[i + 1]) return defect(here + "child " + std::to_string(i) + " is empty");
       checkSphere(node, i, frame, voxel, here);
+      if (voxel != kAboveVoxels && s_.voxels[voxel].slabs.isFitted()) checkSlab(node, index, i, s_.voxels[voxel], here);
       if (node.isLeaf(i)) {
         if (voxel == kAboveVoxels ? node.points(i) != 1
                                   : node.isCoincident(i) && !isOnePlace(s_.voxels[voxel], node, i))
@@ -138,6 +139,22 @@ private:
     const Point3 c = {node.x[i] * frame.unit, node.y[i] * frame.unit, node.z[i] * frame.unit};
     return ExactDistance(Eigen::Isometry3d::Identity(), origin)
                .compare(s_.view.point(record), c, node.r[i] * frame.unit, -s_.view.radius(record)) <= 0;
+  }
+
+  /// Every point below child i is between its planes, or has none. Double has the bits to say so: a slab is 2^-20 of
+  /// its sphere's radius thicker than its points.
+  void checkSlab(const Node& node, std::uint32_t index, std::uint32_t i, Voxel& voxel, const std::string& here)
+  {
+    const Slabs& slabs = voxel.slabs.of(voxel)[index];
+    const LocalFrame& f = voxel.frame;
+    for (std::uint32_t k = node.begin[i]; k < node.begin[i + 1]; ++k) {
+      const Point3 p = s_.view.point(voxel.records()[k]);
+      const auto local = [&](std::size_t axis) { return p[axis] / f.unit - f.origin[axis] / f.unit; };
+      const double along = slabs.x[i] * (local(0) - node.x[i]) + slabs.y[i] * (local(1) - node.y[i]) +
+                           slabs.z[i] * (local(2) - node.z[i]);
+      if (!(std::abs(along) <= static_cast<double>(slabs.h[i])))
+        defect(here + "slab " + std::to_string(i) + " does not contain point " + std::to_string(voxel.records()[k]));
+    }
   }
 
   void checkNoneLost()

@@ -103,6 +103,7 @@ public:
     const float* radii = nullptr; ///< of the children
     float stretch = 1.0f;         ///< of the children's radii
     float radius = 0.0f;          ///< of the other sphere, stretched
+    float reach = 0.0f;           ///< what is farther apart than this does not collide
   };
 
   /// Tests the children of pair.a, once opened, against pair.b; or the other way round.
@@ -123,9 +124,19 @@ public:
     alignas(32) float x[kLanes], y[kLanes], z[kLanes];
     carry(frame.m.data(), frame.g.data(), node.x, node.y, node.z, kLanes, x, y, z);
     out.entered = entered;
-    test(frame, {x, y, z, node.r, frame.stretch_a}, node.count,
-         {other.x[lane_b.lane], other.y[lane_b.lane], other.z[lane_b.lane]}, other.r[lane_b.lane] * frame.stretch_b,
-         clearance, out);
+    const SphereLanes spheres{x, y, z, node.r, frame.stretch_a};
+    const Point center{other.x[lane_b.lane], other.y[lane_b.lane], other.z[lane_b.lane]};
+    test(frame, spheres, node.count, center, other.r[lane_b.lane] * frame.stretch_b, clearance, out);
+    if (out.near == 0 || !haveSlabs(entered, lane_b)) return;
+    const Slabs &own = slabsOf(a, entered), &others = slabsOf(b, lane_b);
+    alignas(32) float nx[kLanes], ny[kLanes], nz[kLanes];
+    constexpr float nowhere[3] = {0.0f, 0.0f, 0.0f};
+    carry(frame.m.data(), nowhere, own.x, own.y, own.z, kLanes, nx, ny, nz);
+    const Slab other_slab{{others.x[lane_b.lane], others.y[lane_b.lane], others.z[lane_b.lane]},
+                          others.h[lane_b.lane],
+                          center,
+                          out.radius};
+    out.near &= ~slabsApart(spheres, {nx, ny, nz, own.h}, other_slab, out.reach);
   }
 
   void testChildrenOfB(const Lane& lane_a, const Lane& entered, double clearance, Step& out)
@@ -134,8 +145,16 @@ public:
     const Node& node = nodeOf(b, entered);
     const Node& other = nodeOf(a, lane_a);
     out.entered = entered;
-    test(frame, {node.x, node.y, node.z, node.r, frame.stretch_b}, node.count, carriedCenter(frame, other, lane_a.lane),
-         other.r[lane_a.lane] * frame.stretch_a, clearance, out);
+    const SphereLanes spheres{node.x, node.y, node.z, node.r, frame.stretch_b};
+    const Point center = carriedCenter(frame, other, lane_a.lane);
+    test(frame, spheres, node.count, center, other.r[lane_a.lane] * frame.stretch_a, clearance, out);
+    if (out.near == 0 || !haveSlabs(lane_a, entered)) return;
+    const Slabs &own = slabsOf(b, entered), &others = slabsOf(a, lane_a);
+    constexpr float nowhere[3] = {0.0f, 0.0f, 0.0f};
+    const Point normal =
+        carryPoint(frame.m.data(), nowhere, {others.x[lane_a.lane], others.y[lane_a.lane], others.z[lane_a.lane]});
+    const Slab other_slab{normal, others.h[lane_a.lane], center, out.radius};
+    out.near &= ~slabsApart(spheres, {own.x, own.y, own.z, own.h}, other_slab, out.reach);
   }
 
   /// Calls push(pair, step, lane) for every pair of children of the two roots that may meet.
@@ -180,6 +199,19 @@ public:
   }
 
 private:
+  /// Whether slabs can be compared: in voxels of one unit, of clouds whose points are points.
+  bool haveSlabs(const Lane& lane_a, const Lane& lane_b) const
+  {
+    return lane_a.space != kAboveVoxels && lane_b.space != kAboveVoxels && !a.storage.view.radii &&
+           !b.storage.view.radii && a.frame(lane_a.space).unit == b.frame(lane_b.space).unit;
+  }
+
+  static const Slabs& slabsOf(const Spaces& side, const Lane& lane)
+  {
+    Voxel& voxel = side.storage.voxels[lane.space];
+    return voxel.slabs.of(voxel)[lane.node];
+  }
+
   /// Whether float arithmetic says little about a pair of which one is child `lane` of the step.
   static bool isBlunt(const LanePair& pair, const Step& step, std::uint32_t lane)
   {
@@ -214,7 +246,8 @@ private:
   void test(const RelativeFrame& frame, const SphereLanes& spheres, std::uint32_t count, const Point& center,
             float radius, double clearance, Step& out)
   {
-    const Ball ball{center.x, center.y, center.z, radius + frame.pruneReach(clearance),
+    out.reach = frame.pruneReach(clearance);
+    const Ball ball{center.x, center.y, center.z, radius + out.reach,
                     frame.acceptReach(clearance + accepted_beyond) - radius * (1.0f + kSphereMargin)};
     out.frame = &frame;
     out.radii = spheres.r;

@@ -40,7 +40,7 @@ public:
 /// The relative frames that one walk has needed so far, of a space of a and a space of b each.
 class FrameTable {
 public:
-  FrameTable(const Spaces& a, const Spaces& b) : a_(a), b_(b), slots_(64) {}
+  FrameTable(const Spaces& a, const Spaces& b) : a_(a), b_(b), rotation_(a.pose, b.pose), slots_(64) {}
 
   const RelativeFrame& find(std::uint32_t space_a, std::uint32_t space_b)
   {
@@ -65,7 +65,8 @@ private:
 
   const RelativeFrame& add(std::uint32_t space_a, std::uint32_t space_b)
   {
-    const RelativeFrame& frame = frames_.emplace_back(a_.frame(space_a), a_.pose, b_.frame(space_b), b_.pose);
+    const RelativeFrame& frame =
+        frames_.emplace_back(a_.frame(space_a), a_.pose, b_.frame(space_b), b_.pose, rotation_);
     if (2 * frames_.size() > slots_.size()) {
       std::vector<Slot> old(2 * slots_.size());
       old.swap(slots_);
@@ -85,6 +86,7 @@ private:
 
   const Spaces& a_;
   const Spaces& b_;
+  const RelativeRotation rotation_;
   std::deque<RelativeFrame> frames_;
   std::vector<Slot> slots_;
 };

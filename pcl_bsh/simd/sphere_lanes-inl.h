@@ -141,6 +141,55 @@ HWY_INLINE std::uint32_t spheresNear(const SphereLanes& spheres, const Ball& bal
   return apart ^ ((1u << kLanes) - 1);
 }
 
+/// A sphere's points between two planes: |normal . (p - center)| <= h.
+struct Slab {
+  Point normal;
+  float h;
+  Point center;
+  float radius;
+};
+
+/// Eight normals, and how far from their planes points are at most.
+struct SlabLanes {
+  const float *x, *y, *z, *h;
+};
+
+/// Bit i: slab i, of sphere i, is proven to be more than reach away from another one, along the normal of either.
+///
+/// Along a normal u, another slab of normal n and sphere of radius r reaches as far as |u . n| h + |u - (u . n) n| r:
+/// u is split into its parts along n and across it. Normals may be off length 1 by 2^-19, and so may what carries them
+/// from one frame to another; 2^-16 of all lengths pays for these and for float arithmetic. 0 as a normal proves
+/// nothing.
+HWY_INLINE std::uint32_t slabsApart(const SphereLanes& spheres, const SlabLanes& slabs, const Slab& other, float reach)
+{
+  const LaneTag d;
+  const auto dot = [](LaneVector ax, LaneVector ay, LaneVector az, LaneVector bx, LaneVector by, LaneVector bz) {
+    return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
+  };
+  const LaneVector ux = hn::Set(d, other.normal.x), uy = hn::Set(d, other.normal.y), uz = hn::Set(d, other.normal.z);
+  const LaneVector other_h = hn::Set(d, other.h), other_r = hn::Set(d, other.radius);
+  std::uint32_t apart = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const LaneVector dx = hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, other.center.x));
+    const LaneVector dy = hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, other.center.y));
+    const LaneVector dz = hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, other.center.z));
+    const LaneVector nx = hn::LoadU(d, slabs.x + i), ny = hn::LoadU(d, slabs.y + i), nz = hn::LoadU(d, slabs.z + i);
+    const LaneVector h = hn::LoadU(d, slabs.h + i);
+    const LaneVector r = hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch));
+    const LaneVector cosine = hn::Abs(dot(nx, ny, nz, ux, uy, uz));
+    const LaneVector sine = hn::Sqrt(
+        hn::Add(hn::Max(hn::Zero(d), hn::Sub(hn::Set(d, 1.0f), hn::Mul(cosine, cosine))), hn::Set(d, 0x1p-16f)));
+    const LaneVector along_other =
+        hn::Sub(hn::Abs(dot(ux, uy, uz, dx, dy, dz)), hn::Add(other_h, hn::Add(hn::Mul(cosine, h), hn::Mul(sine, r))));
+    const LaneVector along_own = hn::Sub(hn::Abs(dot(nx, ny, nz, dx, dy, dz)),
+                                         hn::Add(h, hn::Add(hn::Mul(cosine, other_h), hn::Mul(sine, other_r))));
+    const LaneVector lengths = hn::Add(hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz)), hn::Add(r, other_r));
+    const LaneVector limit = hn::Add(hn::Set(d, reach), hn::Mul(lengths, hn::Set(d, 0x1p-16f)));
+    apart |= bitsOf(d, hn::Gt(hn::Max(along_other, along_own), limit)) << i;
+  }
+  return apart;
+}
+
 /// Squared distances of the eight centres to a point.
 HWY_INLINE void centersSquared(const SphereLanes& spheres, const Point& point, float* squared)
 {

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scans are surfaces: where spheres of two that face each other overlap, planes may still separate them.
+#pragma once
+
+#include <pcl_bsh/hierarchy/node.h>
+
+#include <atomic>
+
+namespace pcl_bsh {
+
+struct PointsView;
+struct Voxel;
+
+/// Beside a node's spheres: every point below child i, stored or given, is within h[i] of the plane through the
+/// sphere's centre with the normal (x, y, z)[i], |n . (p - centre)| <= h. Leaves have no normal: (0, 0, 0).
+struct alignas(32) Slabs {
+  float x[kNodeChildren], y[kNodeChildren], z[kNodeChildren], h[kNodeChildren];
+};
+
+/// One per node of a built voxel whose points have no radii.
+Slabs* fitSlabs(const Voxel& voxel);
+
+/// The slabs of a voxel, fitted when they are first asked for.
+class LazySlabs {
+public:
+  LazySlabs() = default;
+  LazySlabs(const LazySlabs&) = delete;
+  LazySlabs& operator=(const LazySlabs&) = delete;
+  ~LazySlabs() { reset(); }
+
+  /// Any number of threads may ask at once: all that are too early fit the same.
+  const Slabs* of(const Voxel& voxel)
+  {
+    Slabs* known = slabs_.load(std::memory_order_acquire);
+    if (known) return known;
+    Slabs* fitted = fitSlabs(voxel);
+    if (slabs_.compare_exchange_strong(known, fitted, std::memory_order_acq_rel)) return fitted;
+    delete[] fitted;
+    return known;
+  }
+
+  bool isFitted() const noexcept { return slabs_.load(std::memory_order_relaxed) != nullptr; }
+
+  // Nobody may ask meanwhile.
+  void reset() { delete[] slabs_.exchange(nullptr); }
+  void adopt(LazySlabs& other)
+  {
+    reset();
+    slabs_.store(other.slabs_.exchange(nullptr));
+  }
+
+private:
+  std::atomic<Slabs*> slabs_{nullptr};
+};
+
+} // namespace pcl_bsh
