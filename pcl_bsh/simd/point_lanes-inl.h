@@ -49,8 +49,8 @@ HWY_INLINE std::uint32_t pointsNear(const float* x, const float* y, const float*
   return ~far & firstBits(count);
 }
 
-/// Lowers nearest[i] to the smallest squared distance of point i to those points (x, y, z) that have their bit set; none
-/// may be NaN where the result is used.
+/// Lowers nearest[i] to the smallest squared distance of point i to those points (x, y, z) that have their bit set;
+/// none may be NaN where the result is used.
 HWY_INLINE void nearestSquared(const LeafPoints& points, const float* x, const float* y, const float* z,
                                std::uint32_t others, float* nearest)
 {
