@@ -201,10 +201,12 @@ void showOnePose(const Options& options, const std::string& scene_name, Table& t
   model.buildAll();
   pcl_bsh::CollisionRequest request;
   request.clearance = scene.clearance;
+  const auto poseAt = [&](std::size_t i) { return scene.poses[i * scene.poses.size() / options.warm_poses]; };
+  for (std::size_t i = 0; i < options.warm_poses; ++i) anyCollision({scan}, {model, poseAt(i)}, request); // fits slabs
   std::vector<double> flags, any;
   pcl_bsh::FlagsResult result;
   for (std::size_t i = 0; i < options.warm_poses; ++i) {
-    const auto& pose = scene.poses[i * scene.poses.size() / options.warm_poses];
+    const auto pose = poseAt(i);
     const Stopwatch for_any;
     anyCollision({scan}, {model, pose}, request);
     any.push_back(for_any.seconds());
