@@ -6,7 +6,6 @@
 
 #include <pcl/console/print.h>
 
-#include <cmath>
 #include <utility>
 
 namespace pcl_bsh {

@@ -32,6 +32,7 @@ struct FlagQuery {
   const Placed& a;
   const Placed& b;
   const PointPairs& pairs;
+  RelativeRotation rotation;
   Acceptance acceptance;
   bool marked; ///< whether flags start as undecided, rather than free
 };
@@ -105,6 +106,7 @@ public:
   : a_(query.a),
     b_(query.b),
     pairs_(query.pairs),
+    rotation_(query.rotation),
     acceptance_(query.acceptance),
     rule_(rule),
     marked_(query.marked),
@@ -116,7 +118,7 @@ public:
   /// Flags the points of one voxel of a.
   void run(std::uint32_t voxel)
   {
-    const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose);
+    const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose, rotation_);
     if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs)) {
       found.undecided = true;
       return;
@@ -139,7 +141,7 @@ public:
 
     std::vector<Candidate> candidates;
     for (const std::uint32_t other : reached) {
-      const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose);
+      const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, rotation_);
       const Node& root = b_.voxel(other, found.work).nodes[0];
       for (std::uint32_t lane = 0; lane < root.count; ++lane)
         candidates.push_back(
@@ -472,6 +474,7 @@ private:
 
   const Spaces a_, b_;
   const PointPairs& pairs_;
+  const RelativeRotation& rotation_;
   const Acceptance& acceptance_;
   const StopRule& rule_;
   const bool marked_;
@@ -503,7 +506,7 @@ void findNearVoxels(const Spaces& a, const Node& others, const RelativeFrame& fr
 std::vector<std::uint32_t> nearVoxelsOnTarget(const FlagQuery& query, Work& work)
 {
   const Spaces a(query.a), b(query.b);
-  const RelativeFrame frame(a.frame(kAboveVoxels), a.pose, b.frame(kAboveVoxels), b.pose);
+  const RelativeFrame frame(a.frame(kAboveVoxels), a.pose, b.frame(kAboveVoxels), b.pose, query.rotation);
   std::vector<std::uint32_t> near;
   if (frame.separates(query.pairs.clearance + a.storage.largest_radius + b.storage.largest_radius)) return near;
   findNearVoxels(a, b.storage.top[0], frame, frame.pruneReach(query.pairs.clearance), a.storage.top[0], near, work);
@@ -584,7 +587,7 @@ void flagAll(const Placed& a, const Placed& b, const CollisionRequest& request, 
   const PointPairs pairs(a, b, request.clearance);
   // A budget may end before a voxel is looked at. A level looks at all, and has to mark only those that come near.
   const bool marked = rule.mayStop() && rule.deepest == StopRule::kNever;
-  const FlagQuery query{a, b, pairs, Acceptance(request), marked};
+  const FlagQuery query{a, b, pairs, RelativeRotation(a.pose, b.pose), Acceptance(request), marked};
   const unsigned threads = threadCount(request.threads);
   std::vector<std::uint32_t> voxels;
   if (marked) {
