@@ -7,21 +7,34 @@
 namespace pcl_bsh {
 
 struct FreeBuffer {
+  std::size_t size = 0; ///< bytes that were allocated
+
   void operator()(void* p) const noexcept;
 };
 
-/// Uninitialised storage. Large ones ask the system for huge pages, where it has them: first touches of small pages
-/// would cost as much as sorting the points that go there.
+/// Uninitialised storage. Large ones ask the system for huge pages, where it has them, and are kept when they are freed
+/// (at most kKeptBytes, which the system may take back): first touches of a page, and above all of a virtual machine's,
+/// would cost more than sorting the points that go there.
 template <class T>
 using LargeBuffer = std::unique_ptr<T[], FreeBuffer>;
 
-void* allocateBuffer(std::size_t bytes);
+inline constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
+
+struct AllocatedBuffer {
+  void* p;
+  std::size_t size; ///< at least what was asked for
+};
+AllocatedBuffer allocateBuffer(std::size_t bytes);
+
+/// Of freed buffers, at present.
+std::size_t keptBytes();
 
 /// @throws std::bad_alloc
 template <class T>
 LargeBuffer<T> makeBuffer(std::size_t count)
 {
-  return LargeBuffer<T>(static_cast<T*>(allocateBuffer(count * sizeof(T))));
+  const AllocatedBuffer buffer = allocateBuffer(count * sizeof(T));
+  return LargeBuffer<T>(static_cast<T*>(buffer.p), FreeBuffer{buffer.size});
 }
 
 } // namespace pcl_bsh
