@@ -23,7 +23,7 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr std::uint32_t kNoVoxel = 0xffffffffu;
+constexpr std::uint32_t kNoVoxel = 0x7fffffffu;
 constexpr std::size_t kChunkPoints = 1 << 16; // points a thread takes at least: below that, one thread is faster
 
 /// A point of a float64 cloud, with the operations that Quad has for float32.
@@ -38,6 +38,14 @@ struct Triple {
   {
     for (int k = 0; k < 3; ++k)
       to[k] = std::abs(v[k]) < 0x1p31 ? static_cast<std::int32_t>(v[k]) : std::numeric_limits<std::int32_t>::min();
+  }
+  Triple truncated() const
+  {
+    return apply(*this, *this, [](double value, double) { return std::trunc(value); });
+  }
+  friend std::uint32_t equalLanes(const Triple& a, const Triple& b)
+  {
+    return (a.v[0] == b.v[0] ? 1u : 0u) | (a.v[1] == b.v[1] ? 2u : 0u) | (a.v[2] == b.v[2] ? 4u : 0u);
   }
   bool finite() const { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
@@ -76,31 +84,69 @@ using Point = typename PointOf<T>::Type;
 template <class T>
 class Reader {
 public:
-  explicit Reader(const PointsView& view) : view_(view), data_(static_cast<const unsigned char*>(view.data))
+  explicit Reader(const PointsView& view)
+  : data_(static_cast<const unsigned char*>(view.data)),
+    stride_(view.stride),
+    offset_(view.offset)
   {
-    const bool in_a_row =
-        view.offset[1] == view.offset[0] + sizeof(T) && view.offset[2] == view.offset[0] + 2 * sizeof(T);
+    const bool in_a_row = offset_[1] == offset_[0] + sizeof(T) && offset_[2] == offset_[0] + 2 * sizeof(T);
+    const bool aligned = reinterpret_cast<std::uintptr_t>(data_) % alignof(T) == 0 && stride_ % alignof(T) == 0 &&
+                         offset_[0] % alignof(T) == 0;
     // The spare lane of a Quad is read with the point; the last one must not be read beyond.
-    whole_ = in_a_row && view.count > 0 ? static_cast<std::uint32_t>(view.count - 1) : 0;
-    if (reinterpret_cast<std::uintptr_t>(data_) % alignof(T) != 0 || view.stride % alignof(T) != 0 ||
-        view.offset[0] % alignof(T) != 0)
-      whole_ = 0;
+    if (in_a_row && aligned && stride_ >= 3 * sizeof(T) && view.count > 0)
+      whole_ = static_cast<std::uint32_t>(view.count - 1);
   }
 
   Point<T> operator()(std::uint32_t record) const
   {
-    const unsigned char* base = data_ + view_.stride * record;
-    if (record < whole_ && view_.stride >= 3 * sizeof(T))
-      return Point<T>::load(reinterpret_cast<const T*>(base + view_.offset[0]));
+    const unsigned char* base = data_ + stride_ * record;
+    if (record < whole_) return Point<T>::load(reinterpret_cast<const T*>(base + offset_[0]));
     T copy[4] = {};
-    for (std::size_t k = 0; k < 3; ++k) std::memcpy(copy + k, base + view_.offset[k], sizeof(T));
+    for (std::size_t k = 0; k < 3; ++k) std::memcpy(copy + k, base + offset_[k], sizeof(T));
     return Point<T>::load(copy);
   }
 
 private:
-  const PointsView& view_;
   const unsigned char* data_;
-  std::uint32_t whole_;
+  std::size_t stride_;
+  std::array<std::size_t, 3> offset_;
+  std::uint32_t whole_ = 0; ///< records below it may be read at once, with what follows
+};
+
+/// Points that follow each other in the cloud, all in the same bin.
+struct Run {
+  std::uint32_t bin; ///< kNoVoxel: not finite
+  std::uint32_t points;
+};
+
+/// Runs on paper: twice the bin's number for a single point, one more than that and the number of points for others.
+/// Takes at most one number a point.
+class RunWriter {
+public:
+  explicit RunWriter(std::uint32_t* next) : next_(next) {}
+
+  void operator()(const Run& run)
+  {
+    *next_++ = run.bin << 1 | (run.points == 1 ? 0u : 1u);
+    if (run.points != 1) *next_++ = run.points;
+  }
+
+private:
+  std::uint32_t* next_;
+};
+
+class RunReader {
+public:
+  explicit RunReader(const std::uint32_t* next) : next_(next) {}
+
+  Run operator()()
+  {
+    const std::uint32_t head = *next_++;
+    return {head >> 1, (head & 1) == 0 ? 1u : *next_++};
+  }
+
+private:
+  const std::uint32_t* next_;
 };
 
 /// Points of the same voxel, as one chunk of the cloud has them.
@@ -146,11 +192,14 @@ public:
     base_ = Point<T>::load(base);
   }
 
-  /// kOutside when the point is not finite or too far from the bounds to be counted.
-  std::uint64_t operator()(const Point<T>& p) const
+  /// The cell's numbers along the axes, in the point's type.
+  Point<T> numbers(const Point<T>& p) const { return (p * inverse_ - base_).truncated(); }
+
+  /// The same as one number; kOutside when the point is not finite or too far from the bounds to be counted.
+  static std::uint64_t together(const Point<T>& numbers)
   {
     std::int32_t number[4];
-    (p * inverse_ - base_).storeTruncated(number);
+    numbers.storeTruncated(number);
     const auto bits = [&](std::size_t k) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(number[k])); };
     if ((bits(0) | bits(1) | bits(2)) >> kMortonBits != 0) return kOutside;
     return bits(0) << 42 | bits(1) << 21 | bits(2);
@@ -237,19 +286,31 @@ public:
     origin_ = Point<T>::load(origin);
   }
 
-  void operator()(const Point<T>& p, std::uint32_t record)
+  /// Points [first, last) of the view, behind those before.
+  void store(const Reader<T>& read, const PointsView& view, std::size_t first, std::size_t last)
   {
-    T local[4];
-    (plain_ ? p - origin_ : p).store(local);
-    PointRecord& out = *next_++;
-    out = {stored(local[0], 0), stored(local[1], 1), stored(local[2], 2), record};
+    PointRecord* next = next_;
+    for (std::size_t i = first; i < last; ++i) store(read(view.record(i)), view.record(i), *next++);
+    next_ = next;
   }
 
 private:
+  void store(const Point<T>& p, std::uint32_t record, PointRecord& out) const
+  {
+    if constexpr (std::is_same_v<T, float>) {
+      if (plain_) {
+        (p - origin_).store(reinterpret_cast<float*>(&out));
+        out.record = record;
+        return;
+      }
+    }
+    T local[4];
+    (plain_ ? p - origin_ : p).store(local);
+    out = {stored(local[0], 0), stored(local[1], 1), stored(local[2], 2), record};
+  }
+
   float stored(T value, std::size_t k) const
   {
-    if constexpr (std::is_same_v<T, float>)
-      if (plain_) return value;
     if (plain_) return roundToFloat(static_cast<double>(value));
     return roundToFloat(static_cast<double>(value) * inverse_ - scaled_[k]);
   }
@@ -291,9 +352,13 @@ private:
   template <class Body>
   void eachPoint(std::size_t chunk, const Body& body) const
   {
-    const std::size_t end = (chunk + 1) * view_.size() / chunk_count_;
-    for (std::size_t i = chunk * view_.size() / chunk_count_; i < end; ++i) body(i, view_.record(i));
+    const std::int32_t* const indices = view_.indices;
+    const std::size_t end = chunkEnd(chunk);
+    for (std::size_t i = chunkBegin(chunk); i < end; ++i) body(i, static_cast<std::uint32_t>(indices ? indices[i] : i));
   }
+
+  std::size_t chunkBegin(std::size_t chunk) const { return chunk * view_.size() / chunk_count_; }
+  std::size_t chunkEnd(std::size_t chunk) const { return chunkBegin(chunk + 1); }
 
   Bounds findBounds() const
   {
@@ -358,38 +423,45 @@ private:
     result_.edge = std::max(result_.edge, static_cast<double>(std::numeric_limits<T>::min()) * 0x1p20);
     const CellNumbers<T> cell_of(result_.edge, bounds);
     result_.base = cell_of.base();
-    bin_of_ = makeBuffer<std::uint32_t>(view_.size());
+    runs_ = makeBuffer<std::uint32_t>(view_.size());
     chunks_.assign(chunk_count_, BinTable<T>());
     std::vector<std::uint8_t> outside(chunk_count_, 0);
     parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
       BinTable<T>& table = chunks_[chunk];
+      RunWriter write(runs_.get() + chunkBegin(chunk));
       std::uint8_t any_outside = 0;
-      // A run of points in the same cell goes to its bin at once.
-      std::uint64_t cell_of_run = CellNumbers<T>::kOutside;
-      std::uint32_t bin = kNoVoxel, run = 0;
-      Point<T> low = Point<T>::of(0), high = low;
+      const Point<T> nowhere = Point<T>::of(std::numeric_limits<T>::quiet_NaN());
+      Point<T> cell_of_run = nowhere, low = nowhere, high = nowhere;
+      std::uint32_t bin = kNoVoxel;
+      std::size_t first = chunkBegin(chunk);
+      const auto endRun = [&](std::size_t end) {
+        if (end == first) return;
+        const auto points = static_cast<std::uint32_t>(end - first);
+        if (bin != kNoVoxel) table.bins[bin].add(low, high, points);
+        write({bin, points});
+        first = end;
+      };
       eachPoint(chunk, [&](std::size_t i, std::uint32_t record) {
         const Point<T> p = read_(record);
-        const std::uint64_t cell = cell_of(p);
-        if (cell == CellNumbers<T>::kOutside) {
-          bin_of_[i] = kNoVoxel;
-          any_outside |= p.finite();
-          return;
-        }
-        if (cell == cell_of_run) {
+        const Point<T> numbers = cell_of.numbers(p);
+        if ((equalLanes(numbers, cell_of_run) & 7) == 7) {
           low = min(low, p);
           high = max(high, p);
-          ++run;
+          return;
         }
-        else {
-          if (run > 0) table.bins[bin].add(low, high, run);
-          bin = table.find(cell_of_run = cell);
-          low = high = p;
-          run = 1;
+        endRun(i);
+        const std::uint64_t cell = CellNumbers<T>::together(numbers);
+        if (cell == CellNumbers<T>::kOutside) {
+          any_outside |= p.finite();
+          bin = kNoVoxel;
+          cell_of_run = nowhere;
+          return;
         }
-        bin_of_[i] = bin;
+        bin = table.find(cell);
+        cell_of_run = numbers;
+        low = high = p;
       });
-      if (run > 0) table.bins[bin].add(low, high, run);
+      endRun(chunkEnd(chunk));
       outside[chunk] = any_outside;
     });
     return std::find(outside.begin(), outside.end(), 1) == outside.end();
@@ -447,9 +519,12 @@ private:
         const Voxel& voxel = result_.voxels[bin.voxel];
         targets.emplace_back(voxel.frame, reinterpret_cast<PointRecord*>(voxel.block) + bin.first);
       }
-      eachPoint(chunk, [&](std::size_t i, std::uint32_t record) {
-        if (bin_of_[i] != kNoVoxel) targets[bin_of_[i]](read_(record), record);
-      });
+      RunReader read_run(runs_.get() + chunkBegin(chunk));
+      for (std::size_t i = chunkBegin(chunk); i < chunkEnd(chunk);) {
+        const Run run = read_run();
+        if (run.bin != kNoVoxel) targets[run.bin].store(read_, view_, i, i + run.points);
+        i += run.points;
+      }
     });
   }
 
@@ -468,7 +543,7 @@ private:
   const Reader<T> read_;
   const unsigned threads_;
   const std::size_t chunk_count_;
-  LargeBuffer<std::uint32_t> bin_of_; // of each point, in its chunk's table
+  LargeBuffer<std::uint32_t> runs_; // each chunk's from where its points begin
   std::vector<BinTable<T>> chunks_;
   VoxelSorting result_;
 };

@@ -40,6 +40,14 @@ public:
     for (std::size_t i = 0; i < kVectors; ++i) hn::StoreU(v_[i], Tag(), to + i * kStep);
   }
 
+  /// Whole numbers, truncated towards zero. Lanes that are far from the range of int32 hold anything.
+  HWY_INLINE Quad truncated() const
+  {
+    Quad q;
+    for (std::size_t i = 0; i < kVectors; ++i) q.v_[i] = hn::Trunc(v_[i]);
+    return q;
+  }
+
   /// Truncated towards zero. @pre in the range of int32.
   HWY_INLINE void storeTruncated(std::int32_t* to) const
   {
@@ -47,15 +55,17 @@ public:
     for (std::size_t i = 0; i < kVectors; ++i) hn::StoreU(hn::ConvertTo(d, v_[i]), d, to + i * kStep);
   }
 
+  /// Bit i: lane i is the same value in both, and no NaN.
+  friend HWY_INLINE std::uint32_t equalLanes(const Quad& a, const Quad& b)
+  {
+    return bitsOfLanes([&](std::size_t i) { return hn::Eq(a.v_[i], b.v_[i]); });
+  }
+
   /// Whether x, y and z are finite.
   HWY_INLINE bool finite() const
   {
-    std::uint32_t bits = 0;
-    for (std::size_t i = 0; i < kVectors; ++i) {
-      std::uint8_t mask[8] = {};
-      hn::StoreMaskBits(Tag(), hn::Le(hn::Abs(v_[i]), hn::Set(Tag(), std::numeric_limits<float>::max())), mask);
-      bits |= static_cast<std::uint32_t>(mask[0]) << (i * kStep);
-    }
+    const std::uint32_t bits = bitsOfLanes(
+        [&](std::size_t i) { return hn::Le(hn::Abs(v_[i]), hn::Set(Tag(), std::numeric_limits<float>::max())); });
     return (bits & 7) == 7;
   }
 
@@ -91,6 +101,19 @@ private:
   using Tag = hn::CappedTag<float, 4>;
   static constexpr std::size_t kStep = hn::MaxLanes(Tag());
   static constexpr std::size_t kVectors = 4 / kStep;
+
+  template <class MaskOf>
+  static HWY_INLINE std::uint32_t bitsOfLanes(const MaskOf& mask_of)
+  {
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      std::uint8_t mask[8] = {};
+      hn::StoreMaskBits(Tag(), mask_of(i), mask);
+      bits |= static_cast<std::uint32_t>(mask[0]) << (i * kStep);
+    }
+    return bits;
+  }
+
   hn::Vec<Tag> v_[kVectors];
 };
 

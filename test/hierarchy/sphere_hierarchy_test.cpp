@@ -189,6 +189,34 @@ TEST(SphereHierarchy, OutliersAnywhere) // also where no sample of the cloud see
   }
 }
 
+TEST(SphereHierarchy, RunsOfAnyLength) // points are sorted by runs that stay in one voxel, or are not finite
+{
+  Random random(31);
+  constexpr std::size_t count = 150000;
+  for (const Scalar scalar : {Scalar::float32, Scalar::float64}) {
+    for (const int longest : {1, 2, 9, 3000}) {
+      std::vector<Point3> points;
+      std::size_t good = 0;
+      while (points.size() < count) {
+        const double place = random.integer(-1, 40);
+        for (int run = random.integer(1, longest); run > 0 && points.size() < count; --run) {
+          points.push_back({place < 0 ? nan : 100 * place + random.uniform(0, 1), random.uniform(0, 1), 0});
+          good += place >= 0;
+        }
+      }
+      const Cloud cloud(points, {scalar});
+      HierarchyOptions options;
+      const SphereHierarchy hierarchy(cloud.view(), options);
+      EXPECT_EQ(hierarchy.size(), good);
+      expectSound(hierarchy);
+      options.threads = 2;
+      const SphereHierarchy parallel(cloud.view(), options);
+      parallel.buildAll(2);
+      expectEqual(parallel.statistics(), hierarchy.statistics());
+    }
+  }
+}
+
 TEST(SphereHierarchy, EmptyViews)
 {
   Cloud one({{1, 2, 3}});
