@@ -19,6 +19,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <pcl_bsh/hierarchy/cell_codes-inl.h>
 #include <pcl_bsh/simd/point_lanes-inl.h>
 #include <pcl_bsh/simd/quad-inl.h>
 
@@ -28,23 +29,12 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-constexpr unsigned kMostBits = 16;       // of a code: what 65,536 cells cannot tell apart is split again
-constexpr unsigned kMostAxisBits = 12;   // of these, for one axis
 constexpr unsigned kFinerBits = 4;       // spent at most on cells that hold nothing
 constexpr unsigned kCoarseBits = 9;      // of the cells by which to judge how many those are
 constexpr unsigned kWorthJudging = 6;    // bits from which on that is done
 constexpr unsigned kMostRecursions = 40; // cells within cells: each of them tells at least two places apart
 constexpr std::uint32_t kCellPoints = 3; // cells hold this many on average: fine enough to cut leaves at good places
 constexpr std::uint32_t kFullNode = 96;  // points that eight leaves hold, cut between cells
-
-/// Bounds of some points. The fourth lane holds nothing.
-struct Box {
-  alignas(16) float low[4] = {kNone, kNone, kNone, kNone};
-  alignas(16) float high[4] = {-kNone, -kNone, -kNone, -kNone};
-  static constexpr float kNone = std::numeric_limits<float>::infinity();
-
-  float extent(int axis) const { return high[axis] - low[axis]; }
-};
 
 /// The point's coordinates, and its record number taken for a float.
 Quad quadOf(const PointRecord& p)
@@ -71,63 +61,6 @@ void merge(Box& box, const Box& other)
   min(Quad::load(box.low), Quad::load(other.low)).store(box.low);
   max(Quad::load(box.high), Quad::load(other.high)).store(box.high);
 }
-
-/// Numbers the cells of a box along a space-filling order: each bit of a code halves the axis along which cells are
-/// longest, the most significant bit first. A cube gives the Morton order; a flat box is not split through its
-/// thickness.
-class CellCodes {
-public:
-  CellCodes(const Box& box, unsigned bits) : low_(Quad::load(box.low)), scale_(Quad::of(0.0f)), last_(Quad::of(0.0f))
-  {
-    std::array<float, 3> edge = {box.extent(0), box.extent(1), box.extent(2)};
-    std::array<unsigned, 3> axis_bits = {0, 0, 0};
-    std::array<std::uint8_t, kMostBits> axis_of; // of each bit of the code, most significant first
-    for (unsigned b = 0; b < bits; ++b) {
-      const auto longest = static_cast<std::size_t>(std::max_element(edge.begin(), edge.end()) - edge.begin());
-      if (axis_bits[longest] == kMostAxisBits) break;
-      edge[longest] *= 0.5f;
-      ++axis_bits[longest];
-      axis_of[bits_++] = static_cast<std::uint8_t>(longest);
-    }
-    float scale[4] = {}, last[4] = {};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto cells = static_cast<float>(1u << axis_bits[k]);
-      const float extent = box.extent(static_cast<int>(k));
-      scale[k] = extent > 0.0f ? std::min(cells / extent, std::numeric_limits<float>::max()) : 0.0f;
-      last[k] = cells - 1.0f;
-      spread(static_cast<std::uint8_t>(k), axis_of);
-    }
-    scale_ = Quad::load(scale);
-    last_ = Quad::load(last);
-  }
-
-  unsigned bits() const { return bits_; }
-
-  std::uint32_t operator()(const PointRecord& p) const
-  {
-    std::int32_t cell[4];
-    min((quadOf(p) - low_) * scale_, last_).storeTruncated(cell);
-    return static_cast<std::uint32_t>(spread_[0][cell[0]] | spread_[1][cell[1]] | spread_[2][cell[2]]);
-  }
-
-private:
-  /// spread_[axis][cell]: the code bits that the cell's number along the axis stands for.
-  void spread(std::uint8_t axis, const std::array<std::uint8_t, kMostBits>& axis_of)
-  {
-    spread_[axis][0] = 0;
-    std::size_t numbers = 1; // the table so far; each further bit of the number doubles it
-    for (unsigned b = bits_; b-- > 0;) {
-      if (axis_of[b] != axis) continue;
-      for (std::size_t number = 0; number < numbers; ++number)
-        spread_[axis][numbers + number] = static_cast<std::uint16_t>(spread_[axis][number] | 1u << (bits_ - 1 - b));
-      numbers *= 2;
-    }
-  }
-
-  unsigned bits_ = 0;
-  Quad low_, scale_, last_;
-  std::array<std::array<std::uint16_t, 1u << kMostAxisBits>, 3> spread_;
-};
 
 /// Scratch that a thread keeps from voxel to voxel.
 struct Scratch {
@@ -227,15 +160,22 @@ private:
   {
     const double wanted = static_cast<double>(end - begin) / kCellPoints;
     unsigned even = 1; // bits that would do if no cell were empty
-    while (even < kMostBits && (end - begin) >> even > kCellPoints) ++even;
+    while (even < CellCodes::kMostBits && (end - begin) >> even > kCellPoints) ++even;
     const bool few = even < kWorthJudging;
-    const CellCodes codes(box, few ? even : std::min(even + kFinerBits, kMostBits));
+    const CellCodes codes(box, few ? even : std::min(even + kFinerBits, CellCodes::kMostBits));
     const unsigned fine = codes.bits(), coarse = few ? 1 : std::min({even - 2, fine, kCoarseBits});
     std::array<std::uint8_t, 1u << kCoarseBits> seen{}; // coarse cells in use
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const std::uint32_t code = codes(given_[i]);
-      scratch_.codes[i] = static_cast<std::uint16_t>(code);
-      seen[code >> (fine - coarse)] = 1;
+    for (std::uint32_t i = begin; i < end; i += CellCodes::kBlock) {
+      const std::uint32_t count = std::min<std::uint32_t>(CellCodes::kBlock, end - i);
+      PointRecord last[CellCodes::kBlock];
+      const PointRecord* points = given_ + i;
+      if (count < CellCodes::kBlock) { // whole vectors are read
+        std::fill(std::copy_n(points, count, last), std::end(last), points[count - 1]);
+        points = last;
+      }
+      std::uint16_t* const next = scratch_.codes.data() + i;
+      codes(points, count, next);
+      for (std::uint32_t k = 0; k < count; ++k) seen[next[k] >> (fine - coarse)] = 1;
     }
     const auto used = std::accumulate(seen.begin(), seen.end(), 0u);
     // Each bit multiplies the cells in use by the same factor.
@@ -372,12 +312,31 @@ private:
     const double slack = storedSlack(voxel_.frame);
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       Node& node = nodes_[n];
+      alignas(32) float squared[kNodeChildren] = {};
       for (std::uint32_t i = 0; i < node.count; ++i) {
-        const std::array<float, 3> c = center(node.begin[i], node.begin[i + 1], scratch_.boxes[n * kNodeChildren + i]);
+        const std::uint32_t begin = node.begin[i], end = node.begin[i + 1];
+        const std::array<float, 3> c = center(begin, end, scratch_.boxes[n * kNodeChildren + i]);
         node.x[i] = c[0], node.y[i] = c[1], node.z[i] = c[2];
-        node.r[i] = radius(node.begin[i], node.begin[i + 1], c, slack);
+        if (voxel_.radii)
+          node.r[i] = radiusOverBalls(begin, end, c, slack);
+        else
+          squared[i] = farthestSquared(voxel_.x() + begin, voxel_.y() + begin, voxel_.z() + begin, end - begin, c[0],
+                                       c[1], c[2]);
       }
+      if (!voxel_.radii) storeRadii(squared, roundUp(slack), node.r);
       node.clearUnused();
+    }
+  }
+
+  /// At least radiusOver(squared, slack), in float arithmetic: a root, a product and a sum that err by u each are under
+  /// 4 u together, and 2^-20 = 16 u of the root is 8 u more than that bound asks for.
+  static void storeRadii(const float* squared, float slack, float* radii)
+  {
+    const LaneTag d;
+    for (std::size_t i = 0; i < kNodeChildren; i += hn::Lanes(d)) {
+      const LaneVector root = hn::Sqrt(hn::Load(d, squared + i));
+      const LaneVector over = hn::Mul(root, hn::Set(d, 1.0f + 0x1p-20f));
+      hn::StoreU(hn::Add(over, hn::Set(d, slack * (1.0f + 0x1p-20f))), d, radii + i);
     }
   }
 
@@ -390,17 +349,12 @@ private:
             0.5f * box.low[2] + 0.5f * box.high[2]};
   }
 
-  /// Rounded outward.
-  float radius(std::uint32_t begin, std::uint32_t end, const std::array<float, 3>& c, double slack) const
+  /// Of a sphere around points [begin, end) with their own radii; rounded outward.
+  float radiusOverBalls(std::uint32_t begin, std::uint32_t end, const std::array<float, 3>& c, double slack) const
   {
-    const float *x = voxel_.x(), *y = voxel_.y(), *z = voxel_.z();
-    if (!voxel_.radii) {
-      const float squared = farthestSquared(x + begin, y + begin, z + begin, end - begin, c[0], c[1], c[2]);
-      return roundUp(radiusOver(squared, slack));
-    }
     double farthest = 0.0;
     for (std::uint32_t i = begin; i < end; ++i) {
-      const float squared = farthestSquared(x + i, y + i, z + i, 1, c[0], c[1], c[2]);
+      const float squared = farthestSquared(voxel_.x() + i, voxel_.y() + i, voxel_.z() + i, 1, c[0], c[1], c[2]);
       const double ball = static_cast<double>(voxel_.radii[i]) / voxel_.frame.unit;
       farthest = std::max(farthest, radiusOver(squared, ball));
     }
