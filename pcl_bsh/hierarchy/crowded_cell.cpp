@@ -33,9 +33,11 @@ public:
     given.reserve(count);
     for (std::uint32_t i = 0; i < count; ++i)
       given.push_back({view.point(points[i].record), view.radius(points[i].record), points[i]});
-    std::sort(given.begin(), given.end(), [](const Given& l, const Given& r) {
+    const auto before = [](const Given& l, const Given& r) {
       return std::tie(l.point, l.radius, l.stored.record) < std::tie(r.point, r.radius, r.stored.record);
-    });
+    };
+    // Often they are of one place, the returns of a scanner that met nothing, and in order.
+    if (!std::is_sorted(given.begin(), given.end(), before)) std::sort(given.begin(), given.end(), before);
     for (std::uint32_t i = 0; i < count; ++i) {
       points[i] = given[i].stored;
       if (i > 0 && given[i].point == places_.back().point && given[i].radius == places_.back().radius)

@@ -22,6 +22,7 @@
 #include <pcl_bsh/hierarchy/cell_codes-inl.h>
 #include <pcl_bsh/simd/point_lanes-inl.h>
 #include <pcl_bsh/simd/quad-inl.h>
+#include <pcl_bsh/simd/rank_sort-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -34,7 +35,8 @@ constexpr unsigned kCoarseBits = 9;      // of the cells by which to judge how m
 constexpr unsigned kWorthJudging = 6;    // bits from which on that is done
 constexpr unsigned kMostRecursions = 40; // cells within cells: each of them tells at least two places apart
 constexpr std::uint32_t kCellPoints = 3; // cells hold this many on average: fine enough to cut leaves at good places
-constexpr std::uint32_t kFullNode = 96;  // points that eight leaves hold, cut between cells
+constexpr std::uint32_t kFewPoints = 2 * kMaxLeafPoints; // that are quicker sorted by counting who comes before whom
+constexpr std::uint32_t kFullNode = 96;                  // points that eight leaves hold, cut between cells
 
 /// The point's coordinates, and its record number taken for a float.
 Quad quadOf(const PointRecord& p)
@@ -54,6 +56,12 @@ Box boxOf(const PointRecord* records, std::size_t count)
   low.store(box.low);
   high.store(box.high);
   return box;
+}
+
+int longestAxis(const Box& box)
+{
+  const int axis = box.extent(1) > box.extent(0) ? 1 : 0;
+  return box.extent(2) > box.extent(axis) ? 2 : axis;
 }
 
 void merge(Box& box, const Box& other)
@@ -128,11 +136,9 @@ private:
   /// @return the node above the cells.
   std::uint32_t sortRange(std::uint32_t begin, std::uint32_t end, const Box& box, unsigned recursion)
   {
-    const double extent = std::max({box.extent(0), box.extent(1), box.extent(2)});
-    if (extent <= crowded_extent_ || recursion == kMostRecursions) {
+    if (box.extent(longestAxis(box)) <= crowded_extent_ || recursion == kMostRecursions) {
       std::copy(given_ + begin, given_ + end, scratch_.sorted.begin() + begin);
-      crowded_ = true;
-      return growCrowdedCell(view_, scratch_.sorted.data(), begin, end, nodes_);
+      return growCrowded(begin, end);
     }
     const auto [computed, bits] = codeCells(begin, end, box);
     const unsigned dropped = computed - bits;
@@ -243,8 +249,76 @@ private:
   /// A node for one cell that holds more points than a leaf.
   std::uint32_t sortAgain(std::uint32_t begin, std::uint32_t end, unsigned recursion)
   {
+    if (end - begin <= kNodeChildren * kMaxLeafPoints) return halveCell(begin, end);
     std::copy(scratch_.sorted.begin() + begin, scratch_.sorted.begin() + end, given_ + begin);
     return sortRange(begin, end, boxOf(given_ + begin, end - begin), recursion + 1);
+  }
+
+  /// A node for points that eight leaves can hold: halved at their median along the longest edge of their bounds, the
+  /// fullest part first, which is cheaper than finer cells are.
+  std::uint32_t halveCell(std::uint32_t begin, std::uint32_t end)
+  {
+    struct Part {
+      std::uint32_t begin, end;
+      bool crowded;
+
+      std::uint32_t open() const { return crowded || end - begin <= kMaxLeafPoints ? 0 : end - begin; }
+    };
+    std::array<Part, kNodeChildren> parts = {{{begin, end, false}}};
+    std::size_t used = 1;
+    for (;;) {
+      Part* const fullest = std::max_element(parts.begin(), parts.begin() + used,
+                                             [](const Part& l, const Part& r) { return l.open() < r.open(); });
+      if (fullest->open() == 0) break;
+      PointRecord* const first = scratch_.sorted.data() + fullest->begin;
+      const std::uint32_t count = fullest->end - fullest->begin, half = count / 2;
+      const Box box = boxOf(first, count);
+      const int axis = longestAxis(box);
+      if (box.extent(axis) <= crowded_extent_) {
+        fullest->crowded = true;
+        continue;
+      }
+      if (count <= kFewPoints)
+        sortFew(first, count, axis);
+      else
+        std::nth_element(first, first + half, first + count, [axis](const PointRecord& l, const PointRecord& r) {
+          return axis == 0 ? l.x < r.x : axis == 1 ? l.y < r.y : l.z < r.z;
+        });
+      std::copy_backward(fullest + 1, parts.begin() + used, parts.begin() + used + 1);
+      const Part upper = {fullest->begin + half, fullest->end, false};
+      fullest->end = upper.begin;
+      fullest[1] = upper;
+      ++used;
+    }
+    if (used == 1) return growCrowded(begin, end);
+    const std::uint32_t node = newNode();
+    for (const Part& part : parts) {
+      if (&part == parts.begin() + used) break;
+      const std::uint32_t below = part.crowded ? growCrowded(part.begin, part.end) : Node::kLeaf;
+      nodes_[node].addChild(part.begin, part.end, below);
+    }
+    return node;
+  }
+
+  /// Sorts kFewPoints points at most along an axis.
+  static void sortFew(PointRecord* points, std::uint32_t count, int axis)
+  {
+    float keys[kFewPoints + kLanes], sorted_keys[kFewPoints];
+    std::uint32_t places[kFewPoints], sorted_places[kFewPoints];
+    PointRecord copies[kFewPoints];
+    for (std::uint32_t i = 0; i < count; ++i) {
+      copies[i] = points[i];
+      keys[i] = axis == 0 ? points[i].x : axis == 1 ? points[i].y : points[i].z;
+      places[i] = i;
+    }
+    rankSort(keys, places, count, sorted_keys, sorted_places);
+    for (std::uint32_t i = 0; i < count; ++i) points[i] = copies[sorted_places[i]];
+  }
+
+  std::uint32_t growCrowded(std::uint32_t begin, std::uint32_t end)
+  {
+    crowded_ = true;
+    return growCrowdedCell(view_, scratch_.sorted.data(), begin, end, nodes_);
   }
 
   std::uint32_t newNode()
