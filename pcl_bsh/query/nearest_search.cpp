@@ -12,6 +12,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pcl_bsh/query/nearest_search.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -220,6 +221,7 @@ private:
         const std::uint32_t j = i + static_cast<std::uint32_t>(std::countr_zero(near));
         places_.push(voxel.begin + begin + j);
         highs_.push(squared[j] * frame.above + frame.slack);
+        hwy::Prefetch(voxel.records() + begin + j); // asked for at the end
       }
     }
   }

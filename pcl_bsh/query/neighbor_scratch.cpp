@@ -59,7 +59,7 @@ bool isWithin(const Point3& p, const Point3& q, double radius, Work& work)
 }
 
 void deliver(const PointsView& view, const Point3& query, const RadiusOptions& options, NeighborScratch& scratch,
-             Neighbors& found, Work& work)
+             const Delivery& found, Work& work)
 {
   const std::size_t count = scratch.records.size();
   const std::size_t kept = options.most == 0 ? count : std::min(count, options.most);

@@ -55,9 +55,15 @@ bool isWithin(const Point3& p, const Point3& q, double radius, Work& work);
 /// Sorts scratch.records by scratch.squared, its equals in any order.
 void sortBySquared(NeighborScratch& scratch);
 
+/// Where an answer goes.
+struct Delivery {
+  std::vector<std::int32_t>& indices;
+  std::vector<float>& squared_distances;
+};
+
 /// Sorts what was found and keeps the first `most` (0: all). Expects the DefaultFloatEnvironment.
 void deliver(const PointsView& view, const Point3& query, const RadiusOptions& options, NeighborScratch& scratch,
-             Neighbors& found, Work& work);
+             const Delivery& found, Work& work);
 
 /// One query each, arguments checked, environment set: found and measured, in any order. The radius search ignores
 /// options.most.

@@ -15,7 +15,7 @@ constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
 
 /// One query of a kind, wherever it comes from: alone or in a batch.
 void answer(const SphereHierarchy& cloud, const Point3& query, double radius, const RadiusOptions& options,
-            Neighbors& found, Work& work)
+            const Delivery& found, Work& work)
 {
   NeighborScratch& scratch = NeighborScratch::ofThisThread();
   scratch.records.clear();
@@ -28,13 +28,28 @@ void answer(const SphereHierarchy& cloud, const Point3& query, double radius, co
   deliver(cloud.view(), query, options, scratch, found, work);
 }
 
-void answer(const SphereHierarchy& cloud, const Point3& query, std::size_t k, Neighbors& found, Work& work)
+void answer(const SphereHierarchy& cloud, const Point3& query, std::size_t k, const Delivery& found, Work& work)
 {
   NeighborScratch& scratch = NeighborScratch::ofThisThread();
   scratch.records.clear();
   if (isFinite(query) && k > 0) findNearest(cloud.storage(), query, k, kAnyDistance, scratch, work);
   deliver(cloud.view(), query, {k, true}, scratch, found, work);
 }
+
+void makeRoom(NeighborLists& found, std::size_t queries)
+{
+  found.indices.resize(queries);
+  found.squared_distances.resize(queries);
+}
+
+/// Has memory fetch the vectors that an answer will go to, and soon before it does, what they hold.
+void fetch(const NeighborLists& found, std::size_t i, bool soon)
+{
+  hwy::Prefetch(soon ? static_cast<const void*>(found.indices[i].data()) : &found.indices[i]);
+  hwy::Prefetch(soon ? static_cast<const void*>(found.squared_distances[i].data()) : &found.squared_distances[i]);
+}
+
+constexpr auto kNothing = [](std::size_t, bool) {};
 
 } // namespace
 
@@ -44,7 +59,7 @@ std::size_t radiusSearch(const SphereHierarchy& cloud, const Point3& query, doub
   checkRadius(radius);
   const DefaultFloatEnvironment environment;
   Work unasked;
-  answer(cloud, query, radius, options, found, work ? *work : unasked);
+  answer(cloud, query, radius, options, {found.indices, found.squared_distances}, work ? *work : unasked);
   return found.indices.size();
 }
 
@@ -53,7 +68,7 @@ std::size_t nearestKSearch(const SphereHierarchy& cloud, const Point3& query, st
 {
   const DefaultFloatEnvironment environment;
   Work unasked;
-  answer(cloud, query, k, found, work ? *work : unasked);
+  answer(cloud, query, k, {found.indices, found.squared_distances}, work ? *work : unasked);
   return found.indices.size();
 }
 
@@ -65,24 +80,26 @@ bool anyInRadius(const SphereHierarchy& cloud, const Point3& query, double radiu
   return isFinite(query) && findAny(cloud.storage(), query, radius, work ? *work : unasked);
 }
 
-void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius, std::vector<Neighbors>& found,
+void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius, NeighborLists& found,
                   const RadiusOptions& options, unsigned threads)
 {
   checkRadius(radius);
-  found.resize(queries.size());
-  forEachQuery(cloud.storage(), queries, threads, [&](std::size_t i, const Point3& query) {
+  makeRoom(found, queries.size());
+  const auto expect = [&](std::size_t i, bool soon) { fetch(found, i, soon); };
+  forEachQuery(cloud.storage(), queries, threads, expect, [&](std::size_t i, const Point3& query) {
     Work work;
-    answer(cloud, query, radius, options, found[i], work);
+    answer(cloud, query, radius, options, {found.indices[i], found.squared_distances[i]}, work);
   });
 }
 
-void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k,
-                    std::vector<Neighbors>& found, unsigned threads)
+void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k, NeighborLists& found,
+                    unsigned threads)
 {
-  found.resize(queries.size());
-  forEachQuery(cloud.storage(), queries, threads, [&](std::size_t i, const Point3& query) {
+  makeRoom(found, queries.size());
+  const auto expect = [&](std::size_t i, bool soon) { fetch(found, i, soon); };
+  forEachQuery(cloud.storage(), queries, threads, expect, [&](std::size_t i, const Point3& query) {
     Work work;
-    answer(cloud, query, k, found[i], work);
+    answer(cloud, query, k, {found.indices[i], found.squared_distances[i]}, work);
   });
 }
 
@@ -91,7 +108,7 @@ std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const Po
 {
   checkRadius(radius);
   std::vector<std::uint8_t> flags(queries.size());
-  forEachQuery(cloud.storage(), queries, threads, [&](std::size_t i, const Point3& query) {
+  forEachQuery(cloud.storage(), queries, threads, kNothing, [&](std::size_t i, const Point3& query) {
     Work work;
     flags[i] = isFinite(query) && findAny(cloud.storage(), query, radius, work) ? 1 : 0;
   });
@@ -103,7 +120,7 @@ std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsV
   if (!balls.radii) throw std::invalid_argument("balls: the view has no radii: give one per record");
   for (std::size_t i = 0; i < balls.size(); ++i) checkRadius(balls.radius(balls.record(i)));
   std::vector<std::uint8_t> flags(balls.size());
-  forEachQuery(cloud.storage(), balls, threads, [&](std::size_t i, const Point3& center) {
+  forEachQuery(cloud.storage(), balls, threads, kNothing, [&](std::size_t i, const Point3& center) {
     Work work;
     flags[i] = isFinite(center) && findAny(cloud.storage(), center, balls.radius(balls.record(i)), work) ? 1 : 0;
   });

@@ -28,6 +28,12 @@ struct Neighbors {
   std::vector<float> squared_distances; ///< one per index: |p - q|^2, rounded once, to the nearest float
 };
 
+/// The answers to many queries: the i-th one's in [i]. Memory that comes with them is used again.
+struct NeighborLists {
+  std::vector<std::vector<std::int32_t>> indices;
+  std::vector<std::vector<float>> squared_distances;
+};
+
 struct RadiusOptions {
   std::size_t most = 0; ///< only so many, the nearest ones; 0: all
   bool sorted = true;   ///< false: in any order, but always the same one
@@ -52,12 +58,12 @@ std::size_t boxSearch(const SphereHierarchy& cloud, const Point3& low, const Poi
                       std::vector<std::int32_t>& indices, Work* work = nullptr);
 
 /// The same for many queries at once, shared among threads and taken in an order that visits neighbouring places one
-/// after another. found[i] belongs to the i-th point that the view of queries names: bit for bit what the single query
-/// gives. @param threads 0: all of the machine's. @throws as the single query does.
-void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius, std::vector<Neighbors>& found,
+/// after another. The i-th answer belongs to the i-th point that the view of queries names: bit for bit what the single
+/// query gives. @param threads 0: all of the machine's. @throws as the single query does.
+void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius, NeighborLists& found,
                   const RadiusOptions& options = {}, unsigned threads = 1);
-void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k,
-                    std::vector<Neighbors>& found, unsigned threads = 1);
+void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k, NeighborLists& found,
+                    unsigned threads = 1);
 
 /// One flag per query, 1 = some point lies within the radius.
 std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,

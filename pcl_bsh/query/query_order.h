@@ -11,8 +11,9 @@
 namespace pcl_bsh {
 
 /// The numbers [0, queries.size()) by the Morton code of the query's place in the cloud's bounds; queries that are not
-/// finite come last.
-std::vector<std::uint32_t> queryOrder(const SphereHierarchy::Storage& cloud, const PointsView& queries);
+/// finite come last. Each thread orders a stretch of its own: many numbers come in as many orders as there are threads.
+std::vector<std::uint32_t> queryOrder(const SphereHierarchy::Storage& cloud, const PointsView& queries,
+                                      unsigned threads);
 
 /// What a query reads of its record: in another order than the records', each would be waited for.
 inline void prefetch(const PointsView& queries, std::uint32_t record)
@@ -21,18 +22,25 @@ inline void prefetch(const PointsView& queries, std::uint32_t record)
   if (queries.radii) hwy::Prefetch(queries.radii + record);
 }
 
-/// Calls body(i, point) for the i-th point that the view names, for all of them, in the DefaultFloatEnvironment.
-template <class Body>
-void forEachQuery(const SphereHierarchy::Storage& cloud, const PointsView& queries, unsigned threads, const Body& body)
+/// Calls body(i, point) for the i-th point that the view names, for all of them, in the DefaultFloatEnvironment; and
+/// expect(i, soon) twice before that, for what the answer needs to be fetched: early, and again soon before.
+template <class Expect, class Body>
+void forEachQuery(const SphereHierarchy::Storage& cloud, const PointsView& queries, unsigned threads,
+                  const Expect& expect, const Body& body)
 {
-  constexpr std::size_t kAhead = 8;   // queries between a record's being fetched and its use
+  constexpr std::size_t kAhead = 8; // queries between a record's being fetched and its use
+  constexpr std::size_t kSoon = 4;
   constexpr std::size_t kShare = 256; // enough to make up for handing it to a thread, few enough to share out evenly
   const DefaultFloatEnvironment environment;
-  const std::vector<std::uint32_t> order = queryOrder(cloud, queries);
+  const std::vector<std::uint32_t> order = queryOrder(cloud, queries, threadCount(threads));
   parallelFor((order.size() + kShare - 1) / kShare, threadCount(threads), [&](std::size_t share) {
     const std::size_t end = std::min(order.size(), (share + 1) * kShare);
     for (std::size_t k = share * kShare; k < end; ++k) {
-      if (k + kAhead < end) prefetch(queries, queries.record(order[k + kAhead]));
+      if (k + kAhead < end) {
+        prefetch(queries, queries.record(order[k + kAhead]));
+        expect(order[k + kAhead], false);
+      }
+      if (k + kSoon < end) expect(order[k + kSoon], true);
       body(order[k], queries.point(queries.record(order[k])));
     }
   });

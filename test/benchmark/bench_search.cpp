@@ -170,7 +170,10 @@ private:
                  std::to_string(options_.repeat));
         const Stopwatch watch;
         entry.answer = ask(*entry.racer);
-        if (repetition > 0 && entry.answer) entry.seconds.push_back(watch.seconds());
+        const double seconds = watch.seconds();
+        if (!entry.answer) continue;
+        entry.answer = entry.racer->completed(*entry.answer);
+        if (repetition > 0) entry.seconds.push_back(seconds);
       }
     }
     report(task, queries);

@@ -38,11 +38,15 @@ public:
 
   /// How many of the balls hold a point; each query stops at the first where the library can.
   virtual std::optional<SearchAnswer> probes(const Points& centers, const std::vector<float>& radii) const = 0;
+
+  /// The last answer with what was left to add up once the clock had stopped.
+  virtual SearchAnswer completed(SearchAnswer answer) const { return answer; }
 };
 
 /// `name` is one of kSearchRacers.
 ///   pcl_bsh        pcl_bsh::search::BoundingSphereSearch, query by query
-///   pcl_bsh_batch  the same, all queries of a task at once, on one thread; pcl_bsh_batch2: on two
+///   pcl_bsh_batch  the same, all queries of a task at once, on one thread, into vectors kept from batch to batch;
+///                  pcl_bsh_batch2: on two
 ///   pcl_kdtree     pcl::search::KdTree; pcl_octree: pcl::search::Octree
 ///   nanoflann      k-d tree, leaves of ten
 ///   grid           uniform grid, its edge the radius; for probes the edge that was fastest of several

@@ -80,6 +80,11 @@ void expectEqual(const Neighbors& found, const Neighbors& expected)
   EXPECT_EQ(found.squared_distances, expected.squared_distances);
 }
 
+void expectEqual(const NeighborLists& found, std::size_t i, const Neighbors& expected)
+{
+  expectEqual({found.indices[i], found.squared_distances[i]}, expected);
+}
+
 Neighbors sortedByIndex(const Neighbors& found)
 {
   std::vector<std::pair<std::int32_t, float>> pairs;
@@ -307,7 +312,7 @@ TEST(Neighbors, SaysWhatIsWrong)
   const float xyz[] = {0, 0, 0};
   const SphereHierarchy cloud(viewOf(xyz, 1));
   Neighbors found;
-  std::vector<Neighbors> many;
+  NeighborLists many;
   std::vector<std::int32_t> indices;
   const auto refused = [](const char* text) { return ThrowsMessage<std::invalid_argument>(HasSubstr(text)); };
   EXPECT_THAT([&] { radiusSearch(cloud, {0, 0, 0}, -1.0, found); }, refused("radius: -1"));
@@ -347,17 +352,17 @@ TEST(Neighbors, BatchAsOneByOneForAnyThreads)
     PointsView view = viewOf(queries.data(), 1000);
     view.radii = radii.data();
     const double radius = 0.2 * ask.scale;
+    NeighborLists within, nearest; // used again
     for (const unsigned threads : {1u, 2u}) {
-      std::vector<Neighbors> within, nearest;
       radiusSearch(cloud, view, radius, within, {5, true}, threads);
       nearestKSearch(cloud, view, 7, nearest, threads);
       const auto any = flagAnyInRadius(cloud, view, radius, threads), balls = anyInBalls(cloud, view, threads);
       Neighbors single;
       for (std::uint32_t i = 0; i < 1000; ++i) {
         radiusSearch(cloud, view.point(i), radius, single, {5, true});
-        expectEqual(within[i], single);
+        expectEqual(within, i, single);
         nearestKSearch(cloud, view.point(i), 7, single);
-        expectEqual(nearest[i], single);
+        expectEqual(nearest, i, single);
         EXPECT_EQ(any[i] != 0, anyInRadius(cloud, view.point(i), radius));
         EXPECT_EQ(balls[i] != 0, anyInRadius(cloud, view.point(i), radii[i]));
       }

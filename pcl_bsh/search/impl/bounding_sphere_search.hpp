@@ -11,25 +11,13 @@ namespace pcl_bsh::search {
 namespace detail {
 
 /// Lends a caller's vectors to a search and gives them back filled.
-template <typename Search>
-int fill(pcl::Indices& indices, std::vector<float>& squared_distances, const Search& search)
+template <typename Found, typename Indices, typename SquaredDistances, typename Search>
+void fill(Indices& indices, SquaredDistances& squared_distances, const Search& search)
 {
-  Neighbors found{std::move(indices), std::move(squared_distances)};
-  const std::size_t count = search(found);
+  Found found{std::move(indices), std::move(squared_distances)};
+  search(found);
   indices = std::move(found.indices);
   squared_distances = std::move(found.squared_distances);
-  return static_cast<int>(count);
-}
-
-inline void unpack(std::vector<Neighbors>& found, std::vector<pcl::Indices>& indices,
-                   std::vector<std::vector<float>>& squared_distances)
-{
-  indices.resize(found.size());
-  squared_distances.resize(found.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    indices[i] = std::move(found[i].indices);
-    squared_distances[i] = std::move(found[i].squared_distances);
-  }
 }
 
 inline std::size_t checkedK(int k)
@@ -84,18 +72,20 @@ template <typename PointT>
 int BoundingSphereSearch<PointT>::nearestKSearch(const PointT& point, int k, pcl::Indices& k_indices,
                                                  std::vector<float>& k_sqr_distances) const
 {
-  return detail::fill(k_indices, k_sqr_distances, [&](Neighbors& found) {
-    return pcl_bsh::nearestKSearch(getHierarchy(), placeOf(point), detail::checkedK(k), found);
+  detail::fill<Neighbors>(k_indices, k_sqr_distances, [&](Neighbors& found) {
+    pcl_bsh::nearestKSearch(getHierarchy(), placeOf(point), detail::checkedK(k), found);
   });
+  return static_cast<int>(k_indices.size());
 }
 
 template <typename PointT>
 int BoundingSphereSearch<PointT>::radiusSearch(const PointT& point, double radius, pcl::Indices& k_indices,
                                                std::vector<float>& k_sqr_distances, unsigned int max_nn) const
 {
-  return detail::fill(k_indices, k_sqr_distances, [&](Neighbors& found) {
-    return pcl_bsh::radiusSearch(getHierarchy(), placeOf(point), radius, found, {max_nn, this->sorted_results_});
+  detail::fill<Neighbors>(k_indices, k_sqr_distances, [&](Neighbors& found) {
+    pcl_bsh::radiusSearch(getHierarchy(), placeOf(point), radius, found, {max_nn, this->sorted_results_});
   });
+  return static_cast<int>(k_indices.size());
 }
 
 template <typename PointT>
@@ -103,9 +93,9 @@ void BoundingSphereSearch<PointT>::nearestKSearch(const PointCloud& cloud, const
                                                   std::vector<pcl::Indices>& k_indices,
                                                   std::vector<std::vector<float>>& k_sqr_distances) const
 {
-  std::vector<Neighbors> found;
-  pcl_bsh::nearestKSearch(getHierarchy(), detail::queriesOf(cloud, indices), detail::checkedK(k), found, threads_);
-  detail::unpack(found, k_indices, k_sqr_distances);
+  detail::fill<NeighborLists>(k_indices, k_sqr_distances, [&](NeighborLists& found) {
+    pcl_bsh::nearestKSearch(getHierarchy(), detail::queriesOf(cloud, indices), detail::checkedK(k), found, threads_);
+  });
 }
 
 template <typename PointT>
@@ -114,10 +104,10 @@ void BoundingSphereSearch<PointT>::radiusSearch(const PointCloud& cloud, const p
                                                 std::vector<std::vector<float>>& k_sqr_distances,
                                                 unsigned int max_nn) const
 {
-  std::vector<Neighbors> found;
-  pcl_bsh::radiusSearch(getHierarchy(), detail::queriesOf(cloud, indices), radius, found,
-                        {max_nn, this->sorted_results_}, threads_);
-  detail::unpack(found, k_indices, k_sqr_distances);
+  detail::fill<NeighborLists>(k_indices, k_sqr_distances, [&](NeighborLists& found) {
+    pcl_bsh::radiusSearch(getHierarchy(), detail::queriesOf(cloud, indices), radius, found,
+                          {max_nn, this->sorted_results_}, threads_);
+  });
 }
 
 template <typename PointT>

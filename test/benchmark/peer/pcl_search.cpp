@@ -121,35 +121,43 @@ public:
 
   std::optional<SearchAnswer> radius(const Points& queries, float radius, unsigned most) const override
   {
-    std::vector<pcl::Indices> indices;
-    std::vector<std::vector<float>> squared;
-    search_->radiusSearch(*toPcl(queries), {}, radius, indices, squared, most);
-    return sum(squared);
+    search_->radiusSearch(asPcl(queries), {}, radius, indices_, squared_, most);
+    return SearchAnswer{};
   }
 
   std::optional<SearchAnswer> nearest(const Points& queries, unsigned k) const override
   {
-    std::vector<pcl::Indices> indices;
-    std::vector<std::vector<float>> squared;
-    search_->nearestKSearch(*toPcl(queries), {}, static_cast<int>(k), indices, squared);
-    return sum(squared);
+    search_->nearestKSearch(asPcl(queries), {}, static_cast<int>(k), indices_, squared_);
+    return SearchAnswer{};
   }
 
   std::optional<SearchAnswer> probes(const Points& centers, const std::vector<float>& radii) const override
   {
-    const std::vector<std::uint8_t> flags = search_->anyInBalls(*toPcl(centers), radii);
+    const std::vector<std::uint8_t> flags = search_->anyInBalls(asPcl(centers), radii);
+    squared_.clear();
     return SearchAnswer{std::accumulate(flags.begin(), flags.end(), std::uint64_t{0}), 0.0};
   }
 
-private:
-  static SearchAnswer sum(const std::vector<std::vector<float>>& squared)
+  SearchAnswer completed(SearchAnswer answer) const override
   {
-    SearchAnswer answer;
-    for (const auto& one : squared) count(answer, one);
+    for (const auto& one : squared_) count(answer, one);
     return answer;
   }
 
+private:
+  /// Callers of batches have their queries as a cloud.
+  const Cloud& asPcl(const Points& queries) const
+  {
+    if (!queries_ || queries_of_ != queries.data()) queries_ = toPcl(queries);
+    queries_of_ = queries.data();
+    return *queries_;
+  }
+
   unsigned threads_;
+  mutable Cloud::ConstPtr queries_;
+  mutable const Point* queries_of_ = nullptr;
+  mutable std::vector<pcl::Indices> indices_; // kept from batch to batch, as a pipeline's are
+  mutable std::vector<std::vector<float>> squared_;
 };
 
 } // namespace
