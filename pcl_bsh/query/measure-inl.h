@@ -11,17 +11,18 @@
 
 #include <pcl_bsh/geometry/squared_distance.h>
 #include <pcl_bsh/hierarchy/storage.h>
-#include <pcl_bsh/simd/sphere_lanes-inl.h>
+#include <pcl_bsh/simd/compress-inl.h>
+#include <pcl_bsh/simd/point_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// Of points [begin, begin + count), where coordinate(axis, i) gives those of points begin + i and following in double.
-/// Writes whole vectors.
-template <class Coordinate>
-HWY_INLINE void measureBy(const Coordinate& coordinate, const PointsView& view, const Point3& place, const Voxel& voxel,
-                          std::uint32_t begin, std::uint32_t count, float* squared)
+/// Of `count` points, where coordinate(axis, i) gives those of the i-th and following in double, and point(i) a point
+/// as it was given. Writes whole vectors.
+template <class Coordinate, class PointAt>
+HWY_INLINE void measureBy(const Coordinate& coordinate, const PointAt& point, const Point3& place, std::uint32_t count,
+                          float* squared)
 {
   const hn::CappedTag<double, kLanes> d;
   const hn::Rebind<float, decltype(d)> f;
@@ -35,10 +36,42 @@ HWY_INLINE void measureBy(const Coordinate& coordinate, const PointsView& view, 
     const auto below = hn::DemoteTo(f, hn::Mul(sum, hn::Set(d, 1.0 - 0x1p-50)));
     const auto above = hn::DemoteTo(f, hn::Mul(sum, hn::Set(d, 1.0 + 0x1p-50)));
     hn::StoreU(below, f, squared + i);
-    const auto in_range = hn::And(hn::Ge(below, hn::Set(f, 0x1p-100f)), hn::Le(below, hn::Set(f, 0x1p100f)));
+    // 0 is right even where the double underflowed.
+    const auto in_range = hn::And(hn::Or(hn::Ge(below, hn::Set(f, 0x1p-100f)), hn::Eq(below, hn::Zero(f))),
+                                  hn::Le(below, hn::Set(f, 0x1p100f)));
     if (HWY_LIKELY(hn::AllTrue(f, hn::And(hn::Eq(below, above), in_range)))) continue;
-    for (std::uint32_t k = i; k < std::min(i + step, count); ++k)
-      squared[k] = squaredDistanceAsFloat(voxel.point(view, begin + k), place);
+    for (std::uint32_t k = i; k < std::min(i + step, count); ++k) squared[k] = squaredDistanceAsFloat(point(k), place);
+  }
+}
+
+/// Of points that a voxel stores as they were given, `local` their coordinates there.
+template <class PointAt>
+HWY_INLINE void measureStored(const float* const (&local)[3], const PointAt& point, const Point3& place,
+                              const Voxel& voxel, std::uint32_t count, float* squared)
+{
+  const hn::CappedTag<double, kLanes> d;
+  const auto coordinate = [&](std::size_t axis, std::uint32_t i) {
+    const hn::Rebind<float, decltype(d)> f;
+    return hn::Add(hn::PromoteTo(d, hn::LoadU(f, local[axis] + i)), hn::Set(d, voxel.frame.origin[axis]));
+  };
+  measureBy(coordinate, point, place, count, squared);
+}
+
+/// Of points read from the caller's cloud.
+template <class PointAt>
+HWY_INLINE void measureGiven(const PointAt& point, const Point3& place, std::uint32_t count, float* squared)
+{
+  const hn::CappedTag<double, kLanes> d;
+  constexpr std::uint32_t kSome = 16;
+  double given[3][kSome] = {};
+  for (std::uint32_t from = 0; from < count; from += kSome) {
+    const std::uint32_t some = std::min(count - from, kSome);
+    for (std::uint32_t i = 0; i < some; ++i) {
+      const Point3 p = point(from + i);
+      for (std::size_t axis = 0; axis < 3; ++axis) given[axis][i] = p[axis];
+    }
+    measureBy([&](std::size_t axis, std::uint32_t i) { return hn::LoadU(d, given[axis] + i); },
+              [&](std::uint32_t i) { return point(from + i); }, place, some, squared + from);
   }
 }
 
@@ -46,26 +79,34 @@ HWY_INLINE void measureBy(const Coordinate& coordinate, const PointsView& view, 
 HWY_INLINE void measure(const PointsView& view, const Point3& place, const Voxel& voxel, std::uint32_t begin,
                         std::uint32_t count, float* squared)
 {
-  const hn::CappedTag<double, kLanes> d;
-  if (voxel.frame.lossless) {
-    const float* const stored[] = {voxel.x() + begin, voxel.y() + begin, voxel.z() + begin};
-    const auto coordinate = [&](std::size_t axis, std::uint32_t i) {
-      const hn::Rebind<float, decltype(d)> f;
-      return hn::Add(hn::PromoteTo(d, hn::LoadU(f, stored[axis] + i)), hn::Set(d, voxel.frame.origin[axis]));
-    };
-    return measureBy(coordinate, view, place, voxel, begin, count, squared);
+  const auto point = [&](std::uint32_t i) { return voxel.point(view, begin + i); };
+  if (!voxel.frame.lossless) return measureGiven(point, place, count, squared);
+  measureStored({voxel.x() + begin, voxel.y() + begin, voxel.z() + begin}, point, place, voxel, count, squared);
+}
+
+/// Of those of the sixteen points from `begin` on that have their bit set; writes whole vectors. @return how many.
+HWY_INLINE std::uint32_t measureSome(const PointsView& view, const Point3& place, const Voxel& voxel,
+                                     std::uint32_t begin, std::uint32_t bits, float* squared)
+{
+  alignas(64) float local[3][kLeafPoints + kLanes];
+  alignas(64) std::uint32_t number[kLeafPoints + kLanes];
+  const LaneTag d;
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < kLeafPoints; i += static_cast<std::uint32_t>(hn::Lanes(d))) {
+    const std::uint32_t kept = bits >> i & firstBits(hn::Lanes(d));
+    const Compress compress(kept);
+    compress.store(hn::LoadU(d, voxel.x() + begin + i), local[0] + count);
+    compress.store(hn::LoadU(d, voxel.y() + begin + i), local[1] + count);
+    compress.store(hn::LoadU(d, voxel.z() + begin + i), local[2] + count);
+    compress.storeNumbers(begin + i, number + count);
+    count += static_cast<std::uint32_t>(std::popcount(kept));
   }
-  constexpr std::uint32_t kSome = 16;
-  double given[3][kSome] = {};
-  for (std::uint32_t from = 0; from < count; from += kSome) {
-    const std::uint32_t some = std::min(count - from, kSome);
-    for (std::uint32_t i = 0; i < some; ++i) {
-      const Point3 p = view.point(voxel.records()[begin + from + i]);
-      for (std::size_t axis = 0; axis < 3; ++axis) given[axis][i] = p[axis];
-    }
-    measureBy([&](std::size_t axis, std::uint32_t i) { return hn::LoadU(d, given[axis] + i); }, view, place, voxel,
-              begin + from, some, squared + from);
-  }
+  const auto point = [&](std::uint32_t i) { return voxel.point(view, number[i]); };
+  if (voxel.frame.lossless)
+    measureStored({local[0], local[1], local[2]}, point, place, voxel, count, squared);
+  else
+    measureGiven(point, place, count, squared);
+  return count;
 }
 
 } // namespace HWY_NAMESPACE

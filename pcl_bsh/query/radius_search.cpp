@@ -35,7 +35,7 @@ public:
   }
 
   /// Points [begin, end) of a voxel. @return whether that is all one wanted to know.
-  bool take(const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
+  bool takeAll(const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
   {
     const std::size_t count = end - begin;
     makeRoom(count);
@@ -47,19 +47,17 @@ public:
   }
 
   /// Those of the points from `begin` on, sixteen at most, that have their bit set.
-  bool take(const Voxel& voxel, std::uint32_t begin, std::uint32_t count, std::uint32_t bits)
+  bool takeSome(const Voxel& voxel, std::uint32_t begin, std::uint32_t bits)
   {
-    alignas(64) float squared[kLeafPoints + kLanes];
-    measure(view_, query_, voxel, begin, count, squared);
     const std::uint32_t* const from = voxel.records() + begin;
     makeRoom(kLeafPoints);
-    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(LaneTag())) {
+    const std::uint32_t count = measureSome(view_, query_, voxel, begin, bits, squared_.end());
+    for (std::size_t i = 0, next = 0; i < kLeafPoints; i += hn::Lanes(LaneTag())) {
       const std::uint32_t kept = bits >> i & firstBits(hn::Lanes(LaneTag()));
-      const Compress compress(kept);
-      compress.store(from + i, records_.end());
-      compress.store(hn::LoadU(LaneTag(), squared + i), squared_.end());
-      add(static_cast<std::size_t>(std::popcount(kept)));
+      Compress(kept).store(from + i, records_.end() + next);
+      next += static_cast<std::size_t>(std::popcount(kept));
     }
+    add(count);
     return false;
   }
 
@@ -89,8 +87,8 @@ private:
 /// Is content with the first.
 class FindOne {
 public:
-  bool take(const Voxel&, std::uint32_t, std::uint32_t) { return true; }
-  bool take(const Voxel&, std::uint32_t, std::uint32_t, std::uint32_t bits) { return bits != 0; }
+  bool takeAll(const Voxel&, std::uint32_t, std::uint32_t) { return true; }
+  bool takeSome(const Voxel&, std::uint32_t, std::uint32_t bits) { return bits != 0; }
 
   static constexpr bool kNeedsRecords = false;
 };
@@ -150,7 +148,7 @@ private:
       const int i = std::countr_zero(bits);
       if constexpr (!Sink::kNeedsRecords) return true;
       for (std::uint32_t v = node.begin[i]; v < node.begin[i + 1]; ++v)
-        sink_.take(cloud_.built(v, work_.voxels_built), 0, cloud_.voxels[v].count);
+        sink_.takeAll(cloud_.built(v, work_.voxels_built), 0, cloud_.voxels[v].count);
     }
     for (std::uint32_t bits = children.near & ~children.inside; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
@@ -184,7 +182,7 @@ private:
     fetch(local.voxel, node, children.near);
     for (std::uint32_t bits = children.inside; bits != 0; bits &= bits - 1) {
       const int i = std::countr_zero(bits);
-      if (sink_.take(local.voxel, node.begin[i], node.begin[i + 1])) return true;
+      if (sink_.takeAll(local.voxel, node.begin[i], node.begin[i + 1])) return true;
     }
     for (std::uint32_t bits = children.near & ~children.inside; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
@@ -231,8 +229,8 @@ private:
       if (isWithin(p, query_, radius_, work_)) hits |= 1u << i;
     }
     if (hits == 0) return false;
-    if (node.isCoincident(child)) return sink_.take(voxel, begin, node.begin[child + 1]);
-    return sink_.take(voxel, begin, count, hits);
+    if (node.isCoincident(child)) return sink_.takeAll(voxel, begin, node.begin[child + 1]);
+    return sink_.takeSome(voxel, begin, hits);
   }
 
   const SphereHierarchy::Storage& cloud_;
