@@ -92,14 +92,15 @@ private:
 
 AllocatedBuffer allocateBuffer(std::size_t bytes)
 {
-  const std::size_t alignment = isLarge(bytes) ? kHugePage : kVector;
+  const bool large = isLarge(bytes + kVector); // some less than it would be rounded up to a large one
+  const std::size_t alignment = large ? kHugePage : kVector;
   const std::size_t size = std::max(alignment, (bytes + alignment - 1) / alignment * alignment);
-  if (isLarge(size))
+  if (large)
     if (const AllocatedBuffer kept = KeptBuffers::instance().take(size); kept.p) return kept;
   void* const p = std::aligned_alloc(alignment, size);
   if (!p) throw std::bad_alloc();
 #ifdef __linux__
-  if (isLarge(size)) madvise(p, size, MADV_HUGEPAGE);
+  if (large) madvise(p, size, MADV_HUGEPAGE);
 #endif
   return {p, size};
 }

@@ -292,8 +292,8 @@ private:
     }
     if (used == 1) return growCrowded(begin, end);
     const std::uint32_t node = newNode();
-    for (const Part& part : parts) {
-      if (&part == parts.begin() + used) break;
+    for (std::size_t i = 0; i < used; ++i) {
+      const Part& part = parts[i];
       const std::uint32_t below = part.crowded ? growCrowded(part.begin, part.end) : Node::kLeaf;
       nodes_[node].addChild(part.begin, part.end, below);
     }

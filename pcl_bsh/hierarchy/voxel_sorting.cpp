@@ -43,10 +43,7 @@ struct Triple {
   {
     return apply(*this, *this, [](double value, double) { return std::trunc(value); });
   }
-  friend std::uint32_t equalLanes(const Triple& a, const Triple& b)
-  {
-    return (a.v[0] == b.v[0] ? 1u : 0u) | (a.v[1] == b.v[1] ? 2u : 0u) | (a.v[2] == b.v[2] ? 4u : 0u);
-  }
+  friend bool sameXyz(const Triple& a, const Triple& b) { return std::equal(a.v, a.v + 3, b.v); }
   bool finite() const { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
   template <class Operation>
@@ -444,7 +441,7 @@ private:
       eachPoint(chunk, [&](std::size_t i, std::uint32_t record) {
         const Point<T> p = read_(record);
         const Point<T> numbers = cell_of.numbers(p);
-        if ((equalLanes(numbers, cell_of_run) & 7) == 7) {
+        if (sameXyz(numbers, cell_of_run)) {
           low = min(low, p);
           high = max(high, p);
           return;

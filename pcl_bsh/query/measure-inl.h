@@ -84,12 +84,12 @@ HWY_INLINE void measure(const PointsView& view, const Point3& place, const Voxel
   measureStored({voxel.x() + begin, voxel.y() + begin, voxel.z() + begin}, point, place, voxel, count, squared);
 }
 
-/// Of those of the sixteen points from `begin` on that have their bit set; writes whole vectors. @return how many.
+/// Of those of the sixteen points from `begin` on that have their bit set, named in `records`. Writes whole vectors.
+/// @return how many.
 HWY_INLINE std::uint32_t measureSome(const PointsView& view, const Point3& place, const Voxel& voxel,
-                                     std::uint32_t begin, std::uint32_t bits, float* squared)
+                                     std::uint32_t begin, std::uint32_t bits, std::uint32_t* records, float* squared)
 {
-  alignas(64) float local[3][kLeafPoints + kLanes];
-  alignas(64) std::uint32_t number[kLeafPoints + kLanes];
+  alignas(64) float local[3][kLeafPoints + kLanes] = {};
   const LaneTag d;
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < kLeafPoints; i += static_cast<std::uint32_t>(hn::Lanes(d))) {
@@ -98,10 +98,10 @@ HWY_INLINE std::uint32_t measureSome(const PointsView& view, const Point3& place
     compress.store(hn::LoadU(d, voxel.x() + begin + i), local[0] + count);
     compress.store(hn::LoadU(d, voxel.y() + begin + i), local[1] + count);
     compress.store(hn::LoadU(d, voxel.z() + begin + i), local[2] + count);
-    compress.storeNumbers(begin + i, number + count);
+    compress.store(voxel.records() + begin + i, records + count);
     count += static_cast<std::uint32_t>(std::popcount(kept));
   }
-  const auto point = [&](std::uint32_t i) { return voxel.point(view, number[i]); };
+  const auto point = [&](std::uint32_t i) { return view.point(records[i]); };
   if (voxel.frame.lossless)
     measureStored({local[0], local[1], local[2]}, point, place, voxel, count, squared);
   else

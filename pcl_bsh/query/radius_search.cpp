@@ -49,15 +49,8 @@ public:
   /// Those of the points from `begin` on, sixteen at most, that have their bit set.
   bool takeSome(const Voxel& voxel, std::uint32_t begin, std::uint32_t bits)
   {
-    const std::uint32_t* const from = voxel.records() + begin;
     makeRoom(kLeafPoints);
-    const std::uint32_t count = measureSome(view_, query_, voxel, begin, bits, squared_.end());
-    for (std::size_t i = 0, next = 0; i < kLeafPoints; i += hn::Lanes(LaneTag())) {
-      const std::uint32_t kept = bits >> i & firstBits(hn::Lanes(LaneTag()));
-      Compress(kept).store(from + i, records_.end() + next);
-      next += static_cast<std::size_t>(std::popcount(kept));
-    }
-    add(count);
+    add(measureSome(view_, query_, voxel, begin, bits, records_.end(), squared_.end()));
     return false;
   }
 

@@ -55,18 +55,17 @@ public:
     for (std::size_t i = 0; i < kVectors; ++i) hn::StoreU(hn::ConvertTo(d, v_[i]), d, to + i * kStep);
   }
 
-  /// Bit i: lane i is the same value in both, and no NaN.
-  friend HWY_INLINE std::uint32_t equalLanes(const Quad& a, const Quad& b)
+  /// Whether x, y and z are the same, and none is NaN.
+  friend HWY_INLINE bool sameXyz(const Quad& a, const Quad& b)
   {
-    return bitsOfLanes([&](std::size_t i) { return hn::Eq(a.v_[i], b.v_[i]); });
+    return everyXyz([&](std::size_t i) { return hn::Eq(a.v_[i], b.v_[i]); });
   }
 
   /// Whether x, y and z are finite.
   HWY_INLINE bool finite() const
   {
-    const std::uint32_t bits = bitsOfLanes(
+    return everyXyz(
         [&](std::size_t i) { return hn::Le(hn::Abs(v_[i]), hn::Set(Tag(), std::numeric_limits<float>::max())); });
-    return (bits & 7) == 7;
   }
 
   friend HWY_INLINE Quad operator-(const Quad& a, const Quad& b)
@@ -102,8 +101,9 @@ private:
   static constexpr std::size_t kStep = hn::MaxLanes(Tag());
   static constexpr std::size_t kVectors = 4 / kStep;
 
+  /// Whether mask_of(i), over the i-th vector, holds for the lanes of x, y and z.
   template <class MaskOf>
-  static HWY_INLINE std::uint32_t bitsOfLanes(const MaskOf& mask_of)
+  static HWY_INLINE bool everyXyz(const MaskOf& mask_of)
   {
     std::uint32_t bits = 0;
     for (std::size_t i = 0; i < kVectors; ++i) {
@@ -111,7 +111,7 @@ private:
       hn::StoreMaskBits(Tag(), mask_of(i), mask);
       bits |= static_cast<std::uint32_t>(mask[0]) << (i * kStep);
     }
-    return bits;
+    return (bits & 7) == 7;
   }
 
   hn::Vec<Tag> v_[kVectors];
