@@ -9,8 +9,10 @@ namespace pcl_bsh {
 
 /// A sum kept with its rounding errors (Ogita, Rump, Oishi: Accurate Sum and Dot Product, 2005, Dot2), and the sum of
 /// the absolute terms. Of up to 16 terms and products, the errors themselves are summed with an error of less than (16
-/// x 2^-53)^2 = 2^-98 of the absolute sum; rounding value() adds half a unit in its last place. Barring underflow.
+/// v)^2 of the absolute sum; rounding value() adds half a unit in its last place. Barring underflow.
 struct CompensatedSum {
+  static constexpr double kError = 4 * (16 * kDoubleUnit) * (16 * kDoubleUnit); ///< four times what is needed
+
   double sum = 0.0, errors = 0.0, absolute = 0.0;
 
   void add(double term)
@@ -29,7 +31,7 @@ struct CompensatedSum {
   }
 
   double value() const { return sum + errors; }
-  double bound() const { return kDoubleUnit * std::abs(value()) + 0x1p-96 * absolute; }
+  double bound() const { return kDoubleUnit * std::abs(value()) + kError * absolute; }
 };
 
 } // namespace pcl_bsh

@@ -23,15 +23,16 @@ inline bool inFloatRange(double value) noexcept
 }
 
 /// The band where a vector is known within `error`: a hit needs a length of at most low_d, a miss one above high_d.
-/// Squared float distances err by less than 6 u. All in the frame's units; error is finite and >= 0.
+/// Squared float distances err by kSquaredDistanceError, whose room for double arithmetic pays for that here. All in
+/// the frame's units; error is finite and >= 0.
 inline DistanceBand distanceBand(double low_d, double high_d, double error) noexcept
 {
   DistanceBand band;
-  const double low = (low_d - error) - 0x1p-52 * (low_d + error);
-  const double hit = (1.0 - 6 * kFloatUnit) * low * low - 0x1p-124;
+  const double low = (low_d - error) - kFewDoubleRoundings * (low_d + error);
+  const double hit = (1.0 - kSquaredDistanceError) * low * low - kSmallestSquare;
   band.hit = low > 0.0 && hit >= 0.0 ? std::min(roundDown(hit), std::numeric_limits<float>::max()) : -1.0f;
-  const double high = (high_d + error) * (1.0 + 0x1p-51);
-  const double miss = (1.0 + 6 * kFloatUnit) * high * high + 0x1p-124;
+  const double high = (high_d + error) * (1.0 + kFewDoubleRoundings);
+  const double miss = (1.0 + kSquaredDistanceError) * high * high + kSmallestSquare;
   band.miss = miss >= 3.4e38 ? std::numeric_limits<float>::infinity() : roundUp(miss);
   return band;
 }

@@ -12,6 +12,10 @@
 namespace pcl_bsh {
 namespace {
 
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+constexpr double kUnderflow = 0x1p-500; ///< as a length: squares of less than 2^-537 vanish
+
 /// Whether the squares of these, and the errors of the squares, are clear of underflow and overflow.
 bool safelySquared(const Point3& values)
 {
@@ -97,14 +101,17 @@ ExactDistance::ExactDistance(const Eigen::Isometry3d& pose_a, const Eigen::Isome
 
 int ExactDistance::compare(const Point3& p, const Point3& q, double clearance, double radius_p, double radius_q) const
 {
+  // Two sums, rounded relative to what they add up, which may be of either sign.
   const double reach = clearance + radius_p + radius_q;
-  const auto side = [reach](const Interval& distance) {
-    return distance.high < reach * (1.0 - 0x1p-50) ? -1 : distance.low > reach * (1.0 + 0x1p-50) ? 1 : 0;
+  const double rounding = kFewDoubleRoundings * (std::abs(clearance) + std::abs(radius_p) + std::abs(radius_q));
+  const auto side = [reach, rounding](const Interval& distance) {
+    return distance.high < reach - rounding ? -1 : distance.low > reach + rounding ? 1 : 0;
   };
   if (const int found = side(enclose(p, q)); found != 0) return found;
   if (!translations_only_)
     if (const int found = side(encloseClosely(p, q)); found != 0) return found;
 
+  if (clearance == kUnbounded) return -1;
   Point3 difference;
   if (radius_p == 0.0 && radius_q == 0.0 && exactDifference(p, q, difference)) {
     const Point3 length = {clearance, 0.0, 0.0};
@@ -119,7 +126,7 @@ int ExactDistance::compareGaps(const Pair& first, const ExactDistance& other, co
   const double second_radii = second.radius_p + second.radius_q;
   const Interval first_distance = enclose(first.p, first.q);
   const Interval second_distance = other.enclose(second.p, second.q);
-  const double slack = 0x1p-50 * (first_distance.high + second_distance.high + first_radii + second_radii);
+  const double slack = kFewDoubleRoundings * (first_distance.high + second_distance.high + first_radii + second_radii);
   if (first_distance.high - first_radii + slack < second_distance.low - second_radii) return -1;
   if (second_distance.high - second_radii + slack < first_distance.low - first_radii) return 1;
 
@@ -139,22 +146,21 @@ double ExactDistance::gap(const Pair& pair) const
   const Dyadic radii = Dyadic(pair.radius_p) + Dyadic(pair.radius_q);
   if (compareRoot(squared, radii) == 0) return 0.0;
 
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr double largest = std::numeric_limits<double>::max();
   double rounded = std::min(approximateDifference(squared, radii), largest);
   const auto belongs_above = [&](double x) {
     const int side = compareRoot(squared, radii + halfwayAbove(x));
     return side > 0 || (side == 0 && !isEven(x));
   };
-  while (rounded < infinity && belongs_above(rounded)) rounded = std::nextafter(rounded, infinity);
-  while (rounded > -infinity && !belongs_above(std::nextafter(rounded, -infinity)))
-    rounded = std::nextafter(rounded, -infinity);
+  while (rounded < kUnbounded && belongs_above(rounded)) rounded = std::nextafter(rounded, kUnbounded);
+  while (rounded > -kUnbounded && !belongs_above(std::nextafter(rounded, -kUnbounded)))
+    rounded = std::nextafter(rounded, -kUnbounded);
   return rounded;
 }
 
 /// Double arithmetic with its error. A coordinate sums eight terms, each rounded at most five times, so it errs by less
-/// than 5.01 x 2^-53 of their absolute sum. All terms of all coordinates together are also >= the distance; 32 x 2^-53
-/// of them pays for that, for the squares, the root, their own summation and the last subtraction; 2^-500 pays for
+/// than 5.01 v of their absolute sum. All terms of all coordinates together are also >= the distance; kTermsError of
+/// them pays for that, for the squares, the root, their own summation and the last subtraction; kUnderflow for
 /// underflow.
 ExactDistance::Interval ExactDistance::enclose(const Point3& p, const Point3& q) const
 {
@@ -169,16 +175,15 @@ ExactDistance::Interval ExactDistance::enclose(const Point3& p, const Point3& q)
     for (const double term : a) terms += std::abs(term);
     for (const double term : b) terms += std::abs(term);
   }
-  if (!std::isfinite(squared))
-    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  if (!std::isfinite(squared)) return {-kUnbounded, kUnbounded};
   const double distance = std::sqrt(squared);
-  const double error = 0x1p-48 * terms + 0x1p-500;
+  const double error = kTermsError * terms + kUnderflow;
   return {distance - error, distance + error};
 }
 
 /// Without rotations, (p - q) + (t_a - t_b): the errors of these three sums are known, so that points of any scale are
-/// told apart wherever they lie. The norm of the sums errs by 4 x 2^-53 of itself, the last subtraction by one more;
-/// 2^-500 pays for underflow of the squares. Twice the errors pay for their own summation.
+/// told apart wherever they lie. The norm of the sums is rounded by 2.5 v of itself, the last subtraction by one more;
+/// kUnderflow pays for underflow of the squares. Twice the errors pay for their own summation.
 ExactDistance::Interval ExactDistance::encloseTranslated(const Point3& p, const Point3& q) const
 {
   double squared = 0.0;
@@ -190,15 +195,14 @@ ExactDistance::Interval ExactDistance::encloseTranslated(const Point3& p, const 
     squared += difference.value * difference.value;
     errors += std::abs(between.error) + std::abs(shift.error) + std::abs(difference.error);
   }
-  if (!std::isfinite(squared + errors))
-    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  if (!std::isfinite(squared + errors)) return {-kUnbounded, kUnbounded};
   const double distance = std::sqrt(squared);
-  const double error = 0x1p-50 * distance + 2.0 * errors + 0x1p-500;
+  const double error = kFewDoubleRoundings * distance + 2.0 * errors + kUnderflow;
   return {distance - error, distance + error};
 }
 
 /// Sums with their rounding errors: for places whose points double arithmetic cannot tell apart from afar. A coordinate
-/// errs by 2^-53 of itself and 2^-98 of its terms; norm, root and last subtraction by 5 x 2^-53 of the distance.
+/// errs by v of itself and CompensatedSum::kError of its terms; norm, root and last subtraction by 3.5 v more.
 ExactDistance::Interval ExactDistance::encloseClosely(const Point3& p, const Point3& q) const
 {
   double squared = 0.0;
@@ -214,10 +218,9 @@ ExactDistance::Interval ExactDistance::encloseClosely(const Point3& p, const Poi
     squared += sum.value() * sum.value();
     terms += sum.absolute;
   }
-  if (!std::isfinite(squared + terms))
-    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  if (!std::isfinite(squared + terms)) return {-kUnbounded, kUnbounded};
   const double distance = std::sqrt(squared);
-  const double error = 0x1p-50 * distance + 0x1p-96 * terms + 0x1p-500;
+  const double error = kFewDoubleRoundings * distance + CompensatedSum::kError * terms + kUnderflow;
   return {distance - error, distance + error};
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/rounding.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +21,9 @@ struct GivenSphere {
 
 /// Around count > 0 points, with their radii. @param point called with 0 .. count - 1. @param ball likewise: the radius
 ///
-/// Rounding bound: differences of doubles, hypot and the sum err by 2^-53, 2^-52 and 2^-53 of their values, so 2^-50
-/// covers all three; a denormal unit covers hypot where it is denormal. Differences never underflow.
+/// Rounding bound: differences of doubles and the sum err by v each. hypot is a coordinate times the root of a sum of
+/// squared quotients, 1 one of them: 4.5 v. kFewDoubleRoundings covers these and its own product; a denormal unit
+/// covers hypot where it is denormal. Differences never underflow.
 template <class PointAt, class BallAt>
 GivenSphere sphereAround(std::size_t count, const PointAt& point, const BallAt& ball)
 {
@@ -38,15 +40,17 @@ GivenSphere sphereAround(std::size_t count, const PointAt& point, const BallAt& 
     sphere.radius = std::max(sphere.radius, distance + ball(i));
   }
   constexpr double denormal = std::numeric_limits<double>::denorm_min();
-  if (sphere.radius > 0.0) sphere.radius = sphere.radius * (1.0 + 0x1p-50) + 2 * denormal;
+  if (sphere.radius > 0.0) sphere.radius = sphere.radius * (1.0 + kFewDoubleRoundings) + 2 * denormal;
   return sphere;
 }
 
-/// Whether no point in one sphere collides with any in the other, in exact arithmetic. A pose that is rigid within 1e-6
-/// stretches a radius by less than 2^-20.
+/// Above what a pose that is rigid within 1e-6 stretches a radius by.
+inline constexpr double kPoseStretch = 0x1p-20;
+
+/// Whether no point in one sphere collides with any in the other, in exact arithmetic.
 inline bool areApart(const ExactDistance& distance, const GivenSphere& a, const GivenSphere& b, double clearance)
 {
-  constexpr double stretch = 1.0 + 0x1p-20;
+  constexpr double stretch = 1.0 + kPoseStretch;
   const double radius_a = a.radius * stretch, radius_b = b.radius * stretch;
   return std::isfinite(clearance + radius_a + radius_b) &&
          distance.compare(a.center, b.center, clearance, radius_a, radius_b) > 0;

@@ -2,24 +2,26 @@
 // Float coordinates near an origin of their own: how points are stored, and how far a stored one is from the given one.
 #pragma once
 
+#include <pcl_bsh/geometry/rounding.h>
+
 #include <array>
 
 namespace pcl_bsh {
 
+/// Of a coordinate when it is stored: the cast; relativeError()'s room for double arithmetic pays for the subtraction.
+inline constexpr double kStoringError = relativeError(1);
+
 /// A point p of a cloud is stored as the float x nearest to (p - origin) / unit.
 ///
 /// Rounding bound: |(p - origin) / unit - x| <= slack per axis. The double subtraction errs by v |p - origin| and the
-/// cast by u |x|, so u (1 + 2^-20) reach covers both; 2^-148 covers the cast of denormals.
+/// cast by u of what it rounds, so kStoringError of the reach covers both; 2^-148 covers the cast of denormals.
 struct LocalFrame {
   std::array<double, 3> origin = {0, 0, 0};
   double unit = 1.0;                       ///< a power of two; 1 unless the cloud is of extreme size
   std::array<double, 3> reach = {0, 0, 0}; ///< at least |x| of every stored point, per axis, in units
   bool lossless = false;                   ///< origin + x is p, for every point
 
-  double slack(int axis) const noexcept
-  {
-    return 0x1p-24 * (1.0 + 0x1p-20) * reach[static_cast<unsigned>(axis)] + 0x1p-148;
-  }
+  double slack(int axis) const noexcept { return kStoringError * reach[static_cast<unsigned>(axis)] + 0x1p-148; }
 };
 
 } // namespace pcl_bsh

@@ -11,8 +11,7 @@ namespace pcl_bsh {
 /// A point q as the float nearest to (q - origin) / unit, and how far that may lead astray.
 ///
 /// For every given point p of the frame, stored as x: | |p - q| / unit - |x - (stored q)| | <= error. Per axis, x errs
-/// by the frame's slack, q by v |q - origin| in the double subtraction and u |q| in the cast; a sum of absolute values
-/// is at least the norm.
+/// by the frame's slack, and q in the same way; a sum of absolute values is at least the norm.
 class PointFrame {
 public:
   PointFrame(const LocalFrame& frame, const Point3& q) noexcept : unit(frame.unit)
@@ -26,7 +25,7 @@ public:
       reach += frame.reach[k];
     }
     error = inFloatRange(absolute) && inFloatRange(reach) && unit >= 0x1p-900 && unit <= 0x1p900
-                ? kFloatUnit * (1.0 + 0x1p-20) * (absolute + reach) + 0x1p-140
+                ? kStoringError * (absolute + reach) + 0x1p-140
                 : std::numeric_limits<double>::infinity();
   }
 
@@ -44,13 +43,13 @@ public:
   }
 
   /// At least length + error: a sphere farther away than this and its radius holds no point within `length` units.
-  float pruneReach(double length) const noexcept { return static_cast<float>(length + error) * (1.0f + 0x1p-21f); }
+  float pruneReach(double length) const noexcept { return static_cast<float>(length + error) * (1.0f + kReachMargin); }
 
   /// At most length - error: a sphere within this holds only points within `length` units. Negative when there is none.
   float acceptReach(double length) const noexcept
   {
     const double reach = length - error;
-    return reach > 0x1p-60 ? static_cast<float>(reach) * (1.0f - 0x1p-21f) : -1.0f;
+    return reach > kSmallestLength ? static_cast<float>(reach) * (1.0f - kReachMargin) : -1.0f;
   }
 
   /// Whether no point of the frame is within `length` units, whatever they are: its box is farther away.
@@ -61,8 +60,8 @@ public:
       const double outside = std::abs(static_cast<double>(at[k])) - frame.reach[k];
       if (outside > 0.0) squared += outside * outside;
     }
-    const double reach = (length + error) * (1.0 + 0x1p-40);
-    return squared > reach * reach * (1.0 + 0x1p-40);
+    const double reach = (length + error) * (1.0 + kDoubleMargin);
+    return squared > reach * reach * (1.0 + kDoubleMargin);
   }
 };
 

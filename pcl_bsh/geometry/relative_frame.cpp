@@ -12,6 +12,12 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// Of nearly rigid rotations R, S, whose rows and columns are of length 1 within 1e-6. An entry of R'S sums three
+// products, rounded three times each, of absolute sum 1.000002 at most: it errs by less than 4 v. A row sum of |R'R -
+// I| has three such errors, and its own roundings: less than 16 v.
+constexpr double kRotationError = 4 * kDoubleUnit;
+constexpr double kGramError = 32 * kDoubleUnit;
+
 double normOfSums(const std::array<double, 9>& m)
 {
   double largest = 0.0;
@@ -43,10 +49,10 @@ RelativeRotation::RelativeRotation(const Eigen::Isometry3d& pose_a, const Eigen:
   matrix = rb.transpose() * ra;
   if (rb != Eigen::Matrix3d::Identity()) {
     const Eigen::Matrix3d excess = rb.transpose() * rb - Eigen::Matrix3d::Identity();
-    skew = excess.cwiseAbs().rowwise().sum().maxCoeff() + 0x1p-48;
+    skew = excess.cwiseAbs().rowwise().sum().maxCoeff() + kGramError;
   }
   if (matrix != Eigen::Matrix3d::Identity() || skew != 0.0)
-    stretch = std::sqrt(normOfSums(gram(matrix))) * (1.0 + 0x1p-40);
+    stretch = std::sqrt(normOfSums(gram(matrix))) * (1.0 + kDoubleMargin);
 }
 
 RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_a, const LocalFrame& b,
@@ -73,6 +79,7 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
   }
 
   double squared = 0.0;
+  bool overflows = false;
   bool in_range = b.unit >= 0x1p-900 && a.unit >= 0x1p-900 && b.unit <= 0x1p900 && a.unit <= 0x1p900;
   for (unsigned i = 0; i < 3; ++i) {
     double value = 0.0, absolute = 0.0, inherited = 0.0;
@@ -85,26 +92,29 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
     g_exact[i] = value;
     g[i] = roundToFloat(value);
 
-    double moved = 0.0, slack = 0.0; // sum |M_ij| reach_a_j, sum |M_ij| slack_a_j
+    double moved = 0.0, slack = 0.0, misturned = 0.0; // sums of |M_ij| reach_a_j, |M_ij| slack_a_j; error of M x
     for (unsigned j = 0; j < 3; ++j) {
       const double entry = rotation.matrix(i, j) * scale;
       m[3 * i + j] = roundToFloat(entry);
-      moved += (std::abs(entry) + 0x1p-50 * scale) * a.reach[j];
-      slack += (std::abs(entry) + 0x1p-50 * scale) * a.slack(static_cast<int>(j));
+      moved += std::abs(entry) * a.reach[j];
+      slack += std::abs(entry) * a.slack(static_cast<int>(j));
+      misturned += 2 * kRotationError * scale * a.reach[j]; // twice: what follows from it is of second order
     }
     const double skewed = skew_ * (b.reach[0] + b.reach[1] + b.reach[2]);
-    const double evaluated = 8 * kDoubleUnit * absolute + inherited + 0x1p-49 * moved + skewed;
-    const double float_error = slack + (1.0 + skew_) * b.slack(static_cast<int>(i)) +
-                               4.001 * kFloatUnit * (std::abs(value) + moved) + evaluated;
+    const double evaluated = kFewDoubleRoundings * (absolute + moved) + inherited + misturned + skewed;
+    const double carried = kCarriedShiftError * std::abs(value) + kCarriedProductError * moved;
+    const double float_error = slack + (1.0 + skew_) * b.slack(static_cast<int>(i)) + carried + evaluated;
     squared += float_error * float_error;
     in_range = in_range && inFloatRange(value) && inFloatRange(moved) && inFloatRange(b.reach[i]);
+    overflows = overflows || !(std::abs(value) + moved < kLargestCarried);
   }
-  float_error_ = std::sqrt(squared) * (1.0 + 0x1p-48) + 0x1p-60;
+  float_error_ = std::sqrt(squared) * (1.0 + 2 * kFewDoubleRoundings) + kSmallestLength;
   if (!(float_error_ < kInfinity)) { // NaN where a zero met an overflown bound: then nothing is known, and all is near
     float_error_ = kInfinity;
     in_range = false;
     g.fill(0.0f);
   }
+  prune_error_ = overflows ? kInfinity : float_error_;
   error = in_range ? float_error_ : kInfinity;
 
   stretch_a = roundUp(rotation.stretch * scale);
@@ -116,7 +126,7 @@ bool RelativeFrame::separates(double clearance) const noexcept
 {
   const double distance = std::hypot(g_exact[0], g_exact[1], g_exact[2]);
   const double reach = span_ + clearance / unit_b_ * (1.0 + skew_) + float_error_;
-  return distance < kInfinity && distance * (1.0 - 0x1p-40) > reach * (1.0 + 0x1p-40);
+  return distance < kInfinity && distance * (1.0 - kDoubleMargin) > reach * (1.0 + kDoubleMargin);
 }
 
 DistanceBand RelativeFrame::band(double clearance) const noexcept
@@ -133,8 +143,8 @@ DistanceBand RelativeFrame::bandUnproven(double clearance) const noexcept
 
 float RelativeFrame::pruneReach(double clearance) const noexcept
 {
-  // At least 2^-60, so that the cast errs by u at most; the factor rounds outward again.
-  return static_cast<float>(clearance / unit_b_ * (1.0 + skew_) + float_error_) * (1.0f + 0x1p-21f);
+  // At least kSmallestLength, so that the cast errs by u at most; the factor rounds outward again.
+  return static_cast<float>(clearance / unit_b_ * (1.0 + skew_) + prune_error_) * (1.0f + kReachMargin);
 }
 
 float RelativeFrame::bluntRadius() const noexcept
@@ -145,7 +155,7 @@ float RelativeFrame::bluntRadius() const noexcept
 float RelativeFrame::acceptReach(double clearance) const noexcept
 {
   const double reach = clearance / unit_b_ * (1.0 - skew_) - float_error_;
-  return reach > 0x1p-60 && error < kInfinity ? static_cast<float>(reach) * (1.0f - 0x1p-21f) : -1.0f;
+  return reach > kSmallestLength && error < kInfinity ? static_cast<float>(reach) * (1.0f - kReachMargin) : -1.0f;
 }
 
 } // namespace pcl_bsh

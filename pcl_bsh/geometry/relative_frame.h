@@ -25,7 +25,7 @@ struct RelativeRotation {
 /// Let z = T_a p - T_b q be the true vector, w = R_b' z / unit_b. With E = R_b'R_b - I (zero for a perfect pose),
 /// w = g + M (x_a + e_a) - (I + E)(x_b + e_b), where g = R_b' (T_a origin_a - T_b origin_b) / unit_b is evaluated with
 /// compensated products and M = R_b' R_a unit_a / unit_b. `error` bounds |w - (y - x_b)| over all stored points, float
-/// evaluation of y included (4u of the absolute terms, fused or not); |z| and |w| differ by at most ||E|| |w|.
+/// evaluation of y included (kCarriedProductError, kCarriedShiftError); |z| and |w| differ by at most ||E|| |w|.
 class RelativeFrame {
 public:
   RelativeFrame() = default;
@@ -79,7 +79,8 @@ public:
 
 private:
   double span_ = 0.0;        // of both frames' points around their origins, in b's units
-  double float_error_ = 0.0; // `error` before it is given up for values out of range: good for spheres, not for points
+  double float_error_ = 0.0; // `error` before it is given up for values out of range: good in double arithmetic
+  double prune_error_ = 0.0; // likewise, infinite where carried points may overflow: good for spheres, not for points
   double unit_b_ = 1.0;
   double skew_ = 0.0; ///< bounds ||E||
 };

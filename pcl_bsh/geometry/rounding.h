@@ -2,6 +2,8 @@
 // Directed rounding and error-free sums and products: the ground that every bound in this room stands on.
 #pragma once
 
+#include <pcl_bsh/simd/roundings.h>
+
 #include <cmath>
 #include <limits>
 
@@ -11,8 +13,12 @@
 
 namespace pcl_bsh {
 
-inline constexpr double kFloatUnit = 0x1p-24;  ///< u: unit roundoff of float
 inline constexpr double kDoubleUnit = 0x1p-53; ///< v: unit roundoff of double
+
+/// Relative room for a handful of roundings in double where nothing is gained by counting them: 8192 v.
+inline constexpr double kDoubleMargin = 0x1p-40;
+/// At most seven roundings in double, counted where this is used, and the one of what it is multiplied with: 8 v.
+inline constexpr double kFewDoubleRoundings = 8 * kDoubleUnit;
 
 /// The float nearest to x. Keeps the rounding: g++ may drop it from a plain cast to float and back when it vectorises
 /// two lanes of straight-line code.
@@ -40,6 +46,9 @@ inline float roundDown(double x) noexcept
   const float rounded = roundToFloat(x);
   return static_cast<double>(rounded) > x ? std::nextafter(rounded, -std::numeric_limits<float>::infinity()) : rounded;
 }
+
+/// Of a distance enclosed in double arithmetic, relative to the absolute sum of all terms: ExactDistance::enclose().
+inline constexpr double kTermsError = 32 * kDoubleUnit;
 
 /// A double with the error of the operation that made it.
 struct WithError {

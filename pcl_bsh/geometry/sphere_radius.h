@@ -7,16 +7,19 @@
 
 namespace pcl_bsh {
 
+/// At least the length whose square float arithmetic found to be `squared`, less what underflows (kSmallestLength).
+inline double lengthOver(float squared) noexcept
+{
+  return std::sqrt(static_cast<double>(squared)) * (1.0 + kLengthError);
+}
+
 /// At least the distance of every given point to a float centre, in a frame's units.
 ///
-/// @param squared the largest |x - c|^2 over the stored points, in float arithmetic. Differences err by u of
-/// themselves,
-///   squares and their two sums by 3 u more: under 6 u together, fused or not, so under 3 u (1 + 6 u) of the root. What
-///   underflows is below 2^-73. 2^-21 = 8 u of the root, and the slack's own 2^-60, pay for both.
-/// @param slack by storedSlack()
+/// @param squared the largest |x - c|^2 over the stored points, in float arithmetic.
+/// @param slack by storedSlack(), which pays for what underflows
 inline double radiusOver(float squared, double slack) noexcept
 {
-  return std::sqrt(static_cast<double>(squared)) * (1.0 + 0x1p-21) + slack;
+  return lengthOver(squared) + slack;
 }
 
 /// How far a given point may be from where a frame stores it, along all axes together.
@@ -24,7 +27,7 @@ inline double storedSlack(const LocalFrame& frame) noexcept
 {
   double squared = 0.0;
   for (int k = 0; k < 3; ++k) squared += frame.slack(k) * frame.slack(k);
-  return std::sqrt(squared) * (1.0 + 0x1p-50) + 0x1p-60;
+  return std::sqrt(squared) * (1.0 + kFewDoubleRoundings) + kSmallestLength;
 }
 
 } // namespace pcl_bsh

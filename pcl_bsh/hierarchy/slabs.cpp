@@ -73,7 +73,8 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Largest |n . (x - c)|, in float arithmetic: it errs by less than 8 u |x - c|. Reads whole vectors.
+/// Largest |n . (x - c)|, in float arithmetic: it errs by less than 8 u |x - c|, half of kRadiusMargin. Reads whole
+/// vectors.
 HWY_INLINE float thickness(const Voxel& voxel, const Node& node, std::uint32_t i, const Eigen::Vector3f& normal)
 {
   const LaneTag d;
@@ -104,7 +105,8 @@ void fitSlabsOnTarget(const Voxel& voxel, Slabs* slabs)
       slabs[n].y[i] = normal.y();
       slabs[n].z[i] = normal.z();
       const double stored = static_cast<double>(thickness(voxel, node, i, normal));
-      slabs[n].h[i] = roundUp((stored + 0x1p-20 * static_cast<double>(node.r[i]) + slack) * (1.0 + 0x1p-20));
+      slabs[n].h[i] =
+          roundUp((stored + kRadiusMargin * static_cast<double>(node.r[i]) + slack) * (1.0 + kRadiusMargin));
     }
   }
 }

@@ -44,7 +44,7 @@ void SphereHierarchy::Storage::measure(Voxel& voxel) const
   const LocalFrame& f = voxel.frame;
   const double ball = static_cast<double>(voxel.largest_radius) / f.unit;
   const double corner = std::hypot(f.reach[0] + f.slack(0), f.reach[1] + f.slack(1), f.reach[2] + f.slack(2));
-  voxel.radius = roundUp((corner + ball) * (1.0 + 0x1p-40));
+  voxel.radius = roundUp((corner + ball) * (1.0 + kDoubleMargin));
 }
 
 void SphereHierarchy::Storage::raiseTop()
@@ -88,7 +88,7 @@ SphereHierarchy::Storage::Home SphereHierarchy::Storage::homeOf(const Point3& pl
   const std::uint64_t key = mortonCode(cell[0], cell[1], cell[2]);
   std::size_t slot = slotOf(key);
   while (slots_[slot] != kNoVoxel && voxels[slots_[slot]].key != key) slot = (slot + 1) & (slots_.size() - 1);
-  return {slots_[slot], room * voxel_edge * (1.0 - 0x1p-40)};
+  return {slots_[slot], room * voxel_edge * (1.0 - kDoubleMargin)};
 }
 
 double SphereHierarchy::Storage::sumOfRadii() const

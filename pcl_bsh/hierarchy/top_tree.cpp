@@ -15,7 +15,7 @@ struct CloudBox {
   std::array<double, 3> low, high;
 };
 
-constexpr double kSlack = 0x1p-50;
+constexpr double kSlack = kFewDoubleRoundings;
 
 class TopBuilder {
 public:
@@ -118,7 +118,7 @@ private:
       radius = std::max(radius, (std::sqrt(squared) + ball) * (1.0 + kSlack) + 4 * kSlack * largest);
     }
     node.x[i] = c[0], node.y[i] = c[1], node.z[i] = c[2];
-    node.r[i] = roundUp(radius + 0x1p-60);
+    node.r[i] = roundUp(radius + kSmallestLength);
   }
 
   const Voxel* voxels_;

@@ -402,15 +402,14 @@ private:
     }
   }
 
-  /// At least radiusOver(squared, slack), in float arithmetic: a root, a product and a sum that err by u each are under
-  /// 4 u together, and 2^-20 = 16 u of the root is 8 u more than that bound asks for.
+  /// At least radiusOver(squared, slack), in float arithmetic.
   static void storeRadii(const float* squared, float slack, float* radii)
   {
     const LaneTag d;
     for (std::size_t i = 0; i < kNodeChildren; i += hn::Lanes(d)) {
       const LaneVector root = hn::Sqrt(hn::Load(d, squared + i));
-      const LaneVector over = hn::Mul(root, hn::Set(d, 1.0f + 0x1p-20f));
-      hn::StoreU(hn::Add(over, hn::Set(d, slack * (1.0f + 0x1p-20f))), d, radii + i);
+      const LaneVector over = hn::Mul(root, hn::Set(d, 1.0f + kRadiusMargin));
+      hn::StoreU(hn::Add(over, hn::Set(d, slack * (1.0f + kRadiusMargin))), d, radii + i);
     }
   }
 
@@ -432,7 +431,7 @@ private:
       const double ball = static_cast<double>(voxel_.radii[i]) / voxel_.frame.unit;
       farthest = std::max(farthest, radiusOver(squared, ball));
     }
-    return roundUp(farthest * (1.0 + 0x1p-50) + slack);
+    return roundUp(farthest * (1.0 + kFewDoubleRoundings) + slack);
   }
 
   Voxel& voxel_;

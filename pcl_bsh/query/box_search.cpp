@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points in an axis-aligned box. Comparing coordinates is exact as it stands; spheres only say which points to compare.
 #include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/neighbor_scratch.h>
 
 #include <algorithm>
@@ -30,8 +31,9 @@ struct LocalBox {
     for (std::size_t k = 0; k < 3; ++k) {
       low[k] = box.low[k] * inverse - frame.origin[k] * inverse;
       high[k] = box.high[k] * inverse - frame.origin[k] * inverse;
+      constexpr double kVanishing = 0x1p-1000; // above what underflows
       // The differences err by v of themselves; those that matter are not far beyond the frame's reach.
-      const double error = 0x1p-50 * (frame.reach[k] + std::abs(frame.origin[k] * inverse)) + 0x1p-1000;
+      const double error = kFewDoubleRoundings * (frame.reach[k] + std::abs(frame.origin[k] * inverse)) + kVanishing;
       outer_low[k] = low[k] - error, outer_high[k] = high[k] + error;
       inner_low[k] = low[k] + error, inner_high[k] = high[k] - error;
     }
@@ -45,14 +47,14 @@ struct LocalBox {
       const double outside = std::max({outer_low[k] - center[k], center[k] - outer_high[k], 0.0});
       squared += outside * outside;
     }
-    return squared > radius * radius * (1.0 + 0x1p-40);
+    return squared > radius * radius * (1.0 + kDoubleMargin);
   }
 
   /// Whether the sphere lies in the box altogether.
   bool holds(const std::array<double, 3>& center, double radius) const
   {
     for (std::size_t k = 0; k < 3; ++k) {
-      const double margin = radius * (1.0 + 0x1p-40);
+      const double margin = radius * (1.0 + kDoubleMargin);
       if (!(center[k] - margin >= inner_low[k] && center[k] + margin <= inner_high[k])) return false;
     }
     return true;

@@ -9,12 +9,13 @@
 namespace pcl_bsh {
 namespace {
 
+constexpr double kVanishing = 0x1p-140; ///< above what underflows
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
 /// Sets a child's box to [low, high] on an axis, moved by offset, with room for the rounding of both.
 void place(BoxNode& node, std::uint32_t lane, std::size_t axis, double low, double high, double offset, double slack)
 {
-  const double room = slack + 0x1p-50 * (std::abs(offset) + std::abs(low) + std::abs(high)) + 0x1p-140;
+  const double room = slack + kFewDoubleRoundings * (std::abs(offset) + std::abs(low) + std::abs(high)) + kVanishing;
   node.low[axis][lane] = roundDown(offset + low - room);
   node.high[axis][lane] = roundUp(offset + high + room);
 }
@@ -44,7 +45,7 @@ BoxTree::BoxTree(const SphereHierarchy::Storage& of)
       slack += frame.slack(k) * frame.slack(k);
       voxel_reach = std::max(voxel_reach, frame.reach[static_cast<std::size_t>(k)] * frame.unit);
     }
-    voxel_slack = std::max(voxel_slack, std::sqrt(slack) * (1.0 + 0x1p-40) * frame.unit);
+    voxel_slack = std::max(voxel_slack, std::sqrt(slack) * (1.0 + kDoubleMargin) * frame.unit);
   }
   if (storage.size > 0) fitTop();
 }
@@ -80,7 +81,7 @@ void BoxTree::fitTop()
     const double reach = std::max(std::abs(static_cast<double>(low[axis])), std::abs(static_cast<double>(high[axis])));
     squared += reach * reach;
   }
-  radius = std::sqrt(squared) * (1.0 + 0x1p-40);
+  radius = std::sqrt(squared) * (1.0 + kDoubleMargin);
 }
 
 const std::vector<BoxNode>& BoxTree::voxel(std::uint32_t index, Work& work) const

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The closest pair: depth first, nearest children first, until nothing left can be nearer. (A heap of pairs, best
 // first, visits as many nodes and spends more than half of the time on itself.)
+#include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/query/collide.h>
 #include <pcl_bsh/query/interval_search.h>
 #include <pcl_bsh/query/request_check.h>
@@ -135,8 +136,7 @@ private:
     std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
     nearestSquared(points, b.x(), b.y(), b.z(), firstBits(b.count), nearest);
     const float least = *std::min_element(nearest, nearest + a.count);
-    const double within =
-        (std::sqrt(static_cast<double>(least)) * (1.0 + 0x1p-20) + frame.error) * (1.0 + frame.skew()) * unit;
+    const double within = (lengthOver(least) + frame.error) * (1.0 + frame.skew()) * (1.0 + kDoubleMargin) * unit;
     const double to_beat = std::isnan(within) ? clearanceToBeat() : std::min(within, clearanceToBeat());
     const float miss = frame.band(to_beat).miss;
     const std::uint32_t lanes = firstBits(a.count) & ~above(nearest, miss);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/query/interval_search.h>
 #include <pcl_bsh/query/stop_rule.h>
 
@@ -224,8 +225,8 @@ private:
     std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
     nearestSquared(points, b.x(), b.y(), b.z(), firstBits(b.count), nearest);
     const float least = *std::min_element(nearest, nearest + a.count);
-    const double within = (std::sqrt(static_cast<double>(least)) * (1.0 + 0x1p-20) + frame.error) *
-                          (1.0 + frame.skew()) * walk_.b.frame(open.pair.b.space).unit;
+    const double within = (lengthOver(least) + frame.error) * (1.0 + frame.skew()) * (1.0 + kDoubleMargin) *
+                          walk_.b.frame(open.pair.b.space).unit;
     const float miss =
         frame.band(std::isnan(within) ? std::max(asked, 0.0) : std::min(within, std::max(asked, 0.0))).miss;
     const std::uint32_t lanes = firstBits(a.count) & ~above(nearest, miss);

@@ -33,8 +33,8 @@ HWY_INLINE void measureBy(const Coordinate& coordinate, const PointAt& point, co
       return hn::Mul(difference, difference);
     };
     const auto sum = hn::Add(hn::Add(squareOn(0), squareOn(1)), squareOn(2));
-    const auto below = hn::DemoteTo(f, hn::Mul(sum, hn::Set(d, 1.0 - 0x1p-50)));
-    const auto above = hn::DemoteTo(f, hn::Mul(sum, hn::Set(d, 1.0 + 0x1p-50)));
+    const auto below = hn::DemoteTo(f, hn::Mul(sum, hn::Set(d, 1.0 - kFewDoubleRoundings)));
+    const auto above = hn::DemoteTo(f, hn::Mul(sum, hn::Set(d, 1.0 + kFewDoubleRoundings)));
     hn::StoreU(below, f, squared + i);
     // 0 is right even where the double underflowed.
     const auto in_range = hn::And(hn::Or(hn::Ge(below, hn::Set(f, 0x1p-100f)), hn::Eq(below, hn::Zero(f))),

@@ -30,33 +30,40 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// it is within [s / inverse_below - slack, s * above + slack].
 ///
 /// With rho the frame's error and any e > 0, (sqrt(s) + rho)^2 <= s (1 + e) + rho^2 (1 + 1/e), and likewise below.
-/// Here e = 2^-20, and 2^-19 pays for float arithmetic as well.
+/// Here e = kNeighborShare; as much again pays for float arithmetic, and twice as much below. Where floats know
+/// nothing, the query is at 0, every upper bound is infinite and nothing is left out; none of these numbers is NaN, nor
+/// is what the walk makes of them.
 struct NearFrame {
   NearFrame(const PointFrame& point, double cloud_unit)
-  : at{point.at[0], point.at[1], point.at[2]},
-    error(static_cast<float>(point.error))
   {
     const double unit = point.unit == cloud_unit ? 1.0 : point.unit / cloud_unit;
     const double scale = unit * unit;
-    if (unit != 1.0) {
-      inverse_unit = static_cast<float>(1.0 / unit);
-      inverse_below *= static_cast<float>(1.0 / scale);
-      above *= static_cast<float>(scale);
-    }
-    slack = static_cast<float>(scale * point.error * point.error * 0x1p20) * (1.0f + 0x1p-15f) + 0x1p-100f;
-    if (!(point.inRange() && scale > 0x1p-60 && scale < 0x1p60)) error = slack = kInfinity;
+    if (!(point.inRange() && scale >= kSmallestScale && scale <= 1.0)) return;
+    at = {point.at[0], point.at[1], point.at[2]};
+    error = static_cast<float>(point.error);
+    slack = static_cast<float>(scale * point.error * point.error / kNeighborShare) * (1.0f + 32 * kNeighborShare) +
+            kVanishing;
+    if (unit == 1.0) return;
+    inverse_unit = static_cast<float>(1.0 / unit);
+    inverse_below *= static_cast<float>(1.0 / scale);
+    above *= static_cast<float>(scale);
   }
 
   /// Squared float distances above this are beyond `bound`.
   float miss(float bound) const { return (bound + slack) * inverse_below; }
 
   /// Spheres farther than this and their radius are beyond `distance`.
-  float reach(float distance) const { return (distance * inverse_unit + error) * (1.0f + 0x1p-20f); }
+  float reach(float distance) const { return (distance * inverse_unit + error) * (1.0f + kNeighborMargin); }
 
-  Point at;
-  float error, slack;
-  float inverse_unit = 1.0f, inverse_below = 1.0f + 0x1p-18f, above = 1.0f + 0x1p-19f;
+  static constexpr float kVanishing = 0x1p-100f; ///< above what underflows, as a squared distance
+  static constexpr double kSmallestScale = 0x1p-60;
+
+  Point at = {0.0f, 0.0f, 0.0f};
+  float error = kInfinity, slack = kInfinity;
+  float inverse_unit = 1.0f, inverse_below = 1.0f + 4 * kNeighborShare, above = 1.0f + 2 * kNeighborShare;
 };
+
+static_assert(kSquaredDistanceError + 3 * kFloatUnit < kNeighborShare); // of a distance, a product and a sum
 
 class NearestWalk {
 public:
@@ -82,7 +89,7 @@ public:
     if (k_ == 0) return;
     if (radius_ < std::numeric_limits<double>::infinity()) {
       const double reach = radius_ / cloud_.frame.unit;
-      lower(roundUp(reach * reach * (1.0 + 0x1p-50) + 0x1p-140));
+      lower(roundUp(reach * reach * (1.0 + kFewDoubleRoundings) + static_cast<double>(NearFrame::kVanishing)));
     }
     home_ = cloud_.homeOf(query_);
     if (home_.voxel != SphereHierarchy::Storage::kNoVoxel) visitVoxel(home_.voxel);
@@ -292,11 +299,12 @@ private:
   void lower(float bound)
   {
     bound_ = bound;
-    distance_ = std::sqrt(bound) * (1.0f + 0x1p-20f);
+    distance_ = std::sqrt(bound) * (1.0f + kNeighborMargin);
   }
 
-  /// No candidate's lower bound is less than its upper one by more than that: above / below is less than 1 + 2^-17.
-  float missOfHighs() const { return (bound_ + most_slack_) * (1.0f + 0x1p-17f) + most_slack_; }
+  /// No candidate's lower bound is less than its upper one by more than that: above * inverse_below is less than
+  /// 1 + 8 kNeighborShare.
+  float missOfHighs() const { return (bound_ + most_slack_) * (1.0f + 8 * kNeighborShare) + most_slack_; }
 
   void forgetFarther()
   {
@@ -324,7 +332,7 @@ private:
   {
     if (places_.size() > k_) tighten();
     const double reach = radius_ / cloud_.frame.unit;
-    const float surely = roundDown(std::min(reach * reach * (1.0 - 0x1p-50), 0x1p120));
+    const float surely = roundDown(std::min(reach * reach * (1.0 - kFewDoubleRoundings), kLargestSurely));
     std::size_t kept = 0;
     const Voxel* const* home = voxels_.data();
     for (std::size_t i = 0; i < places_.size(); ++i) {
@@ -341,6 +349,7 @@ private:
     highs_.resize(kept);
   }
 
+  static constexpr double kLargestSurely = 0x1p120; ///< above this, exact arithmetic says what is within the radius
   static constexpr int kSteps = 6;             ///< towards the k-th smallest bound; any that is not too low will do
   static constexpr std::size_t kScanned = 128; ///< points that are compared without a descent at first
   static constexpr std::size_t kMore = 4;      ///< candidates, or half of k, after which the bound is looked at again

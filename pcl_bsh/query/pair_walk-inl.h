@@ -193,8 +193,8 @@ public:
     const double stored = (bound - std::abs(bound) * step.frame->skew()) * b.frame(pair.b.space).unit;
     if (!isBlunt(pair, step, lane)) return stored;
     const GivenSphere given_a = givenSphere(a, pair.a), given_b = givenSphere(b, pair.b);
-    const double given =
-        distance.enclose(given_a.center, given_b.center).low - (given_a.radius + given_b.radius) * (1.0 + 0x1p-19);
+    const double given = distance.enclose(given_a.center, given_b.center).low -
+                         (given_a.radius + given_b.radius) * (1.0 + 2 * kPoseStretch);
     return std::isfinite(given) ? std::max(stored, given) : stored;
   }
 

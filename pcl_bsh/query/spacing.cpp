@@ -2,6 +2,7 @@
 #include <pcl_bsh/query/spacing.h>
 
 #include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/query/space.h>
 
 #include <algorithm>
@@ -20,7 +21,8 @@ public:
 
   const Voxel& voxel(std::size_t number) { return spaces_.voxel(static_cast<std::uint32_t>(number), work_); }
 
-  /// From a place to the nearest point elsewhere; infinity when there is none. Depth first, nearest children first.
+  /// From a place to the nearest point elsewhere, as they are given; infinity when there is none. Depth first, nearest
+  /// children first.
   double from(const Point3& place)
   {
     double nearest = std::numeric_limits<double>::infinity();
@@ -33,11 +35,6 @@ public:
     return nearest;
   }
 
-  static Point3 pointOf(const LocalFrame& frame, double x, double y, double z)
-  {
-    return {frame.origin[0] + frame.unit * x, frame.origin[1] + frame.unit * y, frame.origin[2] + frame.unit * z};
-  }
-
 private:
   struct Branch {
     double bound;
@@ -46,14 +43,25 @@ private:
 
   static double distance(const Point3& p, const Point3& q) { return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]); }
 
+  /// The distance of two places in a frame errs by less than kFewDoubleRoundings of the farther one's coordinates; a
+  /// sphere holds the given points, a stored point is within the slack of the given one.
   void visit(const Branch& branch, const Point3& place, double& nearest)
   {
     const LocalFrame& frame = spaces_.frame(branch.space);
     const Node& node = spaces_.node(branch.space, branch.node);
+    const double inverse = 1.0 / frame.unit;
+    Point3 local;
+    double farthest = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      local[axis] = place[axis] * inverse - frame.origin[axis] * inverse;
+      farthest += std::abs(local[axis]) + frame.reach[axis];
+    }
+    const double slack = kFewDoubleRoundings * farthest;
     const std::size_t from = stack_.size();
     for (std::uint32_t i = 0; i < node.count; ++i) {
-      const double bound = distance(pointOf(frame, node.x[i], node.y[i], node.z[i]), place) -
-                           frame.unit * static_cast<double>(node.r[i]);
+      const double between =
+          distance({node.x[i], node.y[i], node.z[i]}, local) - static_cast<double>(node.r[i]) - slack;
+      const double bound = between * frame.unit;
       if (bound >= nearest) continue;
       if (!node.isLeaf(i)) {
         stack_.push_back({bound, branch.space, node.child[i]});
@@ -63,15 +71,24 @@ private:
         stack_.push_back({bound, node.begin[i], 0});
       }
       else {
-        const Voxel& points = spaces_.storage.voxels[branch.space];
-        for (std::uint32_t k = node.begin[i]; k < node.begin[i] + node.comparedPoints(i); ++k) {
-          const double d = distance(pointOf(frame, points.x()[k], points.y()[k], points.z()[k]), place);
-          if (d > 0.0) nearest = std::min(nearest, d);
-        }
+        measure(spaces_.storage.voxels[branch.space], node, i, local, slack, place, nearest);
       }
     }
     std::sort(stack_.begin() + static_cast<std::ptrdiff_t>(from), stack_.end(),
               [](const Branch& a, const Branch& b) { return a.bound > b.bound; });
+  }
+
+  void measure(const Voxel& voxel, const Node& node, std::uint32_t child, const Point3& local, double slack,
+               const Point3& place, double& nearest) const
+  {
+    const double apart = slack + storedSlack(voxel.frame);
+    const std::uint32_t end = node.begin[child] + node.comparedPoints(child);
+    for (std::uint32_t k = node.begin[child]; k < end; ++k) {
+      const Point3 stored = {voxel.x()[k], voxel.y()[k], voxel.z()[k]};
+      if ((distance(stored, local) - apart) * voxel.frame.unit >= nearest) continue;
+      const double d = distance(voxel.point(spaces_.storage.view, k), place);
+      if (d > 0.0) nearest = std::min(nearest, d);
+    }
   }
 
   const Placed placed_; ///< the spaces refer to its pose
@@ -106,7 +123,7 @@ Spacing spacingOf(const SphereHierarchy& cloud)
     const Voxel& voxel = search.voxel(number);
     for (std::size_t k = first; k < first + count; ++k) {
       ++spacing.samples;
-      const double gap = search.from(NearestOther::pointOf(voxel.frame, voxel.x()[k], voxel.y()[k], voxel.z()[k]));
+      const double gap = search.from(voxel.point(storage.view, static_cast<std::uint32_t>(k)));
       if (std::isfinite(gap)) gaps.push_back(gap);
     }
   }

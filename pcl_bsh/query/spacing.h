@@ -8,7 +8,8 @@
 
 namespace pcl_bsh {
 
-/// Distances from points to the nearest other place that has one, in the cloud's unit, good to six digits.
+/// Distances from points to the nearest other place that has one, in the cloud's unit, of the coordinates as given: in
+/// double arithmetic.
 struct Spacing {
   std::size_t samples = 0; ///< points that were asked
   double median = 0.0;     ///< 0 when no two places are sampled

@@ -55,7 +55,7 @@ public:
     leaves_(course, sight_, model_, watch_, findings_),
     settling_(!course.everything() && !course.first && course.radii == 0.0 && sight_.frame.unit == 1.0 &&
               sight_.band.hit > 0.0f),
-    settled_reach_(settling_ ? std::sqrt(sight_.band.hit) * (1.0f - 0x1p-20f) : 0.0f),
+    settled_reach_(settling_ ? std::sqrt(sight_.band.hit) * (1.0f - kRadiusMargin) : 0.0f),
     visits_(visits)
   {
   }
@@ -163,7 +163,7 @@ private:
     patches_.see(index, span, visit.radius, room);
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::uint32_t lane = 0; lane < kLanes; ++lane)
-        visit.children.reach[axis][lane] = (span.reach + room[axis][lane]) * (1.0f + 0x1p-21f);
+        visit.children.reach[axis][lane] = (span.reach + room[axis][lane]) * (1.0f + kReachMargin);
     visit.around = sight_.aroundWays(span, from, to, room, node.count);
   }
 
@@ -181,7 +181,7 @@ private:
       std::uint32_t near = open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, span.steps, &stays);
       for (; near != 0; near &= near - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-        const float reach = settled_reach_ - visit.radius[lane] * (1.0f + 0x1p-18f);
+        const float reach = settled_reach_ - visit.radius[lane] * (1.0f + 4 * kRadiusMargin);
         if (!(reach > 0.0f)) continue;
         const double middle = 0.5 * (std::max(stays.from[lane], 0.0f) + std::min(stays.to[lane], 1.0f));
         const auto pose = span.interval->first + static_cast<std::uint32_t>(std::lround(middle * span.steps));

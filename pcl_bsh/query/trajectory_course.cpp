@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/query/trajectory_course.h>
 
+#include <pcl_bsh/geometry/rounding.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace pcl_bsh {
 namespace {
+
+// Of places seen by the model, relative to all coordinates that go into one: `carried` rounds a place by 2 v per axis,
+// `see` sums three products of differences, 5 v; on three axes, of two clouds: less than 64 v.
+constexpr double kPlacing = 64 * kDoubleUnit;
+constexpr double kSmallestMotion = 0x1p-45; ///< of the room: what moves less is at rest
+constexpr double kLargest = 0x1p100;        ///< floats beyond may overflow when they are divided by a motion
 
 /// Of the tolerance: three eighths for the bow of a way taken as straight, an eighth for rounding, half as room that
 /// the reported clearance has.
@@ -19,7 +27,7 @@ double farthest(const BoxTree& boxes, const Point3& from)
     const double distance = std::max(std::abs(boxes.low[axis] - at), std::abs(boxes.high[axis] - at));
     squared += distance * distance;
   }
-  return std::sqrt(squared) * (1.0 + 0x1p-40);
+  return std::sqrt(squared) * (1.0 + kDoubleMargin);
 }
 
 PosePath pathOf(const Placed& scan, const std::vector<Eigen::Isometry3d>& poses, const TrajectoryRequest& request,
@@ -58,7 +66,7 @@ Course::Course(const Placed& scan_at, const SphereHierarchy& model_of,
 double Course::error(const Point3& origin) const
 {
   const double size = std::abs(origin[0]) + std::abs(origin[1]) + std::abs(origin[2]) + 3 * path.far + boxes.radius;
-  return 0x1p-47 * size + path.skew * (boxes.radius + reach);
+  return kPlacing * size + path.skew * (boxes.radius + reach);
 }
 
 bool Course::inFloatRange() const
@@ -68,7 +76,7 @@ bool Course::inFloatRange() const
   const Point3 center = carried(scan.pose, frame.origin);
   for (std::size_t axis = 0; axis < 3; ++axis)
     largest = std::max({largest, std::abs(center[axis]), frame.reach[axis] * frame.unit});
-  return largest < 0x1p100;
+  return largest < kLargest;
 }
 
 bool Course::near(const Ball& ball, const PathInterval& interval, double& stray) const
@@ -76,15 +84,15 @@ bool Course::near(const Ball& ball, const PathInterval& interval, double& stray)
   double squared = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis)
     squared += (ball.center[axis] - interval.pivot[axis]) * (ball.center[axis] - interval.pivot[axis]);
-  stray = interval.drift + interval.turn * (std::sqrt(squared) * (1.0 + 0x1p-40) + ball.radius);
+  stray = interval.drift + interval.turn * (std::sqrt(squared) * (1.0 + kDoubleMargin) + ball.radius);
   const double room = (reach + ball.radius) * (1.0 + path.skew) + stray + error(ball.center);
   const Point3 from = path.poses[interval.first].see(ball.center), to = path.poses[interval.last].see(ball.center);
   double enter = 0.0, leave = 1.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double slack = room + 0x1p-40 * (std::abs(from[axis]) + std::abs(to[axis]) + boxes.radius);
+    const double slack = room + kDoubleMargin * (std::abs(from[axis]) + std::abs(to[axis]) + boxes.radius);
     const double low = boxes.low[axis] - slack - from[axis], high = boxes.high[axis] + slack - from[axis];
     const double motion = to[axis] - from[axis];
-    if (std::abs(motion) <= 0x1p-45 * slack) {
+    if (std::abs(motion) <= kSmallestMotion * slack) {
       if (low > 0.0 || high < 0.0) return false;
       continue;
     }
@@ -107,7 +115,7 @@ void Course::meet(std::uint32_t node, std::uint32_t lane, std::uint32_t index, c
     for (std::size_t axis = 0; axis < 3; ++axis) center[axis] += at[axis] * frame.unit;
   }
   const double radius = (is_voxel ? storage.voxels[of.begin[lane]].radius : of.r[lane]) * frame.unit;
-  const Ball ball{carried(scan.pose, center), radius * (1.0 + path.skew + 0x1p-40)};
+  const Ball ball{carried(scan.pose, center), radius * (1.0 + path.skew + kDoubleMargin)};
   const PathInterval& interval = path.intervals[index];
   double stray = 0.0;
   if (!rule.isOver() && !near(ball, interval, stray)) return;

@@ -137,7 +137,7 @@ private:
   {
     PoseRanges ranges = rangesOf(lanes, stays, span);
     if (ranges.lanes == 0) return;
-    if (static_cast<float>(ranges.end - ranges.begin) > kFewPoses && other.voxel->frame.unit == 1.0) {
+    if (static_cast<float>(ranges.end - ranges.begin) > kFewPoses && span.squares && other.voxel->frame.unit == 1.0) {
       lanes &= nearPoints(leaf, other, voxel, stays);
       ranges = rangesOf(lanes, stays, span);
       lanes = ranges.lanes;
@@ -302,7 +302,7 @@ private:
   void compareWays(LeafVisit& leaf, std::uint32_t lanes, Stays<kLeafPoints>& stays, const LeafRange& other,
                    std::uint32_t voxel, const Span& span)
   {
-    if (other.voxel->frame.unit == 1.0) lanes &= nearPoints(leaf, other, voxel, stays);
+    if (span.squares && other.voxel->frame.unit == 1.0) lanes &= nearPoints(leaf, other, voxel, stays);
     ++findings_.work.leaf_pairs;
     const double begin = span.interval->first, steps = span.interval->last - span.interval->first;
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {

@@ -8,6 +8,7 @@
 #define PCL_BSH_QUERY_TRAJECTORY_SIGHT_INL_H_
 #endif
 
+#include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/query/acceptance.h>
 #include <pcl_bsh/query/leaf_pair-inl.h>
 #include <pcl_bsh/query/trajectory_course.h>
@@ -32,6 +33,7 @@ struct Span {
   float near_squared; ///< farther from a box than the root of this, in floats at one pose, nothing in it collides
   float smallest;     ///< motion that floats can tell from none
   float rounding;     ///< of places in floats
+  bool squares;       ///< whether squares of places and of motions that floats can tell from none are floats
 
   /// Whether it has halves, and strays farther than `stray_limit`.
   bool divides(double stray_limit) const { return interval->divided() && stray > stray_limit; }
@@ -51,11 +53,13 @@ public:
   {
     double slack = 0.0;
     for (int k = 0; k < 3; ++k) slack += frame.slack(k) * frame.slack(k);
-    slack = std::sqrt(slack) * (1.0 + 0x1p-40) * frame.unit;
+    slack = std::sqrt(slack) * (1.0 + kDoubleMargin) * frame.unit;
     const double skew = path.skew;
     placing_ = course.error(origin) + (1.0 + skew) * (slack + tree.voxel_slack);
     far = (radius + course.reach) * (1.0 + skew) + placing_ + tree.voxel_reach;
-    error = placing_ + 4.001 * kFloatUnit * 1.7321 * (far + 1.7321 * (1.0 + skew) * radius) + 0x1p-60;
+    // Per axis, of a shift up to `far` and of products that add up to the radius at most: rows are of length 1.
+    const double carried = kCarriedShiftError * far + kCarriedProductError * (1.0 + skew) * radius;
+    error = placing_ + kAxes * carried * (1.0 + kDoubleMargin) + kSmallestLength;
     const Acceptance acceptance(course.request.clearance, course.request.accuracy);
     const auto squared = static_cast<float>(acceptance.clearance * acceptance.clearance);
     band = acceptance.proven ? acceptance.provenBand([&](double distance) { return skewedBand(distance, error, skew); })
@@ -95,17 +99,18 @@ public:
       coordinate = std::max({coordinate, std::abs(static_cast<double>(span.from.g[axis])),
                              std::abs(static_cast<double>(span.to.g[axis]))});
     }
-    span.stray = interval.drift + interval.turn * ((std::sqrt(squared) + radius) * (1.0 + 0x1p-40));
+    span.stray = interval.drift + interval.turn * ((std::sqrt(squared) + radius) * (1.0 + kDoubleMargin));
     if (path.is_swept && !interval.divided()) span.stray = std::min(span.stray, path.stray);
     span.steps = path.is_swept ? 0.0f : static_cast<float>(interval.last - interval.first);
     const double reach = course_.reach * (1.0 + path.skew) + placing_ + span.stray;
     const double rounding =
-        static_cast<double>(kSegmentRounding) * (coordinate + 2.01 * radius + tree.radius + reach) + 0x1p-100;
+        static_cast<double>(kSegmentRounding) * (coordinate + 2.01 * radius + tree.radius + reach) + kSmallestRounding;
     span.reach = roundUp(reach + rounding);
     span.rounding = roundUp(rounding);
     const float near = roundUp(reach - span.stray + 2 * rounding);
-    span.near_squared = near * near * (1.0f + 0x1p-18f) + 0x1p-120f;
-    span.smallest = span.rounding * 0x1p-8f;
+    span.near_squared = near * near * (1.0f + kReachRounding) + kVanishingSquare;
+    span.smallest = span.rounding * kSmallestMotion;
+    span.squares = span.smallest >= kSmallestSquared && inFloatRange(coordinate + 2.01 * radius + tree.radius + reach);
     return span;
   }
 
@@ -138,7 +143,7 @@ public:
       end[axis] = 0.5f * (low[1] + high[1]);
       const float half =
           std::max({high[0] - start[axis], start[axis] - low[0], high[1] - end[axis], end[axis] - low[1]});
-      reach[axis] = (span.reach + span.rounding + half) * (1.0f + 0x1p-20f);
+      reach[axis] = (span.reach + span.rounding + half) * (1.0f + kRadiusMargin);
     }
     Segment segment = segmentOf({start[0], start[1], start[2]}, {end[0], end[1], end[2]}, span.smallest);
     std::copy(reach, reach + 3, segment.reach);
@@ -148,7 +153,7 @@ public:
   /// A radius in the voxel's unit as the model sees it.
   float seenRadius(float own) const
   {
-    return static_cast<float>(own * frame.unit * (1.0 + path.skew) * (1.0 + 0x1p-20));
+    return static_cast<float>(own * frame.unit * (1.0 + path.skew) * (1.0 + kRadiusMargin));
   }
 
   /// The voxel as a box: along each of the model's axes, as far as its own sides reach.
@@ -161,9 +166,9 @@ public:
         from += std::abs(static_cast<double>(span.from.m[3 * axis + k])) * frame.reach[k];
         to += std::abs(static_cast<double>(span.to.m[3 * axis + k])) * frame.reach[k];
       }
-      const double extent = std::max(from, to) * (1.0 + 0x1p-20) + span.interval->turn * radius;
+      const double extent = std::max(from, to) * (1.0 + kRadiusMargin) + span.interval->turn * radius;
       const auto sphere = static_cast<double>(seenRadius(voxel.radius));
-      segment.reach[axis] = roundUp((span.reach + std::min(sphere, extent)) * (1.0 + 0x1p-20));
+      segment.reach[axis] = roundUp((span.reach + std::min(sphere, extent)) * (1.0 + kRadiusMargin));
     }
     return segment;
   }
@@ -171,7 +176,7 @@ public:
   /// No less than the distance of a pair at this squared one in floats.
   double highOf(float squared) const
   {
-    return (std::sqrt(static_cast<double>(squared)) * (1.0 + 0x1p-20) + error) * (1.0 + path.skew);
+    return (lengthOver(squared) + error) * (1.0 + path.skew) * (1.0 + kDoubleMargin);
   }
 
   /// A pair at a larger squared distance in floats is farther than one at this.
@@ -180,11 +185,17 @@ public:
   /// How far from a line a point may be that is as near as the best one.
   float reachOf(const Span& span, float best) const
   {
-    return best < span.reach ? (span.reach + (best - static_cast<float>(course_.reach))) * (1.0f + 0x1p-18f)
+    return best < span.reach ? (span.reach + (best - static_cast<float>(course_.reach))) * (1.0f + kReachRounding)
                              : span.reach;
   }
 
 private:
+  static constexpr double kAxes = 1.7321;               ///< root of 3, rounded up
+  static constexpr double kSmallestRounding = 0x1p-100; ///< above underflow of products and of differences
+  static constexpr float kReachRounding = 0x1p-18f;     ///< of a reach and its square in float: some ten roundings
+  static constexpr float kSmallestSquared = 0x1p-63f;   ///< longer motions keep their precision when squared
+  static constexpr float kSmallestMotion = 0x1p-8f;     ///< of the rounding of places
+
   static Segment segmentOf(const Point& from, const Point& to, float smallest)
   {
     const float start[3] = {from.x, from.y, from.z}, end[3] = {to.x, to.y, to.z};

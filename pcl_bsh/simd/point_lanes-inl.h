@@ -110,7 +110,7 @@ HWY_INLINE bool anyPointWithin(const float* x, const float* y, const float* z, s
 {
   const LaneTag d;
   const LaneVector vx = hn::Set(d, cx), vy = hn::Set(d, cy), vz = hn::Set(d, cz);
-  const LaneVector limit = hn::Set(d, reach * reach * (1.0f - kSphereMargin) - 0x1p-120f);
+  const LaneVector limit = hn::Set(d, reach * reach * (1.0f - kSphereMargin) - kVanishingSquare);
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const LaneVector squared = squaredNorm(hn::Sub(hn::LoadU(d, x + i), vx), hn::Sub(hn::LoadU(d, y + i), vy),
                                            hn::Sub(hn::LoadU(d, z + i), vz));
@@ -120,7 +120,7 @@ HWY_INLINE bool anyPointWithin(const float* x, const float* y, const float* z, s
   return false;
 }
 
-/// Largest squared distance of count > 0 points from (cx, cy, cz), in float arithmetic (relative error under 6 u).
+/// Largest squared distance of count > 0 points from (cx, cy, cz), in float arithmetic (kSquaredDistanceError).
 /// Reads whole vectors: the arrays must go on that far.
 HWY_INLINE float farthestSquared(const float* x, const float* y, const float* z, std::size_t count, float cx, float cy,
                                  float cz)

@@ -38,9 +38,7 @@ struct Segments {
   }
 };
 
-/// What rounding may amount to, relative to the largest coordinate of starts, ends and widened boxes: 4 u for starts
-/// and ends carried, 2 u for their difference, 2 u for that to a box, 6 u of the motion for the time; less than 40 u.
-inline constexpr float kSegmentRounding = 0x1p-18f;
+static_assert(2 * kCarriedProductError + (2 + 2 + 2 * 6) * kFloatUnit < kSegmentRounding);
 
 /// When a segment is in a box: a part of [0, 1].
 template <std::size_t Count>
@@ -65,7 +63,7 @@ HWY_INLINE void clipAxis(LaneVector start, LaneVector inverse, LaneVector reach,
 /// Whether a stay contains one of the instants i / steps; always where steps are too many for floats to tell.
 HWY_INLINE std::uint32_t staysAtStep(LaneTag d, const ClippedLanes& stay, float steps)
 {
-  const LaneVector scale = hn::Set(d, steps), slack = hn::Set(d, steps * 0x1p-21f);
+  const LaneVector scale = hn::Set(d, steps), slack = hn::Set(d, steps * kStepRounding);
   const LaneVector first = hn::Ceil(hn::Sub(hn::Mul(stay.from, scale), slack));
   const LaneVector last = hn::Floor(hn::Add(hn::Mul(stay.to, scale), slack));
   return bitsOf(d, hn::And(hn::Le(stay.from, stay.to), hn::Le(first, last)));

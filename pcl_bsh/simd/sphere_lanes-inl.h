@@ -12,6 +12,8 @@
 
 #include <hwy/highway.h>
 
+#include <pcl_bsh/simd/roundings.h>
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -36,11 +38,39 @@ HWY_INLINE std::uint32_t bitsOf(LaneTag d, Mask mask)
   return bits[0];
 }
 
-/// x^2 + y^2 + z^2.
-HWY_INLINE LaneVector squaredNorm(LaneVector x, LaneVector y, LaneVector z)
+HWY_INLINE float Add(float a, float b)
 {
-  return hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
+  return a + b;
 }
+HWY_INLINE float Mul(float a, float b)
+{
+  return a * b;
+}
+
+/// x^2 + y^2 + z^2, of floats, vectors of them, or Roundings.
+template <class Number>
+HWY_INLINE constexpr Number squaredNorm(Number x, Number y, Number z)
+{
+  return Add(Add(Mul(x, x), Mul(y, y)), Mul(z, z));
+}
+
+static_assert(squaredNorm(Roundings{1}, Roundings{1}, Roundings{1}) == Roundings{kSquaredDistanceRoundings},
+              "of differences, rounded once: the bounds of squared distances follow from it");
+
+/// row . (x, y, z) + shift, of floats, vectors of them, or Roundings.
+template <class Number>
+HWY_INLINE constexpr Number affine(Number shift, Number rx, Number ry, Number rz, Number x, Number y, Number z)
+{
+  return Add(Add(Add(shift, Mul(rx, x)), Mul(ry, y)), Mul(rz, z));
+}
+
+/// With the matrix and the shift rounded to float, and points as they are stored.
+static_assert(affine(kNoTerm, Roundings{1}, Roundings{1}, Roundings{1}, Roundings{}, Roundings{}, Roundings{}) ==
+                  Roundings{kCarriedProductRoundings},
+              "the bounds of carried points follow from it");
+static_assert(affine(Roundings{1}, kNoTerm, kNoTerm, kNoTerm, Roundings{}, Roundings{}, Roundings{}) ==
+                  Roundings{kCarriedShiftRoundings},
+              "the bounds of carried points follow from it");
 
 /// The columns of one row of a transformation, spread over lanes: row . (x, y, z) + shift.
 struct AffineRow {
@@ -56,7 +86,7 @@ struct AffineRow {
 
   HWY_INLINE LaneVector operator()(LaneVector x, LaneVector y, LaneVector z) const
   {
-    return hn::Add(hn::Add(hn::Add(shift, hn::Mul(rx, x)), hn::Mul(ry, y)), hn::Mul(rz, z));
+    return affine(shift, rx, ry, rz, x, y, z);
   }
 };
 
@@ -82,8 +112,8 @@ struct Point {
 
 HWY_INLINE Point carryPoint(const float* m, const float* g, const Point& p)
 {
-  return {((g[0] + m[0] * p.x) + m[1] * p.y) + m[2] * p.z, ((g[1] + m[3] * p.x) + m[4] * p.y) + m[5] * p.z,
-          ((g[2] + m[6] * p.x) + m[7] * p.y) + m[8] * p.z};
+  return {affine(g[0], m[0], m[1], m[2], p.x, p.y, p.z), affine(g[1], m[3], m[4], m[5], p.x, p.y, p.z),
+          affine(g[2], m[6], m[7], m[8], p.x, p.y, p.z)};
 }
 
 /// Eight spheres, and a factor that their radii are stretched by.
@@ -99,8 +129,18 @@ struct Ball {
   float inside_reach; ///< the clearance less the radius, rounded inward
 };
 
-/// Relative margin of squared comparisons: what rounding of distances and of sums of radii may amount to, under 14 u.
-inline constexpr float kSphereMargin = 0x1p-20f;
+/// The limit of spheresNear(), of a radius and its stretch, and a reach that is a sum of another such radius and a
+/// pruneReach(); squared, and times 1 + kSphereMargin.
+template <class Number>
+HWY_INLINE constexpr Number nearLimit(Number radius, Number reach, Number margin)
+{
+  const Number sum = Add(radius, reach);
+  return Mul(Mul(sum, sum), margin);
+}
+
+static_assert(nearLimit(Roundings{1}, Add(Roundings{1}, kNoTerm), Roundings{}) == Roundings{kSphereLimitRoundings},
+              "the margin of spheres follows from it");
+static_assert(relativeError(kSphereLimitRoundings) + kSquaredDistanceError < kSphereMargin);
 
 /// Bit i: sphere i lies within inside_reach altogether.
 HWY_INLINE std::uint32_t spheresInside(const SphereLanes& spheres, const Ball& ball)
@@ -116,7 +156,7 @@ HWY_INLINE std::uint32_t spheresInside(const SphereLanes& spheres, const Ball& b
         hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch * (1.0f + kSphereMargin)));
     const LaneVector room = hn::Sub(hn::Set(d, ball.inside_reach), radius);
     const LaneVector core =
-        hn::Sub(hn::Mul(hn::Mul(room, room), hn::Set(d, 1.0f - kSphereMargin)), hn::Set(d, 0x1p-120f));
+        hn::Sub(hn::Mul(hn::Mul(room, room), hn::Set(d, 1.0f - kSphereMargin)), hn::Set(d, kVanishingSquare));
     inside |= bitsOf(d, hn::And(hn::Gt(room, hn::Zero(d)), hn::Le(s, core))) << i;
   }
   return inside;
@@ -133,8 +173,7 @@ HWY_INLINE std::uint32_t spheresNear(const SphereLanes& spheres, const Ball& bal
                                      hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, ball.y)),
                                      hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, ball.z)));
     const LaneVector radius = hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch));
-    const LaneVector reach = hn::Add(radius, hn::Set(d, ball.near_reach));
-    const LaneVector limit = hn::Mul(hn::Mul(reach, reach), hn::Set(d, 1.0f + kSphereMargin));
+    const LaneVector limit = nearLimit(radius, hn::Set(d, ball.near_reach), hn::Set(d, 1.0f + kSphereMargin));
     apart |= bitsOf(d, hn::Gt(s, limit)) << i; // not so for NaN, which counts as near
     if (gap) hn::StoreU(hn::Sub(hn::Sqrt(s), radius), d, gap + i);
   }
@@ -158,8 +197,8 @@ struct SlabLanes {
 ///
 /// Along a normal u, another slab of normal n and sphere of radius r reaches as far as |u . n| h + |u - (u . n) n| r:
 /// u is split into its parts along n and across it. Normals may be off length 1 by 2^-19, and so may what carries them
-/// from one frame to another; 2^-16 of all lengths pays for these and for float arithmetic. 0 as a normal proves
-/// nothing.
+/// from one frame to another; kSlabMargin of all lengths pays for these and for float arithmetic, a few roundings of
+/// each term, and kSlabMargin in the sine's square for those of 1 - cosine^2. 0 as a normal proves nothing.
 HWY_INLINE std::uint32_t slabsApart(const SphereLanes& spheres, const SlabLanes& slabs, const Slab& other, float reach)
 {
   const LaneTag d;
@@ -178,13 +217,13 @@ HWY_INLINE std::uint32_t slabsApart(const SphereLanes& spheres, const SlabLanes&
     const LaneVector r = hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch));
     const LaneVector cosine = hn::Abs(dot(nx, ny, nz, ux, uy, uz));
     const LaneVector sine = hn::Sqrt(
-        hn::Add(hn::Max(hn::Zero(d), hn::Sub(hn::Set(d, 1.0f), hn::Mul(cosine, cosine))), hn::Set(d, 0x1p-16f)));
+        hn::Add(hn::Max(hn::Zero(d), hn::Sub(hn::Set(d, 1.0f), hn::Mul(cosine, cosine))), hn::Set(d, kSlabMargin)));
     const LaneVector along_other =
         hn::Sub(hn::Abs(dot(ux, uy, uz, dx, dy, dz)), hn::Add(other_h, hn::Add(hn::Mul(cosine, h), hn::Mul(sine, r))));
     const LaneVector along_own = hn::Sub(hn::Abs(dot(nx, ny, nz, dx, dy, dz)),
                                          hn::Add(h, hn::Add(hn::Mul(cosine, other_h), hn::Mul(sine, other_r))));
     const LaneVector lengths = hn::Add(hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz)), hn::Add(r, other_r));
-    const LaneVector limit = hn::Add(hn::Set(d, reach), hn::Mul(lengths, hn::Set(d, 0x1p-16f)));
+    const LaneVector limit = hn::Add(hn::Set(d, reach), hn::Mul(lengths, hn::Set(d, kSlabMargin)));
     apart |= bitsOf(d, hn::Gt(hn::Max(along_other, along_own), limit)) << i;
   }
   return apart;
@@ -207,8 +246,7 @@ HWY_INLINE std::uint32_t spheresNear(const float* squared, const float* radii, f
   const LaneTag d;
   std::uint32_t apart = 0;
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
-    const LaneVector sum = hn::Add(hn::LoadU(d, radii + i), hn::Set(d, reach));
-    const LaneVector limit = hn::Mul(hn::Mul(sum, sum), hn::Set(d, 1.0f + kSphereMargin));
+    const LaneVector limit = nearLimit(hn::LoadU(d, radii + i), hn::Set(d, reach), hn::Set(d, 1.0f + kSphereMargin));
     apart |= bitsOf(d, hn::Gt(hn::Load(d, squared + i), limit)) << i;
   }
   return apart ^ ((1u << kLanes) - 1);

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The float kernels as they are compiled for the instruction set in use: for tests that judge their rounding.
+#pragma once
+
+namespace pcl_bsh::test {
+
+/// Eight points carried, by carry(); and the first of them by carryPoint().
+struct Carried {
+  float x[8], y[8], z[8];
+  float point[3];
+};
+Carried carryEight(const float (&m)[9], const float (&g)[3], const float (&x)[8], const float (&y)[8],
+                   const float (&z)[8]);
+
+/// From each of eight points to another, by centersSquared().
+struct Squared {
+  alignas(32) float of[8];
+};
+Squared squaredEight(const float (&x)[8], const float (&y)[8], const float (&z)[8], const float (&to)[3]);
+
+/// spheresNear() and spheresInside() of one sphere, for a ball that has the reaches as queries compose them.
+struct Near {
+  bool near, inside;
+};
+Near testSphere(const float (&center)[3], float radius, float stretch, const float (&ball)[3], float ball_radius,
+                float prune_reach, float accept_reach);
+
+} // namespace pcl_bsh::test

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The constants that the code uses, as Gappa reads numbers: "name value" in each line.
+#include <pcl_bsh/geometry/local_frame.h>
+#include <pcl_bsh/simd/roundings.h>
+
+#include <cstdio>
+
+int main()
+{
+#define PCL_BSH_PRINT(name) std::printf(#name " %a\n", static_cast<double>(pcl_bsh::name))
+  PCL_BSH_PRINT(kCarriedProductError);
+  PCL_BSH_PRINT(kCarriedShiftError);
+  PCL_BSH_PRINT(kSquaredDistanceError);
+  PCL_BSH_PRINT(kLengthError);
+  PCL_BSH_PRINT(kSphereMargin);
+  PCL_BSH_PRINT(kReachMargin);
+  PCL_BSH_PRINT(kRadiusMargin);
+  PCL_BSH_PRINT(kSegmentRounding);
+  PCL_BSH_PRINT(kStepRounding);
+  PCL_BSH_PRINT(kStoringError);
+  PCL_BSH_PRINT(kFewDoubleRoundings);
+  PCL_BSH_PRINT(kTermsError);
+  PCL_BSH_PRINT(kNeighborShare);
+  PCL_BSH_PRINT(kNeighborMargin);
+}
