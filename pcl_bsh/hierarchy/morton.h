@@ -19,6 +19,18 @@ inline std::uint64_t spreadBits(std::uint64_t v) noexcept
   return v;
 }
 
+/// The inverse of spreadBits(), whatever the bits in between.
+inline std::uint64_t gatherBits(std::uint64_t v) noexcept
+{
+  v &= 0x1249249249249249;
+  v = (v | v >> 2) & 0x10c30c30c30c30c3;
+  v = (v | v >> 4) & 0x100f00f00f00f00f;
+  v = (v | v >> 8) & 0x001f0000ff0000ff;
+  v = (v | v >> 16) & 0x001f00000000ffff;
+  v = (v | v >> 32) & 0x1fffff;
+  return v;
+}
+
 /// Interleaves the bits of three cell numbers below 2^21; x in the lowest.
 inline std::uint64_t mortonCode(std::uint64_t x, std::uint64_t y, std::uint64_t z) noexcept
 {

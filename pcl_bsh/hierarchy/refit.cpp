@@ -48,25 +48,38 @@ bool hasCoincidentLeaf(const Voxel& voxel)
   return false;
 }
 
+/// Bounds of points, as given.
+struct Range {
+  std::array<double, 3> low, high;
+
+  Range()
+  {
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
+  }
+
+  void widen(const std::array<double, 3>& lowest, const std::array<double, 3>& highest)
+  {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], lowest[k]);
+      high[k] = std::max(high[k], highest[k]);
+    }
+  }
+};
+
 /// Where the voxel's points are now, in their order. @return false when one is not finite any more
-bool reread(Voxel& voxel, const PointsView& view, std::vector<PointRecord>& points)
+bool reread(Voxel& voxel, const PointsView& view, std::vector<PointRecord>& points, Range& range)
 {
   const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;
   const auto* sorted = reinterpret_cast<const PointRecord*>(voxel.block);
-  std::array<double, 3> low, high;
-  low.fill(std::numeric_limits<double>::infinity());
-  high.fill(-std::numeric_limits<double>::infinity());
   points.resize(voxel.count);
   for (std::uint32_t i = 0; i < voxel.count; ++i) {
     points[i].record = built ? voxel.records()[i] : sorted[i].record;
     const Point3 p = view.point(points[i].record);
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!std::isfinite(p[k])) return false;
-      low[k] = std::min(low[k], p[k]);
-      high[k] = std::max(high[k], p[k]);
-    }
+    if (!isFinite(p)) return false;
+    range.widen(p, p);
   }
-  voxel.frame = frameBetween(low, high, view.scalar == Scalar::float32);
+  voxel.frame = frameBetween(range.low, range.high, view.scalar == Scalar::float32);
   for (PointRecord& point : points) point = storedIn(voxel.frame, view.point(point.record), point.record);
   return true;
 }
@@ -94,21 +107,18 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
   if (countFinite(now) != storage_->size) return sortAnew();
   Storage& s = *storage_;
   s.view = now;
-  std::array<double, 3> low, high;
-  low.fill(std::numeric_limits<double>::infinity());
-  high.fill(-std::numeric_limits<double>::infinity());
+  s.strayed = 0.0;
+  Range all;
   std::vector<PointRecord> points;
   for (std::size_t v = 0; v < s.voxel_count; ++v) {
     Voxel& voxel = s.voxels[v];
     const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;
     if (built && voxel.leaf_radii == 0.0) voxel.leaf_radii = sumOfLeafRadii(voxel);
     // The frame's unit may change: radii are compared in the cloud's.
-    if (!reread(voxel, now, points)) return sortAnew();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double half = (voxel.frame.reach[k] + voxel.frame.slack(static_cast<int>(k))) * voxel.frame.unit;
-      low[k] = std::min(low[k], voxel.frame.origin[k] - half * (1.0 + 0x1p-40));
-      high[k] = std::max(high[k], voxel.frame.origin[k] + half * (1.0 + 0x1p-40));
-    }
+    Range range;
+    if (!reread(voxel, now, points, range)) return sortAnew();
+    all.widen(range.low, range.high);
+    s.strayed = std::max(s.strayed, s.strayOf(voxel.key, range.low, range.high));
     ++report.voxels_refitted;
     bool keep = built && voxel.given.empty() && !hasCoincidentLeaf(voxel); // points of one place may have parted
     if (keep) {
@@ -128,7 +138,7 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
   const double sum = s.sumOfRadii();
   report.looseness = s.extent > 0.0 ? sum / s.extent : 1.0;
   if (report.looseness > most_growth) return sortAnew();
-  if (s.size > 0) s.frame = frameBetween(low, high, now.scalar == Scalar::float32);
+  if (s.size > 0) s.frame = frameBetween(all.low, all.high, now.scalar == Scalar::float32);
   s.raiseTop();
   return report;
 }

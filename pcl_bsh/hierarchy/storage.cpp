@@ -72,9 +72,6 @@ void SphereHierarchy::Storage::fillSlots()
 
 SphereHierarchy::Storage::Home SphereHierarchy::Storage::homeOf(const Point3& place) const noexcept
 {
-  // Cells were counted in the cloud's scalar type: rounding may have put a point that is so near to a face, in cells
-  // counted from the base, into the neighbouring voxel.
-  constexpr double kStray = 0x1p-23;
   const double inverse = 1.0 / voxel_edge;
   std::array<std::uint64_t, 3> cell;
   double room = 1.0;
@@ -83,12 +80,28 @@ SphereHierarchy::Storage::Home SphereHierarchy::Storage::homeOf(const Point3& pl
     if (!(cells >= 0.0 && cells < 0x1p21)) return {kNoVoxel, -1.0};
     cell[k] = static_cast<std::uint64_t>(cells);
     const double past = cells - static_cast<double>(cell[k]);
-    room = std::min(room, std::min(past, 1.0 - past) - kStray * (cells + 2.0));
+    room = std::min(room, std::min(past, 1.0 - past) - kCellRounding * (cells + 2.0));
   }
   const std::uint64_t key = mortonCode(cell[0], cell[1], cell[2]);
   std::size_t slot = slotOf(key);
   while (slots_[slot] != kNoVoxel && voxels[slots_[slot]].key != key) slot = (slot + 1) & (slots_.size() - 1);
-  return {slots_[slot], room * voxel_edge * (1.0 - kDoubleMargin)};
+  return {slots_[slot], (room - strayed) * voxel_edge * (1.0 - kDoubleMargin)};
+}
+
+double SphereHierarchy::Storage::strayOf(std::uint64_t key, const std::array<double, 3>& low,
+                                         const std::array<double, 3>& high) const noexcept
+{
+  const double inverse = 1.0 / voxel_edge;
+  double stray = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto cell = static_cast<double>(gatherBits(key >> k));
+    // Cell 0 reaches down without end: no other voxel is below it, and homeOf() knows nothing there.
+    const double below = cell > 0.0 ? cell - (low[k] * inverse - base[k]) : 0.0;
+    const double above = high[k] * inverse - base[k] - (cell + 1.0);
+    stray = std::max({stray, below, above});
+  }
+  // Each difference errs by 2^-53 of less than 2^22 cells and of what it comes to.
+  return stray > 0.0 ? stray * (1.0 + 0x1p-50) + 0x1p-30 : 0.0;
 }
 
 double SphereHierarchy::Storage::sumOfRadii() const

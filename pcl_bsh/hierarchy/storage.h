@@ -102,7 +102,9 @@ public:
   }
 
   /// The voxel around a place, or kNoVoxel, and how far the place is from the points of all other voxels: at least
-  /// `room`, in the cloud's unit; negative where nothing is known.
+  /// `room`, in the cloud's unit; negative where nothing is known. Keys tell where points were when they were sorted:
+  /// after a refit() points are elsewhere, and an update leaves them so in the voxels that it does not touch. `strayed`
+  /// pays for that.
   struct Home {
     std::uint32_t voxel;
     double room;
@@ -135,6 +137,13 @@ public:
   std::array<double, 3> base = {0, 0, 0}; ///< cell number 0 of the voxel grid, in cells from the origin
   LocalFrame frame;                       ///< of `top`
   std::vector<Node> top; ///< the octree above the voxels: leaves are voxels; top[0] is the root; empty iff size == 0
+
+  /// How far points lie outside the cells of their voxels, at most, on any axis, in cells; beyond what rounding does
+  /// when points are sorted (kCellRounding). 0 unless a refit() has left moved points in their voxels.
+  double strayed = 0.0;
+
+  /// How far the range [low, high] reaches out of the cell that `key` names, on any axis, in cells; at least.
+  double strayOf(std::uint64_t key, const std::array<double, 3>& low, const std::array<double, 3>& high) const noexcept;
 
   double extent = 0.0; ///< sum of the voxels' radii when the points were sorted into them, in the cloud's unit
 
@@ -170,6 +179,10 @@ private:
   static bool claim(Voxel& voxel);
   static void release(Voxel& voxel, Voxel::State state);
 };
+
+/// Cells are counted in the cloud's scalar type: rounding may put a point into the neighbouring voxel that is nearer to
+/// the face between them than this, times the cell's number and 2, in cells.
+inline constexpr double kCellRounding = 0x1p-23;
 
 /// Floats of padding behind each voxel's block: a whole leaf can be loaded from any point of it.
 inline constexpr std::size_t kBlockPadding = kMaxLeafPoints;

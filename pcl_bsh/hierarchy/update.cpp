@@ -126,10 +126,11 @@ LocalFrame frameOfAll(const SphereHierarchy::Storage& storage)
   high.fill(-std::numeric_limits<double>::infinity());
   for (std::size_t v = 0; v < storage.voxel_count; ++v) {
     const LocalFrame& f = storage.voxels[v].frame;
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) { // rounding outward must not leave the numbers
+      constexpr double largest = std::numeric_limits<double>::max();
       const double half = (f.reach[k] + f.slack(static_cast<int>(k))) * f.unit * (1.0 + 0x1p-40);
-      low[k] = std::min(low[k], f.origin[k] - half);
-      high[k] = std::max(high[k], f.origin[k] + half);
+      low[k] = std::min(low[k], std::max(f.origin[k] - half, -largest));
+      high[k] = std::max(high[k], std::min(f.origin[k] + half, largest));
     }
   }
   return frameBetween(low, high, storage.view.scalar == Scalar::float32);

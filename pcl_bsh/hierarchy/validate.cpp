@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/hierarchy/morton.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
@@ -47,9 +48,12 @@ private:
     if (defects_.lines.size() < kMostLines) defects_.lines.push_back(name_ + ": " + what);
   }
 
-  /// Stored coordinates are within the frame's bounds of the given ones.
+  /// Stored coordinates are within the frame's bounds of the given ones, and given ones where homeOf() expects them.
   void checkPoints(const Voxel& voxel)
   {
+    const double cells =
+        static_cast<double>(gatherBits(voxel.key) | gatherBits(voxel.key >> 1) | gatherBits(voxel.key >> 2));
+    const double most_stray = s_.strayed + kCellRounding * (cells + 2.0);
     for (std::uint32_t i = 0; i < voxel.count; ++i) {
       const std::uint32_t record = voxel.records()[i];
       if (record >= s_.view.count) {
@@ -58,6 +62,8 @@ private:
       }
       ++seen_[record];
       const Point3 p = s_.view.point(record);
+      if (!(s_.strayOf(voxel.key, p, p) <= most_stray))
+        defect("point " + std::to_string(record) + " farther outside its voxel's cell than is known");
       const float stored[3] = {voxel.x()[i], voxel.y()[i], voxel.z()[i]};
       for (std::size_t k = 0; k < 3; ++k) {
         const LocalFrame& f = voxel.frame;

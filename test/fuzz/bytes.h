@@ -27,6 +27,8 @@ public:
   /// A number below `limit`, from one byte.
   unsigned below(unsigned limit) { return take<std::uint8_t>() % limit; }
 
+  bool empty() const { return left_ == 0; }
+
 private:
   const std::uint8_t* data_;
   std::size_t left_;

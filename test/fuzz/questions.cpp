@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "questions.h"
+
+#include "target.h"
+
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/query/brute_force.h>
+#include <pcl_bsh/query/brute_force_neighbors.h>
+#include <pcl_bsh/query/brute_force_points.h>
+#include <pcl_bsh/query/clashes.h>
+#include <pcl_bsh/query/clusters.h>
+#include <pcl_bsh/query/contacts.h>
+#include <pcl_bsh/query/spacing.h>
+#include <pcl_bsh/query/trace.h>
+#include <pcl_bsh/query/trajectory.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+namespace pcl_bsh::fuzz {
+namespace {
+
+using brute_force::Candidate;
+using brute_force::candidatesOf;
+using test::Random;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A finite point of the view, if the first one looked at is.
+std::optional<std::uint32_t> anyPoint(const PointsView& view, Random& random)
+{
+  if (view.size() == 0) return std::nullopt;
+  const auto i = static_cast<std::size_t>(random.integer(0, static_cast<int>(view.size()) - 1));
+  const std::uint32_t record = view.record(i);
+  if (!isFinite(view.point(record))) return std::nullopt;
+  return record;
+}
+
+double nearTie(double tie, Random& random)
+{
+  const int last_bit = random.integer(-1, 1);
+  tie = std::max(tie, 0.0);
+  if (last_bit == 0 || !std::isfinite(tie)) return std::min(tie, std::numeric_limits<double>::max());
+  return std::min(std::nextafter(tie, last_bit < 0 ? 0.0 : infinity), std::numeric_limits<double>::max());
+}
+
+double anyLength(double tie, double unit, Random& random)
+{
+  switch (random.integer(0, 7)) {
+  case 0:
+    return 0.0;
+  case 1:
+    return unit / 8 * random.integer(0, 16);
+  case 2:
+    return unit * random.uniform(0, 0.5);
+  case 3:
+    return random.chance(0.5) ? 8 * unit : std::numeric_limits<double>::max();
+  default:
+    return nearTie(tie, random);
+  }
+}
+
+ExactDistance::Pair posed(const Placed& a, const Placed& b, PointPair pair)
+{
+  const PointsView &p = a.hierarchy.view(), &q = b.hierarchy.view();
+  return {p.point(pair.a), q.point(pair.b), p.radius(pair.a), q.radius(pair.b)};
+}
+
+bool collides(const Placed& a, const Placed& b, PointPair pair, double clearance)
+{
+  const ExactDistance::Pair p = posed(a, b, pair);
+  return ExactDistance(a.pose, b.pose).compare(p.p, p.q, clearance, p.radius_p, p.radius_q) <= 0;
+}
+
+/// Flags of a query that may stop early, or tell apart what is within a tolerance at will.
+void requireFlags(const std::vector<std::uint8_t>& flags, const std::vector<std::uint8_t>& within,
+                  const std::vector<std::uint8_t>& within_tolerance, const Accuracy& accuracy, const char* what)
+{
+  require(flags.size() == within.size(), what);
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    if (flags[i] == 2)
+      require(accuracy.stopsEarly(), what);
+    else if (flags[i] == 1)
+      require(within_tolerance[i] == 1, what);
+    else
+      require(flags[i] == 0 && within[i] == 0, what);
+  }
+}
+
+Accuracy anyAccuracy(double unit, Random& random)
+{
+  switch (random.integer(0, 9)) {
+  case 0:
+    return Accuracy::level(static_cast<unsigned>(random.integer(0, 3)));
+  case 1:
+    return Accuracy::nodePairs(static_cast<std::uint64_t>(random.integer(0, 200)));
+  case 2:
+    return Accuracy::tolerance(unit * random.uniform(0, 0.2));
+  default:
+    return Accuracy::exact();
+  }
+}
+
+double withTolerance(const CollisionRequest& request)
+{
+  return request.clearance + (request.accuracy.mode == Accuracy::Mode::tolerance ? request.accuracy.value : 0.0);
+}
+
+} // namespace
+
+std::vector<PointPair> collidingPairs(const Placed& a, const Placed& b, double clearance)
+{
+  const DefaultFloatEnvironment environment;
+  const ExactDistance distance(a.pose, b.pose);
+  std::vector<PointPair> pairs;
+  const std::vector<Candidate> points = candidatesOf(a.hierarchy.view()), others = candidatesOf(b.hierarchy.view());
+  for (const Candidate& p : points)
+    for (const Candidate& q : others)
+      if (distance.compare(p.point, q.point, clearance, p.radius, q.radius) <= 0) pairs.push_back({p.record, q.record});
+  std::sort(pairs.begin(), pairs.end(), [&](const PointPair& l, const PointPair& r) {
+    const int sign = distance.compareGaps(posed(a, b, l), posed(a, b, r));
+    return sign != 0 ? sign < 0 : l < r;
+  });
+  return pairs;
+}
+
+double Questions::anyClearance(const Placed& a, const Placed& b, double unit, Random& random)
+{
+  const auto p = anyPoint(a.hierarchy.view(), random), q = anyPoint(b.hierarchy.view(), random);
+  const double tie = p && q ? ExactDistance(a.pose, b.pose).gap(posed(a, b, {*p, *q})) : unit;
+  return anyLength(tie, unit, random);
+}
+
+void Questions::ask(const Placed& a, const Placed& b, double unit, unsigned kinds, Random& random)
+{
+  CollisionRequest request;
+  request.clearance = anyClearance(a, b, unit, random);
+  request.flagged = static_cast<Side>(random.integer(1, 3));
+  request.threads = static_cast<unsigned>(random.integer(1, 3));
+  request.accuracy = anyAccuracy(unit, random);
+  if ((kinds & 1) != 0) askAny(a, b, request);
+  if ((kinds & 2) != 0) askFlags(a, b, request);
+  if ((kinds & 4) != 0) askClosest(a, b, request);
+  if ((kinds & 8) != 0) askContacts(a, b, request, random);
+  if ((kinds & 16) != 0) askNeighbors(a.hierarchy, b.hierarchy.view(), unit, random);
+  if ((kinds & 32) != 0) askBoxes(a.hierarchy, unit, random);
+  if ((kinds & 64) != 0) askClusters(a.hierarchy, unit, random);
+  if ((kinds & 128) != 0) askAlong(a, b, unit, random);
+  if ((kinds & 256) != 0) askSpacing(a.hierarchy);
+}
+
+void Questions::askAny(const Placed& a, const Placed& b, const CollisionRequest& request)
+{
+  const bool expected = brute_force::anyCollision(a, b, request).verdict == Verdict::colliding;
+  const AnyResult any = anyCollision(a, b, request);
+  require(any.witness.has_value() == (any.verdict == Verdict::colliding) || request.accuracy.stopsEarly(),
+          "any: a witness belongs to a collision");
+  if (any.verdict == Verdict::colliding)
+    require(any.witness && collides(a, b, *any.witness, withTolerance(request)), "any: the witness does not collide");
+  if (any.verdict == Verdict::free) require(!expected, "any: free, though a pair collides");
+  if (any.verdict == Verdict::undecided) require(request.accuracy.stopsEarly(), "any: undecided, though exact");
+  if (request.accuracy.isExact()) require((any.verdict == Verdict::colliding) == expected, "any: differs");
+  const double distance = brute_force::closestPair(a, b).distance;
+  require(any.distance.lower <= distance && distance <= any.distance.upper, "any: the interval lacks the distance");
+  if (request.accuracy.stopsEarly()) return;
+  const CollisionTrace trace = traceCollision(a, b, request);
+  require(trace.result.verdict == any.verdict && trace.result.witness == any.witness, "trace: another answer");
+  require(trace.result.work.node_pairs == any.work.node_pairs && trace.result.work.leaf_pairs == any.work.leaf_pairs,
+          "trace: other work");
+}
+
+void Questions::askFlags(const Placed& a, const Placed& b, const CollisionRequest& request)
+{
+  collisionFlags(a, b, request, flags_);
+  CollisionRequest wider = request;
+  wider.clearance = withTolerance(request);
+  const FlagsResult expected = brute_force::collisionFlags(a, b, request);
+  if (request.accuracy.isExact()) {
+    require(flags_.a == expected.a && flags_.b == expected.b, "flags: differ");
+    require(flags_.colliding_a == expected.colliding_a && flags_.colliding_b == expected.colliding_b, "flags: counts");
+    require(flags_.undecided_a == 0 && flags_.undecided_b == 0, "flags: undecided, though exact");
+    return;
+  }
+  const FlagsResult tolerated = brute_force::collisionFlags(a, b, wider);
+  requireFlags(flags_.a, expected.a, tolerated.a, request.accuracy, "flags of a: not what the accuracy grants");
+  requireFlags(flags_.b, expected.b, tolerated.b, request.accuracy, "flags of b: not what the accuracy grants");
+  const auto count = [](const std::vector<std::uint8_t>& flags, int value) {
+    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), value));
+  };
+  require(flags_.undecided_a == count(flags_.a, 2) && flags_.undecided_b == count(flags_.b, 2), "flags: undecided");
+}
+
+void Questions::askClosest(const Placed& a, const Placed& b, const CollisionRequest& request)
+{
+  const DistanceResult found = closestPair(a, b, request), expected = brute_force::closestPair(a, b);
+  require(found.interval.lower <= expected.distance && expected.distance <= found.interval.upper,
+          "closest pair: the interval lacks the distance");
+  if (request.accuracy.mode == Accuracy::Mode::exact) {
+    require(found.distance == expected.distance, "closest pair: another distance");
+    require(found.pair == expected.pair, "closest pair: another pair");
+  }
+  else if (found.pair) {
+    require(ExactDistance(a.pose, b.pose).gap(posed(a, b, *found.pair)) == found.distance, "closest pair: not its own");
+  }
+}
+
+void Questions::askContacts(const Placed& a, const Placed& b, const CollisionRequest& request, Random& random)
+{
+  const std::vector<PointPair> expected = collidingPairs(a, b, request.clearance);
+  constexpr int counts[] = {0, 1, 2, 10, 1000000};
+  const auto most = static_cast<std::size_t>(random.pick(counts));
+  const ContactsResult contacts = nearestContacts(a, b, request, most);
+  require(contacts.contacts.size() == std::min(most, expected.size()), "contacts: another number");
+  require(contacts.complete == (expected.size() <= most), "contacts: complete or not");
+  for (std::size_t i = 0; i < contacts.contacts.size(); ++i) {
+    require(contacts.contacts[i].pair == expected[i], "contacts: another pair");
+    require(contacts.contacts[i].distance == ExactDistance(a.pose, b.pose).gap(posed(a, b, expected[i])),
+            "contacts: another distance");
+  }
+  PairsWithin within = pairsWithin(a, b, request, most);
+  require(within.complete == (expected.size() <= most), "pairs: complete or not");
+  require(within.pairs.size() == std::min(most, expected.size()), "pairs: another number");
+  std::vector<PointPair> all = expected;
+  std::sort(all.begin(), all.end());
+  std::sort(within.pairs.begin(), within.pairs.end());
+  require(std::includes(all.begin(), all.end(), within.pairs.begin(), within.pairs.end()), "pairs: others");
+}
+
+void Questions::askNeighbors(const SphereHierarchy& cloud, const PointsView& queries, double unit, Random& random)
+{
+  const ExactDistance distance(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity());
+  const auto somewhere = [&]() -> Point3 {
+    const auto own = anyPoint(cloud.view(), random), other = anyPoint(queries, random);
+    Point3 q = own ? cloud.view().point(*own) : Point3{0, 0, 0};
+    if (other && random.chance(0.3)) q = queries.point(*other);
+    if (random.chance(0.6))
+      for (double& x : q) x += random.chance(0.5) ? unit / 4 * random.integer(-4, 4) : unit * random.uniform(-0.5, 0.5);
+    return q;
+  };
+  const auto anyRadius = [&](const Point3& q) {
+    const auto p = anyPoint(cloud.view(), random);
+    const double tie = p && isFinite(q) ? distance.gap({cloud.view().point(*p), q}) : unit;
+    return random.chance(0.05) ? infinity : anyLength(tie, unit, random);
+  };
+  RadiusOptions options;
+  Neighbors expected;
+  for (int i = 0; i < 12; ++i) {
+    const Point3 q = somewhere();
+    const double radius = anyRadius(q);
+    options.most = random.chance(0.5) ? 0 : static_cast<std::size_t>(random.integer(0, 20));
+    options.sorted = random.chance(0.8);
+    radiusSearch(cloud, q, radius, neighbors_, options);
+    brute_force::radiusSearch(cloud, q, radius, expected, options);
+    if (!options.sorted) {
+      const auto sorted = [](const Neighbors& n) {
+        std::vector<std::pair<float, std::int32_t>> pairs;
+        for (std::size_t k = 0; k < n.indices.size(); ++k) pairs.emplace_back(n.squared_distances[k], n.indices[k]);
+        std::sort(pairs.begin(), pairs.end());
+        return pairs;
+      };
+      require(sorted(neighbors_) == sorted(expected), "radius search, unsorted: differs");
+    }
+    else {
+      require(neighbors_.indices == expected.indices, "radius search: other neighbours");
+      require(neighbors_.squared_distances == expected.squared_distances, "radius search: other distances");
+    }
+    require(anyInRadius(cloud, q, radius) == brute_force::anyInRadius(cloud, q, radius), "any in radius: differs");
+    const auto k = static_cast<std::size_t>(random.integer(0, 20));
+    nearestKSearch(cloud, q, k, neighbors_);
+    brute_force::nearestKSearch(cloud, q, k, expected);
+    require(neighbors_.indices == expected.indices, "k nearest: other neighbours");
+    require(neighbors_.squared_distances == expected.squared_distances, "k nearest: other distances");
+  }
+
+  // Batches: the other cloud's points are the queries.
+  const auto threads = static_cast<unsigned>(random.integer(1, 3));
+  options.most = random.chance(0.5) ? 0 : 3;
+  options.sorted = true;
+  const double radius = anyRadius(somewhere());
+  const auto k = static_cast<std::size_t>(random.integer(0, 5));
+  const auto requireLists = [&](const auto& twin, const char* what) {
+    require(lists_.indices.size() == queries.size(), what);
+    for (std::size_t i = 0; i < queries.size(); i += 7) {
+      twin(queries.point(queries.record(i)));
+      require(lists_.indices[i] == expected.indices, what);
+      require(lists_.squared_distances[i] == expected.squared_distances, what);
+    }
+  };
+  radiusSearch(cloud, queries, radius, lists_, options, threads);
+  requireLists([&](const Point3& q) { brute_force::radiusSearch(cloud, q, radius, expected, options); },
+               "radius search of many: differs");
+  nearestKSearch(cloud, queries, k, lists_, threads);
+  requireLists([&](const Point3& q) { brute_force::nearestKSearch(cloud, q, k, expected); },
+               "k nearest of many: differs");
+  const std::vector<std::uint8_t> any = flagAnyInRadius(cloud, queries, radius, threads);
+  for (std::size_t i = 0; i < queries.size(); i += 5)
+    require((any[i] != 0) == brute_force::anyInRadius(cloud, queries.point(queries.record(i)), radius),
+            "any in radius of many: differs");
+  if (!queries.radii) return;
+  const std::vector<std::uint8_t> balls = anyInBalls(cloud, queries, threads);
+  for (std::size_t i = 0; i < queries.size(); i += 5) {
+    const std::uint32_t record = queries.record(i);
+    require((balls[i] != 0) == brute_force::anyInRadius(cloud, queries.point(record), queries.radius(record)),
+            "any in balls: differs");
+  }
+}
+
+void Questions::askBoxes(const SphereHierarchy& cloud, double unit, Random& random)
+{
+  std::vector<std::int32_t> expected;
+  for (int i = 0; i < 4; ++i) {
+    Point3 low, high;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto p = anyPoint(cloud.view(), random);
+      const double from = p && random.chance(0.7) ? cloud.view().point(*p)[k] : unit * random.uniform(-2, 2);
+      const double to = random.chance(0.3) ? from : from + unit / 8 * random.integer(-1, 16);
+      low[k] = random.chance(0.05) ? -infinity : from;
+      high[k] = random.chance(0.05) ? infinity : to;
+    }
+    boxSearch(cloud, low, high, indices_);
+    brute_force::boxSearch(cloud, low, high, expected);
+    require(indices_ == expected, "box search: differs");
+  }
+}
+
+void Questions::askClusters(const SphereHierarchy& cloud, double unit, Random& random)
+{
+  const double distance = anyClearance({cloud}, {cloud}, unit, random);
+  const Clusters found = euclideanClusters(cloud, distance), expected = brute_force::euclideanClusters(cloud, distance);
+  require(found.of == expected.of && found.sizes == expected.sizes, "clusters: differ");
+}
+
+void Questions::askAlong(const Placed& a, const Placed& b, double unit, Random& random)
+{
+  std::vector<Eigen::Isometry3d> poses;
+  Eigen::Isometry3d pose = b.pose;
+  for (int k = random.integer(0, 5); k > 0; --k) {
+    poses.push_back(pose);
+    pose.pretranslate(Eigen::Vector3d(unit / 8 * random.integer(-2, 2), unit / 8 * random.integer(-2, 2), 0));
+    if (random.chance(0.2)) pose.linear() = random.rotation().toRotationMatrix();
+  }
+  TrajectoryRequest request;
+  request.clearance = anyClearance(a, b, unit, random);
+  request.threads = static_cast<unsigned>(random.integer(1, 3));
+  request.flags = random.chance(0.7);
+  request.distances = random.chance(0.5);
+  request.first_poses = random.chance(0.5);
+  request.closest_poses = random.chance(0.5);
+  request.pose_summaries = random.chance(0.5);
+  TrajectoryRequest all = request;
+  all.flags = all.distances = all.first_poses = all.closest_poses = all.pose_summaries = true;
+  const TrajectoryResult expected = brute_force::collideAlong(a, b.hierarchy, poses, all);
+  const TrajectoryResult found = collideAlong(a, b.hierarchy, poses, request);
+  const auto same = [](const auto& x, const auto& y, bool asked, const char* what) {
+    require(asked ? x == y : x.empty(), what);
+  };
+  same(found.flags, expected.flags, request.flags, "along: flags differ");
+  const auto bits = [](const std::vector<float>& lengths) { // NaN equals NaN
+    std::vector<std::uint32_t> words(lengths.size());
+    if (!lengths.empty()) std::memcpy(words.data(), lengths.data(), 4 * lengths.size());
+    return words;
+  };
+  same(bits(found.distance), bits(expected.distance), request.distances, "along: distances differ");
+  same(found.first_pose, expected.first_pose, request.first_poses, "along: first poses differ");
+  same(found.closest_pose, expected.closest_pose, request.closest_poses, "along: closest poses differ");
+  same(found.closest_point, expected.closest_point, request.distances || request.closest_poses,
+       "along: closest points differ");
+  require(found.poses.size() == (request.pose_summaries ? poses.size() : 0), "along: number of summaries");
+  for (std::size_t k = 0; k < found.poses.size(); ++k)
+    require(found.poses[k].colliding == expected.poses[k].colliding &&
+                found.poses[k].colliding_points == expected.poses[k].colliding_points &&
+                found.poses[k].distance == expected.poses[k].distance,
+            "along: summaries differ");
+
+  if (random.chance(0.3)) {
+    TrajectoryRequest early = request;
+    early.distances = early.first_poses = early.closest_poses = early.pose_summaries = false;
+    early.flags = true;
+    early.accuracy = random.chance(0.5) ? Accuracy::level(static_cast<unsigned>(random.integer(0, 2)))
+                                        : Accuracy::nodePairs(static_cast<std::uint64_t>(random.integer(0, 300)));
+    requireFlags(collideAlong(a, b.hierarchy, poses, early).flags, expected.flags, expected.flags, early.accuracy,
+                 "along: not what the accuracy grants");
+  }
+  if (random.chance(0.3)) {
+    TrajectoryRequest swept = request;
+    swept.pose_summaries = false;
+    swept.flags = true;
+    swept.swept = unit / 64;
+    std::vector<std::uint8_t> flags;
+    try {
+      flags = collideAlong(a, b.hierarchy, poses, swept).flags;
+    }
+    catch (const std::invalid_argument&) { // coordinates too large for the tolerance
+      return;
+    }
+    for (std::size_t i = 0; i < flags.size(); ++i)
+      require(flags[i] >= expected.flags[i], "swept: free, though colliding at a pose");
+  }
+  if (!isFinite({request.clearance, 0, 0}) || request.clearance > 1e100) return;
+  const double step = unit / 4;
+  std::vector<std::uint32_t> clashing;
+  const std::vector<Clash> clashes = findClashes(a.hierarchy.view(), expected, step);
+  for (const Clash& clash : clashes) clashing.insert(clashing.end(), clash.records.begin(), clash.records.end());
+  std::sort(clashing.begin(), clashing.end());
+  std::vector<std::uint32_t> colliding;
+  for (std::uint32_t i = 0; i < expected.flags.size(); ++i)
+    if (expected.flags[i] == 1) colliding.push_back(i);
+  require(clashing == colliding, "clashes: do not hold the colliding points once each");
+  std::vector<std::int32_t> subset(colliding.begin(), colliding.end());
+  subset.push_back(0); // so that there is an address
+  PointsView those = a.hierarchy.view();
+  those.indices = subset.data();
+  those.index_count = colliding.size();
+  const Clusters clusters = brute_force::euclideanClusters(SphereHierarchy(those), step);
+  require(clusters.sizes.size() == clashes.size(), "clashes: not the clusters");
+  for (const Clash& clash : clashes)
+    for (const std::uint32_t record : clash.records)
+      require(clusters.of[record] == clusters.of[clash.records.front()], "clashes: not the clusters");
+}
+
+void Questions::askSpacing(const SphereHierarchy& cloud)
+{
+  const std::vector<Candidate> points = candidatesOf(cloud.view());
+  if (points.size() > 1024) return;
+  std::vector<double> gaps;
+  for (const Candidate& p : points) {
+    double nearest = infinity;
+    for (const Candidate& q : points)
+      if (p.point != q.point)
+        nearest =
+            std::min(nearest, std::hypot(p.point[0] - q.point[0], p.point[1] - q.point[1], p.point[2] - q.point[2]));
+    if (std::isfinite(nearest)) gaps.push_back(nearest);
+  }
+  const Spacing found = spacingOf(cloud);
+  require(found.samples == points.size(), "spacing: another number of samples");
+  if (gaps.empty()) return require(found.median == 0.0 && found.wide == 0.0, "spacing: of one place");
+  std::sort(gaps.begin(), gaps.end());
+  const auto near = [](double x, double y) { return std::abs(x - y) <= 1e-6 * y; };
+  require(near(found.median, gaps[gaps.size() / 2]), "spacing: another median");
+  require(near(found.wide, gaps[gaps.size() * 9 / 10]), "spacing: another wide one");
+}
+
+} // namespace pcl_bsh::fuzz

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every public query, with all of its options, against brute force.
+#pragma once
+
+#include "changing_cloud.h"
+
+#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/neighbors.h>
+
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::fuzz {
+
+/// Throws a Finding when an answer is not what brute force says. Results are kept and used again from question to
+/// question, whatever clouds they were of.
+class Questions {
+public:
+  /// Asks one question of each kind that `kinds` has its bit set for.
+  void ask(const Placed& a, const Placed& b, double unit, unsigned kinds, test::Random& random);
+
+  static constexpr unsigned kKinds = 9;
+
+  /// 0; the distance of two points, or one of the neighbouring numbers; some units; more than all.
+  static double anyClearance(const Placed& a, const Placed& b, double unit, test::Random& random);
+
+private:
+  void askAny(const Placed& a, const Placed& b, const CollisionRequest& request);
+  void askFlags(const Placed& a, const Placed& b, const CollisionRequest& request);
+  void askClosest(const Placed& a, const Placed& b, const CollisionRequest& request);
+  void askContacts(const Placed& a, const Placed& b, const CollisionRequest& request, test::Random& random);
+  void askNeighbors(const SphereHierarchy& cloud, const PointsView& queries, double unit, test::Random& random);
+  void askBoxes(const SphereHierarchy& cloud, double unit, test::Random& random);
+  void askClusters(const SphereHierarchy& cloud, double unit, test::Random& random);
+  void askAlong(const Placed& a, const Placed& b, double unit, test::Random& random);
+  void askSpacing(const SphereHierarchy& cloud);
+
+  FlagsResult flags_;
+  Neighbors neighbors_;
+  NeighborLists lists_;
+  std::vector<std::int32_t> indices_;
+};
+
+/// All colliding pairs of points, the nearest first, then by (a, b).
+std::vector<PointPair> collidingPairs(const Placed& a, const Placed& b, double clearance);
+
+} // namespace pcl_bsh::fuzz
