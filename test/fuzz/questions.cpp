@@ -10,14 +10,13 @@
 #include <pcl_bsh/query/brute_force_points.h>
 #include <pcl_bsh/query/clashes.h>
 #include <pcl_bsh/query/clusters.h>
-#include <pcl_bsh/query/contacts.h>
 #include <pcl_bsh/query/spacing.h>
 #include <pcl_bsh/query/trace.h>
 #include <pcl_bsh/query/trajectory.h>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <sstream>
 #include <stdexcept>
 
 namespace pcl_bsh::fuzz {
@@ -90,6 +89,30 @@ void requireFlags(const std::vector<std::uint8_t>& flags, const std::vector<std:
   }
 }
 
+void requireHeld(const Interval& interval, double distance, const CollisionRequest& request, const char* what)
+{
+  if (interval.lower <= distance && distance <= interval.upper) return;
+  std::ostringstream text;
+  text.precision(17);
+  text << what << ", accuracy " << request.accuracy.text() << ": [" << interval.lower << ", " << interval.upper
+       << "] lacks the distance " << distance;
+  throw Finding(text.str());
+}
+
+void requireSame(const Neighbors& found, const Neighbors& expected, const std::string& what, const Point3& query)
+{
+  if (found.indices == expected.indices && found.squared_distances == expected.squared_distances) return;
+  std::ostringstream text;
+  text.precision(17);
+  text << what << " at " << query[0] << ' ' << query[1] << ' ' << query[2] << ": other neighbours\n  found";
+  for (std::size_t i = 0; i < found.indices.size(); ++i)
+    text << ' ' << found.indices[i] << " (" << found.squared_distances[i] << ')';
+  text << "\n  expected";
+  for (std::size_t i = 0; i < expected.indices.size(); ++i)
+    text << ' ' << expected.indices[i] << " (" << expected.squared_distances[i] << ')';
+  throw Finding(text.str());
+}
+
 Accuracy anyAccuracy(double unit, Random& random)
 {
   switch (random.integer(0, 9)) {
@@ -120,11 +143,33 @@ std::vector<PointPair> collidingPairs(const Placed& a, const Placed& b, double c
   for (const Candidate& p : points)
     for (const Candidate& q : others)
       if (distance.compare(p.point, q.point, clearance, p.radius, q.radius) <= 0) pairs.push_back({p.record, q.record});
-  std::sort(pairs.begin(), pairs.end(), [&](const PointPair& l, const PointPair& r) {
+  std::sort(pairs.begin(), pairs.end()); // a subset may name a record twice
+  return pairs;
+}
+
+void requireNearest(const Placed& a, const Placed& b, const std::vector<PointPair>& colliding, std::size_t most,
+                    const std::vector<Contact>& contacts)
+{
+  require(contacts.size() == std::min(most, colliding.size()), "contacts: another number");
+  if (contacts.empty()) return;
+  const DefaultFloatEnvironment environment;
+  const ExactDistance distance(a.pose, b.pose);
+  const auto before = [&](const PointPair& l, const PointPair& r) {
     const int sign = distance.compareGaps(posed(a, b, l), posed(a, b, r));
     return sign != 0 ? sign < 0 : l < r;
-  });
-  return pairs;
+  };
+  std::vector<PointPair> found;
+  for (const Contact& contact : contacts) {
+    require(found.empty() || !before(contact.pair, found.back()), "contacts: not in order");
+    require(contact.distance == distance.gap(posed(a, b, contact.pair)), "contacts: another distance");
+    found.push_back(contact.pair);
+  }
+  const PointPair last = found.back();
+  std::sort(found.begin(), found.end());
+  require(std::includes(colliding.begin(), colliding.end(), found.begin(), found.end()), "contacts: other pairs");
+  std::vector<PointPair> left_out;
+  std::set_difference(colliding.begin(), colliding.end(), found.begin(), found.end(), std::back_inserter(left_out));
+  for (const PointPair& pair : left_out) require(!before(pair, last), "contacts: a nearer pair was left out");
 }
 
 double Questions::anyClearance(const Placed& a, const Placed& b, double unit, Random& random)
@@ -164,7 +209,7 @@ void Questions::askAny(const Placed& a, const Placed& b, const CollisionRequest&
   if (any.verdict == Verdict::undecided) require(request.accuracy.stopsEarly(), "any: undecided, though exact");
   if (request.accuracy.isExact()) require((any.verdict == Verdict::colliding) == expected, "any: differs");
   const double distance = brute_force::closestPair(a, b).distance;
-  require(any.distance.lower <= distance && distance <= any.distance.upper, "any: the interval lacks the distance");
+  requireHeld(any.distance, distance, request, "any");
   if (request.accuracy.stopsEarly()) return;
   const CollisionTrace trace = traceCollision(a, b, request);
   require(trace.result.verdict == any.verdict && trace.result.witness == any.witness, "trace: another answer");
@@ -196,8 +241,7 @@ void Questions::askFlags(const Placed& a, const Placed& b, const CollisionReques
 void Questions::askClosest(const Placed& a, const Placed& b, const CollisionRequest& request)
 {
   const DistanceResult found = closestPair(a, b, request), expected = brute_force::closestPair(a, b);
-  require(found.interval.lower <= expected.distance && expected.distance <= found.interval.upper,
-          "closest pair: the interval lacks the distance");
+  requireHeld(found.interval, expected.distance, request, "closest pair");
   if (request.accuracy.mode == Accuracy::Mode::exact) {
     require(found.distance == expected.distance, "closest pair: another distance");
     require(found.pair == expected.pair, "closest pair: another pair");
@@ -213,20 +257,13 @@ void Questions::askContacts(const Placed& a, const Placed& b, const CollisionReq
   constexpr int counts[] = {0, 1, 2, 10, 1000000};
   const auto most = static_cast<std::size_t>(random.pick(counts));
   const ContactsResult contacts = nearestContacts(a, b, request, most);
-  require(contacts.contacts.size() == std::min(most, expected.size()), "contacts: another number");
   require(contacts.complete == (expected.size() <= most), "contacts: complete or not");
-  for (std::size_t i = 0; i < contacts.contacts.size(); ++i) {
-    require(contacts.contacts[i].pair == expected[i], "contacts: another pair");
-    require(contacts.contacts[i].distance == ExactDistance(a.pose, b.pose).gap(posed(a, b, expected[i])),
-            "contacts: another distance");
-  }
+  requireNearest(a, b, expected, most, contacts.contacts);
   PairsWithin within = pairsWithin(a, b, request, most);
   require(within.complete == (expected.size() <= most), "pairs: complete or not");
   require(within.pairs.size() == std::min(most, expected.size()), "pairs: another number");
-  std::vector<PointPair> all = expected;
-  std::sort(all.begin(), all.end());
   std::sort(within.pairs.begin(), within.pairs.end());
-  require(std::includes(all.begin(), all.end(), within.pairs.begin(), within.pairs.end()), "pairs: others");
+  require(std::includes(expected.begin(), expected.end(), within.pairs.begin(), within.pairs.end()), "pairs: others");
 }
 
 void Questions::askNeighbors(const SphereHierarchy& cloud, const PointsView& queries, double unit, Random& random)
@@ -264,15 +301,13 @@ void Questions::askNeighbors(const SphereHierarchy& cloud, const PointsView& que
       require(sorted(neighbors_) == sorted(expected), "radius search, unsorted: differs");
     }
     else {
-      require(neighbors_.indices == expected.indices, "radius search: other neighbours");
-      require(neighbors_.squared_distances == expected.squared_distances, "radius search: other distances");
+      requireSame(neighbors_, expected, "radius search of " + std::to_string(radius), q);
     }
     require(anyInRadius(cloud, q, radius) == brute_force::anyInRadius(cloud, q, radius), "any in radius: differs");
     const auto k = static_cast<std::size_t>(random.integer(0, 20));
     nearestKSearch(cloud, q, k, neighbors_);
     brute_force::nearestKSearch(cloud, q, k, expected);
-    require(neighbors_.indices == expected.indices, "k nearest: other neighbours");
-    require(neighbors_.squared_distances == expected.squared_distances, "k nearest: other distances");
+    requireSame(neighbors_, expected, "nearest " + std::to_string(k), q);
   }
 
   // Batches: the other cloud's points are the queries.
@@ -354,8 +389,14 @@ void Questions::askAlong(const Placed& a, const Placed& b, double unit, Random& 
   all.flags = all.distances = all.first_poses = all.closest_poses = all.pose_summaries = true;
   const TrajectoryResult expected = brute_force::collideAlong(a, b.hierarchy, poses, all);
   const TrajectoryResult found = collideAlong(a, b.hierarchy, poses, request);
-  const auto same = [](const auto& x, const auto& y, bool asked, const char* what) {
-    require(asked ? x == y : x.empty(), what);
+  const auto same = [&](const auto& x, const auto& y, bool asked, const char* what) {
+    if (asked ? x == y : x.empty()) return;
+    std::ostringstream text;
+    text.precision(17);
+    text << what << ", clearance " << request.clearance << ", " << poses.size() << " poses";
+    for (std::size_t i = 0; asked && i < std::min(x.size(), y.size()); ++i)
+      if (x[i] != y[i]) text << "; point " << i << ": " << x[i] << " instead of " << y[i];
+    throw Finding(text.str());
   };
   same(found.flags, expected.flags, request.flags, "along: flags differ");
   const auto bits = [](const std::vector<float>& lengths) { // NaN equals NaN

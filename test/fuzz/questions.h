@@ -5,6 +5,7 @@
 #include "changing_cloud.h"
 
 #include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/contacts.h>
 #include <pcl_bsh/query/neighbors.h>
 
 #include <string>
@@ -41,7 +42,11 @@ private:
   std::vector<std::int32_t> indices_;
 };
 
-/// All colliding pairs of points, the nearest first, then by (a, b).
+/// All colliding pairs of points, by (a, b).
 std::vector<PointPair> collidingPairs(const Placed& a, const Placed& b, double clearance);
+
+/// Throws a Finding unless these are the `most` nearest of all colliding pairs, in their order.
+void requireNearest(const Placed& a, const Placed& b, const std::vector<PointPair>& colliding, std::size_t most,
+                    const std::vector<Contact>& contacts);
 
 } // namespace pcl_bsh::fuzz
