@@ -133,8 +133,8 @@ private:
 
   Open childOf(const Open& open, Opened opened, const PairWalk::Step& step, std::uint32_t lane) const
   {
-    return {std::max(open.lower, lowerOr(open.lower, walk_.lowerBound(open.pair, step, lane))),
-            PairWalk::childOf(open.pair, opened, step, lane),
+    const LanePair child = PairWalk::childOf(open.pair, opened, step, lane);
+    return {std::max(open.lower, lowerOr(open.lower, walk_.lowerBound(child, step, lane))), child,
             open.level_a + (opened == Opened::a && isBelowVoxels(step) ? 1 : 0),
             open.level_b + (opened == Opened::b && isBelowVoxels(step) ? 1 : 0)};
   }

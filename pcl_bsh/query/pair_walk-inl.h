@@ -184,6 +184,7 @@ public:
   }
 
   /// No pair of points below child `lane` of a step is nearer than this, in the clouds' unit; may be negative.
+  /// @param pair the child, as childOf() has it: the pair that was opened may be in a space of another unit
   double lowerBound(const LanePair& pair, const Step& step, std::uint32_t lane) const
   {
     const double gap = step.gap[lane], radius = step.radii[lane] * step.stretch;

@@ -119,7 +119,7 @@ ChangingCloud::ChangingCloud(const World& world, Random& random)
   tail_(random.chance(0.5) ? 0 : static_cast<std::size_t>(random.integer(0, 8)))
 {
   constexpr int counts[] = {0, 1, 2, 7, 16, 17, 20, 33, 33, 50};
-  const int count = random.chance(0.05) ? 100 : random.pick(counts);
+  const int count = random.chance(0.03) ? 80 : random.pick(counts);
   for (int i = 0; i < count; ++i) append(placeOrNone(random), random);
   for (int i = 0; with_subset_ && i < count; ++i)
     if (random.chance(0.6)) indices_.push_back(random.chance(0.02) ? random.integer(0, count - 1) : count - 1 - i);

@@ -25,10 +25,11 @@ public:
   /// 0; the distance of two points, or one of the neighbouring numbers; some units; more than all.
   static double anyClearance(const Placed& a, const Placed& b, double unit, test::Random& random);
 
-private:
   void askAny(const Placed& a, const Placed& b, const CollisionRequest& request);
   void askFlags(const Placed& a, const Placed& b, const CollisionRequest& request);
   void askClosest(const Placed& a, const Placed& b, const CollisionRequest& request);
+
+private:
   void askContacts(const Placed& a, const Placed& b, const CollisionRequest& request, test::Random& random);
   void askNeighbors(const SphereHierarchy& cloud, const PointsView& queries, double unit, test::Random& random);
   void askBoxes(const SphereHierarchy& cloud, double unit, test::Random& random);

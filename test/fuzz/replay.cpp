@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs a fuzz target without libFuzzer: its stored corpus, then a fixed number of mutations of it, the same each time.
-//   TARGET CORPUS [ROUNDS]     default: 0 rounds; CORPUS is a folder, or one file to look at again
+//   TARGET CORPUS [ROUNDS]         default: 0 rounds; CORPUS is a folder, or one file to look at again
+//   TARGET --random FIRST ROUNDS   random bytes instead, of seeds from FIRST on; says every thousand how far it is
 // What fails is kept as finding.bin in the working folder.
+#include "random_input.h"
 #include "target.h"
 
 #include <algorithm>
@@ -144,19 +146,37 @@ int replay(const fs::path& path, std::size_t rounds)
   return 0;
 }
 
+int tryRandom(std::uint32_t first, std::size_t rounds)
+{
+  for (std::size_t i = 0; i < rounds; ++i) {
+    const std::uint32_t seed = first + static_cast<std::uint32_t>(i);
+    if (!passes(pcl_bsh::fuzz::randomInput(seed), "random input " + std::to_string(seed))) return 1;
+    if ((i + 1) % 1000 == 0) std::cout << i + 1 << " random inputs, no finding" << std::endl;
+  }
+  return 0;
+}
+
+template <class Number>
+Number numberOf(const char* text)
+{
+  Number number = 0;
+  std::from_chars(text, text + std::strlen(text), number);
+  return number;
+}
+
 } // namespace
 
 int main(int argc, char** argv)
 {
-  std::size_t rounds = 0;
-  if (argc == 3) std::from_chars(argv[2], argv[2] + std::strlen(argv[2]), rounds);
-  if (argc < 2 || argc > 3) {
-    std::cerr << argv[0] << ": command line: CORPUS [ROUNDS] is expected\n";
+  const bool random = argc == 4 && std::strcmp(argv[1], "--random") == 0;
+  if (!random && (argc < 2 || argc > 3)) {
+    std::cerr << argv[0] << ": command line: CORPUS [ROUNDS] or --random FIRST ROUNDS is expected\n";
     return 2;
   }
   for (const int signal : {SIGABRT, SIGSEGV, SIGFPE}) std::signal(signal, onCrash);
   try {
-    return replay(argv[1], rounds);
+    if (random) return tryRandom(numberOf<std::uint32_t>(argv[2]), numberOf<std::size_t>(argv[3]));
+    return replay(argv[1], argc == 3 ? numberOf<std::size_t>(argv[2]) : 0);
   }
   catch (const std::exception& error) {
     std::cerr << argv[0] << ": " << error.what() << '\n';

@@ -219,6 +219,31 @@ TEST(HierarchyUpdate, ManyUpdatesDoNotPileUp)
   expectSound(hierarchy);
 }
 
+/// Bounds are rounded outward, but not beyond the largest number: a frame of infinities is near to nothing.
+TEST(HierarchyUpdate, AtTheLargestNumbers)
+{
+  constexpr double largest = std::numeric_limits<double>::max();
+  std::vector<double> xyz;
+  for (int i = 0; i < 60; ++i) {
+    const double x = i % 3 == 0 ? largest : i % 3 == 1 ? -largest : 0.0;
+    xyz.insert(xyz.end(), {x, 1e306 * i, x == 0.0 ? 0.0 : largest});
+  }
+  SphereHierarchy hierarchy(viewOf(xyz.data(), 60));
+  const std::int32_t record = 2;
+  HierarchyUpdate update(hierarchy, &record, 1);
+  xyz[7] = 1e300;
+  EXPECT_FALSE(update.commit(viewOf(xyz.data(), 60)).sorted_anew);
+  expectSound(hierarchy);
+  EXPECT_TRUE(closestPair({hierarchy}, {hierarchy}).pair);
+  CollisionRequest request;
+  EXPECT_EQ(collisionFlags({hierarchy}, {hierarchy}, request).colliding_a, 60u);
+
+  for (double& x : xyz) x = -x;
+  hierarchy.refit(viewOf(xyz.data(), 60), 1e9);
+  expectSound(hierarchy);
+  EXPECT_EQ(collisionFlags({hierarchy}, {hierarchy}, request).colliding_a, 60u);
+}
+
 TEST(HierarchyUpdate, RefusesWhatItCannotDo)
 {
   Random random(6);

@@ -354,6 +354,36 @@ TEST(Accuracy, LessAccuracyIsLessWork)
   EXPECT_EQ(cost(Accuracy::exact()), exact);
 }
 
+/// Voxels whose unit is not the cloud's: bounds are in the unit of the space that a walk has entered.
+TEST(Accuracy, BoundsInVoxelsOfAnotherUnit)
+{
+  for (const double size : {1e-12, 1e-40, 1e20, 1e100}) {
+    std::vector<Point3> points;
+    for (int i = 0; i < 40; ++i) points.push_back({size * (i % 7), size * (i % 5), size * i});
+    points.push_back({1.0, 3.0, 2.0});
+    points.push_back({1e6, 0.0, 0.0});
+    const Cloud cloud(points, {Scalar::float64, 0, 0}), one({{-1.0, 0.25, 0.0}}, {Scalar::float64, 0, 0});
+    HierarchyOptions options;
+    options.voxel_edge = 0.5;
+    const SphereHierarchy a(cloud.view(), options), b(one.view());
+    for (const bool turned : {false, true}) {
+      const Placed first{turned ? b : a}, second{turned ? a : b};
+      const double truth = brute_force::closestPair(first, second).distance;
+      for (const Accuracy& accuracy :
+           {Accuracy::level(0), Accuracy::level(2), Accuracy::level(9), Accuracy::nodePairs(1), Accuracy::nodePairs(30),
+            Accuracy::nodePairs(100000), Accuracy::time(10.0)}) {
+        CollisionRequest request;
+        request.accuracy = accuracy;
+        const DistanceResult found = closestPair(first, second, request);
+        EXPECT_LE(found.interval.lower, truth) << accuracy.text() << ", size " << size;
+        EXPECT_GE(found.interval.upper, truth) << accuracy.text() << ", size " << size;
+        request.clearance = truth;
+        EXPECT_NE(anyCollision(first, second, request).verdict, Verdict::free) << accuracy.text() << ", size " << size;
+      }
+    }
+  }
+}
+
 TEST(Accuracy, EmptyCloudsCollideWithNothingAtAnySetting)
 {
   const Cloud none({}), one({{1, 2, 3}});

@@ -279,6 +279,50 @@ TEST(Neighbors, ExtremeCoordinates)
   }
 }
 
+/// A voxel's unit follows its size: from far off, distances in it leave the range of float.
+TEST(Neighbors, TinyVoxelsInALargeCloud)
+{
+  for (const double tiny : {1e-12, 1e-25, 1e-100})
+    for (const double place : {0.0, 0x1p-3}) {
+      std::vector<Point3> points;
+      for (int i = 0; i < 20; ++i) points.push_back({tiny * i, 0.0, tiny * (i % 3)});
+      for (int i = 0; i < 20; ++i) points.push_back({1.0 + i, 0.5, 0.0});
+      const test::Cloud cloud(points, {Scalar::float64, 0, 0});
+      HierarchyOptions options;
+      options.voxel_edge = 0.25;
+      const SphereHierarchy hierarchy(cloud.view(), options);
+      Neighbors found, expected;
+      for (const std::size_t k : {1u, 5u, 19u, 21u, 40u}) {
+        nearestKSearch(hierarchy, {0.25, place, 0}, k, found);
+        brute_force::nearestKSearch(hierarchy, {0.25, place, 0}, k, expected);
+        EXPECT_EQ(found.indices, expected.indices) << k << " nearest, " << tiny;
+        radiusSearch(hierarchy, {0.25, place, 0}, 3.0, found, {k, true});
+        brute_force::radiusSearch(hierarchy, {0.25, place, 0}, 3.0, expected, {k, true});
+        EXPECT_EQ(found.indices, expected.indices) << k << " in a radius, " << tiny;
+      }
+    }
+}
+
+/// A voxel of one place has unit 1, whatever the cloud's.
+TEST(Neighbors, VoxelsOfOnePlaceInAHugeCloud)
+{
+  for (const double unit : {0x1p100, 0x1p125, 0x1p1000, 0x1p-100, 0x1p-1000}) {
+    std::vector<Point3> points;
+    for (int i = 0; i < 40; ++i) points.push_back({unit * (i / 4), unit * (i % 3), 0.0});
+    const test::Cloud cloud(points, {Scalar::float64, 0, 0});
+    HierarchyOptions options;
+    options.voxel_edge = unit / 2;
+    const SphereHierarchy hierarchy(cloud.view(), options);
+    Neighbors found, expected;
+    for (const Point3& q : {Point3{0, 0, 0}, Point3{unit / 3, unit, unit}, Point3{4 * unit, 0, -unit}})
+      for (const std::size_t k : {1u, 5u, 40u}) {
+        nearestKSearch(hierarchy, q, k, found);
+        brute_force::nearestKSearch(hierarchy, q, k, expected);
+        EXPECT_EQ(found.indices, expected.indices) << k << " nearest, unit " << unit;
+      }
+  }
+}
+
 TEST(Neighbors, ManyPointsInOnePlace)
 {
   const std::vector<float> xyz(3 * 100000, 1.25f);

@@ -80,6 +80,22 @@ TEST(Spacing, DoubledPointsAreOnePlace)
   EXPECT_EQ(spacingOf(SphereHierarchy(viewOf(points.data(), 4))).median, 3.0);
 }
 
+/// What a voxel stores, floats relative to its middle, may be one place where the given ones are many.
+TEST(Spacing, OfPlacesThatFloatsDoNotTellApart)
+{
+  std::vector<Point3> points;
+  for (int i = 0; i < 100; ++i) points.push_back({1.0 + 1e-10 * i, 0.0, 0.0});
+  points.push_back({1e4, 0.0, 0.0});
+  const Cloud cloud(points, {Scalar::float64, 0, 0});
+  for (const double edge : {0.0, 2e4}) {
+    HierarchyOptions options;
+    options.voxel_edge = edge;
+    const Spacing spacing = spacingOf(SphereHierarchy(cloud.view(), options));
+    EXPECT_NEAR(spacing.median, 1e-10, 1e-16);
+    EXPECT_NEAR(spacing.wide, 1e-10, 1e-16);
+  }
+}
+
 TEST(Spacing, OnePlaceHasNone)
 {
   const std::vector<float> points(300, 1.0f);
