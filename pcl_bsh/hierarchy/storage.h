@@ -138,8 +138,8 @@ public:
   LocalFrame frame;                       ///< of `top`
   std::vector<Node> top; ///< the octree above the voxels: leaves are voxels; top[0] is the root; empty iff size == 0
 
-  /// How far points lie outside the cells of their voxels, at most, on any axis, in cells; beyond what rounding does
-  /// when points are sorted (kCellRounding). 0 unless a refit() has left moved points in their voxels.
+  /// How far points lie outside the cells of their voxels, at most, on any axis, in cells; 0 as long as only rounding
+  /// has put them there (kCellRounding). A refit() leaves moved points in their voxels, and finds out how far that is.
   double strayed = 0.0;
 
   /// How far the range [low, high] reaches out of the cell that `key` names, on any axis, in cells; at least.

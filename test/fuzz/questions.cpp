@@ -129,7 +129,8 @@ Accuracy anyAccuracy(double unit, Random& random)
 
 double withTolerance(const CollisionRequest& request)
 {
-  return request.clearance + (request.accuracy.mode == Accuracy::Mode::tolerance ? request.accuracy.value : 0.0);
+  const double more = request.accuracy.mode == Accuracy::Mode::tolerance ? request.accuracy.value : 0.0;
+  return std::min(request.clearance + more, std::numeric_limits<double>::max());
 }
 
 } // namespace

@@ -225,8 +225,8 @@ TEST(HierarchyUpdate, AtTheLargestNumbers)
   constexpr double largest = std::numeric_limits<double>::max();
   std::vector<double> xyz;
   for (int i = 0; i < 60; ++i) {
-    const double x = i % 3 == 0 ? largest : i % 3 == 1 ? -largest : 0.0;
-    xyz.insert(xyz.end(), {x, 1e306 * i, x == 0.0 ? 0.0 : largest});
+    const double x = i % 3 == 2 ? 0.0 : largest * (1.0 - 0x1p-22 * (i % 2)); // two that share a voxel
+    xyz.insert(xyz.end(), {i % 6 < 2 ? x : -x, 1e306 * (i / 6), 0.0});
   }
   SphereHierarchy hierarchy(viewOf(xyz.data(), 60));
   const std::int32_t record = 2;

@@ -309,13 +309,14 @@ TEST(Neighbors, VoxelsOfOnePlaceInAHugeCloud)
   for (const double unit : {0x1p100, 0x1p125, 0x1p1000, 0x1p-100, 0x1p-1000}) {
     std::vector<Point3> points;
     for (int i = 0; i < 40; ++i) points.push_back({unit * (i / 4), unit * (i % 3), 0.0});
+    for (int i = 0; i < 40; ++i) points.push_back({unit * (i % 7) / 16, unit * (i % 5) / 16, unit * (i % 3) / 16});
     const test::Cloud cloud(points, {Scalar::float64, 0, 0});
     HierarchyOptions options;
     options.voxel_edge = unit / 2;
     const SphereHierarchy hierarchy(cloud.view(), options);
     Neighbors found, expected;
     for (const Point3& q : {Point3{0, 0, 0}, Point3{unit / 3, unit, unit}, Point3{4 * unit, 0, -unit}})
-      for (const std::size_t k : {1u, 5u, 40u}) {
+      for (const std::size_t k : {1u, 5u, 20u, 50u, 70u}) {
         nearestKSearch(hierarchy, q, k, found);
         brute_force::nearestKSearch(hierarchy, q, k, expected);
         EXPECT_EQ(found.indices, expected.indices) << k << " nearest, unit " << unit;
