@@ -140,7 +140,9 @@ private:
     const LocalFrame& local = cloud_.voxels[index].frame;
     const PointFrame point(local, query_);
     const NearFrame frame(point, cloud_.frame.unit);
-    if (point.separates(local, static_cast<double>(distance_) * static_cast<double>(frame.inverse_unit))) return;
+    if (frame.slack < kInfinity &&
+        point.separates(local, static_cast<double>(distance_) * static_cast<double>(frame.inverse_unit)))
+      return;
     most_slack_ = std::max(most_slack_, frame.slack);
     const Voxel& voxel = cloud_.built(index, work_.voxels_built);
     voxels_.room(1);
