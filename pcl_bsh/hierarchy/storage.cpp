@@ -47,8 +47,15 @@ void SphereHierarchy::Storage::measure(Voxel& voxel) const
   voxel.radius = roundUp((corner + ball) * (1.0 + kDoubleMargin));
 }
 
+std::uint64_t SphereHierarchy::Storage::nextRevision() noexcept
+{
+  static std::atomic<std::uint64_t> count{0};
+  return count.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
 void SphereHierarchy::Storage::raiseTop()
 {
+  revision = nextRevision();
   std::vector<float> largest_radii;
   largest_radius = 0.0;
   for (std::size_t v = 0; v < voxel_count && view.radii; ++v) {

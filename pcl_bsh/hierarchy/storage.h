@@ -145,6 +145,11 @@ public:
   /// How far the range [low, high] reaches out of the cell that `key` names, on any axis, in cells; at least.
   double strayOf(std::uint64_t key, const std::array<double, 3>& low, const std::array<double, 3>& high) const noexcept;
 
+  /// Another number after every change of the points, by whatever call; no two hierarchies of a process share one. For
+  /// those that remember answers.
+  std::uint64_t revision = nextRevision();
+  static std::uint64_t nextRevision() noexcept;
+
   double extent = 0.0; ///< sum of the voxels' radii when the points were sorted into them, in the cloud's unit
 
   /// Sets what is known of a voxel by its frame and points: `radius`, `largest_radius`; forgets its slabs. @pre its

@@ -90,10 +90,15 @@ struct SceneOptions {
 /// Not to be used from several threads at once. All poses are T_world_object in double, rigid within 1e-6.
 ///
 /// Within a step an object's centre (of its bounding box) moves on a straight line while its rotation turns at constant
-/// speed. With a response, objects move one after the other in the order of their ids, each among the others as they
-/// stand at that moment. A response never lets an object collide: it halts at a distance in (clearance, clearance +
-/// tolerance] of what it meets, and the pose it takes is checked exactly. `tolerance` must be well above the rounding
-/// of the coordinates in double.
+/// speed, by any angle that its motion asks for, full turns included (motion.h: Leg). A response bends that way: a slide
+/// turns the object in place before it moves on, and goes along what it meets. With a response, objects move one after
+/// the other in the order of their ids, each among the others as they stand at that moment. A response never lets an
+/// object collide at any instant of its way (Outcome::legs): it halts at a distance in (clearance, clearance +
+/// tolerance] of what it meets, and each pose where it halts or turns off is checked exactly.
+///
+/// Where ways matter (first_contact, swept, a response or gravity), a step or query throws std::invalid_argument before
+/// anything has moved when an object turns more than 1000 times within a step, or when coordinates are so large that
+/// they round by more than 1/32 of the tolerance: with the default tolerance, beyond some 100,000 km.
 class Scene {
 public:
   /// @throws std::invalid_argument naming what is wrong with the options
@@ -128,10 +133,12 @@ public:
   /// @throws std::invalid_argument when the scene does not list `deform`, or the view does not fit
   RefitReport deform(ObjectId object, std::uint32_t part, const PointsView& now);
 
-  /// To be called when points of a part's hierarchy came or went (HierarchyUpdate).
+  /// Forgets what is remembered of an object's points. Changes of its hierarchies (HierarchyUpdate, refit(), another
+  /// scene's deform()) are seen by the next step or query without it.
   void pointsChanged(ObjectId object);
 
-  /// The effects at the present poses. `first_contact` and `swept` look at the way from the poses of the last query.
+  /// The effects at the present poses. `first_contact` and `swept` look at the way from the poses of the last query
+  /// (SceneResult::ways): straight on, whatever way a response or a user took; after setPose() the shorter way round.
   SceneResult query();
 
   /// Moves every object along its motion, as response and gravity allow, and queries. @param dt seconds, finite, >= 0

@@ -8,15 +8,25 @@
 
 namespace pcl_bsh {
 
-/// How near is near: two points within `reach` collide. Who approaches is halted at the outer distance; who is between
-/// outer and inner already is let pass as long as it stays outside of inner. So what has been halted can move along and
-/// away, and rounding, far below the distance from inner to reach, never leads to a collision.
+/// How near is near: two points within `reach` collide. A pair that approaches is halted at the outer distance; one
+/// that is between outer and inner already is let pass as long as it stays outside of inner. So what has been halted
+/// can move along and away, and rounding, which is far below the distance from inner to reach, never leads to a
+/// collision.
 struct ContactZone {
   double reach;
   double tolerance;
 
   double outer() const { return reach + 0.5 * tolerance; }
   double inner() const { return reach + 0.25 * tolerance; }
+
+  /// How near a pair may come that is within outer from the start: to inner, or, if it is hardly farther than that, a
+  /// little nearer than now; next to the reach no nearer than rounding has it. There the pair may still move along and
+  /// away, but the distance to a collision is no longer above rounding: only the exact test of poses guards it.
+  double floor(double now) const
+  {
+    if (now > reach + 0.125 * tolerance) return std::min(inner(), now - 0.0625 * tolerance);
+    return now * (1.0 - 0x1p-48);
+  }
 };
 
 /// Points `apart` (from the other to the moving one), the moving one going by `shift` while s runs from 0 to 1.
@@ -24,8 +34,8 @@ struct ContactZone {
 std::optional<double> meeting(const Eigen::Vector3d& apart, const Eigen::Vector3d& shift, const ContactZone& zone);
 
 /// Points p and q, given in their objects' frames, on their paths, for s from `begin` to `end`. Conservative
-/// advancement (Mirtich and Canny, Impulse-based Simulation of Rigid Bodies, 1995): no step is longer than the distance
-/// left over the speed of both.
+/// advancement (Mirtich and Canny, Impulse-based Simulation of Rigid Bodies, 1995) with a bound of second order: where
+/// two points hardly come nearer, steps grow with the square root of what is left.
 std::optional<double> meeting(const Path& path_a, const Eigen::Vector3d& p, const Path& path_b,
                               const Eigen::Vector3d& q, const ContactZone& zone, double begin, double end);
 

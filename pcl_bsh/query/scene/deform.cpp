@@ -18,12 +18,7 @@ RefitReport Scene::deform(ObjectId object, std::uint32_t part, const PointsView&
   const auto start = Clock::now();
   SphereHierarchy& hierarchy = *body.object.parts[part].hierarchy;
   const RefitReport report = hierarchy.refit(now, *state_->options.effects.deform);
-  for (ObjectId other = 0; other < state_->bodies.size(); ++other)
-    for (const ScenePart& shared : state_->bodies[other].object.parts)
-      if (shared.hierarchy.get() == &hierarchy) {
-        state_->pointsChanged(other);
-        break;
-      }
+  state_->followPoints();
   EffectCost& cost = state_->cost(Effect::deform);
   ++cost.pairs;
   cost.seconds += std::chrono::duration<double>(Clock::now() - start).count();

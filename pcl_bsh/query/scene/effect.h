@@ -35,12 +35,6 @@ inline CollisionRequest requestFor(double clearance, const Accuracy& accuracy = 
   return request;
 }
 
-/// Whether an effect asks for the way of the last step.
-inline bool looksBack(const Effects& effects)
-{
-  return effects.first_contact || effects.swept;
-}
-
 /// Calls decide(i) for each pair, in parallel, and adds up what the pairs note of it.
 template <class Decide>
 void Scene::State::eachPair(const std::vector<BroadPair*>& pairs, EffectCost& cost, const Decide& decide)

@@ -2,17 +2,36 @@
 // What a query computes: the pairs worth asking about, then each listed effect by itself, with its own cost.
 #include <pcl_bsh/query/scene/effect.h>
 
+#include <algorithm>
+
 namespace pcl_bsh {
+
+Leg Scene::State::legOf(ObjectId object) const
+{
+  const Body& body = bodies[object];
+  const Eigen::Isometry3d& to = body.object.pose;
+  if (body.last_version == 0) return {to, to, body.center(), Eigen::Vector3d::Zero()};
+  return {body.last_pose, to, body.center(), turnBetween(body.last_pose.linear(), to.linear(), body.turned)};
+}
 
 Path Scene::State::pathOf(ObjectId object) const
 {
-  const Body& body = bodies[object];
-  return {body.last_version > 0 ? body.last_pose : body.object.pose, body.object.pose, body.box};
+  return {legOf(object), bodies[object].box};
 }
 
 SceneResult Scene::State::query()
 {
   const Effects& effects = options.effects;
+  followPoints();
+  if (looksBack(effects)) {
+    for (const ObjectId object : moved) {
+      const Leg leg = legOf(object);
+      checkWay(bodies[object], leg.from, leg.to, leg.turn);
+      if (bodies[object].last_version > 0) result.ways.push_back({object, leg});
+    }
+    const auto before = [](const ObjectWay& l, const ObjectWay& r) { return l.object < r.object; };
+    std::sort(result.ways.begin(), result.ways.end(), before);
+  }
   result.time = time;
   const bool of_near = effects.any || effects.flags || effects.contacts;
   if (of_near || effects.distance || looksBack(effects)) prepareGrid();
@@ -32,6 +51,7 @@ SceneResult Scene::State::query()
         options.remember && body.last_version > 0 ? motionBound(body.box, body.last_pose, body.object.pose) : 0.0;
     body.last_pose = body.object.pose;
     body.last_version = body.version;
+    body.turned.setZero();
     body.listed = false;
   }
   moved_before.swap(moved);

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/query/contacts.h>
 #include <pcl_bsh/query/result.h>
+#include <pcl_bsh/query/scene/motion.h>
 
 #include <array>
 #include <cstddef>
@@ -138,6 +139,16 @@ struct Outcome {
   bool grounded = false;  ///< gravity found ground below it
   double wanted = 0.0;    ///< length of the motion asked for, of the object's centre
   double travelled = 0.0; ///< how far the centre is from where it was
+  /// The way it took, leg by leg from where it stood to where it stands; empty if it stayed. With a response no instant
+  /// of it collides. Gravity without a response looks only at the last legs, the drop: the motion itself, and the lift
+  /// after it, go through whatever is there.
+  std::vector<Leg> legs;
+};
+
+/// Of an object that has moved, from its pose at the last query: what first_contact and swept look at.
+struct ObjectWay {
+  ObjectId object = 0;
+  Leg leg;
 };
 
 struct SceneResult {
@@ -150,6 +161,7 @@ struct SceneResult {
   std::vector<ContactPair> contacts;
   std::vector<PartFirstContact> first_contact;
   std::vector<FlaggedPart> swept;
+  std::vector<ObjectWay> ways; ///< by object; with first_contact or swept
   std::vector<SelfCollision> self;
   std::vector<Outcome> outcomes; ///< of moved objects, with a response or gravity
   BroadPhaseCost broad_phase;

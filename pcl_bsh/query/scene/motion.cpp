@@ -2,9 +2,11 @@
 #include <pcl_bsh/query/scene/motion.h>
 
 #include <pcl_bsh/query/request_check.h>
+#include <pcl_bsh/query/scene/path.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -59,6 +61,40 @@ struct At {
   }
 };
 
+/// The shorter turn from one rotation to another.
+Eigen::Vector3d turnTo(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to)
+{
+  if (from == to) return Eigen::Vector3d::Zero();
+  const Eigen::AngleAxisd turn(Eigen::Quaterniond(to * from.transpose()).normalized());
+  return turn.angle() * turn.axis();
+}
+
+struct Turn {
+  double from, to;
+
+  Eigen::Vector3d operator()(const NoMotion&) const { return Eigen::Vector3d::Zero(); }
+  Eigen::Vector3d operator()(const VelocityMotion& motion) const { return (to - from) * motion.angular; }
+
+  Eigen::Vector3d operator()(const CircularMotion& motion) const
+  {
+    if (!motion.turning) return Eigen::Vector3d::Zero();
+    return (to - from) * motion.speed * motion.axis.normalized();
+  }
+
+  Eigen::Vector3d operator()(const WaypointMotion& motion) const
+  {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    const std::vector<double>& times = motion.times;
+    const auto after = std::upper_bound(times.begin(), times.end(), from) - times.begin();
+    for (auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after, 1)); i < times.size(); ++i) {
+      if (times[i - 1] >= to) break;
+      const double part = (std::min(to, times[i]) - std::max(from, times[i - 1])) / (times[i] - times[i - 1]);
+      sum += part * turnTo(motion.poses[i - 1].linear(), motion.poses[i].linear());
+    }
+    return sum;
+  }
+};
+
 struct Check {
   void operator()(const NoMotion&) const {}
 
@@ -92,6 +128,28 @@ struct Check {
 Eigen::Isometry3d poseAt(const Motion& motion, const Eigen::Isometry3d& start, double time)
 {
   return std::visit(At{start, time}, motion);
+}
+
+Eigen::Vector3d turnOf(const Motion& motion, double from, double to)
+{
+  return std::visit(Turn{from, to}, motion);
+}
+
+Eigen::Vector3d turnBetween(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to, const Eigen::Vector3d& asked)
+{
+  const Eigen::Vector3d shorter = turnTo(from, to);
+  const double length = asked.norm();
+  if (length == 0.0) return shorter;
+  const Eigen::AngleAxisd all(length, asked / length);
+  // Rounding of long turns is the path's affair: it arrives at the pose given.
+  if (turnTo(all.toRotationMatrix() * from, to).norm() <= 1e-6) return asked;
+  // Something else turned it as well. Of all turns that arrive, the one nearest to what was asked for: full turns more
+  // or less about the axis of the shorter one, which noise alone decides where that is next to nothing.
+  constexpr double full = 2.0 * std::numbers::pi;
+  const double angle = shorter.norm();
+  if (angle <= 1e-9) return full * std::round(length / full) * all.axis();
+  const Eigen::Vector3d axis = shorter / angle;
+  return (angle + full * std::round((asked.dot(axis) - angle) / full)) * axis;
 }
 
 void check(const Motion& motion)

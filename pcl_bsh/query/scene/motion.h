@@ -39,6 +39,22 @@ using Motion = std::variant<NoMotion, VelocityMotion, CircularMotion, WaypointMo
 /// look at `start`.
 Eigen::Isometry3d poseAt(const Motion& motion, const Eigen::Isometry3d& start, double time);
 
+/// How `motion` turns an object from one time to a later one, about the world's axes: axis times radians, of any
+/// length, full turns included. Of waypoints: the sum of the turns from each to the next, which are at most half a turn
+/// each.
+Eigen::Vector3d turnOf(const Motion& motion, double from, double to);
+
+/// A piece of an object's way: one point of it goes straight, its rotation turns at constant speed.
+struct Leg {
+  Eigen::Isometry3d from = Eigen::Isometry3d::Identity(); ///< T_world_object
+  Eigen::Isometry3d to = Eigen::Isometry3d::Identity();   ///< likewise
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();       ///< the point that goes straight, in the object's frame
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero(); ///< from `from` to `to`, as the world sees it: axis times radians
+
+  /// @param s in [0, 1], clamped; at(0) and at(1) are `from` and `to` themselves
+  Eigen::Isometry3d at(double s) const;
+};
+
 /// @throws std::invalid_argument saying what is wrong: numbers that are not finite, an axis of length 0, waypoints
 ///   without poses, with times that do not ascend or are not as many, with a pose that is not rigid.
 void check(const Motion& motion);

@@ -3,6 +3,7 @@
 #include <pcl_bsh/query/scene.h>
 
 #include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/query/scene/state.h>
 
@@ -146,6 +147,24 @@ void Scene::State::setPose(ObjectId object, const Eigen::Isometry3d& pose)
   updateWorld(bodies[object]);
 }
 
+/// Hierarchies are shared with other scenes and with callers that update them. What was remembered of points that have
+/// changed since is not believed, whoever changed them.
+void Scene::State::followPoints()
+{
+  if (options.effects.none()) return;
+  for (auto& [hierarchy, revision] : watched) {
+    const std::uint64_t now = hierarchy->storage().revision;
+    if (now == revision) continue;
+    revision = now;
+    for (const Body& body : bodies)
+      for (const ScenePart& part : body.object.parts)
+        if (part.hierarchy.get() == hierarchy) {
+          pointsChanged(body.id);
+          break;
+        }
+  }
+}
+
 void Scene::State::pointsChanged(ObjectId object)
 {
   Body& changed = bodies[object];
@@ -178,6 +197,8 @@ ObjectId Scene::add(SceneObject object)
   body.box = boxOf(object);
   body.object = std::move(object);
   body.last_pose = body.object.pose;
+  for (const ScenePart& part : body.object.parts)
+    state_->watched.emplace(part.hierarchy.get(), part.hierarchy->storage().revision);
   state_->updateWorld(body);
   state_->names.emplace(body.object.name, id);
   state_->rules.addObject(body.object.group, body.object.fixed);
@@ -222,6 +243,8 @@ void Scene::setPose(ObjectId object, const Eigen::Isometry3d& pose)
   checkPose("pose of object '" + body.object.name + "'", pose);
   body.on_course = false;
   state_->setPose(object, pose);
+  if (looksBack(state_->options.effects)) // straight there, the shorter way round
+    body.turned = turnBetween(body.last_pose.linear(), pose.linear(), Eigen::Vector3d::Zero());
 }
 
 void Scene::setPartPose(ObjectId object, std::uint32_t part, const Eigen::Isometry3d& pose)
@@ -277,6 +300,7 @@ SceneResult Scene::step(double dt)
 {
   if (!isLength(dt)) refuse("a step of " + std::to_string(dt) + " seconds is not finite and >= 0");
   const DefaultFloatEnvironment environment;
+  state_->followPoints();
   state_->move(dt);
   return state_->query();
 }

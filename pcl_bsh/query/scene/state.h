@@ -22,13 +22,28 @@ struct Body {
   std::vector<Eigen::Isometry3d> world; ///< T_world_cloud of each part
   Box3 box;                             ///< of its points, in the object's frame
   Box3 world_box;
-  std::uint64_t version = 1;        ///< grows with every change of a pose or of points
-  Eigen::Isometry3d last_pose;      ///< at the last query
-  std::uint64_t last_version = 0;   ///< at the last query; 0: there was none
-  std::uint64_t placed_version = 0; ///< in the grid
-  bool placed_swept = false;        ///< with the way to its place
-  double last_motion = 0.0;         ///< how far its points went between the last two queries, at most
+  std::uint64_t version = 1;                        ///< grows with every change of a pose or of points
+  Eigen::Isometry3d last_pose;                      ///< at the last query
+  std::uint64_t last_version = 0;                   ///< at the last query; 0: there was none
+  std::uint64_t placed_version = 0;                 ///< in the grid
+  bool placed_swept = false;                        ///< with the way to its place
+  Eigen::Vector3d turned = Eigen::Vector3d::Zero(); ///< since the last query, full turns included
+  double last_motion = 0.0;                         ///< how far its points went between the last two queries, at most
+
+  /// Of its box, in the object's frame: the point that goes straight.
+  Eigen::Vector3d center() const { return box.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : box.center(); }
 };
+
+/// Whether an effect asks for the way of the last step.
+inline bool looksBack(const Effects& effects)
+{
+  return effects.first_contact || effects.swept;
+}
+
+inline bool isResponding(const Effects& effects)
+{
+  return effects.response != Response::none || effects.gravity.has_value();
+}
 
 class Scene::State {
 public:
@@ -45,9 +60,10 @@ public:
   void setPose(ObjectId object, const Eigen::Isometry3d& pose);
   void updateWorld(Body& body);
   void pointsChanged(ObjectId object);
+  void followPoints(); ///< looks whether points have changed since it last looked, whoever changed them
 
   void move(double dt);
-  void respond(ObjectId object, const Eigen::Isometry3d& target);
+  void respond(ObjectId object, const Eigen::Isometry3d& target, const Eigen::Vector3d& turn);
   void prepareGrid(); ///< the grid, and every object in it
   SceneResult query();
 
@@ -64,6 +80,9 @@ public:
   bool near_stale = true;             ///< must be gathered from all pairs
   std::vector<ObjectId> moved;        ///< since the last query
   std::vector<ObjectId> moved_before; ///< between the two queries before
+
+  /// The hierarchies of all objects, and their revisions when the scene last looked.
+  std::unordered_map<const SphereHierarchy*, std::uint64_t> watched;
 
 private:
   void place(ObjectId object);
@@ -85,7 +104,11 @@ private:
   void eachPair(const std::vector<BroadPair*>& pairs, EffectCost& cost, const Decide& decide);
   template <class Ask>
   void eachSweptPair(EffectCost& cost, const Ask& ask);
+  Leg legOf(ObjectId object) const; ///< since the last query
   Path pathOf(ObjectId object) const;
+  void checkWay(const Body& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
+                const Eigen::Vector3d& turn) const;
+  void checkWays(double before, double after) const;
 
   std::vector<Box3> boxes_;            // scratch
   std::vector<BroadPair*> newly_near_; // scratch

@@ -15,7 +15,7 @@ public:
     b_(b),
     clearance_(clearance),
     tolerance_(tolerance),
-    speed_(closingSpeed(a.path, b.path)),
+    angle_(std::max(a.path.angle(), b.path.angle())),
     work_(work)
   {
   }
@@ -43,9 +43,13 @@ private:
     return request;
   }
 
-  /// Whom anybody can meet within the interval is within this at its beginning.
-  double reach(double length) const { return clearance_ + speed_ * length + 0.5 * tolerance_; }
-  bool isShort(double length) const { return speed_ * length <= 0.5 * tolerance_; }
+  /// What can meet within the interval is within this at its beginning.
+  double reach(double length) const { return clearance_ + closingReach(a_.path, b_.path, length) + 0.5 * tolerance_; }
+  bool isShort(double length) const { return closingReach(a_.path, b_.path, length) <= 0.5 * tolerance_; }
+  bool isWide(double length, const PairsWithin& found) const
+  {
+    return angle_ * length > kWideTurn && found.pairs.size() > kFewToTurn;
+  }
 
   PairsWithin pairs(double begin, double end)
   {
@@ -62,12 +66,12 @@ private:
   std::optional<Meeting> first(double begin, double end)
   {
     const PairsWithin found = pairs(begin, end);
-    if (!found.complete) {
-      if (isShort(end - begin)) return Meeting{begin, found.pairs.front()};
+    if ((!found.complete || isWide(end - begin, found)) && !isShort(end - begin)) {
       const double middle = 0.5 * (begin + end);
       const auto early = first(begin, middle);
       return early ? early : first(middle, end);
     }
+    if (!found.complete) return Meeting{begin, found.pairs.front()};
     std::optional<Meeting> earliest;
     for (const PointPair pair : found.pairs) {
       const auto s = meeting(a_.path, a_.point(pair.a), b_.path, b_.point(pair.b), zone(pair), begin,
@@ -81,7 +85,7 @@ private:
   void flag(double begin, double end)
   {
     const PairsWithin found = pairs(begin, end);
-    if (!found.complete && !isShort(end - begin)) {
+    if ((!found.complete || isWide(end - begin, found)) && !isShort(end - begin)) {
       const double middle = 0.5 * (begin + end);
       flag(begin, middle);
       flag(middle, end);
@@ -107,17 +111,17 @@ private:
   }
 
   const SweptPart &a_, &b_;
-  const double clearance_, tolerance_, speed_;
+  const double clearance_, tolerance_, angle_;
   Work& work_;
   std::vector<std::uint8_t>*flags_a_ = nullptr, *flags_b_ = nullptr;
 };
 
 } // namespace
 
-double closingSpeed(const Path& a, const Path& b)
+double closingReach(const Path& a, const Path& b, double length)
 {
-  const double speed = a.turns() || b.turns() ? a.speed() + b.speed() : (a.shift() - b.shift()).norm();
-  return speed * (1.0 + 0x1p-40);
+  const double straight = (a.shift() - b.shift()).norm() * length;
+  return (straight + a.turningReach(length) + b.turningReach(length)) * (1.0 + 0x1p-40);
 }
 
 std::optional<Meeting> firstMeeting(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,

@@ -33,8 +33,13 @@ struct Meeting {
 /// Pairs that a query may collect before the interval is halved instead.
 inline constexpr std::size_t kMostPairs = 1 << 15;
 
-/// No point of one can come nearer to a point of the other than this per unit of s.
-double closingSpeed(const Path& a, const Path& b);
+/// An interval in which an object turns by more than this is halved while more than a few pairs can meet in it: to look
+/// for pairs anew costs less than to follow pairs that are far apart for most of a turn.
+inline constexpr double kWideTurn = 1.0; // radians
+inline constexpr std::size_t kFewToTurn = 64;
+
+/// No distance of a point of one to a point of the other shrinks by more than this within an interval of s.
+double closingReach(const Path& a, const Path& b, double length);
 
 /// The first s in [0, 1] at which two points are within clearance + tolerance on their way to collide; at no smaller s
 /// do any collide.
