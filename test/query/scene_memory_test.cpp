@@ -4,6 +4,7 @@
 #include <pcl_bsh/query/scene.h>
 
 #include "random_world.h"
+#include "watched_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +18,7 @@ using test::Random;
 using test::RandomWorld;
 using test::Shape;
 using test::Shelf;
+using test::WatchedMotion;
 
 constexpr std::size_t kLooking = 6; ///< effects that only look and may be listed in any combination
 constexpr Effect looking[kLooking] = {Effect::any,      Effect::flags,         Effect::distance,
@@ -102,6 +104,10 @@ TEST(SceneCombinations, EachEffectAnswersAsIfItWereAlone)
       std::vector<std::string> expected;
       for (std::size_t e = 0; e < kLooking; ++e) {
         const SceneResult result = alone[e].query();
+        if (looking[e] == Effect::first_contact) {
+          WatchedMotion watch(alone[e], [&](ObjectId a, ObjectId b) { return world.clearanceOf(a, b); });
+          ASSERT_EQ(watch.replayFirstContacts(result, 200), "") << "seed " << seed << ", step " << step;
+        }
         expected.push_back(answerOf(result, looking[e]));
         if (looking[e] == Effect::any) expectAnyAsBruteForce(world, alone[e], result);
         if (looking[e] == Effect::flags) expectFlagsAsBruteForce(world, alone[e], result);
@@ -142,9 +148,13 @@ TEST(SceneCombinations, ResponsesGoTheSameWayWhateverElseIsListed)
       for (Scene& scene : scenes) scene.query();
       for (int step = 0; step < 3; ++step) {
         std::vector<std::string> expected(kLooking);
+        WatchedMotion watch(scenes.front(), [&](ObjectId a, ObjectId b) { return world.clearanceOf(a, b); });
         for (std::size_t i = 0; i < scenes.size(); ++i) {
           const SceneResult result = scenes[i].step(0.4);
           const Effects& effects = scenes[i].options().effects;
+          if (i == 0) {
+            ASSERT_EQ(watch.replayResponses(result, 300), "") << "seed " << seed << ", step " << step;
+          }
           for (ObjectId id = 0; id < scenes[i].size(); ++id)
             ASSERT_EQ(scenes[i][id].pose.matrix(), scenes.front()[id].pose.matrix()) << "seed " << seed << ", " << i;
           if (i == 0)

@@ -35,10 +35,10 @@ public:
     for (const ScenePart& part : object.parts) {
       const PointsView& view = part.hierarchy->view();
       parts_.push_back({pose * part.pose, &view, points_.size()});
-      for (std::uint32_t i = 0; i < view.count; ++i) {
-        const Point3 p = view.point(i);
+      for (std::size_t i = 0; i < view.size(); ++i) {
+        const Point3 p = view.point(view.record(i));
         points_.push_back(parts_.back().pose * Eigen::Vector3d(p[0], p[1], p[2]));
-        radii_.push_back(view.radius(i));
+        radii_.push_back(view.radius(view.record(i)));
         if (!points_.back().allFinite()) continue;
         low_ = low_.cwiseMin(points_.back());
         high_ = high_.cwiseMax(points_.back());
@@ -55,16 +55,16 @@ public:
       return false;
     const double rounding = 1e-12 * (1.0 + low_.cwiseAbs().maxCoeff() + high_.cwiseAbs().maxCoeff());
     for (const Part& a : parts_)
-      for (std::size_t i = 0; i < a.view->count; ++i) {
+      for (std::size_t i = 0; i < a.view->size(); ++i) {
         const Eigen::Vector3d& p = points_[a.first + i];
         if (!((p - other.low_).array() >= -reach).all() || !((other.high_ - p).array() >= -reach).all()) continue;
         for (const Part& b : other.parts_)
-          for (std::size_t j = 0; j < b.view->count; ++j) {
+          for (std::size_t j = 0; j < b.view->size(); ++j) {
             const double gap =
                 (p - other.points_[b.first + j]).norm() - radii_[a.first + i] - other.radii_[b.first + j] - clearance;
             near = std::min(near, gap);
             if (!(gap <= rounding)) continue;
-            const auto record_a = static_cast<std::uint32_t>(i), record_b = static_cast<std::uint32_t>(j);
+            const std::uint32_t record_a = a.view->record(i), record_b = b.view->record(j);
             if (ExactDistance(a.pose, b.pose)
                     .compare(a.view->point(record_a), b.view->point(record_b), clearance, a.view->radius(record_a),
                              b.view->radius(record_b)) <= 0)

@@ -24,13 +24,15 @@ SceneResult Scene::State::query()
   const Effects& effects = options.effects;
   followPoints();
   if (looksBack(effects)) {
+    std::vector<ObjectWay> ways;
     for (const ObjectId object : moved) {
       const Leg leg = legOf(object);
-      checkWay(bodies[object], leg.from, leg.to, leg.turn);
-      if (bodies[object].last_version > 0) result.ways.push_back({object, leg});
+      checkWay(bodies[object], leg.from, leg.to, leg.turn, options.tolerance / 16);
+      if (bodies[object].last_version > 0) ways.push_back({object, leg});
     }
     const auto before = [](const ObjectWay& l, const ObjectWay& r) { return l.object < r.object; };
-    std::sort(result.ways.begin(), result.ways.end(), before);
+    std::sort(ways.begin(), ways.end(), before);
+    result.ways = std::move(ways);
   }
   result.time = time;
   const bool of_near = effects.any || effects.flags || effects.contacts;

@@ -173,6 +173,7 @@ bool Mover::collect(Box3 swept, double length, std::size_t most)
     const std::optional<double> clearance = state_.rules.clearanceOf(object_, other);
     if (!clearance || !swept.meets(state_.bodies[other].world_box)) continue;
     if (!collectFrom(other, *clearance, length, most)) return false;
+    if (outcome.stuck) return true;
   }
   return true;
 }

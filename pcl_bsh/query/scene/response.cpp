@@ -175,9 +175,9 @@ void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, con
   place(object);
 }
 
-/// Refuses a way on which promises cannot be kept, before anything has moved.
+/// Refuses a way on which promises cannot be kept. @param rounding that positions may have
 void Scene::State::checkWay(const Body& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
-                            const Eigen::Vector3d& turn) const
+                            const Eigen::Vector3d& turn, double rounding) const
 {
   const auto refuse = [&body](const std::string& what) {
     throw std::invalid_argument("Scene: object '" + body.object.name + "' " + what);
@@ -186,23 +186,28 @@ void Scene::State::checkWay(const Body& body, const Eigen::Isometry3d& from, con
   if (!(turns <= kMostTurns))
     refuse("turns " + std::to_string(turns) + " times within a step: make steps so short that it turns at most " +
            std::to_string(kMostTurns) + " times");
-  const double rounding = Path({from, to, body.center(), turn}, body.box).rounding();
-  if (!(rounding <= options.tolerance / 32)) {
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "goes where coordinates round by up to %.3g: give a tolerance of at least %.3g instead of %.3g, or "
-                  "move the scene nearer to its origin",
-                  rounding, 32 * rounding, options.tolerance);
-    refuse(text);
-  }
+  const double found = Path({from, to, body.center(), turn}, body.box).rounding();
+  if (found <= rounding) return;
+  const auto text = [](double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.3g", value);
+    return std::string(digits);
+  };
+  refuse("goes where coordinates round by up to " + text(found) + ": give a tolerance of at least " +
+         text(options.tolerance * found / rounding) + " instead of " + text(options.tolerance) +
+         ", or move the scene nearer to its origin");
 }
 
+/// Of all that is about to move, before anything has. A response may lead elsewhere, to coordinates that round by twice
+/// as much at most: a query allows for that.
 void Scene::State::checkWays(double before, double after) const
 {
   const auto check = [this](const Body& body, const Goal& goal) {
-    checkWay(body, body.object.pose, goal.pose, goal.turn);
+    const double rounding = options.tolerance / 32;
+    checkWorld(body.object, goal.pose);
+    checkWay(body, body.object.pose, goal.pose, goal.turn, rounding);
     if (looksBack(options.effects) && body.last_version > 0)
-      checkWay(body, body.last_pose, goal.pose, body.turned + goal.turn);
+      checkWay(body, body.last_pose, goal.pose, body.turned + goal.turn, rounding);
   };
   // What has not moved was checked when it came where it is.
   for (const ObjectId object : moved) check(bodies[object], {bodies[object].object.pose, Eigen::Vector3d::Zero()});

@@ -120,6 +120,14 @@ Scene::State::State(SceneOptions scene_options)
 {
 }
 
+/// Two poses that are just rigid enough may have a product that is not: found here, not by a query of a later step.
+void Scene::State::checkWorld(const SceneObject& object, const Eigen::Isometry3d& pose)
+{
+  for (const ScenePart& part : object.parts)
+    if (!isWhole(part.pose))
+      checkPose("pose of part '" + part.name + "' of object '" + object.name + "' in the world", pose * part.pose);
+}
+
 Body& Scene::State::body(ObjectId object)
 {
   if (object >= bodies.size())
@@ -186,6 +194,7 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 ObjectId Scene::add(SceneObject object)
 {
   check(object, state_->names);
+  State::checkWorld(object, object.pose);
   const auto id = static_cast<ObjectId>(state_->bodies.size());
   for (auto& [a, b] : object.adjacent)
     if (a > b) std::swap(a, b);
@@ -241,6 +250,7 @@ void Scene::setPose(ObjectId object, const Eigen::Isometry3d& pose)
 {
   Body& body = state_->body(object);
   checkPose("pose of object '" + body.object.name + "'", pose);
+  State::checkWorld(body.object, pose);
   body.on_course = false;
   state_->setPose(object, pose);
   if (looksBack(state_->options.effects)) // straight there, the shorter way round
@@ -251,6 +261,7 @@ void Scene::setPartPose(ObjectId object, std::uint32_t part, const Eigen::Isomet
 {
   Body& body = state_->body(object);
   checkPose("pose of a part of object '" + body.object.name + "'", pose);
+  checkPose("pose of a part of object '" + body.object.name + "' in the world", body.object.pose * pose);
   body.object.parts.at(part).pose = pose;
   state_->pointsChanged(object);
 }

@@ -56,6 +56,7 @@ public:
 
   EffectCost& cost(Effect effect) { return result.costs[static_cast<std::size_t>(effect)]; }
   Body& body(ObjectId object);
+  static void checkWorld(const SceneObject& object, const Eigen::Isometry3d& pose);
 
   void setPose(ObjectId object, const Eigen::Isometry3d& pose);
   void updateWorld(Body& body);
@@ -107,7 +108,7 @@ private:
   Leg legOf(ObjectId object) const; ///< since the last query
   Path pathOf(ObjectId object) const;
   void checkWay(const Body& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
-                const Eigen::Vector3d& turn) const;
+                const Eigen::Vector3d& turn, double rounding) const;
   void checkWays(double before, double after) const;
 
   std::vector<Box3> boxes_;            // scratch
