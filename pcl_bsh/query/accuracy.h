@@ -34,10 +34,12 @@ struct Accuracy {
   /// nothing, each level more opens nodes of eight children. What spheres cannot tell is left undecided.
   static Accuracy level(unsigned depth) noexcept { return {Mode::level, static_cast<double>(depth)}; }
 
-  /// Stops after about so many sphere tests: the same answer on every machine.
+  /// Stops after about so many sphere tests: the same answer on every machine. Where points of both clouds are flagged,
+  /// these share them.
   static Accuracy nodePairs(std::uint64_t count) noexcept { return {Mode::node_pairs, static_cast<double>(count)}; }
 
-  /// Stops when the seconds are spent. @param seconds finite, >= 0
+  /// Stops when the seconds are spent, by all that one call asks for together. anyCollision() gives 15/16 of them to
+  /// the search of exact(), so that it decides whatever that decides in this time. @param seconds finite, >= 0
   static Accuracy time(double seconds) noexcept { return {Mode::time, seconds}; }
 
   /// `exact`, `float`, `tolerance=LENGTH`, `level=N`, `pairs=N` or `time=SECONDS`.

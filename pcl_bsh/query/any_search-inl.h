@@ -25,11 +25,13 @@ struct Unwatched {
   void seeded(const LanePair&) {}
   void stepped(const LanePair&, Opened, const PairWalk::Step&) {}
   void compared(const LanePair&) {}
+  static bool stops(const PairWalk&, const LanePair&, Opened) { return false; }
 };
 
 /// @tparam Watch told of the pairs of the roots' children that may meet, of each pair whose larger side was opened,
 /// with
-///   what became of the children, and of each pair of leaves whose points were compared
+///   what became of the children, and of each pair of leaves whose points were compared; asked before each pair whether
+///   to stop there
 template <class Watch>
 class AnySearch {
 public:
@@ -46,11 +48,11 @@ public:
   {
     AnyResult result;
     result.witness = search();
-    result.verdict = result.witness ? Verdict::colliding : Verdict::free;
-    if (acceptance_.proven)
+    result.work = walk_.work;
+    result.verdict = result.witness ? Verdict::colliding : stopped_ ? Verdict::undecided : Verdict::free;
+    if (acceptance_.proven && result.verdict != Verdict::undecided)
       (result.witness ? result.distance.upper : result.distance.lower) =
           result.witness ? acceptance_.accepted : acceptance_.clearance;
-    result.work = walk_.work;
     return result;
   }
 
@@ -67,6 +69,10 @@ private:
       const LanePair pair = stack_.back();
       stack_.pop_back();
       const Opened opened = walk_.choose(pair);
+      if (watch_.stops(walk_, pair, opened)) {
+        stopped_ = true;
+        return std::nullopt;
+      }
       if (opened == Opened::neither) {
         if (const auto witness = compareLeaves(pair)) return witness;
         continue;
@@ -131,6 +137,7 @@ private:
   PointPairs pairs_;
   Acceptance acceptance_;
   Watch watch_;
+  bool stopped_ = false;
   std::vector<LanePair> stack_;
 };
 

@@ -201,7 +201,7 @@ DistanceResult closestPair(const Placed& a, const Placed& b, const CollisionRequ
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   if (request.accuracy.stopsEarly()) {
-    const IntervalFinding found = searchInterval(a, b, request.accuracy, std::nullopt);
+    const IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt);
     const double gap = found.pair ? PointPairs(a, b, 0.0).gap(*found.pair) : std::numeric_limits<double>::infinity();
     return {gap, found.pair, found.distance, found.work};
   }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #undef HWY_TARGET_INCLUDE
@@ -578,38 +579,82 @@ void markUndecided(const SphereHierarchy& hierarchy, std::vector<std::uint8_t>& 
     hierarchy.storage().forEachRecord(v, [&](std::uint32_t record) { flags[record] = kUndecided; });
 }
 
-void flagAll(const Placed& a, const Placed& b, const CollisionRequest& request, const FlagSheet& sheet)
-{
-  StopRule rule(request.accuracy);
-  const std::uint64_t node_pairs = rule.node_pairs;
-  sheet.flags.assign(a.hierarchy.view().count, kFree);
-  if (a.hierarchy.empty() || b.hierarchy.empty()) return;
-  const PointPairs pairs(a, b, request.clearance);
-  // A budget may end before a voxel is looked at. A level looks at all, and has to mark only those that come near.
-  const bool marked = rule.mayStop() && rule.deepest == StopRule::kNever;
-  const FlagQuery query{a, b, pairs, RelativeRotation(a.pose, b.pose), Acceptance(request), marked};
-  const unsigned threads = threadCount(request.threads);
-  std::vector<std::uint32_t> voxels;
-  if (marked) {
-    voxels.resize(a.hierarchy.storage().voxel_count);
-    std::iota(voxels.begin(), voxels.end(), 0u);
-    markUndecided(a.hierarchy, sheet.flags);
-  }
-  else { // what is not near is free, as flags are at first
-    voxels = HWY_DYNAMIC_DISPATCH(nearVoxelsOnTarget)(query, sheet.work);
-  }
-  if (!rule.mayStop()) {
-    flagVoxels(query, rule, voxels, threads, sheet);
-    return;
+/// The flags of one cloud.
+class FlagSide {
+public:
+  FlagSide(const Placed& a, const Placed& b, const CollisionRequest& request, const StopRule& rule,
+           const FlagSheet& sheet)
+  : sheet_(sheet),
+    pairs_(a, b, request.clearance),
+    // A budget may end before a voxel is looked at. A level looks at all, and has to mark only those that come near.
+    query_{a,
+           b,
+           pairs_,
+           RelativeRotation(a.pose, b.pose),
+           Acceptance(request),
+           rule.mayStop() && rule.deepest == StopRule::kNever},
+    threads_(threadCount(request.threads))
+  {
+    sheet_.flags.assign(a.hierarchy.view().count, kFree);
+    if (a.hierarchy.empty() || b.hierarchy.empty()) return;
+    if (query_.marked) {
+      voxels_.resize(a.hierarchy.storage().voxel_count);
+      std::iota(voxels_.begin(), voxels_.end(), 0u);
+      markUndecided(a.hierarchy, sheet_.flags);
+    }
+    else { // what is not near is free, as flags are at first
+      voxels_ = HWY_DYNAMIC_DISPATCH(nearVoxelsOnTarget)(query_, sheet_.work);
+    }
   }
 
-  Work spent;
-  for (const std::uint64_t deepest : rule.passes()) {
-    rule.deepest = deepest;
-    voxels = flagVoxels(query, rule, voxels, threads, {sheet.flags, sheet.colliding, spent});
-    if (node_pairs != StopRule::kNever) rule.node_pairs = node_pairs - std::min(node_pairs, spent.node_pairs);
+  /// Whether every point is decided.
+  bool done() const { return voxels_.empty(); }
+
+  /// Sphere tests of all passes so far.
+  std::uint64_t spent() const { return spent_; }
+
+  /// Walks what was left undecided. The rule's sphere tests are for this pass.
+  void pass(const StopRule& rule)
+  {
+    if (done()) return;
+    Work work;
+    std::vector<std::uint32_t> left =
+        flagVoxels(query_, rule, voxels_, threads_, {sheet_.flags, sheet_.colliding, work});
+    voxels_ = rule.mayStop() ? std::move(left) : std::vector<std::uint32_t>();
+    sheet_.work += work;
+    spent_ += work.node_pairs;
   }
-  sheet.work += spent;
+
+  /// All passes of a rule. @param tests for all of them, those already spent among them
+  void passes(StopRule rule, std::uint64_t tests)
+  {
+    if (!rule.mayStop()) return pass(rule);
+    for (const std::uint64_t deepest : rule.passes()) {
+      rule.deepest = deepest;
+      if (tests != StopRule::kNever) rule.node_pairs = tests - std::min(tests, spent_);
+      pass(rule);
+    }
+  }
+
+private:
+  const FlagSheet sheet_;
+  const PointPairs pairs_;
+  const FlagQuery query_;
+  const unsigned threads_;
+  std::vector<std::uint32_t> voxels_; // with undecided points
+  std::uint64_t spent_ = 0;
+};
+
+/// Both clouds share the budget: each has half of it, and what one leaves is the other's.
+void flagBoth(FlagSide& a, FlagSide& b, const StopRule& rule)
+{
+  const StopRule half = rule.part(0.5);
+  a.passes(half, half.node_pairs);
+  // Of a count of tests, b gets more than half only when a is done: then a is done with any larger count as well, and
+  // whatever a count decides, a larger one decides.
+  const std::uint64_t left = rule.node_pairs - std::min(rule.node_pairs, a.spent());
+  b.passes(rule, rule.node_pairs == StopRule::kNever || !a.done() ? half.node_pairs : std::max(half.node_pairs, left));
+  if (rule.isTimed()) a.passes(rule, StopRule::kNever);
 }
 
 std::size_t countUndecided(const std::vector<std::uint8_t>& flags)
@@ -628,8 +673,16 @@ void collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& re
   found.b.swap(result.b);
   found.a.clear();
   found.b.clear();
-  if (request.flagged != Side::b) flagAll(a, b, request, {found.a, found.colliding_a, found.work});
-  if (request.flagged != Side::a) flagAll(b, a, request, {found.b, found.colliding_b, found.work});
+  const StopRule rule(request.accuracy);
+  std::optional<FlagSide> of_a, of_b;
+  if (request.flagged != Side::b) of_a.emplace(a, b, request, rule, FlagSheet{found.a, found.colliding_a, found.work});
+  if (request.flagged != Side::a) of_b.emplace(b, a, request, rule, FlagSheet{found.b, found.colliding_b, found.work});
+  if (of_a && of_b && rule.mayStop())
+    flagBoth(*of_a, *of_b, rule);
+  else {
+    if (of_a) of_a->passes(rule, rule.node_pairs);
+    if (of_b) of_b->passes(rule, rule.node_pairs);
+  }
   if (request.accuracy.stopsEarly()) {
     found.undecided_a = countUndecided(found.a);
     found.undecided_b = countUndecided(found.b);

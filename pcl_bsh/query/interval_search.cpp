@@ -35,8 +35,8 @@ bool laterThan(const Open& x, const Open& y)
 
 class IntervalSearch {
 public:
-  IntervalSearch(const Placed& a, const Placed& b, const Accuracy& accuracy, std::optional<double> clearance)
-  : rule_(accuracy),
+  IntervalSearch(const Placed& a, const Placed& b, const StopRule& rule, std::optional<double> clearance)
+  : rule_(rule),
     clearance_(clearance),
     walk_(a, b),
     watch_(rule_, walk_.work.node_pairs),
@@ -249,7 +249,7 @@ private:
     return finding;
   }
 
-  StopRule rule_;
+  const StopRule rule_;
   const std::optional<double> clearance_;
   PairWalk walk_;
   Watch watch_;
@@ -263,10 +263,10 @@ private:
 
 } // namespace
 
-IntervalFinding searchIntervalOnTarget(const Placed& a, const Placed& b, const Accuracy& accuracy,
+IntervalFinding searchIntervalOnTarget(const Placed& a, const Placed& b, const StopRule& rule,
                                        std::optional<double> clearance)
 {
-  return IntervalSearch(a, b, accuracy, clearance).run();
+  return IntervalSearch(a, b, rule, clearance).run();
 }
 
 } // namespace HWY_NAMESPACE
@@ -278,10 +278,9 @@ namespace pcl_bsh {
 
 HWY_EXPORT(searchIntervalOnTarget);
 
-IntervalFinding searchInterval(const Placed& a, const Placed& b, const Accuracy& accuracy,
-                               std::optional<double> clearance)
+IntervalFinding searchInterval(const Placed& a, const Placed& b, const StopRule& rule, std::optional<double> clearance)
 {
-  return HWY_DYNAMIC_DISPATCH(searchIntervalOnTarget)(a, b, accuracy, clearance);
+  return HWY_DYNAMIC_DISPATCH(searchIntervalOnTarget)(a, b, rule, clearance);
 }
 
 } // namespace pcl_bsh

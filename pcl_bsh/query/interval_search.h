@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/stop_rule.h>
 
 namespace pcl_bsh {
 
@@ -16,7 +17,6 @@ struct IntervalFinding {
 /// narrows from both ends and may be had at any time (Klein, Zachmann: Point Cloud Collision Detection, 2004, order
 /// their traversal so). More levels or more budget never widen it.
 /// @param clearance the question is only whether the distance exceeds this; none: what it is
-IntervalFinding searchInterval(const Placed& a, const Placed& b, const Accuracy& accuracy,
-                               std::optional<double> clearance);
+IntervalFinding searchInterval(const Placed& a, const Placed& b, const StopRule& rule, std::optional<double> clearance);
 
 } // namespace pcl_bsh

@@ -45,6 +45,18 @@ public:
            Clock::now() + std::chrono::duration<double>(seconds_per_point * static_cast<double>(points)) < deadline_;
   }
 
+  /// The same, with only this share of the time that is left, or of the sphere tests.
+  StopRule part(double share) const
+  {
+    StopRule rule = *this;
+    if (isTimed()) {
+      const Clock::time_point now = Clock::now();
+      rule.deadline_ = now + std::chrono::duration_cast<Clock::duration>(share * (deadline_ - now));
+    }
+    if (node_pairs != kNever) rule.node_pairs = static_cast<std::uint64_t>(share * static_cast<double>(node_pairs));
+    return rule;
+  }
+
   /// The levels to walk to, one pass after another: within a budget first coarsely, so that there is an answer for all
   /// when it ends, then to the end. (Every level in turn costs three times what the last one does.)
   std::vector<std::uint64_t> passes() const

@@ -100,6 +100,8 @@ struct Watch {
     a->note(pair.a, SphereFate::compared, -1);
     b->note(pair.b, SphereFate::compared, -1);
   }
+
+  static bool stops(const PairWalk&, const LanePair&, Opened) { return false; }
 };
 
 } // namespace
