@@ -12,7 +12,7 @@ namespace pcl_bsh {
 namespace {
 
 constexpr double kRounding = 0x1p-45; ///< of the bounds below: a few dozen operations in double
-constexpr double kMostPoses = 0x1p24; ///< of a swept path: some 5 GB
+constexpr double kRigid = 0x1p-47;    ///< what a stretch that rounding makes does not exceed
 
 double distance(const Point3& a, const Point3& b)
 {
@@ -40,74 +40,104 @@ Point3 carried(const Eigen::Isometry3d& pose, const Point3& p)
   return result;
 }
 
-Eigen::Isometry3d poseBetween(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double fraction,
-                              const Point3& pivot)
+PosePath::PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::Isometry3d>& model_poses,
+                   const Point3& center, Progress& progress)
 {
-  const Eigen::Vector3d p(pivot[0], pivot[1], pivot[2]);
-  const Eigen::Quaterniond first(from.linear()), last(to.linear());
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = first.normalized().slerp(fraction, last.normalized()).normalized().toRotationMatrix();
-  pose.translation() = (1.0 - fraction) * (from * p) + fraction * (to * p) - pose.linear() * p;
-  return pose;
+  for (std::size_t k = 0; k < model_poses.size(); ++k) {
+    progress.tick(4);
+    if (k == 0 || model_poses[k].matrix() != model_poses[k - 1].matrix())
+      add(scan_pose, model_poses[k], model_poses[k].linear(), center, static_cast<std::uint32_t>(k), 0.0);
+  }
+  skew += excess(scan_pose.linear());
+  divideAll(progress);
 }
 
 PosePath::PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::Isometry3d>& model_poses,
-                   const Point3& center)
+                   const Point3& center, const Sweep& sweep, Progress& progress)
+: is_swept(true),
+  stray(sweep.stray),
+  size_(sweep.size)
 {
-  for (std::size_t k = 0; k < model_poses.size(); ++k)
-    if (k == 0 || model_poses[k].matrix() != model_poses[k - 1].matrix())
-      add(scan_pose, model_poses[k], center, static_cast<std::uint32_t>(k), 0.0);
-  if (!poses.empty()) divide(0, static_cast<std::uint32_t>(poses.size() - 1));
+  poses.reserve(static_cast<std::size_t>(plan(model_poses, sweep, progress)));
+  bool rigid = true;
+  for (const Eigen::Isometry3d& pose : model_poses)
+    rigid = rigid && (PoseParts(pose.linear()).stretch - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kRigid;
+  if (!rigid) stretches_.reserve(poses.capacity());
+  for (std::size_t k = 0; k < model_poses.size(); ++k) {
+    const PoseMotion motion(model_poses[k], model_poses[std::min(k + 1, model_poses.size() - 1)], sweep.pivot);
+    const double cuts = steps_[k].cuts;
+    for (double i = 0; i < cuts; ++i) {
+      progress.tick(8);
+      const double fraction = i / cuts;
+      add(scan_pose, motion.at(fraction), motion.rotationAt(fraction), center, static_cast<std::uint32_t>(k), fraction);
+      if (rigid) continue;
+      const Eigen::Matrix3d stretch = motion.stretchAt(fraction); // symmetric: rows are columns
+      std::copy(stretch.data(), stretch.data() + 9, stretches_.emplace_back().begin());
+    }
+  }
+  skew += excess(scan_pose.linear());
+  intervals.reserve(2 * poses.size());
+  divideAll(progress);
 }
 
 /// Seen by the model, a point s moves as U(t) = R'(t) (s - c(t)), where R turns by an angle a and the pivot c goes
-/// straight by d: |U''| <= a^2 |s - c| + 2 a |d|, so that U bows out by an eighth of that at most.
-PosePath::PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::Isometry3d>& model_poses,
-                   const Point3& center, const Sweep& sweep)
-: is_swept(true),
-  stray(sweep.stray)
+/// straight by d: |U''| <= a^2 |s - c| + 2 a |d|, so that U bows out by an eighth of that at most. A stretch that
+/// changes linearly does not bow.
+double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const Sweep& sweep, Progress& progress)
 {
-  double total = 0.0;
-  for (std::size_t k = 0; k < model_poses.size(); ++k) {
-    if (k + 1 == model_poses.size()) {
-      add(scan_pose, poseBetween(model_poses[k], model_poses[k], 0.0, sweep.pivot), center,
-          static_cast<std::uint32_t>(k), 0.0);
-      break;
-    }
-    const Eigen::Isometry3d &from = model_poses[k], &to = model_poses[k + 1];
-    const Point3 begin = carried(from, sweep.pivot), end = carried(to, sweep.pivot);
-    const Eigen::Quaterniond first(from.linear()), last(to.linear());
-    const double angle = first.normalized().angularDistance(last.normalized()) * (1.0 + kRounding) + kRounding;
-    const double way = distance(begin, end) * (1.0 + kRounding);
-    const double reach = sweep.radius + sweep.reach + way;
-    const double cuts =
-        std::max(1.0, std::ceil(std::sqrt((angle * angle * reach + 2 * angle * way) / (8 * sweep.stray))));
-    total += cuts;
-    if (!(total < kMostPoses)) {
+  double total = 0.0, most = 0.0, longest = 0.0;
+  std::size_t worst = 0;
+  double worst_angle = 0.0, worst_way = 0.0;
+  steps_.resize(model_poses.size());
+  for (std::size_t k = 0; k + 1 < model_poses.size(); ++k) {
+    progress.tick(8);
+    const PoseMotion motion(model_poses[k], model_poses[k + 1], sweep.pivot);
+    Step& step = steps_[k];
+    step.begin = carried(model_poses[k], sweep.pivot);
+    step.end = carried(model_poses[k + 1], sweep.pivot);
+    const double angle = motion.angle() == 0.0 ? 0.0 : motion.angle() * (1.0 + kRounding) + kRounding;
+    const double way = distance(step.begin, step.end) * (1.0 + kRounding);
+    if (motion.isAmbiguous()) {
       std::ostringstream message;
-      message << "tolerance of the swept motion: too small, from pose " << k << " to the next the model turns by "
-              << angle << " and moves by " << way << ": give a larger one, or poses that are nearer to each other";
+      message << "swept motion: from pose " << k << " to the next the model turns by half a turn (" << angle
+              << " rad), and either way round is as short: give a pose between them";
       throw std::invalid_argument(message.str());
     }
-    for (double i = 0; i < cuts; ++i) {
-      add(scan_pose, poseBetween(from, to, i / cuts, sweep.pivot), center, static_cast<std::uint32_t>(k), i / cuts);
-      Bow bow;
-      bow.turn = angle * angle / (cuts * cuts) / 8;
-      bow.drift = angle / cuts * (way / cuts) / 4;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        bow.from[axis] = begin[axis] + (end[axis] - begin[axis]) * (i / cuts);
-        bow.to[axis] = begin[axis] + (end[axis] - begin[axis]) * ((i + 1) / cuts);
-      }
-      bows_.push_back(bow);
-    }
+    const double reach = sweep.radius + sweep.reach + way;
+    const double cuts = step.cuts =
+        std::max(1.0, std::ceil(std::sqrt((angle * angle * reach + 2 * angle * way) / (8 * sweep.stray))));
+    step.turn = angle * angle / (cuts * cuts) / 8;
+    step.drift = angle / cuts * (way / cuts) / 4;
+    longest = std::max(longest, (way + angle * reach) / cuts);
+    total += cuts;
+    if (cuts <= most) continue;
+    most = cuts;
+    worst = k;
+    worst_angle = angle;
+    worst_way = way;
   }
-  if (!poses.empty()) divide(0, static_cast<std::uint32_t>(poses.size() - 1));
+  if (!steps_.empty()) steps_.back().cuts = 1.0; // itself
+  if (!steps_.empty()) total += 1.0;
+  std::ostringstream message;
+  if (total <= kMostPoses) {
+    const double instants = 0x1p-52 * total * longest;
+    if (instants <= sweep.rounding) return total;
+    message << "tolerance of the swept motion: too small: a double tells an instant among " << total
+            << " parts of the motion, each as long as " << longest << ", within a way of " << instants << ", and "
+            << sweep.rounding << " is needed: give a larger tolerance, or fewer poses";
+    throw std::invalid_argument(message.str());
+  }
+  message << "tolerance of the swept motion: too small, the motion would be cut into " << total << " parts, "
+          << kMostPoses << " are the most; from pose " << worst << " to the next the model turns by " << worst_angle
+          << " rad and moves by " << worst_way
+          << ": give a larger tolerance, fewer poses, or poses that are nearer to each other";
+  throw std::invalid_argument(message.str());
 }
 
-void PosePath::add(const Eigen::Isometry3d& scan_pose, const Eigen::Isometry3d& pose, const Point3& center,
-                   std::uint32_t given, double fraction)
+void PosePath::add(const Eigen::Isometry3d& scan_pose, const Eigen::Isometry3d& pose, const Eigen::Matrix3d& rotation,
+                   const Point3& center, std::uint32_t given, double fraction)
 {
-  const Eigen::Matrix3d back = pose.linear().transpose(), turn = back * scan_pose.linear();
+  const Eigen::Matrix3d back = rotation.transpose(), turn = back * scan_pose.linear();
   PathPose& added = poses.emplace_back();
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
@@ -118,11 +148,19 @@ void PosePath::add(const Eigen::Isometry3d& scan_pose, const Eigen::Isometry3d& 
   added.given = given;
   added.fraction = fraction;
   for (const double x : added.center) far = std::max(far, std::abs(x));
-  skew = std::max(skew, excess(pose.linear()) + excess(scan_pose.linear()));
+  skew = std::max(skew, excess(pose.linear()));
 }
 
-std::uint32_t PosePath::divide(std::uint32_t first, std::uint32_t last)
+void PosePath::divideAll(Progress& progress)
 {
+  progress.begin(Progress::kPath, poses.size());
+  if (!poses.empty()) divide(0, static_cast<std::uint32_t>(poses.size() - 1), progress);
+  progress.end();
+}
+
+std::uint32_t PosePath::divide(std::uint32_t first, std::uint32_t last, Progress& progress)
+{
+  progress.tick(last - first + 1, last - first < 2 ? std::max(last - first, 1u) : 0);
   const auto index = static_cast<std::uint32_t>(intervals.size());
   intervals.emplace_back();
   intervals[index].first = first;
@@ -131,8 +169,8 @@ std::uint32_t PosePath::divide(std::uint32_t first, std::uint32_t last)
   // Between two poses the way is straight by definition; when swept, its bow is as small as it needs to be.
   if (last - first < 2) return index;
   const std::uint32_t middle = first + (last - first) / 2;
-  const std::uint32_t left = divide(first, middle);
-  const std::uint32_t right = divide(is_swept ? middle : middle + 1, last);
+  const std::uint32_t left = divide(first, middle, progress);
+  const std::uint32_t right = divide(is_swept ? middle : middle + 1, last, progress);
   intervals[index].left = left;
   intervals[index].right = right;
   return index;
@@ -167,12 +205,33 @@ void PosePath::bound(PathInterval& interval) const
   if (!is_swept || first == last) return;
   double bow_drift = 0.0, bow_turn = 0.0;
   for (std::uint32_t k = first; k < last; ++k) {
-    const double away = std::max(distance(bows_[k].from, pivot), distance(bows_[k].to, pivot));
-    bow_drift = std::max(bow_drift, bows_[k].drift + bows_[k].turn * away);
-    bow_turn = std::max(bow_turn, bows_[k].turn);
+    const Step& step = steps_[poses[k].given];
+    if (step.drift == 0.0 && step.turn == 0.0) continue;
+    const double fraction = poses[k].fraction;
+    const double away = std::max(distance(step.pivotAt(fraction), pivot),
+                                 distance(step.pivotAt(std::min(1.0, fraction + 1.0 / step.cuts)), pivot));
+    bow_drift = std::max(bow_drift, step.drift + step.turn * away);
+    bow_turn = std::max(bow_turn, step.turn);
   }
-  interval.drift += bow_drift;
-  interval.turn += bow_turn;
+  interval.drift += bow_drift * (1.0 + kRounding);
+  interval.turn += bow_turn * (1.0 + kRounding);
+  if (!stretches_.empty()) interval.drift += stretchStray(first, last);
+}
+
+/// How far the model's points stray from straight lines because the poses stretch them, each by a little and otherwise.
+double PosePath::stretchStray(std::uint32_t first, std::uint32_t last) const
+{
+  double most = 0.0;
+  for (std::uint32_t k = first + 1; k < last; ++k) {
+    const double t = static_cast<double>(k - first) / (last - first);
+    double squared = 0.0;
+    for (std::size_t i = 0; i < 9; ++i) {
+      const double difference = stretches_[k][i] - ((1.0 - t) * stretches_[first][i] + t * stretches_[last][i]);
+      squared += difference * difference;
+    }
+    most = std::max(most, squared);
+  }
+  return (std::sqrt(most) * (1.0 + kRounding) + 0x1p-50) * size_;
 }
 
 } // namespace pcl_bsh

@@ -12,7 +12,12 @@
 //
 // Swept: so does the motion between consecutive poses, to a tolerance. The model's pivot moves in a straight line, its
 // rotation is interpolated spherically: poseBetween(). A point reported free stays farther than the clearance during
-// the whole motion; one reported colliding comes within clearance + tolerance.
+// the whole motion, at the given poses exactly as they are; one reported colliding comes within clearance + tolerance.
+// From one pose to the next the model turns the shorter way round, by less than half a turn. Half a turn is refused,
+// for either way would be as short; more than half a turn takes poses on the way.
+//
+// What is answered to one question does not depend on what else is asked for. (Where the accuracy is a tolerance, or
+// float alone, pairs that may count or not may do so for one question and not for another.)
 #pragma once
 
 #include <pcl_bsh/query/collide.h>
@@ -43,7 +48,8 @@ struct TrajectoryRequest {
   Point3 pivot = {0, 0, 0};    ///< swept: the point of the model that moves in straight lines
   unsigned threads = 1;        ///< 0: all of the machine's
   std::function<bool(double)> progress; ///< called now and then, by the calling thread, with the fraction done in [0,
-                                        ///< 1], ascending; false: stop, collideAlong() throws Cancelled
+                                        ///< 1], which never falls, also while nothing is near, and at least once where
+                                        ///< there is anything to do; false: stop, collideAlong() throws Cancelled
 };
 
 /// The model at one pose.
@@ -88,13 +94,16 @@ public:
 
 /// The model at each of `model_poses` (T_world_model, rigid within 1e-6), against the scan at its pose.
 /// @throws std::invalid_argument naming the value: a clearance, accuracy, tolerance, pivot or pose that is not what its
-///   declaration asks for (a pose by its index); a tolerance too small for the size of the coordinates or the turns
-///   between poses. Cancelled.
+///   declaration asks for (a pose by its index); swept: half a turn from one pose to the next, coordinates of 2^100 and
+///   more, a tolerance too small for the size of the coordinates (some 1e-12 of it), or for the motion (which may be
+///   cut into 4,194,304 parts; it is refused before any memory is taken). Cancelled.
 TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
 
 /// The pose at `fraction` in [0, 1] of the motion from one pose to the next: straight for the pivot, a point in the
-/// frame that the poses place, and spherically linear for the rotation, the shorter way round.
+/// frame that the poses place, and spherically linear for the rotation, the shorter way round. At 0 and 1 exactly the
+/// poses given; what they lack to rigid ones (1e-6 at most) changes linearly between them.
+/// @throws std::invalid_argument between poses that are half a turn apart: either way round is as short.
 Eigen::Isometry3d poseBetween(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double fraction,
                               const Point3& pivot = {0, 0, 0});
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
 
 namespace pcl_bsh {
 namespace {
@@ -30,13 +32,46 @@ double farthest(const BoxTree& boxes, const Point3& from)
   return std::sqrt(squared) * (1.0 + kDoubleMargin);
 }
 
-PosePath pathOf(const Placed& scan, const std::vector<Eigen::Isometry3d>& poses, const TrajectoryRequest& request,
-                const BoxTree& boxes, double reach)
+/// Swept: what double arithmetic may get wrong has to fit into a sixteenth of the tolerance. Every length that it
+/// handles counts: where the scan is, the model at its poses and in its own frame, and the pivot.
+void checkTolerance(const Placed& scan, const std::vector<Eigen::Isometry3d>& poses, const TrajectoryRequest& request,
+                    const BoxTree& boxes, double reach)
 {
-  if (!request.swept) return PosePath(scan.pose, poses, boxes.origin);
-  return PosePath(
-      scan.pose, poses, boxes.origin,
-      {request.pivot, farthest(boxes, request.pivot), reach + *request.swept, kStrayShare * *request.swept});
+  double size = 4 * boxes.radius + reach;
+  const LocalFrame& frame = scan.hierarchy.storage().frame;
+  const Point3 origin = carried(scan.pose, frame.origin);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    size += std::abs(origin[axis]) + 2 * frame.reach[axis] * frame.unit + std::abs(boxes.origin[axis]) +
+            std::abs(request.pivot[axis]);
+  double far = 0.0;
+  for (const Eigen::Isometry3d& pose : poses)
+    for (const Point3& center : {carried(pose, boxes.origin), carried(pose, request.pivot)})
+      for (const double x : center) far = std::max(far, std::abs(x));
+  size += 3 * far;
+  constexpr double smallest = 0x1p-400; // its square is far from underflow
+  const double least = std::max(16 * 0x1p-46 * size, smallest);
+  std::ostringstream message;
+  if (!(size < 0x1p100))
+    message << "swept motion: coordinates as large as " << size << ": give the clouds in a larger unit, less than "
+            << 0x1p100;
+  else if (*request.swept < least)
+    message << "tolerance of the swept motion: " << *request.swept << ": too small for coordinates as large as " << size
+            << ": give at least " << least;
+  else
+    return;
+  throw std::invalid_argument(message.str());
+}
+
+PosePath pathOf(const Placed& scan, const std::vector<Eigen::Isometry3d>& poses, const TrajectoryRequest& request,
+                const BoxTree& boxes, double reach, Progress& progress)
+{
+  if (!request.swept) return PosePath(scan.pose, poses, boxes.origin, progress);
+  const double tolerance = *request.swept;
+  checkTolerance(scan, poses, request, boxes, reach);
+  return PosePath(scan.pose, poses, boxes.origin,
+                  {request.pivot, farthest(boxes, request.pivot), boxes.radius, reach + tolerance,
+                   kStrayShare * tolerance, tolerance / 64},
+                  progress);
 }
 
 double largestRadii(const Placed& scan, const SphereHierarchy& model)
@@ -48,7 +83,7 @@ double largestRadii(const Placed& scan, const SphereHierarchy& model)
 
 Course::Course(const Placed& scan_at, const SphereHierarchy& model_of,
                const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
-               TrajectoryResult& into)
+               TrajectoryResult& into, Progress& progress)
 : scan(scan_at),
   model(model_of),
   given(model_poses),
@@ -57,7 +92,7 @@ Course::Course(const Placed& scan_at, const SphereHierarchy& model_of,
   boxes(model_of.storage()),
   radii(largestRadii(scan_at, model_of)),
   reach(asked.clearance + asked.swept.value_or(0.0) / 2 + radii),
-  path(pathOf(scan_at, model_poses, asked, boxes, reach)),
+  path(pathOf(scan_at, model_poses, asked, boxes, reach, progress)),
   closest(asked.distances || asked.closest_poses),
   first(asked.first_poses || asked.swept.has_value())
 {
@@ -102,9 +137,10 @@ bool Course::near(const Ball& ball, const PathInterval& interval, double& stray)
   return !(enter > leave);
 }
 
-void Course::meet(std::uint32_t node, std::uint32_t lane, std::uint32_t index, const StopRule& rule,
+void Course::meet(std::uint32_t node, std::uint32_t lane, std::uint32_t index, const StopRule& rule, Progress& progress,
                   std::vector<std::vector<std::uint32_t>>& meetings) const
 {
+  progress.tick(4);
   const SphereHierarchy::Storage& storage = scan.hierarchy.storage();
   const Node& of = storage.top[node];
   const bool is_voxel = of.isLeaf(lane);
@@ -120,24 +156,29 @@ void Course::meet(std::uint32_t node, std::uint32_t lane, std::uint32_t index, c
   double stray = 0.0;
   if (!rule.isOver() && !near(ball, interval, stray)) return;
   if (interval.divided() && stray > (is_voxel ? 0.5 : 1.0) * ball.radius) {
-    meet(node, lane, interval.left, rule, meetings);
-    meet(node, lane, interval.right, rule, meetings);
+    meet(node, lane, interval.left, rule, progress, meetings);
+    meet(node, lane, interval.right, rule, progress, meetings);
   }
   else if (is_voxel) {
     meetings[of.begin[lane]].push_back(index);
   }
   else {
     const std::uint32_t below = of.child[lane];
-    for (std::uint32_t i = 0; i < storage.top[below].count; ++i) meet(below, i, index, rule, meetings);
+    for (std::uint32_t i = 0; i < storage.top[below].count; ++i) meet(below, i, index, rule, progress, meetings);
   }
 }
 
-std::vector<std::vector<std::uint32_t>> Course::meetings(const StopRule& rule) const
+std::vector<std::vector<std::uint32_t>> Course::meetings(const StopRule& rule, Progress& progress) const
 {
   const SphereHierarchy::Storage& storage = scan.hierarchy.storage();
   std::vector<std::vector<std::uint32_t>> meetings(storage.voxel_count);
   if (storage.size == 0 || boxes.storage.size == 0 || path.poses.empty()) return meetings;
-  for (std::uint32_t lane = 0; lane < storage.top[0].count; ++lane) meet(0, lane, 0, rule, meetings);
+  progress.begin(Progress::kMeetings, storage.top[0].count);
+  for (std::uint32_t lane = 0; lane < storage.top[0].count; ++lane) {
+    meet(0, lane, 0, rule, progress, meetings);
+    progress.skipTo(lane + 1);
+  }
+  progress.end();
   return meetings;
 }
 

@@ -23,7 +23,7 @@ struct PoseBest {
 /// The question, and what its answer takes that no voxel changes.
 struct Course {
   Course(const Placed& scan_at, const SphereHierarchy& model_of, const std::vector<Eigen::Isometry3d>& model_poses,
-         const TrajectoryRequest& asked, TrajectoryResult& into);
+         const TrajectoryRequest& asked, TrajectoryResult& into, Progress& progress);
 
   const Placed& scan;
   const SphereHierarchy& model;
@@ -36,8 +36,13 @@ struct Course {
   const double reach; ///< of points: the clearance, half of the tolerance, the radii
   const PosePath path;
   const bool closest, first; ///< what has to be known of each point, beside whether it collides
-  bool closestOnly() const { return closest && !request.pose_summaries; } ///< whether the best so far bounds the search
-  bool everything() const { return closest || request.pose_summaries; }   ///< whether a collision settles nothing
+  /// Whether the best so far bounds the search for a point, with all of a path that begins at `from`: what is farther
+  /// changes nothing then. Not where it may collide earlier than is known, nor where it counts for a pose.
+  bool bestBounds(double first_contact, double from) const
+  {
+    return closest && !request.pose_summaries && (!first || first_contact <= from);
+  }
+  bool everything() const { return closest || request.pose_summaries; } ///< whether a collision settles nothing
 
   /// Bounds what double arithmetic gets wrong about the place of a scan's point seen by the model, for a voxel whose
   /// origin is there in the world.
@@ -48,7 +53,7 @@ struct Course {
 
   /// The intervals of the path during which each voxel may be near the model, in their order. Once the rule's time is
   /// over, whatever was not looked at may be.
-  std::vector<std::vector<std::uint32_t>> meetings(const StopRule& rule) const;
+  std::vector<std::vector<std::uint32_t>> meetings(const StopRule& rule, Progress& progress) const;
 
   mutable std::mutex mutex; ///< of the two below
   mutable std::vector<PoseBest> pose_best;
@@ -61,7 +66,7 @@ private:
   };
 
   bool near(const Ball& ball, const PathInterval& interval, double& stray) const;
-  void meet(std::uint32_t node, std::uint32_t lane, std::uint32_t interval, const StopRule& rule,
+  void meet(std::uint32_t node, std::uint32_t lane, std::uint32_t interval, const StopRule& rule, Progress& progress,
             std::vector<std::vector<std::uint32_t>>& meetings) const;
 };
 

@@ -8,6 +8,7 @@
 #define PCL_BSH_QUERY_TRAJECTORY_LEAF_INL_H_
 #endif
 
+#include <pcl_bsh/query/straight_way.h>
 #include <pcl_bsh/query/trajectory_findings.h>
 #include <pcl_bsh/query/trajectory_model-inl.h>
 
@@ -73,8 +74,8 @@ public:
     leaf.ways.set(from, to, span.smallest);
     if (path_.is_swept || span.steps >= kFewPoses) leaf.motions.set(from, to, span.smallest, span.rounding);
     std::fill(leaf.ways.reach[0], leaf.ways.reach[0] + kLeafPoints, span.reach);
-    if (course_.closestOnly())
-      for (std::uint32_t i = 0; i < points.count; ++i)
+    for (std::uint32_t i = 0; course_.closest && i < points.count; ++i)
+      if (bestBounds(points.begin + i, span))
         leaf.ways.reach[0][i] = std::min(span.reach, sight_.reachOf(span, findings_.best[points.begin + i].reach));
     const float no_room[3][kLeafPoints] = {};
     leaf.around = sight_.aroundWays(span, from, to, no_room, points.count);
@@ -290,7 +291,7 @@ private:
         const double high = sight_.highOf(nearest[i]);
         best->limit = std::min(best->limit, sight_.notBeyond(nearest[i]));
         best->reach = std::min(best->reach, roundUp(high));
-        if (course_.closestOnly())
+        if (bestBounds(leaf.points.begin + i, span))
           leaf.ways.reach[0][i] = std::min(leaf.ways.reach[0][i], sight_.reachOf(span, best->reach));
       }
       if (for_pose && certain) findings_.lowerPoseLimit(k, sight_.notBeyond(nearest[i]));
@@ -315,7 +316,7 @@ private:
         ++findings_.work.exact_decisions;
         const std::uint32_t q = other.record(j);
         const double radii = course_.scan.hierarchy.view().radius(record) + course_.model.view().radius(q);
-        const Approach approach = approachOf(way, course_.model.view().point(q), course_.reach - course_.radii + radii);
+        const Approach approach = approachTo(way, q, course_.reach - course_.radii + radii);
         if (!approach.contact) continue;
         findings_.hit[leaf.slot] = static_cast<std::uint16_t>(findings_.hit[leaf.slot] | 1u << i);
         first = std::min(first, begin + steps * approach.enter);
@@ -325,51 +326,43 @@ private:
       if (course_.closest && course_.radii == 0.0) {
         Best& best = findings_.best[leaf.points.begin + i];
         best.reach = std::min(best.reach, roundUp(best.gap));
-        leaf.ways.reach[0][i] = std::min(leaf.ways.reach[0][i], sight_.reachOf(span, best.reach));
+        if (bestBounds(leaf.points.begin + i, span))
+          leaf.ways.reach[0][i] = std::min(leaf.ways.reach[0][i], sight_.reachOf(span, best.reach));
       }
     }
   }
 
+  /// Whether the best so far bounds the search for a point of the voxel from this span on.
+  bool bestBounds(std::uint32_t point, const Span& span) const
+  {
+    return course_.bestBounds(course_.first ? findings_.first[point] : 0.0, span.interval->first);
+  }
+
   /// Where a point of the scan is seen at a span's ends.
   struct Way {
-    Point3 start, motion;
+    std::uint32_t first, last; ///< poses of the path
+    Point3 start, end;
   };
 
   Way wayOf(std::uint32_t record, const Span& span) const
   {
     const Point3 world = carried(course_.scan.pose, course_.scan.hierarchy.view().point(record));
-    const Point3 start = path_.poses[span.interval->first].see(world);
-    const Point3 end = path_.poses[span.interval->last].see(world);
-    return {start, {end[0] - start[0], end[1] - start[1], end[2] - start[2]}};
+    const std::uint32_t first = span.interval->first, last = span.interval->last;
+    return {first, last, path_.poses[first].see(world), path_.poses[last].see(world)};
   }
 
-  /// A point on its way and one at rest: the instants, in [0, 1], of their closest approach and of the first contact.
-  struct Approach {
-    bool contact;
-    double distance, at, enter;
-  };
-
-  Approach approachOf(const Way& way, const Point3& model_point, double near_enough) const
+  /// Of a point on its way to one of the model.
+  Approach approachTo(const Way& way, std::uint32_t record, double near_enough) const
   {
-    double length = 0.0, along = 0.0, apart = 0.0, squared = 0.0;
-    Point3 away;
+    Point3 at = course_.model.view().point(record);
+    for (std::size_t axis = 0; axis < 3; ++axis) at[axis] -= tree_.origin[axis];
+    const Point3 from = path_.stretched(way.first, at), to = path_.stretched(way.last, at);
+    Point3 away, motion;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      away[axis] = way.start[axis] - (model_point[axis] - tree_.origin[axis]);
-      length += way.motion[axis] * way.motion[axis];
-      along += way.motion[axis] * away[axis];
-      apart += away[axis] * away[axis];
+      away[axis] = way.start[axis] - from[axis];
+      motion[axis] = (way.end[axis] - way.start[axis]) - (to[axis] - from[axis]);
     }
-    const double at = length > 0.0 ? std::clamp(-along / length, 0.0, 1.0) : 0.0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double closest = away[axis] + at * way.motion[axis];
-      squared += closest * closest;
-    }
-    const double limit = near_enough * near_enough;
-    if (!(squared <= limit)) return {false, 0.0, 0.0, 0.0};
-    // Of the two roots the earlier one, written so that it subtracts nothing alike.
-    const double root = std::sqrt(std::max(0.0, along * along - length * (apart - limit)));
-    const double enter = apart <= limit ? 0.0 : std::max(0.0, std::min(at, (apart - limit) / (root - along)));
-    return {true, std::sqrt(squared), at, enter};
+    return approachOf(away, motion, near_enough);
   }
 
   /// Keeps the nearest; of several the first instant, and there the smallest record.
