@@ -12,19 +12,25 @@
 
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace pcl_bsh::cli {
 
 /// The poses of a straight run of so many steps: one more than steps, both ends among them. Translation is linear,
-/// rotation spherically so.
+/// rotation spherically so. @throws UsageError when they are half a turn apart: either way round is as short.
 inline std::vector<Eigen::Isometry3d> straightRun(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
                                                   std::size_t steps)
 {
   std::vector<Eigen::Isometry3d> poses = {from};
-  for (std::size_t i = 1; i < steps; ++i) {
-    poses.push_back(poseBetween(from, to, static_cast<double>(i) / static_cast<double>(steps)));
+  try {
+    for (std::size_t i = 1; i < steps; ++i) {
+      poses.push_back(poseBetween(from, to, static_cast<double>(i) / static_cast<double>(steps)));
+    }
+  }
+  catch (const std::invalid_argument& error) {
+    throw UsageError(std::string("--to: ") + error.what());
   }
   poses.push_back(to);
   return poses;
