@@ -13,21 +13,21 @@ struct FreeBuffer {
 };
 
 /// Uninitialised storage. Large ones ask the system for huge pages, where it has them, and are kept when they are freed
-/// (at most kKeptBytes, which the system may take back): first touches of a page, and above all of a virtual machine's,
-/// would cost more than sorting the points that go there.
+/// (within the limit of retained_memory.h; the system may take them back): first touches of a page, and above all of a
+/// virtual machine's, would cost more than sorting the points that go there.
 template <class T>
 using LargeBuffer = std::unique_ptr<T[], FreeBuffer>;
-
-inline constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
 struct AllocatedBuffer {
   void* p;
   std::size_t size; ///< at least what was asked for
 };
+
+/// A kept one, or one of operator new. @throws std::bad_alloc
 AllocatedBuffer allocateBuffer(std::size_t bytes);
 
-/// Of freed buffers, at present.
-std::size_t keptBytes();
+/// Gives it back for good.
+void freeBuffer(const AllocatedBuffer& buffer) noexcept;
 
 /// @throws std::bad_alloc
 template <class T>

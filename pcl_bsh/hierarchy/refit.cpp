@@ -3,10 +3,12 @@
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/hierarchy/view_check.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <stdexcept>
 
 namespace pcl_bsh {
@@ -14,21 +16,20 @@ namespace {
 
 void requireFit(const PointsView& before, const PointsView& now, double most_growth)
 {
-  const auto refuse = [](const std::string& what) { throw std::invalid_argument("SphereHierarchy::refit: " + what); };
+  const std::string name = "SphereHierarchy::refit";
+  const auto refuse = [&](const std::string& what) { throw std::invalid_argument(name + ": " + what); };
   if (!(std::isfinite(most_growth) && most_growth >= 1.0))
     refuse("growth " + std::to_string(most_growth) + " is not finite and >= 1");
   if (now.count != before.count || now.size() != before.size())
     refuse("the view has " + std::to_string(now.count) + " records instead of " + std::to_string(before.count));
   if (now.scalar != before.scalar) refuse("the view has coordinates of another type");
-  if (now.count > 0 && !now.data) refuse("the view's data is null");
   if (!now.indices != !before.indices) refuse("the view is of another subset");
   if (now.indices && now.indices != before.indices &&
       !std::equal(now.indices, now.indices + now.index_count, before.indices))
     refuse("the view is of another subset");
+  checkView(name, now);
   if (!now.radii != !before.radii) refuse("the view has radii and the one before none, or the other way round");
-  for (std::size_t i = 0; now.radii && i < now.count; ++i)
-    if (!(now.radii[i] >= 0.0f && now.radii[i] <= std::numeric_limits<float>::max()))
-      refuse("radius " + std::to_string(now.radii[i]) + " of point " + std::to_string(i) + " is not finite and >= 0");
+  for (std::size_t i = 0; now.radii && i < now.count; ++i) checkRadius(name, now, i);
 }
 
 double sumOfLeafRadii(const Voxel& voxel)
@@ -46,6 +47,15 @@ bool hasCoincidentLeaf(const Voxel& voxel)
     for (std::uint32_t i = 0; i < node.count; ++i)
       if (node.isLeaf(i) && node.isCoincident(i)) return true;
   return false;
+}
+
+/// Calls visit(i, record) for the voxel's points, in their order.
+template <class Visit>
+void eachRecord(const Voxel& voxel, const Visit& visit)
+{
+  const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;
+  const auto* sorted = reinterpret_cast<const PointRecord*>(voxel.block);
+  for (std::uint32_t i = 0; i < voxel.count; ++i) visit(i, built ? voxel.records()[i] : sorted[i].record);
 }
 
 /// Bounds of points, as given.
@@ -67,21 +77,49 @@ struct Range {
   }
 };
 
-/// Where the voxel's points are now, in their order. @return false when one is not finite any more
-bool reread(Voxel& voxel, const PointsView& view, std::vector<PointRecord>& points, Range& range)
+/// Where the voxel's points are now, and their largest radius. @return false when one is not finite any more
+bool readRange(const Voxel& voxel, const PointsView& view, Range& range, float& largest_radius)
+{
+  bool finite = true;
+  eachRecord(voxel, [&](std::uint32_t, std::uint32_t record) {
+    const Point3 p = view.point(record);
+    finite = finite && isFinite(p);
+    range.widen(p, p);
+    if (view.radii) largest_radius = std::max(largest_radius, view.radii[record]);
+  });
+  return finite;
+}
+
+/// Gives the voxel its points' new coordinates and its frame. Its tree follows where it can, else it is to be built
+/// anew: where points of one place may have parted, where spheres have grown by more than `most_growth` on average, and
+/// where there is no memory. @param points room for as many as the voxel has. @return whether a tree was dropped
+bool follow(Voxel& voxel, const LocalFrame& frame, const PointsView& now, double most_growth, SphereFit fit,
+            PointRecord* points) noexcept
 {
   const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;
-  const auto* sorted = reinterpret_cast<const PointRecord*>(voxel.block);
-  points.resize(voxel.count);
-  for (std::uint32_t i = 0; i < voxel.count; ++i) {
-    points[i].record = built ? voxel.records()[i] : sorted[i].record;
-    const Point3 p = view.point(points[i].record);
-    if (!isFinite(p)) return false;
-    range.widen(p, p);
+  if (built && voxel.leaf_radii == 0.0) voxel.leaf_radii = sumOfLeafRadii(voxel);
+  voxel.frame = frame; // its unit may be another: radii are compared in the cloud's
+  eachRecord(voxel,
+             [&](std::uint32_t i, std::uint32_t record) { points[i] = storedIn(frame, now.point(record), record); });
+  bool keep = built && voxel.given.empty() && !hasCoincidentLeaf(voxel);
+  if (keep) {
+    try {
+      refitVoxel(voxel, points, now, fit);
+      keep = sumOfLeafRadii(voxel) <= most_growth * voxel.leaf_radii;
+    }
+    catch (const std::bad_alloc&) {
+      keep = false;
+    }
   }
-  voxel.frame = frameBetween(range.low, range.high, view.scalar == Scalar::float32);
-  for (PointRecord& point : points) point = storedIn(voxel.frame, view.point(point.record), point.record);
-  return true;
+  if (!keep) {
+    std::copy_n(points, voxel.count, reinterpret_cast<PointRecord*>(voxel.block));
+    voxel.nodes.clear();
+    voxel.given.clear();
+    voxel.leaf_radii = 0.0;
+    voxel.state.store(Voxel::sorted, std::memory_order_release);
+  }
+  measureVoxel(voxel, now);
+  return built && !keep;
 }
 
 std::size_t countFinite(const PointsView& view)
@@ -101,45 +139,41 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
   const auto sortAnew = [&] {
     storage_ = std::make_unique<Storage>(now, storage_->options);
     report.sorted_anew = true;
-    report.voxels_refitted = report.voxels_dropped = 0;
     return report;
   };
-  if (countFinite(now) != storage_->size) return sortAnew();
   Storage& s = *storage_;
-  s.view = now;
-  s.strayed = 0.0;
+  if (s.size < now.size() && countFinite(now) != s.size) return sortAnew();
+
+  // Whatever may throw comes first, and changes nothing.
+  std::vector<LocalFrame> frames(s.voxel_count);
+  std::uint32_t most_points = 0;
+  double sum = 0.0, strayed = 0.0;
   Range all;
-  std::vector<PointRecord> points;
   for (std::size_t v = 0; v < s.voxel_count; ++v) {
-    Voxel& voxel = s.voxels[v];
-    const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;
-    if (built && voxel.leaf_radii == 0.0) voxel.leaf_radii = sumOfLeafRadii(voxel);
-    // The frame's unit may change: radii are compared in the cloud's.
     Range range;
-    if (!reread(voxel, now, points, range)) return sortAnew();
+    float largest_radius = 0.0f;
+    if (!readRange(s.voxels[v], now, range, largest_radius)) return sortAnew();
+    frames[v] = frameBetween(range.low, range.high, now.scalar == Scalar::float32);
+    sum += static_cast<double>(radiusOf(frames[v], largest_radius)) * frames[v].unit;
     all.widen(range.low, range.high);
-    s.strayed = std::max(s.strayed, s.strayOf(voxel.key, range.low, range.high));
-    ++report.voxels_refitted;
-    bool keep = built && voxel.given.empty() && !hasCoincidentLeaf(voxel); // points of one place may have parted
-    if (keep) {
-      refitVoxel(voxel, points.data(), now, s.options.fit);
-      keep = sumOfLeafRadii(voxel) <= most_growth * voxel.leaf_radii;
-    }
-    if (!keep) {
-      if (built) ++report.voxels_dropped;
-      std::copy(points.begin(), points.end(), reinterpret_cast<PointRecord*>(voxel.block));
-      voxel.nodes.clear();
-      voxel.given.clear();
-      voxel.leaf_radii = 0.0;
-      voxel.state.store(Voxel::sorted, std::memory_order_release);
-    }
-    s.measure(voxel);
+    strayed = std::max(strayed, s.strayOf(s.voxels[v].key, range.low, range.high));
+    most_points = std::max(most_points, s.voxels[v].count);
   }
-  const double sum = s.sumOfRadii();
   report.looseness = s.extent > 0.0 ? sum / s.extent : 1.0;
   if (report.looseness > most_growth) return sortAnew();
-  if (s.size > 0) s.frame = frameBetween(all.low, all.high, now.scalar == Scalar::float32);
-  s.raiseTop();
+  const LocalFrame frame = s.size > 0 ? frameBetween(all.low, all.high, now.scalar == Scalar::float32) : LocalFrame();
+  std::vector<PointRecord> points(most_points);
+  const std::vector<Voxel*> voxels = s.list();
+
+  [&]() noexcept { // the same voxels with the same keys: the tree above them needs no more memory than it has
+    s.view = now;
+    s.strayed = strayed;
+    for (std::size_t v = 0; v < s.voxel_count; ++v)
+      report.voxels_dropped += follow(s.voxels[v], frames[v], now, most_growth, s.options.fit, points.data());
+    s.frame = frame;
+    s.setAbove(Storage::raise(voxels, frame, s.takeAbove()));
+  }();
+  report.voxels_refitted = s.voxel_count;
   return report;
 }
 

@@ -42,8 +42,8 @@ public:
   bool isFitted() const noexcept { return slabs_.load(std::memory_order_relaxed) != nullptr; }
 
   // Nobody may ask meanwhile.
-  void reset() { delete[] slabs_.exchange(nullptr); }
-  void adopt(LazySlabs& other)
+  void reset() noexcept { delete[] slabs_.exchange(nullptr); }
+  void adopt(LazySlabs& other) noexcept
   {
     reset();
     slabs_.store(other.slabs_.exchange(nullptr));

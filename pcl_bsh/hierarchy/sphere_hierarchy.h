@@ -18,7 +18,9 @@ namespace pcl_bsh {
 enum class SphereFit : std::uint8_t { box_center, ritter, minimal };
 
 struct HierarchyOptions {
-  /// Edge of a voxel, in the cloud's unit; rounded to a power of two. 0: from the density of the points.
+  /// Edge of a voxel, in the cloud's unit; rounded to a power of two. 0: from the density of the points. Doubled until
+  /// voxels are at most 4096, or one for 16 points, so that memory and time stay proportional to the points;
+  /// statistics() tells what it came to.
   double voxel_edge = 0.0;
   SphereFit fit = SphereFit::box_center;
   unsigned threads = 1; ///< for sorting points into voxels; 0: all of the machine's
@@ -31,9 +33,10 @@ struct HierarchyStatistics {
   std::size_t voxels_built = 0; ///< of these, visited by a query or buildAll()
   std::size_t nodes = 0;        ///< wide nodes
   std::size_t leaves = 0;
-  std::size_t depth = 0; ///< wide nodes on the longest way from a voxel to a leaf
-  std::size_t bytes = 0; ///< memory held, the caller's cloud not counted
-  double voxel_edge = 0.0;
+  std::size_t depth = 0;             ///< wide nodes on the longest way from a voxel to a leaf
+  std::size_t bytes = 0;             ///< memory held, the caller's cloud not counted
+  double voxel_edge = 0.0;           ///< in use
+  double requested_voxel_edge = 0.0; ///< HierarchyOptions::voxel_edge; 0: from the density
   double mean_leaf_points = 0.0;
   double mean_leaf_radius = 0.0;
 };
@@ -57,8 +60,9 @@ struct RefitReport {
 /// points are left out. Holds about 20 bytes per point; the caller's points must outlive it, unchanged.
 class SphereHierarchy {
 public:
-  /// @throws std::invalid_argument naming the offending value: a null or too large view, an index outside the view, a
-  ///   radius that is negative or not finite, a negative or non-finite voxel edge.
+  /// @throws std::invalid_argument naming the offending value: a null or too large view, a stride or offsets for which
+  ///   records or coordinates lie over each other, an index outside the view, a radius that is negative or not finite,
+  ///   a negative or non-finite voxel edge.
   explicit SphereHierarchy(const PointsView& points, const HierarchyOptions& options = {});
   ~SphereHierarchy();
   SphereHierarchy(SphereHierarchy&&) noexcept;
@@ -83,7 +87,8 @@ public:
   /// @param most_growth >= 1: a voxel is dropped once its leaves' radii have grown by this factor on average since it
   /// was
   ///   built, and all points are sorted anew once the voxels have
-  /// @throws std::invalid_argument when `now` does not fit, or the factor is not finite and >= 1
+  /// @throws std::invalid_argument when `now` does not fit, or the factor is not finite and >= 1; std::bad_alloc. The
+  ///   hierarchy is then as it was, and refit() may be called again.
   RefitReport refit(const PointsView& now, double most_growth = 1.5);
 
   /// Checks everything that queries rely on, in exact arithmetic: each point is in every sphere above it, each child in

@@ -24,6 +24,7 @@ HierarchyStatistics SphereHierarchy::statistics() const
   result.points = s.size;
   result.voxels = s.voxel_count;
   result.voxel_edge = s.voxel_edge;
+  result.requested_voxel_edge = s.options.voxel_edge;
   result.nodes = s.top.size();
   result.bytes = sizeof(Storage) + s.voxel_count * (sizeof(Voxel) + kBlockPadding * sizeof(float)) +
                  s.size * (sizeof(PointRecord) + (s.view.radii ? sizeof(float) : 0)) + s.top.capacity() * sizeof(Node) +
@@ -35,6 +36,7 @@ HierarchyStatistics SphereHierarchy::statistics() const
     ++result.voxels_built;
     result.nodes += voxel.nodes.size();
     result.bytes += voxel.nodes.capacity() * sizeof(Node);
+    result.bytes += voxel.given.capacity() * sizeof(GivenSphere);
     if (voxel.slabs.isFitted()) result.bytes += voxel.nodes.size() * sizeof(Slabs);
     result.depth = std::max(result.depth, depthBelow(voxel.nodes, 0));
     for (const Node& node : voxel.nodes)

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/morton.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace pcl_bsh {
 
@@ -20,18 +22,16 @@ SphereHierarchy::Storage::Storage(const PointsView& points, const HierarchyOptio
   voxels = std::move(sorting.voxels);
   buffers.push_back(std::move(sorting.buffer));
   frame = sorting.frame;
-  if (size == 0) return;
-
-  if (view.radii) {
+  if (size > 0 && view.radii) {
     radii_buffers.push_back(std::make_unique<float[]>(size));
     for (std::size_t v = 0; v < voxel_count; ++v) voxels[v].radii = radii_buffers.front().get() + voxels[v].begin;
   }
-  for (std::size_t v = 0; v < voxel_count; ++v) measure(voxels[v]);
+  for (std::size_t v = 0; v < voxel_count; ++v) measureVoxel(voxels[v], view);
   extent = sumOfRadii();
-  raiseTop();
+  setAbove(raise(list(), frame, Above()));
 }
 
-void SphereHierarchy::Storage::measure(Voxel& voxel) const
+void measureVoxel(Voxel& voxel, const PointsView& view)
 {
   voxel.slabs.reset();
   voxel.largest_radius = 0.0f;
@@ -41,8 +41,12 @@ void SphereHierarchy::Storage::measure(Voxel& voxel) const
     for (std::uint32_t i = 0; i < voxel.count; ++i)
       voxel.largest_radius = std::max(voxel.largest_radius, view.radii[built ? voxel.records()[i] : sorted[i].record]);
   }
-  const LocalFrame& f = voxel.frame;
-  const double ball = static_cast<double>(voxel.largest_radius) / f.unit;
+  voxel.radius = radiusOf(voxel.frame, voxel.largest_radius);
+}
+
+float radiusOf(const LocalFrame& f, float largest_radius)
+{
+  const double ball = static_cast<double>(largest_radius) / f.unit;
   const double corner = std::hypot(f.reach[0] + f.slack(0), f.reach[1] + f.slack(1), f.reach[2] + f.slack(2));
   voxel.radius = roundUp((corner + ball) * (1.0 + kDoubleMargin));
 }
@@ -53,28 +57,28 @@ std::uint64_t SphereHierarchy::Storage::nextRevision() noexcept
   return count.fetch_add(1, std::memory_order_relaxed) + 1;
 }
 
-void SphereHierarchy::Storage::raiseTop()
+std::vector<Voxel*> SphereHierarchy::Storage::list() const
 {
-  revision = nextRevision();
-  std::vector<float> largest_radii;
-  largest_radius = 0.0;
-  for (std::size_t v = 0; v < voxel_count && view.radii; ++v) {
-    largest_radii.push_back(voxels[v].largest_radius);
-    largest_radius = std::max(largest_radius, static_cast<double>(voxels[v].largest_radius));
-  }
-  top.clear();
-  if (size > 0) top = buildTop(voxels.get(), voxel_count, frame, view.radii ? largest_radii.data() : nullptr);
-  fillSlots();
+  std::vector<Voxel*> all(voxel_count);
+  for (std::size_t v = 0; v < voxel_count; ++v) all[v] = &voxels[v];
+  return all;
 }
 
-void SphereHierarchy::Storage::fillSlots()
+SphereHierarchy::Storage::Above SphereHierarchy::Storage::raise(const std::vector<Voxel*>& all, const LocalFrame& frame,
+                                                                Above reuse)
 {
-  slots_.assign(std::bit_ceil(2 * voxel_count + 1), kNoVoxel);
-  for (std::uint32_t v = 0; v < voxel_count; ++v) {
-    std::size_t slot = slotOf(voxels[v].key);
-    while (slots_[slot] != kNoVoxel) slot = (slot + 1) & (slots_.size() - 1);
-    slots_[slot] = v;
+  Above above = std::move(reuse);
+  above.largest_radius = 0.0;
+  for (const Voxel* voxel : all)
+    above.largest_radius = std::max(above.largest_radius, static_cast<double>(voxel->largest_radius));
+  if (!all.empty()) above.top = buildTop(all, frame, std::move(above.top));
+  above.slots.assign(std::bit_ceil(2 * all.size() + 1), kNoVoxel);
+  for (std::uint32_t v = 0; v < all.size(); ++v) {
+    std::size_t slot = slotOf(all[v]->key, above.slots.size());
+    while (above.slots[slot] != kNoVoxel) slot = (slot + 1) & (above.slots.size() - 1);
+    above.slots[slot] = v;
   }
+  return above;
 }
 
 SphereHierarchy::Storage::Home SphereHierarchy::Storage::homeOf(const Point3& place) const noexcept
@@ -90,7 +94,7 @@ SphereHierarchy::Storage::Home SphereHierarchy::Storage::homeOf(const Point3& pl
     room = std::min(room, std::min(past, 1.0 - past) - kCellRounding * (cells + 2.0));
   }
   const std::uint64_t key = mortonCode(cell[0], cell[1], cell[2]);
-  std::size_t slot = slotOf(key);
+  std::size_t slot = slotOf(key, slots_.size());
   while (slots_[slot] != kNoVoxel && voxels[slots_[slot]].key != key) slot = (slot + 1) & (slots_.size() - 1);
   return {slots_[slot], (room - strayed) * voxel_edge * (1.0 - kDoubleMargin)};
 }
@@ -139,6 +143,7 @@ void SphereHierarchy::Storage::build(std::size_t index, std::uint64_t& built_now
 {
   Voxel& voxel = voxels[index];
   if (!claim(voxel)) return;
+  const DefaultFloatEnvironment environment; // whoever asks, and in whatever environment
   try {
     buildVoxel(voxel, view, options.fit);
   }

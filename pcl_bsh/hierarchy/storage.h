@@ -10,6 +10,7 @@
 #include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <vector>
@@ -43,7 +44,7 @@ struct Voxel {
   std::atomic<std::uint8_t> state{sorted};
 
   /// Takes over what another voxel is. Nobody may visit either meanwhile.
-  void adopt(Voxel& other)
+  void adopt(Voxel& other) noexcept
   {
     frame = other.frame;
     key = other.key;
@@ -118,9 +119,9 @@ public:
   {
     Voxel& v = voxels[voxel];
     if (claim(v)) {
+      const Claim claimed{v}; // others wait: the visit may throw
       const auto* sorted = reinterpret_cast<const PointRecord*>(v.block);
       for (std::uint32_t i = 0; i < v.count; ++i) visit(sorted[i].record);
-      release(v, Voxel::sorted);
     }
     else {
       for (std::uint32_t i = 0; i < v.count; ++i) visit(v.records()[i]);
@@ -152,12 +153,28 @@ public:
 
   double extent = 0.0; ///< sum of the voxels' radii when the points were sorted into them, in the cloud's unit
 
-  /// Sets what is known of a voxel by its frame and points: `radius`, `largest_radius`; forgets its slabs. @pre its
-  /// points' records are set
-  void measure(Voxel& voxel) const;
+  /// What depends on all voxels: the tree above them, and where to find each.
+  struct Above {
+    std::vector<Node> top;
+    std::vector<std::uint32_t> slots;
+    double largest_radius = 0.0;
+  };
 
-  /// Builds the tree above the voxels and what else depends on all of them, once each is measured.
-  void raiseTop();
+  /// Of measured voxels, in the order of their keys. @param reuse for the same number of voxels with the same keys as
+  /// it was made of before, nothing is allocated
+  static Above raise(const std::vector<Voxel*>& all, const LocalFrame& frame, Above reuse);
+
+  Above takeAbove() noexcept { return {std::move(top), std::move(slots_), largest_radius}; }
+  void setAbove(Above&& above) noexcept
+  {
+    top = std::move(above.top);
+    slots_ = std::move(above.slots);
+    largest_radius = above.largest_radius;
+    revision = nextRevision();
+  }
+
+  /// All voxels, in order.
+  std::vector<Voxel*> list() const;
 
   /// Sum of the voxels' radii.
   double sumOfRadii() const;
@@ -171,14 +188,18 @@ public:
 private:
   void build(std::size_t voxel, std::uint64_t& built_now) const;
 
-  /// Makes voxels findable by their keys: open addressing, at most half full.
-  void fillSlots();
-  std::size_t slotOf(std::uint64_t key) const noexcept
+  static std::size_t slotOf(std::uint64_t key, std::size_t slots) noexcept
   {
-    return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15u >> 32) & (slots_.size() - 1);
+    return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15u >> 32) & (slots - 1);
   }
 
-  std::vector<std::uint32_t> slots_; ///< voxels, or kNoVoxel
+  std::vector<std::uint32_t> slots_; ///< voxels by the hashes of their keys, or kNoVoxel: open addressing, half full
+
+  /// Gives a claimed voxel back as it was, whatever happens.
+  struct Claim {
+    Voxel& voxel;
+    ~Claim() { release(voxel, Voxel::sorted); }
+  };
 
   /// Waits for whoever has the voxel. @return false when it is built, and nobody's to change
   static bool claim(Voxel& voxel);
@@ -188,6 +209,19 @@ private:
 /// Cells are counted in the cloud's scalar type: rounding may put a point into the neighbouring voxel that is nearer to
 /// the face between them than this, times the cell's number and 2, in cells.
 inline constexpr double kCellRounding = 0x1p-23;
+
+/// Sets what is known of a voxel by its frame and points: `radius`, `largest_radius`; forgets its slabs. @pre its
+/// points' records are set
+void measureVoxel(Voxel& voxel, const PointsView& view);
+
+/// Voxel::radius of points in this frame.
+float radiusOf(const LocalFrame& frame, float largest_radius);
+
+/// Voxels that so many points may be sorted into: more would take more memory than the points, and be no quicker.
+inline std::size_t mostVoxels(std::size_t points) noexcept
+{
+  return std::max<std::size_t>(4096, points / 16);
+}
 
 /// Floats of padding behind each voxel's block: a whole leaf can be loaded from any point of it.
 inline constexpr std::size_t kBlockPadding = kMaxLeafPoints;
@@ -207,10 +241,12 @@ inline PointRecord storedIn(const LocalFrame& frame, const Point3& p, std::uint3
   return {local[0], local[1], local[2], record};
 }
 
-/// Turns the voxel's sorted points into octree cells and bounding spheres.
+/// Turns the voxel's sorted points into octree cells and bounding spheres. When it throws, the voxel is sorted still,
+/// its points perhaps in another order.
 void buildVoxel(Voxel& voxel, const PointsView& view, SphereFit fit);
 
-/// Gives the points of a built voxel other coordinates, in the order they are in, and fits its spheres to them.
+/// Gives the points of a built voxel other coordinates, in the order they are in, and fits its spheres to them. When it
+/// throws, its block and its nodes are of no use any more.
 void refitVoxel(Voxel& voxel, const PointRecord* points, const PointsView& view, SphereFit fit);
 
 /// Distributes the finite points of the view over voxels: what Storage's constructor starts with.
@@ -225,8 +261,8 @@ struct VoxelSorting {
 };
 VoxelSorting sortIntoVoxels(const PointsView& view, const HierarchyOptions& options);
 
-/// The octree above the voxels, in the cloud's frame. @param largest_radii largest point radius of each voxel, or null.
-std::vector<Node> buildTop(const Voxel* voxels, std::size_t count, const LocalFrame& frame, const float* largest_radii);
+/// The octree above voxels in the order of their keys, one at least, in the cloud's frame. Into the memory of `reuse`.
+std::vector<Node> buildTop(const std::vector<Voxel*>& voxels, const LocalFrame& frame, std::vector<Node> reuse);
 
 /// The frame for points within [low, high]; its origin is a float where `float_origin` says so.
 LocalFrame frameBetween(const std::array<double, 3>& low, const std::array<double, 3>& high, bool float_origin);

@@ -19,12 +19,13 @@ constexpr double kSlack = kFewDoubleRoundings;
 
 class TopBuilder {
 public:
-  TopBuilder(const Voxel* voxels, std::size_t count, const LocalFrame& frame, const float* largest_radii)
-  : voxels_(voxels),
-    frame_(frame),
-    largest_radii_(largest_radii)
+  TopBuilder(const std::vector<Voxel*>& voxels, const LocalFrame& frame, std::vector<Node> reuse)
+  : nodes(std::move(reuse)),
+    voxels_(voxels),
+    frame_(frame)
   {
-    cut(0, static_cast<std::uint32_t>(count));
+    nodes.clear();
+    cut(0, static_cast<std::uint32_t>(voxels.size()));
   }
 
   std::vector<Node> nodes;
@@ -65,22 +66,22 @@ private:
   /// Where the highest bit in which the keys of [begin, end) differ is set for the first time.
   std::uint32_t halve(std::uint32_t begin, std::uint32_t end) const
   {
-    const std::uint64_t bit = std::bit_floor(voxels_[begin].key ^ voxels_[end - 1].key);
-    const Voxel* const middle =
-        std::partition_point(voxels_ + begin, voxels_ + end, [bit](const Voxel& v) { return (v.key & bit) == 0; });
-    return static_cast<std::uint32_t>(middle - voxels_);
+    const std::uint64_t bit = std::bit_floor(voxels_[begin]->key ^ voxels_[end - 1]->key);
+    const auto middle = std::partition_point(voxels_.begin() + begin, voxels_.begin() + end,
+                                             [bit](const Voxel* v) { return (v->key & bit) == 0; });
+    return static_cast<std::uint32_t>(middle - voxels_.begin());
   }
 
   std::uint32_t lowestRecord(std::uint32_t begin, std::uint32_t end) const
   {
     std::uint32_t lowest = 0xffffffffu;
-    for (std::uint32_t v = begin; v < end; ++v) lowest = std::min(lowest, voxels_[v].lowest);
+    for (std::uint32_t v = begin; v < end; ++v) lowest = std::min(lowest, voxels_[v]->lowest);
     return lowest;
   }
 
   CloudBox boxOf(std::uint32_t v) const
   {
-    const LocalFrame& f = voxels_[v].frame;
+    const LocalFrame& f = voxels_[v]->frame;
     CloudBox box;
     for (std::size_t k = 0; k < 3; ++k) {
       const double origin = f.origin[k] / frame_.unit - frame_.origin[k] / frame_.unit;
@@ -114,23 +115,22 @@ private:
         largest =
             std::max({largest, std::abs(box.low[k]), std::abs(box.high[k]), std::abs(frame_.origin[k] / frame_.unit)});
       }
-      const double ball = largest_radii_ ? static_cast<double>(largest_radii_[v]) / frame_.unit : 0.0;
+      const double ball = static_cast<double>(voxels_[v]->largest_radius) / frame_.unit;
       radius = std::max(radius, (std::sqrt(squared) + ball) * (1.0 + kSlack) + 4 * kSlack * largest);
     }
     node.x[i] = c[0], node.y[i] = c[1], node.z[i] = c[2];
     node.r[i] = roundUp(radius + kSmallestLength);
   }
 
-  const Voxel* voxels_;
+  const std::vector<Voxel*>& voxels_;
   const LocalFrame& frame_;
-  const float* largest_radii_;
 };
 
 } // namespace
 
-std::vector<Node> buildTop(const Voxel* voxels, std::size_t count, const LocalFrame& frame, const float* largest_radii)
+std::vector<Node> buildTop(const std::vector<Voxel*>& voxels, const LocalFrame& frame, std::vector<Node> reuse)
 {
-  return std::move(TopBuilder(voxels, count, frame, largest_radii).nodes);
+  return std::move(TopBuilder(voxels, frame, std::move(reuse)).nodes);
 }
 
 } // namespace pcl_bsh

@@ -4,11 +4,13 @@
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/hierarchy/morton.h>
 #include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/hierarchy/view_check.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -94,7 +96,7 @@ void fill(Voxel& voxel, const Touched& from, const PointsView& view, float* bloc
     *stored++ = storedIn(voxel.frame, from.points[i], from.records[i]);
 }
 
-/// Moves all blocks into one buffer, when too much of the present ones is left behind.
+/// Moves all blocks into one buffer, when too much of the present ones is left behind. Changes nothing when it throws.
 void compact(SphereHierarchy::Storage& storage)
 {
   const std::size_t used = 4 * storage.size + kBlockPadding * storage.voxel_count;
@@ -119,13 +121,13 @@ void compact(SphereHierarchy::Storage& storage)
 }
 
 /// Around all voxels' points.
-LocalFrame frameOfAll(const SphereHierarchy::Storage& storage)
+LocalFrame frameOfAll(const std::vector<Voxel*>& voxels, Scalar scalar)
 {
   std::array<double, 3> low, high;
   low.fill(std::numeric_limits<double>::infinity());
   high.fill(-std::numeric_limits<double>::infinity());
-  for (std::size_t v = 0; v < storage.voxel_count; ++v) {
-    const LocalFrame& f = storage.voxels[v].frame;
+  for (const Voxel* voxel : voxels) {
+    const LocalFrame& f = voxel->frame;
     for (std::size_t k = 0; k < 3; ++k) { // rounding outward must not leave the numbers
       constexpr double largest = std::numeric_limits<double>::max();
       const double half = (f.reach[k] + f.slack(static_cast<int>(k))) * f.unit * (1.0 + 0x1p-40);
@@ -133,7 +135,7 @@ LocalFrame frameOfAll(const SphereHierarchy::Storage& storage)
       high[k] = std::max(high[k], std::min(f.origin[k] + half, largest));
     }
   }
-  return frameBetween(low, high, storage.view.scalar == Scalar::float32);
+  return frameBetween(low, high, scalar == Scalar::float32);
 }
 
 } // namespace
@@ -184,6 +186,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
 {
   SphereHierarchy::Storage& storage = *hierarchy_.storage_;
   const PointsView before = storage.view;
+  checkView("HierarchyUpdate", now);
   if (now.indices) refuse("the new view is a subset: give all records, NaN where a point is out");
   if (now.scalar != before.scalar) refuse("the new view has coordinates of another type");
   if (before.count > 0 && !now.radii != !before.radii)
@@ -191,17 +194,13 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
   if (now.count < before.count)
     refuse("the new view has " + std::to_string(now.count) + " records, fewer than the " +
            std::to_string(before.count) + " before: keep them, NaN where a point is gone");
-  if (now.count > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-    refuse(std::to_string(now.count) + " records are more than an index can name");
   const std::size_t announced = static_cast<std::size_t>(
       records_.end() - std::lower_bound(records_.begin(), records_.end(), static_cast<std::uint32_t>(before.count)));
   if (announced < now.count - before.count || (!records_.empty() && records_.back() >= now.count))
     refuse("the new view has " + std::to_string(now.count - before.count) + " more records, of which " +
            std::to_string(announced) + " were announced: announce each of them, and no others");
-  for (const std::uint32_t record : records_)
-    if (now.radii && !(now.radii[record] >= 0.0f && now.radii[record] <= std::numeric_limits<float>::max()))
-      refuse("radius " + std::to_string(now.radii[record]) + " of point " + std::to_string(record) +
-             " is not finite and >= 0");
+  if (now.radii)
+    for (const std::uint32_t record : records_) checkRadius("HierarchyUpdate", now, record);
   if (hierarchy_.empty()) return sortAnew(now);
 
   const DefaultFloatEnvironment environment;
@@ -261,8 +260,8 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
     if (!voxel.records.empty()) floats += 4 * voxel.records.size() + kBlockPadding;
   }
 
-  // The voxels afterwards: those untouched, and the touched ones that hold something.
-  storage.view = now;
+  // The voxels afterwards, those untouched and the touched ones that hold something, are made beside the present ones:
+  // whatever throws, the hierarchy and this update are as they were.
   LargeBuffer<float> buffer = makeBuffer<float>(std::max<std::size_t>(floats, 1));
   std::unique_ptr<float[]> radii = now.radii ? std::make_unique<float[]>(report.points_read) : nullptr;
   float* next_block = buffer.get();
@@ -272,10 +271,13 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
     count += t.old == nullptr && !t.records.empty() ? 1 : 0;
     count -= t.old != nullptr && t.records.empty() ? 1 : 0;
   }
+  if (count > 2 * mostVoxels(now.count)) return sortAnew(now); // twice, so that the next few points do not do it again
   auto voxels = std::make_unique<Voxel[]>(count);
-  std::size_t target = 0, begin = 0, source = 0;
+  std::vector<Voxel*> after; // where the voxels are as yet
+  after.reserve(count);
+  std::size_t source = 0, unused = storage.floats_unused;
   const auto takeUntil = [&](const Voxel* end) {
-    for (; storage.voxels.get() + source != end; ++source) voxels[target++].adopt(storage.voxels[source]);
+    for (; storage.voxels.get() + source != end; ++source) after.push_back(&storage.voxels[source]);
   };
   for (const Touched& t : touched) {
     Voxel* const all = storage.voxels.get();
@@ -286,30 +288,46 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
     report.voxels_added += t.old == nullptr ? 1 : 0;
     report.voxels_removed += t.records.empty() ? 1 : 0;
     if (t.old) {
-      storage.floats_unused += t.old->blockSize();
+      unused += t.old->blockSize();
       ++source;
     }
     if (t.records.empty()) continue;
-    Voxel& voxel = voxels[target++];
+    Voxel& voxel = voxels[after.size()];
     fill(voxel, t, now, next_block, next_radii);
-    storage.measure(voxel);
+    measureVoxel(voxel, now);
     next_block += voxel.blockSize();
     if (next_radii) next_radii += voxel.count;
+    after.push_back(&voxel);
   }
   takeUntil(storage.voxels.get() + storage.voxel_count);
-  for (std::size_t v = 0; v < count; ++v) {
-    voxels[v].begin = static_cast<std::uint32_t>(begin);
-    begin += voxels[v].count;
+  const LocalFrame frame = count > 0 ? frameOfAll(after, now.scalar) : LocalFrame();
+  SphereHierarchy::Storage::Above above = SphereHierarchy::Storage::raise(after, frame, {});
+  storage.buffers.reserve(storage.buffers.size() + 1);
+  storage.radii_buffers.reserve(storage.radii_buffers.size() + 1);
+
+  [&]() noexcept { // from here on, nothing allocates
+    std::size_t begin = 0;
+    for (std::size_t v = 0; v < count; ++v) {
+      if (after[v] != &voxels[v]) voxels[v].adopt(*after[v]);
+      voxels[v].begin = static_cast<std::uint32_t>(begin);
+      begin += voxels[v].count;
+    }
+    storage.view = now;
+    storage.voxels = std::move(voxels);
+    storage.voxel_count = count;
+    storage.size = begin;
+    storage.buffers.push_back(std::move(buffer));
+    if (radii) storage.radii_buffers.push_back(std::move(radii));
+    storage.floats_unused = unused;
+    storage.frame = frame;
+    storage.extent = storage.sumOfRadii();
+    storage.setAbove(std::move(above));
+  }();
+  try {
+    compact(storage);
   }
-  storage.voxels = std::move(voxels);
-  storage.voxel_count = count;
-  storage.size = begin;
-  storage.buffers.push_back(std::move(buffer));
-  if (radii) storage.radii_buffers.push_back(std::move(radii));
-  storage.frame = storage.size > 0 ? frameOfAll(storage) : LocalFrame();
-  storage.extent = storage.sumOfRadii();
-  storage.raiseTop();
-  compact(storage);
+  catch (const std::bad_alloc&) { // some memory stays unused until the next update: the answers are the same
+  }
   leaving_.clear();
   return report;
 }

@@ -35,7 +35,8 @@ public:
 
   /// @param now at least as many records as before, of the same scalar type; all that are new were announced; becomes
   ///   the view of the hierarchy
-  /// @throws std::invalid_argument when `now` is none of that; the hierarchy is then as it was
+  /// @throws std::invalid_argument when `now` is none of that; std::bad_alloc. The hierarchy is then as it was, and
+  ///   commit() may be called again.
   UpdateReport commit(const PointsView& now);
 
 private:

@@ -186,6 +186,7 @@ private:
 
 HierarchyDefects SphereHierarchy::validate() const
 {
+  const DefaultFloatEnvironment environment;
   return Validator(*storage_).run();
 }
 

@@ -5,6 +5,7 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/hierarchy/crowded_cell.h>
+#include <pcl_bsh/hierarchy/kept_scratch.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
 #include <algorithm>
@@ -72,6 +73,14 @@ void merge(Box& box, const Box& other)
 
 /// Scratch that a thread keeps from voxel to voxel.
 struct Scratch {
+  std::size_t bytes() const noexcept
+  {
+    std::size_t sum = sorted.capacity() * sizeof(PointRecord) + codes.capacity() * sizeof(std::uint16_t) +
+                      boxes.capacity() * sizeof(Box) + nodes.capacity() * sizeof(Node);
+    for (const std::vector<std::uint32_t>& s : starts) sum += s.capacity() * sizeof(std::uint32_t);
+    return sum;
+  }
+
   std::vector<PointRecord> sorted;
   std::vector<std::uint16_t> codes;
   std::array<std::vector<std::uint32_t>, kMostRecursions> starts;
@@ -100,9 +109,16 @@ public:
     sortIntoCells();
     fitBoxes();
     storeAsArrays();
-    fitSpheres();
-    voxel_.nodes.assign(nodes_.begin(), nodes_.end());
-    if (crowded_) voxel_.given = givenSpheres(voxel_, view_);
+    try {
+      fitSpheres();
+      voxel_.nodes.assign(nodes_.begin(), nodes_.end());
+      if (crowded_) voxel_.given = givenSpheres(voxel_, view_);
+    }
+    catch (...) { // out of memory: the block has to be what a voxel that is not built has
+      std::copy(scratch_.sorted.begin(), scratch_.sorted.end(), given_);
+      voxel_.nodes.clear();
+      throw;
+    }
   }
 
   /// The same tree for points that have moved.
@@ -444,29 +460,18 @@ private:
   bool crowded_ = false; // any cell of it
 };
 
-void buildVoxelHere(Voxel& voxel, const PointsView& view, SphereFit fit)
-{
-  constexpr std::size_t kKept = 1 << 16; // points for which a thread keeps its scratch
-  thread_local Scratch kept;
-  if (voxel.count <= kKept) {
-    VoxelBuilder(voxel, view, fit, kept).build();
-    return;
-  }
-  Scratch scratch;
-  VoxelBuilder(voxel, view, fit, scratch).build();
-}
-
 } // namespace
 
 void buildVoxelOnTarget(Voxel& voxel, const PointsView& view, SphereFit fit)
 {
-  buildVoxelHere(voxel, view, fit);
+  const ScratchLease<Scratch> scratch;
+  VoxelBuilder(voxel, view, fit, *scratch).build();
 }
 
 void refitVoxelOnTarget(Voxel& voxel, const PointRecord* points, const PointsView& view, SphereFit fit)
 {
-  Scratch scratch;
-  VoxelBuilder(voxel, view, fit, scratch).refit(points);
+  const ScratchLease<Scratch> scratch;
+  VoxelBuilder(voxel, view, fit, *scratch).refit(points);
 }
 
 } // namespace HWY_NAMESPACE

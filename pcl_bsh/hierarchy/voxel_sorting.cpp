@@ -240,7 +240,8 @@ public:
   std::vector<Bin<T>> bins;
 
 private:
-  std::size_t hash(std::uint64_t cell) const { return (cell * 0x9e3779b97f4a7c15u >> 40) & (slots_.size() - 1); }
+  /// Of 32 bits, for there are fewer slots than 2^32.
+  std::size_t hash(std::uint64_t cell) const { return (cell * 0x9e3779b97f4a7c15u >> 32) & (slots_.size() - 1); }
 
   std::uint32_t add(std::uint64_t cell, std::size_t slot)
   {
@@ -333,11 +334,13 @@ public:
 
   VoxelSorting run()
   {
-    // A sample's bounds will do, unless some point lies far outside.
-    if (!fillBins(sampleBounds())) {
+    // A sample's bounds will do, unless some point lies far outside, or voxels get too many. From there on, bounds and
+    // edges depend on the points alone, whatever the chunks found before they gave up.
+    if (!fillBins(sampleBounds(), 0.0)) {
       const Bounds bounds = findBounds();
       if (bounds.finite == 0) return std::move(result_);
-      if (!fillBins(bounds)) throw std::logic_error("SphereHierarchy: voxels do not reach over the cloud");
+      for (double least_edge = 0.0; !fillBins(bounds, least_edge); least_edge = 2 * result_.edge)
+        if (!(least_edge < 0x1p1006)) throw std::logic_error("SphereHierarchy: voxels do not reach over the cloud");
     }
     mergeBins();
     moveToVoxels();
@@ -410,23 +413,24 @@ private:
     return bounds;
   }
 
-  /// Counts the points of every cell. @return false when there are no bounds, or points too far outside of them.
-  bool fillBins(const Bounds& bounds)
+  /// Counts the points of every cell. @return false when there are no bounds, or points too far outside of them, or
+  /// more cells than voxels may be.
+  bool fillBins(const Bounds& bounds, double least_edge)
   {
     if (bounds.finite == 0) return false;
+    const std::size_t most = mostVoxels(view_.size());
     result_.edge = options_.voxel_edge > 0.0 ? voxelEdgeFromRequest(options_.voxel_edge, bounds)
                                              : voxelEdgeFromDensity(view_, bounds);
     // Cell numbers are computed in T: its inverse must not overflow.
-    result_.edge = std::max(result_.edge, static_cast<double>(std::numeric_limits<T>::min()) * 0x1p20);
+    result_.edge = std::max({result_.edge, static_cast<double>(std::numeric_limits<T>::min()) * 0x1p20, least_edge});
     const CellNumbers<T> cell_of(result_.edge, bounds);
     result_.base = cell_of.base();
-    runs_ = makeBuffer<std::uint32_t>(view_.size());
+    if (!runs_) runs_ = makeBuffer<std::uint32_t>(view_.size());
     chunks_.assign(chunk_count_, BinTable<T>());
-    std::vector<std::uint8_t> outside(chunk_count_, 0);
+    std::vector<std::uint8_t> gave_up(chunk_count_, 0);
     parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
       BinTable<T>& table = chunks_[chunk];
       RunWriter write(runs_.get() + chunkBegin(chunk));
-      std::uint8_t any_outside = 0;
       const Point<T> nowhere = Point<T>::of(std::numeric_limits<T>::quiet_NaN());
       Point<T> cell_of_run = nowhere, low = nowhere, high = nowhere;
       std::uint32_t bin = kNoVoxel;
@@ -438,30 +442,52 @@ private:
         write({bin, points});
         first = end;
       };
-      eachPoint(chunk, [&](std::size_t i, std::uint32_t record) {
-        const Point<T> p = read_(record);
+      const std::int32_t* const indices = view_.indices;
+      const std::size_t end = chunkEnd(chunk);
+      for (std::size_t i = chunkBegin(chunk); i < end; ++i) {
+        const Point<T> p = read_(static_cast<std::uint32_t>(indices ? indices[i] : i));
         const Point<T> numbers = cell_of.numbers(p);
         if (sameXyz(numbers, cell_of_run)) {
           low = min(low, p);
           high = max(high, p);
-          return;
+          continue;
         }
         endRun(i);
         const std::uint64_t cell = CellNumbers<T>::together(numbers);
         if (cell == CellNumbers<T>::kOutside) {
-          any_outside |= p.finite();
+          if (p.finite()) {
+            gave_up[chunk] = 1;
+            return;
+          }
           bin = kNoVoxel;
           cell_of_run = nowhere;
-          return;
+          continue;
         }
         bin = table.find(cell);
+        if (table.bins.size() > most) {
+          gave_up[chunk] = 1;
+          return;
+        }
         cell_of_run = numbers;
         low = high = p;
-      });
-      endRun(chunkEnd(chunk));
-      outside[chunk] = any_outside;
+      }
+      endRun(end);
     });
-    return std::find(outside.begin(), outside.end(), 1) == outside.end();
+    return std::find(gave_up.begin(), gave_up.end(), 1) == gave_up.end() && countCells() <= most;
+  }
+
+  /// Cells that any chunk has points in; perhaps more, but not more than mostVoxels(), where those are fewer.
+  std::size_t countCells() const
+  {
+    std::size_t bins = 0;
+    for (const BinTable<T>& chunk : chunks_) bins += chunk.bins.size();
+    if (bins <= mostVoxels(view_.size())) return bins;
+    std::vector<std::uint64_t> cells;
+    cells.reserve(bins);
+    for (const BinTable<T>& chunk : chunks_)
+      for (const Bin<T>& bin : chunk.bins) cells.push_back(bin.cell);
+    std::sort(cells.begin(), cells.end());
+    return static_cast<std::size_t>(std::unique(cells.begin(), cells.end()) - cells.begin());
   }
 
   /// Gives every voxel that some chunk saw its number (in Morton order), frame and place in the buffer, so that a

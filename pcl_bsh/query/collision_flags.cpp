@@ -5,6 +5,7 @@
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/query/acceptance.h>
 #include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/kept_visits.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/query/stop_rule.h>
 
@@ -516,8 +517,8 @@ std::vector<std::uint32_t> nearVoxelsOnTarget(const FlagQuery& query, Work& work
 
 FlaggedVoxel flagVoxelOnTarget(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, std::uint8_t* flags)
 {
-  thread_local std::deque<Visit> visits; // kept from voxel to voxel for their storage only
-  FlagWalk walk(query, rule, flags, visits);
+  const ScratchLease<KeptVisits<Visit>> kept;
+  FlagWalk walk(query, rule, flags, (*kept).visits);
   walk.run(voxel);
   return walk.found;
 }
@@ -671,6 +672,7 @@ void collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& re
   FlagsResult found;
   found.a.swap(result.a);
   found.b.swap(result.b);
+  result = FlagsResult(); // whatever throws, it tells of no collision, and of no free point either
   found.a.clear();
   found.b.clear();
   const StopRule rule(request.accuracy);

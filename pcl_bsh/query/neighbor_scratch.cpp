@@ -41,12 +41,6 @@ void settleTies(const PointsView& view, const Point3& query, NeighborScratch& sc
 
 } // namespace
 
-NeighborScratch& NeighborScratch::ofThisThread()
-{
-  thread_local NeighborScratch scratch;
-  return scratch;
-}
-
 void checkRadius(double radius)
 {
   if (!(radius >= 0.0)) throw std::invalid_argument("radius: " + std::to_string(radius) + ": give a length >= 0");
@@ -67,6 +61,10 @@ void deliver(const PointsView& view, const Point3& query, const RadiusOptions& o
     sortBySquared(scratch);
     settleTies(view, query, scratch, kept, work);
   }
+  found.indices.clear(); // should there be memory for one list alone, both are empty
+  found.squared_distances.clear();
+  found.indices.reserve(kept);
+  found.squared_distances.reserve(kept);
   found.indices.assign(scratch.records.data(), scratch.records.data() + kept);
   found.squared_distances.assign(scratch.squared.data(), scratch.squared.data() + kept);
 }

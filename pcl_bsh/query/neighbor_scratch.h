@@ -2,37 +2,55 @@
 // What queries for neighbours share below their public face: memory kept from query to query, and the last steps.
 #pragma once
 
+#include <pcl_bsh/hierarchy/kept_scratch.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/neighbors.h>
 
+#include <hwy/contrib/sort/vqsort.h>
+
+#include <type_traits>
+
 namespace pcl_bsh {
 
-/// A list that grows but never shrinks, and is not written before it is used.
+/// A list that grows but never shrinks, and is not written before it is used. Large ones are kept for other uses when
+/// they end (LargeBuffer).
 template <class T>
 class Pile {
+  static_assert(std::is_trivially_copyable_v<T>);
+
 public:
   std::size_t size() const noexcept { return size_; }
   void resize(std::size_t size) noexcept { size_ = size; } ///< @pre room() was made
   void clear() noexcept { size_ = 0; }
-  T* data() noexcept { return items_.data(); }
-  T* end() noexcept { return items_.data() + size_; }
+  T* data() noexcept { return items_.get(); }
+  T* end() noexcept { return items_.get() + size_; }
   T& operator[](std::size_t i) noexcept { return items_[i]; }
+  std::size_t bytes() const noexcept { return capacity_ * sizeof(T); }
 
   /// Makes sure that `more` items fit behind the last one.
   void room(std::size_t more)
   {
-    if (size_ + more > items_.size()) items_.resize(std::max(2 * items_.size(), size_ + more + 64));
+    if (size_ + more > capacity_) grow(size_ + more);
   }
 
   /// @pre room() was made
   void push(const T& item) noexcept { items_[size_++] = item; }
 
 private:
-  std::vector<T> items_;
-  std::size_t size_ = 0;
+  void grow(std::size_t least)
+  {
+    const std::size_t capacity = std::max(2 * capacity_, least + 64);
+    LargeBuffer<T> larger = makeBuffer<T>(capacity);
+    std::copy_n(items_.get(), size_, larger.get());
+    items_ = std::move(larger);
+    capacity_ = capacity;
+  }
+
+  LargeBuffer<T> items_;
+  std::size_t size_ = 0, capacity_ = 0;
 };
 
-/// One per thread.
+/// To be had by a ScratchLease.
 struct NeighborScratch {
   Pile<std::uint32_t> records; ///< what was found
   Pile<float> squared;         ///< how far it is: perhaps an upper bound while searching, then the value to deliver
@@ -44,7 +62,13 @@ struct NeighborScratch {
   Pile<std::uint64_t> keys, sorted_keys;
   Pile<std::uint32_t> steps;
 
-  static NeighborScratch& ofThisThread();
+  hwy::Sorter sorter;
+
+  std::size_t bytes() const noexcept
+  {
+    return records.bytes() + squared.bytes() + voxels.bytes() + sorted_records.bytes() + sorted_squared.bytes() +
+           keys.bytes() + sorted_keys.bytes() + steps.bytes();
+  }
 };
 
 void checkRadius(double radius);

@@ -2,8 +2,6 @@
 // Results nearest first: ranks for a few; for many, steps of distance, or a vectorised quicksort.
 #include <pcl_bsh/query/neighbor_scratch.h>
 
-#include <hwy/contrib/sort/vqsort.h>
-
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -101,8 +99,7 @@ void sortBySquared(NeighborScratch& scratch)
   for (std::size_t i = 0; i < count; ++i)
     scratch.keys[i] = std::uint64_t{std::bit_cast<std::uint32_t>(scratch.squared[i])} << 32 | scratch.records[i];
   if (!sortBySteps(scratch, count)) {
-    thread_local const hwy::Sorter sorter;
-    sorter(scratch.keys.data(), count, hwy::SortAscending());
+    scratch.sorter(scratch.keys.data(), count, hwy::SortAscending());
   }
   for (std::size_t i = 0; i < count; ++i) {
     scratch.squared[i] = std::bit_cast<float>(static_cast<std::uint32_t>(scratch.keys[i] >> 32));

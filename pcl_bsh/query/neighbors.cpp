@@ -2,6 +2,7 @@
 #include <pcl_bsh/query/neighbors.h>
 
 #include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/hierarchy/view_check.h>
 #include <pcl_bsh/query/neighbor_scratch.h>
 #include <pcl_bsh/query/query_order.h>
 
@@ -17,7 +18,8 @@ constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
 void answer(const SphereHierarchy& cloud, const Point3& query, double radius, const RadiusOptions& options,
             const Delivery& found, Work& work)
 {
-  NeighborScratch& scratch = NeighborScratch::ofThisThread();
+  const ScratchLease<NeighborScratch> lease;
+  NeighborScratch& scratch = *lease;
   scratch.records.clear();
   if (isFinite(query)) {
     if (options.most > 0)
@@ -30,7 +32,8 @@ void answer(const SphereHierarchy& cloud, const Point3& query, double radius, co
 
 void answer(const SphereHierarchy& cloud, const Point3& query, std::size_t k, const Delivery& found, Work& work)
 {
-  NeighborScratch& scratch = NeighborScratch::ofThisThread();
+  const ScratchLease<NeighborScratch> lease;
+  NeighborScratch& scratch = *lease;
   scratch.records.clear();
   if (isFinite(query) && k > 0) findNearest(cloud.storage(), query, k, kAnyDistance, scratch, work);
   deliver(cloud.view(), query, {k, true}, scratch, found, work);
@@ -84,6 +87,7 @@ void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, doubl
                   const RadiusOptions& options, unsigned threads)
 {
   checkRadius(radius);
+  checkView("queries", queries);
   makeRoom(found, queries.size());
   const auto expect = [&](std::size_t i, bool soon) { fetch(found, i, soon); };
   forEachQuery(cloud.storage(), queries, threads, expect, [&](std::size_t i, const Point3& query) {
@@ -95,6 +99,7 @@ void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, doubl
 void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k, NeighborLists& found,
                     unsigned threads)
 {
+  checkView("queries", queries);
   makeRoom(found, queries.size());
   const auto expect = [&](std::size_t i, bool soon) { fetch(found, i, soon); };
   forEachQuery(cloud.storage(), queries, threads, expect, [&](std::size_t i, const Point3& query) {
@@ -107,6 +112,7 @@ std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const Po
                                           unsigned threads)
 {
   checkRadius(radius);
+  checkView("queries", queries);
   std::vector<std::uint8_t> flags(queries.size());
   forEachQuery(cloud.storage(), queries, threads, kNothing, [&](std::size_t i, const Point3& query) {
     Work work;
@@ -117,6 +123,7 @@ std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const Po
 
 std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, unsigned threads)
 {
+  checkView("balls", balls);
   if (!balls.radii) throw std::invalid_argument("balls: the view has no radii: give one per record");
   for (std::size_t i = 0; i < balls.size(); ++i) checkRadius(balls.radius(balls.record(i)));
   std::vector<std::uint8_t> flags(balls.size());

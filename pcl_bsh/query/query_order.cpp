@@ -6,18 +6,12 @@
 #include <hwy/contrib/sort/vqsort.h>
 
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 namespace pcl_bsh {
 
 std::vector<std::uint32_t> queryOrder(const SphereHierarchy::Storage& cloud, const PointsView& queries,
                                       unsigned threads)
 {
-  if (queries.count > 0 && !queries.data) {
-    throw std::invalid_argument("queries: the view's data is null though it has " + std::to_string(queries.count) +
-                                " points");
-  }
   constexpr double kCells = 1 << 10; // along the longest axis: three times ten bits, and the query's number below them
   constexpr std::uint64_t kLast = 0xffffffffu;
   constexpr std::size_t kStretch = 1 << 15; // queries that are worth a thread

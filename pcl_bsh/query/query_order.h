@@ -12,6 +12,7 @@ namespace pcl_bsh {
 
 /// The numbers [0, queries.size()) by the Morton code of the query's place in the cloud's bounds; queries that are not
 /// finite come last. Each thread orders a stretch of its own: many numbers come in as many orders as there are threads.
+/// @pre checkView() has nothing against the queries
 std::vector<std::uint32_t> queryOrder(const SphereHierarchy::Storage& cloud, const PointsView& queries,
                                       unsigned threads);
 

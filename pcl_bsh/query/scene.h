@@ -137,6 +137,8 @@ public:
   /// scene's deform()) are seen by the next step or query without it.
   void pointsChanged(ObjectId object);
 
+  // A query or step that throws (std::bad_alloc) has changed nothing, and may be asked for again.
+
   /// The effects at the present poses. `first_contact` and `swept` look at the way from the poses of the last query
   /// (SceneResult::ways): straight on, whatever way a response or a user took; after setPose() the shorter way round.
   SceneResult query();

@@ -3,6 +3,7 @@
 // poses at once. Seen by the model, the scan's points move in nearly straight lines: a node is a thick segment, the
 // model a tree of boxes. How thick follows from the node's sphere and from how far the interval strays from a line;
 // whichever is larger is divided.
+#include <pcl_bsh/query/kept_visits.h>
 #include <pcl_bsh/query/trajectory_walk.h>
 
 #include <algorithm>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/large_buffer.h>
 
+#include <pcl_bsh/hierarchy/retained_memory.h>
+
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -24,22 +26,22 @@ TEST(LargeBuffer, HoldsWhatWasAskedFor)
 TEST(LargeBuffer, KeepsNoMoreThanItMay)
 {
   std::vector<LargeBuffer<float>> buffers;
-  for (std::size_t bytes = 0; bytes <= 2 * kKeptBytes; bytes += kLarge)
+  for (std::size_t bytes = 0; bytes <= 2 * retainedMemoryLimit(); bytes += kLarge)
     buffers.push_back(makeBuffer<float>(kLarge / sizeof(float)));
-  buffers.push_back(makeBuffer<float>(kKeptBytes / sizeof(float) + 1));
+  buffers.push_back(makeBuffer<float>(retainedMemoryLimit() / sizeof(float) + 1));
   buffers.clear();
-  EXPECT_LE(keptBytes(), kKeptBytes);
+  EXPECT_LE(retainedMemory(), retainedMemoryLimit());
 }
 
 #ifndef __SANITIZE_ADDRESS__ // there, every buffer is the system's own
 TEST(LargeBuffer, IsUsedAgain)
 {
   const float* const first = makeBuffer<float>(kLarge / sizeof(float)).get();
-  const std::size_t kept = keptBytes();
+  const std::size_t kept = retainedMemory();
   EXPECT_GE(kept, kLarge);
   const LargeBuffer<float> again = makeBuffer<float>(kLarge / sizeof(float) - 100);
   EXPECT_EQ(again.get(), first);
-  EXPECT_EQ(keptBytes(), kept - again.get_deleter().size);
+  EXPECT_EQ(retainedMemory(), kept - again.get_deleter().size);
 }
 #endif
 

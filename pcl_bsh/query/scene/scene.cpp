@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 namespace pcl_bsh {
 namespace {
@@ -163,13 +164,13 @@ void Scene::State::followPoints()
   for (auto& [hierarchy, revision] : watched) {
     const std::uint64_t now = hierarchy->storage().revision;
     if (now == revision) continue;
-    revision = now;
     for (const Body& body : bodies)
       for (const ScenePart& part : body.object.parts)
         if (part.hierarchy.get() == hierarchy) {
           pointsChanged(body.id);
           break;
         }
+    revision = now;
   }
 }
 
@@ -180,6 +181,39 @@ void Scene::State::pointsChanged(ObjectId object)
   updateWorld(changed);
   changed.last_version = 0; // there is no way from the points that were
   if (!grid_stale) grid.forget(object);
+}
+
+void Scene::State::recover() noexcept
+{
+  result = SceneResult();
+  grid_stale = near_stale = true;
+  near.clear();
+}
+
+/// A step that throws has not been made.
+SceneResult Scene::State::step(double dt)
+{
+  const double before = time;
+  for (Body& body : bodies) {
+    body.step_pose = body.object.pose;
+    body.step_on_course = body.on_course;
+    body.step_turned = body.turned;
+  }
+  try {
+    followPoints();
+    move(dt);
+    return query();
+  }
+  catch (...) {
+    time = before;
+    for (Body& body : bodies) {
+      body.on_course = body.step_on_course;
+      body.turned = body.step_turned;
+      if (body.object.pose.matrix() != body.step_pose.matrix()) setPose(body.id, body.step_pose);
+    }
+    recover();
+    throw;
+  }
 }
 
 Scene::Scene(SceneOptions options)
@@ -195,26 +229,40 @@ ObjectId Scene::add(SceneObject object)
 {
   check(object, state_->names);
   State::checkWorld(object, object.pose);
-  const auto id = static_cast<ObjectId>(state_->bodies.size());
+  State& s = *state_;
+  const auto id = static_cast<ObjectId>(s.bodies.size());
   for (auto& [a, b] : object.adjacent)
     if (a > b) std::swap(a, b);
   Body body;
   body.id = id;
   body.start = object.pose;
-  body.start_time = state_->time;
+  body.start_time = s.time;
   body.world.resize(object.parts.size());
   body.box = boxOf(object);
   body.object = std::move(object);
   body.last_pose = body.object.pose;
-  for (const ScenePart& part : body.object.parts)
-    state_->watched.emplace(part.hierarchy.get(), part.hierarchy->storage().revision);
-  state_->updateWorld(body);
-  state_->names.emplace(body.object.name, id);
-  state_->rules.addObject(body.object.group, body.object.fixed);
-  state_->bodies.push_back(std::move(body));
-  state_->moved.reserve(state_->bodies.capacity()); // so that steps need not
-  state_->moved_before.reserve(state_->bodies.capacity());
-  state_->grid_stale = true;
+  // Memory for everything first: an object is added altogether or not at all.
+  if (s.bodies.size() == s.bodies.capacity()) s.bodies.reserve(2 * s.bodies.size() + 4);
+  s.moved.reserve(s.bodies.capacity()); // so that steps need not
+  s.moved_before.reserve(s.bodies.capacity());
+  const auto name = s.names.emplace(body.object.name, id).first;
+  std::vector<const SphereHierarchy*> watched; // from now on
+  try {
+    watched.reserve(body.object.parts.size());
+    for (const ScenePart& part : body.object.parts)
+      if (s.watched.emplace(part.hierarchy.get(), part.hierarchy->storage().revision).second)
+        watched.push_back(part.hierarchy.get());
+    s.rules.addObject(body.object.group, body.object.fixed);
+  }
+  catch (...) {
+    for (const SphereHierarchy* hierarchy : watched) s.watched.erase(hierarchy);
+    s.names.erase(name);
+    throw;
+  }
+  static_assert(std::is_nothrow_move_constructible_v<Body>);
+  s.updateWorld(body);
+  s.bodies.push_back(std::move(body));
+  s.grid_stale = true;
   return id;
 }
 
@@ -270,7 +318,7 @@ void Scene::setMotion(ObjectId object, const Motion& motion)
 {
   pcl_bsh::check(motion);
   Body& body = state_->body(object);
-  body.object.motion = motion;
+  body.object.motion = Motion(motion); // copied as a whole, or not at all
   body.start = body.object.pose;
   body.start_time = state_->time;
   body.on_course = true;
@@ -304,16 +352,21 @@ void Scene::pointsChanged(ObjectId object)
 SceneResult Scene::query()
 {
   const DefaultFloatEnvironment environment;
-  return state_->query();
+  try {
+    state_->followPoints();
+    return state_->query();
+  }
+  catch (...) {
+    state_->recover();
+    throw;
+  }
 }
 
 SceneResult Scene::step(double dt)
 {
   if (!isLength(dt)) refuse("a step of " + std::to_string(dt) + " seconds is not finite and >= 0");
   const DefaultFloatEnvironment environment;
-  state_->followPoints();
-  state_->move(dt);
-  return state_->query();
+  return state_->step(dt);
 }
 
 } // namespace pcl_bsh

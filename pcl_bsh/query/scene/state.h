@@ -29,6 +29,9 @@ struct Body {
   bool placed_swept = false;                        ///< with the way to its place
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(); ///< since the last query, full turns included
   double last_motion = 0.0;                         ///< how far its points went between the last two queries, at most
+  Eigen::Isometry3d step_pose;                      ///< before the step in progress
+  bool step_on_course = true;                       ///< likewise
+  Eigen::Vector3d step_turned = Eigen::Vector3d::Zero(); ///< likewise
 
   /// Of its box, in the object's frame: the point that goes straight.
   Eigen::Vector3d center() const { return box.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : box.center(); }
@@ -63,9 +66,11 @@ public:
   void pointsChanged(ObjectId object);
   void followPoints(); ///< looks whether points have changed since it last looked, whoever changed them
 
+  SceneResult step(double dt);
   void move(double dt);
   void respond(ObjectId object, const Eigen::Isometry3d& target, const Eigen::Vector3d& turn);
-  void prepareGrid(); ///< the grid, and every object in it
+  void recover() noexcept; ///< after a query that threw: drops its result, and all that is remembered
+  void prepareGrid();      ///< the grid, and every object in it
   SceneResult query();
 
   SceneOptions options;

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scratch memory that a thread keeps from use to use, within the limit of retained_memory.h.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+
+namespace pcl_bsh {
+
+/// Scratch memory of one kind, of one thread.
+struct KeptScratch {
+  virtual ~KeptScratch() = default;
+
+  std::size_t bytes = 0;       ///< of it, as counted among the retained memory
+  KeptScratch* next = nullptr; ///< in a list of those to be deleted
+};
+
+/// Where a thread leaves its scratch of one kind between two uses, and where other threads find it to give it back.
+class ScratchSlot {
+public:
+  ScratchSlot() noexcept;
+  ~ScratchSlot(); ///< a thread that ends keeps nothing
+  ScratchSlot(const ScratchSlot&) = delete;
+  ScratchSlot& operator=(const ScratchSlot&) = delete;
+
+  // Of the slot's own thread.
+
+  /// The scratch left here; null when there is none.
+  KeptScratch* take() noexcept { return idle_.exchange(nullptr, std::memory_order_acquire); }
+
+  /// Leaves the scratch here, which now holds `bytes`, or deletes it: where that is much, more than the limit, or where
+  /// there is one already. In a steady state, nothing that threads share is written.
+  void give(KeptScratch* scratch, std::size_t bytes) noexcept
+  {
+    if (bytes != scratch->bytes || isOverLimit() || idle_.load(std::memory_order_relaxed))
+      settle(scratch, bytes);
+    else
+      idle_.store(scratch, std::memory_order_release);
+  }
+
+private:
+  friend class RetainedMemory;
+
+  static bool isOverLimit() noexcept;
+  void settle(KeptScratch* scratch, std::size_t bytes) noexcept;
+
+  std::atomic<KeptScratch*> idle_{nullptr}; ///< only its own thread makes it other than null
+  ScratchSlot* previous_ = nullptr;
+  ScratchSlot* next_ = nullptr;
+};
+
+/// A thread's T while it lives: what the last use on this thread left, or a new one. T tells its bytes().
+template <class T>
+class ScratchLease {
+public:
+  ScratchLease() : slot_(slotOfThisThread()), held_(static_cast<Held*>(slot_.take()))
+  {
+    if (!held_) held_ = new Held;
+  }
+  ~ScratchLease() { slot_.give(held_, sizeof(Held) + held_->value.bytes()); }
+  ScratchLease(const ScratchLease&) = delete;
+  ScratchLease& operator=(const ScratchLease&) = delete;
+
+  T& operator*() const noexcept { return held_->value; }
+
+private:
+  struct Held : KeptScratch {
+    T value;
+  };
+
+  static ScratchSlot& slotOfThisThread() noexcept
+  {
+    thread_local ScratchSlot slot;
+    return slot;
+  }
+
+  ScratchSlot& slot_;
+  Held* held_;
+};
+
+} // namespace pcl_bsh

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl_bsh/hierarchy/points_view.h>
+
+#include <string>
+
+namespace pcl_bsh {
+
+/// Whether a view can be read as points. @param name what the message begins with
+/// @throws std::invalid_argument naming the value: no data, too many records or indices, records or coordinates that
+///   lie over each other, an index outside the view.
+void checkView(const std::string& name, const PointsView& view);
+
+/// Radii of some records of the view: finite and >= 0. @throws std::invalid_argument
+void checkRadius(const std::string& name, const PointsView& view, std::size_t record);
+
+} // namespace pcl_bsh

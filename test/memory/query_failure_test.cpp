@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/query/brute_force.h>
+#include <pcl_bsh/query/clashes.h>
+#include <pcl_bsh/query/clusters.h>
+#include <pcl_bsh/query/contacts.h>
+#include <pcl_bsh/query/spacing.h>
+#include <pcl_bsh/query/trace.h>
+#include <pcl_bsh/query/trajectory.h>
+
+#include "clouds.h"
+#include "every_allocation.h"
+
+#include <bit>
+#include <tuple>
+
+namespace pcl_bsh::test {
+namespace {
+
+constexpr SphereFit kFits[] = {SphereFit::box_center, SphereFit::ritter, SphereFit::minimal};
+
+const Cloud& scan()
+{
+  static const Cloud cloud = richCloud(1, 600);
+  return cloud;
+}
+const Cloud& model()
+{
+  static const Cloud cloud = richCloud(2, 500);
+  return cloud;
+}
+const Cloud& scanOfBalls()
+{
+  static const Cloud cloud = richCloud(3, 300, true);
+  return cloud;
+}
+
+std::unique_ptr<FreshPair> freshPair()
+{
+  return std::make_unique<FreshPair>(scan(), model());
+}
+
+CollisionRequest request(unsigned threads = 1, Side flagged = Side::both)
+{
+  CollisionRequest request;
+  request.clearance = 0.05;
+  request.threads = threads;
+  request.flagged = flagged;
+  return request;
+}
+
+auto answerOf(const AnyResult& result)
+{
+  return std::tuple(result.verdict, result.witness);
+}
+auto answerOf(const FlagsResult& result)
+{
+  return std::tuple(result.a, result.b, result.colliding_a, result.colliding_b);
+}
+auto answerOf(const DistanceResult& result)
+{
+  return std::tuple(result.distance, result.pair);
+}
+auto bitsOf(const std::vector<float>& values)
+{
+  std::vector<std::uint32_t> bits;
+  for (const float value : values) bits.push_back(std::bit_cast<std::uint32_t>(value));
+  return bits;
+}
+auto answerOf(const TrajectoryResult& result)
+{
+  std::vector<std::size_t> poses;
+  for (const PoseSummary& pose : result.poses) poses.push_back(pose.colliding_points);
+  return std::tuple(result.flags, bitsOf(result.distance), result.first_pose, result.closest_pose, result.closest_point,
+                    poses, result.first_contact ? result.first_contact->fraction : -1.0);
+}
+
+TEST(AllocationFailure, OfFlagsWithEachFitAndRadii)
+{
+  for (const SphereFit fit : kFits) {
+    for (const Cloud* cloud : {&scan(), &scanOfBalls()}) {
+      const auto make = [&] { return std::make_unique<FreshPair>(*cloud, model(), fit); };
+      const auto ask = [](const auto& pair) {
+        return answerOf(collisionFlags(pair->placedA(), pair->placedB(), request()));
+      };
+      const auto fresh = make();
+      EXPECT_EQ(ask(fresh), answerOf(brute_force::collisionFlags(fresh->placedA(), fresh->placedB(), request())));
+      EXPECT_GT(failEachAllocation(make, ask), 50u);
+    }
+  }
+}
+
+TEST(AllocationFailure, OfFlagsLeavesAUsableResult)
+{
+  struct Subject {
+    std::unique_ptr<FreshPair> pair = freshPair();
+    FlagsResult result;
+  };
+  const FlagsResult right = [] {
+    const auto pair = freshPair();
+    return brute_force::collisionFlags(pair->placedA(), pair->placedB(), request());
+  }();
+  failEachAllocation([] { return Subject(); },
+                     [&](Subject& subject) {
+                       try {
+                         collisionFlags(subject.pair->placedA(), subject.pair->placedB(), request(), subject.result);
+                       }
+                       catch (const std::bad_alloc&) {
+                         EXPECT_TRUE(subject.result.a.empty() && subject.result.b.empty());
+                         EXPECT_EQ(subject.result.colliding_a + subject.result.colliding_b, 0u);
+                         throw;
+                       }
+                       return answerOf(subject.result) == answerOf(right);
+                     });
+}
+
+TEST(AllocationFailure, OfFlagsInThreads)
+{
+  for (const Side side : {Side::a, Side::b})
+    failEachAllocation(freshPair, [&](const auto& pair) {
+      return answerOf(collisionFlags(pair->placedA(), pair->placedB(), request(2, side)));
+    });
+}
+
+TEST(AllocationFailure, OfAnyCollisionAndTraces)
+{
+  for (const double clearance : {0.0, 0.05}) {
+    CollisionRequest asked = request();
+    asked.clearance = clearance;
+    failEachAllocation(
+        freshPair, [&](const auto& pair) { return answerOf(anyCollision(pair->placedA(), pair->placedB(), asked)); });
+    failEachAllocation(freshPair, [&](const auto& pair) {
+      const CollisionTrace trace = traceCollision(pair->placedA(), pair->placedB(), asked);
+      return std::tuple(answerOf(trace.result), trace.a.size(), trace.b.size());
+    });
+  }
+}
+
+TEST(AllocationFailure, OfDistancesContactsAndPairs)
+{
+  failEachAllocation(freshPair,
+                     [](const auto& pair) { return answerOf(closestPair(pair->placedA(), pair->placedB())); });
+  failEachAllocation(freshPair, [](const auto& pair) {
+    const ContactsResult found = nearestContacts(pair->placedA(), pair->placedB(), request(), 20);
+    std::vector<double> answer{found.complete ? 1.0 : 0.0};
+    for (const Contact& contact : found.contacts) answer.insert(answer.end(), {contact.distance, contact.normal.x()});
+    return answer;
+  });
+  failEachAllocation(freshPair, [](const auto& pair) {
+    PairsWithin found = pairsWithin(pair->placedA(), pair->placedB(), request(), 100000);
+    std::sort(found.pairs.begin(), found.pairs.end());
+    return std::tuple(found.pairs, found.complete);
+  });
+}
+
+TEST(AllocationFailure, OfLessThanExactQueries)
+{
+  for (const Accuracy& accuracy :
+       {Accuracy::floatOnly(), Accuracy::tolerance(0.01), Accuracy::level(1), Accuracy::nodePairs(2000)}) {
+    CollisionRequest asked = request();
+    asked.accuracy = accuracy;
+    failEachAllocation(
+        freshPair, [&](const auto& pair) { return answerOf(anyCollision(pair->placedA(), pair->placedB(), asked)); });
+    failEachAllocation(
+        freshPair, [&](const auto& pair) { return answerOf(collisionFlags(pair->placedA(), pair->placedB(), asked)); });
+    failEachAllocation(freshPair, [&](const auto& pair) {
+      const DistanceResult found = closestPair(pair->placedA(), pair->placedB(), asked);
+      return std::tuple(found.distance, found.interval.lower, found.interval.upper);
+    });
+  }
+}
+
+TEST(AllocationFailure, OfClustersClashesAndSpacing)
+{
+  const auto fresh = [] { return std::make_unique<SphereHierarchy>(scan().view(), fineOptions()); };
+  failEachAllocation(fresh, [](const auto& cloud) {
+    const Clusters clusters = euclideanClusters(*cloud, 0.1);
+    return std::tuple(clusters.of, clusters.sizes);
+  });
+  failEachAllocation(fresh, [](const auto& cloud) {
+    const Spacing spacing = spacingOf(*cloud);
+    return std::tuple(spacing.samples, spacing.median, spacing.wide);
+  });
+  const TrajectoryResult found = [] {
+    const auto pair = freshPair();
+    TrajectoryRequest asked;
+    asked.clearance = 0.1;
+    asked.distances = asked.first_poses = asked.closest_poses = true;
+    return collideAlong(pair->placedA(), pair->b, {pair->T_world_b}, asked);
+  }();
+  failEachAllocation([] { return 0; },
+                     [&](int) {
+                       std::vector<Clash> clashes = findClashes(scan().view(), found, 0.2);
+                       const std::vector<Clash> earlier(clashes.begin() + 1, clashes.end());
+                       compareWithEarlier(clashes, earlier, 0.1);
+                       std::vector<std::string> ids;
+                       for (const Clash& clash : clashes) ids.push_back(clash.id);
+                       return ids;
+                     });
+}
+
+std::vector<Eigen::Isometry3d> somePoses()
+{
+  std::vector<Eigen::Isometry3d> poses;
+  for (int i = 0; i < 5; ++i) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translate(Eigen::Vector3d(0.4 * i - 3.0, 0.1, 0.05 * i));
+    pose.rotate(Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d::UnitZ()));
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+TEST(AllocationFailure, OfTrajectories)
+{
+  TrajectoryRequest everything;
+  everything.clearance = 0.05;
+  everything.distances = everything.first_poses = everything.closest_poses = everything.pose_summaries = true;
+  TrajectoryRequest in_threads = everything;
+  in_threads.threads = 2;
+  TrajectoryRequest swept;
+  swept.clearance = 0.05;
+  swept.swept = 0.01;
+  swept.first_poses = true;
+  TrajectoryRequest at_level;
+  at_level.clearance = 0.05;
+  at_level.accuracy = Accuracy::level(2);
+  const std::vector<Eigen::Isometry3d> poses = somePoses();
+  for (const TrajectoryRequest& asked : {everything, in_threads, swept, at_level})
+    failEachAllocation(
+        freshPair, [&](const auto& pair) { return answerOf(collideAlong(pair->placedA(), pair->b, poses, asked)); });
+}
+
+TEST(AllocationFailure, LeaksNothing)
+{
+  EXPECT_EQ(leakedBy([] {
+              for (std::size_t k = 1; k < 400; k += 7) {
+                const auto pair = freshPair();
+                const FailingAllocation failing(k);
+                try {
+                  collisionFlags(pair->placedA(), pair->placedB(), request());
+                }
+                catch (const std::bad_alloc&) {
+                }
+              }
+            }),
+            0);
+}
+
+} // namespace
+} // namespace pcl_bsh::test
