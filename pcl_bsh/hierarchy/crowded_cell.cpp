@@ -39,12 +39,12 @@ public:
     // Often they are of one place, the returns of a scanner that met nothing, and in order.
     if (!std::is_sorted(given.begin(), given.end(), before)) std::sort(given.begin(), given.end(), before);
     for (std::uint32_t i = 0; i < count; ++i) {
-      points[i] = given[i].stored;
       if (i > 0 && given[i].point == places_.back().point && given[i].radius == places_.back().radius)
         ++places_.back().count;
       else
         places_.push_back({given[i].point, given[i].radius, i, 1});
     }
+    for (std::uint32_t i = 0; i < count; ++i) points[i] = given[i].stored; // once nothing can throw: none may get lost
   }
 
   /// @param begin the number of the first point in its voxel

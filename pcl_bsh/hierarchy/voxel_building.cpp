@@ -106,16 +106,18 @@ public:
     scratch_.sorted.resize(voxel_.count);
     scratch_.codes.resize(voxel_.count);
     nodes_.clear();
-    sortIntoCells();
-    fitBoxes();
-    storeAsArrays();
     try {
+      sortIntoCells();
+      fitBoxes();
+      storeAsArrays();
       fitSpheres();
       voxel_.nodes.assign(nodes_.begin(), nodes_.end());
       if (crowded_) voxel_.given = givenSpheres(voxel_, view_);
     }
-    catch (...) { // out of memory: the block has to be what a voxel that is not built has
-      std::copy(scratch_.sorted.begin(), scratch_.sorted.end(), given_);
+    catch (...) { // out of memory: the block has to be what a voxel that is not built has, in the cloud's order
+      if (moved_) std::copy(scratch_.sorted.begin(), scratch_.sorted.end(), given_);
+      std::sort(given_, given_ + voxel_.count,
+                [](const PointRecord& l, const PointRecord& r) { return l.record < r.record; });
       voxel_.nodes.clear();
       throw;
     }
@@ -137,6 +139,7 @@ private:
   {
     if (voxel_.count <= kMaxLeafPoints) {
       std::copy_n(given_, voxel_.count, scratch_.sorted.data());
+      moved_ = true;
       nodes_[newNode()].addChild(0, voxel_.count, Node::kLeaf);
       return;
     }
@@ -154,6 +157,7 @@ private:
   {
     if (box.extent(longestAxis(box)) <= crowded_extent_ || recursion == kMostRecursions) {
       std::copy(given_ + begin, given_ + end, scratch_.sorted.begin() + begin);
+      moved_ = true;
       return growCrowded(begin, end);
     }
     const auto [computed, bits] = codeCells(begin, end, box);
@@ -167,6 +171,7 @@ private:
     for (std::size_t cell = 2; cell < starts.size(); ++cell) starts[cell] += starts[cell - 1];
     for (std::uint32_t i = begin; i < end; ++i)
       scratch_.sorted[starts[(scratch_.codes[i] >> dropped) + 1u]++] = given_[i];
+    moved_ = true;
     starts[0] = begin;
     return cutCells(starts, {0, bits}, recursion);
   }
@@ -458,6 +463,7 @@ private:
   PointRecord* given_;
   double crowded_extent_;
   bool crowded_ = false; // any cell of it
+  bool moved_ = false;   // all points are in scratch_.sorted, whatever throws; some perhaps no longer in given_
 };
 
 } // namespace

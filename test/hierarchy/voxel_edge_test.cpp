@@ -30,9 +30,9 @@ std::size_t mostVoxels(std::size_t points)
 TEST(VoxelEdge, TooFineForThePointsIsMadeCoarser)
 {
   Random random(1);
-  const std::size_t count = 400'000;
+  const std::size_t count = 200'000;
   const Cloud cloud(makePoints(Shape::uniform, count, 1.0, random), Layout{Scalar::float64, 0, 0});
-  for (const double edge : {1e-300, 1e-9, 1e-3, 0.01}) {
+  for (const double edge : {1e-300, 1e-3, 0.01}) {
     const SphereHierarchy hierarchy(cloud.view(), edgeOf(edge));
     hierarchy.buildAll();
     const HierarchyStatistics statistics = hierarchy.statistics();
@@ -106,7 +106,7 @@ TEST(VoxelEdge, AnswersAreRightWhateverItIs)
 TEST(VoxelEdge, FarTooCoarseCostsNoMoreThanItsPoints)
 {
   Random random(5);
-  const std::size_t count = 200'000;
+  const std::size_t count = 100'000;
   const Cloud cloud(makePoints(Shape::sphere, count, 1.0, random));
   const SphereHierarchy fitting(cloud.view()), coarse(cloud.view(), edgeOf(1e9));
   fitting.buildAll();

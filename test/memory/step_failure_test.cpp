@@ -48,13 +48,13 @@ std::unique_ptr<pcl_bsh::Scene> freshScene(Response response, bool gravity, unsi
   if (gravity) effects.gravity.emplace();
   auto scene = std::make_unique<pcl_bsh::Scene>(options);
   scene->add(fixedObject("ground", std::make_shared<SphereHierarchy>(ground().view())));
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 2; ++i) {
     SceneObject walker = object("walker " + std::to_string(i), std::make_shared<SphereHierarchy>(body().view()),
                                 Eigen::Isometry3d(Eigen::Translation3d(0.9 * i - 1.0, 0.1 * i, 0.1 + 0.02 * i)));
     walker.parts.push_back(walker.parts[0]);
     walker.parts[1].name = "head";
     walker.parts[1].pose.translate(Eigen::Vector3d(0, 0, 0.46));
-    walker.motion = VelocityMotion{{i == 2 ? -0.8 : 0.8, 0.1, 0}};
+    walker.motion = VelocityMotion{{i == 1 ? -0.8 : 0.8, 0.1, 0}};
     scene->add(std::move(walker));
   }
   return scene;
@@ -107,8 +107,7 @@ TEST(SceneAllocationFailure, OfQueries)
 /// A step that fails has not been made: it can be made again.
 TEST(SceneAllocationFailure, OfSteps)
 {
-  for (const auto& [response, gravity] :
-       {std::pair(Response::none, false), std::pair(Response::stop, false), std::pair(Response::slide, true)}) {
+  for (const auto& [response, gravity] : {std::pair(Response::none, false), std::pair(Response::slide, true)}) {
     const auto make = [&, response = response, gravity = gravity] {
       auto scene = freshScene(response, gravity, 1);
       scene->step(0.1);
