@@ -32,7 +32,7 @@ std::string unknown(const std::string& extension)
 pcl::PCLPointCloud2 parse(const std::string& extension, std::string_view file, Viewpoint& viewpoint)
 {
   if (extension == ".pcd") return parsePcd(file, viewpoint);
-  if (extension == ".ply") return parsePly(file);
+  if (extension == ".ply") return parsePly(file, viewpoint);
   if (extension == ".obj") return parseObj(file);
   if (extension == ".off") return parseOff(file);
   return parseColumns(file);
@@ -42,15 +42,16 @@ pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view f
 {
   if (extension == ".pcd") return parsePcdHeader(file);
   if (extension == ".ply") return parsePlyHeader(file);
-  const bool mesh = extension == ".obj" || extension == ".off"; // without a header: all of them hold vertices
-  return parseColumnNames(mesh ? "x y z" : file);
+  if (extension == ".obj") return parseObjHeader(file);
+  if (extension == ".off") return parseOffHeader(file);
+  return parseColumnNames(file);
 }
 
 void print(const std::string& extension, std::ostream& out, const pcl::PCLPointCloud2& cloud,
            const Viewpoint& viewpoint)
 {
   if (extension == ".pcd") return writePcd(out, cloud, viewpoint);
-  if (extension == ".ply") return writePly(out, cloud);
+  if (extension == ".ply") return writePly(out, cloud, viewpoint);
   if (extension == ".obj") return writeObj(out, cloud);
   writeColumns(out, cloud);
 }

@@ -18,7 +18,8 @@
 
 namespace pcl_bsh::io {
 
-/// Where the sensor stood, as PCD's VIEWPOINT line has it: tx ty tz qw qx qy qz. Points are not moved by it.
+/// Where the sensor stood, as PCD's VIEWPOINT line has it: tx ty tz qw qx qy qz. Points are not moved by it. PLY's
+/// element `camera` holds it as a position and a matrix, so that the quaternion comes back to within rounding and sign.
 using Viewpoint = std::array<float, 7>;
 inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 
@@ -26,14 +27,18 @@ inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 ///
 /// .pcd        ascii, binary, binary_compressed; every field in its type, float64 included
 /// .ply        ascii and binary of both byte orders; every vertex property in its type (a list, if of one length, is a
-///             field with a count), other elements skipped
-/// .obj .off   vertices; x y z as float64
-/// .xyz .txt   a point per line, separated by blanks, commas or semicolons; x y z and then column_4, column_5, ... as
-///             float64, unless the first line names the columns; comments start with # or //
+///             field with a count); of other elements only PCL's `camera`
+/// .obj .off   vertices with their colours and normals; x y z as float64
+/// .xyz .txt   a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says; x y
+/// z
+///             and then column_4, column_5, ... as float64, unless the first line, or a comment before it, names the
+///             columns; comments start with # or //
 ///
-/// The cloud has float32 or float64 x y z, at most 2^31 - 1 points, and is_dense as PCL defines it. A file that says
-/// it holds no points is an empty cloud.
-/// @param viewpoint if not null, set to the file's (PCD), or to no_viewpoint
+/// Fields have PCL's names and meaning: normal_x normal_y normal_z, and rgb or rgba packed from a byte per channel;
+/// what files call them, and what stays as it is, says layOutForPcl() in pcl_names.h. The cloud has float32 or float64
+/// x y z, at most 2^31 - 1 points, and is_dense as PCL defines it. A file that says it holds no points is an empty
+/// cloud.
+/// @param viewpoint if not null, set to the file's (PCD, PLY), or to no_viewpoint
 /// @throws CloudFileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z
 pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr);
 
@@ -41,9 +46,11 @@ pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* view
 /// Throws as readCloud() does for what a header can tell.
 pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path);
 
-/// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .xyz and .txt (named columns) or .obj (vertices).
-/// The file appears complete or not at all; what `path` held before is replaced only then. Only PCD holds a viewpoint.
-/// PLY holds no 64-bit integers, text no field with a count, OBJ no field but x y z.
+/// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .xyz and .txt (named columns) or .obj (vertices),
+/// with the names that readers of the format expect: nx ny nz, and a number per channel of a colour. rgb has no
+/// opacity: its fourth byte is kept by PCD alone. The file appears complete or not at all; what `path` held before is
+/// replaced only then. PCD and PLY hold a viewpoint. PLY holds no 64-bit integers, text no field with a count, OBJ x y
+/// z, a packed colour and normals.
 /// @throws CloudFileError when the extension is unknown, a field cannot be held, or the disk says no
 void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
                 const Viewpoint& viewpoint = no_viewpoint);

@@ -28,10 +28,12 @@ private:
   }
 };
 
+inline constexpr auto remedy_for_damage = "export or copy the file again";
+
 /// What is wrong with a file's content, told by code that does not know the file's name.
 class FormatError : public std::runtime_error {
 public:
-  explicit FormatError(const std::string& wrong, std::string remedy = "export or copy the file again")
+  explicit FormatError(const std::string& wrong, std::string remedy = remedy_for_damage)
   : std::runtime_error(wrong),
     remedy_(std::move(remedy))
   {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/io/pcl_names.h>
 #include <pcl_bsh/filters/io/ply.h>
+#include <pcl_bsh/filters/io/ply_camera.h>
 #include <pcl_bsh/filters/io/ply_rows.h>
 #include <pcl_bsh/filters/io/ply_types.h>
 #include <pcl_bsh/filters/io/records.h>
@@ -136,14 +138,18 @@ pcl::PCLPointCloud2 readVertices(Rows& rows, const Element& vertices, Part part)
 {
   if (vertices.properties.empty()) throw FormatError("its vertices have no properties");
   const std::vector<std::uint64_t> lengths = firstLengths(rows, vertices);
-  pcl::PCLPointCloud2 cloud;
+  Fields values(lengths.size());
   std::uint64_t least_bytes = 0;
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     const Property& property = vertices.properties[i];
-    if (lengths[i] > 0) addField(cloud, property.name, property.datatype, lengths[i]);
+    values[i].name = property.name;
+    values[i].datatype = property.datatype;
+    values[i].count = static_cast<std::uint32_t>(lengths[i]);
     if (property.length_type) least_bytes += Rows::leastBytes(*property.length_type);
     least_bytes += lengths[i] * Rows::leastBytes(property.datatype);
   }
+  pcl::PCLPointCloud2 cloud;
+  const std::vector<std::uint32_t> offsets = layOutForPcl(values, cloud);
   requireBytes(vertices.count, least_bytes, rows.bytesLeft());
   if (part == Part::header) {
     cloud.width = static_cast<std::uint32_t>(vertices.count);
@@ -153,10 +159,11 @@ pcl::PCLPointCloud2 readVertices(Rows& rows, const Element& vertices, Part part)
   allocate(cloud, static_cast<std::uint32_t>(vertices.count));
 
   for (std::size_t row = 0; row < cloud.width; ++row) {
-    std::uint8_t* out = cloud.data.data() + row * cloud.point_step;
+    std::uint8_t* const record = cloud.data.data() + row * cloud.point_step;
     rows.begin();
     for (std::size_t i = 0; i < lengths.size(); ++i) {
       const Property& property = vertices.properties[i];
+      std::uint8_t* out = record + offsets[i];
       if (readLength(rows, property) != lengths[i]) {
         throw FormatError("the lists of its vertex property '" + property.name + "' differ in length",
                           "remove that property");
@@ -170,13 +177,38 @@ pcl::PCLPointCloud2 readVertices(Rows& rows, const Element& vertices, Part part)
   return cloud;
 }
 
+/// Takes what an element `camera` says in its first row.
+template <typename Rows>
+void readCamera(Rows& rows, Element camera, Viewpoint& viewpoint)
+{
+  PlyCamera read;
+  rows.begin();
+  for (const Property& property : camera.properties) {
+    std::uint64_t length = readLength(rows, property);
+    if (!property.length_type) {
+      std::uint8_t bytes[sizeof(std::uint64_t)];
+      rows.value(property.datatype, bytes);
+      read.take(property.name, property.datatype, bytes);
+      length = 0;
+    }
+    rows.skip(property.datatype, length);
+  }
+  rows.end();
+  viewpoint = read.viewpoint();
+  --camera.count;
+  skipElement(rows, camera);
+}
+
 /// Reads all elements, also those that are not wanted: a file cut off behind its vertices is damaged, too.
 template <typename Rows>
-pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part)
+pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part, Viewpoint& viewpoint)
 {
   std::optional<pcl::PCLPointCloud2> cloud;
   for (const Element& element : header.elements) {
-    if (element.name != "vertex") {
+    if (element.name == "camera" && element.count > 0 && !element.properties.empty()) {
+      readCamera(rows, element, viewpoint);
+    }
+    else if (element.name != "vertex") {
       skipElement(rows, element);
     }
     else if (!cloud) {
@@ -191,19 +223,20 @@ pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part)
   return std::move(*cloud);
 }
 
-pcl::PCLPointCloud2 parse(std::string_view file, Part part)
+pcl::PCLPointCloud2 parse(std::string_view file, Part part, Viewpoint& viewpoint)
 {
+  viewpoint = no_viewpoint;
   TextCursor text(file);
   const PlyHeader header = readPlyHeader(text);
   pcl::PCLPointCloud2 cloud;
   if (header.format == "ascii") {
-    cloud = readElements(AsciiRows(text), header, part);
+    cloud = readElements(AsciiRows(text), header, part, viewpoint);
   }
   else if (header.format == "binary_little_endian") {
-    cloud = readElements(BinaryRows(text.rest(), std::endian::little), header, part);
+    cloud = readElements(BinaryRows(text.rest(), std::endian::little), header, part, viewpoint);
   }
   else if (header.format == "binary_big_endian") {
-    cloud = readElements(BinaryRows(text.rest(), std::endian::big), header, part);
+    cloud = readElements(BinaryRows(text.rest(), std::endian::big), header, part, viewpoint);
   }
   else {
     throw FormatError("has the unknown format '" + header.format + "'",
@@ -219,14 +252,15 @@ pcl::PCLPointCloud2 parse(std::string_view file, Part part)
 
 } // namespace
 
-pcl::PCLPointCloud2 parsePly(std::string_view file)
+pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint)
 {
-  return parse(file, Part::all);
+  return parse(file, Part::all, viewpoint);
 }
 
 pcl::PCLPointCloud2 parsePlyHeader(std::string_view file)
 {
-  return parse(file, Part::header);
+  Viewpoint ignored;
+  return parse(file, Part::header, ignored);
 }
 
 } // namespace pcl_bsh::io

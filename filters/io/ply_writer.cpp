@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/io/pcl_names.h>
 #include <pcl_bsh/filters/io/ply.h>
+#include <pcl_bsh/filters/io/ply_camera.h>
 #include <pcl_bsh/filters/io/ply_types.h>
 #include <pcl_bsh/filters/io/records.h>
 
@@ -20,7 +22,7 @@ std::string_view plyName(const pcl::PCLPointField& field)
   throw FormatError("field '" + field.name + "' has a type that PLY does not know", "write a .pcd instead");
 }
 
-std::string headerOf(const pcl::PCLPointCloud2& cloud, const std::vector<pcl::PCLPointField>& fields)
+std::string headerOf(const pcl::PCLPointCloud2& cloud, const Fields& fields, bool camera)
 {
   std::ostringstream header;
   header.imbue(std::locale::classic());
@@ -32,17 +34,25 @@ std::string headerOf(const pcl::PCLPointCloud2& cloud, const std::vector<pcl::PC
   for (const pcl::PCLPointField& field : fields) {
     header << "property " << (field.count > 1 ? "list uint " : "") << plyName(field) << ' ' << field.name << '\n';
   }
+  if (camera) {
+    header << "element camera 1\n";
+    for (const PlyCameraValue& value : ply_camera_values) {
+      header << "property " << (value.whole ? "int " : "float ") << value.name << '\n';
+    }
+  }
   header << "end_header\n";
   return header.str();
 }
 
 } // namespace
 
-void writePly(std::ostream& out, const pcl::PCLPointCloud2& cloud)
+void writePly(std::ostream& out, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint)
 {
-  const std::vector<pcl::PCLPointField> fields = namedFields(cloud);
-  out << headerOf(cloud, fields);
+  const Fields fields = namedForFiles(namedFields(cloud), ply_channels);
+  const bool camera = viewpoint != no_viewpoint;
+  out << headerOf(cloud, fields, camera);
   forEachPackedBlock(cloud, fields, Lists::counted, [&](std::string_view block) { out << block; });
+  if (camera) out << cameraRow(viewpoint, cloud.width, cloud.height);
 }
 
 } // namespace pcl_bsh::io

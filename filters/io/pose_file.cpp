@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/io/cloud_file_error.h>
 #include <pcl_bsh/filters/io/file_bytes.h>
+#include <pcl_bsh/filters/io/number_text.h>
 #include <pcl_bsh/filters/io/pose_file.h>
+#include <pcl_bsh/filters/io/pose_text.h>
 #include <pcl_bsh/filters/io/replace_file.h>
 #include <pcl_bsh/filters/io/text_cursor.h>
 
@@ -19,13 +21,6 @@ constexpr auto forms_of_a_pose =
     "give 12 or 16 numbers of a rigid matrix, row by row, or time tx ty tz qx qy qz qw, a pose to "
     "a line";
 
-std::vector<double> numbersOf(TextCursor& cursor)
-{
-  std::vector<double> numbers;
-  while (!cursor.line().empty()) numbers.push_back(cursor.number<double>());
-  return numbers;
-}
-
 Eigen::Isometry3d fromMatrix(const std::vector<double>& numbers)
 {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -39,7 +34,8 @@ Eigen::Isometry3d fromQuaternion(const std::vector<double>& n, const TextCursor&
 {
   const Eigen::Quaterniond rotation(n[7], n[4], n[5], n[6]);
   const double length = rotation.norm();
-  if (!(std::abs(length - 1) <= 1e-3)) cursor.fail("has a quaternion of length " + std::to_string(length) + ", not 1");
+  if (!(std::abs(length - 1) <= 1e-3))
+    cursor.fail("has a quaternion of length " + numberText(length, std::chars_format::general, 6) + ", not 1");
   Eigen::Isometry3d pose(rotation.normalized());
   pose.translation() = Eigen::Vector3d(n[1], n[2], n[3]);
   return pose;
@@ -58,14 +54,16 @@ void requireRigid(const Eigen::Isometry3d& pose, const SphereHierarchy& nothing,
   }
 }
 
+} // namespace
+
 std::vector<Eigen::Isometry3d> parsePoses(std::string_view text)
 {
   const SphereHierarchy nothing{PointsView{}};
   std::vector<Eigen::Isometry3d> poses;
   std::size_t columns = 0;
-  TextCursor cursor(text, '#', ",;");
+  TextCursor cursor(text, '#');
   while (cursor.nextLine()) {
-    const std::vector<double> numbers = numbersOf(cursor);
+    const std::vector<double> numbers = numbersOfLine(cursor);
     const std::string count = std::to_string(numbers.size());
     if (numbers.size() != 8 && numbers.size() != 12 && numbers.size() != 16) {
       cursor.fail("has " + count + " numbers, not 8, 12 or 16");
@@ -80,8 +78,6 @@ std::vector<Eigen::Isometry3d> parsePoses(std::string_view text)
   if (poses.empty()) throw FormatError("holds no pose");
   return poses;
 }
-
-} // namespace
 
 std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path)
 {
@@ -99,9 +95,7 @@ void writePoses(const std::filesystem::path& path, const std::vector<Eigen::Isom
   replaceFile(path, [&](std::ostream& out) {
     for (const Eigen::Isometry3d& pose : poses) {
       for (int i = 0; i < 12; ++i) {
-        std::array<char, 32> digits;
-        const auto end = std::to_chars(digits.begin(), digits.end(), pose.matrix()(i / 4, i % 4)).ptr;
-        out << (i == 0 ? "" : " ") << std::string_view(digits.data(), end);
+        out << (i == 0 ? "" : " ") << numberText(pose.matrix()(i / 4, i % 4));
       }
       out << '\n';
     }

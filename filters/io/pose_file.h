@@ -5,12 +5,13 @@
 #include <Eigen/Geometry>
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace pcl_bsh::io {
 
-/// Reads a pose from each line; numbers are separated by blanks, tabs, commas or semicolons, the rest of a line from
-/// '#' on is ignored, and so are lines without a number. How a pose is written is told by how many numbers a line has,
+/// Reads a pose from each line; numbers are separated as numbersOfLine() has it, the rest of a line from '#' on is
+/// ignored, and so are lines without a number. How a pose is written is told by how many numbers a line has,
 /// the same in the whole file:
 ///
 ///   12  the upper three rows of its matrix, row by row (KITTI)
@@ -22,6 +23,9 @@ namespace pcl_bsh::io {
 ///   quaternion whose length is off 1 by more than 1e-3; a value that is not finite. Also when the file cannot be read
 ///   or holds no pose.
 std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path);
+
+/// The same, of a text. @throws FormatError naming the line
+std::vector<Eigen::Isometry3d> parsePoses(std::string_view text);
 
 /// Writes twelve numbers a line, which read back to the same bits. The file appears complete or not at all.
 /// @throws CloudFileError

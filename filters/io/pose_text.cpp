@@ -8,12 +8,39 @@
 
 namespace pcl_bsh::io {
 
+std::vector<double> numbersOfLine(TextCursor& text)
+{
+  constexpr std::size_t matrix_columns = 4;
+  std::vector<double> numbers;
+  const bool in_rows = text.line().find(';') != std::string_view::npos;
+  text.separateBy(separatorOf(text.line()));
+  std::size_t columns = 0;
+  while (!text.line().empty()) {
+    if (!in_rows) {
+      numbers.push_back(text.number<double>());
+      continue;
+    }
+    TextCursor row(text.word());
+    if (!row.nextLine()) text.fail("has an empty value");
+    row.separateBy(separatorOf(row.line()));
+    const std::size_t before = numbers.size();
+    while (!row.line().empty()) text.naming([&] { numbers.push_back(parseNumber<double>(row.word())); });
+    if (columns == 0) columns = numbers.size() - before;
+    if (columns != numbers.size() - before || (columns != 1 && columns != matrix_columns)) {
+      text.fail("separates numbers by several characters, or has decimal commas",
+                "separate them alike, and write decimal points");
+    }
+  }
+  return numbers;
+}
+
 std::vector<double> numbersOf(std::string_view text)
 {
   std::vector<double> numbers;
-  TextCursor cursor(text, '#', ",;");
+  TextCursor cursor(text, '#');
   while (cursor.nextLine()) {
-    while (!cursor.line().empty()) numbers.push_back(cursor.number<double>());
+    const std::vector<double> line = numbersOfLine(cursor);
+    numbers.insert(numbers.end(), line.begin(), line.end());
   }
   return numbers;
 }

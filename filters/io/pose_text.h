@@ -10,7 +10,14 @@
 
 namespace pcl_bsh::io {
 
-/// All numbers of a text, separated by blanks, commas, semicolons or line ends. @throws FormatError
+class TextCursor;
+
+/// All numbers of the cursor's line: separated by blanks, by tabs, by commas or by semicolons, but not by several of
+/// them, for `1,5;2,5` may be two numbers or four. Only rows of four, as of a matrix, may be separated by semicolons
+/// and their numbers otherwise. @throws FormatError naming the line
+std::vector<double> numbersOfLine(TextCursor& text);
+
+/// All numbers of a text, line by line. @throws FormatError
 std::vector<double> numbersOf(std::string_view text);
 
 /// Translation, then angles in radians: R = Rz(yaw) Ry(pitch) Rx(roll), as pcl::getTransformation() has it.

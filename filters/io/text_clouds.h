@@ -6,26 +6,45 @@
 
 #include <ostream>
 #include <string_view>
+#include <vector>
 
 namespace pcl_bsh::io {
 
-/// .xyz, .txt: a point per line. @throws FormatError
+/// .xyz, .txt: a point per line. Values are separated by semicolons, commas, tabs or blanks, as the first line that has
+/// values says. That line, or a comment before it (// or #) with as many words, may name the columns; then colours of a
+/// byte per channel are packed, and normals get PCL's names (pcl_names.h). Without a row, a file that names x, y and z
+/// is an empty cloud. @throws FormatError
 pcl::PCLPointCloud2 parseColumns(std::string_view file);
 
-/// Only the names of the columns. @throws FormatError
+/// Only the fields that parseColumns() makes. @throws FormatError
 pcl::PCLPointCloud2 parseColumnNames(std::string_view file);
 
-/// .obj: the `v` lines. @throws FormatError
+/// .obj: the `v` lines, with their colours; the `vn` lines where there is one for each vertex, and no face says
+/// otherwise. A file without vertices is an empty cloud when it says so in a comment `# Vertices: 0`. @throws
+/// FormatError
 pcl::PCLPointCloud2 parseObj(std::string_view file);
 
-/// .off, with any of the prefixes that keep three coordinates (ST, C, N): the vertices. @throws FormatError
+/// Only the fields that parseObj() makes.
+pcl::PCLPointCloud2 parseObjHeader(std::string_view file);
+
+/// .off, with any of the prefixes that keep three coordinates (ST, C, N): the vertices, with their normals and colours.
+/// @throws FormatError
 pcl::PCLPointCloud2 parseOff(std::string_view file);
 
-/// A first line that names the columns, then a point per line, every number with as many digits as its type needs.
+/// Only the fields that parseOff() makes. @throws FormatError
+pcl::PCLPointCloud2 parseOffHeader(std::string_view file);
+
+/// A first line that names the columns, then a point per line, every number with as many digits as its type needs. A
+/// packed colour is columns r g b [a], normals are nx ny nz.
 /// @throws FormatError when a field cannot be a column
 void writeColumns(std::ostream& out, const pcl::PCLPointCloud2& cloud);
 
-/// A `v` line per point. @throws FormatError when there is a field but x y z
+/// The fields that an .obj has a place for: x y z, a packed colour, normals.
+std::vector<pcl::PCLPointField> fieldsForObj(const pcl::PCLPointCloud2& cloud);
+
+/// A `v` line per point, with the three or four channels of its colour as shares of 1, after a `vn` line if it has a
+/// normal.
+/// @throws FormatError when there is a field but those
 void writeObj(std::ostream& out, const pcl::PCLPointCloud2& cloud);
 
 } // namespace pcl_bsh::io

@@ -11,16 +11,33 @@
 
 namespace pcl_bsh::io {
 
-/// Lines end with \n, \r\n or \r. Words are separated by blanks, tabs and, if asked for, other characters.
+/// What separates the values of a line: a semicolon, else a comma, else a tab, where it has one; else blanks (' ').
+/// Tabs beside blanks are blanks.
+inline char separatorOf(std::string_view line)
+{
+  for (const char separator : {';', ','})
+    if (line.find(separator) != std::string_view::npos) return separator;
+  const bool blank = line.substr(0, line.find_last_not_of(" \t") + 1).find(' ') != std::string_view::npos;
+  return !blank && line.find('\t') != std::string_view::npos ? '\t' : ' ';
+}
+
+/// Lines end with \n, \r\n or \r. Words are separated by blanks and tabs, unless separateBy() says otherwise. A mark of
+/// UTF-8 at the beginning is skipped.
 class TextCursor {
 public:
   /// @param comment the rest of a line from this character on is ignored; 0: none
-  explicit TextCursor(std::string_view text, char comment = 0, std::string_view more_separators = {})
-  : text_(text),
-    comment_(comment),
-    more_separators_(more_separators)
+  /// @throws FormatError when the text is marked as UTF-16
+  explicit TextCursor(std::string_view text, char comment = 0) : text_(text), comment_(comment)
   {
+    if (text.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
+    if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
+      throw FormatError("is UTF-16 text", "save it as UTF-8");
+    }
   }
+
+  /// From now on exactly one such character separates words, and blanks around a word do not count; two in a row have
+  /// an empty word between them, one at the end of a line has none behind it. ' ': any number of blanks and tabs.
+  void separateBy(char separator) noexcept { separator_ = separator; }
 
   /// Goes to the next line that has a word. False when there is none.
   bool nextLine()
@@ -38,11 +55,12 @@ public:
   /// Takes the next word off the line; empty when none is left.
   std::string_view word() noexcept
   {
+    if (separator_ != ' ') return wordBeforeSeparator();
     std::size_t length = 0;
-    while (length < line_.size() && !separates(line_[length])) ++length;
+    while (length < line_.size() && !isBlank(line_[length])) ++length;
     const std::string_view taken = line_.substr(0, length);
     line_.remove_prefix(length);
-    skipSeparators();
+    skipBlanks();
     return taken;
   }
 
@@ -70,20 +88,44 @@ public:
   /// Bytes behind this line.
   std::string_view rest() const noexcept { return text_.substr(end_); }
 
-  [[noreturn]] void fail(const std::string& wrong) const
+  [[noreturn]] void fail(const std::string& wrong) const { throw FormatError(named(wrong)); }
+  [[noreturn]] void fail(const std::string& wrong, const std::string& remedy) const
   {
-    throw FormatError("line " + std::to_string(line_number_) + " " + wrong);
+    throw FormatError(named(wrong), remedy);
+  }
+
+  /// What `parse` gives; a FormatError of it is said to be of this line.
+  template <typename Parse>
+  std::invoke_result_t<Parse> naming(Parse&& parse) const
+  {
+    try {
+      return parse();
+    }
+    catch (const FormatError& error) {
+      fail(std::string("is damaged: ") + error.what(), error.remedy());
+    }
   }
 
 private:
-  bool separates(char c) const noexcept
+  static constexpr bool isBlank(char c) noexcept { return c == ' ' || c == '\t'; }
+
+  std::string named(const std::string& wrong) const { return "line " + std::to_string(line_number_) + " " + wrong; }
+
+  /// A tab that separates is no blank.
+  void skipBlanks() noexcept
   {
-    return c == ' ' || c == '\t' || (!more_separators_.empty() && more_separators_.find(c) != std::string_view::npos);
+    while (!line_.empty() && isBlank(line_.front()) && (line_.front() != separator_ || separator_ == ' ')) {
+      line_.remove_prefix(1);
+    }
   }
 
-  void skipSeparators() noexcept
+  std::string_view wordBeforeSeparator() noexcept
   {
-    while (!line_.empty() && separates(line_.front())) line_.remove_prefix(1);
+    const std::size_t length = std::min(line_.find(separator_), line_.size());
+    const std::string_view taken = line_.substr(0, length);
+    line_.remove_prefix(std::min(length + 1, line_.size()));
+    skipBlanks();
+    return taken.substr(0, taken.find_last_not_of(" \t") + 1);
   }
 
   void readLine() noexcept
@@ -94,30 +136,21 @@ private:
     if (end_ < text_.size()) end_ += text_.substr(end_).starts_with("\r\n") ? 2 : 1;
     ++line_number_;
     if (comment_ != 0) line_ = line_.substr(0, line_.find(comment_));
-    skipSeparators();
+    line_ = line_.substr(0, line_.find_last_not_of(" \t") + 1); // nothing at all where there are but blanks
+    skipBlanks();
   }
 
   std::string_view requireWord()
   {
+    const bool ended = line_.empty();
     const std::string_view taken = word();
-    if (taken.empty()) fail("has fewer values than it should");
+    if (taken.empty()) fail(ended ? "has fewer values than it should" : "has an empty value");
     return taken;
-  }
-
-  template <typename Parse>
-  std::invoke_result_t<Parse> naming(Parse&& parse) const
-  {
-    try {
-      return parse();
-    }
-    catch (const FormatError& error) {
-      fail(std::string("is damaged: ") + error.what());
-    }
   }
 
   std::string_view text_;
   char comment_;
-  std::string_view more_separators_;
+  char separator_ = ' ';
   std::string_view line_;
   std::size_t end_ = 0; ///< where the next line begins
   std::size_t line_number_ = 0;

@@ -20,6 +20,12 @@ pcl::PCLPointCloud2 parseAnyPcd(std::string_view file)
   return parsePcd(file, viewpoint);
 }
 
+pcl::PCLPointCloud2 parseAnyPly(std::string_view file)
+{
+  Viewpoint viewpoint;
+  return parsePly(file, viewpoint);
+}
+
 template <typename Write>
 std::string written(Write&& write)
 {
@@ -79,17 +85,22 @@ TEST(Damage, Pcd)
 
 TEST(Damage, Ply)
 {
-  expectSurvival(parsePly, written([](std::ostream& out, const auto& cloud) { writePly(out, cloud); }));
-  expectSurvival(parsePly, "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
-                           "property float z\nproperty list uchar int l\nelement face 1\n"
-                           "property list uchar int i\nend_header\n1 2 3 1 7\n4 5 6 1 8\n2 0 1\n");
+  expectSurvival(parseAnyPly, written([](std::ostream& out, const auto& cloud) {
+                   writePly(out, cloud, {1, 2, 3, 0.5F, 0.5F, 0.5F, 0.5F});
+                 }));
+  expectSurvival(parseAnyPly, "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                              "property float z\nproperty list uchar int l\nelement face 1\n"
+                              "property list uchar int i\nend_header\n1 2 3 1 7\n4 5 6 1 8\n2 0 1\n");
 }
 
 TEST(Damage, Text)
 {
   expectSurvival(parseOff, "OFF\n2 1 0\n1 2 3\n4 5 6\n2 0 1\n");
   expectSurvival(parseObj, "v 1 2 3\nf 1 1 1\n");
+  expectSurvival(parseOff, "CNOFF\n2 1 0\n1 2 3 0 0 1 9 8 7 6\n4 5 6 0 1 0 5 4 3 2\n2 0 1\n");
+  expectSurvival(parseObj, "vn 0 0 1\nv 1 2 3 0.2 0.4 1\nf 1//1 1 1\n");
   expectSurvival(parseColumns, "x y z i\n1 2 3 4\n5 6 7 8\n");
+  expectSurvival(parseColumns, "//X,Y,Z,R,G,B\n1,2,3,40,50,60\n5,6,7,8,9,10\n");
 }
 
 } // namespace pcl_bsh::io

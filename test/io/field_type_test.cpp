@@ -3,7 +3,9 @@
 
 #include <pcl_bsh/filters/io/field_type.h>
 
+#include <clocale>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 namespace pcl_bsh::io {
@@ -35,6 +37,48 @@ TEST(FieldType, NumbersRoundOnce)
   EXPECT_TRUE(std::isnan(parseNumber<double>("-NaN")));
   EXPECT_EQ(parseNumber<float>("-inf"), -std::numeric_limits<float>::infinity());
   EXPECT_EQ(parseNumber<std::uint64_t>("18446744073709551615"), std::numeric_limits<std::uint64_t>::max());
+}
+
+TEST(FieldType, TellsTooSmallFromTooLarge)
+{
+  for (const char* tiny : {"1e-400", "-1e-99999999999999999999", "0.5e-400", "123456e-5000", "0e99999999999999999999"})
+    EXPECT_EQ(parseNumber<double>(tiny), 0) << tiny;
+  EXPECT_EQ(parseNumber<double>("0." + std::string(5000, '0') + "1"), 0);
+  EXPECT_EQ(parseNumber<double>("0." + std::string(5000, '0') + "1e5001"), 1);
+  for (const std::string huge : {"1e400", "-1e99999999999999999999", "0.001e5000"})
+    EXPECT_THROW(parseNumber<double>(huge), FormatError) << huge;
+  EXPECT_THROW(parseNumber<double>(std::string(5000, '9')), FormatError);
+  EXPECT_THROW(parseNumber<double>("1e-400x"), FormatError);
+}
+
+TEST(FieldType, TheHostsLanguageDoesNotMatter)
+{
+  // A language with decimal commas: of the system, or compiled for this test.
+  const TemporaryFolder folder;
+  const char* name = setlocale(LC_ALL, "de_DE.UTF-8");
+  if (name == nullptr) {
+    const std::string compile = "localedef -i de_DE -f UTF-8 '" + (folder / "de_DE.UTF-8").string() + "' 2>/dev/null";
+    if (std::system(compile.c_str()) != 0) GTEST_SKIP() << "no language with decimal commas";
+    setenv("LOCPATH", folder.path().c_str(), 1);
+    name = setlocale(LC_ALL, "de_DE.UTF-8");
+    unsetenv("LOCPATH");
+  }
+  if (name == nullptr) GTEST_SKIP() << "no language with decimal commas";
+  const bool commas = *localeconv()->decimal_point == ',';
+  const double read = parseNumber<double>("1.5"), tiny = parseNumber<double>("1.5e-400");
+  const float small = parseNumber<float>("1.5e-60");
+  setlocale(LC_ALL, "C");
+  EXPECT_TRUE(commas);
+  EXPECT_EQ(read, 1.5);
+  EXPECT_EQ(tiny, 0);
+  EXPECT_EQ(small, 0);
+}
+
+TEST(FieldType, TellsWhatIsMeantForANumber)
+{
+  for (const char* word : {"1", "-1.5", "1,5", "+.5x", "nan", "inf", "2nd", "--1"})
+    EXPECT_TRUE(looksLikeNumber(word)) << word;
+  for (const char* word : {"", "x", "column_4", "-", "a1"}) EXPECT_FALSE(looksLikeNumber(word)) << word;
 }
 
 TEST(FieldType, RefusesWhatIsNoNumberOfTheType)

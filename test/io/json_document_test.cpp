@@ -20,6 +20,11 @@ TEST(JsonDocument, CommentsAreIgnored)
   EXPECT_EQ(parseJson("// one\n[1, /* two */ 2]").dump(), "[1,2]");
 }
 
+TEST(JsonDocument, SkipsAByteOrderMark)
+{
+  EXPECT_EQ(parseJson("\xef\xbb\xbf[1]").dump(), "[1]");
+}
+
 TEST(JsonDocument, RefusesWhatIsNoJson)
 {
   EXPECT_THAT([] { parseJson("{\"a\": 1,\n \"b\" 2}"); }, refusedWith("is no JSON: line 2, column 6: "));

@@ -14,13 +14,19 @@ namespace {
 std::string written(const pcl::PCLPointCloud2& cloud)
 {
   std::ostringstream out;
-  writePly(out, cloud);
+  writePly(out, cloud, no_viewpoint);
   return out.str();
+}
+
+pcl::PCLPointCloud2 parse(const std::string& file)
+{
+  Viewpoint viewpoint;
+  return parsePly(file, viewpoint);
 }
 
 std::string defect(const std::string& file)
 {
-  return defectOf([&] { parsePly(file); });
+  return defectOf([&] { parse(file); });
 }
 
 std::string ascii(const std::string& elements, const std::string& rows)
@@ -46,21 +52,137 @@ std::string bytes(T value, bool big)
 
 TEST(Ply, EveryTypeComesBackAsItWas)
 {
-  const pcl::PCLPointCloud2 cloud = randomCloud<double>(1000, 1, ply_datatypes);
-  expectSame(parsePly(written(cloud)), cloud);
+  const pcl::PCLPointCloud2 cloud = withoutOpacity(randomCloud<double>(1000, 1, ply_datatypes));
+  expectSame(parse(written(cloud)), cloud);
 }
 
 TEST(Ply, OrganisedCloudsStayOrganised)
 {
-  const pcl::PCLPointCloud2 cloud = randomCloud<float>(64, 16, ply_datatypes);
-  expectSame(parsePly(written(cloud)), cloud);
+  const pcl::PCLPointCloud2 cloud = withoutOpacity(randomCloud<float>(64, 16, ply_datatypes));
+  expectSame(parse(written(cloud)), cloud);
 }
 
 TEST(Ply, EmptyCloudKeepsItsFields)
 {
-  const pcl::PCLPointCloud2 cloud = parsePly(written(randomCloud<float>(0, 1, ply_datatypes)));
+  const pcl::PCLPointCloud2 cloud = parse(written(randomCloud<float>(0, 1, ply_datatypes)));
   EXPECT_EQ(cloud.width, 0U);
   EXPECT_EQ(cloud.fields.size(), 13U);
+}
+
+TEST(Ply, ColoursAndNormalsHavePclsNames)
+{
+  const std::string head = "property double x\nproperty double y\nproperty double z\nproperty float nx\n"
+                           "property uchar green\nproperty float ny\nproperty uchar red\nproperty float nz\n"
+                           "property float quality\nproperty uchar blue\n";
+  const pcl::PCLPointCloud2 cloud =
+      parse(ascii("element vertex 2\n" + head, "1 2 3 0 100 0 200 1 7 50\n4 5 6 0.6 2 0.8 1 0 8 3\n"));
+  EXPECT_EQ(namesOf(cloud), "x y z normal_x rgb normal_y normal_z quality");
+  EXPECT_EQ(cloud.fields[4].datatype, Field::FLOAT32) << "as PCL's points have it";
+  EXPECT_EQ(colourOf(cloud, 0), 0xc86432U);
+  EXPECT_EQ(colourOf(cloud, 1), 0x010203U);
+  EXPECT_EQ(valueOf(cloud, 0, "normal_z"), 1);
+  EXPECT_EQ(valueOf(cloud, 1, "normal_x"), 0.6F);
+  EXPECT_EQ(valueOf(cloud, 1, "normal_y"), 0.8F);
+  EXPECT_EQ(valueOf(cloud, 1, "quality"), 8);
+
+  const pcl::PCLPointCloud2 opaque =
+      parse(ascii("element vertex 1\n" + head + "property uchar alpha\n", "1 2 3 0 100 0 200 1 7 50 254\n"));
+  EXPECT_EQ(namesOf(opaque), "x y z normal_x rgba normal_y normal_z quality");
+  EXPECT_EQ(opaque.fields[4].datatype, Field::UINT32);
+  EXPECT_EQ(colourOf(opaque, 0, "rgba"), 0xfec86432U);
+}
+
+TEST(Ply, FilesHaveTheNamesOfTheFormat)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* name : {"x", "y", "z", "rgb", "normal_x", "normal_y", "normal_z", "curvature"})
+    addField(cloud, name, Field::FLOAT32);
+  allocate(cloud, 1);
+  const std::uint32_t colour = 0xffc86432U;
+  std::memcpy(&cloud.data[12], &colour, sizeof colour);
+  const std::string file = written(cloud);
+  const std::string vertex = "property float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+                             "property uchar green\nproperty uchar blue\nproperty float nx\nproperty float ny\n"
+                             "property float nz\nproperty float curvature\n";
+  const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex 1\n" + vertex + "end_header\n";
+  ASSERT_EQ(file.substr(0, head.size()), head);
+  EXPECT_EQ(file.substr(head.size() + 12, 3), "\xc8\x64\x32");
+  EXPECT_EQ(file.size(), head.size() + 12 + 3 + 16);
+  EXPECT_EQ(colourOf(parse(file), 0), 0xc86432U) << "rgb has no opacity";
+
+  cloud.fields[3].name = "rgba";
+  cloud.fields[3].datatype = Field::UINT32;
+  expectSame(parse(written(cloud)), cloud);
+}
+
+TEST(Ply, OtherColoursAndNamesThatAreTakenStayAsTheyAre)
+{
+  const std::string xyz_of_one = xyz(1);
+  for (const char* type : {"float", "double", "ushort", "int", "char"}) {
+    std::string head = xyz_of_one;
+    for (const char* channel : {"red", "green", "blue"}) head += std::string("property ") + type + ' ' + channel + '\n';
+    const pcl::PCLPointCloud2 cloud = parse(ascii(head, "1 2 3 1 0 1\n"));
+    EXPECT_EQ(namesOf(cloud), "x y z red green blue") << type;
+    expectSame(parse(written(cloud)), cloud);
+  }
+  const std::string rows = "1 2 3 4 5 6 7\n";
+  const std::string colour = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  EXPECT_EQ(namesOf(parse(ascii(xyz_of_one + colour + "property float rgb\n", rows))), "x y z red green blue rgb");
+  EXPECT_EQ(namesOf(parse(ascii(xyz_of_one + colour + "property float alpha\n", rows))), "x y z rgb alpha");
+  EXPECT_EQ(namesOf(parse(ascii(xyz_of_one + "property uchar red\nproperty uchar green\n", "1 2 3 4 5\n"))),
+            "x y z red green");
+  const std::string normal = "property float nx\nproperty float ny\n";
+  EXPECT_EQ(namesOf(parse(ascii(xyz_of_one + normal, "1 2 3 4 5\n"))), "x y z nx ny");
+  EXPECT_EQ(namesOf(parse(ascii(xyz_of_one + normal + "property int nz\n", "1 2 3 4 5 6\n"))), "x y z nx ny nz");
+  EXPECT_EQ(namesOf(parse(ascii(xyz_of_one + normal + "property float nz\nproperty float normal_z\n", rows))),
+            "x y z nx ny nz normal_z");
+}
+
+TEST(Ply, ReadsTheSensorOfPclsCamera)
+{
+  const TemporaryFolder folder;
+  const pcl::PCLPointCloud2 cloud = parse(ascii(xyz(2), "1 2 3\n4 5 6\n"));
+  const Eigen::Vector4f origin(1.5F, -2, 3, 0);
+  const Eigen::Quaternionf turn(Eigen::AngleAxisf(0.5F, Eigen::Vector3f(1, 2, 3).normalized()));
+  const auto check = [&](const std::string& file) {
+    Viewpoint viewpoint;
+    EXPECT_EQ(parsePly(file, viewpoint).width, 2U);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(viewpoint[static_cast<std::size_t>(k)], origin[k]);
+    const Eigen::Quaternionf read(viewpoint[3], viewpoint[4], viewpoint[5], viewpoint[6]);
+    EXPECT_LT(read.angularDistance(turn), 1e-6F);
+  };
+  pcl::PLYWriter().writeASCII((folder / "a.ply").string(), cloud, origin, turn, 9, true);
+  check(contentOf(folder / "a.ply"));
+  pcl::PLYWriter().writeBinary((folder / "b.ply").string(), cloud, origin, turn, true);
+  check(contentOf(folder / "b.ply"));
+  std::ostringstream out;
+  writePly(out, cloud, {origin[0], origin[1], origin[2], turn.w(), turn.x(), turn.y(), turn.z()});
+  check(out.str());
+}
+
+TEST(Ply, ACameraThatMakesNoSenseIsNoViewpoint)
+{
+  const auto viewpointOf = [](const std::string& properties, const std::string& row) {
+    Viewpoint viewpoint;
+    std::string camera = "element camera 1\n";
+    std::istringstream names(properties);
+    for (std::string name; names >> name;) camera += "property double " + name + "\n";
+    parsePly(ascii(camera + xyz(1), row + "\n1 2 3\n"), viewpoint);
+    return viewpoint;
+  };
+  const std::string position = "view_px view_py view_pz ";
+  const std::string axes = position + "x_axisx x_axisy x_axisz y_axisx y_axisy y_axisz z_axisx z_axisy z_axisz";
+  EXPECT_EQ(viewpointOf(position, "1 2 3"), (Viewpoint{1, 2, 3, 1, 0, 0, 0}));
+  EXPECT_EQ(viewpointOf("view_px view_py", "1 2"), no_viewpoint);
+  EXPECT_EQ(viewpointOf(position, "1 nan 3"), no_viewpoint);
+  EXPECT_EQ(viewpointOf(position, "1 1e300 3"), no_viewpoint);
+  EXPECT_EQ(viewpointOf(axes, "1 2 3 0 0 0 0 0 0 0 0 0"), (Viewpoint{1, 2, 3, 1, 0, 0, 0}));
+  EXPECT_EQ(viewpointOf(axes, "1 2 3 1 0 0 0 1 0 0 0 -1"), (Viewpoint{1, 2, 3, 1, 0, 0, 0})) << "a mirror";
+  EXPECT_EQ(viewpointOf(axes, "1 2 3 nan 0 0 0 1 0 0 0 1"), (Viewpoint{1, 2, 3, 1, 0, 0, 0}));
+  Viewpoint viewpoint;
+  const std::string lists = "element camera 2\nproperty list uchar float view_px\nproperty float k1\n" + xyz(1);
+  EXPECT_EQ(parsePly(ascii(lists, "2 1 1 0\n0 0\n1 2 3\n"), viewpoint).width, 1U);
+  EXPECT_EQ(viewpoint, no_viewpoint);
 }
 
 TEST(Ply, PclReadsWhatIsWritten)
@@ -80,7 +202,7 @@ TEST(Ply, BoolIsWrittenAsItsByte)
 {
   pcl::PCLPointCloud2 cloud = randomCloud<float>(2, 1, {Field::BOOL});
   cloud.fields[3].datatype = Field::BOOL;
-  EXPECT_EQ(parsePly(written(cloud)).fields[3].datatype, Field::UINT8);
+  EXPECT_EQ(parse(written(cloud)).fields[3].datatype, Field::UINT8);
 }
 
 TEST(Ply, RefusesTypesItCannotHold)
@@ -91,10 +213,10 @@ TEST(Ply, RefusesTypesItCannotHold)
 
 TEST(Ply, ReadsAscii)
 {
-  const pcl::PCLPointCloud2 cloud = parsePly(
-      ascii("obj_info made by hand\nelement vertex 2\nproperty float64 x\nproperty double y\nproperty double z\n"
-            "property uint8 red\nproperty int16 label\nelement face 1\nproperty list uchar int vertex_indices\n",
-            "1.1 2 3 255 -7\n4 5 6 0 7\n3 0 1 0\n"));
+  const pcl::PCLPointCloud2 cloud =
+      parse(ascii("obj_info made by hand\nelement vertex 2\nproperty float64 x\nproperty double y\nproperty double z\n"
+                  "property uint8 red\nproperty int16 label\nelement face 1\nproperty list uchar int vertex_indices\n",
+                  "1.1 2 3 255 -7\n4 5 6 0 7\n3 0 1 0\n"));
   EXPECT_EQ(cloud.width, 2U);
   EXPECT_EQ(cloud.fields.size(), 5U);
   EXPECT_EQ(valueOf(cloud, 0, "x"), 1.1);
@@ -117,14 +239,14 @@ TEST(Ply, ReadsBothByteOrdersBehindOtherElements)
     }
     file += "\x01" + bytes<std::uint32_t>(1, big);
 
-    const pcl::PCLPointCloud2 cloud = parsePly(file);
+    const pcl::PCLPointCloud2 cloud = parse(file);
     ASSERT_EQ(cloud.width, 2U);
     EXPECT_EQ(valueOf(cloud, 0, "x"), 596648.1);
     EXPECT_EQ(valueOf(cloud, 1, "x"), -2.5);
     EXPECT_EQ(valueOf(cloud, 1, "y"), 0.1F);
     EXPECT_EQ(valueOf(cloud, 1, "label"), 513);
     for (std::size_t cut = 1; cut < 60; ++cut) {
-      EXPECT_THROW(parsePly(file.substr(0, file.size() - cut)), FormatError) << cut;
+      EXPECT_THROW(parse(file.substr(0, file.size() - cut)), FormatError) << cut;
     }
   }
 }
@@ -133,7 +255,7 @@ TEST(Ply, ListsOfOneLengthAreFields)
 {
   const std::string head =
       "element vertex 2\nproperty float x\nproperty list uchar float uv\nproperty list uchar int none\n";
-  const pcl::PCLPointCloud2 cloud = parsePly(ascii(head, "1 2 3 4 0\n5 2 6 7 0\n"));
+  const pcl::PCLPointCloud2 cloud = parse(ascii(head, "1 2 3 4 0\n5 2 6 7 0\n"));
   ASSERT_EQ(cloud.fields.size(), 2U);
   EXPECT_EQ(cloud.fields[1].count, 2U);
   EXPECT_EQ(valueOf(cloud, 1, "uv"), 6);
@@ -178,7 +300,7 @@ TEST(Ply, RefusesHeadersThatMakeNoCloud)
   EXPECT_EQ(defect(ascii("element vertex many\n", "")),
             "line 4 is damaged: 'many' is not a whole number in the range of its type");
   // Rows without values take no bytes: nothing to walk through.
-  EXPECT_EQ(parsePly(ascii("element nothing 18446744073709551615\n" + xyz(1), "1 2 3\n")).width, 1U);
+  EXPECT_EQ(parse(ascii("element nothing 18446744073709551615\n" + xyz(1), "1 2 3\n")).width, 1U);
 }
 
 } // namespace pcl_bsh::io

@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/filters/io/cloud_file_error.h>
 #include <pcl_bsh/filters/io/pose_file.h>
+#include <pcl_bsh/filters/io/pose_text.h>
 
 #include <gmock/gmock.h>
 
@@ -47,6 +48,28 @@ TEST_F(PoseFile, ToldApartByTheirColumns)
   expectQuarterTurn(read("# 4 x 4\n\n1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 # start\r\n"
                          "0,-1,0,1;1,0,0,2;0,0,1,3;0,0,0,1"));
   expectQuarterTurn(read("0.0 0 0 0 0 0 0 1\n1e9 1 2 3 0 0 0.70710678118654752 0.70710678118654752\n"));
+}
+
+TEST_F(PoseFile, NumbersAreSeparatedAlike)
+{
+  const std::string row = "line 1 separates numbers by several characters, or has decimal commas";
+  expectQuarterTurn(read("\xef\xbb\xbf"
+                         "1;0;0;0;0;1;0;0;0;0;1;0\n0\t-1\t0\t1\t1\t0\t0\t2\t0\t0\t1\t3\n"));
+  expectQuarterTurn(read("1 0 0 0; 0 1 0 0; 0 0 1 0\n0, -1, 0, 1; 1, 0, 0, 2; 0, 0, 1, 3;\n"));
+  for (const std::string text : {"0,5;1,5;2,5;3,5;0,0;0,0;0,0;1,0\n", "1,0,0,0;0,1,0;0,0,0,1\n", "1;0,0,0,0\n"}) {
+    try {
+      read(text);
+      ADD_FAILURE() << text;
+    }
+    catch (const CloudFileError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(row)) << text;
+    }
+  }
+  expectRefused("0,5 1,5 2,5 3,5 0,0 0,0 0,0 1,0\n", "line 1 is damaged: '5 1' is not a number");
+  expectRefused("1,0,0,0,0,1,0,0,,0,1,0\n", "line 1 has an empty value");
+  EXPECT_EQ(numbersOf("1,2,3,0,0,0").size(), 6U);
+  EXPECT_THROW(numbersOf("1,5 2,5 3,5"), FormatError) << "x y z, not x y z roll pitch yaw";
+  EXPECT_THROW(numbersOf("1,5;2,5;3,5"), FormatError);
 }
 
 TEST_F(PoseFile, QuaternionsOfFewDigitsAreNormalised)

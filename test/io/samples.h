@@ -89,6 +89,42 @@ inline const std::vector<std::uint8_t> pcd_datatypes = {Field::BOOL,   Field::IN
                                                         Field::UINT16, Field::INT32,   Field::UINT32, Field::INT64,
                                                         Field::UINT64, Field::FLOAT32, Field::FLOAT64};
 
+/// Without what rgb has beside a colour: its fourth byte, which PCD alone keeps.
+inline pcl::PCLPointCloud2 withoutOpacity(pcl::PCLPointCloud2 cloud)
+{
+  for (const Field& field : cloud.fields) {
+    if (field.name != "rgb") continue;
+    for (std::size_t i = 0; i < std::size_t{cloud.width} * cloud.height; ++i) {
+      std::uint32_t colour;
+      std::uint8_t* const bytes = &cloud.data[i * cloud.point_step + field.offset];
+      std::memcpy(&colour, bytes, sizeof colour);
+      colour &= 0xffffffU;
+      std::memcpy(bytes, &colour, sizeof colour);
+    }
+  }
+  return cloud;
+}
+
+/// The bits of a record's packed colour.
+inline std::uint32_t colourOf(const pcl::PCLPointCloud2& cloud, std::size_t record, const std::string& name = "rgb")
+{
+  for (const Field& field : cloud.fields) {
+    if (field.name != name) continue;
+    std::uint32_t colour;
+    std::memcpy(&colour, &cloud.data[record * cloud.point_step + field.offset], sizeof colour);
+    return colour;
+  }
+  throw std::invalid_argument("no field " + name);
+}
+
+/// The names of the fields, a blank between them.
+inline std::string namesOf(const pcl::PCLPointCloud2& cloud)
+{
+  std::string names;
+  for (const Field& field : cloud.fields) names += (names.empty() ? "" : " ") + field.name;
+  return names;
+}
+
 /// Same size, fields and bytes.
 inline void expectSame(const pcl::PCLPointCloud2& actual, const pcl::PCLPointCloud2& expected)
 {

@@ -17,14 +17,46 @@ TEST(TextCursor, WalksWordsOfLinesOfAllSystems)
   EXPECT_TRUE(text.word().empty());
 }
 
-TEST(TextCursor, TakesOtherSeparators)
+TEST(TextCursor, TakesOneSeparatorAndNoOther)
 {
-  TextCursor text("1,2;  3", 0, ",;");
+  TextCursor text("1 , 2,,x y,\n1;2\n , ,\n\t \n");
+  text.separateBy(',');
   ASSERT_TRUE(text.nextLine());
   EXPECT_EQ(text.number<int>(), 1);
   EXPECT_EQ(text.number<double>(), 2);
-  EXPECT_NO_THROW(text.number<int>());
-  EXPECT_NO_THROW(text.requireEndOfLine());
+  EXPECT_EQ(defectOf([&] { text.number<int>(); }), "line 1 has an empty value");
+  EXPECT_EQ(text.word(), "x y");
+  EXPECT_NO_THROW(text.requireEndOfLine()) << "one at the end separates nothing";
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(defectOf([&] { text.number<double>(); }), "line 2 is damaged: '1;2' is not a number");
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(text.word(), "");
+  EXPECT_FALSE(text.line().empty());
+  EXPECT_FALSE(text.nextLine()) << "blanks alone are no line";
+
+  TextCursor tabs("1\t\t3 \t4");
+  tabs.separateBy('\t');
+  ASSERT_TRUE(tabs.nextLine());
+  for (const char* word : {"1", "", "3", "4"}) EXPECT_EQ(tabs.word(), word);
+}
+
+TEST(TextCursor, ALineTellsItsSeparator)
+{
+  EXPECT_EQ(separatorOf("1,5;2,5"), ';');
+  EXPECT_EQ(separatorOf("1, 2, 3"), ',');
+  EXPECT_EQ(separatorOf("1\t2\t3"), '\t');
+  EXPECT_EQ(separatorOf("1\t2 3"), ' ');
+  EXPECT_EQ(separatorOf("1"), ' ');
+}
+
+TEST(TextCursor, SkipsAByteOrderMark)
+{
+  TextCursor text("\xef\xbb\xbf"
+                  "1 2");
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(text.number<int>(), 1);
+  for (const char* mark : {"\xff\xfe", "\xfe\xff"})
+    EXPECT_EQ(defectOf([&] { TextCursor(std::string(mark) + "1"); }), "is UTF-16 text");
 }
 
 TEST(TextCursor, RestBeginsBehindTheLine)

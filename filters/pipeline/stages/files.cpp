@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Readers and writers, of all formats that filters/io knows.
 #include <pcl_bsh/filters/io/cloud_file.h>
+#include <pcl_bsh/filters/io/pcl_names.h>
+#include <pcl_bsh/filters/io/text_clouds.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 
 #include <algorithm>
@@ -28,7 +30,9 @@ struct FileReader : Stage {
   CloudHeader plan(const std::vector<CloudHeader>&) override
   {
     requireExtension(filename.path, extensions);
-    return io::readCloudHeader(filename.path);
+    CloudHeader header = io::readCloudHeader(filename.path);
+    if (const std::string remark = io::remarkOnColours(header); !remark.empty()) warn(filename.path + ": " + remark);
+    return header;
   }
 
   StageCloudPtr run(StageClouds&&) override
@@ -61,28 +65,27 @@ protected:
   virtual void write(const StageCloud& cloud) { io::writeCloud(filename.path, cloud.cloud, cloud.viewpoint); }
 };
 
-/// OBJ has room for x y z alone.
+/// OBJ has room for x y z, a colour and normals alone.
 struct ObjWriter : FileWriter {
 protected:
   CloudHeader written(const CloudHeader& cloud) const override
   {
     CloudHeader vertices = cloud;
-    const auto is_lost = [](const pcl::PCLPointField& field) {
-      return field.name != "x" && field.name != "y" && field.name != "z";
-    };
-    vertices.fields.erase(std::remove_if(vertices.fields.begin(), vertices.fields.end(), is_lost),
-                          vertices.fields.end());
+    vertices.fields = io::fieldsForObj(cloud);
     return vertices;
   }
 
   void write(const StageCloud& cloud) override
   {
+    const CloudHeader vertices = written(cloud.cloud);
     std::string lost;
     for (const pcl::PCLPointField& field : cloud.cloud.fields) {
-      if (field.name != "x" && field.name != "y" && field.name != "z" && field.name != "_") lost += " " + field.name;
+      const auto is_it = [&](const pcl::PCLPointField& other) { return other.name == field.name; };
+      const bool kept = std::any_of(vertices.fields.begin(), vertices.fields.end(), is_it);
+      if (!kept && field.name != "_") lost += " " + field.name;
     }
     if (!lost.empty()) warn("an .obj has no place for the fields" + lost + ": they are left out");
-    io::writeCloud(filename.path, written(cloud.cloud));
+    io::writeCloud(filename.path, vertices);
   }
 };
 
@@ -116,23 +119,32 @@ StageType pcdReader()
 
 StageType plyReader()
 {
-  return reader("readers.ply", {".ply"}, "The vertices of a PLY file, every property in its type.");
+  return reader(
+      "readers.ply", {".ply"},
+      "The vertices of a PLY file, every property in its type: nx ny nz as normal_x normal_y normal_z, uchar red "
+      "green blue [alpha] packed as rgb or rgba, the sensor's viewpoint where it has an element camera.");
 }
 
 StageType objReader()
 {
-  return reader("readers.obj", {".obj"}, "The vertices of a Wavefront OBJ file, as float64.");
+  return reader(
+      "readers.obj", {".obj"},
+      "The vertices of a Wavefront OBJ file, as float64, with their colours packed as rgb, and their normals.");
 }
 
 StageType offReader()
 {
-  return reader("readers.off", {".off"}, "The vertices of an OFF file, as float64.");
+  return reader(
+      "readers.off", {".off"},
+      "The vertices of an OFF file, as float64, with their normals, and their colours packed as rgba or rgb.");
 }
 
 StageType textReader()
 {
-  return reader("readers.text", {".txt", ".xyz"},
-                "A point per line, as float64: x y z and more columns, named by the first line or column_4, ...");
+  return reader(
+      "readers.text", {".txt", ".xyz"},
+      "A point per line, as float64: x y z and more columns, named by the first line or column_4, ...; columns "
+      "r g b of whole numbers up to 255 are packed as rgb, nx ny nz become normal_x normal_y normal_z.");
 }
 
 StageType pcdWriter()
@@ -143,18 +155,23 @@ StageType pcdWriter()
 
 StageType plyWriter()
 {
-  return ofFiles<FileWriter>("writers.ply", {".ply"}, "Binary PLY, with every field but 64-bit integers.", to_write);
+  return ofFiles<FileWriter>(
+      "writers.ply", {".ply"},
+      "Binary PLY, with every field but 64-bit integers; normals are nx ny nz, colours uchar red green blue.",
+      to_write);
 }
 
 StageType objWriter()
 {
-  return ofFiles<ObjWriter>("writers.obj", {".obj"}, "Wavefront OBJ: vertices only; a warning names lost fields.",
+  return ofFiles<ObjWriter>("writers.obj", {".obj"},
+                            "Wavefront OBJ: vertices with their colours and normals; a warning names lost fields.",
                             to_write);
 }
 
 StageType textWriter()
 {
-  return ofFiles<FileWriter>("writers.text", {".txt", ".xyz"}, "A line that names the fields, then a point per line.",
+  return ofFiles<FileWriter>("writers.text", {".txt", ".xyz"},
+                             "A line that names the fields, then a point per line; colours are columns r g b.",
                              to_write);
 }
 

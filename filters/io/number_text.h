@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Numbers and texts as they stand in files, whatever language the program speaks.
+#pragma once
+
+#include <charconv>
+#include <string>
+#include <string_view>
+
+namespace pcl_bsh::io {
+
+/// The fewest digits that read back to the same bits; "nan" and "inf" for what is none.
+std::string numberText(double value);
+
+/// In that format, with so many digits (general: that count, fixed: behind the point).
+std::string numberText(double value, std::chars_format format, int digits);
+
+/// The text with U+FFFD in place of what is no UTF-8.
+std::string validUtf8(std::string_view text);
+
+/// A text as a cell of CSV: in quotes where it needs them.
+std::string csvText(const std::string& text);
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Files name normals and colours in their own way; between reader and writer they have PCL's names and meaning.
+#include "../io/samples.h"
+#include "run_stage.h"
+
+#include <pcl_bsh/filters/io/cloud_file.h>
+
+#include <cmath>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+using io::contentOf;
+using testing::HasSubstr;
+
+/// A quarter turn about z.
+constexpr auto turn = R"({"type": "filters.transform", "transform": [0, 0, 0, 0, 0, 1.5707963267948966]})";
+
+class FileFields : public testing::Test {
+protected:
+  PipelineResult run(const std::string& in, const std::string& stages, const std::string& out) const
+  {
+    return Pipeline::parse("[\"" + (folder / in).string() + "\", " + stages + ", \"" + (folder / out).string() + "\"]")
+        .run();
+  }
+
+  io::TemporaryFolder folder;
+};
+
+TEST_F(FileFields, NormalsOfFilesAreTurned)
+{
+  folder.write("a.ply",
+               "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+               "property float nx\nproperty float ny\nproperty float nz\nend_header\n1 0 0 1 0 0\n");
+  folder.write("a.txt", "//X Y Z Nx Ny Nz\n1 0 0 1 0 0\n");
+  folder.write("a.obj", "vn 1 0 0\nv 1 0 0\n");
+  folder.write("a.off", "NOFF 1 0 0\n1 0 0 1 0 0\n");
+  for (const std::string in : {"a.ply", "a.txt", "a.obj", "a.off"}) {
+    for (const std::string out : {"b.ply", "b.pcd", "b.xyz", "b.obj"}) {
+      EXPECT_THAT(run(in, turn, out).warnings, testing::IsEmpty());
+      const pcl::PCLPointCloud2 cloud = io::readCloud(folder / out);
+      EXPECT_EQ(io::namesOf(cloud), "x y z normal_x normal_y normal_z") << in << ' ' << out;
+      EXPECT_NEAR(io::valueOf(cloud, 0, "y"), 1, 1e-7) << in << ' ' << out;
+      EXPECT_NEAR(io::valueOf(cloud, 0, "normal_x"), 0, 1e-7) << in << ' ' << out;
+      EXPECT_NEAR(io::valueOf(cloud, 0, "normal_y"), 1, 1e-7) << in << ' ' << out;
+    }
+  }
+}
+
+TEST_F(FileFields, ColoursOfFilesAreAveragedAsColours)
+{
+  folder.write("a.ply", "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float "
+                        "z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n"
+                        "0 0 0 200 0 10\n0.1 0 0 100 50 20\n");
+  folder.write("a.txt", "//X,Y,Z,R,G,B\n0,0,0,200,0,10\n0.1,0,0,100,50,20\n");
+  folder.write("a.off", "COFF 2 0 0\n0 0 0 200 0 10\n0.1 0 0 100 50 20\n");
+  const std::string grid = R"({"type": "filters.voxel_grid", "leaf_size": 1})";
+  for (const std::string in : {"a.ply", "a.txt", "a.off"}) {
+    for (const std::string out : {"b.ply", "b.pcd", "b.xyz", "b.obj"}) {
+      run(in, grid, out);
+      const pcl::PCLPointCloud2 cloud = io::readCloud(folder / out);
+      ASSERT_EQ(cloud.width, 1U) << in;
+      EXPECT_EQ(io::colourOf(cloud, 0) & 0xffffffU, 0x96190fU) << in << ' ' << out;
+    }
+  }
+}
+
+TEST_F(FileFields, ColoursThatAreNoBytesAreWarnedOf)
+{
+  folder.write("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
+                        "z\nproperty float red\nproperty float green\nproperty float blue\nend_header\n"
+                        "0 0 0 0.5 0 1\n");
+  const PipelineResult result = run("a.ply", turn, "b.ply");
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_THAT(result.warnings[0], HasSubstr("a.ply: field 'red' and its likes are no bytes"));
+  EXPECT_THAT(contentOf(folder / "b.ply"), HasSubstr("property float red\n"));
+}
+
+TEST_F(FileFields, TheSensorsPlaceIsKept)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* axis : {"x", "y", "z"}) io::addField(cloud, axis, pcl::PCLPointField::FLOAT32);
+  io::allocate(cloud, 1);
+  io::writeCloud(folder / "a.ply", cloud, {5, 0, 0, 1, 0, 0, 0});
+  run("a.ply", turn, "b.ply");
+  io::Viewpoint viewpoint;
+  io::readCloud(folder / "b.ply", &viewpoint);
+  EXPECT_NEAR(viewpoint[1], 5, 1e-6);
+  EXPECT_NEAR(viewpoint[3], std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(viewpoint[6], std::sqrt(0.5), 1e-6);
+}
+
+} // namespace
+} // namespace pcl_bsh::pipeline
