@@ -333,12 +333,22 @@ std::vector<Eigen::Isometry3d> posesOf(const Options& options)
   return options.path.empty() ? std::vector{options.pose} : options.path;
 }
 
+std::vector<Clash> readEarlier(const Options& options, std::vector<std::string>& warnings)
+{
+  if (!options.previous) return {};
+  const io::ClashList list = io::readClashes(*options.previous);
+  warnings = io::requireComparable(
+      *options.previous, list,
+      {options.input.string(), options.obstacle.string(), options.request.clearance, options.swept, {}});
+  return list.clashes;
+}
+
 int collide(const Options& options)
 {
   check(options);
   const std::vector<Eigen::Isometry3d> poses = posesOf(options);
-  const std::vector<Clash> earlier = options.previous ? io::readClashes(*options.previous) : std::vector<Clash>();
   cli::CollisionReport report;
+  const std::vector<Clash> earlier = readEarlier(options, report.warnings);
   report.clearance = options.request.clearance;
   report.accuracy = options.request.accuracy;
 

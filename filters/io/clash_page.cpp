@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/io/clash_report.h>
+#include <pcl_bsh/filters/io/number_text.h>
 
 #include <cmath>
-#include <iomanip>
 #include <limits>
+#include <locale>
 #include <sstream>
 #include <string>
 
@@ -20,6 +21,7 @@ public:
   std::string html() const
   {
     std::ostringstream out;
+    out.imbue(std::locale::classic()); // the host's language is not the page's
     out << "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Clashes: "
         << escaped(report_.input) << "</title>\n<style>" << style << "</style></head>\n<body>\n";
@@ -56,10 +58,11 @@ svg{width:100%;height:auto;display:block}svg text{font:11px system-ui,"DejaVu Sa
 .frame{fill:none;stroke:var(--line)}.limit{stroke:var(--new);stroke-dasharray:4 3}.curve{fill:none;stroke:var(--accent);stroke-width:1.5}
 @media print{body{background:#fff}.card{break-inside:avoid}})";
 
+  /// Text of files and their names, harmless within an element or a quoted attribute.
   static std::string escaped(const std::string& text)
   {
     std::string safe;
-    for (const char c : text) {
+    for (const char c : validUtf8(text)) {
       if (c == '<')
         safe += "&lt;";
       else if (c == '>')
@@ -68,6 +71,10 @@ svg{width:100%;height:auto;display:block}svg text{font:11px system-ui,"DejaVu Sa
         safe += "&amp;";
       else if (c == '"')
         safe += "&quot;";
+      else if (c == '\'')
+        safe += "&#39;";
+      else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+        safe += "\xef\xbf\xbd"; // HTML knows no control characters
       else
         safe += c;
     }
@@ -77,18 +84,11 @@ svg{width:100%;height:auto;display:block}svg text{font:11px system-ui,"DejaVu Sa
   /// So many significant digits, and no exponent where that is readable.
   static std::string number(double value, int digits = 4)
   {
-    std::ostringstream text;
-    text << std::setprecision(digits) << value;
-    return text.str();
+    return numberText(value, std::chars_format::general, digits);
   }
 
   /// A coordinate: millimetres if the unit is a metre.
-  static std::string place(double value)
-  {
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(3) << value;
-    return text.str();
-  }
+  static std::string place(double value) { return numberText(value, std::chars_format::fixed, 3); }
 
   static std::string places(const Eigen::Vector3d& p)
   {

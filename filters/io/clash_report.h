@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -58,7 +59,8 @@ inline const char* nameOf(ClashStatus status)
 /// One object per clash, with its closest pair unless it is resolved.
 std::string clashJson(const ClashReport& report);
 
-/// One clash a line, lengths in the clouds' unit. A resolved one has no pair.
+/// One clash a line, lengths in the clouds' unit, each with the digits that read back to the same bits. A resolved one
+/// has no pair.
 std::string clashCsv(const ClashReport& report);
 
 /// A page that opens alone in a browser: a chart of the path, a table, and two pictures of each clash.
@@ -71,9 +73,27 @@ void writeClashes(const std::filesystem::path& path, const ClashReport& report);
 /// @throws CloudFileError when writeClashes() knows no such extension
 void requireClashFormat(const std::filesystem::path& path);
 
-/// What an earlier run listed, for compareWithEarlier(): without points and pairs.
-/// @throws CloudFileError when it is no such list
-std::vector<Clash> readClashes(const std::filesystem::path& path);
+/// What a run asked, and the clashes that it listed, without points and pairs.
+struct ClashList {
+  std::string input, obstacle; ///< file names
+  double clearance = 0;
+  std::optional<double> swept;
+  std::vector<Clash> clashes;
+};
+
+/// What an earlier run listed, for compareWithEarlier().
+/// @throws CloudFileError when the file cannot be read, JsonError naming the place in it that no run would have written
+ClashList readClashes(const std::filesystem::path& path);
+
+/// The same, of a text. @throws JsonError whose message begins with `name`
+ClashList parseClashes(std::string_view text, const std::string& name);
+
+/// Whether the earlier list, read from `path`, can tell what is new now.
+/// @param now what this run asks; its clashes do not matter
+/// @return warnings, a line each: names of other clouds, motion between poses tested in one run only
+/// @throws CloudFileError when the clearances differ, so that clashes between the two would seem new or resolved
+std::vector<std::string> requireComparable(const std::filesystem::path& path, const ClashList& earlier,
+                                           const ClashList& now);
 
 /// The distance within which colliding points are one clash where the user says none: a power of two of at least the
 /// clearance and four times the scan's spacing, so that it stays the same from run to run.

@@ -300,7 +300,7 @@ TEST_F(ClashWriter, RefusesFilesItCannotWriteOrRead)
   EXPECT_THAT(error(type, file("a.csv") + R"(, "previous": "none.json")"), HasSubstr("/previous: none.json: no such"));
   folder.write("odd.json", R"({"clashes": [{"id": 7}]})");
   EXPECT_THAT(error(type, file("a.csv") + R"(, "previous": )" + quoted(folder / "odd.json")),
-              HasSubstr("odd.json: is no list of clashes ("));
+              HasSubstr("odd.json: is no list of clashes: "));
   EXPECT_THAT(error(type, file("a.csv") + R"(, "cluster_distance": 0)"), HasSubstr("give a number above 0, in m"));
   EXPECT_EQ(folder.files(), 2U) << "the track and the odd list: nothing is half written";
 }

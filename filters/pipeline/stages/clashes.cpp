@@ -21,7 +21,7 @@ struct ClashWriter : Stage, CollisionQuestion {
     check(true);
     requireWritable("filename", filename);
     if (also) requireWritable("also", *also);
-    if (previous) earlier_ = readEarlier(*previous);
+    if (previous) readEarlier();
     return inputs[0];
   }
 
@@ -47,12 +47,18 @@ private:
     }
   }
 
-  static std::vector<Clash> readEarlier(const InputFile& file)
+  void readEarlier()
   {
     try {
-      return io::readClashes(file.path);
+      const io::ClashList list = io::readClashes(previous->path);
+      const std::optional<double> motion = swept > 0 ? std::optional(swept) : std::nullopt;
+      for (const std::string& warning :
+           io::requireComparable(previous->path, list, {input_name, obstacle.name, clearance, motion, {}})) {
+        warn(warning);
+      }
+      earlier_ = list.clashes;
     }
-    catch (const io::CloudFileError& error) {
+    catch (const std::runtime_error& error) {
       throw OptionError("previous", error.what());
     }
   }
