@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <locale>
 #include <iostream>
 #include <limits>
 
@@ -80,6 +81,7 @@ public:
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw io::CloudFileError(folder, "cannot be made: " + error.message(), "name a folder that can");
+    for (std::ofstream* file : {&csv_, &json_}) file->imbue(std::locale::classic());
     csv_.open(part("steps.csv"));
     json_.open(part("steps.jsonl"));
     if (!csv_ || !json_) throw io::CloudFileError(folder, "cannot be written to", "check its permissions");

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
+#include <locale>
 #include <set>
 #include <system_error>
 
@@ -92,6 +93,7 @@ void writeTo(const fs::path& file, const fs::path& named, const std::function<vo
 {
   errno = 0;
   std::ofstream stream(file, std::ios::binary);
+  stream.imbue(std::locale::classic()); // the host's language is not the files'
   if (stream) write(stream);
   stream.close();
   if (!stream) failToWrite(named, errno);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <locale>
 #include <sstream>
 
 namespace pcl_bsh {
@@ -99,6 +100,7 @@ double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const S
     const double way = distance(step.begin, step.end) * (1.0 + kRounding);
     if (motion.isAmbiguous()) {
       std::ostringstream message;
+      message.imbue(std::locale::classic());
       message << "swept motion: from pose " << k << " to the next the model turns by half a turn (" << angle
               << " rad), and either way round is as short: give a pose between them";
       throw std::invalid_argument(message.str());
@@ -119,6 +121,7 @@ double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const S
   if (!steps_.empty()) steps_.back().cuts = 1.0; // itself
   if (!steps_.empty()) total += 1.0;
   std::ostringstream message;
+  message.imbue(std::locale::classic());
   if (total <= kMostPoses) {
     const double instants = 0x1p-52 * total * longest;
     if (instants <= sweep.rounding) return total;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -16,6 +17,7 @@ template <class... Parts>
 [[noreturn]] void refuse(const Parts&... parts)
 {
   std::ostringstream message;
+  message.imbue(std::locale::classic());
   (message << ... << parts);
   throw std::invalid_argument(message.str());
 }

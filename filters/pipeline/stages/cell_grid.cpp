@@ -5,6 +5,7 @@
 #include <boost/sort/spreadsort/integer_sort.hpp>
 
 #include <algorithm>
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 
@@ -24,6 +25,7 @@ std::int64_t floorOf(double coordinate, double edge, bool in_float)
 std::string sizeOf(const Cell& cells)
 {
   std::ostringstream text;
+  text.imbue(std::locale::classic());
   text << cells[0] << " x " << cells[1] << " x " << cells[2];
   return text.str();
 }

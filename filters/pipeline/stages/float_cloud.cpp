@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 
@@ -58,6 +59,7 @@ std::string roundingWarning(const FloatCloud& cloud, double length)
 {
   if (cloud.moved <= length * 1e-4) return {};
   std::ostringstream text;
+  text.imbue(std::locale::classic());
   text << "float32, in which neighbours are searched, moves points of this float64 cloud by up to " << cloud.moved;
   if (cloud.moved > length * 1e-2) throw std::invalid_argument(text.str() + ": crop the cloud first");
   return text.str();

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <locale>
 #include <optional>
 #include <sstream>
 
@@ -105,6 +106,7 @@ private:
     }
     if (view.scalar == Scalar::float64 || lost <= 4 * spacing * map.linear().norm()) return;
     std::ostringstream text;
+    text.imbue(std::locale::classic());
     text << "float32 coordinates are coarse where the cloud now lies: rounding moved points by up to " << lost;
     warn(text.str());
   }
