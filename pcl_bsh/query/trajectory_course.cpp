@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 
@@ -51,6 +52,7 @@ void checkTolerance(const Placed& scan, const std::vector<Eigen::Isometry3d>& po
   constexpr double smallest = 0x1p-400; // its square is far from underflow
   const double least = std::max(16 * 0x1p-46 * size, smallest);
   std::ostringstream message;
+  message.imbue(std::locale::classic());
   if (!(size < 0x1p100))
     message << "swept motion: coordinates as large as " << size << ": give the clouds in a larger unit, less than "
             << 0x1p100;

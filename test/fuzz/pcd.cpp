@@ -5,9 +5,10 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-  pcl_bsh::fuzz::readAny(data, size, [](std::string_view file) {
+  const auto parse = [](std::string_view file) {
     pcl_bsh::io::Viewpoint viewpoint;
     return pcl_bsh::io::parsePcd(file, viewpoint);
-  });
+  };
+  pcl_bsh::fuzz::readAny(data, size, parse, pcl_bsh::io::parsePcdHeader);
   return 0;
 }

@@ -5,6 +5,10 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-  pcl_bsh::fuzz::readAny(data, size, pcl_bsh::io::parsePly);
+  const auto parse = [](std::string_view file) {
+    pcl_bsh::io::Viewpoint viewpoint;
+    return pcl_bsh::io::parsePly(file, viewpoint);
+  };
+  pcl_bsh::fuzz::readAny(data, size, parse, pcl_bsh::io::parsePlyHeader);
   return 0;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What holds of every reader: it refuses with a reason, or gives a cloud that is sound and no larger than its file
-// justifies.
+// justifies, with the fields that its header alone tells.
 #pragma once
 
 #include "target.h"
@@ -28,13 +28,28 @@ inline void requireSound(pcl::PCLPointCloud2& cloud, std::size_t file_bytes)
   io::setDense(cloud); // looks at every floating-point value
 }
 
+inline void requireSameFields(const pcl::PCLPointCloud2& header, const pcl::PCLPointCloud2& cloud)
+{
+  require(header.fields.size() == cloud.fields.size() && header.point_step == cloud.point_step,
+          "a header of other fields");
+  for (std::size_t i = 0; i < cloud.fields.size(); ++i) {
+    const pcl::PCLPointField &told = header.fields[i], &read = cloud.fields[i];
+    require(told.name == read.name && told.datatype == read.datatype && told.offset == read.offset &&
+                told.count == read.count,
+            "a header of other fields");
+  }
+}
+
 /// @param parse from a file's content to a pcl::PCLPointCloud2
-template <class Parse>
-void readAny(const std::uint8_t* data, std::size_t size, Parse parse)
+/// @param parse_header the same, without the points
+template <class Parse, class ParseHeader>
+void readAny(const std::uint8_t* data, std::size_t size, Parse parse, ParseHeader parse_header)
 {
   try {
-    pcl::PCLPointCloud2 cloud = parse(std::string_view(reinterpret_cast<const char*>(data), size));
+    const std::string_view file(reinterpret_cast<const char*>(data), size);
+    pcl::PCLPointCloud2 cloud = parse(file);
     requireSound(cloud, size);
+    requireSameFields(parse_header(file), cloud);
   }
   catch (const io::FormatError& error) {
     require(*error.what() != '\0' && !error.remedy().empty(), "a refusal without a reason");

@@ -7,6 +7,8 @@
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
   using namespace pcl_bsh;
-  for (const auto parse : {io::parseColumns, io::parseObj, io::parseOff}) fuzz::readAny(data, size, parse);
+  fuzz::readAny(data, size, io::parseColumns, io::parseColumnNames);
+  fuzz::readAny(data, size, io::parseObj, io::parseObjHeader);
+  fuzz::readAny(data, size, io::parseOff, io::parseOffHeader);
   return 0;
 }

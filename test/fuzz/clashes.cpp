@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Any text as an earlier list of clashes: refused with a reason, or a list that runs can be compared with, and that
+// written out again is the same list.
+#include "refusal.h"
+
+#include <pcl_bsh/filters/io/clash_report.h>
+#include <pcl_bsh/filters/io/cloud_file_error.h>
+#include <pcl_bsh/filters/io/json_reader.h>
+
+namespace {
+
+using namespace pcl_bsh;
+
+/// As a run without a collision would list it: all of the earlier clashes are resolved.
+void requireSameAgain(const io::ClashList& list)
+{
+  const PointsView nothing;
+  const std::vector<Eigen::Isometry3d> poses;
+  const TrajectoryResult found;
+  io::ClashReport report{list.input, list.obstacle, list.clearance, 1.0,   {},        list.clashes,
+                         nothing,    nothing,       poses,          found, list.swept};
+  for (Clash& clash : report.clashes) clash.status = ClashStatus::resolved;
+  const io::ClashList again = io::parseClashes(io::clashJson(report), "again");
+  fuzz::require(again.clearance == list.clearance && again.swept == list.swept &&
+                    again.clashes.size() == list.clashes.size(),
+                "another list when read again");
+  for (std::size_t i = 0; i < list.clashes.size(); ++i) {
+    const Clash &before = list.clashes[i], &after = again.clashes[i];
+    fuzz::require(before.id == after.id && before.points == after.points && before.low == after.low &&
+                      before.high == after.high && before.distance == after.distance &&
+                      before.first_pose == after.first_pose && before.closest_pose == after.closest_pose,
+                  "another clash when read again");
+  }
+  fuzz::require(!io::clashCsv(report).empty() && !io::clashPage(report).empty(), "no page of it");
+}
+
+} // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+  try {
+    const io::ClashList list = io::parseClashes({reinterpret_cast<const char*>(data), size}, "fuzzed");
+    requireSameAgain(list);
+    std::vector<Clash> now = list.clashes;
+    for (Clash& clash : now) clash.id += '#';
+    compareWithEarlier(now, list.clashes, 1.0);
+    for (const Clash& clash : now) fuzz::require(!clash.id.empty(), "a clash without an id");
+  }
+  catch (const io::JsonError& error) {
+    fuzz::requireReason(error);
+  }
+  return 0;
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Any text as a scene: refused with a reason, or objects of clouds that the scene has, at finite poses.
+#include "refusal.h"
+
+#include <pcl_bsh/filters/io/cloud_file_error.h>
+#include <pcl_bsh/filters/io/json_reader.h>
+#include <pcl_bsh/filters/io/scene_file.h>
+
+#include <string>
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+  using namespace pcl_bsh;
+  try {
+    const io::SceneFile scene = io::parseScene(std::string(reinterpret_cast<const char*>(data), size), "fuzzed.json");
+    for (const io::ObjectEntry& object : scene.objects)
+      fuzz::require(object.pose.matrix().allFinite(), "a pose that is not finite");
+  }
+  catch (const io::JsonError& error) {
+    fuzz::requireReason(error);
+  }
+  catch (const io::CloudFileError& error) {
+    fuzz::requireReason(error);
+  }
+  return 0;
+}
