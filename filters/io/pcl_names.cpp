@@ -46,9 +46,11 @@ std::optional<std::size_t> placeOf(const Fields& fields, std::string_view name)
   return static_cast<std::size_t>(found - fields.begin());
 }
 
+/// In any case of letters, for so a reader would see it.
 bool has(const Fields& fields, std::string_view name)
 {
-  return std::any_of(fields.begin(), fields.end(), [&](const PointField& field) { return field.name == name; });
+  return std::any_of(fields.begin(), fields.end(),
+                     [&](const PointField& field) { return inSmallLetters(field.name) == name; });
 }
 
 /// Gives normals the names of that column of normal_names, if all three are there, alike, and the names are free.

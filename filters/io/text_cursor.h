@@ -21,6 +21,14 @@ inline char separatorOf(std::string_view line)
   return !blank && line.find('\t') != std::string_view::npos ? '\t' : ' ';
 }
 
+inline constexpr std::string_view utf8_mark = "\xef\xbb\xbf";
+
+/// Whether a text begins with the mark of UTF-16, in either byte order.
+inline bool isUtf16(std::string_view text)
+{
+  return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
+}
+
 /// Lines end with \n, \r\n or \r. Words are separated by blanks and tabs, unless separateBy() says otherwise. A mark of
 /// UTF-8 at the beginning is skipped.
 class TextCursor {
@@ -29,10 +37,8 @@ public:
   /// @throws FormatError when the text is marked as UTF-16
   explicit TextCursor(std::string_view text, char comment = 0) : text_(text), comment_(comment)
   {
-    if (text.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
-    if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
-      throw FormatError("is UTF-16 text", "save it as UTF-8");
-    }
+    if (text.starts_with(utf8_mark)) text_.remove_prefix(utf8_mark.size());
+    if (isUtf16(text)) throw FormatError("is UTF-16 text", "save it as UTF-8");
   }
 
   /// From now on exactly one such character separates words, and blanks around a word do not count; two in a row have

@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/io/pcl_names.h>
 #include <pcl_bsh/filters/io/records.h>
 #include <pcl_bsh/filters/io/text_clouds.h>
+#include <pcl_bsh/filters/io/text_cursor.h>
 
 #include <algorithm>
 #include <array>
@@ -91,7 +92,7 @@ void writeColumns(std::ostream& out, const pcl::PCLPointCloud2& cloud)
                         "write a .pcd instead");
     }
     if (looksLikeNumber(field.name) || field.name.find_first_of("#,;") != std::string::npos ||
-        field.name.starts_with("//")) {
+        field.name.starts_with("//") || field.name.starts_with(utf8_mark) || isUtf16(field.name)) {
       throw FormatError("field '" + field.name + "' cannot name a column", "rename the field");
     }
     out << (values.empty() ? "" : " ") << field.name;

@@ -5,10 +5,14 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
+  using namespace pcl_bsh;
   const auto parse = [](std::string_view file) {
-    pcl_bsh::io::Viewpoint viewpoint;
-    return pcl_bsh::io::parsePcd(file, viewpoint);
+    io::Viewpoint viewpoint;
+    return io::parsePcd(file, viewpoint);
   };
-  pcl_bsh::fuzz::readAny(data, size, parse, pcl_bsh::io::parsePcdHeader);
+  const auto write = [](std::ostream& out, const pcl::PCLPointCloud2& cloud) {
+    io::writePcd(out, cloud, io::no_viewpoint);
+  };
+  fuzz::readAny(data, size, parse, io::parsePcdHeader, write);
   return 0;
 }

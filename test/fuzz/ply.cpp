@@ -5,10 +5,14 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
+  using namespace pcl_bsh;
   const auto parse = [](std::string_view file) {
-    pcl_bsh::io::Viewpoint viewpoint;
-    return pcl_bsh::io::parsePly(file, viewpoint);
+    io::Viewpoint viewpoint;
+    return io::parsePly(file, viewpoint);
   };
-  pcl_bsh::fuzz::readAny(data, size, parse, pcl_bsh::io::parsePlyHeader);
+  const auto write = [](std::ostream& out, const pcl::PCLPointCloud2& cloud) {
+    io::writePly(out, cloud, io::no_viewpoint);
+  };
+  fuzz::readAny(data, size, parse, io::parsePlyHeader, write);
   return 0;
 }

@@ -4,11 +4,21 @@
 
 #include <pcl_bsh/filters/io/text_clouds.h>
 
+namespace {
+
+using namespace pcl_bsh;
+
+void writeNothing(std::ostream&, const pcl::PCLPointCloud2&)
+{
+  throw io::FormatError("OFF is read only");
+}
+
+} // namespace
+
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-  using namespace pcl_bsh;
-  fuzz::readAny(data, size, io::parseColumns, io::parseColumnNames);
-  fuzz::readAny(data, size, io::parseObj, io::parseObjHeader);
-  fuzz::readAny(data, size, io::parseOff, io::parseOffHeader);
+  fuzz::readAny(data, size, io::parseColumns, io::parseColumnNames, io::writeColumns);
+  fuzz::readAny(data, size, io::parseObj, io::parseObjHeader, io::writeObj);
+  fuzz::readAny(data, size, io::parseOff, io::parseOffHeader, writeNothing);
   return 0;
 }

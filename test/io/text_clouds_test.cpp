@@ -247,6 +247,10 @@ TEST(TextClouds, RefusesFieldsThatTextCannotHold)
   EXPECT_EQ(defectOf([&] { writeObj(out, cloud); }), "field 'column_4' has no place in an .obj");
   cloud.fields.back().name = "4";
   EXPECT_EQ(defectOf([&] { writeColumns(out, cloud); }), "field '4' cannot name a column");
+  cloud.fields.back().name = "\xef\xbb\xbf"
+                             "b"; // as a text's first name it would be a mark
+  EXPECT_EQ(defectOf([&] { writeColumns(out, cloud); }), "field '\xef\xbb\xbf"
+                                                         "b' cannot name a column");
 }
 
 TEST(TextClouds, HeaderNamesTheColumns)
