@@ -492,7 +492,8 @@ TEST_F(CollideAlong, Refuses)
   folder.write("odd.json", "{\"clashes\": [{\"id\": 7}]}");
   expectFailure(job + path + "--clashes {a.csv} --previous {odd.json}", 1, "odd.json: is no list of clashes: ");
   folder.write("cut.json", "{\"clashes\": [");
-  expectFailure(job + path + "--clashes {a.csv} --previous {cut.json}", 1, "cut.json: is no list of clashes: is no JSON");
+  expectFailure(job + path + "--clashes {a.csv} --previous {cut.json}", 1,
+                "cut.json: is no list of clashes: is no JSON");
   folder.write("distance.pcd", "FIELDS x y z distance\nSIZE 4 4 4 8\nTYPE F F F F\nPOINTS 1\nDATA ascii\n1 2 3 0.5\n");
   expectFailure("{distance.pcd} {probe.xyz} {out.ply} --clearance 1 " + path, 1, "field 'distance' exists already");
 }
