@@ -16,7 +16,9 @@ namespace pcl_bsh::io {
 /// is an empty cloud. @throws FormatError
 pcl::PCLPointCloud2 parseColumns(std::string_view file);
 
-/// Only the fields that parseColumns() makes. @throws FormatError
+/// Only the fields that parseColumns() makes. Rows are looked at where columns are named as a colour is: whether it is
+/// bytes.
+/// @throws FormatError
 pcl::PCLPointCloud2 parseColumnNames(std::string_view file);
 
 /// .obj: the `v` lines, with their colours; the `vn` lines where there is one for each vertex, and no face says
@@ -24,7 +26,7 @@ pcl::PCLPointCloud2 parseColumnNames(std::string_view file);
 /// FormatError
 pcl::PCLPointCloud2 parseObj(std::string_view file);
 
-/// Only the fields that parseObj() makes.
+/// Only the fields that parseObj() makes; looks for colours and normals in all of the file.
 pcl::PCLPointCloud2 parseObjHeader(std::string_view file);
 
 /// .off, with any of the prefixes that keep three coordinates (ST, C, N): the vertices, with their normals and colours.
