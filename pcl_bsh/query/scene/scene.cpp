@@ -353,7 +353,6 @@ SceneResult Scene::query()
 {
   const DefaultFloatEnvironment environment;
   try {
-    state_->followPoints();
     return state_->query();
   }
   catch (...) {
