@@ -52,8 +52,8 @@ double strayAllowed(const PathInterval& interval, const Point3& place)
   return interval.drift + interval.turn * (vectorOf(place) - vectorOf(interval.pivot)).norm();
 }
 
-/// Three poses and a place, of 21 numbers. For a difference of rotations the bound takes the Frobenius norm, the root of
-/// two times what it does to any place: what reaches the bound is the drift.
+/// Three poses and a place, of 21 numbers. For a difference of rotations the bound takes the Frobenius norm, the root
+/// of two times what it does to any place: what reaches the bound is the drift.
 double intervalFraction(const Numbers& n)
 {
   if (!isSane(n)) return 0.0;
