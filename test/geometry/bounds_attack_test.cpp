@@ -169,6 +169,10 @@ double frameFraction(const Numbers& n)
     for (std::size_t k = 0; k < 3; ++k) stored[side][k] = roundToFloat(at[side][k] - frames[side].origin[k]);
   }
   const RelativeFrame frame(frames[0], pose, frames[1], identity);
+  for (const float g : frame.g)
+    if (std::abs(g) > 0x1p-10f) return 0.0; // a large shift hides what products err by, and so does a large frame b
+  for (std::size_t k = 0; k < 3; ++k)
+    if (frames[1].reach[k] > 1.01 * frames[0].reach[0]) return 0.0;
   float m[9], g[3], x[3][8] = {};
   std::copy(frame.m.begin(), frame.m.end(), m);
   std::copy(frame.g.begin(), frame.g.end(), g);
@@ -206,7 +210,7 @@ TEST(BoundsAttack, RelativeFrames)
     n.insert(n.end(), {2.0 - 2.0 * (c + 2 * tilt), 2 * tilt, 2 * tilt});
     return n;
   };
-  const double reached = test::climbFromMany(start, frameFraction, 60, 400, random);
+  const double reached = test::climbFromMany(start, frameFraction, 60, 1000, random);
   report("relative frames", reached);
   EXPECT_GE(reached, 0.9);
 }

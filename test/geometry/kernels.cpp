@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "geometry/kernels.cpp"
+#define HWY_TARGET_INCLUDE "test/geometry/kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
