@@ -201,24 +201,24 @@ private:
     switch (operation) {
     case 0:
       did(cloud.buildAnew(random));
-      return changed(which);
+      return tellScenes(which, random);
     case 1:
     case 2:
     case 3:
     case 4:
       did(cloud.refit(random));
-      return changed(which);
+      return tellScenes(which, random);
     case 5:
     case 6:
     case 7:
     case 8:
       did(cloud.update(random));
-      return changed(which);
+      return tellScenes(which, random);
     case 9:
       return did(cloud.buildSome(random));
     case 10:
       did(cloud.moveObject(random));
-      return changed(which);
+      return tellScenes(which, random);
     case 11:
       cloud.pose = world_.pose(random);
       return did("another pose");
@@ -233,10 +233,11 @@ private:
     }
   }
 
-  /// Tells the scenes.
-  void changed(std::size_t which)
+  /// Some of them: they see by themselves what has changed.
+  void tellScenes(std::size_t which, Random& random)
   {
-    for (SharedScene& scene : scenes_) scene.pointsChanged(which);
+    for (SharedScene& scene : scenes_)
+      if (random.chance(0.2)) scene.pointsChanged(which);
   }
 
   void changeScene(Random& random)
@@ -253,9 +254,7 @@ private:
     const std::size_t which = scene.cloudOf(object);
     note(name + "deforms cloud " + std::to_string(which));
     note(clouds_[which].deform(random, [&](const PointsView& now, double) { return scene.deform(object, now); }));
-    // Objects of the same scene that share the cloud follow by themselves, other scenes have to be told.
-    for (std::size_t i = 0; i < scenes_.size(); ++i)
-      if (i != chosen) scenes_[i].pointsChanged(which);
+    tellScenes(which, random);
   }
 
   static void requireSound(const SphereHierarchy& hierarchy)
