@@ -3,6 +3,7 @@
 #include <pcl_bsh/query/scene/mover.h>
 #include <pcl_bsh/query/scene/sweep.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace pcl_bsh {
@@ -90,40 +91,34 @@ bool Mover::translate(const Eigen::Isometry3d& target, bool slide)
     if (length <= (straight ? 0.0 : negligible)) return straight;
     const bool last = length <= portion;
     const double room = last ? length : portion;
-    // A straight way meets only what is beside it. Once it has met something it may bend, and lead anywhere within
-    // what is left of it.
-    Box3 swept = body_.world_box;
-    if (straight) {
-      const Eigen::Vector3d part = left * (room / length);
-      swept.merge({swept.low + part, swept.high + part});
-    }
-    else {
-      swept.grow(room);
-    }
-    if (!collect(swept, room, portion == unlimited ? kFewPairs : kMostPairs)) {
+    const Eigen::Vector3d part = left * (room / length);
+    Box3 swept = body_.world_box; // what stands beside a bent way is collected where it bends
+    swept.merge({swept.low + part, swept.high + part});
+    const std::size_t most = portion == unlimited ? kFewPairs : kMostPairs;
+    if (!collect(swept, room, most)) {
       if (portion != unlimited && room <= 0.25 * tolerance_) return halt();
       portion = portion == unlimited ? first : 0.5 * room;
       continue;
     }
     if (outcome.stuck) return false;
-    const Walked walked = walk(left, room, straight && last ? &target : nullptr, !straight, planes);
+    const Walked walked = walk(left, room, straight && last ? &target : nullptr, slide, most, planes);
     if (walked == Walked::blocked || (walked == Walked::met && !slide)) return false;
     if (walked == Walked::free) {
       portion *= 2;
       continue;
     }
+    if (walked == Walked::met && portion == unlimited) return false; // gone, or too many bounces
     straight = false;
     ++contacts;
-    if (portion != unlimited) portion = first;
+    portion = first;
   }
   return false;
 }
 
 /// On from where points were collected, by `room` at most. @param left what is left of the way, shortened and bent by
-/// what is met @param target the pose at the end of the way @param bend whether points were collected for ways that
-/// bend; else this ends at the first contact
-Mover::Walked Mover::walk(Eigen::Vector3d& left, double room, const Eigen::Isometry3d* target, bool bend,
-                          Planes& planes)
+/// what is met @param target the pose at the end of the way
+Mover::Walked Mover::walk(Eigen::Vector3d& left, double room, const Eigen::Isometry3d* target, bool slide,
+                          std::size_t most, Planes& planes)
 {
   const Eigen::Isometry3d start = pose();
   const double negligible = 1e-6 * room;
@@ -146,7 +141,8 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, double room, const Eigen::Isome
     if (distance > 0.0) {
       Eigen::Isometry3d next = start;
       next.translation() += gone + moved;
-      if (!go(!met && last && target ? *target : next)) return Walked::blocked;
+      const bool arrives = bounce == 0 && !met && last && target != nullptr; // straight, without rounding
+      if (!go(arrives ? *target : next)) return Walked::blocked;
     }
     gone += moved;
     room -= distance;
@@ -155,7 +151,16 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, double room, const Eigen::Isome
     touch(*met);
     if (distance > tolerance_) planes.forget();
     left = planes.add((met->apart + gone).stableNormalized(), left);
-    if (!bend) return Walked::met;
+    if (!slide) return Walked::met;
+    if (bounce > 0) continue;
+    // Only what is beside the straight way has been collected. From here on the way may lead anywhere within what is
+    // left of the room. Pairs collected hold for that already; those of other objects are added.
+    const std::size_t known = encounters_.size();
+    Box3 swept = body_.world_box;
+    swept.grow(std::max(room, 0.0));
+    if (!collectMore(swept, std::max(room, 0.0), most)) return Walked::crowded;
+    if (outcome.stuck) return Walked::blocked;
+    for (std::size_t i = known; i < encounters_.size(); ++i) encounters_[i].apart -= gone;
   }
   return Walked::met;
 }
@@ -165,6 +170,13 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, double room, const Eigen::Isome
 bool Mover::collect(Box3 swept, double length, std::size_t most)
 {
   encounters_.clear();
+  collected_.clear();
+  return collectMore(swept, length, most);
+}
+
+/// Those of objects that have not been collected yet.
+bool Mover::collectMore(Box3 swept, double length, std::size_t most)
+{
   if (body_.box.empty()) return true;
   swept.grow(state_.rules.largestClearance() * (1.0 + 0x1p-40) + tolerance_);
   state_.grid.around(swept, around_);
@@ -172,6 +184,8 @@ bool Mover::collect(Box3 swept, double length, std::size_t most)
     if (other == object_) continue;
     const std::optional<double> clearance = state_.rules.clearanceOf(object_, other);
     if (!clearance || !swept.meets(state_.bodies[other].world_box)) continue;
+    if (std::find(collected_.begin(), collected_.end(), other) != collected_.end()) continue;
+    collected_.push_back(other);
     if (!collectFrom(other, *clearance, length, most)) return false;
     if (outcome.stuck) return true;
   }

@@ -42,11 +42,13 @@ private:
     Eigen::Vector3d apart;  ///< from the other's point to the mover's, at the pose they were collected at
   };
 
-  enum class Walked { free, met, blocked };
+  enum class Walked { free, met, crowded, blocked };
 
   bool follow(const Path& path, double begin, double end, double& done);
-  Walked walk(Eigen::Vector3d& left, double room, const Eigen::Isometry3d* target, bool bend, Planes& planes);
+  Walked walk(Eigen::Vector3d& left, double room, const Eigen::Isometry3d* target, bool slide, std::size_t most,
+              Planes& planes);
   bool collect(Box3 swept, double length, std::size_t most);
+  bool collectMore(Box3 swept, double length, std::size_t most);
   bool collectFrom(ObjectId other, double clearance, double length, std::size_t most);
   bool accept(const Eigen::Isometry3d& target);
   bool go(const Eigen::Isometry3d& target);
@@ -63,6 +65,7 @@ private:
   EffectCost& cost_;
   ObjectId crowded_ = 0; ///< whose points are too many to collect
   std::vector<ObjectId> around_;
+  std::vector<ObjectId> collected_; ///< whose points are among the encounters
   std::vector<Encounter> encounters_;
 };
 
