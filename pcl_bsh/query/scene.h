@@ -90,10 +90,10 @@ struct SceneOptions {
 /// Not to be used from several threads at once. All poses are T_world_object in double, rigid within 1e-6.
 ///
 /// Within a step an object's centre (of its bounding box) moves on a straight line while its rotation turns at constant
-/// speed, by any angle that its motion asks for, full turns included (motion.h: Leg). A response bends that way: a slide
-/// turns the object in place before it moves on, and goes along what it meets. With a response, objects move one after
-/// the other in the order of their ids, each among the others as they stand at that moment. A response never lets an
-/// object collide at any instant of its way (Outcome::legs): it halts at a distance in (clearance, clearance +
+/// speed, by any angle that its motion asks for, full turns included (motion.h: Leg). A response bends that way: a
+/// slide turns the object in place before it moves on, and goes along what it meets. With a response, objects move one
+/// after the other in the order of their ids, each among the others as they stand at that moment. A response never lets
+/// an object collide at any instant of its way (Outcome::legs): it halts at a distance in (clearance, clearance +
 /// tolerance] of what it meets, and each pose where it halts or turns off is checked exactly.
 ///
 /// Where ways matter (first_contact, swept, a response or gravity), a step or query throws std::invalid_argument before
