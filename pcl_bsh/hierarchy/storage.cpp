@@ -48,7 +48,7 @@ float radiusOf(const LocalFrame& f, float largest_radius)
 {
   const double ball = static_cast<double>(largest_radius) / f.unit;
   const double corner = std::hypot(f.reach[0] + f.slack(0), f.reach[1] + f.slack(1), f.reach[2] + f.slack(2));
-  voxel.radius = roundUp((corner + ball) * (1.0 + kDoubleMargin));
+  return roundUp((corner + ball) * (1.0 + kDoubleMargin));
 }
 
 std::uint64_t SphereHierarchy::Storage::nextRevision() noexcept
