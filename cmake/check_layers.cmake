@@ -5,7 +5,7 @@ cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
 # From the bottom up: a room may include itself and those before it.
-set(rooms pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/certify pcl_bsh/search filters filters/io
+set(rooms pcl_bsh/files pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/certify pcl_bsh/search filters filters/io
     filters/pipeline pcl_bsh/vtk examples examples/view)
 set(core pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/certify) # without PCL
 
@@ -14,7 +14,7 @@ set(allowed_pcl_bsh/vtk "^vtk")       # a room made for it, which only programs 
 set(allowed_examples/view "^vtk")     # and the program that shows things
 set(gpl "^(CGAL/|pcl_bsh/certify/)")  # only in pcl_bsh/certify, and in its program what that offers
 set(gpl_program "^examples/(pcl_bsh_certify\\.cpp|cli/certify_[a-z]+\\.h)$")
-set(never_in_core "^(pcl/|iostream$|fstream$)")
+set(never_in_core "^(pcl/|pcl_bsh/files/|iostream$|fstream$)")
 
 # The room of an included path, or empty when it is not one of ours.
 function(room_of path room_variable)

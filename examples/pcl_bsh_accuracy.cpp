@@ -6,12 +6,15 @@
 #include "cli/command_line.h"
 #include "cli/pose.h"
 #include "cli/step.h"
+#include "cli/used_files.h"
 
+#include <pcl_bsh/files/output_folder.h>
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/io/cloud_file.h>
 #include <pcl_bsh/filters/io/pose_file.h>
-#include <pcl_bsh/filters/io/replace_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <random>
@@ -23,7 +26,7 @@ using namespace pcl_bsh;
 constexpr auto program = "pcl_bsh_accuracy";
 constexpr auto footer =
     R"(Asks whether, where and how near the clouds are, at every setting of the dial: exact, float only, tolerance, level of
-detail, budgets. Writes accuracy.csv, accuracy.md and accuracy.png.
+detail, budgets. Writes accuracy.csv, accuracy.md and accuracy.png. A or B may be a pipe, or - for standard input.
 Exit code: 0 done; 1 failed; 2 command line not understood.
 
 Example: a robot in a hall, at ten poses about (1.5, 2, 0)
@@ -33,12 +36,15 @@ Example: a wagon on its way
 
 constexpr std::size_t most_poses = 20; // of a trajectory's; every setting is measured at each, several times
 
+constexpr std::array results = {"accuracy.csv", "accuracy.md", "accuracy.png"};
+
 struct Options {
   std::filesystem::path a, b, out, trajectory;
   double clearance = 0.0;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   unsigned poses = 1, repetitions = 5, threads = 1;
   bool peers = false;
+  cli::CommandFiles files;
 };
 
 std::optional<Options> parse(int argc, char** argv)
@@ -78,6 +84,8 @@ std::optional<Options> parse(int argc, char** argv)
   if (options.poses == 0) throw cli::UsageError("--poses: 0: give a number of poses, 1 or more");
   if (options.repetitions == 0) throw cli::UsageError("--repeat: 0: give a number, 1 or more");
   if (!pose.empty()) options.pose = cli::parsePose("--pose", pose);
+  options.files.reads("A", a).reads("B", b).reads("--trajectory", trajectory).readsPose("--pose", pose);
+  for (const char* name : results) options.files.writes("--out", options.out / name);
   return options;
 }
 
@@ -129,10 +137,11 @@ std::vector<Eigen::Isometry3d> posesOfFile(const std::filesystem::path& file)
 
 int study(const Options& options)
 {
+  options.files.requireApart();
   const std::vector<Eigen::Isometry3d> given =
       options.trajectory.empty() ? std::vector<Eigen::Isometry3d>() : posesOfFile(options.trajectory);
-  std::filesystem::create_directories(options.out);
-  for (const char* name : {"accuracy.csv", "accuracy.md", "accuracy.png"}) io::requireWritable(options.out / name);
+  const files::OutputFolder folder(options.out);
+  for (const char* name : results) files::requireWritable(options.out / name);
   const pcl::PCLPointCloud2 cloud_a = load(options.a), cloud_b = load(options.b);
   accuracy::Subject subject{viewOf(cloud_a), viewOf(cloud_b), options.clearance, {}, 0.0};
   const Box a(subject.a), b(subject.b);

@@ -5,8 +5,8 @@
 #include "cli/certify_report.h"
 #include "cli/step.h"
 
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/io/cloud_file.h>
-#include <pcl_bsh/filters/io/replace_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <iostream>
@@ -24,12 +24,8 @@ constexpr auto program = cli::certify_program;
 
 void check(const Options& options)
 {
-  if (!options.report) return;
-  if (fs::weakly_canonical(*options.report) == fs::weakly_canonical(options.cloud)) {
-    throw cli::UsageError("--report: " + options.report->string() +
-                          " is the cloud of this command: choose another name");
-  }
-  io::requireWritable(*options.report);
+  options.files.requireApart();
+  if (options.report) files::requireWritable(*options.report);
 }
 
 pcl::PCLPointCloud2 load(const fs::path& path)
@@ -94,8 +90,8 @@ int run(const Options& options)
     const SphereHierarchy hierarchy = build(view, fit, options, name);
     double seconds = 0.0;
     const Certificate certificate = certifyTold(hierarchy, options.certify, name, seconds);
-    if (report["fits"].empty()) cli::printTableHead(std::cout);
-    cli::printRows(std::cout, name, certificate);
+    if (report["fits"].empty()) cli::printTableHead(options.files.summary());
+    cli::printRows(options.files.summary(), name, certificate);
     if (!certificate.holds()) complain(options, name, certificate);
     holds = holds && certificate.holds();
 
@@ -107,9 +103,9 @@ int run(const Options& options)
   if (options.report) {
     // A file name need not be UTF-8, JSON must.
     const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
-    io::replaceFile(*options.report, [&](std::ostream& out) { out << text << '\n'; });
+    files::replaceFile(*options.report, [&](std::ostream& out) { out << text << '\n'; });
   }
-  std::cout << (holds ? "Certified: every point is in every sphere above it.\n" : "Not certified.\n");
+  options.files.summary() << (holds ? "Certified: every point is in every sphere above it.\n" : "Not certified.\n");
   return holds ? 0 : 1;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which points of a cloud collide with an obstacle, at a pose or along a path? From two files to a third, with reports.
 #include "cli/collide_options.h"
-#include "cli/interruption.h"
 #include "cli/program.h"
 #include "cli/report.h"
 #include "cli/step.h"
 
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/io/clash_report.h>
 #include <pcl_bsh/filters/io/cloud_file.h>
@@ -47,18 +47,6 @@ void requireAccepted(const char* option, const Ask& ask)
   }
 }
 
-/// A report must not be written over what this command reads or writes.
-void requireOwnFile(const char* option, const fs::path& path, const Options& options)
-{
-  const auto same = [&](const fs::path& used) { return fs::weakly_canonical(path) == fs::weakly_canonical(used); };
-  const std::vector<fs::path> used = options.files();
-  if (std::count_if(used.begin(), used.end(), same) > 1) {
-    throw UsageError(std::string(option) + ": " + path.string() +
-                     " is another file of this command: choose another name");
-  }
-  io::requireWritable(path);
-}
-
 void requireClashFormat(const fs::path& list)
 {
   try {
@@ -72,6 +60,7 @@ void requireClashFormat(const fs::path& list)
 /// Everything that can be known to fail is known before the first cloud is loaded.
 void check(const Options& options)
 {
+  options.files.requireApart();
   requireAccepted("--clearance",
                   [&](const SphereHierarchy& nothing) { anyCollision({nothing}, {nothing}, options.request); });
   requireAccepted("--pose", [&](const SphereHierarchy& nothing) {
@@ -93,15 +82,10 @@ void check(const Options& options)
     });
   }
   io::requireWritableCloud(options.output);
-  if (options.report) requireOwnFile("--report", *options.report, options);
+  if (options.report) files::requireWritable(*options.report);
   for (const fs::path& list : options.clashes) {
     requireClashFormat(list);
-    if (!(options.previous && fs::weakly_canonical(list) == fs::weakly_canonical(*options.previous))) {
-      requireOwnFile("--clashes", list, options);
-    }
-    else {
-      io::requireWritable(list); // the list is brought up to date
-    }
+    files::requireWritable(list);
   }
 }
 
@@ -213,24 +197,25 @@ std::string distanceText(const cli::CollisionReport& report)
 void summarise(const Options& options, const cli::CollisionReport& report, const std::vector<Clash>& clashes)
 {
   for (const std::string& warning : report.warnings) std::cerr << program << ": warning: " << warning << '\n';
-  std::cout << report.colliding << " of " << report.input.points << " points collide";
-  if (report.accuracy.stopsEarly()) std::cout << ", " << report.undecided << " are undecided";
+  std::ostream& out = options.files.summary();
+  out << report.colliding << " of " << report.input.points << " points collide";
+  if (report.accuracy.stopsEarly()) out << ", " << report.undecided << " are undecided";
   if (report.closest.pair) {
-    std::cout << "; smallest distance " << distanceText(report) << ", between point " << report.closest.pair->a
-              << " of the input and point " << report.closest.pair->b << " of the obstacle";
+    out << "; smallest distance " << distanceText(report) << ", between point " << report.closest.pair->a
+        << " of the input and point " << report.closest.pair->b << " of the obstacle";
   }
-  if (report.path) std::cout << "; " << report.path->poses << " poses";
+  if (report.path) out << "; " << report.path->poses << " poses";
   if (report.path && report.path->first_contact) {
-    std::cout << "; first contact at pose "
-              << static_cast<double>(report.path->first_contact->pose) + report.path->first_contact->fraction;
+    out << "; first contact at pose "
+        << static_cast<double>(report.path->first_contact->pose) + report.path->first_contact->fraction;
   }
   if (!options.clashes.empty()) {
     const auto resolved = std::count_if(clashes.begin(), clashes.end(),
                                         [](const Clash& clash) { return clash.status == ClashStatus::resolved; });
-    std::cout << "; " << clashes.size() - static_cast<std::size_t>(resolved) << " clashes";
-    if (options.previous) std::cout << ", " << resolved << " resolved";
+    out << "; " << clashes.size() - static_cast<std::size_t>(resolved) << " clashes";
+    if (options.previous) out << ", " << resolved << " resolved";
   }
-  std::cout << "; wrote " << options.output.string() << '\n';
+  out << "; wrote " << options.output.string() << '\n';
 }
 
 /// At one pose, without a list of clashes: flags, and the smallest distance however large.
@@ -381,7 +366,6 @@ int collide(const Options& options)
 
 int main(int argc, char** argv)
 {
-  cli::stopCleanlyWhenTold(program);
   return cli::runProgram(program, [&] {
     const std::optional<Options> options = cli::parseCollideOptions(argc, argv);
     return options ? collide(*options) : 0;

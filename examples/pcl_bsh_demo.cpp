@@ -2,6 +2,7 @@
 // A man walks through a scanned building: what does he touch, how close is the rest, and what does it cost to know?
 #include "cli/program.h"
 #include "cli/step.h"
+#include "cli/used_files.h"
 
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/io/cloud_file.h>
@@ -152,6 +153,12 @@ int main(int argc, char** argv)
 {
   return cli::runProgram(program, [&] {
     if (argc != 4) throw cli::UsageError("command line: three files are needed: give building.ply man.off OUTPUT.pcd");
+    cli::CommandFiles()
+        .reads("building.ply", argv[1])
+        .reads("man.off", argv[2])
+        .writesFile("OUTPUT.pcd", argv[3])
+        .requireApart();
+    io::requireWritableCloud(argv[3]);
     return demonstrate(argv[1], argv[2], argv[3]);
   });
 }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // CollisionFilter in a chain of PCL filters: thins a scan, then removes what touches an obstacle given in its frame.
+#include "cli/command_line.h"
+#include "cli/used_files.h"
+
 #include <pcl_bsh/filters/collision_filter.h>
 #include <pcl_bsh/filters/io/cloud_file.h>
 
-#include <CLI/CLI.hpp>
 #include <pcl/filters/voxel_grid.h>
 
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -16,6 +17,8 @@
 namespace {
 
 using Cloud = pcl::PCLPointCloud2;
+
+constexpr auto program = "pcl_bsh_filter_chain";
 
 Cloud::Ptr read(const std::string& path)
 {
@@ -68,20 +71,16 @@ int main(int argc, char** argv)
   app.add_option("OUTPUT", output, ".pcd or .ply")->required();
   app.add_option("LEAF", leaf, "Edge of VoxelGrid's cells, in the clouds' unit")->required();
   app.add_option("CLEARANCE", clearance, "Points no farther than this from OBSTACLE are removed")->required();
-  try {
-    app.parse(argc, argv);
-  }
-  catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-
-  try {
+  return pcl_bsh::cli::runProgram(program, [&] {
+    if (!pcl_bsh::cli::understood(app, program, argc, argv)) return 0;
+    pcl_bsh::cli::CommandFiles()
+        .reads("SCAN", scan)
+        .reads("OBSTACLE", obstacle)
+        .writesFile("OUTPUT", output)
+        .requireApart();
     pcl_bsh::io::requireWritableCloud(output);
     const Cloud::Ptr thin = thinned(read(scan), leaf);
     pcl_bsh::io::writeCloud(output, withoutCollisions(thin, read(obstacle), clearance));
-  }
-  catch (const std::exception& error) {
-    std::fprintf(stderr, "pcl_bsh_filter_chain: %s\n", error.what());
-    return 1;
-  }
+    return 0;
+  });
 }

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs a scene file: many objects in motion, and only the effects it lists.
+#include "cli/cloud_names.h"
 #include "cli/command_line.h"
 #include "cli/scene_explain.h"
 #include "cli/scene_report.h"
 #include "cli/step.h"
+#include "cli/used_files.h"
 
+#include <pcl_bsh/files/output_folder.h>
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/io/cloud_file.h>
-#include <pcl_bsh/filters/io/replace_file.h>
 #include <pcl_bsh/filters/io/scene_file.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <fstream>
-#include <locale>
 #include <iostream>
 #include <limits>
 
@@ -76,69 +77,53 @@ private:
 /// Files of a run; each appears under its own name only when it is complete.
 class RunFiles {
 public:
-  explicit RunFiles(const fs::path& folder) : folder_(folder)
+  explicit RunFiles(const fs::path& folder)
+  : folder_(folder),
+    csv_(folder / "steps.csv"),
+    json_(folder / "steps.jsonl"),
+    summary_(folder / "summary.json")
   {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw io::CloudFileError(folder, "cannot be made: " + error.message(), "name a folder that can");
-    for (std::ofstream* file : {&csv_, &json_}) file->imbue(std::locale::classic());
-    csv_.open(part("steps.csv"));
-    json_.open(part("steps.jsonl"));
-    if (!csv_ || !json_) throw io::CloudFileError(folder, "cannot be written to", "check its permissions");
   }
 
-  ~RunFiles()
-  {
-    std::error_code ignored;
-    fs::remove(part("steps.csv"), ignored);
-    fs::remove(part("steps.jsonl"), ignored);
-  }
-  RunFiles(const RunFiles&) = delete;
-  RunFiles& operator=(const RunFiles&) = delete;
-
-  std::ostream& csv() { return csv_; }
-  std::ostream& json() { return json_; }
+  std::ostream& csv() { return csv_.stream(); }
+  std::ostream& json() { return json_.stream(); }
 
   void finish(const nlohmann::ordered_json& summary)
   {
-    for (std::ofstream* file : {&csv_, &json_}) {
-      file->close();
-      if (!*file) throw io::CloudFileError(folder_, "could not be written to the end", "is the disk full?");
-    }
-    for (const char* name : {"steps.csv", "steps.jsonl"}) fs::rename(part(name), folder_ / name);
-    io::replaceFile(folder_ / "summary.json", [&](std::ostream& out) {
-      out << summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
-    });
+    summary_.stream() << summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    for (files::FileReplacement* file : {&csv_, &json_, &summary_}) file->commit();
   }
 
 private:
-  fs::path part(const char* name) const { return folder_ / (std::string(name) + ".part"); }
-
-  fs::path folder_;
-  std::ofstream csv_, json_;
+  files::OutputFolder folder_;
+  files::FileReplacement csv_, json_, summary_;
 };
 
-/// A name that can stand in a file's.
-std::string fileName(std::string text)
-{
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) == 0 && c != '-'; }, '_');
-  return text;
-}
-
-void writeClouds(const io::SceneFile& file, io::SceneWorld& world, const SceneResult& result, const fs::path& folder,
-                 std::size_t step)
+void writeClouds(const io::SceneFile& file, const cli::CloudNames& names, io::SceneWorld& world,
+                 const SceneResult& result, const fs::path& folder, std::size_t step)
 {
   const auto& parts = file.options.effects.flags ? result.flags : result.swept;
   for (const FlaggedPart& part : parts) {
     const io::PartEntry& entry = file.objects[part.object].parts[part.part];
-    char number[16];
-    std::snprintf(number, sizeof number, "%06zu", step);
-    const std::string name = fileName(file.objects[part.object].name) +
-                             (file.objects[part.object].parts.size() > 1 ? "_" + fileName(entry.name) : "") + "_" +
-                             number + ".pcd";
-    io::writeCloud(folder / name, withField(world.cloud(entry.cloud), collision_field_name, part.flags));
+    io::writeCloud(folder / names.of(part.object, part.part, step),
+                   withField(world.cloud(entry.cloud), collision_field_name, part.flags));
   }
+}
+
+/// Everything that can be known to fail is known before the first cloud is loaded.
+void check(const io::SceneFile& file, const cli::CloudNames& names, const Options& options)
+{
+  cli::CommandFiles used;
+  used.reads("SCENE", options.scene);
+  for (const io::CloudSource& cloud : file.clouds) used.reads("cloud '" + cloud.name + "'", cloud.file);
+  if (!options.out.empty()) {
+    for (const char* name : {"steps.csv", "steps.jsonl", "summary.json"}) used.writes("--out", options.out / name);
+    if (file.cloud_output != io::CloudOutput::none) {
+      for (const io::CloudSource& cloud : file.clouds)
+        if (names.mayBe(cloud.file.filename().string())) used.writes("--out", options.out / cloud.file.filename());
+    }
+  }
+  used.requireApart();
 }
 
 nlohmann::ordered_json summaryOf(const io::SceneFile& file, const cli::SceneTotals& totals, std::size_t points,
@@ -194,6 +179,8 @@ int runScene(const Options& options)
   if (options.validate) std::cout << options.scene.string() << ": is sound: " << file.objects.size() << " objects\n";
   if (options.explain || options.validate) return 0;
 
+  const cli::CloudNames names(file);
+  check(file, names, options);
   std::optional<RunFiles> files;
   if (!options.out.empty()) files.emplace(options.out);
   auto start = Clock::now();
@@ -221,7 +208,7 @@ int runScene(const Options& options)
                   << '\n';
     if (file.cloud_output == io::CloudOutput::every ||
         (file.cloud_output == io::CloudOutput::last && step == file.steps))
-      writeClouds(file, world, result, options.out, step);
+      writeClouds(file, names, world, result, options.out, step);
   }
   if (files) files->finish(summaryOf(file, totals, world.points(), load_seconds));
   printSummary(file, totals);

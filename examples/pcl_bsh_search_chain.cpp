@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // BoundingSphereSearch in a chain of PCL algorithms: aligns a scan with another (ICP), estimates its normals, and parts
 // it into clusters.
+#include "cli/command_line.h"
+#include "cli/used_files.h"
+
 #include <pcl_bsh/filters/io/cloud_file.h>
 #include <pcl_bsh/search/bounding_sphere_search.h>
 
-#include <CLI/CLI.hpp>
 #include <pcl/common/point_tests.h>
 #include <pcl/conversions.h>
 #include <pcl/features/normal_3d.h>
@@ -14,7 +16,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -26,6 +27,8 @@ namespace {
 using Point = pcl::PointXYZ;
 using Cloud = pcl::PointCloud<Point>;
 using Search = pcl_bsh::search::BoundingSphereSearch<Point>;
+
+constexpr auto program = "pcl_bsh_search_chain";
 
 /// The finite points of a file: ICP and clustering expect no others.
 Cloud::Ptr read(const std::string& path)
@@ -104,21 +107,13 @@ int main(int argc, char** argv)
       ->check(CLI::Range(3, 1000))
       ->capture_default_str();
   app.add_option("--iterations", iterations, "Of ICP, at most")->check(CLI::Range(1, 1000))->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  }
-  catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-
-  try {
+  return pcl_bsh::cli::runProgram(program, [&] {
+    if (!pcl_bsh::cli::understood(app, program, argc, argv)) return 0;
+    pcl_bsh::cli::CommandFiles().reads("SCAN", scan).reads("REFERENCE", reference).requireApart();
     const Cloud::Ptr cloud = aligned(read(scan), read(reference), iterations);
     const auto search = std::make_shared<Search>();
     reportNormals(cloud, search, neighbours);
     reportClusters(cloud, search, tolerance);
-  }
-  catch (const std::exception& error) {
-    std::fprintf(stderr, "pcl_bsh_search_chain: %s\n", error.what());
-    return 1;
-  }
+    return 0;
+  });
 }

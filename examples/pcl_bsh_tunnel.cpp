@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Makes a question along a path to try the tools on: a tunnel, a wagon, and the wagon's poses on its way through.
 #include "cli/command_line.h"
-#include "cli/interruption.h"
 #include "cli/step.h"
 #include "tunnel/tunnel.h"
 
+#include <pcl_bsh/files/output_folder.h>
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/io/cloud_file.h>
 #include <pcl_bsh/filters/io/pose_file.h>
 #include <pcl_bsh/filters/io/records.h>
@@ -42,8 +43,8 @@ void write(const fs::path& path, const std::vector<Eigen::Vector3f>& points)
 int makeTunnel(const fs::path& folder, double scale)
 {
   const tunnel::Size size = tunnel::Size::atScale(scale);
-  fs::create_directories(folder);
-  io::requireWritableCloud(folder / "scan.ply");
+  const files::OutputFolder made(folder);
+  for (const char* name : {"scan.ply", "wagon.ply", "poses.txt"}) files::requireWritable(folder / name);
 
   cli::Step step("Making tunnel and wagon");
   const tunnel::Passage run = tunnel::makePassage(size);
@@ -60,7 +61,6 @@ int makeTunnel(const fs::path& folder, double scale)
 
 int main(int argc, char** argv)
 {
-  cli::stopCleanlyWhenTold(program);
   return cli::runProgram(program, [&] {
     std::string folder;
     double scale = 0.1;

@@ -6,8 +6,10 @@
 #include "view/viewer.h"
 #include "view/world.h"
 
-#include <pcl_bsh/filters/io/replace_file.h>
+#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/filters/io/scene_file.h>
 #include <pcl_bsh/vtk/display.h>
+#include <pcl_bsh/vtk/write_data.h>
 
 namespace {
 
@@ -16,8 +18,13 @@ using namespace pcl_bsh;
 /// What can be known to fail is known before the first cloud is loaded.
 void check(const view::Options& options)
 {
-  if (options.screenshot) io::requireWritable(*options.screenshot);
-  if (options.export_to) io::requireWritable(*options.export_to);
+  cli::CommandFiles files = options.files;
+  if (options.scene) {
+    for (const io::CloudSource& cloud : io::readSceneFile(*options.scene).clouds) files.reads("--scene", cloud.file);
+  }
+  files.requireApart();
+  if (options.screenshot) files::requireWritable(*options.screenshot);
+  if (options.export_to) vtk::requireWritableData(*options.export_to);
   if (!options.screenshot && !options.export_to && !pcl_bsh::vtk::haveDisplay())
     throw std::runtime_error("DISPLAY: no X server answers there, so no window can open: set DISPLAY, or give "
                              "--screenshot FILE.png, which needs none");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.h"
 
-#include <pcl_bsh/filters/io/replace_file.h>
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/vtk/chart.h>
 
 #include <algorithm>
@@ -216,8 +216,8 @@ std::string advice(const Subject& subject, const Study& study)
 void writeReports(const std::filesystem::path& folder, const std::string& heading, const Subject& subject,
                   const Study& study)
 {
-  io::replaceFile(folder / "accuracy.csv", [&](std::ostream& out) { writeCsv(out, study); });
-  io::replaceFile(folder / "accuracy.md", [&](std::ostream& out) { writeMarkdown(out, heading, subject, study); });
+  files::replaceFile(folder / "accuracy.csv", [&](std::ostream& out) { writeCsv(out, study); });
+  files::replaceFile(folder / "accuracy.md", [&](std::ostream& out) { writeMarkdown(out, heading, subject, study); });
   vtk::writeChartsPng({chartOf(study, "distance", "Smallest distance: error against time",
                                "error [the clouds' unit]; bottom line: 0", 1.0),
                        chartOf(study, "flags", "Flags: undecided (certified) and wrong (actual) points against time",

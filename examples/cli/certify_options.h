@@ -3,6 +3,7 @@
 #pragma once
 
 #include "command_line.h"
+#include "used_files.h"
 
 #include <pcl_bsh/certify/certify.h>
 #include <pcl_bsh/filters/io/field_type.h>
@@ -24,13 +25,15 @@ inline const std::vector<std::pair<std::string, SphereFit>> fits = {
 struct CertifyProgramOptions {
   std::filesystem::path cloud;
   std::optional<std::filesystem::path> report;
+  CommandFiles files;
   std::vector<std::pair<std::string, SphereFit>> wanted = fits;
   CertifyOptions certify;
 };
 
 inline constexpr auto certify_footer =
     R"(Every sphere is checked against every point below it in exact arithmetic. Its radius is compared with that of the
-smallest sphere around the same points, also exact, as CGAL finds it. Reads .pcd .ply .obj .off .xyz .txt.
+smallest sphere around the same points, also exact, as CGAL finds it. Reads .pcd .ply .obj .off .xyz .txt, pipes, and
+standard input as -; --report - is standard output.
 Exit code: 0 all points are in their spheres; 1 some are not, or failed; 2 command line not understood.
 This program is under the GPL-3.0-or-later, for it contains CGAL's Bounding_volumes.
 
@@ -76,6 +79,7 @@ inline std::optional<CertifyProgramOptions> parseCertifyOptions(int argc, char**
 
   CertifyProgramOptions options;
   options.cloud = cloud;
+  options.files.reads("CLOUD", cloud).writes("--report", report);
   if (!report.empty()) options.report = report;
   if (!fit.empty()) options.wanted = parseFit(fit);
   if (sample == "all")

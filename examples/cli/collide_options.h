@@ -4,6 +4,7 @@
 
 #include "command_line.h"
 #include "path.h"
+#include "used_files.h"
 
 #include <pcl_bsh/filters/io/field_type.h>
 #include <pcl_bsh/query/trajectory.h>
@@ -38,21 +39,13 @@ struct CollideOptions {
 
   bool moves() const { return !trajectory.empty() || !path.empty(); }
 
-  /// Every file that is read or written.
-  std::vector<std::filesystem::path> files() const
-  {
-    std::vector<std::filesystem::path> all = {input, obstacle, output};
-    if (!trajectory.empty()) all.push_back(trajectory);
-    if (report) all.push_back(*report);
-    if (previous) all.push_back(*previous);
-    all.insert(all.end(), clashes.begin(), clashes.end());
-    return all;
-  }
+  CommandFiles files; ///< all that are read or written
 };
 
 inline constexpr auto collide_footer =
     R"(Point p of INPUT and q of OBSTACLE collide iff |p - POSE q| <= D, decided exactly, or as --accuracy says.
-Reads .pcd .ply .obj .off .xyz .txt, writes all of these but .off.
+Reads .pcd .ply .obj .off .xyz .txt, writes all of these but .off. Files may be pipes; - is standard input (PCD, PLY,
+OFF or columns), as OUTPUT standard output (PCD), as --report, too.
 Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example: which points of a hall are within 5 cm of a robot at (1.5, 2, 0), turned by 90 degrees?
@@ -95,14 +88,13 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   std::string input, obstacle, output, clearance, pose, report, cluster_distance, previous;
   std::string keep = "flagged", threads = "0", accuracy = "exact";
   std::vector<std::string> clashes;
+  bool in_place = false;
   PathOptions path;
   CLI::App app("Flags, keeps or removes the points of a cloud that collide with an obstacle.", collide_program);
   app.footer(collide_footer);
   app.add_option("INPUT", input, "cloud whose points are asked about")->type_name("")->required();
   app.add_option("OBSTACLE", obstacle, "cloud to collide with")->type_name("")->required();
-  app.add_option("OUTPUT", output, "INPUT's points with all their fields; may be INPUT itself")
-      ->type_name("")
-      ->required();
+  app.add_option("OUTPUT", output, "INPUT's points with all their fields")->type_name("")->required();
   app.add_option("--clearance", clearance, "greatest distance that counts as collision, in the clouds' unit")
       ->type_name("D")
       ->required();
@@ -124,6 +116,7 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
                  "there. What is then not known is undecided: 2 in the field 'collision';\n"
                  "along a path, level, pairs and time tell no distances and no poses")
       ->type_name("HOW");
+  app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--threads", threads, "0: all of the machine's (default); any number gives the same result")
       ->type_name("N");
   app.add_option("--report", report, "JSON file for what was found and what it cost")->type_name("FILE");
@@ -170,6 +163,11 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
     }
   }
   if (!previous.empty()) options.previous = previous;
+  options.files.reads("INPUT", input).reads("OBSTACLE", obstacle).readsPose("--pose", pose);
+  options.files.reads("--trajectory", path.file).readsPose("--from", path.from).readsPose("--to", path.to);
+  options.files.reads("--previous", previous).writes("OUTPUT", output, in_place ? "INPUT" : "");
+  options.files.writes("--report", report);
+  for (const std::string& list : clashes) options.files.writes("--clashes", list, "--previous"); // brought up to date
   if (options.request.accuracy.stopsEarly() && !clashes.empty())
     throw UsageError("--accuracy: " + accuracy + ": clashes need distances: give exact, float or tolerance=LENGTH");
   if (!options.request.accuracy.isExact() && options.swept)

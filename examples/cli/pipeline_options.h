@@ -68,11 +68,12 @@ inline std::optional<PipelineOptions> parsePipelineOptions(int argc, char** argv
   bool validate = false, schema = false, stages = false;
   CLI::App app("Runs a pipeline of point cloud filters, read from a file.", pipeline_program);
   app.footer(pipeline_footer);
-  app.add_option("PIPELINE.json", document, "the pipeline")->type_name("");
+  app.add_option("PIPELINE.json", document, "the pipeline; - is standard input")->type_name("");
   app.add_flag("--validate", validate, "only check it: options, files, and the fields their headers name");
   app.add_option("--stage.TAG.OPTION", "VALUE instead of what the pipeline says; write it with =, as often as needed")
       ->type_name("VALUE");
-  app.add_option("--metadata", metadata, "JSON file for what ran and what it took; itself a pipeline, to run it again")
+  app.add_option("--metadata", metadata,
+                 "JSON file for what ran and what it took; itself a pipeline, to run it again;\n- is standard output")
       ->type_name("FILE");
   app.add_option("--threads", options.threads, "stages at a time; 0: as many as the machine has threads (default)")
       ->type_name("N");

@@ -5,7 +5,7 @@
 #include "pipeline_options.h"
 #include "step.h"
 
-#include <pcl_bsh/filters/io/replace_file.h>
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/pipeline/pipeline.h>
 
 #include <iostream>
@@ -23,7 +23,10 @@ inline void tellProgress(const StageProgress& stage)
 
 inline void runPipeline(const char* program, Pipeline& pipeline, const PipelineOptions& options)
 {
-  if (!options.metadata.empty()) io::requireWritable(options.metadata);
+  if (!options.metadata.empty()) {
+    pipeline.reserve("--metadata", options.metadata);
+    files::requireWritable(options.metadata);
+  }
   std::size_t stages = 0;
   pipeline.setProgress([&](const StageProgress& stage) {
     stages = stage.stages;
@@ -37,7 +40,7 @@ inline void runPipeline(const char* program, Pipeline& pipeline, const PipelineO
 
   for (const std::string& warning : result.warnings) std::cerr << program << ": warning: " << warning << '\n';
   if (options.metadata.empty()) return;
-  io::replaceFile(options.metadata, [&](std::ostream& out) { out << result.metadata; });
+  files::replaceFile(options.metadata, [&](std::ostream& out) { out << result.metadata; });
 }
 
 } // namespace pcl_bsh::cli

@@ -2,6 +2,9 @@
 // How every program ends: with what it did, or with one line that says what is wrong and what to do.
 #pragma once
 
+#include "interruption.h"
+
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -15,12 +18,26 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// Runs `body` and returns the exit code: what it returns; 1 when it fails; 2 for a UsageError.
+/// What was said may be what the user wants: a full disk must not pass for success.
+inline void requireAllSaid()
+{
+  std::cout.flush();
+  const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout;
+  if (failed)
+    throw std::runtime_error("standard output: cannot be written: choose a disk with room, or a reader that stays");
+}
+
+/// Runs `body` as a whole program, which stops cleanly when told to, and returns the exit code: what it returns; 1 when
+/// it fails; 2 for a UsageError.
 template <typename Body>
 int runProgram(const char* name, Body&& body)
 {
+  openStandardStreams();
+  stopCleanlyWhenTold(name);
   try {
-    return body();
+    const int code = body();
+    requireAllSaid();
+    return code;
   }
   catch (const UsageError& error) {
     std::cerr << name << ": " << error.what() << '\n';

@@ -2,7 +2,7 @@
 // What a comparison of two clouds found and cost, for people and for programs.
 #pragma once
 
-#include <pcl_bsh/filters/io/replace_file.h>
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/query/spacing.h>
 #include <pcl_bsh/query/trajectory.h>
 
@@ -149,7 +149,7 @@ inline void writeReport(const std::filesystem::path& path, const CollisionReport
   using Json = nlohmann::ordered_json;
   // A file name need not be UTF-8, JSON must.
   const std::string text = toJson(report).dump(2, ' ', false, Json::error_handler_t::replace);
-  io::replaceFile(path, [&](std::ostream& out) { out << text << '\n'; });
+  files::replaceFile(path, [&](std::ostream& out) { out << text << '\n'; });
 }
 
 } // namespace pcl_bsh::cli

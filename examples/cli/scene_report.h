@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <ostream>
@@ -56,6 +58,13 @@ inline std::size_t flaggedPoints(const std::vector<FlaggedPart>& parts)
   return count;
 }
 
+/// A number as text that reads as the same number, with no more digits than that takes.
+inline std::string shortest(double number)
+{
+  std::array<char, 32> digits;
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr};
+}
+
 /// Counts of a step: a row of the CSV. Columns of effects that are not listed are left out.
 class SceneTable {
 public:
@@ -81,9 +90,11 @@ public:
     out << '\n';
   }
 
+  /// Numbers are written to the last digit: times must not repeat, and distances are exact.
   void writeRow(std::ostream& out, std::size_t step, const SceneResult& result) const
   {
-    out << step << ',' << result.time << ',' << result.broad_phase.moved << ',' << result.broad_phase.candidates;
+    out << step << ',' << shortest(result.time) << ',' << result.broad_phase.moved << ','
+        << result.broad_phase.candidates;
     for (std::size_t e = 0; e < kEffects; ++e) {
       const auto effect = static_cast<Effect>(e);
       if (!effects_.has(effect)) continue;
@@ -99,7 +110,7 @@ public:
       if (effect == Effect::swept) out << ',' << flaggedPoints(result.swept);
       if (effect == Effect::self) out << ',' << result.self.size();
       const EffectCost& cost = result.cost(effect);
-      out << ',' << cost.pairs << ',' << cost.reused << ',' << cost.work.node_pairs << ',' << cost.seconds;
+      out << ',' << cost.pairs << ',' << cost.reused << ',' << cost.work.node_pairs << ',' << shortest(cost.seconds);
     }
     if (moves()) {
       std::size_t touched = 0, stuck = 0, grounded = 0;
@@ -111,7 +122,7 @@ public:
         travelled += outcome.travelled;
         wanted += outcome.wanted;
       }
-      out << ',' << touched << ',' << stuck << ',' << grounded << ',' << travelled << ',' << wanted;
+      out << ',' << touched << ',' << stuck << ',' << grounded << ',' << shortest(travelled) << ',' << shortest(wanted);
     }
     out << '\n';
   }
@@ -127,7 +138,7 @@ private:
     if (items.empty()) return;
     double smallest = items.front().*value;
     for (const Item& item : items) smallest = std::min(smallest, item.*value);
-    out << smallest;
+    out << shortest(smallest);
   }
 
   const Effects& effects_;

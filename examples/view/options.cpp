@@ -17,7 +17,7 @@ they are drawn larger and in orange, all others dimmed. A cloud that holds the f
 distance or first_pose shows these as they are.
 A scene's objects are drawn where they are at a step, responses included: what is fixed in grey, what moves in
 blue, and what is within the scene's clearance, or D, in orange and yellow.
-Reads .pcd .ply .obj .off .xyz .txt. Without --screenshot and --export a window opens: h shows its keys.
+Reads .pcd .ply .obj .off .xyz .txt, pipes, and standard input as -. Without --screenshot and --export a window opens: h shows its keys.
 Exit code: 0 done; 1 failed; 2 command line not understood.
 
 Examples:
@@ -191,6 +191,9 @@ std::optional<Options> parseOptions(int argc, char** argv)
   if (!level.empty()) options.level = cli::parseOption<unsigned>("--level", level, "give 0 or more");
   options.step = cli::parseOption<unsigned>("--step", step, "give the number of a pose or step, from 0");
   options.threads = cli::parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
+  for (const std::string& cloud : clouds) options.files.reads("CLOUD", cloud);
+  options.files.reads("--scene", scene).reads("--model", model).reads("--trajectory", trajectory);
+  options.files.readsPose("--pose", pose).writes("--screenshot", screenshot).writes("--export", export_to);
   parseSize(size, options);
   options.camera = parseCamera(camera);
   options.scene ? checkScene(options) : checkClouds(options);

@@ -2,6 +2,8 @@
 // The command line of pcl_bsh_view.
 #pragma once
 
+#include "cli/used_files.h"
+
 #include <Eigen/Geometry>
 
 #include <array>
@@ -41,6 +43,7 @@ struct Options {
   Camera camera;
   std::optional<std::filesystem::path> export_to;
   unsigned threads = 0;
+  cli::CommandFiles files; ///< but for a scene's clouds
 };
 
 /// The options, checked one by one; none when only help was asked for. @throws cli::UsageError

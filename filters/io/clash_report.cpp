@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/io/clash_report.h>
 #include <pcl_bsh/filters/io/cloud_file_error.h>
 #include <pcl_bsh/filters/io/file_bytes.h>
 #include <pcl_bsh/filters/io/json_reader.h>
 #include <pcl_bsh/filters/io/number_text.h>
 #include <pcl_bsh/filters/io/records.h>
-#include <pcl_bsh/filters/io/replace_file.h>
 
 #include <cmath>
 #include <limits>
@@ -185,7 +185,7 @@ double clusterDistanceFor(double clearance, const Spacing& scan)
 void writeClashes(const std::filesystem::path& path, const ClashReport& report)
 {
   const std::string text = formatOf(path)(report);
-  replaceFile(path, [&](std::ostream& out) { out << text; });
+  files::replaceFile(path, [&](std::ostream& out) { out << text; });
 }
 
 void requireClashFormat(const std::filesystem::path& path)

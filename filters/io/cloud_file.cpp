@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/file_identity.h>
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/io/cloud_file.h>
 #include <pcl_bsh/filters/io/file_bytes.h>
 #include <pcl_bsh/filters/io/pcd.h>
 #include <pcl_bsh/filters/io/ply.h>
 #include <pcl_bsh/filters/io/records.h>
-#include <pcl_bsh/filters/io/replace_file.h>
 #include <pcl_bsh/filters/io/text_clouds.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -22,6 +23,12 @@ std::string extensionOf(const std::filesystem::path& path)
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
+}
+
+/// Standard output gets PCL's own format.
+std::string writtenExtension(const std::filesystem::path& path)
+{
+  return path == files::standard_stream ? ".pcd" : extensionOf(path);
 }
 
 std::string unknown(const std::string& extension)
@@ -73,15 +80,27 @@ void requireCoordinates(const pcl::PCLPointCloud2& cloud)
   }
 }
 
-/// Opens the file and gives its extension and content to `parse`; names the file when that throws.
+/// The format of what comes through a pipe, whose name says nothing, by how it begins.
+std::string extensionOf(std::string_view file)
+{
+  const auto begins = [&](std::string_view text) { return file.substr(0, text.size()) == text; };
+  if (begins("ply")) return ".ply";
+  if (begins("# .PCD") || begins("VERSION") || begins("FIELDS")) return ".pcd";
+  if (begins("OFF")) return ".off";
+  return ".txt";
+}
+
+/// Gives the file's extension and content to `parse`; names the file when that throws.
 template <typename Parse>
-pcl::PCLPointCloud2 parsed(const std::filesystem::path& path, Parse&& parse)
+pcl::PCLPointCloud2 parsed(const std::filesystem::path& path, const FileBytes& file, Parse&& parse)
 {
   constexpr std::array readable = {".pcd", ".ply", ".obj", ".off", ".xyz", ".txt"};
-  const std::string extension = extensionOf(path);
-  const FileBytes file(path);
+  std::string extension = extensionOf(path);
   if (std::find(readable.begin(), readable.end(), extension) == readable.end()) {
-    throw CloudFileError(path, unknown(extension), "give a .pcd, .ply, .obj, .off, .xyz or .txt file");
+    if (!isPipe(path)) {
+      throw CloudFileError(path, unknown(extension), "give a .pcd, .ply, .obj, .off, .xyz or .txt file");
+    }
+    extension = extensionOf(file.view());
   }
   try {
     return parse(extension, file.view());
@@ -91,11 +110,22 @@ pcl::PCLPointCloud2 parsed(const std::filesystem::path& path, Parse&& parse)
   }
 }
 
+pcl::PCLPointCloud2 headerOf(const std::filesystem::path& path, const FileBytes& file)
+{
+  return parsed(path, file, [](const std::string& extension, std::string_view bytes) {
+    pcl::PCLPointCloud2 header = parseHeader(extension, bytes);
+    pcl::PCLPointCloud2 fields = header;
+    fields.width = fields.height = fields.row_step = 0; // the records are not there
+    requireCoordinates(fields);
+    return header;
+  });
+}
+
 } // namespace
 
 pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint)
 {
-  return parsed(path, [&](const std::string& extension, std::string_view file) {
+  return parsed(path, FileBytes(path), [&](const std::string& extension, std::string_view file) {
     Viewpoint stored = no_viewpoint;
     pcl::PCLPointCloud2 cloud = parse(extension, file, stored);
     requireCoordinates(cloud);
@@ -107,23 +137,29 @@ pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* view
 
 pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path)
 {
-  return parsed(path, [](const std::string& extension, std::string_view file) {
-    pcl::PCLPointCloud2 header = parseHeader(extension, file);
-    pcl::PCLPointCloud2 fields = header;
-    fields.width = fields.height = fields.row_step = 0; // the records are not there
-    requireCoordinates(fields);
-    return header;
-  });
+  if (isPipe(path)) {
+    throw CloudFileError(path, "is a pipe, whose header and points cannot be read one after the other",
+                         "save the cloud to a file first");
+  }
+  constexpr std::size_t usual = std::size_t{1} << 16;
+  const FileBytes beginning(path, usual);
+  try {
+    return headerOf(path, beginning);
+  }
+  catch (const CloudFileError&) {
+    if (beginning.isWhole()) throw;
+  }
+  return headerOf(path, FileBytes(path)); // a long header, or other elements before the vertices
 }
 
 void requireWritableCloud(const std::filesystem::path& path)
 {
-  const std::string extension = extensionOf(path);
+  const std::string extension = writtenExtension(path);
   constexpr std::array writable = {".pcd", ".ply", ".obj", ".xyz", ".txt"};
   if (std::find(writable.begin(), writable.end(), extension) == writable.end()) {
     throw CloudFileError(path, unknown(extension), "write a .pcd, .ply, .obj, .xyz or .txt file");
   }
-  requireWritable(path);
+  files::requireWritable(path);
 }
 
 void requireWritableCloud(const std::filesystem::path& path, pcl::PCLPointCloud2 header)
@@ -133,7 +169,7 @@ void requireWritableCloud(const std::filesystem::path& path, pcl::PCLPointCloud2
   header.data.clear();
   std::ostringstream nowhere;
   try {
-    print(extensionOf(path), nowhere, header, no_viewpoint);
+    print(writtenExtension(path), nowhere, header, no_viewpoint);
   }
   catch (const FormatError& error) {
     throw CloudFileError(path, error.what(), error.remedy());
@@ -144,7 +180,7 @@ void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cl
 {
   requireWritableCloud(path);
   try {
-    replaceFile(path, [&](std::ostream& out) { print(extensionOf(path), out, cloud, viewpoint); });
+    files::replaceFile(path, [&](std::ostream& out) { print(writtenExtension(path), out, cloud, viewpoint); });
   }
   catch (const FormatError& error) {
     throw CloudFileError(path, error.what(), error.remedy());

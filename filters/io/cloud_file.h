@@ -34,6 +34,9 @@ inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 ///             and then column_4, column_5, ... as float64, unless the first line, or a comment before it, names the
 ///             columns; comments start with # or //
 ///
+/// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY or OFF file does, and columns
+/// otherwise.
+///
 /// Fields have PCL's names and meaning: normal_x normal_y normal_z, and rgb or rgba packed from a byte per channel;
 /// what files call them, and what stays as it is, says layOutForPcl() in pcl_names.h. The cloud has float32 or float64
 /// x y z, at most 2^31 - 1 points, and is_dense as PCL defines it. A file that says it holds no points is an empty
@@ -43,12 +46,13 @@ inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr);
 
 /// The fields of a file's cloud and, where its header says so, the number of its points; the points are not read.
-/// Throws as readCloud() does for what a header can tell.
+/// Throws as readCloud() does for what a header can tell, and for a pipe.
 pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path);
 
 /// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .xyz and .txt (named columns) or .obj (vertices),
 /// with the names that readers of the format expect: nx ny nz, and a number per channel of a colour. rgb has no
-/// opacity: its fourth byte is kept by PCD alone. The file appears complete or not at all; what `path` held before is
+/// opacity: its fourth byte is kept by PCD alone. `-` is standard output, as PCD. The
+/// file appears complete or not at all; what `path` held before is
 /// replaced only then. PCD and PLY hold a viewpoint. PLY holds no 64-bit integers, text no field with a count, OBJ x y
 /// z, a packed colour and normals.
 /// @throws CloudFileError when the extension is unknown, a field cannot be held, or the disk says no

@@ -2,31 +2,15 @@
 // How reading and writing fails.
 #pragma once
 
-#include <algorithm>
-#include <filesystem>
+#include <pcl_bsh/files/file_error.h>
+
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace pcl_bsh::io {
 
-/// A file that cannot be read or written. what() is one line: `path: what is wrong: what to do`.
-class CloudFileError : public std::runtime_error {
-public:
-  CloudFileError(const std::filesystem::path& path, const std::string& wrong, const std::string& remedy)
-  : std::runtime_error(printable(path.string() + ": " + wrong + ": " + remedy))
-  {
-  }
-
-private:
-  /// Bytes of a damaged file may be quoted; they must not steer the terminal nor break the line.
-  static std::string printable(std::string line)
-  {
-    const auto steers = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-    std::replace_if(line.begin(), line.end(), steers, '?');
-    return line;
-  }
-};
+using CloudFileError = files::FileError;
 
 inline constexpr auto remedy_for_damage = "export or copy the file again";
 

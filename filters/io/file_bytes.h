@@ -1,26 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A whole file as bytes, mapped, not copied.
+// A whole file as bytes, or how it begins.
 #pragma once
 
-#include <boost/interprocess/mapped_region.hpp>
-
+#include <cstddef>
+#include <cstdlib>
 #include <filesystem>
+#include <limits>
+#include <memory>
 #include <string_view>
 
 namespace pcl_bsh::io {
 
+/// Read, not mapped: a mapped file that someone cuts short takes the process with it.
 class FileBytes {
 public:
-  /// @throws CloudFileError when `path` is not a readable file with something in it
-  explicit FileBytes(const std::filesystem::path& path);
+  /// @param path a file, a pipe, or `-` for standard input
+  /// @param most of its bytes are read
+  /// @throws CloudFileError when it cannot be read or there is nothing in it
+  explicit FileBytes(const std::filesystem::path& path, std::size_t most = std::numeric_limits<std::size_t>::max());
 
-  std::string_view view() const noexcept
-  {
-    return {static_cast<const char*>(region_.get_address()), region_.get_size()};
-  }
+  std::string_view view() const noexcept { return {bytes_.get(), size_}; }
+
+  /// Whether that is all of the file.
+  bool isWhole() const noexcept { return is_whole_; }
 
 private:
-  boost::interprocess::mapped_region region_;
+  struct Free {
+    void operator()(char* bytes) const noexcept { std::free(bytes); }
+  };
+
+  void read(int descriptor, std::size_t expected, std::size_t most);
+  void reserve(std::size_t size);
+
+  std::unique_ptr<char, Free> bytes_;
+  std::size_t size_ = 0, reserved_ = 0;
+  bool is_whole_ = false;
 };
+
+/// Whether a name stands for standard input or a pipe: it can be read once, and its extension may say nothing.
+bool isPipe(const std::filesystem::path& path);
 
 } // namespace pcl_bsh::io

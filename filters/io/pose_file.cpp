@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/io/cloud_file_error.h>
 #include <pcl_bsh/filters/io/file_bytes.h>
 #include <pcl_bsh/filters/io/number_text.h>
 #include <pcl_bsh/filters/io/pose_file.h>
 #include <pcl_bsh/filters/io/pose_text.h>
-#include <pcl_bsh/filters/io/replace_file.h>
 #include <pcl_bsh/filters/io/text_cursor.h>
 
 #include <pcl_bsh/query/collide.h>
@@ -92,7 +92,7 @@ std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path)
 
 void writePoses(const std::filesystem::path& path, const std::vector<Eigen::Isometry3d>& poses)
 {
-  replaceFile(path, [&](std::ostream& out) {
+  files::replaceFile(path, [&](std::ostream& out) {
     for (const Eigen::Isometry3d& pose : poses) {
       for (int i = 0; i < 12; ++i) {
         out << (i == 0 ? "" : " ") << numberText(pose.matrix()(i / 4, i % 4));

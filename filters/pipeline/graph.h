@@ -2,6 +2,7 @@
 // A document, understood: which stages there are, with which options, and who reads whom.
 #pragma once
 
+#include <pcl_bsh/files/used_files.h>
 #include <pcl_bsh/filters/io/json_document.h>
 #include <pcl_bsh/filters/pipeline/pipeline.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
@@ -26,16 +27,15 @@ struct Node {
   std::vector<std::pair<std::size_t, std::size_t>> clouds; ///< option and node, for each OtherCloud that is given
   Json user_data;                                          ///< null when there is none
   bool in_document = true;                                 ///< else it reads a file that another stage's option names
-  StageCloudPtr given;                                     ///< instead of a reader's file
-
-  /// The files of that kind that options name: option and file.
-  std::vector<std::pair<std::string, std::filesystem::path>> filesOf(Kind kind) const;
+  std::vector<std::pair<std::string, std::filesystem::path>> pose_files; ///< option and file, read with the document
+  StageCloudPtr given;                                                   ///< instead of a reader's file
 };
 
 struct Graph {
   std::string name;        ///< of the document
   std::vector<Node> nodes; ///< each after those that it reads
   Json user_data;
+  std::vector<files::UsedFile> other_files; ///< not of stages: the document, and what the caller will write
   unsigned threads = 0;
   std::function<void(const StageProgress&)> progress;
 };

@@ -250,7 +250,10 @@ private:
         continue;
       }
       try {
-        node.options.push_back(valueOf(stage[option.name], option));
+        const Json& said = stage[option.name];
+        node.options.push_back(valueOf(said, option));
+        if (option.kind == Kind::pose && said.is_string())
+          node.pose_files.emplace_back(option.name, said.get<std::string>());
       }
       catch (const std::invalid_argument& error) {
         throw stageError(graph_, node, option.name, error.what());

@@ -40,7 +40,9 @@ Pipeline Pipeline::read(const std::filesystem::path& file, const std::vector<Opt
 {
   try {
     const io::FileBytes bytes(file);
-    return parse(bytes.view(), overrides, file.string());
+    Pipeline pipeline = parse(bytes.view(), overrides, file.string());
+    pipeline.graph_->other_files.push_back({"the document", file, files::Use::read});
+    return pipeline;
   }
   catch (const io::CloudFileError& error) {
     throw PipelineError(error.what());
@@ -59,6 +61,11 @@ void Pipeline::setCloud(const std::string& tag, pipeline::StageCloudPtr cloud)
     return;
   }
   throw PipelineError(graph_->name + ": no reader has the tag '" + tag + "': " + io::suggestion(tag, readers));
+}
+
+void Pipeline::reserve(const std::string& name, const std::filesystem::path& file)
+{
+  graph_->other_files.push_back({name, file, files::Use::written});
 }
 
 void Pipeline::setNumberOfThreads(unsigned threads)

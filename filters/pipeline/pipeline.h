@@ -70,7 +70,7 @@ public:
   static Pipeline parse(std::string_view json, const std::vector<OptionOverride>& overrides = {},
                         const std::string& name = "pipeline");
 
-  /// The same, of a file. @throws PipelineError also when it cannot be read
+  /// The same, of a file, or of standard input as `-`. @throws PipelineError also when it cannot be read
   static Pipeline read(const std::filesystem::path& file, const std::vector<OptionOverride>& overrides = {});
 
   Pipeline(Pipeline&&) noexcept;
@@ -81,14 +81,18 @@ public:
   /// @throws PipelineError when no reader has that tag
   void setCloud(const std::string& tag, pipeline::StageCloudPtr cloud);
 
+  /// Names a file that the caller is going to write, so that validate() and run() refuse it where a stage or the
+  /// document itself is in that file. @param name how errors call it
+  void reserve(const std::string& name, const std::filesystem::path& file);
+
   /// How many stages may run at once; 0: as many as the machine has threads (default). The results are the same.
   void setNumberOfThreads(unsigned threads);
 
   /// Called when a stage begins and when it is done, one call at a time, from whichever thread runs it.
   void setProgress(std::function<void(const StageProgress&)> progress);
 
-  /// Checks that input files are there, that their headers have the fields that are needed, and that outputs can be
-  /// written. No points are read. @throws PipelineError
+  /// Checks that no file is written over another of the pipeline, that input files are there, that their headers have
+  /// the fields that are needed, and that outputs can be written. No points are read. @throws PipelineError
   void validate();
 
   /// Validates, then runs. A cloud is freed once its last reader has it done. Can be called again.

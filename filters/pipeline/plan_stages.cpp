@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/used_files.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace pcl_bsh::pipeline {
 namespace {
@@ -21,59 +23,57 @@ std::unique_ptr<Stage> makeStage(const Node& node, const Headers& headers)
   return stage;
 }
 
-/// Which nodes must be done before each node begins.
-std::vector<std::vector<bool>> ancestorsOf(const Graph& graph)
-{
-  std::vector<std::vector<bool>> ancestors;
-  for (const Node& node : graph.nodes) {
-    std::vector<bool> own(graph.nodes.size(), false);
-    const auto add = [&](std::size_t input) {
-      own[input] = true;
-      for (std::size_t i = 0; i < input; ++i) own[i] = own[i] || ancestors[input][i];
-    };
-    for (const std::size_t input : node.inputs) add(input);
-    for (const auto& cloud : node.clouds) add(cloud.second);
-    ancestors.push_back(std::move(own));
-  }
-  return ancestors;
-}
+/// The files of a pipeline, and whose they are.
+struct PipelineFiles {
+  std::vector<files::UsedFile> used;
+  std::vector<std::pair<const Node*, std::string>> owners; ///< stage and option, where a stage's they are
 
-/// Two stages that write one file, or one that writes what another may not have read yet, would race.
-void requireFilesApart(const Graph& graph)
+  void add(const Node& node, const std::string& option, const fs::path& path, files::Use use, std::string replaces = {})
+  {
+    used.push_back({node.tag + "." + option, path, use, std::move(replaces)});
+    owners.emplace_back(&node, option);
+  }
+};
+
+PipelineFiles filesOf(const Graph& graph)
 {
-  const auto ancestors = ancestorsOf(graph);
-  std::map<fs::path, std::size_t> written;
-  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-    const Node& writer = graph.nodes[i];
-    for (const auto& [option, output] : writer.filesOf(Kind::output_file)) {
-      const auto [other, is_new] = written.emplace(output, i);
-      if (!is_new) {
-        throw stageError(graph, writer, option,
-                         "is what " + graph.nodes[other->second].tag + " writes, too: choose another name");
-      }
-      for (std::size_t k = 0; k < graph.nodes.size(); ++k) {
-        if (k == i || ancestors[i][k]) continue; // has read it by then
-        for (const auto& input : graph.nodes[k].filesOf(Kind::input_file)) {
-          if (input.second != output) continue;
-          throw stageError(graph, writer, option,
-                           "is what " + graph.nodes[k].tag + " reads, maybe later: choose another name");
-        }
-      }
+  PipelineFiles all;
+  for (const Node& node : graph.nodes) {
+    std::string replaceable;
+    for (std::size_t i = 0; i < node.options.size(); ++i) {
+      const Option& option = node.type->options[i];
+      if (option.kind != Kind::input_file || !std::holds_alternative<std::string>(node.options[i]) || node.given)
+        continue;
+      all.add(node, option.name, std::get<std::string>(node.options[i]), files::Use::read);
+      if (option.replaceable) replaceable = all.used.back().name;
+    }
+    for (const auto& [option, file] : node.pose_files) all.add(node, option, file, files::Use::read);
+    for (std::size_t i = 0; i < node.options.size(); ++i) {
+      const Option& option = node.type->options[i];
+      if (option.kind != Kind::output_file || !std::holds_alternative<std::string>(node.options[i])) continue;
+      all.add(node, option.name, std::get<std::string>(node.options[i]), files::Use::written, replaceable);
     }
   }
+  all.used.insert(all.used.end(), graph.other_files.begin(), graph.other_files.end());
+  return all;
+}
+
+/// Two stages that write one file, or one that writes what another reads, would race, or leave the user without his
+/// scan.
+void requireFilesApart(const Graph& graph)
+{
+  const PipelineFiles all = filesOf(graph);
+  const auto clash = files::findClash(all.used);
+  if (!clash) return;
+  if (clash->file < all.owners.size()) {
+    const auto& [node, option] = all.owners[clash->file];
+    throw stageError(graph, *node, option, clash->wrong);
+  }
+  const files::UsedFile& file = all.used[clash->file];
+  throw PipelineError(graph.name + ": " + file.name + ": " + file.path.string() + ": " + clash->wrong);
 }
 
 } // namespace
-
-std::vector<std::pair<std::string, fs::path>> Node::filesOf(Kind kind) const
-{
-  std::vector<std::pair<std::string, fs::path>> files;
-  for (std::size_t i = 0; i < options.size(); ++i) {
-    if (type->options[i].kind != kind || !std::holds_alternative<std::string>(options[i])) continue;
-    files.emplace_back(type->options[i].name, fs::weakly_canonical(std::get<std::string>(options[i])));
-  }
-  return files;
-}
 
 std::vector<std::unique_ptr<Stage>> planStages(const Graph& graph)
 {

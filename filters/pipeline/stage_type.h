@@ -35,6 +35,7 @@ struct Option {
   double most = std::numeric_limits<double>::infinity();
   bool above_least = false;         ///< `least` itself is not allowed
   std::vector<std::string> choices; ///< of a text; empty: any
+  bool replaceable = false;         ///< an input file that an output of the same stage may replace
 
   std::function<void(Stage&, const Value&)> set;
   std::function<Value(const Stage&)> get;
@@ -141,6 +142,13 @@ public:
   StageDescription& choices(std::vector<std::string> choices)
   {
     last().choices = std::move(choices);
+    return *this;
+  }
+
+  /// An input file that an output of the same stage may replace: plan() reads it.
+  StageDescription& replaceable()
+  {
+    last().replaceable = true;
     return *this;
   }
 

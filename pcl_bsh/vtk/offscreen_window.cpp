@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/vtk/display.h>
 #include <pcl_bsh/vtk/offscreen_window.h>
 
@@ -17,7 +18,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <fstream>
 #include <stdexcept>
 #include <string>
 
@@ -138,18 +138,8 @@ void writePng(vtkRenderWindow& window, const std::filesystem::path& path)
   writer->Write();
   const vtkUnsignedCharArray* const bytes = writer->GetResult();
 
-  const std::filesystem::path unfinished = path.string() + ".part";
-  std::ofstream out(unfinished, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(const_cast<vtkUnsignedCharArray*>(bytes)->GetPointer(0)),
-            static_cast<std::streamsize>(bytes->GetNumberOfValues()));
-  out.close();
-  std::error_code failed;
-  if (out) std::filesystem::rename(unfinished, path, failed);
-  if (!out || failed) {
-    std::error_code ignored;
-    std::filesystem::remove(unfinished, ignored);
-    throw std::runtime_error(path.string() + ": cannot be written: give a folder that exists and may be written to");
-  }
+  const auto* const begin = reinterpret_cast<const char*>(const_cast<vtkUnsignedCharArray*>(bytes)->GetPointer(0));
+  files::replaceFile(path, [&](std::ostream& out) { out.write(begin, bytes->GetNumberOfValues()); });
 }
 
 } // namespace pcl_bsh::vtk

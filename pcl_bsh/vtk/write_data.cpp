@@ -1,94 +1,75 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/files/output_folder.h>
+#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/vtk/block_files.h>
 #include <pcl_bsh/vtk/write_data.h>
 
-#include <vtkCompositeDataSet.h>
-#include <vtkInformation.h>
-#include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
-#include <vtkXMLMultiBlockDataWriter.h>
 #include <vtkXMLPolyDataWriter.h>
 
-#include <stdexcept>
+#include <system_error>
 
 namespace pcl_bsh::vtk {
 namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& path)
+/// VTK's writer goes back in its file, which a pipe or a device cannot.
+void requireFile(const fs::path& path)
 {
-  throw std::runtime_error(path.string() +
-                           ": cannot be written: give a folder that exists and may be written to, on a " +
-                           "disk with space");
+  std::error_code error;
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error))
+    throw files::FileError(path, "is no ordinary file", "name another file");
 }
 
-/// A folder beside the file to come, gone at the end: what is renamed out of it appears at once.
-class Workshop {
-public:
-  explicit Workshop(const fs::path& path) : path_(path), folder_(path.string() + ".part")
-  {
-    std::error_code failed;
-    fs::remove_all(folder_, failed);
-    if (!fs::create_directory(folder_, failed) || failed) fail(path);
-  }
-  ~Workshop()
-  {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  Workshop(const Workshop&) = delete;
-  Workshop& operator=(const Workshop&) = delete;
-
-  fs::path file(const fs::path& name) const { return folder_ / name; }
-
-  void deliver(const fs::path& name) const
-  {
-    std::error_code failed;
-    const fs::path target = path_.parent_path() / name;
-    if (fs::is_directory(folder_ / name)) fs::remove_all(target, failed);
-    fs::rename(folder_ / name, target, failed);
-    if (failed) fail(target);
-  }
-
-private:
-  fs::path path_, folder_;
-};
-
-template <class Writer>
-void run(Writer& writer, const fs::path& file, const fs::path& path)
+/// Fills the file that is to be renamed to `path`, and tells it by that name when this fails.
+void fill(files::FileReplacement& file, vtkPolyData& data, const fs::path& path)
 {
-  writer.SetFileName(file.c_str());
-  writer.SetDataModeToAppended();
-  writer.EncodeAppendedDataOff();
-  writer.SetCompressorTypeToNone();
-  writer.SetGlobalWarningDisplay(0);
-  if (writer.Write() != 1 || writer.GetErrorCode() != 0 || !fs::exists(file)) fail(path);
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetInputData(&data);
+  writer->SetFileName(file.name().c_str());
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetCompressorTypeToNone();
+  writer->SetGlobalWarningDisplay(0);
+  std::error_code error; // VTK removes what it could not write to the end
+  if (writer->Write() != 1 || writer->GetErrorCode() != 0 || !fs::exists(file.name(), error))
+    throw files::FileError(path, "cannot be written", "choose a folder with room that you may write to");
 }
 
 } // namespace
 
 void writeVtp(vtkPolyData& data, const fs::path& path)
 {
-  const Workshop workshop(path);
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetInputData(&data);
-  run(*writer, workshop.file(path.filename()), path);
-  workshop.deliver(path.filename());
+  requireFile(path);
+  files::FileReplacement file(path);
+  fill(file, data, path);
+  file.commit();
 }
 
 void writeVtm(const std::vector<NamedData>& blocks, const fs::path& path)
 {
-  const Workshop workshop(path);
-  vtkNew<vtkMultiBlockDataSet> all;
-  for (unsigned i = 0; i < blocks.size(); ++i) {
-    all->SetBlock(i, blocks[i].second);
-    all->GetMetaData(i)->Set(vtkCompositeDataSet::NAME(), blocks[i].first.c_str());
+  requireFile(path);
+  BlockFiles pieces(path);
+  const files::OutputFolder folder(pieces.folder());
+  files::FileReplacement list(path);
+  for (const NamedData& block : blocks) {
+    const fs::path name = pieces.next();
+    files::FileReplacement file(name);
+    fill(file, *block.second, name);
+    pieces.commit(file, name, block.first);
   }
-  vtkNew<vtkXMLMultiBlockDataWriter> writer;
-  writer->SetInputData(all);
-  run(*writer, workshop.file(path.filename()), path);
-  if (fs::exists(workshop.file(path.stem()))) workshop.deliver(path.stem());
-  workshop.deliver(path.filename());
+  list.stream() << pieces.list();
+  list.commit([&] { pieces.keep(); }); // told to stop, either list finds its blocks
+  pieces.removeEarlier();
+}
+
+void requireWritableData(const fs::path& path)
+{
+  requireFile(path);
+  files::requireWritable(path);
+  if (path.extension() == ".vtm") static_cast<void>(BlockFiles(path));
 }
 
 } // namespace pcl_bsh::vtk

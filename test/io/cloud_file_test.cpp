@@ -153,7 +153,7 @@ TEST(CloudFile, SaysWhatCannotBeRead)
   EXPECT_EQ(failureOf(folder / "none.pcd"), "no such file: check the name");
   fs::create_directory(folder / "sub.pcd");
   EXPECT_EQ(failureOf(folder / "sub.pcd"), "is a folder: name a file in it");
-  EXPECT_EQ(failureOf("/dev/null"), "is not an ordinary file: save the cloud to a file first");
+  EXPECT_EQ(failureOf("/dev/null"), "is neither a file nor a pipe: save the cloud to a file first");
   EXPECT_EQ(failureOf(folder.write("a.pcd", "")), "is empty: export or copy the file again");
   const std::string readable = "give a .pcd, .ply, .obj, .off, .xyz or .txt file";
   EXPECT_EQ(failureOf(folder.write("a.las", "x")), "unknown extension '.las': " + readable);

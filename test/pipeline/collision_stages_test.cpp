@@ -296,7 +296,7 @@ TEST_F(ClashWriter, RefusesFilesItCannotWriteOrRead)
   EXPECT_THAT(error(type, file("none/a.csv")), HasSubstr("there is no folder"));
   EXPECT_THAT(error(type, file("a.csv") + R"(, "also": "a.pdf")"), HasSubstr("/also: a.pdf: unknown extension"));
   EXPECT_THAT(error(type, file("a.csv") + R"(, "also": )" + quoted(folder / "a.csv")),
-              EndsWith("/also: is what writers_clashes1 writes, too: choose another name"));
+              EndsWith("/also: is the file of writers_clashes1.filename, too: choose another name"));
   EXPECT_THAT(error(type, file("a.csv") + R"(, "previous": "none.json")"), HasSubstr("/previous: none.json: no such"));
   folder.write("odd.json", R"({"clashes": [{"id": 7}]})");
   EXPECT_THAT(error(type, file("a.csv") + R"(, "previous": )" + quoted(folder / "odd.json")),

@@ -427,7 +427,7 @@ TEST(Stages, FilesThatWouldRace)
                                 "\"]")
                     .validate();
               }),
-              EndsWith("/2/filename: is what writers_pcd1 writes, too: choose another name"));
+              EndsWith("/2/filename: is the file of writers_pcd1.filename, too: choose another name"));
   EXPECT_THAT(errorOf([&] {
                 Pipeline::parse(R"([{"filename": ")" + a + R"(", "tag": "a"}, {"filename": ")" + a + R"(", "tag": "b"},
                                    {"type": "filters.merge", "inputs": ["a", "b"], "tag": "both"},
@@ -435,9 +435,28 @@ TEST(Stages, FilesThatWouldRace)
                                 a + R"("}, {"type": "filters.merge", "inputs": "both"}])")
                     .validate();
               }),
-              EndsWith("/3/filename: is what b reads, maybe later: choose another name"));
-  Pipeline::parse("[\"" + a + "\", \"" + a + "\"]").run(); // in place
-  EXPECT_EQ(io::contentOf(a), "x y z\n1 2 3\n");
+              EndsWith("/3/filename: is the file of a.filename, which is read: choose another name"));
+  EXPECT_THAT(errorOf([&] { Pipeline::parse("[\"" + a + "\", \"" + a + "\"]").run(); }),
+              EndsWith("/1/filename: is the file of readers_text1.filename, which is read: choose another name"));
+  EXPECT_EQ(io::contentOf(a), "1 2 3\n");
+
+  // The document, its poses, and what the caller writes.
+  const std::string pose = folder.write("pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n").string();
+  const auto flagged = [&](const std::string& output) {
+    return "[\"" + a + R"(", {"type": "filters.bsh_flag", "obstacle": ")" + a + R"(", "clearance": 1, "pose": ")" +
+           pose + "\"}, \"" + output + "\"]";
+  };
+  EXPECT_THAT(errorOf([&] { Pipeline::parse(flagged(pose)).run(); }),
+              EndsWith("/2/filename: is the file of filters_bsh_flag1.pose, which is read: choose another name"));
+  const std::string document = folder.write("p.txt", flagged((folder / "./p.txt").string())).string();
+  EXPECT_THAT(errorOf([&] { Pipeline::read(document).run(); }),
+              EndsWith("/2/filename: is the file of the document, which is read: choose another name"));
+  for (const std::string& file : {a, pose, out}) {
+    Pipeline pipeline = Pipeline::parse(flagged(out));
+    pipeline.reserve("--metadata", file);
+    EXPECT_THAT(errorOf([&] { pipeline.validate(); }),
+                HasSubstr("pipeline: --metadata: " + file + ": is the file of "));
+  }
 }
 
 } // namespace

@@ -214,16 +214,37 @@ TEST_F(Collide, ReadsEveryFormat)
   }
 }
 
-TEST_F(Collide, OutputMayReplaceTheInput)
+TEST_F(Collide, OutputReplacesTheInputWhenAsked)
 {
+  const std::string before = io::contentOf(input);
+  expectFailure("{input.ply} {obstacle.xyz} {input.ply} --clearance 0.5", 2,
+                "OUTPUT: " + input.string() + ": is the file of INPUT, which is read: choose another name");
+  EXPECT_EQ(io::contentOf(input), before);
   const std::size_t files = folder.files();
-  expectDone("{input.ply} {obstacle.xyz} {input.ply} --clearance 0.5");
+  expectDone("{input.ply} {obstacle.xyz} {input.ply} --clearance 0.5 --in-place");
   EXPECT_EQ(flags("input.ply"), (std::vector<int>{0, 1, 1, 0, 0}));
   // Flags that are there already are replaced, not doubled.
-  expectDone("{input.ply} {obstacle.xyz} {input.ply} --clearance 0.25");
+  expectDone("{input.ply} {obstacle.xyz} {input.ply} --clearance 0.25 --in-place");
   EXPECT_EQ(flags("input.ply"), (std::vector<int>{0, 0, 0, 0, 0}));
   EXPECT_EQ(io::readCloud(input).fields.size(), 7U);
   EXPECT_EQ(folder.files(), files);
+}
+
+TEST_F(Collide, ReadsAndWritesStreams)
+{
+  const std::string wanted = "--clearance 0.5 ";
+  expectDone("{input.ply} {obstacle.xyz} {plain.pcd} " + wanted);
+  const Outcome piped = collide("- {obstacle.xyz} - " + wanted + "<{input.ply}");
+  EXPECT_EQ(piped.exit_code, 0) << piped.err;
+  EXPECT_TRUE(piped.out == io::contentOf(folder / "plain.pcd"));
+  EXPECT_THAT(piped.err, HasSubstr("2 of 5 points collide")) << "not into the cloud";
+  const Outcome report = collide("{input.ply} {obstacle.xyz} {out.pcd} " + wanted + "--report -");
+  EXPECT_EQ(Json::parse(report.out)["colliding"], 2);
+
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  expectDone("{input.ply} {pipe} {out.pcd} " + wanted + "& cat {obstacle.xyz} >{pipe}; wait $!");
+  EXPECT_EQ(flags("out.pcd"), (std::vector<int>{0, 1, 1, 0, 0}));
+  expectFailure("- - {out2.pcd} " + wanted + "<{pipe} & : >{pipe}; wait $!", 2, "OBSTACLE: -: is the pipe of INPUT");
 }
 
 TEST_F(Collide, ThreadsChangeNothing)
@@ -484,7 +505,8 @@ TEST_F(CollideAlong, Refuses)
   expectFailure(job + "--trajectory {bad.txt}", 1, "bad.txt: line 2 has 7 numbers");
   expectFailure(job + path + "--clashes {a.txt}", 2, "--clashes: ");
   expectFailure(job + path + "--clashes {none/a.csv}", 1, "there is no folder");
-  expectFailure(job + path + "--clashes {a.csv} --clashes {a.csv}", 2, "is another file of this command");
+  expectFailure(job + path + "--clashes {a.csv} --clashes {a.csv}", 2,
+                "is the file of --clashes, too: choose another name");
   expectFailure(job + path + "--cluster-distance 1", 2, "--cluster-distance: no clash report is written");
   expectFailure(job + path + "--previous {a.json}", 2, "--previous: no clash report is written");
   expectFailure(job + path + "--clashes {a.csv} --cluster-distance 0", 2, "--cluster-distance: 0: give a finite");
@@ -496,21 +518,6 @@ TEST_F(CollideAlong, Refuses)
                 "cut.json: is no list of clashes: is no JSON");
   folder.write("distance.pcd", "FIELDS x y z distance\nSIZE 4 4 4 8\nTYPE F F F F\nPOINTS 1\nDATA ascii\n1 2 3 0.5\n");
   expectFailure("{distance.pcd} {probe.xyz} {out.ply} --clearance 1 " + path, 1, "field 'distance' exists already");
-}
-
-TEST_F(CollideAlong, StopsCleanlyWhenInterrupted)
-{
-  // A pipe that nobody reads from holds the program up while it writes.
-  const fs::path pipe = folder / "pipe.ply";
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  const io::TemporaryFolder elsewhere;
-  const std::size_t files = folder.files();
-  const Outcome stopped = collide("{wall.txt} {probe.xyz} {pipe.ply} --clearance 0.3 2>" +
-                                  (elsewhere / "err").string() + " & sleep 1; kill -INT $!; wait $!");
-  EXPECT_EQ(stopped.exit_code, 130);
-  EXPECT_THAT(io::contentOf(elsewhere / "err"),
-              HasSubstr("pcl_bsh_collide: stopped on request: nothing unfinished was left behind\n"));
-  EXPECT_EQ(folder.files(), files);
 }
 
 TEST_F(Collide, HelpShowsAnExample)
@@ -551,8 +558,10 @@ TEST_F(Collide, RefusesOutputs)
   expectFailure(clouds + "{none/out.pcd} --clearance 1", 1, "cannot be written, there is no folder");
   expectFailure(clouds + "{out.pcd} --clearance 1 --report {none/report.json}", 1, "there is no folder");
   expectFailure(clouds + "{out.pcd} --clearance 1 --report {}", 1, ": is a folder: ");
-  expectFailure(clouds + "{out.pcd} --clearance 1 --report {out.pcd}", 2, "is another file of this command: choose");
-  expectFailure(clouds + "{out.pcd} --clearance 1 --report {input.ply}", 2, "is another file of this command: choose");
+  expectFailure(clouds + "{out.pcd} --clearance 1 --report {out.pcd}", 2,
+                "is the file of OUTPUT, too: choose another name");
+  expectFailure(clouds + "{out.pcd} --clearance 1 --report {input.ply}", 2,
+                "is the file of INPUT, which is read: choose another name");
 }
 
 TEST_F(Collide, RefusesClearances)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What collides, place by place, as a list.
+#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/io/clash_report.h>
 #include <pcl_bsh/filters/io/cloud_file_error.h>
-#include <pcl_bsh/filters/io/replace_file.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/collision_question.h>
 
@@ -40,7 +40,7 @@ private:
   {
     try {
       io::requireClashFormat(file.path);
-      io::requireWritable(file.path);
+      files::requireWritable(file.path);
     }
     catch (const io::CloudFileError& error) {
       throw OptionError(option, error.what());
@@ -117,6 +117,7 @@ StageType clashWriter()
       .above(0)
       .option(&ClashWriter::previous, "previous",
               "the .json of an earlier run: tells new, persisting and resolved clashes; may be `filename`")
+      .replaceable()
       .option(&ClashWriter::input_name, "input_name", "what the list calls the input");
 }
 

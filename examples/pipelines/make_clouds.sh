@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Makes the clouds and poses that the pipelines beside this file name, so that each of them can be run in that folder.
+# The programs are found in PATH, or where `bash examples/run.sh` builds them.
+#   bash examples/pipelines/make_clouds.sh FOLDER
+set -euo pipefail
+PATH="$PATH:$PWD/build/release/examples"
+
+die() { printf 'make_clouds.sh: %s\n' "$*" >&2; exit 1; }
+
+(($# == 1)) || die "FOLDER: is missing: say where the clouds shall go"
+command -v pcl_bsh_tunnel >/dev/null || die "pcl_bsh_tunnel: not found: run this where build/release is, or set PATH"
+mkdir -p "$1"
+cd "$1"
+
+# cloud FILE SIZE PROGRAM: the points that awk's PROGRAM gives to point(x, y, z), with an intensity, as floats of SIZE
+cloud() {
+  awk "function point(x, y, z) { printf \"%.6f %.6f %.6f %d\\n\", x, y, z, n++ % 100 } BEGIN { $3 }" >"$1.points"
+  {
+    printf 'FIELDS x y z intensity\nSIZE %d %d %d 4\nTYPE F F F F\n' "$2" "$2" "$2"
+    printf 'POINTS %d\nDATA ascii\n' "$(wc -l <"$1.points")"
+    cat "$1.points"
+  } >"$1"
+  rm "$1.points"
+}
+
+# A room's floor and a wall, and in it a robot, of which the scan sees some points, too.
+robot='for (a = 0; a < 6.28; a += 0.1) for (z = 0; z <= 1.2; z += 0.02) point(0.2 * cos(a), 0.2 * sin(a), z)'
+cloud robot.pcd 4 "$robot"
+cloud scan.pcd 4 'for (x = 0; x < 4; x += 0.02) for (y = 0; y < 4; y += 0.02) point(x, y, 0);
+  for (x = 0; x < 4; x += 0.02) for (z = 0; z < 2; z += 0.02) point(x, 2.22, z);
+  for (a = 0; a < 3.14; a += 0.05) for (z = 0; z <= 1.2; z += 0.03) point(1.5 + 0.2 * cos(a), 2 - 0.2 * sin(a), z)'
+printf '0 -1 0 1.5\n1 0 0 2\n0 0 1 0\n' >T_scan_robot.txt
+
+# Ground in UTM coordinates, and a line of power that a tree has grown up to.
+cloud terrain.pcd 8 'for (x = 0; x < 50; x += 0.5) for (y = 0; y < 50; y += 0.5) point(500000 + x, 5400000 + y, 100 + sin(x / 9));
+  for (a = 0; a < 6.28; a += 0.1) for (z = 0; z < 12; z += 0.1) point(500025 + cos(a), 5400025 + sin(a), 100 + z)'
+awk 'BEGIN { for (x = 0; x < 50; x += 0.02) printf "%.6f %.6f %.6f\n", 500000 + x, 5400025, 111.9 }' >power_line.xyz
+
+# Two scans of one place: a box has gone, another has come.
+place='for (x = 0; x < 5; x += 0.05) for (y = 0; y < 5; y += 0.05) point(x, y, 0)'
+cloud before.pcd 4 "$place; for (x = 1; x < 2; x += 0.05) for (z = 0.3; z < 1; z += 0.05) point(x, 1, z)"
+cloud after.pcd 4 "$place; for (x = 3; x < 4; x += 0.05) for (z = 0.3; z < 1; z += 0.05) point(x, 4, z)"
+
+# A tunnel, a wagon and its way.
+pcl_bsh_tunnel tunnel --scale 0.005
+for cloud in scan.ply:tunnel.pcd wagon.ply:wagon.pcd; do
+  printf '["tunnel/%s", "%s"]' "${cloud%:*}" "${cloud#*:}" | pcl_bsh_pipeline -
+done
+cp tunnel/poses.txt track.txt
+printf 'made the clouds of the sample pipelines in %s\n' "$1"

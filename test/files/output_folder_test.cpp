@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "temporary_folder.h"
+
+#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/files/output_folder.h>
+#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/files/unfinished.h>
+
+#include <gtest/gtest.h>
+
+namespace pcl_bsh::files {
+
+namespace fs = std::filesystem;
+
+TEST(OutputFolder, GoesUnlessSomethingIsInIt)
+{
+  const TemporaryFolder folder;
+  {
+    const OutputFolder made(folder / "a/b/");
+    EXPECT_TRUE(fs::is_directory(folder / "a/b"));
+  }
+  EXPECT_EQ(folder.files(), 0U);
+  {
+    const OutputFolder made(folder / "a/b");
+    replaceFile(folder / "a/out", [](std::ostream& out) { out << "x"; });
+  }
+  EXPECT_TRUE(fs::exists(folder / "a/out"));
+  EXPECT_FALSE(fs::exists(folder / "a/b"));
+  {
+    const OutputFolder found(folder / "a");
+    fs::remove(folder / "a/out");
+  }
+  EXPECT_TRUE(fs::exists(folder / "a")) << "was there before";
+}
+
+TEST(OutputFolder, IsDiscardedWithWhatIsInIt)
+{
+  const TemporaryFolder folder;
+  const OutputFolder made(folder / "a/b");
+  const FileReplacement file(folder / "a/b/out");
+  discardUnfinished();
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(OutputFolder, SaysWhatIsInTheWay)
+{
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("file", "x");
+  EXPECT_THROW(OutputFolder made(file), FileError);
+  EXPECT_THROW(OutputFolder made(file / "sub/sub"), FileError);
+  EXPECT_EQ(folder.files(), 1U);
+}
+
+} // namespace pcl_bsh::files

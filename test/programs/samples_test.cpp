@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What users copy from runs as it stands: the README's commands, in their order, and each sample scene and pipeline.
+#include "../files/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <sstream>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path source = PCL_BSH_SOURCE_DIR;
+
+/// A clone after the README's first command: its samples, the programs, and the scans of the demonstration.
+class Samples : public testing::Test {
+protected:
+  Samples()
+  {
+    fs::create_directory(clone / "build");
+    fs::create_directory_symlink(source / "examples", clone / "examples");
+    fs::create_directory(clone / "build/release");
+    fs::create_directory_symlink(PCL_BSH_PROGRAM_DIR, clone / "build/release/examples");
+    if (haveScans()) fs::create_directory_symlink(source / "build/demo", clone / "build/demo");
+  }
+
+  static bool haveScans()
+  {
+    return fs::exists(source / "build/demo/building.ply") && fs::exists(source / "build/demo/man.off");
+  }
+
+  /// In the clone's folder, by bash, up to the first command that fails.
+  void expectDone(const std::string& script) const
+  {
+    clone.write("script.sh", "set -euo pipefail\n" + script);
+    const std::string said = (clone / "said").string();
+    const int status =
+        std::system(("cd " + clone.path().string() + " && bash script.sh >" + said + " 2>&1 </dev/null").c_str());
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << script << '\n' << files::contentOf(said);
+  }
+
+  const files::TemporaryFolder clone;
+};
+
+constexpr auto no_scans = "the demonstration's scans are not there: run bash examples/demo/fetch_scans.sh build/demo";
+
+/// The blocks of commands, without those whose first line says that they need more than a clone and its programs.
+std::vector<std::string> blocksOf(const fs::path& document)
+{
+  std::istringstream lines(files::contentOf(document));
+  std::vector<std::string> blocks;
+  for (std::string line; std::getline(lines, line);) {
+    if (line != "```bash") continue;
+    std::string block;
+    while (std::getline(lines, line) && line != "```") block += line + '\n';
+    const auto begins = [&](const char* text) { return block.rfind(text, 0) == 0; };
+    if (!begins("# needs root") && !begins("# opens windows") && !begins("# builds everything"))
+      blocks.push_back(block);
+  }
+  return blocks;
+}
+
+TEST_F(Samples, TheReadmesCommandsRunInTheirOrder)
+{
+  if (!haveScans()) GTEST_SKIP() << no_scans;
+  if (!fs::exists(clone / "build/release/examples/pcl_bsh_view"))
+    GTEST_SKIP() << "pcl_bsh_view is not built: install libvtk9-dev, libegl-dev and libx11-dev";
+  const std::vector<std::string> blocks = blocksOf(source / "README.md");
+  EXPECT_GE(blocks.size(), 6U);
+  std::string all;
+  for (const std::string& block : blocks) all += block;
+  expectDone(all);
+  for (const char* file : {"samples/flagged.pcd", "samples/run.json", "marked.pcd", "marked.json",
+                           "tunnel/clashes.html", "walk/steps.csv", "marked.png", "building.vtm"})
+    EXPECT_TRUE(fs::exists(clone / "build" / file)) << file;
+}
+
+TEST_F(Samples, EachPipelineRunsOnTheCloudsMadeForIt)
+{
+  expectDone("bash examples/pipelines/make_clouds.sh build/samples");
+  std::size_t run = 0;
+  for (const auto& entry : fs::directory_iterator(source / "examples/pipelines")) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() != ".json" || name.find(".schema.") != std::string::npos) continue;
+    const std::string program = name == "every_nth.json" ? "pcl_bsh_own_stage" : "pcl_bsh_pipeline";
+    expectDone("cd build/samples; ../release/examples/" + program + " ../../examples/pipelines/" + name);
+    ++run;
+  }
+  EXPECT_GE(run, 6U);
+}
+
+TEST_F(Samples, EachSceneRuns)
+{
+  std::size_t run = 0;
+  for (const auto& entry : fs::directory_iterator(source / "examples/scenes")) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() != ".json" || name.find(".schema.") != std::string::npos) continue;
+    // Links would lead back to the source's folder, where the scans may not be.
+    fs::create_directories(clone / "own/scenes");
+    const std::string scene = files::contentOf(entry.path());
+    const bool scans = scene.find("build/demo/") != std::string::npos;
+    if (scans && !haveScans()) continue;
+    clone.write("own/scenes/" + name, scene);
+    expectDone("build/release/examples/pcl_bsh_scene own/scenes/" + name + " --out run_" + name);
+    ++run;
+  }
+  EXPECT_GE(run, 3U);
+  if (!haveScans()) GTEST_SKIP() << "all but walk.json ran: " << no_scans;
+}
+
+} // namespace
+} // namespace pcl_bsh
