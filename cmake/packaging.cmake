@@ -53,7 +53,7 @@ endif()
 # What the binaries link to becomes what the packages depend on; our own libraries are found where they were built.
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/pcl_bsh"
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/pcl_bsh" "${PROJECT_BINARY_DIR}/pcl_bsh/files"
     "${PROJECT_BINARY_DIR}/pcl_bsh/certify" "${PROJECT_BINARY_DIR}/pcl_bsh/vtk" "${PROJECT_BINARY_DIR}/filters")
 
 include(CPack)

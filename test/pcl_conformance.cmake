@@ -2,14 +2,14 @@
 # PCL's test/search/test_search.cpp and test_kdtree.cpp, compiled as they are but for a header in front of them that
 # puts our class where they say KdTree.
 if(NOT PCL_SOURCE_TEST_DIR)
-  message(STATUS "PCL_SOURCE_TEST_DIR is not set: PCL's own tests of search classes are skipped")
+  pcl_bsh_not_tested("PCL's own tests of search classes" "set PCL_SOURCE_TEST_DIR to the folder test/ of PCL's sources")
   return()
 endif()
 
 function(pcl_bsh_add_conformance_test name)
   set(source "${PCL_SOURCE_TEST_DIR}/search/${name}.cpp")
   if(NOT EXISTS "${source}")
-    message(STATUS "${source} does not exist: skipped")
+    pcl_bsh_not_tested("${source}" "it does not exist: set PCL_SOURCE_TEST_DIR to the folder test/ of PCL's sources")
     return()
   endif()
   add_executable(pcl_${name} "${source}")

@@ -7,6 +7,7 @@
 #include <vtkCommand.h>
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkNew.h>
+#include <vtkOutputWindow.h>
 #include <vtkPNGWriter.h>
 #include <vtkRendererCollection.h>
 #include <vtkUnsignedCharArray.h>
@@ -15,11 +16,8 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <stdexcept>
-#include <string>
+#include <string_view>
 
 namespace pcl_bsh::vtk {
 namespace {
@@ -71,28 +69,14 @@ void makeCurrent(vtkObject*, unsigned long, void*, void*)
   EglContext::makeCurrent();
 }
 
-/// GLEW reports the missing GLX display on stderr, and works all the same: nobody should read that.
-class QuietStderr {
-public:
-  QuietStderr() : saved_(dup(STDERR_FILENO))
-  {
-    const int null = open("/dev/null", O_WRONLY);
-    if (null < 0) return;
-    dup2(null, STDERR_FILENO);
-    close(null);
-  }
-  ~QuietStderr()
-  {
-    if (saved_ < 0) return;
-    dup2(saved_, STDERR_FILENO);
-    close(saved_);
-  }
-  QuietStderr(const QuietStderr&) = delete;
-  QuietStderr& operator=(const QuietStderr&) = delete;
-
-private:
-  int saved_;
-};
+/// GLEW misses the GLX display, which VTK reports as an error, and all works the same: nobody should read that. Other
+/// errors go where VTK's go.
+void passOnErrors(vtkObject*, unsigned long, void*, void* text)
+{
+  const char* const error = static_cast<const char*>(text);
+  if (std::string_view(error).find("GLEW could not be initialized") == std::string_view::npos)
+    vtkOutputWindow::GetInstance()->DisplayErrorText(error);
+}
 
 vtkSmartPointer<vtkRenderWindow> makeEglWindow()
 {
@@ -103,9 +87,11 @@ vtkSmartPointer<vtkRenderWindow> makeEglWindow()
   window->SetIsDirect(1);
   window->SetReadyForRendering(true);
   window->SetMapped(1);
-  vtkNew<vtkCallbackCommand> is_current, make_current;
+  vtkNew<vtkCallbackCommand> is_current, make_current, error;
   is_current->SetCallback(answerThatItIsCurrent);
   make_current->SetCallback(makeCurrent);
+  error->SetCallback(passOnErrors);
+  window->AddObserver(vtkCommand::ErrorEvent, error);
   window->AddObserver(vtkCommand::WindowIsCurrentEvent, is_current);
   window->AddObserver(vtkCommand::WindowMakeCurrentEvent, make_current);
   return window;
@@ -125,13 +111,10 @@ vtkSmartPointer<vtkRenderWindow> makeOffscreenWindow(int width, int height)
 void writePng(vtkRenderWindow& window, const std::filesystem::path& path)
 {
   vtkNew<vtkWindowToImageFilter> image;
-  {
-    const QuietStderr quiet;
-    window.Render();
-    image->SetInput(&window);
-    image->ReadFrontBufferOff();
-    image->Update();
-  }
+  window.Render();
+  image->SetInput(&window);
+  image->ReadFrontBufferOff();
+  image->Update();
   vtkNew<vtkPNGWriter> writer;
   writer->WriteToMemoryOn();
   writer->SetInputConnection(image->GetOutputPort());

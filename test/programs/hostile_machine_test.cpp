@@ -97,7 +97,7 @@ TEST_P(HostileMachine, KilledAtAnyMoment)
     if (isOutput(name)) fs::remove_all(folder / name);
   const Contents inputs = contentsOf(folder.path());
 
-  constexpr int moments = 8;
+  constexpr int moments = 6;
   for (int moment = 1; moment <= moments; ++moment) {
     for (const std::string& output : job.outputs)
       if (output.back() != '/') folder.write(output, "old");

@@ -57,6 +57,58 @@ TEST(SceneProgram, RunsAScene)
   EXPECT_FALSE(std::filesystem::exists(folder / "out" / "steps.csv.part"));
 }
 
+TEST(SceneProgram, EachObjectHasFilesOfItsOwn)
+{
+  const io::TemporaryFolder folder;
+  std::string text = crashWith(R"("any": true, "flags": true)", "last");
+  text.replace(
+      text.find("{ \"name\": \"still\""), 0,
+      R"({ "name": "moving_ball", "cloud": "ball", "fixed": true }, { "name": "Moving_Ball", "cloud": "ball", "pose":
+                  [0.1, 0, 0], "fixed": true }, )");
+  const std::string scene = folder.write("crash.json", text).string();
+  const Outcome done = run("pcl_bsh_scene", scene + " --out " + (folder / "out").string());
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  for (const char* name : {"moving_ball_000004.pcd", "Moving_Ball-2_000004.pcd", "moving_ball-3_000004.pcd"})
+    EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
+}
+
+TEST(SceneProgram, TimesAreWrittenToTheLastDigit)
+{
+  const io::TemporaryFolder folder;
+  std::string text = crashWith(R"("any": true)");
+  text.replace(text.find("\"dt\": 0.5"), 9, "\"dt\": 0.0000001234567");
+  const std::string scene = folder.write("crash.json", text).string();
+  ASSERT_EQ(run("pcl_bsh_scene", scene + " --out " + (folder / "out").string()).exit_code, 0);
+  std::istringstream rows(io::contentOf(folder / "out/steps.csv"));
+  std::string row;
+  std::getline(rows, row);
+  for (int step = 0; std::getline(rows, row); ++step) {
+    const std::size_t comma = row.find(',');
+    EXPECT_NEAR(std::stod(row.substr(comma + 1)), step * 0.0000001234567, 1e-18) << row;
+  }
+}
+
+TEST(SceneProgram, KeepsItsInputs)
+{
+  const io::TemporaryFolder folder;
+  const std::string text = crashWith(R"("any": true, "flags": true)", "last");
+  folder.write("summary.json", text);
+  const Outcome over = run("pcl_bsh_scene", "summary.json --out .", folder.path());
+  EXPECT_EQ(over.exit_code, 2);
+  EXPECT_EQ(over.err,
+            "pcl_bsh_scene: --out: ./summary.json: is the file of SCENE, which is read: choose another name\n");
+  EXPECT_EQ(io::contentOf(folder / "summary.json"), text);
+
+  folder.write("still_000004.xyz", "0 0 0\n");
+  folder.write("still_000004.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n0 0 0\n");
+  std::string own = text;
+  own.replace(own.find(R"({ "sphere")"), 47, R"("still_000004.pcd")");
+  folder.write("own.json", own);
+  const Outcome cloud = run("pcl_bsh_scene", "own.json --out .", folder.path());
+  EXPECT_EQ(cloud.exit_code, 2);
+  EXPECT_THAT(cloud.err, HasSubstr("--out: ./still_000004.pcd: is the file of cloud 'ball', which is read"));
+}
+
 TEST(SceneProgram, ResponsesKeepObjectsApart)
 {
   const io::TemporaryFolder folder;

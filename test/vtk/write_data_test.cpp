@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "../files/temporary_folder.h"
+
+#include <pcl_bsh/vtk/write_data.h>
+
+#include <gtest/gtest.h>
+
+#include <vtkCompositeDataSet.h>
+#include <vtkInformation.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkXMLMultiBlockDataReader.h>
+
+#include <set>
+#include <stdexcept>
+
+namespace pcl_bsh::vtk {
+namespace {
+
+namespace fs = std::filesystem;
+using files::contentOf;
+using files::TemporaryFolder;
+
+vtkSmartPointer<vtkPolyData> dataOf(int points)
+{
+  vtkNew<vtkPoints> coordinates;
+  for (int i = 0; i < points; ++i) coordinates->InsertNextPoint(i, 0, 0);
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(coordinates);
+  return data;
+}
+
+std::set<std::string> namesIn(const fs::path& folder)
+{
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  return names;
+}
+
+std::string failureOf(const fs::path& path)
+{
+  for (const bool early : {true, false}) {
+    try {
+      early ? requireWritableData(path) : writeVtm({{"a", dataOf(1)}}, path);
+      ADD_FAILURE() << path << " is written";
+    }
+    catch (const std::runtime_error& error) {
+      if (!early) return error.what();
+    }
+  }
+  return {};
+}
+
+/// Points of each block, by VTK's own reader.
+std::vector<std::pair<std::string, vtkIdType>> read(const fs::path& path)
+{
+  vtkNew<vtkXMLMultiBlockDataReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  auto* const all = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutput());
+  std::vector<std::pair<std::string, vtkIdType>> blocks;
+  for (unsigned i = 0; all != nullptr && i < all->GetNumberOfBlocks(); ++i) {
+    auto* const block = vtkPolyData::SafeDownCast(all->GetBlock(i));
+    blocks.emplace_back(all->GetMetaData(i)->Get(vtkCompositeDataSet::NAME()),
+                        block != nullptr ? block->GetNumberOfPoints() : -1);
+  }
+  return blocks;
+}
+
+TEST(WriteVtm, VtkReadsItBack)
+{
+  const TemporaryFolder folder;
+  const fs::path file = folder / "a & \"b\".vtm";
+  writeVtm({{"one <1>", dataOf(3)}, {"two", dataOf(5)}}, file);
+  EXPECT_EQ(read(file), (std::vector<std::pair<std::string, vtkIdType>>{{"one <1>", 3}, {"two", 5}}));
+  writeVtm({{"three", dataOf(7)}}, file);
+  EXPECT_EQ(read(file), (std::vector<std::pair<std::string, vtkIdType>>{{"three", 7}}));
+  EXPECT_EQ(namesIn(folder / "a & \"b\"").size(), 1U) << "the earlier blocks are gone";
+}
+
+TEST(WriteVtm, RemovesOnlyWhatAnEarlierListNames)
+{
+  const TemporaryFolder folder;
+  const fs::path file = folder / "hall.vtm";
+  fs::create_directory(folder / "hall");
+  // As VTK's own writer names them; the second is of nobody.
+  folder.write("hall/hall_0.vtp", "old");
+  folder.write("hall/hall_1.vtp", "other");
+  folder.write("secret_0.vtp", "outside");
+  folder.write("hall.vtm", "<DataSet index=\"0\" file=\"hall/hall_0.vtp\"/><DataSet file=\"hall/../secret_0.vtp\"/>"
+                           "<DataSet file=\"hall/hall_../../secret_0.vtp\"/>");
+  writeVtm({{"a", dataOf(1)}}, file);
+  EXPECT_EQ(namesIn(folder / "hall"), (std::set<std::string>{"hall_1.vtp", "hall_2_0.vtp"}));
+  EXPECT_EQ(contentOf(folder / "hall/hall_1.vtp"), "other");
+  EXPECT_EQ(contentOf(folder / "secret_0.vtp"), "outside");
+}
+
+TEST(WriteVtm, AFolderOfTheUsersIsInTheWay)
+{
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "hall");
+  folder.write("hall/scan.pcd", "mine");
+  const std::string message = failureOf(folder / "hall.vtm");
+  EXPECT_NE(message.find("and holds scan.pcd, which is none: name another .vtm"), std::string::npos) << message;
+  EXPECT_EQ(namesIn(folder.path()), std::set<std::string>{"hall"});
+  EXPECT_EQ(contentOf(folder / "hall/scan.pcd"), "mine");
+
+  folder.write("file", "mine");
+  EXPECT_NE(failureOf(folder / "file.vtm").find("is in the way"), std::string::npos);
+  EXPECT_EQ(contentOf(folder / "file"), "mine");
+  EXPECT_EQ(folder.files(), 2U);
+}
+
+TEST(WriteVtm, LeavesNothingWhenItFails)
+{
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "out.vtm"); // is no file
+  EXPECT_THROW(writeVtm({{"a", dataOf(1)}}, folder / "out.vtm"), std::runtime_error);
+  EXPECT_THROW(writeVtm({{"a", dataOf(1)}}, folder / "none/out.vtm"), std::runtime_error);
+  EXPECT_THROW(writeVtp(*dataOf(1), folder / "none/out.vtp"), std::runtime_error);
+  EXPECT_EQ(folder.files(), 1U);
+}
+
+} // namespace
+} // namespace pcl_bsh::vtk
