@@ -98,6 +98,11 @@ BlockFiles::~BlockFiles()
   }
 }
 
+void BlockFiles::makeFolder()
+{
+  made_folder_.emplace(folder_);
+}
+
 fs::path BlockFiles::next() const
 {
   return folder_ / (stem_ + "_" + std::to_string(generation_) + "_" + std::to_string(made_.size()) + ".vtp");

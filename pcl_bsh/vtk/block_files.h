@@ -2,9 +2,11 @@
 // The files of a .vtm's blocks: which are ours to write, and which to remove. Not installed.
 #pragma once
 
+#include <pcl_bsh/files/output_folder.h>
 #include <pcl_bsh/files/replace_file.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,7 +23,8 @@ public:
   BlockFiles(const BlockFiles&) = delete;
   BlockFiles& operator=(const BlockFiles&) = delete;
 
-  const std::filesystem::path& folder() const noexcept { return folder_; }
+  /// Makes NAME, unless it is there. @throws FileError
+  void makeFolder();
 
   /// The file of the next block.
   std::filesystem::path next() const;
@@ -40,6 +43,7 @@ public:
 
 private:
   std::filesystem::path folder_;
+  std::optional<files::OutputFolder> made_folder_; ///< goes after the blocks in it
   std::string stem_;
   std::vector<std::filesystem::path> earlier_;
   std::size_t generation_ = 0;

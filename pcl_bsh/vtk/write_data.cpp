@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/files/output_folder.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/vtk/block_files.h>
 #include <pcl_bsh/vtk/write_data.h>
@@ -51,9 +50,9 @@ void writeVtp(vtkPolyData& data, const fs::path& path)
 void writeVtm(const std::vector<NamedData>& blocks, const fs::path& path)
 {
   requireFile(path);
-  BlockFiles pieces(path);
-  const files::OutputFolder folder(pieces.folder());
   files::FileReplacement list(path);
+  BlockFiles pieces(path);
+  pieces.makeFolder();
   for (const NamedData& block : blocks) {
     const fs::path name = pieces.next();
     files::FileReplacement file(name);
