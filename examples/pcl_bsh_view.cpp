@@ -24,7 +24,7 @@ void check(const view::Options& options)
   }
   files.requireApart();
   if (options.screenshot) files::requireWritable(*options.screenshot);
-  if (options.export_to) vtk::requireWritableData(*options.export_to);
+  if (options.export_to) pcl_bsh::vtk::requireWritableData(*options.export_to);
   if (!options.screenshot && !options.export_to && !pcl_bsh::vtk::haveDisplay())
     throw std::runtime_error("DISPLAY: no X server answers there, so no window can open: set DISPLAY, or give "
                              "--screenshot FILE.png, which needs none");
