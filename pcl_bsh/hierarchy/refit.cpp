@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Spheres follow points that move: every voxel keeps its points and its tree, its frame and spheres are measured anew.
 #include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/view_check.h>
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <new>
-#include <stdexcept>
 
 namespace pcl_bsh {
 namespace {
@@ -17,9 +17,11 @@ namespace {
 void requireFit(const PointsView& before, const PointsView& now, double most_growth)
 {
   const std::string name = "SphereHierarchy::refit";
-  const auto refuse = [&](const std::string& what) { throw std::invalid_argument(name + ": " + what); };
+  const auto refuse = [&](const std::string& what, Input input = Input::points) {
+    throw InvalidInput(input, name, what);
+  };
   if (!(std::isfinite(most_growth) && most_growth >= 1.0))
-    refuse("growth " + std::to_string(most_growth) + " is not finite and >= 1");
+    refuse("growth " + std::to_string(most_growth) + " is not finite and >= 1", Input::growth);
   if (now.count != before.count || now.size() != before.size())
     refuse("the view has " + std::to_string(now.count) + " records instead of " + std::to_string(before.count));
   if (now.scalar != before.scalar) refuse("the view has coordinates of another type");

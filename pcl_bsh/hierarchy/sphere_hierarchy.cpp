@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
 #include <pcl_bsh/geometry/rounding.h>
@@ -8,7 +9,6 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 namespace pcl_bsh {
 namespace {
@@ -18,8 +18,9 @@ void check(const PointsView& view, const HierarchyOptions& options)
   checkView("SphereHierarchy", view);
   for (std::size_t i = 0; view.radii && i < view.count; ++i) checkRadius("SphereHierarchy", view, i);
   if (!(options.voxel_edge >= 0.0 && options.voxel_edge <= std::numeric_limits<double>::max()))
-    throw std::invalid_argument("SphereHierarchy: voxel edge " + std::to_string(options.voxel_edge) +
-                                " is not finite and >= 0");
+    throw InvalidInput(Input::voxel_edge, "SphereHierarchy",
+                       "voxel edge " + std::to_string(options.voxel_edge) + " is not finite and >= 0")
+        .withValue(options.voxel_edge);
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/hierarchy/update.h>
 
 #include <pcl_bsh/geometry/float_environment.h>
@@ -11,7 +12,6 @@
 #include <cstring>
 #include <limits>
 #include <new>
-#include <stdexcept>
 #include <string>
 #include <unordered_map>
 
@@ -23,7 +23,7 @@ constexpr double kMostUnused = 0.5; // of the floats in use, before blocks are m
 
 [[noreturn]] void refuse(const std::string& what)
 {
-  throw std::invalid_argument("HierarchyUpdate: " + what);
+  throw InvalidInput(Input::points, "HierarchyUpdate", what);
 }
 
 /// The grid's cell as VoxelSorter numbers it, in the arithmetic of the cloud's scalar type.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/view_check.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
+
 #include <limits>
-#include <stdexcept>
 
 namespace pcl_bsh {
 namespace {
@@ -23,25 +24,31 @@ bool overlap(const PointsView& view, std::size_t offset_a, std::size_t offset_b,
 
 void checkLayout(const std::string& name, const PointsView& view)
 {
-  const auto fail = [&](const std::string& what) { throw std::invalid_argument(name + ": " + what); };
+  const auto fail = [&](const std::string& what, const std::string& remedy) {
+    throw InvalidInput(Input::points, name, what, remedy);
+  };
   const std::size_t width = view.scalar == Scalar::float32 ? sizeof(float) : sizeof(double);
   if (view.count > 1 && view.stride < width)
     fail("the view's stride of " + std::to_string(view.stride) + " bytes puts its " + std::to_string(view.count) +
-         " records over each other: give the bytes from one record to the next, at least " + std::to_string(width));
+             " records over each other",
+         "give the bytes from one record to the next, at least " + std::to_string(width));
   constexpr const char* kAxes[3] = {"x", "y", "z"};
   for (std::size_t j = 0; j < 3; ++j)
     for (std::size_t k = j + 1; k < 3; ++k)
       if (overlap(view, view.offset[j], view.offset[k], width))
         fail(std::string("the view's ") + kAxes[j] + " and " + kAxes[k] + " at bytes " +
-             std::to_string(view.offset[j]) + " and " + std::to_string(view.offset[k]) + " of records that are " +
-             std::to_string(view.stride) + " bytes apart lie over each other: give offset and stride as records are");
+                 std::to_string(view.offset[j]) + " and " + std::to_string(view.offset[k]) + " of records that are " +
+                 std::to_string(view.stride) + " bytes apart lie over each other",
+             "give offset and stride as records are");
 }
 
 } // namespace
 
 void checkView(const std::string& name, const PointsView& view)
 {
-  const auto fail = [&](const std::string& what) { throw std::invalid_argument(name + ": " + what); };
+  const auto fail = [&](const std::string& what, Input input = Input::points) {
+    throw InvalidInput(input, name, what);
+  };
   if (view.count > kMostRecords)
     fail(std::to_string(view.count) + " points are more than an index can name (" + std::to_string(kMostRecords) + ")");
   if (view.count > 0) {
@@ -54,15 +61,19 @@ void checkView(const std::string& name, const PointsView& view)
   for (std::size_t i = 0; i < view.index_count; ++i)
     if (view.indices[i] < 0 || static_cast<std::size_t>(view.indices[i]) >= view.count)
       fail("index " + std::to_string(view.indices[i]) + " is outside the cloud of " + std::to_string(view.count) +
-           " points");
+               " points",
+           Input::index);
 }
 
 void checkRadius(const std::string& name, const PointsView& view, std::size_t record)
 {
   const float radius = view.radii[record];
   if (!(radius >= 0.0f && radius <= std::numeric_limits<float>::max()))
-    throw std::invalid_argument(name + ": radius " + std::to_string(radius) + " of point " + std::to_string(record) +
-                                " is not finite and >= 0");
+    throw InvalidInput(Input::radius, name,
+                       "radius " + std::to_string(radius) + " of point " + std::to_string(record) +
+                           " is not finite and >= 0")
+        .withValue(static_cast<double>(radius))
+        .withIndex(record);
 }
 
 } // namespace pcl_bsh

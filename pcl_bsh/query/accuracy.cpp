@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/query/accuracy.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <stdexcept>
 
 namespace pcl_bsh {
 namespace {
@@ -24,8 +25,8 @@ constexpr std::array<ModeName, 6> mode_names = {{{Accuracy::Mode::exact, "exact"
 
 [[noreturn]] void refuseText(const std::string& text)
 {
-  throw std::invalid_argument("accuracy: '" + text +
-                              "' is none: give exact, float, tolerance=LENGTH, level=N, pairs=N or time=SECONDS");
+  throw InvalidInput(Input::accuracy, "accuracy", "'" + text + "' is none",
+                     "give exact, float, tolerance=LENGTH, level=N, pairs=N or time=SECONDS");
 }
 
 bool isWhole(Accuracy::Mode mode)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points in an axis-aligned box. Comparing coordinates is exact as it stands; spheres only say which points to compare.
 #include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/neighbor_scratch.h>
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 namespace pcl_bsh {
@@ -148,7 +148,7 @@ std::size_t boxSearch(const SphereHierarchy& cloud, const Point3& low, const Poi
 {
   for (std::size_t k = 0; k < 3; ++k)
     if (std::isnan(low[k]) || std::isnan(high[k]))
-      throw std::invalid_argument("box: a bound is NaN: give numbers, infinite ones for a side that is open");
+      throw InvalidInput(Input::box, "box", "a bound is NaN", "give numbers, infinite ones for a side that is open");
   const DefaultFloatEnvironment environment;
   indices.clear();
   Work unasked;

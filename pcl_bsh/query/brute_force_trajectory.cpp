@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/brute_force_points.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/query/trajectory.h>
@@ -29,7 +30,8 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
 {
   check(scan, model_poses, request);
-  if (request.swept) throw std::invalid_argument("brute_force::collideAlong: knows poses only, not what is between");
+  if (request.swept)
+    throw InvalidInput(Input::swept, "brute_force::collideAlong", "knows poses only, not what is between");
   const DefaultFloatEnvironment environment;
   const std::vector<Candidate> points = candidatesOf(scan.hierarchy.view()), obstacles = candidatesOf(model.view());
   std::vector<ExactDistance> distances;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/query/clashes.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/clusters.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
-#include <stdexcept>
 #include <tuple>
 
 namespace pcl_bsh {
@@ -68,13 +68,16 @@ void add(Clash& clash, std::uint32_t record, const Point3& point, const Trajecto
 void check(const PointsView& scan, const TrajectoryResult& found, double cluster_distance)
 {
   if (!(std::isfinite(cluster_distance) && cluster_distance > 0.0)) {
-    throw std::invalid_argument("cluster distance: " + std::to_string(cluster_distance) + ": give a finite length > 0");
+    throw InvalidInput(Input::cluster_distance, "cluster distance", std::to_string(cluster_distance),
+                       "give a finite length > 0")
+        .withValue(cluster_distance);
   }
   for (const std::size_t size : {found.flags.size(), found.distance.size(), found.first_pose.size(),
                                  found.closest_pose.size(), found.closest_point.size()}) {
     if (size == scan.count) continue;
-    throw std::invalid_argument("result: has " + std::to_string(size) + " values for " + std::to_string(scan.count) +
-                                " points: ask for flags, distances, first_poses and closest_poses of this scan");
+    throw InvalidInput(Input::result, "result",
+                       "has " + std::to_string(size) + " values for " + std::to_string(scan.count) + " points",
+                       "ask for flags, distances, first_poses and closest_poses of this scan");
   }
 }
 

@@ -3,9 +3,10 @@
 // cluster stands for all of them; a pair of such nodes of the same cluster is done.
 #include <pcl_bsh/query/clusters.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
+
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -192,7 +193,8 @@ namespace {
 void requireDistance(double distance)
 {
   if (std::isfinite(distance) && distance >= 0.0) return;
-  throw std::invalid_argument("distance: " + std::to_string(distance) + ": give a finite length >= 0");
+  throw InvalidInput(Input::cluster_distance, "distance", std::to_string(distance), "give a finite length >= 0")
+      .withValue(distance);
 }
 
 std::vector<std::uint32_t> finiteRecords(const PointsView& view)

@@ -2,9 +2,9 @@
 #include <pcl_bsh/query/neighbor_scratch.h>
 
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/invalid_input.h>
 
 #include <algorithm>
-#include <stdexcept>
 #include <string>
 
 namespace pcl_bsh {
@@ -43,7 +43,8 @@ void settleTies(const PointsView& view, const Point3& query, NeighborScratch& sc
 
 void checkRadius(double radius)
 {
-  if (!(radius >= 0.0)) throw std::invalid_argument("radius: " + std::to_string(radius) + ": give a length >= 0");
+  if (!(radius >= 0.0))
+    throw InvalidInput(Input::radius, "radius", std::to_string(radius), "give a length >= 0").withValue(radius);
 }
 
 bool isWithin(const Point3& p, const Point3& q, double radius, Work& work)

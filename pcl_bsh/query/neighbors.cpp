@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/neighbors.h>
 
 #include <pcl_bsh/geometry/float_environment.h>
@@ -124,7 +125,7 @@ std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const Po
 std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, unsigned threads)
 {
   checkView("balls", balls);
-  if (!balls.radii) throw std::invalid_argument("balls: the view has no radii: give one per record");
+  if (!balls.radii) throw InvalidInput(Input::radius, "balls", "the view has no radii", "give one per record");
   for (std::size_t i = 0; i < balls.size(); ++i) checkRadius(balls.radius(balls.record(i)));
   std::vector<std::uint8_t> flags(balls.size());
   forEachQuery(cloud.storage(), balls, threads, kNothing, [&](std::size_t i, const Point3& center) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/query/pose_motion.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/trajectory.h>
 
 #include <cmath>
-#include <stdexcept>
 
 namespace pcl_bsh {
 
@@ -64,8 +64,8 @@ Eigen::Isometry3d poseBetween(const Eigen::Isometry3d& from, const Eigen::Isomet
 {
   const PoseMotion motion(from, to, pivot);
   if (fraction > 0.0 && fraction < 1.0 && motion.isAmbiguous())
-    throw std::invalid_argument("motion between two poses: half a turn, and either way round is as short: give a pose "
-                                "between them");
+    throw InvalidInput(Input::pose, "motion between two poses", "half a turn, and either way round is as short",
+                       "give a pose between them");
   return motion.at(fraction);
 }
 

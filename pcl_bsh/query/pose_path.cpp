@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/pose_path.h>
 
 #include <pcl_bsh/geometry/compensated_sum.h>
@@ -101,9 +102,9 @@ double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const S
     if (motion.isAmbiguous()) {
       std::ostringstream message;
       message.imbue(std::locale::classic());
-      message << "swept motion: from pose " << k << " to the next the model turns by half a turn (" << angle
-              << " rad), and either way round is as short: give a pose between them";
-      throw std::invalid_argument(message.str());
+      message << "from pose " << k << " to the next the model turns by half a turn (" << angle
+              << " rad), and either way round is as short";
+      throw InvalidInput(Input::swept, "swept motion", message.str(), "give a pose between them").withIndex(k);
     }
     const double reach = sweep.radius + sweep.reach + way;
     const double cuts = step.cuts =
@@ -125,16 +126,17 @@ double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const S
   if (total <= kMostPoses) {
     const double instants = 0x1p-52 * total * longest;
     if (instants <= sweep.rounding) return total;
-    message << "tolerance of the swept motion: too small: a double tells an instant among " << total
-            << " parts of the motion, each as long as " << longest << ", within a way of " << instants << ", and "
-            << sweep.rounding << " is needed: give a larger tolerance, or fewer poses";
-    throw std::invalid_argument(message.str());
+    message << "too small: a double tells an instant among " << total << " parts of the motion, each as long as "
+            << longest << ", within a way of " << instants << ", and " << sweep.rounding << " is needed";
+    throw InvalidInput(Input::swept, "tolerance of the swept motion", message.str(),
+                       "give a larger tolerance, or fewer poses");
   }
-  message << "tolerance of the swept motion: too small, the motion would be cut into " << total << " parts, "
-          << kMostPoses << " are the most; from pose " << worst << " to the next the model turns by " << worst_angle
-          << " rad and moves by " << worst_way
-          << ": give a larger tolerance, fewer poses, or poses that are nearer to each other";
-  throw std::invalid_argument(message.str());
+  message << "too small, the motion would be cut into " << total << " parts, " << kMostPoses
+          << " are the most; from pose " << worst << " to the next the model turns by " << worst_angle
+          << " rad and moves by " << worst_way;
+  throw InvalidInput(Input::swept, "tolerance of the swept motion", message.str(),
+                     "give a larger tolerance, fewer poses, or poses that are nearer to each other")
+      .withIndex(worst);
 }
 
 void PosePath::add(const Eigen::Isometry3d& scan_pose, const Eigen::Isometry3d& pose, const Eigen::Matrix3d& rotation,

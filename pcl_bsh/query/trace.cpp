@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/query/trace.h>
 
 #include <map>
-#include <stdexcept>
 #include <tuple>
 
 #undef HWY_TARGET_INCLUDE
@@ -134,8 +134,8 @@ CollisionTrace traceCollision(const Placed& a, const Placed& b, const CollisionR
 {
   check(a, b, request);
   if (request.accuracy.stopsEarly())
-    throw std::invalid_argument("accuracy: " + request.accuracy.text() +
-                                " stops early, which is not traced: give exact, float or tolerance");
+    throw InvalidInput(Input::accuracy, "accuracy", request.accuracy.text() + " stops early, which is not traced",
+                       "give exact, float or tolerance");
   const DefaultFloatEnvironment environment;
   return HWY_DYNAMIC_DISPATCH(traceOnTarget)(a, b, request);
 }

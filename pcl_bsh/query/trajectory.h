@@ -20,6 +20,7 @@
 // float alone, pairs that may count or not may do so for one question and not for another.)
 #pragma once
 
+#include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/query/collide.h>
 
 #include <Eigen/Geometry>
@@ -27,7 +28,6 @@
 #include <functional>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 #include <vector>
 
 namespace pcl_bsh {
@@ -47,9 +47,10 @@ struct TrajectoryRequest {
   std::optional<double> swept; ///< finite, > 0: the motion between poses too, to this tolerance
   Point3 pivot = {0, 0, 0};    ///< swept: the point of the model that moves in straight lines
   unsigned threads = 1;        ///< 0: all of the machine's
-  std::function<bool(double)> progress; ///< called now and then, by the calling thread, with the fraction done in [0,
-                                        ///< 1], which never falls, also while nothing is near, and at least once where
-                                        ///< there is anything to do; false: stop, collideAlong() throws Cancelled
+  /// Called now and then, by the calling thread, with the fraction done in [0, 1], which never falls, also while
+  /// nothing is near, and at least once where there is anything to do. False: stop, collideAlong() throws Cancelled.
+  /// What it throws itself comes out of collideAlong().
+  std::function<bool(double)> progress;
 };
 
 /// The model at one pose.
@@ -84,12 +85,6 @@ struct TrajectoryResult {
   /// Swept: no pair comes within the clearance before; at it, one is within clearance + tolerance. Empty when free.
   std::optional<FirstContact> first_contact;
   Work work; ///< leaf pairs count once per pose they were compared at
-};
-
-/// What a query throws when its `progress` says to stop.
-class Cancelled : public std::runtime_error {
-public:
-  Cancelled() : std::runtime_error("stopped on request: no result") {}
 };
 
 /// The model at each of `model_poses` (T_world_model, rigid within 1e-6), against the scan at its pose.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/trajectory_course.h>
 
 #include <pcl_bsh/geometry/rounding.h>
@@ -51,17 +52,19 @@ void checkTolerance(const Placed& scan, const std::vector<Eigen::Isometry3d>& po
   size += 3 * far;
   constexpr double smallest = 0x1p-400; // its square is far from underflow
   const double least = std::max(16 * 0x1p-46 * size, smallest);
-  std::ostringstream message;
-  message.imbue(std::locale::classic());
-  if (!(size < 0x1p100))
-    message << "swept motion: coordinates as large as " << size << ": give the clouds in a larger unit, less than "
-            << 0x1p100;
-  else if (*request.swept < least)
-    message << "tolerance of the swept motion: " << *request.swept << ": too small for coordinates as large as " << size
-            << ": give at least " << least;
-  else
-    return;
-  throw std::invalid_argument(message.str());
+  std::ostringstream wrong, remedy;
+  wrong.imbue(std::locale::classic());
+  remedy.imbue(std::locale::classic());
+  if (!(size < 0x1p100)) {
+    wrong << "coordinates as large as " << size;
+    remedy << "give the clouds in a larger unit, less than " << 0x1p100;
+    throw InvalidInput(Input::swept, "swept motion", wrong.str(), remedy.str()).withValue(size);
+  }
+  if (*request.swept >= least) return;
+  wrong << *request.swept << ": too small for coordinates as large as " << size;
+  remedy << "give at least " << least;
+  throw InvalidInput(Input::swept, "tolerance of the swept motion", wrong.str(), remedy.str())
+      .withValue(*request.swept);
 }
 
 PosePath pathOf(const Placed& scan, const std::vector<Eigen::Isometry3d>& poses, const TrajectoryRequest& request,

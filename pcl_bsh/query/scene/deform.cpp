@@ -2,8 +2,9 @@
 // The effect of that name: an object's points move, and its spheres with them.
 #include <pcl_bsh/query/scene/state.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
+
 #include <chrono>
-#include <stdexcept>
 
 namespace pcl_bsh {
 
@@ -12,9 +13,10 @@ RefitReport Scene::deform(ObjectId object, std::uint32_t part, const PointsView&
   using Clock = std::chrono::steady_clock;
   const Body& body = state_->body(object);
   if (!state_->options.effects.deform)
-    throw std::invalid_argument("Scene: object '" + body.object.name + "' cannot deform: deform is not listed");
+    throw InvalidInput(Input::scene, "Scene", "object '" + body.object.name + "' cannot deform",
+                       "deform is not listed");
   if (part >= body.object.parts.size())
-    throw std::invalid_argument("Scene: object '" + body.object.name + "' has no part " + std::to_string(part));
+    throw InvalidInput(Input::scene, "Scene", "object '" + body.object.name + "' has no part " + std::to_string(part));
   const auto start = Clock::now();
   SphereHierarchy& hierarchy = *body.object.parts[part].hierarchy;
   const RefitReport report = hierarchy.refit(now, *state_->options.effects.deform);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/query/scene/motion.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/query/scene/path.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
 namespace pcl_bsh {
@@ -120,7 +120,7 @@ struct Check {
     for (std::size_t i = 0; i < motion.poses.size(); ++i) checkPose("waypoint " + std::to_string(i), motion.poses[i]);
   }
 
-  [[noreturn]] static void fail(const std::string& what) { throw std::invalid_argument("motion: " + what); }
+  [[noreturn]] static void fail(const std::string& what) { throw InvalidInput(Input::motion, "motion", what); }
 };
 
 } // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Objects, poses, rules: what a scene is. What it computes is in effects.cpp and response.cpp.
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/scene.h>
 
 #include <pcl_bsh/geometry/float_environment.h>
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <type_traits>
 
 namespace pcl_bsh {
@@ -17,7 +17,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& what)
 {
-  throw std::invalid_argument("Scene: " + what);
+  throw InvalidInput(Input::scene, "Scene", what);
 }
 
 bool isLength(double value)

@@ -12,10 +12,13 @@ public:
   template <class Function>
   void execute(const Function& function)
   {
-    const int outer = threadsHere();
+    struct Outer { // comes back when the function throws, too
+      ~Outer() { threadsHere() = threads; }
+      int threads = threadsHere();
+    };
+    const Outer outer;
     threadsHere() = threads_;
     function();
-    threadsHere() = outer;
   }
 
   /// Threads for parallel_for() when this thread calls it.

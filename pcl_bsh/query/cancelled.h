@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <stdexcept>
+
+namespace pcl_bsh {
+
+/// What ends work that its caller has asked to stop. Every object is as it was before, or asked again gives the right
+/// answer.
+class Cancelled : public std::runtime_error {
+public:
+  Cancelled() : std::runtime_error("stopped on request: no result") {}
+};
+
+} // namespace pcl_bsh
