@@ -83,7 +83,11 @@ std::optional<Options> parse(int argc, char** argv)
   options.threads = cli::parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
   if (options.poses == 0) throw cli::UsageError("--poses: 0: give a number of poses, 1 or more");
   if (options.repetitions == 0) throw cli::UsageError("--repeat: 0: give a number, 1 or more");
-  if (!pose.empty()) options.pose = cli::parsePose("--pose", pose);
+  if (!pose.empty()) {
+    std::vector<std::string> warnings;
+    options.pose = cli::parsePose("--pose", pose, warnings);
+    cli::warn(program, warnings);
+  }
   options.files.reads("A", a).reads("B", b).reads("--trajectory", trajectory).readsPose("--pose", pose);
   for (const char* name : results) options.files.writes("--out", options.out / name);
   return options;
@@ -128,7 +132,9 @@ std::vector<Eigen::Isometry3d> posesAbout(const Options& options, double diamete
 /// The file's poses, or some of them.
 std::vector<Eigen::Isometry3d> posesOfFile(const std::filesystem::path& file)
 {
-  const std::vector<Eigen::Isometry3d> all = io::readPoses(file);
+  std::vector<std::string> warnings;
+  const std::vector<Eigen::Isometry3d> all = io::readPoses(file, &warnings);
+  cli::warn(program, warnings);
   if (all.size() <= most_poses) return all;
   std::vector<Eigen::Isometry3d> some;
   for (std::size_t i = 0; i < most_poses; ++i) some.push_back(all[i * (all.size() - 1) / (most_poses - 1)]);

@@ -34,16 +34,15 @@ struct Scan {
   io::Viewpoint viewpoint = io::no_viewpoint;
 };
 
-/// The core names what is wrong with a request as `what: wrong: remedy`; users know it by the option.
+/// The core names what is wrong with a request; users know it by the option.
 template <typename Ask>
 void requireAccepted(const char* option, const Ask& ask)
 {
   try {
     ask(SphereHierarchy{PointsView{}});
   }
-  catch (const std::invalid_argument& error) {
-    const std::string message = error.what();
-    throw std::invalid_argument(option + message.substr(std::min(message.find(':'), message.size())));
+  catch (const InvalidInput& error) {
+    throw std::invalid_argument(std::string(option) + ": " + error.advice());
   }
 }
 
@@ -196,7 +195,7 @@ std::string distanceText(const cli::CollisionReport& report)
 
 void summarise(const Options& options, const cli::CollisionReport& report, const std::vector<Clash>& clashes)
 {
-  for (const std::string& warning : report.warnings) std::cerr << program << ": warning: " << warning << '\n';
+  cli::warn(program, report.warnings);
   std::ostream& out = options.files.summary();
   out << report.colliding << " of " << report.input.points << " points collide";
   if (report.accuracy.stopsEarly()) out << ", " << report.undecided << " are undecided";
@@ -312,9 +311,9 @@ std::vector<Clash> listClashes(const Options& options, const std::vector<Eigen::
   return list.clashes;
 }
 
-std::vector<Eigen::Isometry3d> posesOf(const Options& options)
+std::vector<Eigen::Isometry3d> posesOf(const Options& options, std::vector<std::string>& warnings)
 {
-  if (!options.trajectory.empty()) return io::readPoses(options.trajectory);
+  if (!options.trajectory.empty()) return io::readPoses(options.trajectory, &warnings);
   return options.path.empty() ? std::vector{options.pose} : options.path;
 }
 
@@ -331,8 +330,9 @@ std::vector<Clash> readEarlier(const Options& options, std::vector<std::string>&
 int collide(const Options& options)
 {
   check(options);
-  const std::vector<Eigen::Isometry3d> poses = posesOf(options);
   cli::CollisionReport report;
+  report.warnings = options.warnings;
+  const std::vector<Eigen::Isometry3d> poses = posesOf(options, report.warnings);
   const std::vector<Clash> earlier = readEarlier(options, report.warnings);
   report.clearance = options.request.clearance;
   report.accuracy = options.request.accuracy;

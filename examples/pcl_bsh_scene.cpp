@@ -175,6 +175,7 @@ void printSummary(const io::SceneFile& file, const cli::SceneTotals& totals)
 int runScene(const Options& options)
 {
   const io::SceneFile file = io::readSceneFile(options.scene);
+  cli::warn(program, file.warnings);
   if (options.explain) cli::explain(file, std::cout);
   if (options.validate) std::cout << options.scene.string() << ": is sound: " << file.objects.size() << " objects\n";
   if (options.explain || options.validate) return 0;

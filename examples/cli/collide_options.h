@@ -7,6 +7,7 @@
 #include "used_files.h"
 
 #include <pcl_bsh/filters/io/field_type.h>
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/trajectory.h>
 
 #include <cmath>
@@ -36,6 +37,7 @@ struct CollideOptions {
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;
   CollisionRequest request;
+  std::vector<std::string> warnings; ///< of the options themselves
 
   bool moves() const { return !trajectory.empty() || !path.empty(); }
 
@@ -69,8 +71,8 @@ inline Accuracy parseAccuracy(const std::string& text)
   try {
     return Accuracy::parse(text);
   }
-  catch (const std::invalid_argument& error) {
-    throw UsageError(std::string("--") + error.what());
+  catch (const InvalidInput& error) {
+    throw UsageError("--accuracy: " + error.advice());
   }
 }
 
@@ -143,12 +145,13 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   options.request.threads = parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
   options.request.accuracy = parseAccuracy(accuracy);
   path.requireSense(pose);
-  if (!pose.empty()) options.pose = parsePose("--pose", pose);
+  if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
   options.trajectory = path.file;
   if (path.isStraight()) {
     const auto steps = parseOption<std::uint32_t>("--steps", path.steps, "give a number of steps");
     if (steps == 0 || steps > 10'000'000) throw UsageError("--steps: " + path.steps + ": give 1 to 10000000");
-    options.path = straightRun(parsePose("--from", path.from), parsePose("--to", path.to), steps);
+    const Eigen::Isometry3d from = parsePose("--from", path.from, options.warnings);
+    options.path = straightRun(from, parsePose("--to", path.to, options.warnings), steps);
   }
   if (!path.swept.empty()) options.swept = parseOption<double>("--swept", path.swept, "give a length > 0");
   options.clashes.assign(clashes.begin(), clashes.end());

@@ -6,6 +6,7 @@
 
 #include <pcl_bsh/filters/io/cloud_file_error.h>
 #include <pcl_bsh/filters/io/pose_text.h>
+#include <pcl_bsh/filters/io/rigid_pose.h>
 
 #include <Eigen/Geometry>
 
@@ -16,10 +17,18 @@
 namespace pcl_bsh::cli {
 
 /// What stands behind an option for a pose: six numbers x,y,z,roll,pitch,yaw or the name of a file for io::readPose().
+/// A matrix that few printed digits have left with |R'R - I| from 1e-6 to 1e-4 stands for its nearest rotation, of
+/// which `warnings` gets a line.
 /// @throws UsageError when it is neither, io::CloudFileError as readPose() does
-inline Eigen::Isometry3d parsePose(const std::string& option, const std::string& text)
+inline Eigen::Isometry3d parsePose(const std::string& option, const std::string& text,
+                                   std::vector<std::string>& warnings)
 {
-  if (std::filesystem::exists(text)) return io::readPose(text);
+  if (std::filesystem::exists(text)) {
+    const io::RigidPose rigid = io::nearestRigid(io::readPose(text));
+    if (rigid.deviation > 0)
+      warnings.push_back(option + ": " + text + ": " + io::nearestRotationWarning(rigid.deviation));
+    return rigid.pose;
+  }
   try {
     const std::vector<double> n = io::numbersOf(text);
     if (n.size() == 6) return io::poseFrom(n);

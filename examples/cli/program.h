@@ -9,6 +9,8 @@
 #include <iostream>
 #include <new>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace pcl_bsh::cli {
 
@@ -17,6 +19,12 @@ class UsageError : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;
 };
+
+/// A line each on stderr.
+inline void warn(const char* name, const std::vector<std::string>& warnings)
+{
+  for (const std::string& warning : warnings) std::cerr << name << ": warning: " << warning << '\n';
+}
 
 /// What was said may be what the user wants: a full disk must not pass for success.
 inline void requireAllSaid()

@@ -3,6 +3,10 @@
 #include <pcl_bsh/filters/io/json_reader.h>
 #include <pcl_bsh/filters/io/nearest_name.h>
 #include <pcl_bsh/filters/io/pose_text.h>
+#include <pcl_bsh/filters/io/rigid_pose.h>
+
+#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/query/request_check.h>
 
 #include <algorithm>
 #include <cmath>
@@ -136,7 +140,7 @@ Eigen::Vector3d JsonReader::vector() const
   return {v[0], v[1], v[2]};
 }
 
-Eigen::Isometry3d JsonReader::pose() const
+Eigen::Isometry3d JsonReader::pose(std::vector<std::string>& warnings) const
 {
   const std::size_t count = json_->is_array() ? json_->size() : 0;
   if (count != 3 && count != 6 && count != 12 && count != 16)
@@ -144,13 +148,15 @@ Eigen::Isometry3d JsonReader::pose() const
          "give [x, y, z], [x, y, z, roll, pitch, yaw] with radians, or the 12 or 16 numbers of a matrix, row by row");
   std::vector<double> n = numbers(count);
   if (count == 3) n.resize(6);
-  const Eigen::Isometry3d pose = poseFrom(n);
-  if (count <= 6) return pose;
-  const Eigen::Matrix3d r = pose.linear();
-  const bool last_row = pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
-  if (!last_row || !((r.transpose() * r - Eigen::Matrix3d::Identity()).norm() <= 1e-6) || r.determinant() < 0.0)
+  const RigidPose rigid = nearestRigid(poseFrom(n));
+  try {
+    checkPose(place_, rigid.pose);
+  }
+  catch (const InvalidInput&) {
     fail("is no rigid transform", "give a rotation without scale or mirror, and 0 0 0 1 as last row");
-  return pose;
+  }
+  if (rigid.deviation > 0) warnings.push_back(place_ + ": " + nearestRotationWarning(rigid.deviation));
+  return rigid.pose;
 }
 
 } // namespace pcl_bsh::io

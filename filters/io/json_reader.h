@@ -49,7 +49,10 @@ public:
   std::string oneOf(const std::vector<std::string>& valid) const;
   std::vector<double> numbers(std::size_t count) const;
   Eigen::Vector3d vector() const;
-  Eigen::Isometry3d pose() const; ///< x y z roll pitch yaw (radians), or the 12 or 16 numbers of a matrix, row by row
+
+  /// x y z roll pitch yaw (radians), or the 12 or 16 numbers of a matrix, row by row; one that few printed digits have
+  /// left with |R'R - I| from 1e-6 to 1e-4 stands for its nearest rotation, of which `warnings` gets a line.
+  Eigen::Isometry3d pose(std::vector<std::string>& warnings) const;
 
 private:
   JsonReader child(const Json& json, const std::string& step) const;

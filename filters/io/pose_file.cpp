@@ -4,14 +4,15 @@
 #include <pcl_bsh/filters/io/file_bytes.h>
 #include <pcl_bsh/filters/io/number_text.h>
 #include <pcl_bsh/filters/io/pose_file.h>
-#include <pcl_bsh/filters/io/pose_text.h>
+#include <pcl_bsh/filters/io/rigid_pose.h>
 #include <pcl_bsh/filters/io/text_cursor.h>
 
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/query/request_check.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <stdexcept>
 
 namespace pcl_bsh::io {
 
@@ -42,25 +43,24 @@ Eigen::Isometry3d fromQuaternion(const std::vector<double>& n, const TextCursor&
 }
 
 /// What a query would say to the pose.
-void requireRigid(const Eigen::Isometry3d& pose, const SphereHierarchy& nothing, const TextCursor& cursor)
+void requireRigid(const Eigen::Isometry3d& pose, const TextCursor& cursor)
 {
   try {
-    anyCollision({nothing}, {nothing, pose}, {});
+    checkPose("pose", pose);
   }
-  catch (const std::invalid_argument& error) { // `pose of b: what is wrong: what to do`
-    const std::string message = error.what();
-    const std::size_t begin = message.find(": ") + 2;
-    cursor.fail("holds no pose, " + message.substr(begin, message.rfind(": ") - begin));
+  catch (const InvalidInput& error) {
+    cursor.fail("holds no pose, " + error.wrong());
   }
 }
 
 } // namespace
 
-std::vector<Eigen::Isometry3d> parsePoses(std::string_view text)
+std::vector<Eigen::Isometry3d> parsePoses(std::string_view text, std::vector<std::string>* warnings)
 {
-  const SphereHierarchy nothing{PointsView{}};
   std::vector<Eigen::Isometry3d> poses;
   std::size_t columns = 0;
+  std::size_t replaced = 0; // matrices that others took the place of
+  double worst = 0;         // deviation of these
   TextCursor cursor(text, '#');
   while (cursor.nextLine()) {
     const std::vector<double> numbers = numbersOfLine(cursor);
@@ -72,18 +72,28 @@ std::vector<Eigen::Isometry3d> parsePoses(std::string_view text)
       cursor.fail("has " + count + " numbers, the lines before have " + std::to_string(columns));
     }
     columns = numbers.size();
-    poses.push_back(columns == 8 ? fromQuaternion(numbers, cursor) : fromMatrix(numbers));
-    requireRigid(poses.back(), nothing, cursor);
+    const RigidPose rigid = nearestRigid(columns == 8 ? fromQuaternion(numbers, cursor) : fromMatrix(numbers));
+    requireRigid(rigid.pose, cursor);
+    poses.push_back(rigid.pose);
+    if (rigid.deviation > 0) ++replaced;
+    worst = std::max(worst, rigid.deviation);
   }
   if (poses.empty()) throw FormatError("holds no pose");
+  if (warnings && replaced > 0)
+    warnings->push_back(std::to_string(replaced) + " of " + std::to_string(poses.size()) + " poses: the worst " +
+                        nearestRotationWarning(worst));
   return poses;
 }
 
-std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path)
+std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path, std::vector<std::string>* warnings)
 {
   const FileBytes file(path);
   try {
-    return parsePoses(file.view());
+    std::vector<std::string> found;
+    std::vector<Eigen::Isometry3d> poses = parsePoses(file.view(), &found);
+    if (warnings)
+      for (const std::string& warning : found) warnings->push_back(path.string() + ": " + warning);
+    return poses;
   }
   catch (const FormatError& error) {
     throw CloudFileError(path, error.what(), forms_of_a_pose);

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,14 +19,18 @@ namespace pcl_bsh::io {
 ///   16  all four rows
 ///    8  time tx ty tz qx qy qz qw (TUM); the time is not used, the quaternion is normalised
 ///
+/// A matrix that few printed digits have left with |R'R - I| from 1e-6 to 1e-4 stands for its nearest rotation.
+///
+/// @param warnings if not null, gets a line that counts these
 /// @throws CloudFileError naming the file and the line: another number of numbers, or not that of the lines before; a
-///   word that is no number; a matrix that is not rigid (|R'R - I| > 1e-6, a mirror, a last row other than 0 0 0 1); a
+///   word that is no number; a matrix that is not rigid (|R'R - I| > 1e-4, a mirror, a last row other than 0 0 0 1); a
 ///   quaternion whose length is off 1 by more than 1e-3; a value that is not finite. Also when the file cannot be read
 ///   or holds no pose.
-std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path);
+std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path,
+                                         std::vector<std::string>* warnings = nullptr);
 
 /// The same, of a text. @throws FormatError naming the line
-std::vector<Eigen::Isometry3d> parsePoses(std::string_view text);
+std::vector<Eigen::Isometry3d> parsePoses(std::string_view text, std::vector<std::string>* warnings = nullptr);
 
 /// Writes twelve numbers a line, which read back to the same bits. The file appears complete or not at all.
 /// @throws CloudFileError

@@ -7,6 +7,7 @@
 #include <pcl_bsh/filters/io/json_reader.h>
 #include <pcl_bsh/filters/io/nearest_name.h>
 #include <pcl_bsh/filters/io/pose_file.h>
+#include <pcl_bsh/filters/io/rigid_pose.h>
 #include <pcl_bsh/filters/io/shape_points.h>
 
 #include <algorithm>
@@ -17,9 +18,10 @@
 namespace pcl_bsh::io {
 namespace {
 
-constexpr double kMostPoints = 1e8;  // of a shape
-constexpr double kMostObjects = 1e6; // of a scene
-constexpr double kSmallest = 1e-300; // stands for "more than 0"
+constexpr double kMostPoints = 1e8;           // of a shape
+constexpr double kMostObjects = 1e6;          // of a scene
+constexpr double kSmallest = 1e-300;          // stands for "more than 0"
+constexpr std::size_t kMostBounces = 1000000; // of all that is scattered: each is a pose in memory
 
 class SceneParser {
 public:
@@ -201,7 +203,7 @@ private:
     if (reader.has("parts")) parseParts(reader.at("parts"), object);
     if (reader.has("adjacent")) parseAdjacent(reader.at("adjacent"), object);
     if (reader.has("group")) object.group = reader.at("group").text();
-    if (reader.has("pose")) object.pose = reader.at("pose").pose();
+    if (reader.has("pose")) object.pose = reader.at("pose").pose(file_.warnings);
     if (reader.has("fixed")) object.fixed = reader.at("fixed").boolean();
     if (reader.has("motion")) object.motion = parseMotion(reader.at("motion"));
     if (object.fixed && !std::holds_alternative<NoMotion>(object.motion))
@@ -220,12 +222,12 @@ private:
     object.wave->period = reader.at("period").number(kSmallest);
   }
 
-  void parseParts(const JsonReader& reader, ObjectEntry& object) const
+  void parseParts(const JsonReader& reader, ObjectEntry& object)
   {
     for (const JsonReader& element : reader.elements()) {
       element.requireKeys({"name", "cloud", "pose"});
       PartEntry part{element.at("name").text(), cloudName(element.at("cloud")), Eigen::Isometry3d::Identity()};
-      if (element.has("pose")) part.pose = element.at("pose").pose();
+      if (element.has("pose")) part.pose = element.at("pose").pose(file_.warnings);
       for (const PartEntry& other : object.parts)
         if (other.name == part.name) element.at("name").fail("'" + part.name + "' is taken", "give another name");
       object.parts.push_back(std::move(part));
@@ -248,7 +250,7 @@ private:
     }
   }
 
-  Motion parseMotion(const JsonReader& reader) const
+  Motion parseMotion(const JsonReader& reader)
   {
     if (!reader.json().is_object() || reader.json().size() != 1)
       reader.fail("is not one motion", "give { \"velocity\" | \"circular\" | \"waypoints\" | \"trajectory\": ... }");
@@ -283,7 +285,7 @@ private:
         if (!motion.times.empty() && time <= motion.times.back())
           point.at("time").fail("is not later than the one before", "let times ascend");
         motion.times.push_back(time);
-        motion.poses.push_back(point.at("pose").pose());
+        motion.poses.push_back(point.at("pose").pose(file_.warnings));
       }
       if (motion.poses.empty()) reader.at("waypoints").fail("is empty", "give at least one { \"time\", \"pose\" }");
       return motion;
@@ -291,16 +293,17 @@ private:
     return parseTrajectory(reader.at("trajectory"));
   }
 
-  Motion parseTrajectory(const JsonReader& reader) const
+  Motion parseTrajectory(const JsonReader& reader)
   {
     reader.requireKeys({"file", "interval", "base"});
     const std::filesystem::path file = existing(reader.at("file"));
     const double interval = reader.has("interval") ? reader.at("interval").number(kSmallest) : file_.dt;
-    const Eigen::Isometry3d base = reader.has("base") ? reader.at("base").pose() : Eigen::Isometry3d::Identity();
+    const Eigen::Isometry3d base =
+        reader.has("base") ? reader.at("base").pose(file_.warnings) : Eigen::Isometry3d::Identity();
     WaypointMotion motion;
-    for (const Eigen::Isometry3d& pose : readPoses(file)) {
+    for (const Eigen::Isometry3d& pose : readPoses(file, &file_.warnings)) {
       motion.times.push_back(interval * static_cast<double>(motion.times.size()));
-      motion.poses.push_back(base * pose);
+      motion.poses.push_back(nearestRigid(base * pose).pose); // two that are barely rigid may make one that is not
     }
     return motion;
   }
@@ -329,14 +332,14 @@ private:
         velocity[k] = speed * (2.0 * uniform() - 1.0);
       }
       object.pose.translation() = place;
-      if (speed > 0.0) object.motion = drift(place, velocity, low, high);
+      if (speed > 0.0) object.motion = drift(place, velocity, low, high, reader);
       file_.objects.push_back(std::move(object));
     }
   }
 
   /// As long as the scene lasts.
   WaypointMotion drift(Eigen::Vector3d place, Eigen::Vector3d velocity, const Eigen::Vector3d& low,
-                       const Eigen::Vector3d& high) const
+                       const Eigen::Vector3d& high, const JsonReader& reader)
   {
     WaypointMotion motion;
     const double end = file_.dt * static_cast<double>(file_.steps);
@@ -358,6 +361,9 @@ private:
       }
       place = (place + free * velocity).cwiseMax(low).cwiseMin(high);
       if (side >= 0) velocity[side] = -velocity[side];
+      if (side >= 0 && ++bounces_ > kMostBounces)
+        reader.fail("bounces more than a million times until the scene ends",
+                    "give a smaller 'speed' or 'count', fewer 'steps', a smaller 'dt' or a larger box");
       if (!(free > 1e-9)) { // caught in a corner or between sides that touch
         velocity.setZero();
         free = end - time;
@@ -413,6 +419,7 @@ private:
   SceneFile file_;
   std::vector<std::string> cloud_names_;
   std::set<std::string> object_names_;
+  std::size_t bounces_ = 0; ///< of all scattered objects so far
 };
 
 } // namespace

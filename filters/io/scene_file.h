@@ -72,6 +72,7 @@ struct SceneFile {
   std::vector<ObjectEntry> objects;
   std::vector<RuleEntry> rules;
   CloudOutput cloud_output = CloudOutput::none;
+  std::vector<std::string> warnings; ///< what its reader should tell the user, a line each
 };
 
 /// Reads and checks a scene, but none of its clouds: those must only be there.
@@ -93,7 +94,8 @@ public:
 
   Scene& scene() { return *scene_; }
 
-  /// A cloud's points as they were read, scaled and shifted; of a shape, x y z.
+  /// A cloud's points as they were read, scaled and shifted; of a shape, x y z. float32 coordinates have become float64
+  /// where float32 cannot hold what scale and shift make of them.
   const pcl::PCLPointCloud2& cloud(const std::string& name) const { return clouds_.at(name).points; }
   std::size_t points() const; ///< of all clouds
 

@@ -6,8 +6,10 @@
 #include <pcl_bsh/filters/io/scene_file.h>
 #include <pcl_bsh/filters/io/shape_points.h>
 
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/search/cloud_view.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -25,29 +27,89 @@ pcl::PCLPointCloud2 cloudOf(const std::vector<float>& xyz)
   return cloud;
 }
 
-template <class T>
-void placeField(pcl::PCLPointCloud2& cloud, std::size_t offset, double scale, double shift)
+Point3 placed(const Point3& p, const CloudSource& source)
 {
-  for (std::size_t i = 0; i < std::size_t{cloud.width} * cloud.height; ++i) {
-    unsigned char* at = cloud.data.data() + i * cloud.point_step + offset;
-    T value;
-    std::memcpy(&value, at, sizeof value);
-    value = static_cast<T>(scale * static_cast<double>(value) + shift);
-    std::memcpy(at, &value, sizeof value);
+  Point3 at;
+  for (std::size_t k = 0; k < 3; ++k) at[k] = source.scale * p[k] + source.shift[static_cast<Eigen::Index>(k)];
+  return at;
+}
+
+bool fitsFloat(const Point3& p)
+{
+  const auto fits = [](double x) { return std::isnan(x) || static_cast<double>(roundToFloat(x)) == x; };
+  return fits(p[0]) && fits(p[1]) && fits(p[2]);
+}
+
+/// The same cloud with x, y and z as float64, whatever lies between its fields left out.
+pcl::PCLPointCloud2 withWideCoordinates(const pcl::PCLPointCloud2& cloud)
+{
+  pcl::PCLPointCloud2 wide;
+  wide.header = cloud.header;
+  wide.is_dense = cloud.is_dense;
+  std::vector<pcl::PCLPointField> fields = cloud.fields;
+  fields.erase(std::remove_if(fields.begin(), fields.end(), [](const auto& field) { return field.name == "_"; }),
+               fields.end());
+  const auto is_coordinate = [](const pcl::PCLPointField& field) {
+    return field.name == "x" || field.name == "y" || field.name == "z";
+  };
+  for (const pcl::PCLPointField& field : fields) {
+    addField(wide, field.name, is_coordinate(field) ? std::uint8_t{pcl::PCLPointField::FLOAT64} : field.datatype,
+             field.count == 0 ? 1 : field.count);
+  }
+  allocate(wide, cloud.width, cloud.height);
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const std::uint8_t* from = cloud.data.data() + fields[f].offset;
+    std::uint8_t* to = wide.data.data() + wide.fields[f].offset;
+    const std::size_t bytes = sizeOf(fields[f]);
+    for (std::size_t i = 0; i < std::size_t{cloud.width} * cloud.height; ++i) {
+      float narrow;
+      if (is_coordinate(fields[f])) {
+        std::memcpy(&narrow, from, sizeof narrow);
+        const double coordinate = narrow;
+        std::memcpy(to, &coordinate, sizeof coordinate);
+      }
+      else {
+        std::memcpy(to, from, bytes);
+      }
+      from += cloud.point_step;
+      to += wide.point_step;
+    }
+  }
+  return wide;
+}
+
+void write(pcl::PCLPointCloud2& cloud, const PointsView& view, std::size_t i, const Point3& p)
+{
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::uint8_t* const at = cloud.data.data() + i * view.stride + view.offset[k];
+    const float narrow = roundToFloat(p[k]);
+    if (view.scalar == Scalar::float32)
+      std::memcpy(at, &narrow, sizeof narrow);
+    else
+      std::memcpy(at, &p[k], sizeof(double));
   }
 }
 
-void scaleAndShift(pcl::PCLPointCloud2& cloud, const CloudSource& source)
+/// Nothing is rounded to float32: the cloud gets float64 coordinates where they are needed.
+void scaleAndShift(pcl::PCLPointCloud2& cloud, const CloudSource& source, const std::string& file)
 {
   if (source.scale == 1.0 && source.shift.isZero(0.0)) return;
-  const PointsView view = viewOf(cloud);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double shift = source.shift[static_cast<Eigen::Index>(k)];
-    if (view.scalar == Scalar::float32)
-      placeField<float>(cloud, view.offset[k], source.scale, shift);
-    else
-      placeField<double>(cloud, view.offset[k], source.scale, shift);
+  PointsView view = viewOf(cloud);
+  bool fits = true;
+  for (std::uint32_t i = 0; i < view.count; ++i) {
+    const Point3 p = view.point(i);
+    if (!isFinite(p)) continue;
+    const Point3 at = placed(p, source);
+    if (!isFinite(at))
+      throw JsonError(file, source.place, "scale and shift take point " + std::to_string(i) + " beyond all numbers",
+                      "give smaller ones");
+    fits = fits && fitsFloat(at);
   }
+  if (view.scalar == Scalar::float32 && !fits) {
+    cloud = withWideCoordinates(cloud);
+    view = viewOf(cloud);
+  }
+  for (std::uint32_t i = 0; i < view.count; ++i) write(cloud, view, i, placed(view.point(i), source));
 }
 
 std::vector<double> coordinatesOf(const PointsView& view)
@@ -82,7 +144,7 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
     Loaded& loaded = clouds_[source.name];
     loaded.points =
         source.shape.empty() ? readCloud(source.file) : cloudOf(shapePoints(source.shape, source.size, source.spacing));
-    scaleAndShift(loaded.points, source);
+    scaleAndShift(loaded.points, source, file.path.string());
     HierarchyOptions options;
     options.threads = file.options.threads;
     loaded.hierarchy = std::make_shared<SphereHierarchy>(viewOf(loaded.points), options);

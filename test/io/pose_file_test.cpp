@@ -7,6 +7,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
 namespace pcl_bsh::io {
 
 using Poses = std::vector<Eigen::Isometry3d>;
@@ -76,6 +80,50 @@ TEST_F(PoseFile, QuaternionsOfFewDigitsAreNormalised)
 {
   const Poses poses = read("0 1 2 3 0 0 0.7071 0.7071\n");
   EXPECT_LT((poses[0].linear().transpose() * poses[0].linear() - Eigen::Matrix3d::Identity()).norm(), 1e-15);
+}
+
+/// Rotations all over, as printed with so many digits.
+std::string printed(int count, int digits)
+{
+  std::ostringstream text;
+  text << std::setprecision(digits);
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Matrix3d r =
+        Eigen::AngleAxisd(0.37 * i, Eigen::Vector3d(std::sin(i), std::cos(3 * i), std::sin(2 * i + 1)).normalized())
+            .toRotationMatrix();
+    for (int row = 0; row < 3; ++row) text << r(row, 0) << ' ' << r(row, 1) << ' ' << r(row, 2) << ' ' << row << ' ';
+    text << '\n';
+  }
+  return text.str();
+}
+
+TEST_F(PoseFile, PrintedMatricesStandForTheirNearestRotations)
+{
+  for (const int digits : {6, 5}) {
+    std::vector<std::string> warnings;
+    const Poses poses = readPoses(folder.write("poses.txt", printed(200, digits)), &warnings);
+    ASSERT_EQ(poses.size(), 200U);
+    const Poses exact = read(printed(200, 17));
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const Eigen::Matrix3d r = poses[i].linear();
+      EXPECT_LE((r.transpose() * r - Eigen::Matrix3d::Identity()).norm(), 1e-6) << i;
+      EXPECT_LE((r - exact[i].linear()).norm(), 2 * std::pow(10.0, -digits)) << i;
+      EXPECT_EQ(poses[i].translation(), Eigen::Vector3d(0, 1, 2));
+    }
+    ASSERT_EQ(warnings.size(), 1U) << digits;
+    EXPECT_THAT(warnings[0], HasSubstr("poses.txt: "));
+    EXPECT_THAT(warnings[0], HasSubstr(" of 200 poses: the worst |R'R - I| is "));
+  }
+  std::vector<std::string> warnings;
+  readPoses(folder.write("poses.txt", printed(50, 9)), &warnings);
+  EXPECT_THAT(warnings, testing::IsEmpty()) << "rigid as they are";
+  EXPECT_THROW(read(printed(50, 3)), CloudFileError);
+}
+
+TEST_F(PoseFile, MayBeginWithTheMarkOfUtf8)
+{
+  expectQuarterTurn(read("\xef\xbb\xbf"
+                         "1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 1 1 0 0 2 0 0 1 3\n"));
 }
 
 TEST_F(PoseFile, RefusesLinesByNumber)

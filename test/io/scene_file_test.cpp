@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/io/cloud_file.h>
+#include <pcl_bsh/filters/io/field_type.h>
 #include <pcl_bsh/filters/io/json_reader.h>
 #include <pcl_bsh/filters/io/scene_file.h>
 #include <pcl_bsh/filters/io/shape_points.h>
@@ -9,6 +11,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
+#include <memory>
 
 namespace pcl_bsh::io {
 namespace {
@@ -79,7 +83,10 @@ TEST(SceneFile, BecomesAScene)
   }
   const Eigen::Vector3d moon = world.scene()[3].pose.translation();
   EXPECT_NEAR(moon.head<2>().norm(), 3, 0.5); // it falls, for there is no ground
-  for (ObjectId i = 5; i < 9; ++i) EXPECT_TRUE((world.scene()[i].pose.translation().head<2>().array() <= 25).all());
+  for (ObjectId i = 5; i < 9; ++i) {
+    const Eigen::Array2d at = world.scene()[i].pose.translation().head<2>().array();
+    EXPECT_TRUE((at >= 20).all() && (at <= 25).all()) << i;
+  }
 }
 
 std::string errorOf(const std::string& text)
@@ -163,6 +170,102 @@ TEST(SceneFile, FindsCloudsBesideItself)
   SceneWorld world(file);
   EXPECT_EQ(world.points(), 2u);
   EXPECT_EQ(world.scene()[0].parts[0].hierarchy->view().point(1), (Point3{3, 4, 6}));
+}
+
+/// The view of a cloud of one file, scaled and shifted.
+PointsView placed(const TemporaryFolder& folder, const std::string& file, const std::string& where,
+                  std::unique_ptr<SceneWorld>& world)
+{
+  const auto scene = folder.write("scene.json", R"({"clouds": {"a": {"file": ")" + file + R"(", )" + where +
+                                                    R"(}}, "objects": [{"name": "a", "cloud": "a"}]})");
+  world = std::make_unique<SceneWorld>(readSceneFile(scene));
+  return world->scene()[0].parts[0].hierarchy->view();
+}
+
+TEST(SceneFile, ShiftsLoseNothing)
+{
+  const TemporaryFolder folder;
+  pcl::PCLPointCloud2 cloud = randomCloud<float>(50, 1, {});
+  writeCloud(folder / "local.pcd", cloud);
+  std::unique_ptr<SceneWorld> world;
+  // In UTM coordinates, float32 counts in steps of a half.
+  const PointsView far = placed(folder, "local.pcd", R"("shift": [500000, 5400000, 100])", world);
+  EXPECT_EQ(far.scalar, Scalar::float64);
+  const PointsView local = viewOf(cloud);
+  const pcl::PCLPointCloud2& moved = world->cloud("a");
+  ASSERT_EQ(moved.fields.size(), cloud.fields.size());
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    const Point3 p = local.point(i);
+    if (isFinite(p)) EXPECT_EQ(far.point(i), (Point3{p[0] + 500000, p[1] + 5400000, p[2] + 100})) << i;
+    for (std::size_t f = 0; f < cloud.fields.size(); ++f) {
+      const pcl::PCLPointField &was = cloud.fields[f], &is = moved.fields[f];
+      ASSERT_EQ(is.name, was.name);
+      if (was.name.size() == 1 && was.name >= "x" && was.name <= "z") continue;
+      ASSERT_EQ(is.datatype, was.datatype);
+      EXPECT_EQ(std::memcmp(&moved.data[i * moved.point_step + is.offset],
+                            &cloud.data[i * cloud.point_step + was.offset], sizeOf(was)),
+                0)
+          << is.name;
+    }
+  }
+  // What float32 can hold stays float32.
+  EXPECT_EQ(placed(folder, "local.pcd", R"("scale": 2)", world).scalar, Scalar::float32);
+  EXPECT_EQ(placed(folder, "local.pcd", R"("scale": 1)", world).scalar, Scalar::float32);
+  EXPECT_EQ(placed(folder, "local.pcd", R"("shift": [1e39, 0, 0])", world).point(0)[0], 1e39)
+      << "not infinite, so free";
+}
+
+TEST(SceneFile, RefusesShiftsBeyondAllNumbers)
+{
+  const TemporaryFolder folder;
+  folder.write("far.xyz", "1e300 0 0\n");
+  std::unique_ptr<SceneWorld> world;
+  EXPECT_THAT(
+      [&] { placed(folder, "far.xyz", R"("scale": 1e10)", world); },
+      testing::ThrowsMessage<JsonError>(HasSubstr("clouds.a: scale and shift take point 0 beyond all numbers")));
+}
+
+TEST(SceneFile, WhatTheCallbackThrowsComesOutUnchanged)
+{
+  const SceneFile file = parseScene(whole, "scene.json");
+  for (const std::string at : {"ball", "pipe"})
+    EXPECT_THROW(SceneWorld(file,
+                            [&](const CloudSource& cloud) {
+                              if (cloud.name == at) throw 3;
+                            }),
+                 int)
+        << at;
+  std::size_t clouds = 0;
+  EXPECT_EQ(SceneWorld(file, [&](const CloudSource&) { ++clouds; }).scene().size(), 9u);
+  EXPECT_EQ(clouds, 3u);
+}
+
+TEST(SceneFile, BoundsHowOftenScatteredObjectsBounce)
+{
+  const auto scene = [](const std::string& steps, const std::string& count) {
+    return R"({"clouds": {"ball": {"sphere": {"radius": 1}}}, "steps": )" + steps + R"(, "dt": 1, "objects": [],
+      "scatter": [{"name": "dust", "cloud": "ball", "count": )" +
+           count + R"(, "low": [0, 0, 0], "high": [1, 1, 1], "speed": 1}]})";
+  };
+  EXPECT_EQ(errorOf(scene("1000", "10")), "none");
+  for (const auto& [steps, count] : {std::pair("100000000", "1"), std::pair("10000", "1000000")})
+    EXPECT_EQ(
+        errorOf(scene(steps, count)),
+        "scene.json: scatter[0]: bounces more than a million times until the scene ends: give a smaller 'speed' or "
+        "'count', fewer 'steps', a smaller 'dt' or a larger box");
+}
+
+TEST(SceneFile, PrintedMatricesStandForTheirRotations)
+{
+  const SceneFile file = parseScene(with("[0, 0, 1, 5, 0, 1, 0, 6, -1, 0, 0, 7]",
+                                         "[0.877583, -0.479426, 0, 5, 0.479426, 0.877583, 0, 6, 0, 0, 1, 7]"),
+                                    "scene.json");
+  ASSERT_EQ(file.warnings.size(), 1U);
+  EXPECT_THAT(file.warnings[0], HasSubstr("objects[1].pose: |R'R - I| is "));
+  EXPECT_LE(
+      (file.objects[1].pose.linear().transpose() * file.objects[1].pose.linear() - Eigen::Matrix3d::Identity()).norm(),
+      1e-14);
+  EXPECT_THAT(parseScene(whole, "scene.json").warnings, testing::IsEmpty());
 }
 
 TEST(ShapePoints, LieOnTheirSurfaces)

@@ -17,6 +17,20 @@ TEST(TextCursor, WalksWordsOfLinesOfAllSystems)
   EXPECT_TRUE(text.word().empty());
 }
 
+TEST(TextCursor, SkipsTheMarkOfUtf8AtItsBeginningAlone)
+{
+  TextCursor text("\xef\xbb\xbf"
+                  "1 2\n\xef\xbb\xbf"
+                  "3");
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(text.number<int>(), 1);
+  EXPECT_EQ(text.number<int>(), 2);
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_THROW(text.number<int>(), FormatError);
+  TextCursor nothing("\xef\xbb\xbf");
+  EXPECT_FALSE(nothing.nextLine());
+}
+
 TEST(TextCursor, TakesOneSeparatorAndNoOther)
 {
   TextCursor text("1 , 2,,x y,\n1;2\n , ,\n\t \n");

@@ -157,6 +157,28 @@ TEST_F(Collide, PosesAreOfTheObstacleInTheInputsFrame)
   EXPECT_EQ(flags("out.pcd"), (std::vector<int>{0, 0, 0, 0, 1}));
 }
 
+/// Half a radian about z, with as many digits as printf gives: 6 behind the point.
+TEST_F(Collide, PrintedMatricesStandForTheirNearestRotations)
+{
+  folder.write("point.xyz", "1 0 0\n");
+  folder.write("rows.txt", "0.877583 -0.479426 0 0\n0.479426 0.877583 0 0\n0 0 1 0\n");
+  folder.write("poses.txt", "\xef\xbb\xbf"
+                            "0.877583 -0.479426 0 0 0.479426 0.877583 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n");
+  const std::string job = "{input.ply} {point.xyz} {out.pcd} --clearance 1 --report {report.json} ";
+  for (const std::string pose :
+       {"--pose {rows.txt}", "--trajectory {poses.txt}", "--from {rows.txt} --to 0,0,0,0,0,0 --steps 2"}) {
+    const Outcome done = collide(job + pose);
+    ASSERT_EQ(done.exit_code, 0) << pose << done.err;
+    EXPECT_THAT(done.err, HasSubstr("|R'R - I| is 1.7")) << pose;
+    EXPECT_THAT(done.err, HasSubstr("the nearest rotation is used")) << pose;
+    EXPECT_THAT(report()["warnings"].dump(), HasSubstr("the nearest rotation is used")) << pose;
+  }
+  folder.write("rows.txt", "0.5 -0.87 0 0\n0.87 0.5 0 0\n0 0 1 0\n");
+  const Outcome refused = collide(job + "--pose {rows.txt}");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("--pose: not rigid, |R'R - I| is "));
+}
+
 TEST_F(Collide, RollComesBeforePitchBeforeYaw)
 {
   // Roll turns z to -y, pitch leaves -y, yaw turns it to x: the obstacle's (0, 0, 2) arrives at (2, 0, 0).
