@@ -38,6 +38,12 @@ public:
   /// @param extract_removed_indices keep what getRemovedIndices() returns
   explicit CollisionFilterBase(bool extract_removed_indices = false);
 
+  /// A copy has all settings, and what it finds is its own: copies may filter at the same time. They share the
+  /// obstacle's hierarchy, which is built once.
+  CollisionFilterBase(const CollisionFilterBase& other);
+  CollisionFilterBase& operator=(const CollisionFilterBase& other);
+  ~CollisionFilterBase() override = default;
+
   /// Keeps the points of the input that do not collide; after setNegative(true), those that do, with those that are
   /// undecided (setAccuracy()). Points that are not finite are removed either way. `output` may be the input; on an
   /// error it stays as it was.
@@ -62,6 +68,9 @@ protected:
 
   PointsView inputView() const;
   void requireInput() const;
+
+private:
+  void ownWhatIsWritten();
 
 public:
   PCL_MAKE_ALIGNED_OPERATOR_NEW

@@ -6,9 +6,51 @@
 
 #include <pcl/console/print.h>
 
+#include <cstring>
 #include <utility>
 
 namespace pcl_bsh {
+namespace {
+
+/// One step of a checksum: for each word a bijection of the sum, so that no change of one word goes unnoticed.
+std::uint64_t mixed(std::uint64_t sum, std::uint64_t word)
+{
+  constexpr std::uint64_t golden = 0x9e3779b97f4a7c15; // odd
+  sum = (sum ^ word) * golden;
+  return sum ^ sum >> 32; // products carry upward only: a sign that flips twice would cancel out
+}
+
+template <typename Bits>
+std::uint64_t checksumOf(const PointsView& view)
+{
+  std::uint64_t sum = view.count;
+  const auto [x, y, z] = view.offset;
+  const auto* record = static_cast<const unsigned char*>(view.data);
+  for (std::size_t i = 0; i < view.count; ++i, record += view.stride) {
+    const auto bits = [record](std::size_t offset) {
+      Bits word;
+      std::memcpy(&word, record + offset, sizeof word);
+      return std::uint64_t{word};
+    };
+    if constexpr (sizeof(Bits) == 4) {
+      sum = mixed(sum, bits(y) << 32 | bits(x));
+    }
+    else {
+      sum = mixed(mixed(sum, bits(x)), bits(y));
+    }
+    sum = mixed(sum, bits(z));
+  }
+  return sum;
+}
+
+/// Of all coordinates and their order. Bytes between them may change.
+std::uint64_t checksumOf(const PointsView& view)
+{
+  return view.scalar == Scalar::float32 ? checksumOf<std::uint32_t>(view) : checksumOf<std::uint64_t>(view);
+}
+
+} // namespace
+
 void ObstacleQuery::setObstacle(std::function<PointsView()> view)
 {
   view(); // a cloud that cannot be read is refused here, not at the first use
@@ -20,12 +62,15 @@ const SphereHierarchy& ObstacleQuery::obstacleHierarchy()
 {
   if (!obstacle_) throw std::invalid_argument("obstacle cloud is missing: call setObstacleCloud() before filtering");
   const PointsView view = obstacle_();
+  const std::uint64_t checksum = checksumOf(view);
   if (!hierarchy_) {
     HierarchyOptions options;
     options.threads = threads_;
     hierarchy_ = std::make_shared<SphereHierarchy>(view, options);
+    checksum_ = checksum;
   }
-  if (hierarchy_->view().data != view.data || hierarchy_->view().count != view.count) {
+  // The hierarchy points into the cloud's memory, and its spheres hold the points as they were.
+  if (hierarchy_->view().data != view.data || hierarchy_->view().count != view.count || checksum_ != checksum) {
     throw std::invalid_argument("obstacle cloud has changed since setObstacleCloud(): call it again");
   }
   return *hierarchy_;
@@ -58,6 +103,7 @@ TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& 
   request.threads = threads_;
   request.accuracy = accuracy_;
   if (swept_ != 0.0) request.swept = swept_;
+  request.progress = progress_;
   TrajectoryResult result =
       collideAlong({hierarchy}, obstacle, trajectory_ ? *trajectory_ : std::vector{pose_}, request);
   work_ = result.work;

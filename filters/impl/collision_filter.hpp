@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/filters/collision_filter.h>
 
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +14,33 @@ CollisionFilterBase<PointT>::CollisionFilterBase(bool extract_removed_indices)
 : pcl::FilterIndices<PointT>(extract_removed_indices)
 {
   this->filter_name_ = "CollisionFilter";
+}
+
+template <typename PointT>
+CollisionFilterBase<PointT>::CollisionFilterBase(const CollisionFilterBase& other)
+: pcl::FilterIndices<PointT>(other),
+  ObstacleQuery(other)
+{
+  ownWhatIsWritten();
+}
+
+template <typename PointT>
+CollisionFilterBase<PointT>& CollisionFilterBase<PointT>::operator=(const CollisionFilterBase& other)
+{
+  if (this == &other) return *this;
+  pcl::FilterIndices<PointT>::operator=(other);
+  ObstacleQuery::operator=(other);
+  ownWhatIsWritten();
+  return *this;
+}
+
+/// PCL's classes copy pointers to what each filter() writes: the removed indices and, unless the user has set them, the
+/// numbers of all points.
+template <typename PointT>
+void CollisionFilterBase<PointT>::ownWhatIsWritten()
+{
+  if (this->removed_indices_) this->removed_indices_ = std::make_shared<pcl::Indices>(*this->removed_indices_);
+  if (this->indices_ && this->fake_indices_) this->indices_ = std::make_shared<pcl::Indices>(*this->indices_);
 }
 
 template <typename PointT>
