@@ -24,7 +24,7 @@ int run(const cli::PipelineOptions& options)
   Pipeline pipeline = Pipeline::read(options.document, options.overrides);
   if (options.task == PipelineTask::validate) {
     pipeline.validate();
-    std::cout << options.document.string() << " is valid\n";
+    std::cout << options.name() << " is valid\n";
     return 0;
   }
   pipeline.setNumberOfThreads(options.threads);

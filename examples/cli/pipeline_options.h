@@ -24,6 +24,9 @@ struct PipelineOptions {
   std::filesystem::path metadata; ///< empty: none
   unsigned threads = 0;
   bool progress = false;
+
+  /// What messages call the document.
+  std::string name() const { return document == "-" ? "standard input" : document.string(); }
 };
 
 inline constexpr auto pipeline_footer =

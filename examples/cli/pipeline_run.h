@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pipeline_options.h"
+#include "program.h"
 #include "step.h"
 
 #include <pcl_bsh/files/replace_file.h>
@@ -34,11 +35,11 @@ inline void runPipeline(const char* program, Pipeline& pipeline, const PipelineO
   });
 
   std::optional<Step> step; // with a line per stage, it would tell the same twice
-  if (!options.progress) step.emplace("Running " + options.document.string());
+  if (!options.progress) step.emplace("Running " + options.name());
   const PipelineResult result = pipeline.run();
   if (step) step->done(std::to_string(stages) + " stages");
 
-  for (const std::string& warning : result.warnings) std::cerr << program << ": warning: " << warning << '\n';
+  warn(program, result.warnings);
   if (options.metadata.empty()) return;
   files::replaceFile(options.metadata, [&](std::ostream& out) { out << result.metadata; });
 }

@@ -37,7 +37,7 @@ Json valueSchema(const Option& option)
     if (!option.choices.empty()) schema["enum"] = option.choices;
     return schema;
   }
-  case Kind::two_numbers: {
+  case Kind::limits: {
     Json or_null = number;
     or_null["type"] = {"number", "null"};
     return numbersSchema(or_null, 2);

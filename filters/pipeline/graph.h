@@ -7,6 +7,7 @@
 #include <pcl_bsh/filters/pipeline/pipeline.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -38,6 +39,7 @@ struct Graph {
   std::vector<files::UsedFile> other_files; ///< not of stages: the document, and what the caller will write
   unsigned threads = 0;
   std::function<void(const StageProgress&)> progress;
+  std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false); ///< no run has ended yet
 };
 
 /// @throws PipelineError
@@ -54,7 +56,7 @@ PipelineError stageError(const Graph& graph, const Node& node, const std::string
 /// @throws PipelineError
 std::vector<std::unique_ptr<Stage>> planStages(const Graph& graph);
 
-/// @throws PipelineError
+/// @throws PipelineError, Cancelled, what the progress callback throws
 PipelineResult runGraph(const Graph& graph);
 
 /// The document again, with every tag and option written out.

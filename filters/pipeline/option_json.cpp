@@ -62,7 +62,12 @@ double numberOf(const Json& json, const Json& whole, const Option& option)
 std::int64_t integerOf(const Json& json, const Option& option)
 {
   constexpr double exact = 9007199254740992; // 2^53: up to here, a double counts one by one
+  constexpr auto most = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   const double number = numberOf(json, json, option);
+  if (json.is_number_integer()) {
+    if (json.is_number_unsigned() && json.get<std::uint64_t>() > most) refuse(json, option);
+    return json.get<std::int64_t>();
+  }
   if (number != std::floor(number) || std::abs(number) > exact) refuse(json, option);
   return static_cast<std::int64_t>(number);
 }
@@ -75,13 +80,19 @@ std::vector<double> numbersOf(const Json& json, std::size_t count, const Option&
   return numbers;
 }
 
-/// A limit that is null does not limit.
-std::vector<double> limitsOf(const Json& json, const Option& option)
+Limit limitOf(const Json& json, const Json& whole, const Option& option)
+{
+  if (json.is_null()) return {};
+  const double number = numberOf(json, whole, option);
+  if (json.is_number_unsigned()) return json.get<std::uint64_t>();
+  if (json.is_number_integer()) return json.get<std::int64_t>();
+  return number;
+}
+
+Limits limitsOf(const Json& json, const Option& option)
 {
   if (!json.is_array() || json.size() != 2) refuse(json, option);
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  return {json[0].is_null() ? -infinity : numberOf(json[0], json, option),
-          json[1].is_null() ? infinity : numberOf(json[1], json, option)};
+  return {limitOf(json[0], json, option), limitOf(json[1], json, option)};
 }
 
 std::string textOf(const Json& json, const Option& option)
@@ -142,7 +153,7 @@ std::string expectation(const Option& option)
     for (const std::string& choice : option.choices) list += (choice == option.choices[0] ? " " : ", ") + choice;
     return list;
   }
-  case Kind::two_numbers:
+  case Kind::limits:
     return "[least, most], numbers or null" + rangeOf(option);
   case Kind::three_numbers:
     return "[x, y, z], numbers" + rangeOf(option);
@@ -174,7 +185,7 @@ Value valueOf(const Json& json, const Option& option)
     return numberOf(json, json, option);
   case Kind::text:
     return textOf(json, option);
-  case Kind::two_numbers:
+  case Kind::limits:
     return limitsOf(json, option);
   case Kind::three_numbers:
     return numbersOf(json, 3, option);
@@ -191,12 +202,34 @@ Value valueOf(const Json& json, const Option& option)
   return {};
 }
 
+namespace {
+
+Json jsonOf(const Limit& limit)
+{
+  return std::visit(
+      [](const auto& number) -> Json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(number)>, std::monostate>) {
+          return nullptr;
+        }
+        else {
+          return number;
+        }
+      },
+      limit);
+}
+
+} // namespace
+
 Json jsonOf(const Value& value)
 {
   return std::visit(
       [](const auto& held) -> Json {
-        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>) {
+        using Held = std::decay_t<decltype(held)>;
+        if constexpr (std::is_same_v<Held, std::monostate>) {
           return nullptr;
+        }
+        else if constexpr (std::is_same_v<Held, Limits>) {
+          return Json::array({jsonOf(held.least), jsonOf(held.most)});
         }
         else {
           return held;

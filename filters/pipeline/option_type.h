@@ -2,7 +2,8 @@
 // What an option of a stage may be: the C++ type of a member says how a document writes it.
 //
 //   bool, int and other integers, double, std::string   true, 3, 0.5, "x"
-//   Numbers<2>, Numbers<3>                               [0, 1.5]
+//   Limits                                               [0, null]
+//   Numbers<3>                                           [0, 1.5, 2]
 //   Size3                                                0.05 or [0.05, 0.05, 0.1]
 //   Pose                                                 [x, y, z, roll, pitch, yaw], a matrix, or a file with one
 //   InputFile, OutputFile                                "hall.pcd"
@@ -26,15 +27,24 @@
 
 namespace pcl_bsh::pipeline {
 
+/// A finite number as the document writes it: a whole one keeps all of its 64 bits. std::monostate: null, no limit.
+using Limit = std::variant<std::monostate, std::int64_t, std::uint64_t, double>;
+
+/// Both inclusive.
+struct Limits {
+  Limit least;
+  Limit most;
+};
+
 /// What a document can say, checked to be of the option's kind. std::monostate: null.
-using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>>;
+using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>, Limits>;
 
 enum class Kind : std::uint8_t {
   boolean,
   integer,
   number,
   text,
-  two_numbers,
+  limits,
   three_numbers,
   size,
   pose,
@@ -122,8 +132,8 @@ struct OptionType<std::string> {
 
 template <std::size_t N>
 struct OptionType<Numbers<N>> {
-  static_assert(N == 2 || N == 3, "two or three numbers");
-  static constexpr Kind kind = N == 2 ? Kind::two_numbers : Kind::three_numbers;
+  static_assert(N == 3, "two numbers are Limits");
+  static constexpr Kind kind = Kind::three_numbers;
   static Numbers<N> from(const Value& value)
   {
     const auto& numbers = std::get<std::vector<double>>(value);
@@ -132,6 +142,13 @@ struct OptionType<Numbers<N>> {
     return option;
   }
   static Value to(const Numbers<N>& option) { return std::vector<double>(option.begin(), option.end()); }
+};
+
+template <>
+struct OptionType<Limits> {
+  static constexpr Kind kind = Kind::limits;
+  static Limits from(const Value& value) { return std::get<Limits>(value); }
+  static Value to(const Limits& option) { return option; }
 };
 
 template <>

@@ -221,6 +221,10 @@ private:
       const OptionOverride& given = overrides_[i];
       if (given.tag != node.tag) continue;
       used_[i] = true;
+      if (std::find(common_keys.begin(), common_keys.end(), given.option) != common_keys.end()) {
+        fail("--stage." + given.tag + "." + given.option,
+             "'" + given.option + "' is no option, but what the document is made of: change it there");
+      }
       stage[given.option] = jsonOfText(given.value, requireOption(given.option, node));
     }
     return stage;

@@ -40,7 +40,7 @@ Pipeline Pipeline::read(const std::filesystem::path& file, const std::vector<Opt
 {
   try {
     const io::FileBytes bytes(file);
-    Pipeline pipeline = parse(bytes.view(), overrides, file.string());
+    Pipeline pipeline = parse(bytes.view(), overrides, file == "-" ? "standard input" : file.string());
     pipeline.graph_->other_files.push_back({"the document", file, files::Use::read});
     return pipeline;
   }
@@ -86,6 +86,11 @@ void Pipeline::validate()
 PipelineResult Pipeline::run()
 {
   return pipeline::runGraph(*graph_);
+}
+
+void Pipeline::cancel() noexcept
+{
+  *graph_->cancelled = true;
 }
 
 } // namespace pcl_bsh

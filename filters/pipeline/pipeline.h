@@ -88,16 +88,23 @@ public:
   /// How many stages may run at once; 0: as many as the machine has threads (default). The results are the same.
   void setNumberOfThreads(unsigned threads);
 
-  /// Called when a stage begins and when it is done, one call at a time, from whichever thread runs it.
+  /// Called when a stage begins and when it is done, one call at a time, from whichever thread runs it. It may call
+  /// cancel(). What it throws ends the run and comes out of run(), once the stages that run by then are done.
   void setProgress(std::function<void(const StageProgress&)> progress);
 
   /// Checks that no file is written over another of the pipeline, that input files are there, that their headers have
   /// the fields that are needed, and that outputs can be written. No points are read. @throws PipelineError
   void validate();
 
-  /// Validates, then runs. A cloud is freed once its last reader has it done. Can be called again.
-  /// @throws PipelineError when a stage fails; of several, the first in the document
+  /// Validates, then runs. A cloud is freed once its last reader has it done. Can be called again, after an error too.
+  /// @throws PipelineError when a stage fails; of several, the first in the document. Cancelled
+  ///   (pcl_bsh/query/cancelled.h) when cancel() was called; what the progress callback throws
   PipelineResult run();
+
+  /// May be called from any thread and from the progress callback: run() begins no more stages, collision queries along
+  /// trajectories stop, and run() throws Cancelled. Each call ends one run at most: the one that goes on or, when there
+  /// is none, the next. Files are complete or as they were.
+  void cancel() noexcept;
 
 private:
   explicit Pipeline(std::unique_ptr<pipeline::Graph> graph);

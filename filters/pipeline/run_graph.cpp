@@ -3,10 +3,11 @@
 #include <pcl_bsh/filters/pipeline/option_json.h>
 #include <pcl_bsh/filters/pipeline/process_memory.h>
 
+#include <pcl_bsh/query/cancelled.h>
+
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <map>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -45,7 +46,8 @@ public:
     clouds_(graph.nodes.size()),
     readers_left_(countReaders(graph)),
     inputs_left_(graph.nodes.size()),
-    consumers_(graph.nodes.size())
+    consumers_(graph.nodes.size()),
+    errors_(graph.nodes.size())
   {
     for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
       for (const std::size_t input : graph.nodes[i].inputs) addEdge(input, i);
@@ -64,7 +66,11 @@ public:
       for (std::size_t i = 1; i < threads; ++i) others.emplace_back([this] { work(); });
       work();
     }
-    if (!errors_.empty()) std::rethrow_exception(errors_.begin()->second);
+    if (callback_error_) std::rethrow_exception(callback_error_);
+    for (const std::exception_ptr& error : errors_) {
+      if (error) std::rethrow_exception(error);
+    }
+    if (finished_ < graph_.nodes.size()) throw Cancelled();
     return resultAfter(secondsSince(start));
   }
 
@@ -75,19 +81,29 @@ private:
     ++inputs_left_[to];
   }
 
-  /// Takes one stage after the other, in the document's order, until none is left or one has failed.
+  /// Takes one stage after the other, in the document's order, until none is left or the run is to end. Lets nothing
+  /// that is thrown out of its thread.
   void work()
   {
     std::unique_lock lock(mutex_);
     while (true) {
-      changed_.wait(lock, [this] { return !ready_.empty() || finished_ == graph_.nodes.size() || !errors_.empty(); });
-      if (ready_.empty() || !errors_.empty()) return;
+      changed_.wait(lock, [this] { return !ready_.empty() || finished_ == graph_.nodes.size() || isStopped(); });
+      if (ready_.empty() || isStopped()) return;
       const std::size_t node = *ready_.begin();
       ready_.erase(ready_.begin());
-      runStage(node, lock);
+      try {
+        runStage(node, lock);
+      }
+      catch (...) {
+        if (!lock.owns_lock()) lock.lock();
+        errors_[node] = std::current_exception();
+        stopped_ = true;
+      }
       changed_.notify_all();
     }
   }
+
+  bool isStopped() const { return stopped_ || *graph_.cancelled; }
 
   /// The lock is open while the stage works.
   void runStage(std::size_t position, std::unique_lock<std::mutex>& lock)
@@ -97,30 +113,20 @@ private:
     Cost& cost = costs_[position];
     for (const StageCloudPtr& input : inputs) cost.points_in += pointsOf(*input);
     report(node, cost, false);
+    if (isStopped()) return;
     lock.unlock();
 
-    StageCloudPtr output;
-    std::exception_ptr error;
     cost.resident_before = residentBytes();
     const Clock::time_point start = Clock::now();
-    try {
-      output = outputOf(position, std::move(inputs));
-      cost.points_out = pointsOf(*output);
-      cost.bytes_out = output->cloud.data.size();
-    }
-    catch (...) {
-      error = std::current_exception();
-    }
+    StageCloudPtr output = outputOf(position, std::move(inputs));
+    cost.points_out = pointsOf(*output);
+    cost.bytes_out = output->cloud.data.size();
     releaseClouds(position);
     cost.seconds = secondsSince(start);
     cost.resident_after = residentBytes();
 
     lock.lock();
     ++finished_;
-    if (error) {
-      errors_.emplace(position, error);
-      return;
-    }
     report(node, cost, true);
     const bool wanted = readers_left_[position] > 0 || !node.type->isWriter();
     if (wanted) clouds_[position] = std::move(output);
@@ -157,12 +163,16 @@ private:
     const Node& node = graph_.nodes[position];
     if (node.given) return node.given;
     try {
+      stages_[position]->watch(graph_.cancelled.get());
       StageCloudPtr output = stages_[position]->run(std::move(inputs));
       if (!output) throw std::logic_error("gave no cloud: let its run() return one");
       return output;
     }
     catch (const OptionError& error) {
       throw stageError(graph_, node, error.option(), error.what());
+    }
+    catch (const Cancelled&) {
+      throw;
     }
     catch (const std::bad_alloc&) {
       throw stageError(graph_, node, "", "there is too little memory: give smaller clouds or a larger machine");
@@ -172,9 +182,10 @@ private:
     }
   }
 
-  void report(const Node& node, const Cost& cost, bool done) const
+  /// Whatever thread this is, what the callback throws is for the one that called run().
+  void report(const Node& node, const Cost& cost, bool done)
   {
-    if (!graph_.progress) return;
+    if (!graph_.progress || callback_error_) return;
     StageProgress progress;
     progress.tag = node.tag;
     progress.type = node.type->name;
@@ -183,7 +194,13 @@ private:
     progress.seconds = cost.seconds;
     progress.finished = finished_;
     progress.stages = graph_.nodes.size();
-    graph_.progress(progress);
+    try {
+      graph_.progress(progress);
+    }
+    catch (...) {
+      callback_error_ = std::current_exception();
+      stopped_ = true;
+    }
   }
 
   PipelineResult resultAfter(double seconds)
@@ -224,14 +241,23 @@ private:
   std::vector<std::vector<std::size_t>> consumers_;
   std::set<std::size_t> ready_;
   std::size_t finished_ = 0;
-  std::map<std::size_t, std::exception_ptr> errors_; ///< the first of them is the document's first
+  std::vector<std::exception_ptr> errors_; ///< of each node
+  std::exception_ptr callback_error_;
+  bool stopped_ = false; ///< something was thrown: no more stages begin
 };
 
 } // namespace
 
 PipelineResult runGraph(const Graph& graph)
 {
-  return Run(graph).run();
+  if (graph.cancelled->exchange(false)) throw Cancelled();
+  struct RequestEnds { // with this run, however that ends
+    ~RequestEnds() { cancelled = false; }
+    std::atomic<bool>& cancelled;
+  };
+  Run run(graph);
+  const RequestEnds request_ends{*graph.cancelled};
+  return run.run();
 }
 
 Json documentOf(const Graph& graph)

@@ -9,6 +9,7 @@
 
 #include <pcl_bsh/filters/pipeline/stage_cloud.h>
 
+#include <atomic>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -45,6 +46,13 @@ public:
   /// @return never null
   virtual StageCloudPtr run(StageClouds&& inputs) = 0;
 
+  /// Whether the pipeline was told to stop (Pipeline::cancel()). A stage that works for long should look now and then,
+  /// from any thread, and throw Cancelled (pcl_bsh/query/cancelled.h).
+  bool isCancelled() const noexcept { return cancelled_ != nullptr && *cancelled_; }
+
+  /// Called by the pipeline before run().
+  void watch(const std::atomic<bool>* cancelled) noexcept { cancelled_ = cancelled; }
+
   /// What the user should know of the run, a line each.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
@@ -52,6 +60,7 @@ protected:
   void warn(std::string line) { warnings_.push_back(std::move(line)); }
 
 private:
+  const std::atomic<bool>* cancelled_ = nullptr;
   std::vector<std::string> warnings_;
 };
 

@@ -13,6 +13,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <iomanip>
+#include <sstream>
+
 namespace pcl_bsh::pipeline {
 namespace {
 
@@ -192,6 +195,33 @@ TEST_F(CollisionStages, RefuseWhatMakesNoSense)
   }
 }
 
+/// A matrix with as many digits as printf and streams give stands for the rotation it was printed from.
+TEST_F(CollisionStages, PrintedMatricesStandForTheirRotations)
+{
+  const Eigen::Isometry3d pose = poses[3];
+  std::ostringstream numbers;
+  for (int i = 0; i < 12; ++i) numbers << (i == 0 ? "" : ", ") << std::setprecision(4) << pose.matrix()(i / 4, i % 4);
+  const std::string options = R"("clearance": 0.03, "pose": [)" + numbers.str() + "]";
+  auto direct = filter();
+  direct.setPose(pose);
+  std::vector<std::uint8_t> flags;
+  direct.computeFlags(flags);
+  const PipelineResult result = runStage(scan, stage("filters.bsh_flag", options), model);
+  const pcl::PCLPointCloud2& flagged = result.clouds.begin()->second->cloud;
+  std::size_t other = 0, colliding = 0;
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    other += flagged.data[i * flagged.point_step + flagged.fields.back().offset] != flags[i] ? 1 : 0;
+    colliding += flags[i];
+  }
+  EXPECT_GT(colliding, 20U);
+  EXPECT_LE(other, colliding / 20) << "a turn by some 1e-4";
+  EXPECT_THAT(result.warnings, testing::ElementsAre(HasSubstr(": pose: |R'R - I| is ")));
+  // With three digits it is no printed rotation any more.
+  std::ostringstream coarse;
+  for (int i = 0; i < 12; ++i) coarse << (i == 0 ? "" : ", ") << std::setprecision(2) << pose.matrix()(i / 4, i % 4);
+  EXPECT_THAT(error("filters.bsh_flag", R"("pose": [)" + coarse.str() + "]"), HasSubstr("/pose: not rigid, |R'R - I|"));
+}
+
 TEST_F(CollisionStages, AccuracyAlongATrajectory)
 {
   const auto kept = [&](const std::string& accuracy, const std::string& keep) {
@@ -201,7 +231,8 @@ TEST_F(CollisionStages, AccuracyAlongATrajectory)
   EXPECT_LT(kept("level=0", "free"), kept("exact", "free")) << "what is undecided is not free";
   EXPECT_GT(kept("level=0", "colliding"), kept("exact", "colliding"));
   EXPECT_GE(kept("tolerance=0.05", "colliding"), kept("exact", "colliding"));
-  EXPECT_GE(output("filters.bsh_flag", R"(, "accuracy": "tolerance=0.05")")->cloud.fields.size(), 4U);
+  EXPECT_EQ(output("filters.bsh_flag", R"(, "accuracy": "tolerance=0.05")")->cloud.fields.size(),
+            scan->cloud.fields.size() + 4);
 }
 
 TEST_F(CollisionStages, RefuseAccuraciesThatAreNone)

@@ -21,7 +21,8 @@ struct Everything : Stage {
   double length = 0.5;
   std::string text = "a";
   std::string choice = "free";
-  Numbers<2> limits = {-std::numeric_limits<double>::infinity(), 2};
+  Limits limits = {{}, 2.0};
+  std::int64_t stamp = 0;
   Numbers<3> place = {1, 2, 3};
   Size3 size;
   Pose pose;
@@ -54,7 +55,8 @@ const StageType& everything()
                                     .option(&Everything::in, "in", "")
                                     .option(&Everything::out, "out", "")
                                     .option(&Everything::other, "other", "")
-                                    .option(&Everything::maybe, "maybe", "");
+                                    .option(&Everything::maybe, "maybe", "")
+                                    .option(&Everything::stamp, "stamp", "");
   return type;
 }
 
@@ -81,20 +83,24 @@ std::string refusal(const std::string& name, const std::string& json)
 
 TEST(OptionJson, EachKindGoesInAndOut)
 {
-  for (const auto& [name, json] : std::vector<std::pair<std::string, std::string>>{{"flag", "false"},
-                                                                                   {"integer", "-7"},
-                                                                                   {"natural", "4000000000"},
-                                                                                   {"length", "0.1"},
-                                                                                   {"text", "\"any\""},
-                                                                                   {"choice", "\"colliding\""},
-                                                                                   {"limits", "[null,0.5]"},
-                                                                                   {"place", "[0.1,-2.0,1e-300]"},
-                                                                                   {"size", "[0.1,0.2,0.3]"},
-                                                                                   {"in", "\"a.pcd\""},
-                                                                                   {"out", "\"b.pcd\""},
-                                                                                   {"other", "\"tag\""},
-                                                                                   {"maybe", "null"},
-                                                                                   {"maybe", "0.25"}}) {
+  for (const auto& [name, json] :
+       std::vector<std::pair<std::string, std::string>>{{"flag", "false"},
+                                                        {"integer", "-7"},
+                                                        {"natural", "4000000000"},
+                                                        {"length", "0.1"},
+                                                        {"text", "\"any\""},
+                                                        {"choice", "\"colliding\""},
+                                                        {"limits", "[null,0.5]"},
+                                                        {"limits", "[-9007199254740993,18446744073709551615]"},
+                                                        {"stamp", "1700000000000000001"},
+                                                        {"stamp", "-9223372036854775808"},
+                                                        {"place", "[0.1,-2.0,1e-300]"},
+                                                        {"size", "[0.1,0.2,0.3]"},
+                                                        {"in", "\"a.pcd\""},
+                                                        {"out", "\"b.pcd\""},
+                                                        {"other", "\"tag\""},
+                                                        {"maybe", "null"},
+                                                        {"maybe", "0.25"}}) {
     EXPECT_EQ(through(name, json), json) << name;
   }
   EXPECT_EQ(through("size", "0.25"), "[0.25,0.25,0.25]");
@@ -120,6 +126,7 @@ TEST(OptionJson, RefusesWrongValuesAndSaysWhatIsRight)
   EXPECT_EQ(refusal("natural", "-1"), "is -1: give an integer of at least 0");
   EXPECT_EQ(refusal("natural", "4294967296"), "is 4294967296: give an integer of at least 0");
   EXPECT_EQ(refusal("integer", "-3000000000"), "is -3000000000: give an integer of at most 10");
+  EXPECT_THAT(refusal("stamp", "9223372036854775808"), HasSubstr("is 9223372036854775808: give an integer"));
   EXPECT_EQ(refusal("length", "0"), "is 0: give a number above 0, in m");
   EXPECT_EQ(refusal("length", "null"), "is null: give a number above 0, in m");
   EXPECT_EQ(refusal("text", "[]"), "is []: give a text");

@@ -113,6 +113,10 @@ TEST(ParseGraph, OverridesReplaceOptions)
             "p.json: --stage.thick.leaf_size: no stage has the tag 'thick': did you mean 'thin'?");
   EXPECT_EQ(refusal(json, {{"thin", "leafsize", "1"}}),
             "p.json: thin: /1/leafsize: is no option of filters.voxel_grid: did you mean 'leaf_size'?");
+  for (const std::string key : {"tag", "inputs", "type", "user_data"})
+    EXPECT_EQ(refusal(json, {{"thin", key, "x"}}), "p.json: --stage.thin." + key + ": '" + key +
+                                                       "' is no option, but what the document is made of: change it "
+                                                       "there");
   EXPECT_EQ(refusal(json, {{"thin", "leaf_size", "wide"}}),
             "p.json: thin: /1/leaf_size: is \"wide\": give a number or [x, y, z], each above 0, in m");
 }

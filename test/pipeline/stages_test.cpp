@@ -5,6 +5,7 @@
 #include "run_stage.h"
 
 #include <pcl_bsh/filters/io/cloud_file.h>
+#include <pcl_bsh/filters/io/records.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <pcl/point_types.h>
@@ -122,9 +123,13 @@ TEST(Stages, TakePointsThatAreNotFinite)
     for (const Eigen::Vector3d& p : pointsOf(out)) EXPECT_TRUE(p.allFinite()) << type;
   }
   const StageCloudPtr clusters = outputOf(cloudOf<float>(points), stageOf("filters.euclidean_cluster"));
-  std::int32_t number;
-  std::memcpy(&number, &clusters->cloud.data[(points.size() / 3 + 1) * 0 + clusters->cloud.point_step - 4], 4);
-  EXPECT_GE(number, 0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double number = io::valueOf(clusters->cloud, i, "cluster");
+    if (points[i].allFinite())
+      EXPECT_GE(number, 0) << i;
+    else
+      EXPECT_EQ(number, -1) << i;
+  }
 }
 
 TEST(Stages, KeepFloat64AsItIs)
@@ -144,7 +149,7 @@ TEST(Stages, KeepFloat64AsItIs)
     const StageCloudPtr out = result.clouds.begin()->second;
     EXPECT_GT(out->cloud.width, 0U) << stage;
     EXPECT_THAT(result.warnings, IsEmpty()) << stage;
-    for (const std::size_t i : {std::size_t{0}, std::size_t{out->cloud.width - 1U}}) {
+    for (std::size_t i = 0; i < out->cloud.width; ++i) {
       std::uint16_t label;
       std::memcpy(&label, test::record(out->cloud, i).data(), sizeof label);
       EXPECT_EQ(test::record(out->cloud, i), test::record(in->cloud, label)) << stage;
@@ -322,6 +327,77 @@ TEST(Stages, PassThroughReadsAnyTypeOfField)
   EXPECT_EQ(count("[10, 19]"), 10U);
   EXPECT_EQ(count("[null, 4.5]"), 5U);
   EXPECT_EQ(count("[null, null]"), 100U);
+}
+
+/// A cloud of one field `stamp` beside x y z, of that many values.
+template <typename T>
+StageCloudPtr stamped(std::uint8_t datatype, const std::vector<T>& stamps)
+{
+  auto cloud = std::make_shared<StageCloud>();
+  for (const char* const axis : {"x", "y", "z"}) io::addField(cloud->cloud, axis, pcl::PCLPointField::FLOAT32);
+  io::addField(cloud->cloud, "stamp", datatype);
+  io::allocate(cloud->cloud, static_cast<std::uint32_t>(stamps.size()));
+  for (std::size_t i = 0; i < stamps.size(); ++i)
+    std::memcpy(&cloud->cloud.data[i * cloud->cloud.point_step + 12], &stamps[i], sizeof(T));
+  return cloud;
+}
+
+/// How many pass.
+std::size_t passing(const StageCloudPtr& cloud, const std::string& limits, bool negative = false)
+{
+  return outputOf(cloud, R"({"type": "filters.pass_through", "filter_field_name": "stamp", "filter_limits": )" +
+                             limits + (negative ? R"(, "negative": true})" : "}"))
+      ->cloud.width;
+}
+
+TEST(Stages, PassThroughTellsNanosecondsApart)
+{
+  // Doubles are 256 apart here.
+  constexpr std::int64_t begin = 1700000000000000000;
+  std::vector<std::int64_t> stamps;
+  for (std::int64_t i = -1000; i < 1000; ++i) stamps.push_back(begin + i);
+  const StageCloudPtr cloud = stamped(pcl::PCLPointField::INT64, stamps);
+  const std::string limits = "[1700000000000000000, 1700000000000000100]";
+  EXPECT_EQ(passing(cloud, limits), 101U);
+  EXPECT_EQ(passing(cloud, limits, true), 2000U - 101U);
+  EXPECT_EQ(passing(cloud, "[null, 1699999999999999999]"), 1000U);
+  EXPECT_EQ(passing(cloud, "[1699999999999999999.0, null]"), 1000U) << "a double, as it is written: 17e17";
+  EXPECT_THAT(errorOf([&] { passing(cloud, "[1700000000000000001, 1700000000000000000]"); }),
+              HasSubstr("has a least above its most"));
+  const PipelineResult result = runStage(
+      cloud, R"({"type": "filters.pass_through", "filter_field_name": "stamp", "filter_limits": )" + limits + "}");
+  EXPECT_THAT(result.metadata, HasSubstr("1700000000000000100")) << "a document to run again";
+}
+
+TEST(Stages, PassThroughKnowsTheEndsOfEveryType)
+{
+  using Field = pcl::PCLPointField;
+  constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+  const StageCloudPtr naturals = stamped<std::uint64_t>(Field::UINT64, {0, 1, most - 1, most});
+  EXPECT_EQ(passing(naturals, "[18446744073709551615, null]"), 1U);
+  EXPECT_EQ(passing(naturals, "[null, 18446744073709551614]"), 3U);
+  EXPECT_EQ(passing(naturals, "[-1, 1e300]"), 4U);
+  EXPECT_EQ(passing(naturals, "[-1e300, -1]"), 0U);
+  EXPECT_EQ(passing(naturals, "[0.5, 1.5]"), 1U);
+  EXPECT_EQ(passing(naturals, "[1e300, null]"), 0U);
+  EXPECT_EQ(passing(naturals, "[18446744073709551616, null]"), 0U) << "2^64";
+  constexpr std::int64_t lowest = std::numeric_limits<std::int64_t>::min();
+  const StageCloudPtr integers = stamped<std::int64_t>(Field::INT64, {lowest, lowest + 1, -1, 0});
+  EXPECT_EQ(passing(integers, "[null, -9223372036854775808]"), 1U);
+  EXPECT_EQ(passing(integers, "[-9223372036854775807, null]"), 3U);
+  EXPECT_EQ(passing(integers, "[-1.5, -0.5]"), 1U);
+  const StageCloudPtr bytes = stamped<std::int8_t>(Field::INT8, {-128, -1, 127});
+  EXPECT_EQ(passing(bytes, "[-1000, 126]"), 2U);
+  EXPECT_EQ(passing(bytes, "[127.5, null]"), 0U);
+  // 2^53 + 1 lies between doubles: what is at least that is at least 2^53 + 2.
+  const StageCloudPtr doubles = stamped<double>(Field::FLOAT64, {9007199254740992, 9007199254740994});
+  EXPECT_EQ(passing(doubles, "[9007199254740993, null]"), 1U);
+  EXPECT_EQ(passing(doubles, "[null, 9007199254740993]"), 1U);
+  // As PCL has it, 0.3 is the float 0.3 next to floats.
+  const StageCloudPtr floats = stamped<float>(Field::FLOAT32, {0.3F, std::numeric_limits<float>::max()});
+  EXPECT_EQ(passing(floats, "[0.3, null]"), 2U);
+  EXPECT_EQ(passing(floats, "[null, 0.3]"), 1U);
+  EXPECT_EQ(passing(floats, "[1e39, null]"), 0U);
 }
 
 TEST(Stages, OptionsThatContradictEachOther)

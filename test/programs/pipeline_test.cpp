@@ -277,6 +277,30 @@ TEST_F(PipelineProgram, SaysWhatIsWrong)
   EXPECT_THAT(help.out, HasSubstr("Example: "));
 }
 
+TEST_F(PipelineProgram, ReadsPipelinesFromStandardInput)
+{
+  put("scan.pcd", cloudOf(wall(0)));
+  const std::string mark = "\xef\xbb\xbf"; // as some editors begin UTF-8
+  folder.write("p.json",
+               mark + R"(["scan.pcd", {"type": "filters.voxel_grid", "tag": "thin", "leaf_size": 0.5}, "out.ply"])");
+  const Outcome valid = runIn("- --validate <p.json");
+  EXPECT_EQ(valid.exit_code, 0) << valid.err;
+  EXPECT_EQ(valid.out, "standard input is valid\n");
+  EXPECT_EQ(runIn("- --stage.thin.leaf_size=1 <p.json").exit_code, 0);
+  EXPECT_EQ(readCloud(folder / "out.ply").width, 4U);
+  const Outcome failed = runIn("- </dev/null");
+  EXPECT_EQ(failed.exit_code, 1);
+  EXPECT_THAT(failed.err, StartsWith("pcl_bsh_pipeline: standard input: is no JSON"));
+}
+
+TEST_F(PipelineProgram, OverridesSetOptionsAlone)
+{
+  folder.write("p.json", R"(["scan.pcd", {"type": "filters.voxel_grid", "tag": "v", "leaf_size": 0.5}, "out.ply"])");
+  EXPECT_EQ(runIn("p.json --stage.v.tag=w").err,
+            "pcl_bsh_pipeline: p.json: --stage.v.tag: 'tag' is no option, but what "
+            "the document is made of: change it there\n");
+}
+
 TEST_F(PipelineProgram, WarningsGoToStderr)
 {
   put("scan.pcd", cloudOf(wall(0)));

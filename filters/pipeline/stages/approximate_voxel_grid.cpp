@@ -18,7 +18,7 @@ struct ApproximateVoxelGrid : Stage {
   StageCloudPtr run(StageClouds&& inputs) override
   {
     struct Slot {
-      Cell cell;
+      Cell cell{};
       std::vector<std::uint32_t> records;
     };
     std::array<Slot, 512> table; // as many as PCL has, or results would differ

@@ -11,7 +11,7 @@ namespace {
 struct BshFlag : Stage, CollisionQuestion {
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    check(trajectory.has_value());
+    for (std::string& warning : check(trajectory.has_value())) warn(std::move(warning));
     const TrajectoryResult nothing;
     return trajectory ? withFields(inputs[0], fieldsOf(nothing)) : withField(inputs[0], collision_field_name, {});
   }
@@ -21,7 +21,7 @@ struct BshFlag : Stage, CollisionQuestion {
     auto output = std::make_shared<StageCloud>();
     output->viewpoint = inputs[0]->viewpoint;
     Filter filter;
-    setUp(filter, inputs[0]);
+    setUp(filter, inputs[0], *this);
     filter.setKeepFlagged(true);
     filter.filter(output->cloud);
     if (const std::string warning = undecidedWarning(filter); !warning.empty()) warn(warning);
@@ -34,7 +34,7 @@ struct BshCollision : SelectingStage, CollisionQuestion {
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    check(false);
+    for (std::string& warning : check(false)) warn(std::move(warning));
     return inputs[0];
   }
 
@@ -42,7 +42,7 @@ protected:
   std::vector<std::uint8_t> passing(const StageCloudPtr& cloud) override
   {
     Filter filter;
-    setUp(filter, cloud);
+    setUp(filter, cloud, *this);
     std::vector<std::uint8_t> flags;
     filter.computeFlags(flags);
     if (const std::string warning = undecidedWarning(filter); !warning.empty()) warn(warning);

@@ -18,7 +18,7 @@ struct ClashWriter : Stage, CollisionQuestion {
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    check(true);
+    for (std::string& warning : check(true)) warn(std::move(warning));
     requireWritable("filename", filename);
     if (also) requireWritable("also", *also);
     if (previous) readEarlier();
@@ -28,7 +28,7 @@ struct ClashWriter : Stage, CollisionQuestion {
   StageCloudPtr run(StageClouds&& inputs) override
   {
     Filter filter;
-    setUp(filter, inputs[0]);
+    setUp(filter, inputs[0], *this);
     TrajectoryResult found;
     filter.computeTrajectory(found);
     write(viewOf(inputs[0]->cloud), found);

@@ -1,42 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/io/cloud_file_error.h>
 #include <pcl_bsh/filters/io/pose_file.h>
+#include <pcl_bsh/filters/io/rigid_pose.h>
 #include <pcl_bsh/filters/pipeline/stages/collision_question.h>
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/trajectory.h>
 
-#include <stdexcept>
 #include <string>
 
 namespace pcl_bsh::pipeline {
 namespace {
 
-std::vector<Eigen::Isometry3d> posesOf(const std::optional<Pose>& pose, const std::optional<InputFile>& trajectory)
+std::vector<Eigen::Isometry3d> posesOf(const std::optional<Pose>& pose, const std::optional<InputFile>& trajectory,
+                                       std::vector<std::string>& warnings)
 {
   if (!trajectory) {
     Eigen::Isometry3d only = Eigen::Isometry3d::Identity();
     if (pose) only.matrix() = pose->matrix;
-    return {only};
+    const io::RigidPose rigid = io::nearestRigid(only);
+    if (rigid.deviation > 0) warnings.push_back("pose: " + io::nearestRotationWarning(rigid.deviation));
+    return {rigid.pose};
   }
   if (pose) throw OptionError("trajectory", "and `pose` are both given: give one of them");
   try {
-    return io::readPoses(trajectory->path);
+    return io::readPoses(trajectory->path, &warnings);
   }
   catch (const io::CloudFileError& error) {
     throw OptionError("trajectory", error.what());
   }
 }
 
-/// The core names what is wrong with a request as `what: wrong: remedy`; users know it by the option.
-template <typename Ask>
-void requireAccepted(const std::string& option, const Ask& ask)
+/// Which option says what the core calls by its own name.
+std::string optionOf(Input input, bool moves)
 {
-  try {
-    ask();
-  }
-  catch (const std::invalid_argument& error) {
-    const std::string message = error.what();
-    const std::size_t colon = message.find(": ");
-    throw OptionError(option, colon == std::string::npos ? message : message.substr(colon + 2));
+  switch (input) {
+  case Input::clearance:
+    return "clearance";
+  case Input::accuracy:
+    return "accuracy";
+  case Input::swept:
+    return "swept";
+  default:
+    return moves ? "trajectory" : "pose";
   }
 }
 
@@ -48,30 +53,29 @@ std::shared_ptr<const pcl::PCLPointCloud2> pointsOf(const StageCloudPtr& cloud)
 
 } // namespace
 
-void CollisionQuestion::check(bool distances)
+std::vector<std::string> CollisionQuestion::check(bool distances)
 {
-  poses_ = posesOf(pose, trajectory);
+  std::vector<std::string> warnings;
+  poses_ = posesOf(pose, trajectory, warnings);
+  if (swept != 0 && !trajectory) throw OptionError("swept", "is given, but nothing moves: give a `trajectory`, too");
   TrajectoryRequest request;
-  const auto follow = [&] {
+  request.clearance = clearance;
+  request.distances = distances;
+  if (swept != 0) request.swept = swept;
+  try {
+    request.accuracy = Accuracy::parse(accuracy);
     const SphereHierarchy nothing{PointsView{}};
     collideAlong({nothing}, nothing, poses_, request);
-  };
-  requireAccepted(trajectory ? "trajectory" : "pose", follow);
-  request.clearance = clearance;
-  requireAccepted("clearance", follow);
-  request.distances = distances;
-  requireAccepted("accuracy", [&] {
-    request.accuracy = Accuracy::parse(accuracy);
-    follow();
-  });
-  if (swept == 0) return;
-  if (!trajectory) throw OptionError("swept", "is given, but nothing moves: give a `trajectory`, too");
-  request.swept = swept;
-  requireAccepted(request.accuracy.isExact() ? "swept" : "accuracy", follow);
+  }
+  catch (const InvalidInput& error) {
+    throw OptionError(optionOf(error.input(), trajectory.has_value()), error.advice());
+  }
+  return warnings;
 }
 
-void CollisionQuestion::setUp(Filter& filter, const StageCloudPtr& input) const
+void CollisionQuestion::setUp(Filter& filter, const StageCloudPtr& input, const Stage& stage) const
 {
+  filter.setProgress([&stage](double) { return !stage.isCancelled(); });
   filter.setInputCloud(pointsOf(input));
   filter.setObstacleCloud(pointsOf(obstacle.cloud));
   filter.setClearance(clearance);

@@ -28,11 +28,12 @@ protected:
 
   /// For plan(): reads the trajectory, and refuses what the query would refuse.
   /// @param distances whether the stage asks how near and when, beside which points collide
+  /// @return what to tell the user, a line each
   /// @throws OptionError
-  void check(bool distances);
+  std::vector<std::string> check(bool distances);
 
-  /// For run().
-  void setUp(Filter& filter, const StageCloudPtr& input) const;
+  /// For run(). Along a trajectory, the filter stops when the stage is cancelled.
+  void setUp(Filter& filter, const StageCloudPtr& input, const Stage& stage) const;
 
   /// What to tell the user after a query; empty when every point is decided.
   static std::string undecidedWarning(const Filter& filter);
@@ -52,7 +53,10 @@ StageDescription<S>& withCollisionOptions(StageDescription<S>& description)
       .option(&S::clearance, "clearance", "greatest distance that counts as collision, touching included")
       .unit("m")
       .atLeast(0)
-      .option(&S::pose, "pose", "of the obstacle in the input's frame; rigid; null: the frames are one")
+      .option(
+          &S::pose, "pose",
+          "of the obstacle in the input's frame; rigid, where a matrix of few printed digits stands for its nearest "
+          "rotation; null: the frames are one")
       .option(&S::trajectory, "trajectory",
               "instead of `pose`, a file of poses, one a line: a point collides if it does at any; 12 or 16 numbers of "
               "a matrix, row by row, or time tx ty tz qx qy qz qw")

@@ -2,26 +2,25 @@
 #include <pcl_bsh/filters/io/field_type.h>
 #include <pcl_bsh/filters/io/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/filters/pipeline/stages/exact_limits.h>
 #include <pcl_bsh/filters/pipeline/stages/selecting_stage.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <type_traits>
 
 namespace pcl_bsh::pipeline {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// PCL's own knows float32 fields only, and answers an unknown name with an empty cloud.
 struct PassThrough : SelectingStage {
   std::string filter_field_name;
-  Numbers<2> filter_limits = {-infinity, infinity};
+  Limits filter_limits;
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    if (filter_limits[0] > filter_limits[1]) {
+    if (areCrossed(filter_limits)) {
       throw OptionError("filter_limits", "has a least above its most: exchange them");
     }
     findField(inputs[0]);
@@ -36,16 +35,15 @@ protected:
     const pcl::PCLPointField* field = findField(points);
     if (field == nullptr) return passes;
     io::withFieldType(field->datatype, [&](auto value) {
-      // As PCL has it, float fields are compared with the limits as floats: 0.3 is then the same number on both sides.
-      using Number = std::conditional_t<std::is_same_v<decltype(value), float>, float, double>;
-      const auto least = static_cast<Number>(filter_limits[0]);
-      const auto most = static_cast<Number>(filter_limits[1]);
+      using Number = decltype(value);
+      const std::optional<RangeOf<Number>> range = rangeOf<Number>(filter_limits);
       const std::uint8_t* next = points.data.data() + field->offset;
       for (std::uint8_t& pass : passes) {
         std::memcpy(&value, next, sizeof value);
-        const auto number = static_cast<Number>(value);
-        // A value that is not finite passes neither way.
-        pass = std::isfinite(number) ? number >= least && number <= most : negative;
+        pass = range && value >= range->least && value <= range->most;
+        if constexpr (std::is_floating_point_v<Number>) {
+          if (!std::isfinite(value)) pass = negative; // passes neither way
+        }
         next += points.point_step;
       }
     });
@@ -77,7 +75,9 @@ StageType passThrough()
           .option(&PassThrough::filter_field_name, "filter_field_name",
                   "the field, of any type; empty: only points that are not finite are removed")
           .option(&PassThrough::filter_limits, "filter_limits",
-                  "[least, most], both inclusive, in the field's unit; null in place of one: no limit");
+                  "[least, most], both inclusive, in the field's unit; null in place of one: no limit; whole numbers "
+                  "keep all "
+                  "of their 64 bits");
   return withSelectionOptions(description);
 }
 
