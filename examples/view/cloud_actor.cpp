@@ -2,6 +2,7 @@
 #include "cloud_actor.h"
 
 #include "actors.h"
+#include "far_points.h"
 
 #include <pcl_bsh/vtk/cloud_data.h>
 
@@ -41,7 +42,8 @@ CloudActor::CloudActor(const PointsView& points, vtkRenderer& renderer, const Co
 
 void CloudActor::setPoints(const PointsView& points)
 {
-  points_.show(vtk::cloudData(points));
+  all_ = vtk::cloudData(points);
+  points_.show(withoutFarPoints(*all_));
 }
 
 void CloudActor::paint(const std::vector<Color>& colors)

@@ -32,13 +32,16 @@ public:
   void place(const Eigen::Isometry3d& pose);
   void setMoving(bool moving);
 
-  vtkPolyData& data() const { return points_.data(); }
+  vtkPolyData& data() const { return points_.data(); } ///< what is drawn
+  vtkPolyData& all() const { return *all_; }           ///< with what withoutFarPoints() leaves out
+  vtkIdType leftOut() const { return all_->GetNumberOfPoints() - data().GetNumberOfPoints(); }
   vtkPolyData& marked() const { return marks_.data(); }
 
   /// The record that a picked prop and point id are; none when they are not of this cloud.
   std::optional<std::uint32_t> recordOf(const vtkProp* prop, vtkIdType id) const;
 
 private:
+  vtkSmartPointer<vtkPolyData> all_;
   PointLayer points_, marks_;
 };
 

@@ -37,7 +37,11 @@ Thing load(const std::filesystem::path& file, Thing::Role role, unsigned threads
 
 CloudsWorld::CloudsWorld(const Options& options) : World(options), poses_{options.pose}
 {
-  if (options.trajectory) poses_ = io::readPoses(*options.trajectory);
+  if (options.trajectory) {
+    std::vector<std::string> warnings;
+    poses_ = io::readPoses(*options.trajectory, &warnings);
+    cli::warn(program, warnings);
+  }
   if (options.step >= poses_.size())
     throw cli::UsageError("--step: " + std::to_string(options.step) + ": the trajectory has " +
                           std::to_string(poses_.size()) + " poses, counted from 0");

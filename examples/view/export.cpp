@@ -20,7 +20,7 @@ namespace {
 vtkSmartPointer<vtkPolyData> known(CloudActor& cloud, const std::vector<std::uint8_t>& flags)
 {
   auto data = vtkSmartPointer<vtkPolyData>::New();
-  data->ShallowCopy(&cloud.data());
+  data->ShallowCopy(cloud.leftOut() > 0 ? &cloud.all() : &cloud.data()); // a picture may leave points out, a file not
   if (!flags.empty()) vtk::addArray(*data, "collision", flags);
   return data;
 }

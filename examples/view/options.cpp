@@ -7,6 +7,8 @@
 
 #include <pcl_bsh/filters/io/pose_text.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace pcl_bsh::view {
@@ -67,7 +69,17 @@ Camera parseCamera(const std::string& text)
   std::copy_n(n.begin(), 3, camera.eye.begin());
   std::copy_n(n.begin() + 3, 3, camera.focus.begin());
   if (n.size() == 9) std::copy_n(n.begin() + 6, 3, camera.up.begin());
+  if (!std::all_of(n.begin(), n.end(), [](double number) { return std::isfinite(number); }))
+    throw UsageError("--camera: '" + text + "': has a number that is not finite: give numbers");
+  const Eigen::Vector3d gaze = Eigen::Vector3d(camera.focus.data()) - Eigen::Vector3d(camera.eye.data());
+  const Eigen::Vector3d up(camera.up.data());
   if (camera.eye == camera.focus) throw UsageError("--camera: '" + text + "': eye and focus are one: part them");
+  const auto isAlong = [&gaze](const Eigen::Vector3d& v) {
+    return !(v.stableNormalized().cross(gaze.stableNormalized()).norm() > 1e-6);
+  };
+  if (n.size() == 6 && isAlong(up)) camera.up = {0, 1, 0};
+  if (n.size() == 9 && isAlong(up))
+    throw UsageError("--camera: '" + text + "': up is 0 or along the view: give another, as 0,1,0 from above");
   return camera;
 }
 
@@ -183,7 +195,9 @@ std::optional<Options> parseOptions(int argc, char** argv)
   set(export_to, options.export_to);
   if (!pose.empty()) {
     if (options.trajectory) throw UsageError("--pose: a model has one pose or a --trajectory: give one of the two");
-    options.pose = cli::parsePose("--pose", pose);
+    std::vector<std::string> warnings;
+    options.pose = cli::parsePose("--pose", pose, warnings);
+    cli::warn(program, warnings);
   }
   if (!clearance.empty())
     options.clearance = cli::parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");

@@ -87,6 +87,7 @@ private:
 
 SceneRun::SceneRun(const Options& options) : World(options), file_(readScene(options))
 {
+  cli::warn(program, file_.warnings);
   cli::Step step("Loading the clouds of " + name());
   mover_ = std::make_unique<io::SceneWorld>(file_);
   step.done(std::to_string(mover_->points()) + " points");

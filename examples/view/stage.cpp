@@ -25,7 +25,7 @@ Stage::Stage(const World& world, vtkRenderer& renderer)
   closest_props_(renderer),
   way_props_(renderer),
   caption_(renderer, world.options().width, world.options().height),
-  bar_(renderer)
+  bar_(renderer, world.options().width)
 {
   const Options& options = world.options();
   const std::array<double, 3> c = fractions(ground);
@@ -103,6 +103,10 @@ void Stage::writeTexts()
   std::string title = world_.heading(findings_, step_);
   if (findings_.closest) title += "\nsmallest distance " + lengthOf(findings_.closest->distance, world_.options().unit);
   if (extras_.level) title += "\nspheres of level " + std::to_string(*extras_.level);
+  vtkIdType left_out = 0;
+  for (const CloudActor& cloud : clouds_) left_out += cloud.leftOut();
+  if (left_out > 0)
+    title += "\nfar off and not drawn: " + std::to_string(left_out) + (left_out == 1 ? " point" : " points");
   caption_.setTitle(title);
   caption_.setLegend(legend());
 }

@@ -9,11 +9,24 @@
 
 namespace pcl_bsh::view {
 
-ValueBar::ValueBar(vtkRenderer& renderer) : bar_(vtkSmartPointer<vtkScalarBarActor>::New())
+namespace {
+
+/// Letters have one size whatever the picture's: a small one gives them a larger share.
+double shareOf(int width)
+{
+  constexpr double usual = 0.115, pixels = 120.0, most = 0.4;
+  return std::clamp(pixels / width, usual, most);
+}
+
+} // namespace
+
+ValueBar::ValueBar(vtkRenderer& renderer, int width)
+: share_(shareOf(width)),
+  bar_(vtkSmartPointer<vtkScalarBarActor>::New())
 {
   bar_->UnconstrainedFontSizeOn();
-  bar_->SetPosition(0.885, 0.3);
-  bar_->SetWidth(0.085);
+  bar_->SetPosition(1.0 - share_, 0.3);
+  bar_->SetWidth(0.74 * share_);
   bar_->SetHeight(0.45);
   bar_->SetNumberOfLabels(5);
   bar_->SetVerticalTitleSeparation(10);

@@ -13,16 +13,17 @@ namespace pcl_bsh::view {
 /// Which colour stands for which value, with the unit, at the right edge.
 class ValueBar {
 public:
-  explicit ValueBar(vtkRenderer& renderer);
+  ValueBar(vtkRenderer& renderer, int width); ///< of the picture, in pixels
 
   /// @param counts the values are whole numbers
   void show(vtkLookupTable& table, const std::string& title, bool counts);
   void hide() { bar_->VisibilityOff(); }
 
   /// The share of the picture's width that it leaves to all else.
-  double freeWidth() const { return bar_->GetVisibility() != 0 ? 0.78 : 1.0; }
+  double freeWidth() const { return bar_->GetVisibility() != 0 ? 1.0 - 1.9 * share_ : 1.0; }
 
 private:
+  double share_; ///< of the picture's width, from the bar to the right edge
   vtkSmartPointer<vtkScalarBarActor> bar_;
 };
 
