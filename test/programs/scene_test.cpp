@@ -116,7 +116,7 @@ TEST(SceneProgram, ResponsesKeepObjectsApart)
   const Outcome done = run("pcl_bsh_scene", scene);
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("pairs collide in 0 of them"));
-  EXPECT_THAT(done.out, HasSubstr("moves met something"));
+  EXPECT_THAT(done.out, HasSubstr(", 3 moves met something"));
 }
 
 TEST(SceneProgram, SaysWhatLessAccuracyLeavesOpen)

@@ -196,6 +196,59 @@ TEST_F(Picture, ExportsReadBack)
       << "floor and ball; spheres, glyphs, voxels, cells of both; the path";
 }
 
+TEST_F(Picture, PointsFarOffLeaveTheOthersInSight)
+{
+  std::string text = "3.4028234e38 0 0\n-1e30 1e6 5\n";
+  for (int i = 0; i < 2000; ++i)
+    text += std::to_string(i % 50) + ' ' + std::to_string(i / 50) + " 0." + std::to_string(i % 10) + '\n';
+  const std::string far = folder.write("far.xyz", text).string();
+  EXPECT_GT(drawn(far + " --camera top").count(ground), 1000u);
+  Options asked;
+  asked.clouds = {far};
+  asked.width = 400;
+  asked.height = 300;
+  asked.camera.kind = Camera::Kind::top;
+  asked.threads = 1;
+  OffscreenStage set(asked);
+  const Pixels pixels = set.draw();
+  for (const double x : {1.0, 25.0, 48.0}) {
+    const double point[3] = {x, 20, 0};
+    const auto [u, v] = set.seen(point);
+    EXPECT_GT(u, 0);
+    EXPECT_LT(u, 400);
+    EXPECT_GT(pixels.countIf(u, v, 3, [&](int i, int k) { return pixels.at(i, k) != ground; }), 3u) << x;
+  }
+  ASSERT_EQ(run("pcl_bsh_view", far + " --export " + (folder / "far.vtp").string()).exit_code, 0);
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName((folder / "far.vtp").c_str());
+  reader->Update();
+  EXPECT_EQ(reader->GetOutput()->GetNumberOfPoints(), 2002) << "a file has them all";
+}
+
+TEST_F(Picture, WordsBesideTheBarEndInThePicture)
+{
+  for (const int width : {320, 400, 500, 1280}) {
+    Options asked;
+    asked.clouds = {floor};
+    asked.color = Coloring::height;
+    asked.unit = "metres";
+    asked.width = width;
+    asked.height = 300;
+    asked.threads = 1;
+    OffscreenStage set(asked);
+    const Pixels pixels = set.draw();
+    const auto column = [&](int x) { // below the title
+      std::size_t lit = 0;
+      for (int y = 0; y < 250; ++y) lit += pixels.at(x, y) != ground ? 1 : 0;
+      return lit;
+    };
+    EXPECT_EQ(column(width - 1), 0u) << width << ": no letter is cut";
+    std::size_t lit = 0;
+    for (int x = width - 100; x < width; ++x) lit += column(x);
+    EXPECT_GT(lit, 300u) << width << ": a bar with words at the right";
+  }
+}
+
 TEST_F(Picture, RefusesWhatItCannotShow)
 {
   const auto fails = [&](const std::string& arguments, int code, const std::string& message) {
@@ -215,6 +268,11 @@ TEST_F(Picture, RefusesWhatItCannotShow)
   fails(one + " --color green" + png, 2, "--color: 'green'");
   fails(one + " --color collision" + png, 2, "--color");
   fails(one + " --camera behind" + png, 2, "--camera");
+  fails(one + " --camera nan" + png, 2, "--camera: 'nan' is unknown");
+  fails(one + " --camera nan,0,0,0,0,1" + png, 2, "--camera: 'nan,0,0,0,0,1': has a number that is not finite");
+  fails(one + " --camera 0,0,inf,0,0,1" + png, 2, "has a number that is not finite");
+  fails(one + " --camera 0,0,9,0,0,1,0,0,0" + png, 2, "up is 0 or along the view");
+  fails(one + " --camera 0,0,9,0,0,1,0,0,-3" + png, 2, "up is 0 or along the view");
   fails(one + " --size 10" + png, 2, "--size");
   fails(one + " --trajectory " + path.string() + png, 2, "--model");
   fails(one + " --model " + ball.string() + " --trajectory " + path.string() + " --step 99" + png, 2, "--step");
