@@ -4,6 +4,7 @@
 #include <pcl_bsh/filters/io/json_reader.h>
 #include <pcl_bsh/filters/io/scene_file.h>
 #include <pcl_bsh/filters/io/shape_points.h>
+#include <pcl_bsh/search/cloud_view.h>
 
 #include "samples.h"
 
