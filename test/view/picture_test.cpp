@@ -137,11 +137,11 @@ TEST_F(Picture, ExtrasChangeThePictureAndTheLegend)
 TEST_F(Picture, EveryColouringHasItsBarAndNeedsItsField)
 {
   const std::string both = floor.string() + " --model " + ball.string() + " --pose=-0.5,0.5,0.2,0,0,0 --clearance 0.1 ";
-  const Pixels collision = drawn(both);
-  for (const char* name : {"distance", "first_pose", "height", "intensity"}) {
-    const Pixels pixels = drawn(both + "--color " + name);
-    EXPECT_GT(pixels.differing(collision, 370, 150, 29), 300u) << name << ": a bar at the right";
-  }
+  // Words at the right, between title and legend, are the bar's; the clouds change with it and would not tell.
+  const auto words = [](const Pixels& pixels) { return pixels.countNear(text_color, 345, 150, 54, 40); };
+  EXPECT_EQ(words(drawn(both)), 0u);
+  for (const char* name : {"distance", "first_pose", "height", "intensity"})
+    EXPECT_GT(words(drawn(both + "--color " + name)), 20u) << name << ": a bar at the right";
   EXPECT_GT(drawn(both + "--color rgb").count({255, 0, 0}), 50u);
   const Outcome lacking =
       run("pcl_bsh_view", ball.string() + " --color rgb --screenshot " + (folder / "x.png").string());
