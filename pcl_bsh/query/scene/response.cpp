@@ -2,10 +2,11 @@
 // How a moving object gives way: it stops, it slides, it follows the ground.
 #include <pcl_bsh/query/scene/mover.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
+
 #include <chrono>
 #include <cstdio>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
 namespace pcl_bsh {
@@ -180,7 +181,7 @@ void Scene::State::checkWay(const Body& body, const Eigen::Isometry3d& from, con
                             const Eigen::Vector3d& turn, double rounding) const
 {
   const auto refuse = [&body](const std::string& what) {
-    throw std::invalid_argument("Scene: object '" + body.object.name + "' " + what);
+    throw InvalidInput(Input::scene, "Scene", "object '" + body.object.name + "' " + what);
   };
   const double turns = turn.norm() / (2.0 * std::numbers::pi);
   if (!(turns <= kMostTurns))
