@@ -4,6 +4,7 @@
 #include <pcl_bsh/filters/io/file_bytes.h>
 #include <pcl_bsh/filters/io/number_text.h>
 #include <pcl_bsh/filters/io/pose_file.h>
+#include <pcl_bsh/filters/io/pose_text.h>
 #include <pcl_bsh/filters/io/rigid_pose.h>
 #include <pcl_bsh/filters/io/text_cursor.h>
 
