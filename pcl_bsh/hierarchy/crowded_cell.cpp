@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/crowded_cell.h>
 
 #include <algorithm>
@@ -158,7 +159,9 @@ GivenSphere givenSphereOf(const PointsView& view, const Voxel& voxel, const Node
     if (voxel.given[index].isKnown()) return voxel.given[index];
   }
   if (node.isLeaf(child)) return sphereOfPoints(voxel, view, node, child);
-  // Each coordinate of the centre is rounded twice, by 2^-53 of what it is made of.
+  // Each coordinate of the centre is rounded twice, by v of what it is made of; twice as much pays for the sums here.
+  constexpr double kCenterError = 4 * kDoubleUnit;
+  constexpr double kVanishing = 0x1p-1070; // above what underflows
   const LocalFrame& frame = voxel.frame;
   const float local[3] = {node.x[child], node.y[child], node.z[child]};
   GivenSphere sphere;
@@ -166,9 +169,9 @@ GivenSphere givenSphereOf(const PointsView& view, const Voxel& voxel, const Node
   for (std::size_t k = 0; k < 3; ++k) {
     const double offset = static_cast<double>(local[k]) * frame.unit;
     sphere.center[k] = frame.origin[k] + offset;
-    sphere.radius += 0x1p-51 * (std::abs(frame.origin[k]) + std::abs(offset));
+    sphere.radius += kCenterError * (std::abs(frame.origin[k]) + std::abs(offset));
   }
-  sphere.radius = sphere.radius * (1.0 + 0x1p-50) + 0x1p-1070;
+  sphere.radius = sphere.radius * (1.0 + kFewDoubleRoundings) + kVanishing;
   return sphere;
 }
 

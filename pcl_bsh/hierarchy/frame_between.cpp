@@ -53,7 +53,7 @@ LocalFrame frameBetween(const std::array<double, 3>& low, const std::array<doubl
     const double origin = frame.origin[k] * inverse;
     const double reach = std::max(high[k] * inverse - origin, origin - low[k] * inverse);
     frame.lossless = frame.lossless && keepsFloats(low[k], high[k], frame.origin[k], reach);
-    frame.reach[k] = reach * (1.0 + 0x1p-20) + 0x1p-140;
+    frame.reach[k] = reach * (1.0 + kReachGrowth) + kSmallestReach;
   }
   return frame;
 }

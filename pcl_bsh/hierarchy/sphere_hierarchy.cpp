@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/hierarchy/storage.h>
@@ -55,8 +55,8 @@ double SphereHierarchy::coordinateSpacing() const noexcept
   const DefaultFloatEnvironment environment;
   const LocalFrame& frame = storage_->frame;
   double largest = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) // the reach is rounded outward by 2^-20
-    largest = std::max(largest, std::abs(frame.origin[k]) + frame.reach[k] * (1.0 - 0x1p-19) * frame.unit);
+  for (std::size_t k = 0; k < 3; ++k) // less what the reach was rounded outward by
+    largest = std::max(largest, std::abs(frame.origin[k]) + frame.reach[k] * (1.0 - 2 * kReachGrowth) * frame.unit);
   const float number = roundDown(largest);
   return static_cast<double>(number) - static_cast<double>(std::nextafter(number, 0.0f));
 }

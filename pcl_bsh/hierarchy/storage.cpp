@@ -112,7 +112,8 @@ double SphereHierarchy::Storage::strayOf(std::uint64_t key, const std::array<dou
     stray = std::max({stray, below, above});
   }
   // Each difference errs by 2^-53 of less than 2^22 cells and of what it comes to.
-  return stray > 0.0 ? stray * (1.0 + 0x1p-50) + 0x1p-30 : 0.0;
+  constexpr double kCellNumberError = 0x1p-30;
+  return stray > 0.0 ? stray * (1.0 + kFewDoubleRoundings) + kCellNumberError : 0.0;
 }
 
 double SphereHierarchy::Storage::sumOfRadii() const

@@ -264,6 +264,11 @@ VoxelSorting sortIntoVoxels(const PointsView& view, const HierarchyOptions& opti
 /// The octree above voxels in the order of their keys, one at least, in the cloud's frame. Into the memory of `reuse`.
 std::vector<Node> buildTop(const std::vector<Voxel*>& voxels, const LocalFrame& frame, std::vector<Node> reuse);
 
+/// A frame's reach is rounded outward by this share of it, far above what double arithmetic gets wrong, and is at least
+/// so much: no coordinate that is stored is 0 beside a reach of 0.
+inline constexpr double kReachGrowth = 0x1p-20;
+inline constexpr double kSmallestReach = 0x1p-140;
+
 /// The frame for points within [low, high]; its origin is a float where `float_origin` says so.
 LocalFrame frameBetween(const std::array<double, 3>& low, const std::array<double, 3>& high, bool float_origin);
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/hierarchy/update.h>
 
 #include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/morton.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/view_check.h>
@@ -130,7 +131,7 @@ LocalFrame frameOfAll(const std::vector<Voxel*>& voxels, Scalar scalar)
     const LocalFrame& f = voxel->frame;
     for (std::size_t k = 0; k < 3; ++k) { // rounding outward must not leave the numbers
       constexpr double largest = std::numeric_limits<double>::max();
-      const double half = (f.reach[k] + f.slack(static_cast<int>(k))) * f.unit * (1.0 + 0x1p-40);
+      const double half = (f.reach[k] + f.slack(static_cast<int>(k))) * f.unit * (1.0 + kDoubleMargin);
       low[k] = std::min(low[k], std::max(f.origin[k] - half, -largest));
       high[k] = std::max(high[k], std::min(f.origin[k] + half, largest));
     }

@@ -71,7 +71,7 @@ private:
         if (std::abs(static_cast<double>(stored[k])) > f.reach[k])
           defect("point " + std::to_string(record) + " beyond the reach");
         if (std::abs(local - static_cast<double>(stored[k])) >
-            f.slack(static_cast<int>(k)) * (1.0 + 0x1p-20) + std::abs(local) * 0x1p-50)
+            f.slack(static_cast<int>(k)) * (1.0 + kReachGrowth) + std::abs(local) * kFewDoubleRoundings)
           defect("point " + std::to_string(record) + " stored too far from where it is");
         if (f.lossless && f.origin[k] + static_cast<double>(stored[k]) != p[k])
           defect("point " + std::to_string(record) + " not stored as given in a lossless frame");

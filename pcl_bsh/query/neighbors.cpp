@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/neighbors.h>
 
 #include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/hierarchy/view_check.h>
 #include <pcl_bsh/query/neighbor_scratch.h>
 #include <pcl_bsh/query/query_order.h>
 
 #include <limits>
-#include <stdexcept>
 
 namespace pcl_bsh {
 namespace {

@@ -30,7 +30,8 @@ PoseMotion::PoseMotion(const Eigen::Isometry3d& from, const Eigen::Isometry3d& t
 
 bool PoseMotion::isAmbiguous() const
 {
-  return std::abs(first_rotation_.dot(last_rotation_)) < 0x1p-46;
+  constexpr double kRounding = 0x1p-46; // of quaternions made of matrices
+  return std::abs(first_rotation_.dot(last_rotation_)) < kRounding;
 }
 
 Eigen::Matrix3d PoseMotion::rotationAt(double fraction) const

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/pose_path.h>
 
 #include <pcl_bsh/geometry/compensated_sum.h>
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/trajectory.h>
 
 #include <algorithm>
@@ -13,8 +13,10 @@
 namespace pcl_bsh {
 namespace {
 
-constexpr double kRounding = 0x1p-45; ///< of the bounds below: a few dozen operations in double
-constexpr double kRigid = 0x1p-47;    ///< what a stretch that rounding makes does not exceed
+constexpr double kRounding = 0x1p-45;        ///< of the bounds below: a few dozen operations in double
+constexpr double kExcessRounding = 0x1p-48;  ///< of R'R - I, whose entries are sums of products up to 1
+constexpr double kStretchRounding = 0x1p-50; ///< of differences of stretches, which are about 1
+constexpr double kRigid = 0x1p-47;           ///< what a stretch that rounding makes does not exceed
 
 double distance(const Point3& a, const Point3& b)
 {
@@ -25,7 +27,7 @@ double excess(const Eigen::Matrix3d& rotation)
 {
   if (rotation == Eigen::Matrix3d::Identity()) return 0.0;
   const Eigen::Matrix3d e = rotation.transpose() * rotation - Eigen::Matrix3d::Identity();
-  return e.cwiseAbs().rowwise().sum().maxCoeff() + 0x1p-48;
+  return e.cwiseAbs().rowwise().sum().maxCoeff() + kExcessRounding;
 }
 
 } // namespace
@@ -236,7 +238,7 @@ double PosePath::stretchStray(std::uint32_t first, std::uint32_t last) const
     }
     most = std::max(most, squared);
   }
-  return (std::sqrt(most) * (1.0 + kRounding) + 0x1p-50) * size_;
+  return (std::sqrt(most) * (1.0 + kRounding) + kStretchRounding) * size_;
 }
 
 } // namespace pcl_bsh

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A trajectory query as a whole: the path, which voxels of the scan come near when, their walks, and what they add up
 // to.
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/query/trajectory_walk.h>
@@ -52,7 +53,7 @@ FirstContact instantOf(const PosePath& path, double time)
   const PathPose& next = path.poses[k + 1];
   const double end = next.given == pose.given ? next.fraction : 1.0;
   const double fraction = pose.fraction + (end - pose.fraction) * (time - static_cast<double>(k));
-  return {pose.given, std::min(fraction, 1.0 - 0x1p-53)};
+  return {pose.given, std::min(fraction, 1.0 - kDoubleUnit)};
 }
 
 /// Takes the given voxels along the trajectory.

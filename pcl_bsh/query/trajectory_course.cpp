@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/trajectory_course.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
 
 #include <algorithm>
 #include <cmath>
 #include <locale>
 #include <sstream>
-#include <stdexcept>
 
 namespace pcl_bsh {
 namespace {
@@ -51,7 +50,8 @@ void checkTolerance(const Placed& scan, const std::vector<Eigen::Isometry3d>& po
       for (const double x : center) far = std::max(far, std::abs(x));
   size += 3 * far;
   constexpr double smallest = 0x1p-400; // its square is far from underflow
-  const double least = std::max(16 * 0x1p-46 * size, smallest);
+  constexpr double rounding = 0x1p-46;  // of places along the motion; a sixteenth of the tolerance is for it
+  const double least = std::max(16 * rounding * size, smallest);
   std::ostringstream wrong, remedy;
   wrong.imbue(std::locale::classic());
   remedy.imbue(std::locale::classic());

@@ -288,7 +288,8 @@ TEST_F(PipelineProgram, ReadsPipelinesFromStandardInput)
   EXPECT_EQ(valid.out, "standard input is valid\n");
   EXPECT_EQ(runIn("- --stage.thin.leaf_size=1 <p.json").exit_code, 0);
   EXPECT_EQ(readCloud(folder / "out.ply").width, 4U);
-  const Outcome failed = runIn("- </dev/null");
+  folder.write("bad.json", "[");
+  const Outcome failed = runIn("- <bad.json");
   EXPECT_EQ(failed.exit_code, 1);
   EXPECT_THAT(failed.err, StartsWith("pcl_bsh_pipeline: standard input: is no JSON"));
 }

@@ -25,9 +25,8 @@ inline Outcome run(const std::string& program, const std::string& arguments, con
   const io::TemporaryFolder folder;
   const std::string out = (folder / "out").string();
   const std::string err = (folder / "err").string();
-  const std::string command = (place.empty() ? "" : "cd " + place.string() + " && ") +
-                              std::string(PCL_BSH_PROGRAM_DIR) + "/" + program + " " + arguments + " >" + out + " 2>" +
-                              err;
+  const std::string command = (place.empty() ? "" : "cd " + place.string() + " && ") + "{ " + PCL_BSH_PROGRAM_DIR +
+                              "/" + program + " " + arguments + "\n} >" + out + " 2>" + err;
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, io::contentOf(out), io::contentOf(err)};
 }

@@ -259,7 +259,7 @@ TEST(PosePath, RefusesTooLongAPathBeforeItTakesMemory)
     EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("would be cut into"),
                                              testing::HasSubstr("are the most"), testing::HasSubstr("from pose 0")));
   }
-  EXPECT_LT(test::allocations() - before, 30u) << "poses of the path were made";
+  EXPECT_LT(test::allocations() - before, 60u) << "of messages alone: no pose of the path is made";
 }
 
 TEST(BoxTree, BoxesHoldTheirPointsExactly)

@@ -111,7 +111,7 @@ TEST_F(Picture, SpheresAreOutlinedWhereTheirCentresSay)
     spheres->GetPoint(i, rim);
     rim[0] += spheres->GetPointData()->GetArray("radius")->GetTuple1(i);
     const auto [x, y] = set.seen(rim);
-    EXPECT_GT(some.differing(none, x, y, 2), 0u) << "sphere " << i;
+    EXPECT_GT(some.differing(none, x, y, 2), 0u) << "sphere " << i << " at " << x << " " << y<<" rim "<<rim[0]<<" "<<rim[1]<<" "<<rim[2];
   }
   set.stage->setExtras({2, false, false, false});
   EXPECT_GT(set.draw().differing(some), 200u) << "a level changes the picture";

@@ -42,7 +42,7 @@ public:
   {
     const double mixed = 4.0 * (shift_.cross(turn_a_).norm() * size_a_ + shift_.cross(turn_b_).norm() * size_b_) +
                          2.0 * (turn_a_ - turn_b_).norm() * (rim_a_ * size_b_ + size_a_ * rim_b_);
-    square_bend_ = mixed * kUp - 2.0 * shift_.squaredNorm() * (1.0 - 0x1p-40);
+    square_bend_ = mixed * kUp - 2.0 * shift_.squaredNorm() * (1.0 - kDoubleMargin);
     const Eigen::Vector3d last = center_ + end * shift_;
     last_a_ = turn_a_.cross(last).norm();
     last_b_ = turn_b_.cross(last).norm();

@@ -2,6 +2,7 @@
 // When two moving points first come near each other.
 #pragma once
 
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/scene/path.h>
 
 #include <optional>
@@ -13,6 +14,8 @@ namespace pcl_bsh {
 /// can move along and away, and rounding, which is far below the distance from inner to reach, never leads to a
 /// collision.
 struct ContactZone {
+  static constexpr double kNowRounding = 32 * kDoubleUnit; ///< of a distance, as it is measured
+
   double reach;
   double tolerance;
 
@@ -25,7 +28,7 @@ struct ContactZone {
   double floor(double now) const
   {
     if (now > reach + 0.125 * tolerance) return std::min(inner(), now - 0.0625 * tolerance);
-    return now * (1.0 - 0x1p-48);
+    return now * (1.0 - kNowRounding);
   }
 };
 

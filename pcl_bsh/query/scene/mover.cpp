@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/scene/mover.h>
 #include <pcl_bsh/query/scene/sweep.h>
 
@@ -41,7 +42,7 @@ bool Mover::follow(const Eigen::Isometry3d& target, const Eigen::Vector3d& turn)
 bool Mover::follow(const Path& path, double begin, double end, double& done)
 {
   const double length = end - begin;
-  const double reach = (path.shift().norm() * length + path.turningReach(length)) * (1.0 + 0x1p-40);
+  const double reach = (path.shift().norm() * length + path.turningReach(length)) * (1.0 + kDoubleMargin);
   const bool few = collect(path.swept(), reach, kMostPairs);
   if (outcome.stuck) return false;
   const bool wide = path.angle() * length > kWideTurn && encounters_.size() > kFewToTurn;
@@ -178,7 +179,7 @@ bool Mover::collect(Box3 swept, double length, std::size_t most)
 bool Mover::collectMore(Box3 swept, double length, std::size_t most)
 {
   if (body_.box.empty()) return true;
-  swept.grow(state_.rules.largestClearance() * (1.0 + 0x1p-40) + tolerance_);
+  swept.grow(state_.rules.largestClearance() * (1.0 + kDoubleMargin) + tolerance_);
   state_.grid.around(swept, around_);
   for (const ObjectId other : around_) {
     if (other == object_) continue;
@@ -195,7 +196,7 @@ bool Mover::collectMore(Box3 swept, double length, std::size_t most)
 bool Mover::collectFrom(ObjectId other, double clearance, double length, std::size_t most)
 {
   CollisionRequest request;
-  request.clearance = clearance + length * (1.0 + 0x1p-40) + 0.75 * tolerance_; // halts are at half the tolerance
+  request.clearance = clearance + length * (1.0 + kDoubleMargin) + 0.75 * tolerance_; // halts are at half the tolerance
   for (std::uint32_t i = 0; i < body_.world.size(); ++i)
     for (std::uint32_t j = 0; j < state_.bodies[other].world.size(); ++j) {
       const Placed mine = state_.placed(object_, i), others = state_.placed(other, j);

@@ -15,7 +15,7 @@ Path::Path(const Leg& leg, const Box3& box)
   world_center_(leg.from * leg.center),
   shift_(leg.to.translation() - leg.from.translation()),
   turns_(leg.turn != Eigen::Vector3d::Zero() || leg.from.linear() != leg.to.linear()),
-  radius_(box.empty() ? 0.0 : (box.half().norm() + (box.center() - leg.center).norm()) * (1.0 + 0x1p-40))
+  radius_(box.empty() ? 0.0 : (box.half().norm() + (box.center() - leg.center).norm()) * (1.0 + kDoubleMargin))
 {
   if (!turns_) return;
   shift_ = to_ * center_ - world_center_;
@@ -23,7 +23,8 @@ Path::Path(const Leg& leg, const Box3& box)
   if (angle_ > 0.0) axis_ = leg.turn / angle_;
   drift_ = Eigen::AngleAxisd(-angle_, axis_).toRotationMatrix() * to_.linear() - from_.linear();
   drift_size_ = drift_.norm();
-  stretch_ = (1.0 + 0x1p-19) * (1.0 + drift_size_); // poses are rigid within 1e-6
+  constexpr double kNearlyRigid = 0x1p-19; // poses are rigid within 1e-6
+  stretch_ = (1.0 + kNearlyRigid) * (1.0 + drift_size_);
 }
 
 Eigen::Isometry3d Path::at(double s) const
@@ -62,7 +63,7 @@ Box3 Path::swept() const
   if (turns_ && !box_.empty()) {
     Box3 ball{world_center_, world_center_};
     ball.merge({world_center_ + shift_, world_center_ + shift_});
-    ball.grow(radius_ * stretch_ * (1.0 + 0x1p-30) + rounding());
+    ball.grow(radius_ * stretch_ * (1.0 + kDoubleMargin) + rounding());
     box.merge(ball);
   }
   return box;
@@ -71,7 +72,8 @@ Box3 Path::swept() const
 double Path::rounding() const
 {
   if (box_.empty()) return 0.0;
-  return 0x1p-47 * (from_.translation().norm() + to_.translation().norm() + center_.norm() + radius_ + speed());
+  constexpr double kPlaceRounding = 64 * kDoubleUnit; // of some dozen operations on these lengths
+  return kPlaceRounding * (from_.translation().norm() + to_.translation().norm() + center_.norm() + radius_ + speed());
 }
 
 Eigen::Isometry3d Leg::at(double s) const

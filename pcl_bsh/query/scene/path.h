@@ -2,6 +2,7 @@
 // The way of an object within a step.
 #pragma once
 
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/scene/bounds.h>
 #include <pcl_bsh/query/scene/motion.h>
 
@@ -50,7 +51,7 @@ public:
   double speed() const { return shift_.norm() + turningSpeed(); }
 
   /// No point of the box gets farther than this from where it is at s = 0.
-  double reach() const { return (shift_.norm() + turningReach(1.0)) * (1.0 + 0x1p-40); }
+  double reach() const { return (shift_.norm() + turningReach(1.0)) * (1.0 + kDoubleMargin); }
 
   /// @param point in the object's frame
   PointCourse courseOf(const Eigen::Vector3d& point) const;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Objects, poses, rules: what a scene is. What it computes is in effects.cpp and response.cpp.
-#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/scene.h>
 
 #include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/query/scene/state.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Both questions in the same way: the pairs of points that can meet at all within an interval are collected, and each
 // is followed by itself. Too many of them: the interval is halved, and they get fewer.
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/scene/sweep.h>
 
 #include <algorithm>
@@ -121,7 +122,7 @@ private:
 double closingReach(const Path& a, const Path& b, double length)
 {
   const double straight = (a.shift() - b.shift()).norm() * length;
-  return (straight + a.turningReach(length) + b.turningReach(length)) * (1.0 + 0x1p-40);
+  return (straight + a.turningReach(length) + b.turningReach(length)) * (1.0 + kDoubleMargin);
 }
 
 std::optional<Meeting> firstMeeting(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
