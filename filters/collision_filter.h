@@ -18,6 +18,7 @@
 #include <pcl/filters/filter_indices.h>
 #include <pcl/point_cloud.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <type_traits>
@@ -39,14 +40,14 @@ public:
   explicit CollisionFilterBase(bool extract_removed_indices = false);
 
   /// A copy has all settings, and what it finds is its own: copies may filter at the same time. They share the
-  /// obstacle's hierarchy, which is built once.
+  /// obstacle's hierarchy, which is built once. Where memory runs out, a filter that is assigned to stays as it was.
   CollisionFilterBase(const CollisionFilterBase& other);
   CollisionFilterBase& operator=(const CollisionFilterBase& other);
   ~CollisionFilterBase() override = default;
 
   /// Keeps the points of the input that do not collide; after setNegative(true), those that do, with those that are
   /// undecided (setAccuracy()). Points that are not finite are removed either way. `output` may be the input; on an
-  /// error it stays as it was.
+  /// error it stays as it was, and getRemovedIndices() is of this call or the one before.
   /// @throws std::invalid_argument when input or obstacle is missing, or a setting is not what its declaration asks for
   void filter(Cloud& output);
 
@@ -70,7 +71,8 @@ protected:
   void requireInput() const;
 
 private:
-  void ownWhatIsWritten();
+  pcl::IndicesPtr removedOfItsOwn() const;
+  pcl::IndicesPtr indicesOfItsOwn() const;
 
 public:
   PCL_MAKE_ALIGNED_OPERATOR_NEW
@@ -86,6 +88,11 @@ public:
   using ConstPtr = std::shared_ptr<const CollisionFilter<PointT>>;
 
   using CollisionFilterBase<PointT>::CollisionFilterBase;
+  using CollisionFilterBase<PointT>::setIndices;
+
+  /// PCL's, for a rectangle of the input, except that the former indices stay where memory runs out: PCL's would go on
+  /// with none.
+  void setIndices(std::size_t row_start, std::size_t col_start, std::size_t nb_rows, std::size_t nb_cols) override;
 };
 
 /// The same for clouds whose fields are known at run time only. Keeps every field; reads float64 coordinates at full
@@ -98,7 +105,8 @@ public:
 
   using CollisionFilterBase<pcl::PCLPointCloud2>::CollisionFilterBase;
 
-  /// @throws std::invalid_argument when the pointer is null, as PCL's own would crash
+  /// @throws std::invalid_argument when the pointer is null, as PCL's own would crash. On an error the former input
+  ///   stays.
   void setInputCloud(const PCLPointCloud2ConstPtr& cloud);
 
   /// true: filter(cloud) removes nothing and adds a field `collision` (UINT8), the flags of computeFlags(), whatever

@@ -51,6 +51,11 @@ std::uint64_t checksumOf(const PointsView& view)
 
 } // namespace
 
+ObstacleQuery& ObstacleQuery::operator=(const ObstacleQuery& other)
+{
+  return *this = ObstacleQuery(other); // moving allocates nothing
+}
+
 void ObstacleQuery::setObstacle(std::function<PointsView()> view)
 {
   view(); // a cloud that cannot be read is refused here, not at the first use

@@ -95,7 +95,8 @@ protected:
   ObstacleQuery() = default;
   ~ObstacleQuery() = default;
   ObstacleQuery(const ObstacleQuery&) = default;
-  ObstacleQuery& operator=(const ObstacleQuery&) = default;
+  ObstacleQuery& operator=(const ObstacleQuery& other); ///< all of it, or std::bad_alloc and nothing has changed
+  ObstacleQuery& operator=(ObstacleQuery&&) = default;
 
   /// One per record of the input: 1 collides, 2 is undecided, 0 is free.
   /// @throws std::invalid_argument when a setting is missing or not what its declaration asks for.

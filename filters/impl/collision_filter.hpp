@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace pcl_bsh {
@@ -21,26 +22,39 @@ CollisionFilterBase<PointT>::CollisionFilterBase(const CollisionFilterBase& othe
 : pcl::FilterIndices<PointT>(other),
   ObstacleQuery(other)
 {
-  ownWhatIsWritten();
+  this->removed_indices_ = removedOfItsOwn();
+  this->indices_ = indicesOfItsOwn();
 }
 
 template <typename PointT>
 CollisionFilterBase<PointT>& CollisionFilterBase<PointT>::operator=(const CollisionFilterBase& other)
 {
   if (this == &other) return *this;
-  pcl::FilterIndices<PointT>::operator=(other);
+  // All that allocates comes first. Otherwise memory that runs out would leave half of each filter, or lists that both
+  // write.
+  pcl::IndicesPtr removed = other.removedOfItsOwn(), indices = other.indicesOfItsOwn();
+  this->filter_name_.reserve(other.filter_name_.size());
+  if constexpr (std::is_same_v<PointT, pcl::PCLPointCloud2>) this->field_sizes_.reserve(other.field_sizes_.size());
   ObstacleQuery::operator=(other);
-  ownWhatIsWritten();
+
+  pcl::FilterIndices<PointT>::operator=(other);
+  this->removed_indices_ = std::move(removed);
+  this->indices_ = std::move(indices);
   return *this;
 }
 
 /// PCL's classes copy pointers to what each filter() writes: the removed indices and, unless the user has set them, the
 /// numbers of all points.
 template <typename PointT>
-void CollisionFilterBase<PointT>::ownWhatIsWritten()
+pcl::IndicesPtr CollisionFilterBase<PointT>::removedOfItsOwn() const
 {
-  if (this->removed_indices_) this->removed_indices_ = std::make_shared<pcl::Indices>(*this->removed_indices_);
-  if (this->indices_ && this->fake_indices_) this->indices_ = std::make_shared<pcl::Indices>(*this->indices_);
+  return this->removed_indices_ ? std::make_shared<pcl::Indices>(*this->removed_indices_) : nullptr;
+}
+
+template <typename PointT>
+pcl::IndicesPtr CollisionFilterBase<PointT>::indicesOfItsOwn() const
+{
+  return this->indices_ && this->fake_indices_ ? std::make_shared<pcl::Indices>(*this->indices_) : this->indices_;
 }
 
 template <typename PointT>
@@ -92,6 +106,20 @@ template <typename PointT>
 void CollisionFilterBase<PointT>::requireInput() const
 {
   if (!this->input_) throw std::invalid_argument("input cloud is missing: call setInputCloud() before filtering");
+}
+
+template <typename PointT>
+void CollisionFilter<PointT>::setIndices(std::size_t row_start, std::size_t col_start, std::size_t nb_rows,
+                                         std::size_t nb_cols)
+{
+  const pcl::IndicesPtr former = this->indices_;
+  try {
+    CollisionFilterBase<PointT>::setIndices(row_start, col_start, nb_rows, nb_cols);
+  }
+  catch (...) {
+    this->indices_ = former;
+    throw;
+  }
 }
 
 } // namespace pcl_bsh
