@@ -10,60 +10,31 @@
 #include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
+#include "attack.h"
 #include "climb.h"
 #include "kernels.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
-#include <cstdio>
 #include <string>
 
 namespace pcl_bsh {
 namespace {
 
+using test::floatOf;
+using test::onEveryTarget;
 using test::Random;
+using test::report;
+using test::suspect;
 using Numbers = std::vector<double>;
 
 const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
-
-void report(const std::string& what, double fraction)
-{
-  testing::Test::RecordProperty(what, std::to_string(fraction));
-  std::printf("  %s: %.4f of the bound\n", what.c_str(), fraction);
-  EXPECT_LE(fraction, 1.0) << what;
-}
 
 /// x, within 2^-50 of itself.
 double toDouble(const Dyadic& x)
 {
   const Dyadic::Scaled scaled = x.scaled();
   return scaled.mantissa == 0.0 ? 0.0 : std::ldexp(scaled.mantissa, scaled.exponent);
-}
-
-float floatOf(double x)
-{
-  return roundToFloat(std::clamp(x, -0x1p60, 0x1p60));
-}
-
-template <class Test>
-void onEveryTarget(const Test& body)
-{
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    body(hwy::TargetName(target));
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
-
-/// 1 and a little, as where rounding costs most; or any number.
-double suspect(Random& random, int least)
-{
-  const double x = random.chance(0.7) ? 1.0 + std::ldexp(random.uniform(-1, 1), -random.integer(1, 30))
-                                      : std::ldexp(random.uniform(0.5, 1), -random.integer(0, least));
-  return random.chance(0.5) ? x : -x;
 }
 
 /// Of shift, matrix row and point (7 numbers) by the compiled kernel: the error, as a part of its bound.

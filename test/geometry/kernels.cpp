@@ -9,7 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <pcl_bsh/simd/sphere_lanes-inl.h>
+#include <pcl_bsh/simd/segment_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -42,6 +42,35 @@ test::Near testOnTarget(const float* center, const float* radius_stretch, const 
   return {(spheresNear(spheres, held, nullptr) & 1) != 0, (spheresInside(spheres, held) & 1) != 0};
 }
 
+bool slabsApartOnTarget(const test::TestSlab& slab, float stretch, const test::TestSlab& other, float reach)
+{
+  alignas(32) float at[8][8];
+  const float values[8] = {slab.center[0], slab.center[1], slab.center[2], slab.radius,
+                           slab.normal[0], slab.normal[1], slab.normal[2], slab.h};
+  for (std::size_t k = 0; k < 8; ++k) std::fill(at[k], at[k] + 8, values[k]);
+  const Slab held{{other.normal[0], other.normal[1], other.normal[2]},
+                  other.h,
+                  {other.center[0], other.center[1], other.center[2]},
+                  other.radius};
+  return (slabsApart({at[0], at[1], at[2], at[3], stretch}, {at[4], at[5], at[6], at[7]}, held, reach) & 1) != 0;
+}
+
+test::Stay segmentInBoxOnTarget(const float* start, const float* end, float smallest, float reach, const float* low,
+                                const float* high)
+{
+  alignas(64) float from[3][8], to[3][8];
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::fill(from[k], from[k] + 8, start[k]);
+    std::fill(to[k], to[k] + 8, end[k]);
+  }
+  Segments<8> segments;
+  segments.set(from, to, smallest);
+  std::fill(segments.reach[0], segments.reach[0] + 8, reach);
+  Stays<8> stays;
+  const bool in_box = (segmentsInBox(segments, low, high, 0.0f, &stays) & 1) != 0;
+  return {in_box, stays.from[0], stays.to[0]};
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh
 HWY_AFTER_NAMESPACE();
@@ -52,6 +81,8 @@ namespace {
 HWY_EXPORT(carryOnTarget);
 HWY_EXPORT(squaredOnTarget);
 HWY_EXPORT(testOnTarget);
+HWY_EXPORT(slabsApartOnTarget);
+HWY_EXPORT(segmentInBoxOnTarget);
 } // namespace
 
 namespace test {
@@ -76,6 +107,17 @@ Near testSphere(const float (&center)[3], float radius, float stretch, const flo
 {
   const float radius_stretch[2] = {radius, stretch}, reaches[2] = {prune_reach, accept_reach};
   return HWY_DYNAMIC_DISPATCH(testOnTarget)(center, radius_stretch, ball, ball_radius, reaches);
+}
+
+bool slabsApart(const TestSlab& slab, float stretch, const TestSlab& other, float reach)
+{
+  return HWY_DYNAMIC_DISPATCH(slabsApartOnTarget)(slab, stretch, other, reach);
+}
+
+Stay segmentInBox(const float (&start)[3], const float (&end)[3], float smallest, float reach, const float (&low)[3],
+                  const float (&high)[3])
+{
+  return HWY_DYNAMIC_DISPATCH(segmentInBoxOnTarget)(start, end, smallest, reach, low, high);
 }
 
 } // namespace test

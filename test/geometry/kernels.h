@@ -25,4 +25,18 @@ struct Near {
 Near testSphere(const float (&center)[3], float radius, float stretch, const float (&ball)[3], float ball_radius,
                 float prune_reach, float accept_reach);
 
+/// slabsApart() of one slab in a sphere against another one.
+struct TestSlab {
+  float normal[3], h, center[3], radius;
+};
+bool slabsApart(const TestSlab& slab, float stretch, const TestSlab& other, float reach);
+
+/// segmentsInBox() of one segment, at all instants.
+struct Stay {
+  bool in_box;
+  float from, to;
+};
+Stay segmentInBox(const float (&start)[3], const float (&end)[3], float smallest, float reach, const float (&low)[3],
+                  const float (&high)[3]);
+
 } // namespace pcl_bsh::test
