@@ -4,6 +4,7 @@
 #include <pcl_bsh/query/scene/effect.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace pcl_bsh {
 namespace {
@@ -70,7 +71,7 @@ void Scene::State::decideAny(BroadPair& pair) const
   memory.has_witness = false;
   memory.apart = 0.0;
   const double ahead = remember ? kAhead * (a.last_motion + b.last_motion) : 0.0;
-  if (ahead > 0.0 && memory.patience == 0) {
+  if (ahead > 0.0 && std::isfinite(pair.clearance + ahead) && memory.patience == 0) {
     // What is free at a wider clearance need not be asked again until it has moved that far.
     memory.colliding = ask(pair.clearance + ahead);
     if (!memory.colliding) {
