@@ -18,6 +18,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -321,9 +322,10 @@ std::vector<Clash> readEarlier(const Options& options, std::vector<std::string>&
 {
   if (!options.previous) return {};
   const io::ClashList list = io::readClashes(*options.previous);
-  warnings = io::requireComparable(
-      *options.previous, list,
-      {options.input.string(), options.obstacle.string(), options.request.clearance, options.swept, {}});
+  for (std::string& warning : io::requireComparable(
+           *options.previous, list,
+           {options.input.string(), options.obstacle.string(), options.request.clearance, options.swept, {}}))
+    warnings.push_back(std::move(warning));
   return list.clashes;
 }
 

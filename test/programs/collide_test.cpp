@@ -173,6 +173,15 @@ TEST_F(Collide, PrintedMatricesStandForTheirNearestRotations)
     EXPECT_THAT(done.err, HasSubstr("the nearest rotation is used")) << pose;
     EXPECT_THAT(report()["warnings"].dump(), HasSubstr("the nearest rotation is used")) << pose;
   }
+  // What is said of an earlier list stands beside it.
+  folder.write("other.xyz", "1 0 0\n");
+  const std::string along = " {out.pcd} --clearance 1 --trajectory {poses.txt} --clashes {a.json} ";
+  expectDone("{input.ply} {point.xyz}" + along);
+  const Outcome again = collide("{input.ply} {other.xyz}" + along + "--previous {a.json}");
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("the nearest rotation is used"));
+  EXPECT_THAT(again.err, HasSubstr("lists clashes of the obstacle 'point.xyz'"));
+
   folder.write("rows.txt", "0.5 -0.87 0 0\n0.87 0.5 0 0\n0 0 1 0\n");
   const Outcome refused = collide(job + "--pose {rows.txt}");
   EXPECT_EQ(refused.exit_code, 1);
