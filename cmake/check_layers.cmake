@@ -5,24 +5,29 @@ cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
 # From the bottom up: a room may include itself and those before it.
-set(rooms pcl_bsh/files pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/certify pcl_bsh/search filters filters/io
-    filters/pipeline pcl_bsh/vtk examples examples/view)
-set(core pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/certify) # without PCL
+set(core pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/traversal pcl_bsh/collision pcl_bsh/neighbors
+    pcl_bsh/clusters pcl_bsh/trajectory pcl_bsh/scene pcl_bsh/report pcl_bsh/certify) # without PCL
+set(rooms pcl_bsh/files ${core} pcl_bsh/search filters filters/cloud_files filters/pose_files filters/json filters/scene_files
+    filters/reports filters/pipeline pcl_bsh/vtk examples/cli examples/tunnel examples/viewer examples/programs examples)
 
 set(never "^vtk")                     # nowhere in these rooms, but for
 set(allowed_pcl_bsh/vtk "^vtk")       # a room made for it, which only programs see
-set(allowed_examples/view "^vtk")     # and the program that shows things
+set(allowed_examples/viewer "^vtk")   # and the program that shows things
 set(gpl "^(CGAL/|pcl_bsh/certify/)")  # only in pcl_bsh/certify, and in its program what that offers
-set(gpl_program "^examples/(pcl_bsh_certify\\.cpp|cli/certify_[a-z]+\\.h)$")
+set(gpl_program "^examples/(programs/pcl_bsh_certify\\.cpp|cli/certify_[a-z]+\\.h)$")
 set(never_in_core "^(pcl/|pcl_bsh/files/|iostream$|fstream$)")
 
 # The room of an included path, or empty when it is not one of ours.
 function(room_of path room_variable)
   string(REGEX REPLACE "^pcl_bsh/filters/" "filters/" path "${path}")
+  string(REGEX REPLACE "^(cli|tunnel|viewer)/" "examples/\\1/" path "${path}")
   set(found "")
-  foreach(room IN LISTS rooms) # the longest match wins: filters/io after filters
-    if(path MATCHES "^${room}/")
+  set(found_length 0)
+  foreach(room IN LISTS rooms) # the longest match wins: filters/json, not filters
+    string(LENGTH "${room}" length)
+    if(length GREATER found_length AND path MATCHES "^${room}/")
       set(found "${room}")
+      set(found_length ${length})
     endif()
   endforeach()
   set(${room_variable} "${found}" PARENT_SCOPE)

@@ -10,8 +10,8 @@ scans=build/demo
 bash cmake/setup.sh release programs
 bash examples/demo/fetch_scans.sh "$scans"
 printf '\n'
-build/release/examples/pcl_bsh_demo "$scans/building.ply" "$scans/man.off" "$scans/building_collision.pcd"
+build/release/bin/pcl_bsh_demo "$scans/building.ply" "$scans/man.off" "$scans/building_collision.pcd"
 
-if [[ -x build/release/examples/pcl_bsh_view ]]; then # where VTK is
-  build/release/examples/pcl_bsh_view "$scans/building_collision.pcd" --screenshot "$scans/building_collision.png"
+if [[ -x build/release/bin/pcl_bsh_view ]]; then # where VTK is
+  build/release/bin/pcl_bsh_view "$scans/building_collision.pcd" --screenshot "$scans/building_collision.png"
 fi

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/collision_field.h>
 
-#include <pcl_bsh/query/trajectory.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <pcl/common/io.h>
 #include <pcl/type_traits.h>

@@ -12,7 +12,7 @@
 #pragma once
 
 #include <pcl_bsh/filters/obstacle_query.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/filters/filter_indices.h>

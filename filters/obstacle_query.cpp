@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/obstacle_query.h>
 
-#include <pcl_bsh/query/collide.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <pcl/console/print.h>
 

@@ -6,7 +6,7 @@
 #include "used_files.h"
 
 #include <pcl_bsh/certify/certify.h>
-#include <pcl_bsh/filters/io/field_type.h>
+#include <pcl_bsh/filters/cloud_files/field_type.h>
 
 #include <filesystem>
 #include <optional>

@@ -2,7 +2,7 @@
 // What the files of a scene's clouds are called.
 #pragma once
 
-#include <pcl_bsh/filters/io/scene_file.h>
+#include <pcl_bsh/filters/scene_files/scene_file.h>
 
 #include <algorithm>
 #include <cctype>

@@ -6,9 +6,9 @@
 #include "path.h"
 #include "used_files.h"
 
-#include <pcl_bsh/filters/io/field_type.h>
+#include <pcl_bsh/filters/cloud_files/field_type.h>
 #include <pcl_bsh/geometry/invalid_input.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <cmath>
 #include <cstdint>

@@ -5,8 +5,8 @@
 #include "pose.h"
 #include "program.h"
 
-#include <pcl_bsh/filters/io/pose_file.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <CLI/CLI.hpp>
 

@@ -4,9 +4,9 @@
 
 #include "program.h"
 
-#include <pcl_bsh/filters/io/cloud_file_error.h>
-#include <pcl_bsh/filters/io/pose_text.h>
-#include <pcl_bsh/filters/io/rigid_pose.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
+#include <pcl_bsh/filters/pose_files/pose_text.h>
+#include <pcl_bsh/filters/pose_files/rigid_pose.h>
 
 #include <Eigen/Geometry>
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/query/spacing.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/neighbors/spacing.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <nlohmann/json.hpp>
 

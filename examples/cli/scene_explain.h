@@ -2,7 +2,7 @@
 // What a scene file makes the program compute and build, and why; said without doing any of it.
 #pragma once
 
-#include <pcl_bsh/filters/io/scene_file.h>
+#include <pcl_bsh/filters/scene_files/scene_file.h>
 
 #include <ostream>
 #include <string>

@@ -2,7 +2,7 @@
 // What a scene found in a step, line by line: CSV for tables, JSON lines for programs.
 #pragma once
 
-#include <pcl_bsh/query/scene.h>
+#include <pcl_bsh/scene/scene.h>
 
 #include <nlohmann/json.hpp>
 

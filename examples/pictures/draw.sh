@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-programs="${1:-build/release}/examples"
+programs="${1:-build/release}/bin"
 scans=build/demo
 bash examples/demo/fetch_scans.sh "$scans"
 work="$(mktemp -d)"

@@ -4,7 +4,7 @@
 # The programs are found in PATH, or where `bash examples/run.sh` builds them.
 #   bash examples/pipelines/make_clouds.sh FOLDER
 set -euo pipefail
-PATH="$PATH:$PWD/build/release/examples"
+PATH="$PATH:$PWD/build/release/bin"
 
 die() { printf 'make_clouds.sh: %s\n' "$*" >&2; exit 1; }
 

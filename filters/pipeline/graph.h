@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/files/used_files.h>
-#include <pcl_bsh/filters/io/json_document.h>
+#include <pcl_bsh/filters/json/json_document.h>
 #include <pcl_bsh/filters/pipeline/pipeline.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/io/cloud_file_error.h>
-#include <pcl_bsh/filters/io/pose_text.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
 #include <pcl_bsh/filters/pipeline/option_json.h>
+#include <pcl_bsh/filters/pose_files/pose_text.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // Options between JSON and their values.
 #pragma once
 
-#include <pcl_bsh/filters/io/json_document.h>
+#include <pcl_bsh/filters/json/json_document.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 
 #include <string>

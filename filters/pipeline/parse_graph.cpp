@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/io/cloud_file_error.h>
-#include <pcl_bsh/filters/io/nearest_name.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
+#include <pcl_bsh/filters/json/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
 #include <pcl_bsh/filters/pipeline/option_json.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/io/cloud_file_error.h>
-#include <pcl_bsh/filters/io/file_bytes.h>
-#include <pcl_bsh/filters/io/nearest_name.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
+#include <pcl_bsh/filters/cloud_files/file_bytes.h>
+#include <pcl_bsh/filters/json/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <pcl_bsh/geometry/relative_frame.h>
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/query/accuracy.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,6 @@ struct Acceptance {
     if (accuracy.mode == Accuracy::Mode::tolerance && accuracy.value > 0.0)
       accepted = std::max(clearance, std::nextafter(clearance + accuracy.value, 0.0));
   }
-
-  explicit Acceptance(const CollisionRequest& request) : Acceptance(request.clearance, request.accuracy) {}
 
   DistanceBand band(const RelativeFrame& frame) const
   {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What every query asks of the parts of its request. Each throws InvalidInput naming the value.
 #pragma once
 
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/query/accuracy.h>
+
+#include <Eigen/Geometry>
 
 #include <cstddef>
 #include <optional>
@@ -13,19 +16,16 @@ namespace pcl_bsh {
 /// a scale meant as one.
 inline constexpr double rigidity_tolerance = 1e-6;
 
-/// Every query calls this before anything else, whatever it computes.
-/// @throws InvalidInput naming the value: a clearance that is negative or not finite; a pose that is not
-///   finite, whose last row is not 0 0 0 1, that mirrors, or whose rotation R has |R'R - I| > 1e-6 (Frobenius norm).
-void check(const Placed& a, const Placed& b, const CollisionRequest& request);
+/// Refuses a clearance that is negative or not finite.
+void checkClearance(double clearance);
 
-/// The same for a trajectory, with its tolerance, its pivot, and what its accuracy cannot tell; a pose of the model is
-/// named by its index.
-void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
+/// Refuses a value of the accuracy that is negative or not finite.
+void checkAccuracy(const Accuracy& accuracy);
 
-/// Whether a trajectory's result would hold anything.
-bool asksForAnything(const TrajectoryRequest& request);
+/// Whether a pose is finite, has the last row 0 0 0 1, does not mirror, and has |R'R - I| <= rigidity_tolerance.
+bool isRigid(const Eigen::Isometry3d& pose);
 
-/// The part of it that judges one pose, called `name` in the message. @param index which of several it is
+/// Refuses a pose that is not rigid, called `name` in the message. @param index which of several it is
 void checkPose(const std::string& name, const Eigen::Isometry3d& pose,
                const std::optional<std::size_t>& index = std::nullopt);
 

@@ -8,7 +8,7 @@
 // Answers are those of exact arithmetic on the given coordinates, where PCL's own round: see below.
 #pragma once
 
-#include <pcl_bsh/query/neighbors.h>
+#include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <pcl/memory.h>

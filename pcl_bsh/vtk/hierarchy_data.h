@@ -5,8 +5,8 @@
 // tree ends before, its leaves stay. A level above 0 builds every voxel.
 #pragma once
 
+#include <pcl_bsh/collision/trace.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
-#include <pcl_bsh/query/trace.h>
 
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>

@@ -3,9 +3,9 @@
 // against its bare query, and an update against building anew.
 #include "program.h"
 
+#include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/hierarchy/update.h>
-#include <pcl_bsh/query/collide.h>
-#include <pcl_bsh/query/scene.h>
+#include <pcl_bsh/scene/scene.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "workload/nearest.h"
 #include "workload/path_scene.h"
 
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>
 #include <cmath>

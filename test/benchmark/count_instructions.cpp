@@ -4,9 +4,9 @@
 //   valgrind --tool=callgrind --callgrind-out-file=/dev/null count_instructions flags
 //
 // Less those of `build`, which every other kind begins with.
-#include <pcl_bsh/query/collide.h>
-#include <pcl_bsh/query/neighbors.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/neighbors/neighbors.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <cmath>
 #include <cstdio>

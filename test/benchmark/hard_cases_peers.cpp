@@ -3,7 +3,7 @@
 // Prints a table in Markdown. Each answer is computed in a process of its own, for some of them crash.
 //
 //   hard_cases_peers
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/collision/collide.h>
 
 #include "../query/hard_cases.h"
 

@@ -6,7 +6,7 @@
 #include "peer/fcl_boxes.h"
 #endif
 
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/collision/collide.h>
 
 #include <optional>
 #include <stdexcept>

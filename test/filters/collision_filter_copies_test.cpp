@@ -2,7 +2,7 @@
 // Copies of a filter, obstacles that change under it, and queries that are stopped.
 #include <pcl_bsh/filters/collision_filter.h>
 #include <pcl_bsh/query/cancelled.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include "clouds.h"
 

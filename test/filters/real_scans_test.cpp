@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The queries on real scans, where they are at hand, against an independent kd-tree.
+#include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/filters/collision_filter.h>
-#include <pcl_bsh/query/collide.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include "../query/kd_tree.h"

@@ -3,9 +3,9 @@
 // written out again is the same list.
 #include "refusal.h"
 
-#include <pcl_bsh/filters/io/clash_report.h>
-#include <pcl_bsh/filters/io/cloud_file_error.h>
-#include <pcl_bsh/filters/io/json_reader.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
+#include <pcl_bsh/filters/json/json_reader.h>
+#include <pcl_bsh/filters/reports/clash_report.h>
 
 namespace {
 

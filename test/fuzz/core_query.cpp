@@ -4,9 +4,9 @@
 #include "scene.h"
 #include "target.h"
 
+#include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/query/brute_force.h>
-#include <pcl_bsh/query/collide.h>
 
 #include <cmath>
 #include <optional>

@@ -3,7 +3,7 @@
 // accepted, written out again, is accepted again.
 #include "target.h"
 
-#include <pcl_bsh/filters/io/records.h>
+#include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
 
 #include <cmath>

@@ -3,16 +3,16 @@
 
 #include "target.h"
 
+#include <pcl_bsh/clusters/clusters.h>
+#include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/collision/trace.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/float_environment.h>
-#include <pcl_bsh/query/brute_force.h>
-#include <pcl_bsh/query/brute_force_neighbors.h>
+#include <pcl_bsh/neighbors/brute_force_neighbors.h>
+#include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/query/brute_force_points.h>
-#include <pcl_bsh/query/clashes.h>
-#include <pcl_bsh/query/clusters.h>
-#include <pcl_bsh/query/spacing.h>
-#include <pcl_bsh/query/trace.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/report/clashes.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,9 @@
 
 #include "changing_cloud.h"
 
-#include <pcl_bsh/query/collide.h>
-#include <pcl_bsh/query/contacts.h>
-#include <pcl_bsh/query/neighbors.h>
+#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/neighbors/neighbors.h>
 
 #include <string>
 #include <vector>

@@ -5,9 +5,9 @@
 #include "questions.h"
 #include "target.h"
 
+#include <pcl_bsh/collision/brute_force.h>
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/query/brute_force.h>
-#include <pcl_bsh/query/scene.h>
+#include <pcl_bsh/scene/scene.h>
 
 #include <algorithm>
 #include <deque>

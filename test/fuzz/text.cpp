@@ -2,7 +2,7 @@
 // The three formats that are lines of text; each input is read as all of them.
 #include "read.h"
 
-#include <pcl_bsh/filters/io/text_clouds.h>
+#include <pcl_bsh/filters/cloud_files/text_clouds.h>
 
 namespace {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/retained_memory.h>
 
+#include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/hierarchy/large_buffer.h>
-#include <pcl_bsh/query/collide.h>
-#include <pcl_bsh/query/neighbors.h>
+#include <pcl_bsh/neighbors/neighbors.h>
 
 #include "../query/random_clouds.h"
 

@@ -3,7 +3,7 @@
 
 #include "../query/random_clouds.h"
 
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/collision/collide.h>
 
 #include <gtest/gtest.h>
 

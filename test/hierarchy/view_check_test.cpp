@@ -2,7 +2,7 @@
 #include <pcl_bsh/hierarchy/view_check.h>
 
 #include <pcl_bsh/hierarchy/update.h>
-#include <pcl_bsh/query/neighbors.h>
+#include <pcl_bsh/neighbors/neighbors.h>
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whatever edge is asked for, and however far points reach: memory and work stay proportional to the points.
-#include <pcl_bsh/query/brute_force.h>
-#include <pcl_bsh/query/neighbors.h>
+#include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/neighbors/neighbors.h>
 
 #include "../query/random_clouds.h"
 

@@ -2,7 +2,7 @@
 // Small clouds with everything that allocates: several voxels, crowded cells, one place many times over, radii.
 #pragma once
 
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/collision/collide.h>
 
 #include "../query/random_clouds.h"
 

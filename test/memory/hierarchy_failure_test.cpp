@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/collision/brute_force.h>
 #include <pcl_bsh/hierarchy/update.h>
-#include <pcl_bsh/query/brute_force.h>
 
 #include "clouds.h"
 #include "every_allocation.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/query/neighbors.h>
+#include <pcl_bsh/neighbors/neighbors.h>
 
 #include "clouds.h"
 #include "every_allocation.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/query/brute_force.h>
-#include <pcl_bsh/query/clashes.h>
-#include <pcl_bsh/query/clusters.h>
-#include <pcl_bsh/query/contacts.h>
-#include <pcl_bsh/query/spacing.h>
-#include <pcl_bsh/query/trace.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/clusters/clusters.h>
+#include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/collision/trace.h>
+#include <pcl_bsh/neighbors/spacing.h>
+#include <pcl_bsh/report/clashes.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include "clouds.h"
 #include "every_allocation.h"

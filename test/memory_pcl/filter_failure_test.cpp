@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What PCL's classes allocate fails too, save for the points of typed clouds: those are Eigen's, not operator new's.
 #include <pcl_bsh/filters/collision_filter.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include "../filters/clouds.h"
 #include "../memory/every_allocation.h"

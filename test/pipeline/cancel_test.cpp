@@ -3,11 +3,11 @@
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 #include <pcl_bsh/query/cancelled.h>
 
+#include "../cloud_files/samples.h"
 #include "../filters/clouds.h"
-#include "../io/samples.h"
 #include "run_stage.h"
 
-#include <pcl_bsh/filters/io/pose_file.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
 
 #include <atomic>
 #include <chrono>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files name normals and colours in their own way; between reader and writer they have PCL's names and meaning.
-#include "../io/samples.h"
+#include "../cloud_files/samples.h"
 #include "run_stage.h"
 
-#include <pcl_bsh/filters/io/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
 
 #include <cmath>
 

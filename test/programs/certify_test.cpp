@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "program_run.h"
 
-#include <pcl_bsh/filters/io/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

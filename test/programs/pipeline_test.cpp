@@ -2,7 +2,7 @@
 // The program, and each sample pipeline on clouds of which the answer is known.
 #include "program_run.h"
 
-#include <pcl_bsh/filters/io/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
 
 #include <nlohmann/json.hpp>
 

@@ -2,7 +2,7 @@
 // Runs a program of the project and keeps all that it says.
 #pragma once
 
-#include "../io/samples.h"
+#include "../cloud_files/samples.h"
 
 #include <sys/wait.h>
 

@@ -25,7 +25,7 @@ protected:
     fs::create_directory(clone / "build");
     fs::create_directory_symlink(source / "examples", clone / "examples");
     fs::create_directory(clone / "build/release");
-    fs::create_directory_symlink(PCL_BSH_PROGRAM_DIR, clone / "build/release/examples");
+    fs::create_directory_symlink(PCL_BSH_PROGRAM_DIR, clone / "build/release/bin");
     if (haveScans()) fs::create_directory_symlink(source / "build/demo", clone / "build/demo");
   }
 
@@ -68,7 +68,7 @@ std::vector<std::string> blocksOf(const fs::path& document)
 TEST_F(Samples, TheReadmesCommandsRunInTheirOrder)
 {
   if (!haveScans()) GTEST_SKIP() << no_scans;
-  if (!fs::exists(clone / "build/release/examples/pcl_bsh_view"))
+  if (!fs::exists(clone / "build/release/bin/pcl_bsh_view"))
     GTEST_SKIP() << "pcl_bsh_view is not built: install libvtk9-dev, libegl-dev and libx11-dev";
   const std::vector<std::string> blocks = blocksOf(source / "README.md");
   EXPECT_GE(blocks.size(), 6U);
@@ -88,7 +88,7 @@ TEST_F(Samples, EachPipelineRunsOnTheCloudsMadeForIt)
     const std::string name = entry.path().filename().string();
     if (entry.path().extension() != ".json" || name.find(".schema.") != std::string::npos) continue;
     const std::string program = name == "every_nth.json" ? "pcl_bsh_own_stage" : "pcl_bsh_pipeline";
-    expectDone("cd build/samples; ../release/examples/" + program + " ../../examples/pipelines/" + name);
+    expectDone("cd build/samples; ../release/bin/" + program + " ../../examples/pipelines/" + name);
     ++run;
   }
   EXPECT_GE(run, 6U);
@@ -106,7 +106,7 @@ TEST_F(Samples, EachSceneRuns)
     const bool scans = scene.find("build/demo/") != std::string::npos;
     if (scans && !haveScans()) continue;
     clone.write("own/scenes/" + name, scene);
-    expectDone("build/release/examples/pcl_bsh_scene own/scenes/" + name + " --out run_" + name);
+    expectDone("build/release/bin/pcl_bsh_scene own/scenes/" + name + " --out run_" + name);
     ++run;
   }
   EXPECT_GE(run, 3U);

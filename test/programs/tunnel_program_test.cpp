@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "program_run.h"
 
-#include <pcl_bsh/filters/io/cloud_file.h>
-#include <pcl_bsh/filters/io/pose_file.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/query/accuracy.h>
-#include <pcl_bsh/query/brute_force.h>
-#include <pcl_bsh/query/collide.h>
 
 #include "random_clouds.h"
 

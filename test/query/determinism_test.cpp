@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One hash over all answers of a mixed workload: the same for any instruction set, number of threads and order in which
 // voxels come to be built.
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/collision/collide.h>
 
 #include "random_clouds.h"
 #include "simd_target.h"

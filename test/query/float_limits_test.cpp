@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where float arithmetic is at its limits: every rounding in the same direction, coordinates of every magnitude.
-#include <pcl_bsh/query/brute_force.h>
-#include <pcl_bsh/query/brute_force_neighbors.h>
-#include <pcl_bsh/query/collide.h>
-#include <pcl_bsh/query/neighbors.h>
-#include <pcl_bsh/query/spacing.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/neighbors/brute_force_neighbors.h>
+#include <pcl_bsh/neighbors/neighbors.h>
+#include <pcl_bsh/neighbors/spacing.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include "random_clouds.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Inputs that other tools are known to answer wrongly, or not at all, each under its catalogue number, with the answer
 // of exact arithmetic. Every query, fit and instruction set, one thread and several.
-#include <pcl_bsh/query/brute_force.h>
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/collision/collide.h>
 
 #include "hard_cases.h"
 #include "random_clouds.h"

@@ -2,7 +2,7 @@
 // Clouds that make trees deep, leaves crowded or float coordinates blind, at full size: work counters must stay near
 // those of an ordinary cloud, and a small stack must do. PCL_BSH_LONG_TESTS=1 in the environment: a million points
 // each.
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/collision/collide.h>
 
 #include "random_clouds.h"
 

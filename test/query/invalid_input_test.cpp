@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Programs tell errors apart by their code, whatever their text is.
+#include <pcl_bsh/clusters/clusters.h>
+#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collision/trace.h>
 #include <pcl_bsh/geometry/invalid_input.h>
-#include <pcl_bsh/query/clashes.h>
-#include <pcl_bsh/query/clusters.h>
-#include <pcl_bsh/query/collide.h>
-#include <pcl_bsh/query/neighbors.h>
-#include <pcl_bsh/query/scene.h>
-#include <pcl_bsh/query/trace.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/neighbors/neighbors.h>
+#include <pcl_bsh/report/clashes.h>
+#include <pcl_bsh/scene/scene.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include "../fuzz/questions.h"
 #include "random_clouds.h"
 
-#include <pcl_bsh/query/brute_force_neighbors.h>
+#include <pcl_bsh/neighbors/brute_force_neighbors.h>
 
 #include <gtest/gtest.h>
 

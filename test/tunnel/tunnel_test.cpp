@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <examples/tunnel/tunnel.h>
 
-#include <pcl_bsh/query/collide.h>
+#include <pcl_bsh/collision/collide.h>
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <pcl_bsh/vtk/hierarchy_data.h>
 #include <pcl_bsh/vtk/write_data.h>
 
-#include "../io/samples.h"
+#include "../cloud_files/samples.h"
 #include "../query/random_clouds.h"
 
 #include <gtest/gtest.h>

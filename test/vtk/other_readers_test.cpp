@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // VTK's readers see the points, colours and normals of the files that are written; what its writers write is read
 // alike.
-#include "../io/samples.h"
+#include "../cloud_files/samples.h"
 
-#include <pcl_bsh/filters/io/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What collides, place by place, as a list.
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/filters/io/clash_report.h>
-#include <pcl_bsh/filters/io/cloud_file_error.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/collision_question.h>
+#include <pcl_bsh/filters/reports/clash_report.h>
 
 namespace pcl_bsh::pipeline {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/io/cloud_file_error.h>
-#include <pcl_bsh/filters/io/pose_file.h>
-#include <pcl_bsh/filters/io/rigid_pose.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
 #include <pcl_bsh/filters/pipeline/stages/collision_question.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/filters/pose_files/rigid_pose.h>
 #include <pcl_bsh/geometry/invalid_input.h>
-#include <pcl_bsh/query/trajectory.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <string>
 

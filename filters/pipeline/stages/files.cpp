@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Readers and writers, of all formats that filters/io knows.
-#include <pcl_bsh/filters/io/cloud_file.h>
-#include <pcl_bsh/filters/io/pcl_names.h>
-#include <pcl_bsh/filters/io/text_clouds.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/pcl_names.h>
+#include <pcl_bsh/filters/cloud_files/text_clouds.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include <pcl_bsh/filters/pipeline/stages/float_cloud.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
-#include <pcl_bsh/query/spacing.h>
+#include <pcl_bsh/neighbors/spacing.h>
 
 #include <algorithm>
 #include <cmath>

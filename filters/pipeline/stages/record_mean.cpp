@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/io/records.h>
+#include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/pipeline/stages/record_mean.h>
 
 #include <algorithm>

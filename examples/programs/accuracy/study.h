@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What accuracy costs in time, measured on a caller's own clouds.
+#pragma once
+
+#include <pcl_bsh/collision/collide.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::accuracy {
+
+/// Two clouds, and where the second stands in the frame of the first.
+struct Subject {
+  PointsView a, b;
+  double clearance = 0.0;
+  std::vector<Eigen::Isometry3d> poses; ///< T_a_b
+  double diameter = 0.0;                ///< of a's bounding box
+};
+
+struct Spread {
+  double low = 0.0, median = 0.0, high = 0.0; ///< tenth, half and nine tenths of the repetitions
+};
+
+/// One setting of one query, over all poses.
+struct Measurement {
+  std::string query; ///< any, flags or distance
+  std::string knob;  ///< which of the dials, or which peer
+  std::string setting;
+  Spread seconds; ///< of one query, averaged over the poses
+  Work work;      ///< of all poses together
+  bool certified = true;
+  double certified_error = 0.0; ///< distance: mean width of the interval; flags, any: share left undecided
+  double actual_error = 0.0;    ///< distance: mean deviation from exact; flags, any: share of wrong answers
+  std::size_t wrong = 0;        ///< flags, any: answers that differ from exact
+  std::size_t poses = 0;
+};
+
+/// One way to choose centres of spheres.
+struct FitMeasurement {
+  std::string fit;
+  Spread build;                ///< seconds, both clouds, everything built
+  double mean_leaf_radius = 0; ///< of a
+  Spread flags, distance;      ///< seconds of an exact query, averaged over the poses
+};
+
+struct Study {
+  std::vector<Measurement> measurements;
+  std::vector<FitMeasurement> fits;
+};
+
+/// Called with what is being measured and the share done.
+using Progress = std::function<void(const std::string&, double)>;
+
+/// Runs the dial over its range; repetitions are interleaved, so that a machine's moods meet all settings alike.
+Study runStudy(const Subject& subject, unsigned repetitions, unsigned threads, const Progress& progress);
+
+Spread spreadOf(std::vector<double> values);
+
+} // namespace pcl_bsh::accuracy

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What does accuracy cost in time, on these two clouds? A table, a plot, and which setting to choose.
+#include "cli/collide_options.h"
+#include "cli/command_line.h"
+#include "cli/pose.h"
+#include "cli/step.h"
+#include "cli/used_files.h"
+#include "programs/accuracy/peers.h"
+#include "programs/accuracy/report.h"
+
+#include <pcl_bsh/files/output_folder.h>
+#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <random>
+
+namespace {
+
+using namespace pcl_bsh;
+
+constexpr auto program = "pcl_bsh_accuracy";
+constexpr auto footer =
+    R"(Asks whether, where and how near the clouds are, at every setting of the dial: exact, float only, tolerance, level of
+detail, budgets. Writes accuracy.csv, accuracy.md and accuracy.png. A or B may be a pipe, or - for standard input.
+Exit code: 0 done; 1 failed; 2 command line not understood.
+
+Example: a robot in a hall, at ten poses about (1.5, 2, 0)
+  pcl_bsh_accuracy hall.ply robot.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.57 --poses 10 --out study
+Example: a wagon on its way
+  pcl_bsh_accuracy tunnel.ply wagon.ply --clearance 0.05 --trajectory poses.txt --out study)";
+
+constexpr std::size_t most_poses = 20; // of a trajectory's; every setting is measured at each, several times
+
+constexpr std::array results = {"accuracy.csv", "accuracy.md", "accuracy.png"};
+
+struct Options {
+  std::filesystem::path a, b, out, trajectory;
+  double clearance = 0.0;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  unsigned poses = 1, repetitions = 5, threads = 1;
+  bool peers = false;
+  cli::CommandFiles files;
+};
+
+std::optional<Options> parse(int argc, char** argv)
+{
+  std::string a, b, out, clearance, pose, poses, trajectory, repetitions = "5", threads = "1";
+  Options options;
+  CLI::App app("Measures what accuracy costs in time, on two clouds of yours.", program);
+  app.footer(footer);
+  app.add_option("A", a, "cloud whose points are asked about")->type_name("")->required();
+  app.add_option("B", b, "cloud to collide with")->type_name("")->required();
+  app.add_option("--clearance", clearance, "greatest distance that counts as collision, in the clouds' unit")
+      ->type_name("D")
+      ->required();
+  app.add_option("--out", out, "folder for the results; made if it is not there")->type_name("DIR")->required();
+  app.add_option("--pose", pose, "of B in A's frame, as for pcl_bsh_collide (default: no motion)")->type_name("POSE");
+  app.add_option("--poses", poses,
+                 "that pose, and N - 1 about it: up to 5 % of A's diameter and 10 degrees off (default 1)")
+      ->type_name("N");
+  app.add_option("--trajectory", trajectory,
+                 "instead: a file of B's poses, as for pcl_bsh_collide; of more than 20,\n"
+                 "20 in even steps")
+      ->type_name("FILE");
+  app.add_option("--repeat", repetitions, "repetitions of every measurement (default 5)")->type_name("N");
+  app.add_option("--threads", threads, "0: all of the machine's (default 1)")->type_name("N");
+  app.add_flag("--peers", options.peers, "measure PCL's kd-tree, octree and VoxelGrid on the same clouds, too");
+  if (!cli::understood(app, program, argc, argv)) return std::nullopt;
+  options.a = a;
+  options.b = b;
+  options.out = out;
+  options.clearance = cli::parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
+  if (!trajectory.empty() && !(pose.empty() && poses.empty()))
+    throw cli::UsageError(std::string(pose.empty() ? "--poses" : "--pose") + ": --trajectory is given too: give one");
+  options.trajectory = trajectory;
+  if (!poses.empty()) options.poses = cli::parseOption<unsigned>("--poses", poses, "give a number of poses, 1 or more");
+  options.repetitions = cli::parseOption<unsigned>("--repeat", repetitions, "give a number, 1 or more");
+  options.threads = cli::parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
+  if (options.poses == 0) throw cli::UsageError("--poses: 0: give a number of poses, 1 or more");
+  if (options.repetitions == 0) throw cli::UsageError("--repeat: 0: give a number, 1 or more");
+  if (!pose.empty()) {
+    std::vector<std::string> warnings;
+    options.pose = cli::parsePose("--pose", pose, warnings);
+    cli::warn(program, warnings);
+  }
+  options.files.reads("A", a).reads("B", b).reads("--trajectory", trajectory).readsPose("--pose", pose);
+  for (const char* name : results) options.files.writes("--out", options.out / name);
+  return options;
+}
+
+pcl::PCLPointCloud2 load(const std::filesystem::path& path)
+{
+  cli::Step step("Loading " + path.string());
+  pcl::PCLPointCloud2 cloud = io::readCloud(path);
+  step.done(std::to_string(std::size_t{cloud.width} * cloud.height) + " points");
+  return cloud;
+}
+
+struct Box {
+  Eigen::AlignedBox3d box;
+  explicit Box(const PointsView& view)
+  {
+    for (std::size_t i = 0; i < view.count; ++i) {
+      const Point3 p = view.point(static_cast<std::uint32_t>(i));
+      const Eigen::Vector3d v(p[0], p[1], p[2]);
+      if (v.allFinite()) box.extend(v);
+    }
+  }
+};
+
+/// The pose, then others about it: turned about the middle of B, so that far coordinates do not swing away.
+std::vector<Eigen::Isometry3d> posesAbout(const Options& options, double diameter, const Eigen::Vector3d& middle)
+{
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<Eigen::Isometry3d> poses = {options.pose};
+  while (poses.size() < options.poses) {
+    const Eigen::Vector3d axis = Eigen::Vector3d(unit(random), unit(random), unit(random)).normalized();
+    const Eigen::Vector3d shift = 0.05 * diameter * Eigen::Vector3d(unit(random), unit(random), unit(random));
+    const double angle = unit(random) * 10.0 * 3.14159265358979323846 / 180.0;
+    poses.push_back(Eigen::Translation3d(shift) * options.pose * Eigen::Translation3d(middle) *
+                    Eigen::AngleAxisd(angle, axis) * Eigen::Translation3d(-middle));
+  }
+  return poses;
+}
+
+/// The file's poses, or some of them.
+std::vector<Eigen::Isometry3d> posesOfFile(const std::filesystem::path& file)
+{
+  std::vector<std::string> warnings;
+  const std::vector<Eigen::Isometry3d> all = io::readPoses(file, &warnings);
+  cli::warn(program, warnings);
+  if (all.size() <= most_poses) return all;
+  std::vector<Eigen::Isometry3d> some;
+  for (std::size_t i = 0; i < most_poses; ++i) some.push_back(all[i * (all.size() - 1) / (most_poses - 1)]);
+  return some;
+}
+
+int study(const Options& options)
+{
+  options.files.requireApart();
+  const std::vector<Eigen::Isometry3d> given =
+      options.trajectory.empty() ? std::vector<Eigen::Isometry3d>() : posesOfFile(options.trajectory);
+  const files::OutputFolder folder(options.out);
+  for (const char* name : results) files::requireWritable(options.out / name);
+  const pcl::PCLPointCloud2 cloud_a = load(options.a), cloud_b = load(options.b);
+  accuracy::Subject subject{viewOf(cloud_a), viewOf(cloud_b), options.clearance, {}, 0.0};
+  const Box a(subject.a), b(subject.b);
+  if (a.box.isEmpty() || b.box.isEmpty())
+    throw std::runtime_error((a.box.isEmpty() ? options.a : options.b).string() +
+                             ": has no finite point: there is nothing to measure: give another cloud");
+  subject.diameter = a.box.diagonal().norm();
+  subject.poses = given.empty() ? posesAbout(options, subject.diameter, b.box.center()) : given;
+
+  const auto progress = [](const std::string& what, double done) {
+    std::cerr << "> " << static_cast<int>(100 * done) << " %: " << what << '\n';
+  };
+  accuracy::Study result = accuracy::runStudy(subject, options.repetitions, options.threads, progress);
+  if (options.peers) {
+    for (accuracy::Measurement& m : accuracy::measurePeers(subject, std::min(options.repetitions, 3u), progress))
+      result.measurements.push_back(std::move(m));
+  }
+
+  const std::string heading = "`" + options.a.filename().string() + "` (" + std::to_string(subject.a.count) +
+                              " points) against `" + options.b.filename().string() + "` (" +
+                              std::to_string(subject.b.count) + " points).";
+  accuracy::writeReports(options.out, heading, subject, result);
+  std::cout << accuracy::advice(subject, result) << "\nWrote " << (options.out / "accuracy.md").string()
+            << ", accuracy.csv and accuracy.png beside it.\n";
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(program, [&] {
+    const std::optional<Options> options = parse(argc, argv);
+    return options ? study(*options) : 0;
+  });
+}

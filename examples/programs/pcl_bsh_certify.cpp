@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Does every bounding sphere of a cloud's hierarchy hold its points, and how much larger is it than it need be?
+// The program is under GPL-3.0-or-later once compiled: see pcl_bsh/certify/LICENSE.
+#include "cli/certify_options.h"
+#include "cli/certify_report.h"
+#include "cli/step.h"
+
+#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <iostream>
+#include <optional>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pcl_bsh;
+using Options = cli::CertifyProgramOptions;
+using Json = nlohmann::ordered_json;
+
+constexpr auto program = cli::certify_program;
+
+void check(const Options& options)
+{
+  options.files.requireApart();
+  if (options.report) files::requireWritable(*options.report);
+}
+
+pcl::PCLPointCloud2 load(const fs::path& path)
+{
+  cli::Step step("Loading " + path.string());
+  pcl::PCLPointCloud2 cloud = io::readCloud(path);
+  step.done(std::to_string(std::size_t{cloud.width} * cloud.height) + " points");
+  return cloud;
+}
+
+SphereHierarchy build(const PointsView& view, SphereFit fit, const Options& options, const std::string& name)
+{
+  cli::Step step("Building (" + name + ")");
+  HierarchyOptions wanted;
+  wanted.fit = fit;
+  wanted.threads = options.certify.threads;
+  SphereHierarchy hierarchy(view, wanted);
+  if (hierarchy.empty()) {
+    throw std::runtime_error(options.cloud.string() + ": has no finite point: there is nothing to certify");
+  }
+  hierarchy.buildAll(options.certify.threads);
+  step.done(std::to_string(hierarchy.statistics().voxels) + " voxels");
+  return hierarchy;
+}
+
+/// @param seconds that certifying took
+Certificate certifyTold(const SphereHierarchy& hierarchy, CertifyOptions options, const std::string& name,
+                        double& seconds)
+{
+  cli::Step step("Certifying (" + name + ")");
+  options.progress = [&](double share) { step.share(share); };
+  Certificate certificate = certify(hierarchy, options);
+  seconds = step.done(std::to_string(certificate.total.checks) + " checks");
+  return certificate;
+}
+
+void complain(const Options& options, const std::string& name, const Certificate& certificate)
+{
+  std::cerr << program << ": " << options.cloud.string() << ": fit " << name << ": ";
+  if (certificate.missing > 0) std::cerr << certificate.missing << " points are in no leaf";
+  if (certificate.missing > 0 && certificate.total.leaks > 0) std::cerr << ", ";
+  if (certificate.total.leaks > 0) {
+    const Leak& first = certificate.leaks.front();
+    std::cerr << certificate.total.leaks << " points stick out of their spheres, first point " << first.record
+              << ", by " << first.excess << ", out of child " << first.child << " of node " << first.node
+              << " on level " << cli::nameOf(first.level) << " of voxel " << first.voxel;
+  }
+  std::cerr << ": report this cloud as a defect of pcl_bsh\n";
+}
+
+int run(const Options& options)
+{
+  check(options);
+  const pcl::PCLPointCloud2 cloud = load(options.cloud);
+  const PointsView view = viewOf(cloud);
+
+  bool holds = true;
+  Json report;
+  report["cloud"] = {{"file", options.cloud.string()}, {"points", view.count}};
+  report["fits"] = Json::array();
+  for (const auto& [name, fit] : options.wanted) {
+    const SphereHierarchy hierarchy = build(view, fit, options, name);
+    double seconds = 0.0;
+    const Certificate certificate = certifyTold(hierarchy, options.certify, name, seconds);
+    if (report["fits"].empty()) cli::printTableHead(options.files.summary());
+    cli::printRows(options.files.summary(), name, certificate);
+    if (!certificate.holds()) complain(options, name, certificate);
+    holds = holds && certificate.holds();
+
+    Json of_fit = {{"fit", name}, {"finite", hierarchy.size()}, {"seconds", seconds}};
+    of_fit.update(cli::toJson(certificate));
+    report["fits"].push_back(std::move(of_fit));
+  }
+  report["holds"] = holds;
+  if (options.report) {
+    // A file name need not be UTF-8, JSON must.
+    const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
+    files::replaceFile(*options.report, [&](std::ostream& out) { out << text << '\n'; });
+  }
+  options.files.summary() << (holds ? "Certified: every point is in every sphere above it.\n" : "Not certified.\n");
+  return holds ? 0 : 1;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(program, [&] {
+    const std::optional<Options> options = cli::parseCertifyOptions(argc, argv);
+    return options ? run(*options) : 0;
+  });
+}

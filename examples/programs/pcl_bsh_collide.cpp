@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which points of a cloud collide with an obstacle, at a pose or along a path? From two files to a third, with reports.
+#include "cli/collide_options.h"
+#include "cli/program.h"
+#include "cli/report.h"
+#include "cli/step.h"
+
+#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/reports/clash_report.h>
+#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pcl_bsh;
+using cli::Keep, cli::UsageError;
+using Options = cli::CollideOptions;
+
+constexpr auto program = cli::collide_program;
+
+struct Scan {
+  pcl::PCLPointCloud2 cloud;
+  io::Viewpoint viewpoint = io::no_viewpoint;
+};
+
+/// The core names what is wrong with a request; users know it by the option.
+template <typename Ask>
+void requireAccepted(const char* option, const Ask& ask)
+{
+  try {
+    ask(SphereHierarchy{PointsView{}});
+  }
+  catch (const InvalidInput& error) {
+    throw std::invalid_argument(std::string(option) + ": " + error.advice());
+  }
+}
+
+void requireClashFormat(const fs::path& list)
+{
+  try {
+    io::requireClashFormat(list);
+  }
+  catch (const io::CloudFileError& error) {
+    throw UsageError(std::string("--clashes: ") + error.what());
+  }
+}
+
+/// Everything that can be known to fail is known before the first cloud is loaded.
+void check(const Options& options)
+{
+  options.files.requireApart();
+  requireAccepted("--clearance",
+                  [&](const SphereHierarchy& nothing) { anyCollision({nothing}, {nothing}, options.request); });
+  requireAccepted("--pose", [&](const SphereHierarchy& nothing) {
+    anyCollision({nothing}, {nothing, options.pose}, {});
+  });
+  if (!options.path.empty()) {
+    requireAccepted("--from", [&](const SphereHierarchy& nothing) {
+      anyCollision({nothing}, {nothing, options.path.front()}, {});
+    });
+    requireAccepted("--to", [&](const SphereHierarchy& nothing) {
+      anyCollision({nothing}, {nothing, options.path.back()}, {});
+    });
+  }
+  if (options.swept) {
+    requireAccepted("--swept", [&](const SphereHierarchy& nothing) {
+      TrajectoryRequest request;
+      request.swept = options.swept;
+      collideAlong({nothing}, nothing, {Eigen::Isometry3d::Identity()}, request);
+    });
+  }
+  io::requireWritableCloud(options.output);
+  if (options.report) files::requireWritable(*options.report);
+  for (const fs::path& list : options.clashes) {
+    requireClashFormat(list);
+    files::requireWritable(list);
+  }
+}
+
+Scan load(const fs::path& path, double& seconds)
+{
+  cli::Step step("Loading " + path.string());
+  Scan scan;
+  scan.cloud = io::readCloud(path, &scan.viewpoint);
+  seconds += step.done(std::to_string(std::size_t{scan.cloud.width} * scan.cloud.height) + " points");
+  return scan;
+}
+
+SphereHierarchy build(const Scan& scan, const fs::path& path, unsigned threads, double& seconds)
+{
+  cli::Step step("Sorting " + path.string() + " into voxels");
+  HierarchyOptions options;
+  options.threads = threads;
+  SphereHierarchy hierarchy(viewOf(scan.cloud), options);
+  seconds += step.done(std::to_string(hierarchy.statistics().voxels) + " voxels");
+  return hierarchy;
+}
+
+void warnOf(const cli::CloudReport& cloud, const SphereHierarchy& hierarchy, double clearance,
+            std::vector<std::string>& warnings)
+{
+  if (cloud.finite == 0) warnings.push_back(cloud.file + ": has no finite point: nothing collides");
+  if (cloud.finite > 0 && cloud.finite < cloud.points) {
+    warnings.push_back(cloud.file + ": " + std::to_string(cloud.points - cloud.finite) +
+                       " points are not finite: they collide with nothing");
+  }
+  const double spacing = hierarchy.coordinateSpacing();
+  if (clearance > 0 && spacing > clearance / 10) {
+    std::ostringstream warning;
+    warning << cloud.file << ": its float32 coordinates lie " << spacing
+            << " apart, coarse for this clearance: export float64 or coordinates near the origin";
+    warnings.push_back(warning.str());
+  }
+}
+
+/// The cloud without its records.
+pcl::PCLPointCloud2 emptyLike(const pcl::PCLPointCloud2& cloud)
+{
+  pcl::PCLPointCloud2 empty;
+  empty.header = cloud.header;
+  empty.height = 1;
+  empty.fields = cloud.fields;
+  empty.is_bigendian = cloud.is_bigendian;
+  empty.point_step = cloud.point_step;
+  empty.is_dense = cloud.is_dense;
+  return empty;
+}
+
+pcl::PCLPointCloud2 marked(const fs::path& path, const pcl::PCLPointCloud2& cloud, const std::vector<NewField>& fields)
+{
+  try {
+    return withFields(cloud, fields);
+  }
+  catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(path.string() + ": " + error.what());
+  }
+}
+
+/// What the output gets beside all the input had.
+std::vector<NewField> newFields(const Options& options, const TrajectoryResult& found)
+{
+  const bool all = options.moves() && !options.request.accuracy.stopsEarly();
+  return all ? fieldsOf(found) : std::vector<NewField>{{collision_field_name, &found.flags}};
+}
+
+/// The input's points that are wanted, as one row.
+pcl::PCLPointCloud2 select(const pcl::PCLPointCloud2& cloud, const PointsView& view,
+                           const std::vector<std::uint8_t>& collides, Keep keep)
+{
+  pcl::PCLPointCloud2 kept = emptyLike(cloud);
+  for (std::size_t i = 0; i < view.count; ++i) {
+    const Point3 p = view.point(static_cast<std::uint32_t>(i));
+    const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+    if (keep == Keep::colliding ? collides[i] == 0 : (collides[i] != 0 || !finite)) continue;
+    const auto record = cloud.data.begin() + static_cast<std::ptrdiff_t>(i * cloud.point_step);
+    kept.data.insert(kept.data.end(), record, record + cloud.point_step);
+  }
+  kept.width = static_cast<std::uint32_t>(kept.data.size() / std::max(kept.point_step, 1U));
+  kept.row_step = kept.width * kept.point_step;
+  return kept;
+}
+
+void write(const Options& options, const Scan& input, const TrajectoryResult& found, double& seconds)
+{
+  cli::Step step("Writing " + options.output.string());
+  const pcl::PCLPointCloud2 cloud = options.keep == Keep::flagged
+                                        ? marked(options.input, input.cloud, newFields(options, found))
+                                        : select(input.cloud, viewOf(input.cloud), found.flags, options.keep);
+  io::writeCloud(options.output, cloud, input.viewpoint);
+  seconds += step.done(std::to_string(std::size_t{cloud.width} * cloud.height) + " points");
+}
+
+/// As sure as it is.
+std::string distanceText(const cli::CollisionReport& report)
+{
+  std::ostringstream text;
+  text << report.closest.distance;
+  if (!report.accuracy.isProven()) return text.str() + " without proof";
+  if (report.accuracy.isExact()) return text.str();
+  if (report.path) return text.str() + " within the tolerance";
+  text << " or less, certainly in [" << report.closest.interval.lower << ", " << report.closest.interval.upper << "]";
+  return text.str();
+}
+
+void summarise(const Options& options, const cli::CollisionReport& report, const std::vector<Clash>& clashes)
+{
+  cli::warn(program, report.warnings);
+  std::ostream& out = options.files.summary();
+  out << report.colliding << " of " << report.input.points << " points collide";
+  if (report.accuracy.stopsEarly()) out << ", " << report.undecided << " are undecided";
+  if (report.closest.pair) {
+    out << "; smallest distance " << distanceText(report) << ", between point " << report.closest.pair->a
+        << " of the input and point " << report.closest.pair->b << " of the obstacle";
+  }
+  if (report.path) out << "; " << report.path->poses << " poses";
+  if (report.path && report.path->first_contact) {
+    out << "; first contact at pose "
+        << static_cast<double>(report.path->first_contact->pose) + report.path->first_contact->fraction;
+  }
+  if (!options.clashes.empty()) {
+    const auto resolved = std::count_if(clashes.begin(), clashes.end(),
+                                        [](const Clash& clash) { return clash.status == ClashStatus::resolved; });
+    out << "; " << clashes.size() - static_cast<std::size_t>(resolved) << " clashes";
+    if (options.previous) out << ", " << resolved << " resolved";
+  }
+  out << "; wrote " << options.output.string() << '\n';
+}
+
+/// At one pose, without a list of clashes: flags, and the smallest distance however large.
+TrajectoryResult atPose(const Options& options, const SphereHierarchy& a, const SphereHierarchy& b,
+                        cli::CollisionReport& report)
+{
+  cli::Step query("Comparing");
+  FlagsResult flags = collisionFlags({a}, {b, options.pose}, options.request);
+  report.closest = closestPair({a}, {b, options.pose}, options.request);
+  report.seconds.query = query.done(std::to_string(flags.colliding_a) + " colliding");
+  report.work = flags.work;
+  report.work += report.closest.work;
+  report.undecided = flags.undecided_a;
+  TrajectoryResult found;
+  found.flags = std::move(flags.a);
+  found.colliding = flags.colliding_a;
+  return found;
+}
+
+/// Of all colliding points, that of the smallest distance.
+DistanceResult closestOf(const TrajectoryResult& found)
+{
+  DistanceResult closest;
+  for (std::size_t i = 0; i < found.distance.size(); ++i) {
+    const double distance = static_cast<double>(found.distance[i]);
+    if (!(distance < closest.distance)) continue;
+    closest.distance = distance;
+    closest.pair = PointPair{static_cast<std::uint32_t>(i), found.closest_point[i]};
+  }
+  return closest;
+}
+
+TrajectoryResult alongPath(const Options& options, const std::vector<Eigen::Isometry3d>& poses,
+                           const SphereHierarchy& a, const SphereHierarchy& b, cli::CollisionReport& report)
+{
+  cli::Step query("Following " + std::to_string(poses.size()) + " poses");
+  TrajectoryRequest request;
+  request.clearance = options.request.clearance;
+  request.accuracy = options.request.accuracy;
+  const bool all = !request.accuracy.stopsEarly(); // that leaves times and distances open
+  request.distances = request.first_poses = request.closest_poses = all;
+  request.swept = options.swept;
+  request.pose_summaries = all && !options.swept; // swept motion is of what lies between poses
+  request.threads = options.request.threads;
+  request.progress = [&](double fraction) {
+    query.share(fraction);
+    return true;
+  };
+  TrajectoryResult found = collideAlong({a}, b, poses, request);
+  report.seconds.query = query.done(std::to_string(found.colliding) + " colliding");
+  report.work = found.work;
+  report.undecided = found.undecided;
+  report.closest = closestOf(found);
+  if (options.moves()) report.path = cli::PathReport{poses.size(), options.swept, found.poses, found.first_contact};
+  return found;
+}
+
+void warnOfHoles(cli::CollisionReport& report)
+{
+  if (!report.density.couldHide(report.clearance)) return;
+  std::ostringstream warning;
+  warning << "points lie " << report.density.input.median << " apart in the input and "
+          << report.density.obstacle.median << " in the obstacle: surfaces may touch with no two points within the "
+          << "clearance of " << report.clearance << ": scan more densely, or give a clearance of "
+          << report.density.blind() << " at least";
+  report.warnings.push_back(warning.str());
+}
+
+std::vector<Clash> listClashes(const Options& options, const std::vector<Eigen::Isometry3d>& poses,
+                               const SphereHierarchy& a, const SphereHierarchy& b, const TrajectoryResult& found,
+                               const std::vector<Clash>& earlier, cli::CollisionReport& report)
+{
+  cli::Step step("Listing clashes");
+  const double distance = options.cluster_distance > 0
+                              ? options.cluster_distance
+                              : io::clusterDistanceFor(options.request.clearance, report.density.input);
+  io::ClashReport list{options.input.string(),
+                       options.obstacle.string(),
+                       report.clearance,
+                       distance,
+                       {},
+                       findClashes(a.view(), found, distance),
+                       a.view(),
+                       b.view(),
+                       poses,
+                       found,
+                       options.swept};
+  if (options.previous) {
+    list.previous = options.previous->string();
+    compareWithEarlier(list.clashes, earlier, distance);
+  }
+  for (const fs::path& file : options.clashes) io::writeClashes(file, list);
+  report.seconds.clashes = step.done(std::to_string(list.clashes.size()) + " clashes");
+  return list.clashes;
+}
+
+std::vector<Eigen::Isometry3d> posesOf(const Options& options, std::vector<std::string>& warnings)
+{
+  if (!options.trajectory.empty()) return io::readPoses(options.trajectory, &warnings);
+  return options.path.empty() ? std::vector{options.pose} : options.path;
+}
+
+std::vector<Clash> readEarlier(const Options& options, std::vector<std::string>& warnings)
+{
+  if (!options.previous) return {};
+  const io::ClashList list = io::readClashes(*options.previous);
+  for (std::string& warning : io::requireComparable(
+           *options.previous, list,
+           {options.input.string(), options.obstacle.string(), options.request.clearance, options.swept, {}}))
+    warnings.push_back(std::move(warning));
+  return list.clashes;
+}
+
+int collide(const Options& options)
+{
+  check(options);
+  cli::CollisionReport report;
+  report.warnings = options.warnings;
+  const std::vector<Eigen::Isometry3d> poses = posesOf(options, report.warnings);
+  const std::vector<Clash> earlier = readEarlier(options, report.warnings);
+  report.clearance = options.request.clearance;
+  report.accuracy = options.request.accuracy;
+
+  const Scan input = load(options.input, report.seconds.load);
+  if (options.keep == Keep::flagged) marked(options.input, emptyLike(input.cloud), newFields(options, {})); // fails now
+  const Scan obstacle = load(options.obstacle, report.seconds.load);
+  const auto a = build(input, options.input, options.request.threads, report.seconds.build);
+  const auto b = build(obstacle, options.obstacle, options.request.threads, report.seconds.build);
+
+  const bool by_place = options.moves() || !options.clashes.empty();
+  const TrajectoryResult found = by_place ? alongPath(options, poses, a, b, report) : atPose(options, a, b, report);
+  report.density = {spacingOf(a), spacingOf(b)};
+  report.colliding = found.colliding;
+  report.voxels_total = a.statistics().voxels + b.statistics().voxels;
+  report.input = {options.input.string(), a.view().count, a.size()};
+  report.obstacle = {options.obstacle.string(), b.view().count, b.size()};
+  warnOf(report.input, a, report.clearance, report.warnings);
+  warnOf(report.obstacle, b, report.clearance, report.warnings);
+  warnOfHoles(report);
+
+  write(options, input, found, report.seconds.write);
+  std::vector<Clash> clashes;
+  if (!options.clashes.empty()) clashes = listClashes(options, poses, a, b, found, earlier, report);
+  if (options.report) cli::writeReport(*options.report, report);
+  summarise(options, report, clashes);
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(program, [&] {
+    const std::optional<Options> options = cli::parseCollideOptions(argc, argv);
+    return options ? collide(*options) : 0;
+  });
+}

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clouds, where they collide, and the spheres that find it: in a window, as a picture, or as files for ParaView.
+#include "cli/program.h"
+#include "viewer/options.h"
+#include "viewer/picture.h"
+#include "viewer/viewer.h"
+#include "viewer/world.h"
+
+#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/filters/scene_files/scene_file.h>
+#include <pcl_bsh/vtk/display.h>
+#include <pcl_bsh/vtk/write_data.h>
+
+namespace {
+
+using namespace pcl_bsh;
+
+/// What can be known to fail is known before the first cloud is loaded.
+void check(const view::Options& options)
+{
+  cli::CommandFiles files = options.files;
+  if (options.scene) {
+    for (const io::CloudSource& cloud : io::readSceneFile(*options.scene).clouds) files.reads("--scene", cloud.file);
+  }
+  files.requireApart();
+  if (options.screenshot) files::requireWritable(*options.screenshot);
+  if (options.export_to) pcl_bsh::vtk::requireWritableData(*options.export_to);
+  if (!options.screenshot && !options.export_to && !pcl_bsh::vtk::haveDisplay())
+    throw std::runtime_error("DISPLAY: no X server answers there, so no window can open: set DISPLAY, or give "
+                             "--screenshot FILE.png, which needs none");
+}
+
+int show(const view::Options& options)
+{
+  check(options);
+  const std::unique_ptr<view::World> world = view::makeWorld(options);
+  if (options.screenshot || options.export_to)
+    view::drawFiles(*world);
+  else
+    view::Viewer(*world).run();
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(view::program, [&] {
+    const std::optional<view::Options> options = view::parseOptions(argc, argv);
+    return options ? show(*options) : 0;
+  });
+}

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "clouds_world.h"
+
+#include "cli/program.h"
+#include "cli/step.h"
+#include "text.h"
+
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcl_bsh::view {
+namespace {
+
+Thing load(const std::filesystem::path& file, Thing::Role role, unsigned threads)
+{
+  Thing thing;
+  thing.name = thing.legend = file.filename().string();
+  thing.role = role;
+  thing.file = file;
+  cli::Step step("Loading " + file.string());
+  const auto cloud = std::make_shared<pcl::PCLPointCloud2>(io::readCloud(file));
+  HierarchyOptions how;
+  how.threads = threads;
+  thing.hierarchy = std::make_shared<SphereHierarchy>(viewOf(*cloud), how);
+  thing.cloud = cloud;
+  step.done(std::to_string(thing.points().count) + " points");
+  return thing;
+}
+
+} // namespace
+
+CloudsWorld::CloudsWorld(const Options& options) : World(options), poses_{options.pose}
+{
+  if (options.trajectory) {
+    std::vector<std::string> warnings;
+    poses_ = io::readPoses(*options.trajectory, &warnings);
+    cli::warn(program, warnings);
+  }
+  if (options.step >= poses_.size())
+    throw cli::UsageError("--step: " + std::to_string(options.step) + ": the trajectory has " +
+                          std::to_string(poses_.size()) + " poses, counted from 0");
+  for (const std::filesystem::path& file : options.clouds)
+    things_.push_back(load(file, things_.empty() ? Thing::Role::scan : Thing::Role::obstacle, options.threads));
+  if (options.model) {
+    model_ = things_.size();
+    things_.push_back(load(*options.model, Thing::Role::obstacle, options.threads));
+  }
+  if (scan().hierarchy->empty()) throw std::invalid_argument(scan().file.string() + ": has no finite point to show");
+}
+
+Eigen::Isometry3d CloudsWorld::poseOf(std::size_t thing, std::size_t step) const
+{
+  return thing == model_ ? poses_[step] : Eigen::Isometry3d::Identity();
+}
+
+CollisionRequest CloudsWorld::request() const
+{
+  CollisionRequest request;
+  request.clearance = options_.clearance.value_or(0.0);
+  request.threads = options_.threads;
+  request.flagged = Side::both;
+  return request;
+}
+
+TrajectoryRequest CloudsWorld::along() const
+{
+  TrajectoryRequest request;
+  request.clearance = options_.clearance.value_or(0.0);
+  request.threads = options_.threads;
+  request.flags = false;
+  return request;
+}
+
+Findings CloudsWorld::findings(std::size_t step) const
+{
+  Findings found;
+  found.flags.resize(things_.size());
+  if (options_.clearance) {
+    found.known = true;
+    found.flags[0].assign(scan().points().count, 0);
+    for (std::size_t other = 1; other < things_.size(); ++other) {
+      FlagsResult flags = collisionFlags(placed(0, step), placed(other, step), request());
+      for (std::size_t i = 0; i < flags.a.size(); ++i) found.flags[0][i] |= flags.a[i];
+      found.flags[other] = std::move(flags.b);
+    }
+  }
+  else if (const auto field = scan().field(collision_field_name)) {
+    found.known = true;
+    for (const float value : *field) found.flags[0].push_back(value != 0.0f);
+  }
+  found.colliding = static_cast<std::size_t>(std::count(found.flags[0].begin(), found.flags[0].end(), 1));
+  if (options_.closest) found.closest = closest(step);
+  return found;
+}
+
+std::optional<Closest> CloudsWorld::closest(std::size_t step) const
+{
+  std::optional<Closest> nearest;
+  for (std::size_t other = 1; other < things_.size(); ++other) {
+    const DistanceResult found = closestPair(placed(0, step), placed(other, step));
+    if (!found.pair || (nearest && nearest->distance <= found.distance)) continue;
+    const Point3 a = scan().points().point(found.pair->a), b = things_[other].points().point(found.pair->b);
+    nearest = {Eigen::Vector3d(a[0], a[1], a[2]), poseOf(other, step) * Eigen::Vector3d(b[0], b[1], b[2]),
+               found.distance};
+  }
+  return nearest;
+}
+
+std::string CloudsWorld::heading(const Findings& findings, std::size_t step) const
+{
+  std::ostringstream text;
+  text << scan().name << ": " << grouped(scan().hierarchy->size()) << " points";
+  if (findings.known) {
+    text << ", " << grouped(findings.colliding) << " collide";
+    if (options_.clearance) text << "  (clearance " << lengthOf(*options_.clearance, options_.unit) << ')';
+  }
+  if (steps() > 1) text << "\npose " << step << " of 0.." << steps() - 1;
+  return text.str();
+}
+
+Ways CloudsWorld::ways(std::size_t /*step*/) const
+{
+  if (steps() == 1) return {};
+  return {"path of the model", {poses_}};
+}
+
+std::optional<double> CloudsWorld::distanceOf(std::uint32_t record, std::size_t step) const
+{
+  if (things_.size() == 1) return std::nullopt;
+  const Point3 p = scan().points().point(record);
+  const SphereHierarchy point(viewOf(p.data(), 1));
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t other = 1; other < things_.size(); ++other)
+    nearest = std::min(nearest, closestPair({point}, placed(other, step)).distance);
+  return nearest;
+}
+
+std::vector<float> CloudsWorld::distances(std::size_t step) const
+{
+  if (!options_.clearance)
+    if (auto field = scan().field("distance")) return *field;
+  std::vector<float> distances(scan().points().count, std::numeric_limits<float>::quiet_NaN());
+  if (!options_.clearance) return distances;
+  TrajectoryRequest asked = along();
+  asked.distances = true;
+  for (std::size_t other = 1; other < things_.size(); ++other) {
+    const TrajectoryResult found =
+        collideAlong(placed(0, step), *things_[other].hierarchy, {poseOf(other, step)}, asked);
+    for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = std::fmin(distances[i], found.distance[i]);
+  }
+  return distances;
+}
+
+std::vector<std::int32_t> CloudsWorld::firstPoses() const
+{
+  if (first_poses_) return *first_poses_;
+  std::vector<std::int32_t> first(scan().points().count, -1);
+  if (const auto field = options_.clearance ? std::nullopt : scan().field("first_pose")) {
+    for (std::size_t i = 0; i < first.size(); ++i)
+      first[i] = std::isfinite((*field)[i]) ? static_cast<std::int32_t>((*field)[i]) : -1;
+  }
+  else if (options_.clearance) {
+    cli::Step step("Following " + std::to_string(steps()) + " poses");
+    TrajectoryRequest asked = along();
+    asked.first_poses = true;
+    for (std::size_t other = 1; other < things_.size(); ++other) {
+      const std::vector<Eigen::Isometry3d> still = {poseOf(other, 0)};
+      const TrajectoryResult found =
+          collideAlong(placed(0, 0), *things_[other].hierarchy, other == model_ ? poses_ : still, asked);
+      for (std::size_t i = 0; i < first.size(); ++i) {
+        const std::int32_t pose = found.first_pose[i];
+        if (pose >= 0 && (first[i] < 0 || pose < first[i])) first[i] = pose;
+      }
+    }
+    step.done(std::to_string(steps()) + " poses");
+  }
+  return *(first_poses_ = std::move(first));
+}
+
+std::string CloudsWorld::details(std::size_t thing, std::uint32_t record, std::size_t step) const
+{
+  if (thing > 0) return {};
+  std::string text;
+  if (const auto distance = distanceOf(record, step)) text += "; distance " + lengthOf(*distance, options_.unit);
+  if (first_poses_ || steps() > 1) {
+    const std::vector<std::int32_t> first = firstPoses();
+    text += "; first pose " + (first[record] < 0 ? "none" : std::to_string(first[record]));
+  }
+  return text;
+}
+
+std::vector<Trace> CloudsWorld::traces(std::size_t step) const
+{
+  std::vector<Trace> traces;
+  for (std::size_t other = 1; other < things_.size(); ++other)
+    traces.push_back({0, other, traceCollision(placed(0, step), placed(other, step), request())});
+  return traces;
+}
+
+} // namespace pcl_bsh::view

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "options.h"
+
+#include "cli/collide_options.h"
+#include "cli/command_line.h"
+#include "cli/pose.h"
+
+#include <pcl_bsh/filters/pose_files/pose_text.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace pcl_bsh::view {
+namespace {
+
+constexpr auto footer = R"(Points of the first CLOUD within D of another CLOUD or of the MODEL collide, decided exactly;
+they are drawn larger and in orange, all others dimmed. A cloud that holds the fields collision,
+distance or first_pose shows these as they are.
+A scene's objects are drawn where they are at a step, responses included: what is fixed in grey, what moves in
+blue, and what is within the scene's clearance, or D, in orange and yellow.
+Reads .pcd .ply .obj .off .xyz .txt, pipes, and standard input as -. Without --screenshot and --export a window opens: h shows its keys.
+Exit code: 0 done; 1 failed; 2 command line not understood.
+
+Examples:
+  pcl_bsh_view hall.ply --model robot.pcd --pose 1.5,2,0,0,0,1.57 --clearance 0.05 --unit m
+  pcl_bsh_view tunnel.pcd --model wagon.ply --trajectory path.txt --clearance 0.1 --color first_pose
+  pcl_bsh_view --scene walk.json --step 80 --clearance 0.3
+  pcl_bsh_view marked.pcd --camera colliding --screenshot marked.png --size 1600x1000
+  pcl_bsh_view hall.ply --model robot.pcd --clearance 0.05 --level 2 --export hall.vtm)";
+
+using cli::UsageError;
+
+Coloring parseColoring(const std::string& text)
+{
+  static const std::map<std::string, Coloring> known = {
+      {"collision", Coloring::collision}, {"distance", Coloring::distance}, {"first_pose", Coloring::first_pose},
+      {"height", Coloring::height},       {"rgb", Coloring::rgb},           {"intensity", Coloring::intensity}};
+  const auto found = known.find(text);
+  if (found == known.end())
+    throw UsageError("--color: '" + text +
+                     "' is unknown: give collision, distance, first_pose, height, rgb or intensity");
+  return found->second;
+}
+
+Camera parseCamera(const std::string& text)
+{
+  static const std::map<std::string, Camera::Kind> known = {{"slanted", Camera::Kind::slanted},
+                                                            {"top", Camera::Kind::top},
+                                                            {"front", Camera::Kind::front},
+                                                            {"side", Camera::Kind::side},
+                                                            {"colliding", Camera::Kind::colliding}};
+  Camera camera;
+  if (const auto found = known.find(text); found != known.end()) {
+    camera.kind = found->second;
+    return camera;
+  }
+  std::vector<double> n;
+  try {
+    n = io::numbersOf(text);
+  }
+  catch (const io::FormatError&) {
+    // Neither a name nor numbers.
+  }
+  if (n.size() != 6 && n.size() != 9)
+    throw UsageError("--camera: '" + text + "' is unknown: give slanted, top, front, side, colliding or the numbers " +
+                     "of eye, focus and, if not 0,0,1, up");
+  camera.kind = Camera::Kind::given;
+  std::copy_n(n.begin(), 3, camera.eye.begin());
+  std::copy_n(n.begin() + 3, 3, camera.focus.begin());
+  if (n.size() == 9) std::copy_n(n.begin() + 6, 3, camera.up.begin());
+  if (!std::all_of(n.begin(), n.end(), [](double number) { return std::isfinite(number); }))
+    throw UsageError("--camera: '" + text + "': has a number that is not finite: give numbers");
+  const Eigen::Vector3d gaze = Eigen::Vector3d(camera.focus.data()) - Eigen::Vector3d(camera.eye.data());
+  const Eigen::Vector3d up(camera.up.data());
+  if (camera.eye == camera.focus) throw UsageError("--camera: '" + text + "': eye and focus are one: part them");
+  const auto isAlong = [&gaze](const Eigen::Vector3d& v) {
+    return !(v.stableNormalized().cross(gaze.stableNormalized()).norm() > 1e-6);
+  };
+  if (n.size() == 6 && isAlong(up)) camera.up = {0, 1, 0};
+  if (n.size() == 9 && isAlong(up))
+    throw UsageError("--camera: '" + text + "': up is 0 or along the view: give another, as 0,1,0 from above");
+  return camera;
+}
+
+void parseSize(const std::string& text, Options& options)
+{
+  const std::size_t x = text.find('x');
+  const auto number = [&](const std::string& part) {
+    const int value = cli::parseOption<int>("--size", part, "give WIDTHxHEIGHT in pixels, as 1280x960");
+    if (value < 64 || value > 16384) throw UsageError("--size: " + part + " pixels: give 64 to 16384");
+    return value;
+  };
+  options.width = number(text.substr(0, x));
+  options.height = number(x == std::string::npos ? "" : text.substr(x + 1));
+}
+
+void checkScene(const Options& options)
+{
+  const auto refuse = [](const char* option) {
+    throw UsageError(std::string(option) + ": a --scene says this itself: leave it out");
+  };
+  if (!options.clouds.empty()) refuse("CLOUD");
+  if (options.model) refuse("--model");
+  if (!options.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) refuse("--pose");
+  if (options.trajectory) refuse("--trajectory");
+  if (options.trace) throw UsageError("--trace: shows a query of clouds: give these in place of --scene");
+  if (options.color && *options.color != Coloring::collision)
+    throw UsageError("--color: a --scene is coloured by collision: leave it out");
+  if (options.export_to && options.export_to->extension() == ".vtp")
+    throw UsageError("--export: " + options.export_to->string() + ": holds one cloud: name a .vtm file");
+}
+
+void checkClouds(const Options& options)
+{
+  if (options.clouds.empty()) throw UsageError("CLOUD: is missing: name a cloud, or a scene with --scene");
+  const bool moves = options.trajectory || !options.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0);
+  if (moves && !options.model) throw UsageError("--model: is missing: say which cloud the poses are for");
+  const bool obstacles = options.model || options.clouds.size() > 1;
+  if (options.clearance && !obstacles)
+    throw UsageError("--clearance: there is nothing to collide with: give a second cloud or --model");
+  if (!options.clearance && obstacles && options.color &&
+      (*options.color == Coloring::collision || *options.color == Coloring::distance ||
+       *options.color == Coloring::first_pose))
+    throw UsageError("--clearance: is missing: this --color asks what collides");
+  if (options.trace && !options.clearance) throw UsageError("--clearance: is missing: --trace shows a query");
+  if (options.closest && !obstacles)
+    throw UsageError("--closest: there is nothing to be close to: give a second cloud or --model");
+}
+
+void checkFiles(const Options& options)
+{
+  if (options.export_to) {
+    const std::string extension = options.export_to->extension().string();
+    if (extension != ".vtp" && extension != ".vtm")
+      throw UsageError("--export: " + options.export_to->string() + ": name a .vtp file (the first cloud alone) or a " +
+                       ".vtm file (everything)");
+  }
+  if (options.screenshot && options.screenshot->extension() != ".png")
+    throw UsageError("--screenshot: " + options.screenshot->string() + ": name a .png file");
+}
+
+} // namespace
+
+std::optional<Options> parseOptions(int argc, char** argv)
+{
+  Options options;
+  std::vector<std::string> clouds;
+  std::string scene, model, trajectory, pose, clearance, color, level, step = "0", screenshot, size = "1280x960",
+                                                                       camera = "slanted", export_to, threads = "0";
+  CLI::App app("Shows clouds, where they collide, and the spheres that find it.", program);
+  app.footer(footer);
+  app.add_option("CLOUD", clouds, "the cloud asked about, then obstacles in the same frame")->type_name("");
+  app.add_option("--scene", scene, "a scene file in place of clouds: objects, their motions and responses")
+      ->type_name("SCENE.json");
+  app.add_option("--model", model, "an obstacle that has poses")->type_name("CLOUD");
+  app.add_option("--pose", pose, "of the model: x,y,z,roll,pitch,yaw (radians), or a file of a\nmatrix (default: none)")
+      ->type_name("POSE");
+  app.add_option("--trajectory", trajectory,
+                 "poses of the model, one a line: 12 or 16 numbers of its matrix, or\ntime tx ty tz qx qy qz qw")
+      ->type_name("FILE");
+  app.add_option("--step", step,
+                 "the pose of the trajectory, or the step of the scene, to begin\nwith, from 0 (default: 0)")
+      ->type_name("N");
+  app.add_option("--clearance", clearance,
+                 "greatest distance that counts as collision, in the clouds' unit\n(default for a scene: its own)")
+      ->type_name("D");
+  app.add_option("--color", color, "collision (default where known), distance, first_pose, height,\nrgb or intensity")
+      ->type_name("BY");
+  app.add_option("--level", level, "draw the hierarchies' spheres: 0 the voxels', 1, 2 ... finer")->type_name("L");
+  app.add_flag("--voxels", options.voxels, "draw the voxels");
+  app.add_flag("--cells", options.cells, "draw boxes around the octree cells of the level");
+  app.add_flag("--trace", options.trace, "draw what the query for any collision tested and pruned");
+  app.add_flag("--closest", options.closest, "draw the closest pair and its distance");
+  app.add_option("--unit", options.unit, "name of the clouds' unit, for titles")->type_name("NAME");
+  app.add_option("--screenshot", screenshot, "write a picture instead of opening a window; needs no display")
+      ->type_name("FILE.png");
+  app.add_option("--size", size, "of the picture or window (default: 1280x960)")->type_name("WxH");
+  app.add_option("--camera", camera,
+                 "slanted (default), top, front, side, colliding (close to what\ncollides), or eye x,y,z, focus x,y,z"
+                 "[, up x,y,z]")
+      ->type_name("HOW");
+  app.add_option("--export", export_to, "write the cloud (.vtp) or everything (.vtm) for ParaView")->type_name("FILE");
+  app.add_option("--threads", threads, "0: all of the machine's (default)")->type_name("N");
+  if (!cli::understood(app, program, argc, argv)) return std::nullopt;
+
+  options.clouds.assign(clouds.begin(), clouds.end());
+  const auto set = [](const std::string& text, std::optional<std::filesystem::path>& path) {
+    if (!text.empty()) path = text;
+  };
+  set(scene, options.scene);
+  set(model, options.model);
+  set(trajectory, options.trajectory);
+  set(screenshot, options.screenshot);
+  set(export_to, options.export_to);
+  if (!pose.empty()) {
+    if (options.trajectory) throw UsageError("--pose: a model has one pose or a --trajectory: give one of the two");
+    std::vector<std::string> warnings;
+    options.pose = cli::parsePose("--pose", pose, warnings);
+    cli::warn(program, warnings);
+  }
+  if (!clearance.empty())
+    options.clearance = cli::parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
+  if (!color.empty()) options.color = parseColoring(color);
+  if (!level.empty()) options.level = cli::parseOption<unsigned>("--level", level, "give 0 or more");
+  options.step = cli::parseOption<unsigned>("--step", step, "give the number of a pose or step, from 0");
+  options.threads = cli::parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
+  for (const std::string& cloud : clouds) options.files.reads("CLOUD", cloud);
+  options.files.reads("--scene", scene).reads("--model", model).reads("--trajectory", trajectory);
+  options.files.readsPose("--pose", pose).writes("--screenshot", screenshot).writes("--export", export_to);
+  parseSize(size, options);
+  options.camera = parseCamera(camera);
+  options.scene ? checkScene(options) : checkClouds(options);
+  checkFiles(options);
+  return options;
+}
+
+} // namespace pcl_bsh::view

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "thing.h"
+
+#include <pcl_bsh/filters/cloud_files/field_type.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace pcl_bsh::view {
+namespace {
+
+const pcl::PCLPointField* find(const pcl::PCLPointCloud2& cloud, const std::string& name)
+{
+  for (const pcl::PCLPointField& field : cloud.fields)
+    if (field.name == name && field.count <= 1) return &field;
+  return nullptr;
+}
+
+/// One value of each record.
+template <class T, class Use>
+void eachValue(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field, const Use& use)
+{
+  const std::size_t count = std::size_t{cloud.width} * cloud.height;
+  for (std::size_t i = 0; i < count; ++i) {
+    T value;
+    std::memcpy(&value, cloud.data.data() + i * cloud.point_step + field.offset, sizeof value);
+    use(i, value);
+  }
+}
+
+} // namespace
+
+std::optional<std::vector<float>> Thing::field(const std::string& field_name) const
+{
+  const pcl::PCLPointField* const found = cloud ? find(*cloud, field_name) : nullptr;
+  if (!found) return std::nullopt;
+  std::vector<float> values(std::size_t{cloud->width} * cloud->height);
+  io::withFieldType(found->datatype, [&](auto zero) {
+    eachValue<decltype(zero)>(*cloud, *found,
+                              [&](std::size_t i, auto value) { values[i] = static_cast<float>(value); });
+  });
+  return values;
+}
+
+std::optional<std::vector<std::array<unsigned char, 3>>> Thing::colors() const
+{
+  std::vector<std::array<unsigned char, 3>> colors(std::size_t{cloud->width} * cloud->height);
+  for (const char* packed : {"rgb", "rgba"}) {
+    const pcl::PCLPointField* const found = find(*cloud, packed);
+    if (!found || io::sizeOf(found->datatype) != 4) continue;
+    eachValue<std::uint32_t>(*cloud, *found, [&](std::size_t i, std::uint32_t bits) {
+      colors[i] = {static_cast<unsigned char>(bits >> 16), static_cast<unsigned char>(bits >> 8),
+                   static_cast<unsigned char>(bits)};
+    });
+    return colors;
+  }
+  constexpr const char* names[2][3] = {{"red", "green", "blue"}, {"r", "g", "b"}};
+  for (const auto& set : names) {
+    const pcl::PCLPointField* const channels[3] = {find(*cloud, set[0]), find(*cloud, set[1]), find(*cloud, set[2])};
+    if (!channels[0] || !channels[1] || !channels[2]) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      // 16 bits a channel where the type says so; fractions of one where it is a real number.
+      const std::uint8_t type = channels[k]->datatype;
+      const float scale = type == pcl::PCLPointField::UINT16                                           ? 1.0f / 257.0f
+                          : type == pcl::PCLPointField::FLOAT32 || type == pcl::PCLPointField::FLOAT64 ? 255.0f
+                                                                                                       : 1.0f;
+      const std::vector<float> values = *field(set[k]);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        colors[i][k] = static_cast<unsigned char>(std::clamp(values[i] * scale, 0.0f, 255.0f));
+    }
+    return colors;
+  }
+  return std::nullopt;
+}
+
+} // namespace pcl_bsh::view

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Point clouds on disk: any format in, most out, every field kept in its type.
+//
+//   pcl::PCLPointCloud2 scan = pcl_bsh::io::readCloud("hall.ply");
+//   pcl_bsh::io::writeCloud("hall.pcd", scan);
+//
+// PCL's own readers are not used: they allocate what a header claims, read a malformed number as 0 and a short ascii
+// row as success. Here a damaged, truncated or lying file is an error, and is noticed before its memory is asked for.
+#pragma once
+
+#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <array>
+#include <filesystem>
+#include <string>
+
+namespace pcl_bsh::io {
+
+/// Where the sensor stood, as PCD's VIEWPOINT line has it: tx ty tz qw qx qy qz. Points are not moved by it. PLY's
+/// element `camera` holds it as a position and a matrix, so that the quaternion comes back to within rounding and sign.
+using Viewpoint = std::array<float, 7>;
+inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
+
+/// Reads the points of a file; the format is told by its extension, in any case of letters.
+///
+/// .pcd        ascii, binary, binary_compressed; every field in its type, float64 included
+/// .ply        ascii and binary of both byte orders; every vertex property in its type (a list, if of one length, is a
+///             field with a count); of other elements only PCL's `camera`
+/// .obj .off   vertices with their colours and normals; x y z as float64
+/// .xyz .txt   a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says; x y
+/// z
+///             and then column_4, column_5, ... as float64, unless the first line, or a comment before it, names the
+///             columns; comments start with # or //
+///
+/// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY or OFF file does, and columns
+/// otherwise.
+///
+/// Fields have PCL's names and meaning: normal_x normal_y normal_z, and rgb or rgba packed from a byte per channel;
+/// what files call them, and what stays as it is, says layOutForPcl() in pcl_names.h. The cloud has float32 or float64
+/// x y z, at most 2^31 - 1 points, and is_dense as PCL defines it. A file that says it holds no points is an empty
+/// cloud.
+/// @param viewpoint if not null, set to the file's (PCD, PLY), or to no_viewpoint
+/// @throws CloudFileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z
+pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr);
+
+/// The fields of a file's cloud and, where its header says so, the number of its points; the points are not read.
+/// Throws as readCloud() does for what a header can tell, and for a pipe.
+pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path);
+
+/// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .xyz and .txt (named columns) or .obj (vertices),
+/// with the names that readers of the format expect: nx ny nz, and a number per channel of a colour. rgb has no
+/// opacity: its fourth byte is kept by PCD alone. `-` is standard output, as PCD. The
+/// file appears complete or not at all; what `path` held before is
+/// replaced only then. PCD and PLY hold a viewpoint. PLY holds no 64-bit integers, text no field with a count, OBJ x y
+/// z, a packed colour and normals.
+/// @throws CloudFileError when the extension is unknown, a field cannot be held, or the disk says no
+void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
+                const Viewpoint& viewpoint = no_viewpoint);
+
+/// Fails early, before hours of work, where writeCloud() would for the path's sake.
+/// @throws CloudFileError
+void requireWritableCloud(const std::filesystem::path& path);
+
+/// The same, and that the format can hold a cloud with these fields.
+void requireWritableCloud(const std::filesystem::path& path, pcl::PCLPointCloud2 header);
+
+} // namespace pcl_bsh::io

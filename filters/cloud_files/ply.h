@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The Stanford polygon format; its vertices are the points.
+#pragma once
+
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+
+#include <ostream>
+#include <string_view>
+
+namespace pcl_bsh::io {
+
+/// The vertices, with PCL's names and packed colours (pcl_names.h).
+/// @param viewpoint set to what an element `camera` says, as PCL's writer has it, or to no_viewpoint
+/// @throws FormatError
+pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint);
+
+/// The vertices' fields and the number of them that the header promises, without the points. @throws FormatError
+pcl::PCLPointCloud2 parsePlyHeader(std::string_view file);
+
+/// Writes binary in this machine's byte order, with PLY's names: nx ny nz, and uchar red green blue [alpha] for a
+/// packed colour. A field with a count is a list property, as PCL's own writer has it; a viewpoint is an element
+/// `camera`.
+/// @throws FormatError when a field cannot be held
+void writePly(std::ostream& out, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint);
+
+} // namespace pcl_bsh::io

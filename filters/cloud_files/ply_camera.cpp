@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/cloud_files/field_type.h>
+#include <pcl_bsh/filters/cloud_files/ply_camera.h>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <cstring>
+
+namespace pcl_bsh::io {
+
+void PlyCamera::take(const std::string& name, std::uint8_t datatype, const std::uint8_t* bytes)
+{
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    if (name != ply_camera_values[i].name) continue;
+    withFieldType(datatype, [&](auto value) {
+      std::memcpy(&value, bytes, sizeof value);
+      values_[i] = static_cast<double>(value);
+    });
+  }
+}
+
+Viewpoint PlyCamera::viewpoint() const
+{
+  constexpr double limit = 3.4e38;
+  Viewpoint viewpoint = no_viewpoint;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!values_[k] || !(std::abs(*values_[k]) <= limit)) return no_viewpoint;
+    viewpoint[k] = static_cast<float>(*values_[k]);
+  }
+  Eigen::Matrix3d rotation;
+  for (std::size_t i = 0; i < 9; ++i) {
+    if (!values_[3 + i]) return viewpoint;
+    rotation(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) = *values_[3 + i];
+  }
+  const bool rigid = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() <= 1e-3;
+  if (!rigid || !(rotation.determinant() > 0)) return viewpoint;
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(rotation).normalized();
+  const double quaternion[] = {turn.w(), turn.x(), turn.y(), turn.z()};
+  for (std::size_t k = 0; k < 4; ++k) viewpoint[3 + k] = static_cast<float>(quaternion[k]);
+  return viewpoint;
+}
+
+std::string cameraRow(const Viewpoint& viewpoint, std::uint32_t width, std::uint32_t height)
+{
+  Eigen::Quaterniond turn(viewpoint[3], viewpoint[4], viewpoint[5], viewpoint[6]);
+  const bool turned = turn.norm() > 0 && std::isfinite(turn.norm());
+  const Eigen::Matrix3d rotation =
+      turned ? turn.normalized().toRotationMatrix() : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  std::string row;
+  const auto append = [&](auto value) { row.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  for (std::size_t i = 0; i < ply_camera_values.size(); ++i) {
+    if (ply_camera_values[i].whole) {
+      append(ply_camera_values[i].name == "viewportx" ? width : height);
+    }
+    else if (i < 3) {
+      append(viewpoint[i]);
+    }
+    else {
+      const auto at = static_cast<Eigen::Index>(i - 3);
+      append(i < 12 ? static_cast<float>(rotation(at / 3, at % 3)) : 0.0F);
+    }
+  }
+  return row;
+}
+
+} // namespace pcl_bsh::io

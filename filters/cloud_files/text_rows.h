@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A cloud that grows by a record per line of text.
+#pragma once
+
+#include <pcl_bsh/filters/cloud_files/pcl_names.h>
+#include <pcl_bsh/filters/cloud_files/records.h>
+#include <pcl_bsh/filters/cloud_files/text_cursor.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// A value of a line, as layOutForPcl() takes it.
+inline pcl::PCLPointField textValue(std::string name, std::uint8_t datatype = pcl::PCLPointField::FLOAT64)
+{
+  pcl::PCLPointField value;
+  value.name = std::move(name);
+  value.datatype = datatype;
+  value.count = 1;
+  return value;
+}
+
+/// Records of the values of lines. No point yet.
+class TextRows {
+public:
+  explicit TextRows(Fields values) : values_(std::move(values)), offsets_(layOutForPcl(values_, cloud_))
+  {
+    cloud_.height = 1;
+  }
+
+  const Fields& values() const { return values_; }
+  std::size_t size() const { return cloud_.data.size() / cloud_.point_step; }
+  void reserve(std::size_t points) { cloud_.data.reserve(points * cloud_.point_step); }
+  void add() { cloud_.data.resize(cloud_.data.size() + cloud_.point_step); }
+
+  /// Where value i of a record is.
+  std::uint8_t* at(std::size_t record, std::size_t i)
+  {
+    return cloud_.data.data() + record * cloud_.point_step + offsets_[i];
+  }
+
+  /// Takes values i from `first` to `last` (exclusive) of that record from the line.
+  void take(TextCursor& text, std::size_t record, std::size_t first, std::size_t last)
+  {
+    for (std::size_t i = first; i < last; ++i) text.number(values_[i].datatype, at(record, i));
+  }
+
+  /// The cloud, once all records are there. @throws FormatError beyond max_points
+  pcl::PCLPointCloud2 finished() &&
+  {
+    requirePoints(size());
+    cloud_.width = static_cast<std::uint32_t>(size());
+    cloud_.row_step = cloud_.width * cloud_.point_step;
+    return std::move(cloud_);
+  }
+
+private:
+  pcl::PCLPointCloud2 cloud_;
+  Fields values_;
+  std::vector<std::uint32_t> offsets_;
+};
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a scene file to the scene: clouds are read, hierarchies made, objects placed.
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/records.h>
+#include <pcl_bsh/filters/json/json_reader.h>
+#include <pcl_bsh/filters/scene_files/scene_file.h>
+#include <pcl_bsh/filters/scene_files/shape_points.h>
+
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+namespace pcl_bsh::io {
+namespace {
+
+pcl::PCLPointCloud2 cloudOf(const std::vector<float>& xyz)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* name : {"x", "y", "z"}) addField(cloud, name, pcl::PCLPointField::FLOAT32);
+  allocate(cloud, static_cast<std::uint32_t>(xyz.size() / 3));
+  std::memcpy(cloud.data.data(), xyz.data(), xyz.size() * sizeof(float));
+  cloud.is_dense = true;
+  return cloud;
+}
+
+Point3 placed(const Point3& p, const CloudSource& source)
+{
+  Point3 at;
+  for (std::size_t k = 0; k < 3; ++k) at[k] = source.scale * p[k] + source.shift[static_cast<Eigen::Index>(k)];
+  return at;
+}
+
+bool fitsFloat(const Point3& p)
+{
+  const auto fits = [](double x) { return std::isnan(x) || static_cast<double>(roundToFloat(x)) == x; };
+  return fits(p[0]) && fits(p[1]) && fits(p[2]);
+}
+
+/// The same cloud with x, y and z as float64, whatever lies between its fields left out.
+pcl::PCLPointCloud2 withWideCoordinates(const pcl::PCLPointCloud2& cloud)
+{
+  pcl::PCLPointCloud2 wide;
+  wide.header = cloud.header;
+  wide.is_dense = cloud.is_dense;
+  std::vector<pcl::PCLPointField> fields = cloud.fields;
+  fields.erase(std::remove_if(fields.begin(), fields.end(), [](const auto& field) { return field.name == "_"; }),
+               fields.end());
+  const auto is_coordinate = [](const pcl::PCLPointField& field) {
+    return field.name == "x" || field.name == "y" || field.name == "z";
+  };
+  for (const pcl::PCLPointField& field : fields) {
+    addField(wide, field.name, is_coordinate(field) ? std::uint8_t{pcl::PCLPointField::FLOAT64} : field.datatype,
+             field.count == 0 ? 1 : field.count);
+  }
+  allocate(wide, cloud.width, cloud.height);
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const std::uint8_t* from = cloud.data.data() + fields[f].offset;
+    std::uint8_t* to = wide.data.data() + wide.fields[f].offset;
+    const std::size_t bytes = sizeOf(fields[f]);
+    for (std::size_t i = 0; i < std::size_t{cloud.width} * cloud.height; ++i) {
+      float narrow;
+      if (is_coordinate(fields[f])) {
+        std::memcpy(&narrow, from, sizeof narrow);
+        const double coordinate = narrow;
+        std::memcpy(to, &coordinate, sizeof coordinate);
+      }
+      else {
+        std::memcpy(to, from, bytes);
+      }
+      from += cloud.point_step;
+      to += wide.point_step;
+    }
+  }
+  return wide;
+}
+
+void write(pcl::PCLPointCloud2& cloud, const PointsView& view, std::size_t i, const Point3& p)
+{
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::uint8_t* const at = cloud.data.data() + i * view.stride + view.offset[k];
+    const float narrow = roundToFloat(p[k]);
+    if (view.scalar == Scalar::float32)
+      std::memcpy(at, &narrow, sizeof narrow);
+    else
+      std::memcpy(at, &p[k], sizeof(double));
+  }
+}
+
+/// Nothing is rounded to float32: the cloud gets float64 coordinates where they are needed.
+void scaleAndShift(pcl::PCLPointCloud2& cloud, const CloudSource& source, const std::string& file)
+{
+  if (source.scale == 1.0 && source.shift.isZero(0.0)) return;
+  PointsView view = viewOf(cloud);
+  bool fits = true;
+  for (std::uint32_t i = 0; i < view.count; ++i) {
+    const Point3 p = view.point(i);
+    if (!isFinite(p)) continue;
+    const Point3 at = placed(p, source);
+    if (!isFinite(at))
+      throw JsonError(file, source.place, "scale and shift take point " + std::to_string(i) + " beyond all numbers",
+                      "give smaller ones");
+    fits = fits && fitsFloat(at);
+  }
+  if (view.scalar == Scalar::float32 && !fits) {
+    cloud = withWideCoordinates(cloud);
+    view = viewOf(cloud);
+  }
+  for (std::uint32_t i = 0; i < view.count; ++i) write(cloud, view, i, placed(view.point(i), source));
+}
+
+std::vector<double> coordinatesOf(const PointsView& view)
+{
+  std::vector<double> xyz;
+  xyz.reserve(3 * view.count);
+  for (std::uint32_t i = 0; i < view.count; ++i)
+    for (const double x : view.point(i)) xyz.push_back(x);
+  return xyz;
+}
+
+} // namespace
+
+void setRules(Scene& scene, const std::vector<RuleEntry>& rules)
+{
+  for (const RuleEntry& rule : rules) {
+    if (rule.of_groups)
+      scene.setGroupRule(rule.a, rule.b, rule.rule);
+    else
+      scene.setRule(*scene.find(rule.a), *scene.find(rule.b), rule.rule);
+  }
+}
+
+SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const CloudSource&)>& reading)
+{
+  std::set<std::string> used;
+  for (const ObjectEntry& object : file.objects)
+    for (const PartEntry& part : object.parts) used.insert(part.cloud);
+  for (const CloudSource& source : file.clouds) {
+    if (used.count(source.name) == 0) continue;
+    if (reading) reading(source);
+    Loaded& loaded = clouds_[source.name];
+    loaded.points =
+        source.shape.empty() ? readCloud(source.file) : cloudOf(shapePoints(source.shape, source.size, source.spacing));
+    scaleAndShift(loaded.points, source, file.path.string());
+    HierarchyOptions options;
+    options.threads = file.options.threads;
+    loaded.hierarchy = std::make_shared<SphereHierarchy>(viewOf(loaded.points), options);
+  }
+
+  scene_ = std::make_unique<Scene>(file.options);
+  for (const ObjectEntry& entry : file.objects) {
+    SceneObject object;
+    object.name = entry.name;
+    object.group = entry.group;
+    object.pose = entry.pose;
+    object.fixed = entry.fixed;
+    object.motion = entry.motion;
+    object.adjacent = entry.adjacent;
+    const auto id = static_cast<ObjectId>(scene_->size());
+    for (const PartEntry& part : entry.parts) {
+      std::shared_ptr<SphereHierarchy> hierarchy = clouds_.at(part.cloud).hierarchy;
+      if (entry.wave) {
+        auto waving = std::make_unique<Waving>();
+        waving->object = id;
+        waving->part = static_cast<std::uint32_t>(object.parts.size());
+        waving->wave = *entry.wave;
+        waving->rest = waving->now = coordinatesOf(hierarchy->view());
+        hierarchy = std::make_shared<SphereHierarchy>(viewOf(waving->now.data(), waving->now.size() / 3));
+        waving_.push_back(std::move(waving));
+      }
+      object.parts.push_back({part.name, std::move(hierarchy), part.pose});
+    }
+    scene_->add(std::move(object));
+  }
+  setRules(*scene_, file.rules);
+  deform(0.0);
+}
+
+std::size_t SceneWorld::points() const
+{
+  std::size_t count = 0;
+  for (const auto& entry : clouds_) count += entry.second.hierarchy->size();
+  return count;
+}
+
+void SceneWorld::deform(double time)
+{
+  constexpr double two_pi = 6.28318530717958647692;
+  for (const auto& waving : waving_) {
+    const Wave& wave = waving->wave;
+    for (std::size_t i = 0; i < waving->rest.size(); i += 3) {
+      const double height = std::sin(two_pi * (waving->rest[i] / wave.length - time / wave.period));
+      for (std::size_t k = 0; k < 3; ++k)
+        waving->now[i + k] = waving->rest[i + k] + height * wave.amplitude[static_cast<Eigen::Index>(k)];
+    }
+    scene_->deform(waving->object, waving->part, viewOf(waving->now.data(), waving->now.size() / 3));
+  }
+}
+
+} // namespace pcl_bsh::io

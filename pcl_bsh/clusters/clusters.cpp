@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clusters: the cloud's hierarchy against itself, uniting sets of points. A node whose points are known to be of one
+// cluster stands for all of them; a pair of such nodes of the same cluster is done.
+#include <pcl_bsh/clusters/clusters.h>
+
+#include <pcl_bsh/geometry/invalid_input.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/clusters/clusters.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/clusters/disjoint_sets.h>
+#include <pcl_bsh/traversal/leaf_pair-inl.h>
+#include <pcl_bsh/traversal/pair_walk-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace {
+
+class ClusterWalk {
+public:
+  ClusterWalk(const SphereHierarchy& cloud, double distance)
+  : placed_{cloud},
+    walk_(placed_, placed_),
+    pairs_(placed_, placed_, distance),
+    sets_(cloud.view().count),
+    united_(cloud.storage().voxel_count)
+  {
+    united_above_.resize(cloud.storage().top.size() * kNodeChildren);
+  }
+
+  DisjointSets run(Work& work)
+  {
+    walk_.seed(pairs_.clearance,
+               [this](const LanePair& pair, const PairWalk::Step&, std::uint32_t) { stack_.push_back(pair); });
+    nearestLast(stack_, 0);
+    while (!stack_.empty()) {
+      const LanePair pair = stack_.back();
+      stack_.pop_back();
+      if (!settled(pair)) visit(pair);
+    }
+    work = walk_.work;
+    return std::move(sets_);
+  }
+
+private:
+  void visit(const LanePair& pair)
+  {
+    const Opened opened = walk_.choose(pair);
+    if (opened == Opened::neither) return compareLeaves(pair);
+    const bool parent_united = united(opened == Opened::a ? pair.a : pair.b);
+    PairWalk::Step step;
+    walk_.step(pair, opened, pairs_.clearance, step);
+    const std::size_t from = stack_.size();
+    for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      const LanePair child = PairWalk::childOf(pair, opened, step, lane);
+      if (parent_united) united(opened == Opened::a ? child.a : child.b) = 1;
+      if ((step.inside >> lane & 1u) != 0)
+        unite(child);
+      else
+        stack_.push_back(child);
+    }
+    nearestLast(stack_, from);
+  }
+
+  /// Whether nothing below the pair can join two clusters any more.
+  bool settled(const LanePair& pair)
+  {
+    return isOneCluster(pair.a) && isOneCluster(pair.b) &&
+           sets_.find(anyRecord(pair.a)) == sets_.find(anyRecord(pair.b));
+  }
+
+  bool isOneCluster(const Lane& lane)
+  {
+    std::uint8_t& known = united(lane);
+    if (known != 0 || !walk_.isLeaf(walk_.a, lane)) return known != 0;
+    const Node& node = walk_.nodeOf(walk_.a, lane);
+    const std::uint32_t* records = walk_.a.storage.voxels[lane.space].records();
+    const std::uint32_t first = sets_.find(records[node.begin[lane.lane]]);
+    for (std::uint32_t i = node.begin[lane.lane]; i < node.begin[lane.lane + 1]; ++i)
+      if (sets_.find(records[i]) != first) return false;
+    known = 1;
+    return true;
+  }
+
+  /// Every point of one lane is within the distance of every point of the other: all are of one cluster.
+  void unite(const LanePair& pair)
+  {
+    const std::uint32_t anchor = anyRecord(pair.a);
+    for (const Lane& lane : {pair.a, pair.b}) {
+      if (united(lane) != 0)
+        sets_.unite(anchor, anyRecord(lane));
+      else
+        eachRecord(lane, [&](std::uint32_t record) { sets_.unite(anchor, record); });
+      united(lane) = 1;
+    }
+  }
+
+  void compareLeaves(const LanePair& pair)
+  {
+    const Node &node_a = walk_.nodeOf(walk_.a, pair.a), &node_b = walk_.nodeOf(walk_.b, pair.b);
+    if (node_a.lowest[pair.a.lane] > node_b.lowest[pair.b.lane]) return; // its mirror image is compared
+    ++walk_.work.leaf_pairs;
+    const LeafRange a = walk_.leaf(walk_.a, pair.a), b = walk_.leaf(walk_.b, pair.b);
+    uniteCoincident(a, node_a.points(pair.a.lane));
+    uniteCoincident(b, node_b.points(pair.b.lane));
+    const RelativeFrame& frame = walk_.frames.find(pair.a.space, pair.b.space);
+    LeafPoints points;
+    carryLeaf(frame, a, points);
+    const DistanceBand band = frame.band(pairs_.clearance);
+    eachPairNotBeyond(points, firstBits(a.count), b, band.miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
+      const std::uint32_t p = a.record(i), q = b.record(j);
+      if (sets_.find(p) != sets_.find(q) && (squared <= band.hit || withinDistance({p, q}))) sets_.unite(p, q);
+      return false;
+    });
+  }
+
+  /// Of a place that more points share than a leaf compares, one point answers.
+  void uniteCoincident(const LeafRange& leaf, std::uint32_t points)
+  {
+    const std::uint32_t* records = leaf.voxel->records() + leaf.begin;
+    for (std::uint32_t i = leaf.count; i < points; ++i) sets_.unite(records[0], records[i]);
+  }
+
+  bool withinDistance(PointPair pair)
+  {
+    ++walk_.work.exact_decisions;
+    const ExactDistance::Pair posed = pairs_.posed(pair);
+    return pairs_.distance.compare(posed.p, posed.q, pairs_.clearance) <= 0;
+  }
+
+  std::uint8_t& united(const Lane& lane)
+  {
+    if (lane.space == kAboveVoxels) return united_above_[lane.node * kNodeChildren + lane.lane];
+    std::vector<std::uint8_t>& of_voxel = united_[lane.space];
+    if (of_voxel.empty()) of_voxel.resize(walk_.a.storage.voxels[lane.space].nodes.size() * kNodeChildren);
+    return of_voxel[lane.node * kNodeChildren + lane.lane];
+  }
+
+  std::uint32_t anyRecord(const Lane& lane) const { return walk_.nodeOf(walk_.a, lane).lowest[lane.lane]; }
+
+  template <class Use>
+  void eachRecord(const Lane& lane, const Use& use)
+  {
+    const Node& node = walk_.nodeOf(walk_.a, lane);
+    const std::uint32_t begin = node.begin[lane.lane], end = node.begin[lane.lane + 1];
+    if (lane.space != kAboveVoxels) {
+      const std::uint32_t* records = walk_.a.storage.voxels[lane.space].records();
+      std::for_each(records + begin, records + end, use);
+      return;
+    }
+    for (std::uint32_t v = begin; v < end; ++v) {
+      const Voxel& voxel = walk_.a.voxel(v, walk_.work);
+      std::for_each(voxel.records(), voxel.records() + voxel.count, use);
+    }
+  }
+
+  const Placed placed_; ///< the walk refers to its pose
+  PairWalk walk_;
+  PointPairs pairs_;
+  DisjointSets sets_;
+  std::vector<std::vector<std::uint8_t>> united_; ///< per voxel, per lane of its nodes: known to be of one cluster
+  std::vector<std::uint8_t> united_above_;
+  std::vector<LanePair> stack_;
+};
+
+} // namespace
+
+DisjointSets clusterOnTarget(const SphereHierarchy& cloud, double distance, Work& work)
+{
+  return ClusterWalk(cloud, distance).run(work);
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(clusterOnTarget);
+
+namespace {
+
+void requireDistance(double distance)
+{
+  if (std::isfinite(distance) && distance >= 0.0) return;
+  throw InvalidInput(Input::cluster_distance, "distance", std::to_string(distance), "give a finite length >= 0")
+      .withValue(distance);
+}
+
+std::vector<std::uint32_t> finiteRecords(const PointsView& view)
+{
+  std::vector<std::uint32_t> records;
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const Point3 p = view.point(view.record(i));
+    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) records.push_back(view.record(i));
+  }
+  std::sort(records.begin(), records.end());
+  records.erase(std::unique(records.begin(), records.end()), records.end());
+  return records;
+}
+
+Clusters numbered(DisjointSets sets, const PointsView& view, const Work& work)
+{
+  Clusters result;
+  result.work = work;
+  result.of.assign(view.count, Clusters::kNone);
+  for (const std::uint32_t record : finiteRecords(view)) {
+    std::int32_t& root = result.of[sets.find(record)]; // the smallest of its set: comes first
+    if (root == Clusters::kNone) {
+      root = static_cast<std::int32_t>(result.sizes.size());
+      result.sizes.push_back(0);
+    }
+    result.of[record] = root;
+    ++result.sizes[static_cast<std::size_t>(root)];
+  }
+  return result;
+}
+
+} // namespace
+
+Clusters euclideanClusters(const SphereHierarchy& cloud, double distance)
+{
+  requireDistance(distance);
+  const DefaultFloatEnvironment environment;
+  Work work;
+  DisjointSets sets = HWY_DYNAMIC_DISPATCH(clusterOnTarget)(cloud, distance, work);
+  return numbered(std::move(sets), cloud.view(), work);
+}
+
+Clusters brute_force::euclideanClusters(const SphereHierarchy& cloud, double distance)
+{
+  requireDistance(distance);
+  const DefaultFloatEnvironment environment;
+  const PointsView& view = cloud.view();
+  const std::vector<std::uint32_t> records = finiteRecords(view);
+  const ExactDistance exact(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity());
+  DisjointSets sets(view.count);
+  Work work;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      ++work.exact_decisions;
+      if (exact.compare(view.point(records[i]), view.point(records[j]), distance) <= 0) {
+        sets.unite(records[i], records[j]);
+      }
+    }
+  }
+  return numbered(std::move(sets), view, work);
+}
+
+} // namespace pcl_bsh
+#endif

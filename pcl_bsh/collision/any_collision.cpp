@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Any pair: done at the first witness.
+#include <pcl_bsh/collision/check_request.h>
+#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collision/interval_search.h>
+#include <pcl_bsh/query/stop_rule.h>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/collision/any_collision.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/collision/any_search-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+namespace {
+
+/// Stops the search where the rule's time is over, or is too short for a voxel that would have to be built.
+class Hurried : public Unwatched {
+public:
+  explicit Hurried(const StopRule& rule) : rule_(rule) {}
+
+  bool stops(const PairWalk& walk, const LanePair& pair, Opened opened)
+  {
+    if (asked_++ % 16 == 0 && rule_.isOver()) return true; // a clock costs as much as a step
+    if (opened == Opened::neither) return false;
+    const Spaces& side = opened == Opened::a ? walk.a : walk.b;
+    const Lane& lane = opened == Opened::a ? pair.a : pair.b;
+    const Node& node = walk.nodeOf(side, lane);
+    return lane.space == kAboveVoxels && node.isLeaf(lane.lane) &&
+           !rule_.leavesTimeToBuild(side.storage.pointsToBuild(node.begin[lane.lane]));
+  }
+
+private:
+  const StopRule& rule_;
+  std::uint64_t asked_ = 0;
+};
+
+} // namespace
+
+AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const CollisionRequest& request)
+{
+  return AnySearch(a, b, request, Unwatched{}).run();
+}
+
+AnyResult anyCollisionInTimeOnTarget(const Placed& a, const Placed& b, const CollisionRequest& request,
+                                     const StopRule& rule)
+{
+  return AnySearch(a, b, request, Hurried(rule)).run();
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(anyCollisionOnTarget);
+HWY_EXPORT(anyCollisionInTimeOnTarget);
+
+namespace {
+
+/// Of a time budget, what the search for a witness gets. It decides earlier than the search for the distance, which has
+/// the rest for the interval that an undecided answer carries.
+constexpr double kWitnessShare = 15.0 / 16;
+
+} // namespace
+
+AnyResult anyCollision(const Placed& a, const Placed& b, const CollisionRequest& request)
+{
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  if (request.accuracy.stopsEarly()) {
+    const StopRule rule(request.accuracy);
+    Work work;
+    if (rule.isTimed()) {
+      AnyResult decided = HWY_DYNAMIC_DISPATCH(anyCollisionInTimeOnTarget)(a, b, request, rule.part(kWitnessShare));
+      if (decided.verdict != Verdict::undecided) return decided;
+      work = decided.work;
+    }
+    IntervalFinding found = searchInterval(a, b, rule, request.clearance);
+    const bool colliding = found.verdict == Verdict::colliding;
+    return {found.verdict, colliding ? found.pair : std::nullopt, found.distance, found.work += work};
+  }
+  return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request);
+}
+
+} // namespace pcl_bsh
+#endif

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The search for any colliding pair: depth first, nearest children first, done at the first witness.
+
+#if defined(PCL_BSH_QUERY_ANY_SEARCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_QUERY_ANY_SEARCH_INL_H_
+#undef PCL_BSH_QUERY_ANY_SEARCH_INL_H_
+#else
+#define PCL_BSH_QUERY_ANY_SEARCH_INL_H_
+#endif
+
+#include <pcl_bsh/query/acceptance.h>
+#include <pcl_bsh/traversal/leaf_pair-inl.h>
+#include <pcl_bsh/traversal/pair_walk-inl.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// What a search is watched by when nobody looks: calls that compile to nothing.
+struct Unwatched {
+  void seeded(const LanePair&) {}
+  void stepped(const LanePair&, Opened, const PairWalk::Step&) {}
+  void compared(const LanePair&) {}
+  static bool stops(const PairWalk&, const LanePair&, Opened) { return false; }
+};
+
+/// @tparam Watch told of the pairs of the roots' children that may meet, of each pair whose larger side was opened,
+/// with
+///   what became of the children, and of each pair of leaves whose points were compared; asked before each pair whether
+///   to stop there
+template <class Watch>
+class AnySearch {
+public:
+  AnySearch(const Placed& a, const Placed& b, const CollisionRequest& request, Watch watch)
+  : walk_(a, b),
+    pairs_(a, b, request.clearance),
+    acceptance_(request),
+    watch_(std::move(watch))
+  {
+    walk_.accepted_beyond = acceptance_.accepted - acceptance_.clearance;
+  }
+
+  AnyResult run()
+  {
+    AnyResult result;
+    result.witness = search();
+    result.work = walk_.work;
+    result.verdict = result.witness ? Verdict::colliding : stopped_ ? Verdict::undecided : Verdict::free;
+    if (acceptance_.proven && result.verdict != Verdict::undecided)
+      (result.witness ? result.distance.upper : result.distance.lower) =
+          result.witness ? acceptance_.accepted : acceptance_.clearance;
+    return result;
+  }
+
+private:
+  std::optional<PointPair> search()
+  {
+    walk_.seed(pairs_.clearance, [this](const LanePair& pair, const PairWalk::Step&, std::uint32_t) {
+      watch_.seeded(pair);
+      stack_.push_back(pair);
+    });
+    nearestLast(stack_, 0);
+    PairWalk::Step step;
+    while (!stack_.empty()) {
+      const LanePair pair = stack_.back();
+      stack_.pop_back();
+      const Opened opened = walk_.choose(pair);
+      if (watch_.stops(walk_, pair, opened)) {
+        stopped_ = true;
+        return std::nullopt;
+      }
+      if (opened == Opened::neither) {
+        if (const auto witness = compareLeaves(pair)) return witness;
+        continue;
+      }
+      walk_.step(pair, opened, pairs_.clearance, step);
+      watch_.stepped(pair, opened, step);
+      if (step.inside != 0) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(step.inside));
+        const LanePair inside = PairWalk::childOf(pair, opened, step, lane);
+        return PointPair{firstRecord(walk_.a, inside.a), firstRecord(walk_.b, inside.b)};
+      }
+      const std::size_t from = stack_.size();
+      for (std::uint32_t near = step.near; near != 0; near &= near - 1)
+        stack_.push_back(PairWalk::childOf(pair, opened, step, static_cast<std::uint32_t>(std::countr_zero(near))));
+      nearestLast(stack_, from);
+    }
+    return std::nullopt;
+  }
+
+  std::optional<PointPair> compareLeaves(const LanePair& pair)
+  {
+    ++walk_.work.leaf_pairs;
+    watch_.compared(pair);
+    const LeafRange a = walk_.leaf(walk_.a, pair.a), b = walk_.leaf(walk_.b, pair.b);
+    const RelativeFrame& frame = walk_.frames.find(pair.a.space, pair.b.space);
+    LeafPoints points;
+    carryLeaf(frame, a, points);
+    const std::uint32_t lanes =
+        pointsNearLeaf(frame, points, a, walk_.nodeOf(walk_.b, pair.b), pair.b.lane, pairs_.clearance);
+    if (lanes == 0) return std::nullopt;
+
+    std::optional<PointPair> witness;
+    const auto found = [&](std::uint32_t i, std::uint32_t j, float squared, float hit) {
+      const PointPair candidate{a.record(i), b.record(j)};
+      if (squared <= hit || pairs_.collide(candidate, walk_.work)) witness = candidate;
+      return witness.has_value();
+    };
+    if (pairs_.haveRadii()) {
+      eachBallPairNear(frame, points, lanes, a, b, pairs_.clearance,
+                       [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, -1.0f); });
+    }
+    else {
+      const DistanceBand band = acceptance_.band(frame);
+      alignas(64) float nearest[kLeafPoints];
+      std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
+      nearestSquared(points, b.x(), b.y(), b.z(), firstBits(b.count), nearest);
+      eachPairNotBeyond(
+          points, lanes & ~above(nearest, band.miss), b, band.miss,
+          [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, band.hit); });
+    }
+    return witness;
+  }
+
+  std::uint32_t firstRecord(const Spaces& side, const Lane& lane)
+  {
+    const std::uint32_t begin = walk_.nodeOf(side, lane).begin[lane.lane];
+    if (lane.space != kAboveVoxels) return side.storage.voxels[lane.space].records()[begin];
+    return side.voxel(begin, walk_.work).records()[0];
+  }
+
+  PairWalk walk_;
+  PointPairs pairs_;
+  Acceptance acceptance_;
+  Watch watch_;
+  bool stopped_ = false;
+  std::vector<LanePair> stack_;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/collision/brute_force.h>
+
+#include <pcl_bsh/collision/check_request.h>
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/query/brute_force_points.h>
+
+#include <algorithm>
+
+namespace pcl_bsh::brute_force {
+namespace {
+
+/// Calls visit(p, q, collide) for every pair, in ascending order, until it answers false.
+template <class Visit>
+void forEachPair(const Placed& a, const Placed& b, const CollisionRequest& request, const Visit& visit)
+{
+  const ExactDistance distance(a.pose, b.pose);
+  const std::vector<Candidate> obstacles = candidatesOf(b.hierarchy.view());
+  for (const Candidate& p : candidatesOf(a.hierarchy.view())) {
+    for (const Candidate& q : obstacles) {
+      const bool collide = distance.compare(p.point, q.point, request.clearance, p.radius, q.radius) <= 0;
+      if (!visit(p, q, collide)) return;
+    }
+  }
+}
+
+} // namespace
+
+AnyResult anyCollision(const Placed& a, const Placed& b, const CollisionRequest& request)
+{
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  AnyResult result;
+  forEachPair(a, b, request, [&](const Candidate& p, const Candidate& q, bool collide) {
+    ++result.work.exact_decisions;
+    if (!collide) return true;
+    result.verdict = Verdict::colliding;
+    result.witness = PointPair{p.record, q.record};
+    return false;
+  });
+  return result;
+}
+
+FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request)
+{
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  FlagsResult result;
+  std::vector<std::uint8_t> flags_a(a.hierarchy.view().count);
+  std::vector<std::uint8_t> flags_b(b.hierarchy.view().count);
+  forEachPair(a, b, request, [&](const Candidate& p, const Candidate& q, bool collide) {
+    ++result.work.exact_decisions;
+    if (collide) flags_a[p.record] = flags_b[q.record] = 1;
+    return true;
+  });
+  const auto asked = [&](Side side) {
+    return (static_cast<unsigned>(request.flagged) & static_cast<unsigned>(side)) != 0;
+  };
+  const auto count = [](const std::vector<std::uint8_t>& flags) {
+    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), std::uint8_t{1}));
+  };
+  if (asked(Side::a)) {
+    result.colliding_a = count(flags_a);
+    result.a = std::move(flags_a);
+  }
+  if (asked(Side::b)) {
+    result.colliding_b = count(flags_b);
+    result.b = std::move(flags_b);
+  }
+  return result;
+}
+
+DistanceResult closestPair(const Placed& a, const Placed& b, const CollisionRequest& request)
+{
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  const ExactDistance distance(a.pose, b.pose);
+  const std::vector<Candidate> obstacles = candidatesOf(b.hierarchy.view());
+  DistanceResult result;
+  ExactDistance::Pair closest;
+  for (const Candidate& p : candidatesOf(a.hierarchy.view())) {
+    for (const Candidate& q : obstacles) {
+      ++result.work.exact_decisions;
+      const ExactDistance::Pair pair{p.point, q.point, p.radius, q.radius};
+      if (result.pair && distance.compareGaps(pair, closest) >= 0) continue;
+      closest = pair;
+      result.pair = PointPair{p.record, q.record};
+    }
+  }
+  if (result.pair) result.distance = distance.gap(closest);
+  return result;
+}
+
+} // namespace pcl_bsh::brute_force

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The oracle: every query again, pair by pair in exact arithmetic. Quadratic; for tests and for doubt.
+#pragma once
+
+#include <pcl_bsh/collision/collide.h>
+
+namespace pcl_bsh::brute_force {
+
+/// Same contracts as their namesakes in collide.h. Work counts one exact decision per pair looked at; the witness of
+/// anyCollision() is the smallest colliding (a, b).
+AnyResult anyCollision(const Placed& a, const Placed& b, const CollisionRequest& request);
+FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request);
+DistanceResult closestPair(const Placed& a, const Placed& b, const CollisionRequest& request = {});
+
+} // namespace pcl_bsh::brute_force

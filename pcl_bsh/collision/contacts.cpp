@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Contacts: depth first as any and closest pair, keeping the nearest pairs in a heap once there are enough of them.
+#include <pcl_bsh/collision/check_request.h>
+#include <pcl_bsh/collision/contacts.h>
+
+#include <pcl_bsh/geometry/rounding.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/collision/contacts.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/traversal/leaf_pair-inl.h>
+#include <pcl_bsh/traversal/pair_walk-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// What a sink did with a pair.
+enum class Added { kept, dropped, stop };
+
+/// Walks to every pair of points within a reach and hands it to a sink: `double reach()`, how far pairs are still of
+/// interest, which may shrink; `Added add(PointPair, Work&)`.
+template <class Sink>
+class ReachWalk {
+public:
+  ReachWalk(const Placed& a, const Placed& b, double clearance, Sink& sink)
+  : walk_(a, b),
+    pairs_(a, b, clearance),
+    sink_(sink)
+  {
+  }
+
+  Work run()
+  {
+    walk_.seed(sink_.reach(), [this](const LanePair& pair, const PairWalk::Step& step, std::uint32_t lane) {
+      push(pair, step, lane);
+    });
+    nearestLast(stack_, 0);
+    PairWalk::Step step;
+    while (!stack_.empty()) {
+      const LanePair pair = stack_.back();
+      stack_.pop_back();
+      if (pair.key > sink_.reach()) continue;
+      const Opened opened = walk_.choose(pair);
+      if (opened == Opened::neither) {
+        if (!compareLeaves(pair)) break;
+        continue;
+      }
+      walk_.step(pair, opened, sink_.reach(), step);
+      const std::size_t from = stack_.size();
+      for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+        push(PairWalk::childOf(pair, opened, step, lane), step, lane);
+      }
+      nearestLast(stack_, from);
+    }
+    return walk_.work;
+  }
+
+private:
+  void push(LanePair pair, const PairWalk::Step& step, std::uint32_t lane)
+  {
+    const double bound = walk_.lowerBound(pair, step, lane);
+    pair.key = std::isnan(bound) ? -std::numeric_limits<float>::infinity() : roundDown(bound);
+    stack_.push_back(pair);
+  }
+
+  bool compareLeaves(const LanePair& pair)
+  {
+    ++walk_.work.leaf_pairs;
+    const LeafRange a = walk_.leaf(walk_.a, pair.a), b = walk_.leaf(walk_.b, pair.b);
+    // Points of one place share a leaf, and the first of them was compared for all.
+    const std::uint32_t places_a = coincident(walk_.a, pair.a), places_b = coincident(walk_.b, pair.b);
+    const RelativeFrame& frame = walk_.frames.find(pair.a.space, pair.b.space);
+    LeafPoints points;
+    carryLeaf(frame, a, points);
+    const std::uint32_t lanes =
+        pointsNearLeaf(frame, points, a, walk_.nodeOf(walk_.b, pair.b), pair.b.lane, pairs_.clearance);
+    if (lanes == 0) return true;
+
+    bool going = true;
+    const auto found = [&](std::uint32_t i, std::uint32_t j, float squared, float hit) {
+      if (squared <= hit || pairs_.collide({a.record(i), b.record(j)}, walk_.work))
+        going = addAll({a.voxel, a.begin + i, places_a}, {b.voxel, b.begin + j, places_b});
+      return !going;
+    };
+    if (pairs_.haveRadii()) {
+      eachBallPairNear(frame, points, lanes, a, b, pairs_.clearance,
+                       [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, -1.0f); });
+      return going;
+    }
+    const DistanceBand band = frame.band(pairs_.clearance);
+    eachPairNotBeyond(points, lanes, b, band.miss,
+                      [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, band.hit); });
+    return going;
+  }
+
+  /// How many points stand where the leaf's compared ones do: more than one only where a single one is compared.
+  std::uint32_t coincident(const Spaces& side, const Lane& lane) const
+  {
+    const Node& node = walk_.nodeOf(side, lane);
+    return node.isCoincident(lane.lane) ? node.points(lane.lane) : 1;
+  }
+
+  /// All pairs of two ranges of points; records ascend where a range has several.
+  bool addAll(const LeafRange& a, const LeafRange& b)
+  {
+    for (std::uint32_t i = 0; i < a.count; ++i)
+      for (std::uint32_t j = 0; j < b.count; ++j) {
+        const Added added = sink_.add({a.record(i), b.record(j)}, walk_.work);
+        if (added == Added::stop) return false;
+        if (added == Added::kept) continue;
+        if (j == 0) return true; // of pairs at one distance, those that follow are larger still
+        break;
+      }
+    return true;
+  }
+
+  PairWalk walk_;
+  PointPairs pairs_;
+  Sink& sink_;
+  std::vector<LanePair> stack_;
+};
+
+/// All of them, until there are too many.
+class AllPairs {
+public:
+  AllPairs(double clearance, std::size_t most, PairsWithin& result)
+  : clearance_(clearance),
+    most_(most),
+    result_(result)
+  {
+  }
+
+  double reach() const { return clearance_; }
+
+  Added add(PointPair pair, Work&)
+  {
+    result_.complete = result_.pairs.size() < most_;
+    if (!result_.complete) return Added::stop;
+    result_.pairs.push_back(pair);
+    return Added::kept;
+  }
+
+private:
+  double clearance_;
+  std::size_t most_;
+  PairsWithin& result_;
+};
+
+/// The nearest: a heap whose first is the farthest, once it is full.
+class NearestPairs {
+  struct Entry {
+    double gap;
+    PointPair pair;
+  };
+
+  /// Rounding keeps the order of gaps, but may make some equal that are not.
+  bool before(const Entry& l, const Entry& r) const
+  {
+    if (l.gap != r.gap) return l.gap < r.gap;
+    const int sign = pairs_.distance.compareGaps(pairs_.posed(l.pair), pairs_.posed(r.pair));
+    return sign != 0 ? sign < 0 : l.pair < r.pair;
+  }
+  auto order() const
+  {
+    return [this](const Entry& l, const Entry& r) { return before(l, r); };
+  }
+
+public:
+  NearestPairs(const Placed& a, const Placed& b, double clearance, std::size_t most)
+  : pairs_(a, b, clearance),
+    most_(std::min(most, std::numeric_limits<std::size_t>::max() - 1) + 1), // one more tells whether that was all
+    reach_(clearance)
+  {
+  }
+
+  double reach() const { return reach_; }
+
+  Added add(PointPair pair, Work& work)
+  {
+    ++work.exact_decisions;
+    const Entry entry{pairs_.distance.gap(pairs_.posed(pair)), pair};
+    if (kept_.size() == most_) {
+      if (!before(entry, kept_.front())) return Added::dropped;
+      std::pop_heap(kept_.begin(), kept_.end(), order());
+      kept_.pop_back();
+    }
+    kept_.push_back(entry);
+    if (kept_.size() == most_) {
+      heaped_ ? std::push_heap(kept_.begin(), kept_.end(), order())
+              : std::make_heap(kept_.begin(), kept_.end(), order());
+      heaped_ = true;
+      const double worst = std::nextafter(kept_.front().gap, std::numeric_limits<double>::infinity());
+      reach_ = std::min(reach_, std::max(worst, 0.0));
+    }
+    return Added::kept;
+  }
+
+  ContactsResult result(const Placed& a, const Placed& b)
+  {
+    std::sort(kept_.begin(), kept_.end(), order());
+    ContactsResult result;
+    result.complete = kept_.size() < most_;
+    if (!result.complete) kept_.pop_back();
+    result.contacts.reserve(kept_.size());
+    for (const Entry& entry : kept_) {
+      const Point3 p = a.hierarchy.view().point(entry.pair.a), q = b.hierarchy.view().point(entry.pair.b);
+      const Eigen::Vector3d apart =
+          a.pose * Eigen::Vector3d(p[0], p[1], p[2]) - b.pose * Eigen::Vector3d(q[0], q[1], q[2]);
+      result.contacts.push_back({entry.pair, entry.gap, apart.stableNormalized()});
+    }
+    return result;
+  }
+
+private:
+  PointPairs pairs_;
+  std::size_t most_;
+  double reach_;
+  bool heaped_ = false;
+  std::vector<Entry> kept_;
+};
+
+} // namespace
+
+ContactsResult nearestContactsOnTarget(const Placed& a, const Placed& b, double clearance, std::size_t most)
+{
+  NearestPairs sink(a, b, clearance, most);
+  const Work work = ReachWalk(a, b, clearance, sink).run();
+  ContactsResult result = sink.result(a, b);
+  result.work = work;
+  return result;
+}
+
+PairsWithin pairsWithinOnTarget(const Placed& a, const Placed& b, double clearance, std::size_t most)
+{
+  PairsWithin result;
+  AllPairs sink(clearance, most, result);
+  result.work = ReachWalk(a, b, clearance, sink).run();
+  return result;
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(nearestContactsOnTarget);
+HWY_EXPORT(pairsWithinOnTarget);
+
+ContactsResult nearestContacts(const Placed& a, const Placed& b, const CollisionRequest& request, std::size_t most)
+{
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  return HWY_DYNAMIC_DISPATCH(nearestContactsOnTarget)(a, b, request.clearance, most);
+}
+
+PairsWithin pairsWithin(const Placed& a, const Placed& b, const CollisionRequest& request, std::size_t most)
+{
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  return HWY_DYNAMIC_DISPATCH(pairsWithinOnTarget)(a, b, request.clearance, most);
+}
+
+} // namespace pcl_bsh
+#endif

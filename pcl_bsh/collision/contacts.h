@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The pairs of points themselves: where two posed clouds collide, how deep, and which way is out.
+#pragma once
+
+#include <pcl_bsh/collision/collide.h>
+
+#include <vector>
+
+namespace pcl_bsh {
+
+/// A colliding pair of points.
+struct Contact {
+  PointPair pair;
+  double distance = 0.0; ///< |T_a p - T_b q| less both radii, rounded to the nearest double
+  Eigen::Vector3d normal =
+      Eigen::Vector3d::Zero(); ///< from b's point to a's, unit length, in the world; 0 where they coincide
+};
+
+struct ContactsResult {
+  std::vector<Contact> contacts; ///< by distance before rounding, then by (a, b)
+  bool complete = true;          ///< no colliding pair was left out
+  Work work;
+};
+
+/// The `most` nearest of the colliding pairs, or all of them when they are fewer; of pairs at the same distance, the
+/// smallest (a, b) first. Throws as anyCollision() does.
+ContactsResult nearestContacts(const Placed& a, const Placed& b, const CollisionRequest& request, std::size_t most);
+
+/// Pairs of points within the clearance, in no useful order, for those who go through them all.
+struct PairsWithin {
+  std::vector<PointPair> pairs;
+  bool complete = true; ///< false: there are more than `most`, and `pairs` holds any of them
+  Work work;
+};
+PairsWithin pairsWithin(const Placed& a, const Placed& b, const CollisionRequest& request, std::size_t most);
+
+} // namespace pcl_bsh

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/report/clashes.h>
+
+#include <pcl_bsh/clusters/clusters.h>
+#include <pcl_bsh/geometry/invalid_input.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <tuple>
+
+namespace pcl_bsh {
+namespace {
+
+Point3 middleOf(const Clash& clash)
+{
+  Point3 middle;
+  for (std::size_t k = 0; k < 3; ++k) middle[k] = 0.5 * clash.low[k] + 0.5 * clash.high[k];
+  return middle;
+}
+
+std::string idAt(const Point3& place, double cell)
+{
+  std::string id = "C";
+  for (std::size_t k = 0; k < 3; ++k) {
+    id += (k == 0 ? "" : "_") + std::to_string(static_cast<long long>(std::floor(place[k] / cell)));
+  }
+  return id;
+}
+
+/// `id`, or with #2, #3, ... behind it, whichever is not taken yet.
+std::string untaken(const std::string& id, std::set<std::string>& taken)
+{
+  std::string candidate = id;
+  for (int n = 2; !taken.insert(candidate).second; ++n) candidate = id + "#" + std::to_string(n);
+  return candidate;
+}
+
+void nameByPlace(std::vector<Clash>& clashes, double cluster_distance)
+{
+  const double cell = std::exp2(std::ceil(std::log2(4 * cluster_distance)));
+  std::vector<Clash*> by_place;
+  for (Clash& clash : clashes) by_place.push_back(&clash);
+  std::sort(by_place.begin(), by_place.end(),
+            [](const Clash* a, const Clash* b) { return std::tie(a->low, a->high) < std::tie(b->low, b->high); });
+  std::set<std::string> taken;
+  for (Clash* clash : by_place) clash->id = untaken(idAt(middleOf(*clash), cell), taken);
+}
+
+void add(Clash& clash, std::uint32_t record, const Point3& point, const TrajectoryResult& found)
+{
+  clash.records.push_back(record);
+  ++clash.points;
+  for (std::size_t k = 0; k < 3; ++k) {
+    clash.low[k] = std::min(clash.low[k], point[k]);
+    clash.high[k] = std::max(clash.high[k], point[k]);
+  }
+  clash.first_pose = std::min(clash.first_pose, found.first_pose[record]);
+  const double distance = static_cast<double>(found.distance[record]);
+  if (!(distance < clash.distance)) return;
+  clash.distance = distance;
+  clash.scan_point = record;
+  clash.model_point = found.closest_point[record];
+  clash.closest_pose = found.closest_pose[record];
+}
+
+void check(const PointsView& scan, const TrajectoryResult& found, double cluster_distance)
+{
+  if (!(std::isfinite(cluster_distance) && cluster_distance > 0.0)) {
+    throw InvalidInput(Input::cluster_distance, "cluster distance", std::to_string(cluster_distance),
+                       "give a finite length > 0")
+        .withValue(cluster_distance);
+  }
+  for (const std::size_t size : {found.flags.size(), found.distance.size(), found.first_pose.size(),
+                                 found.closest_pose.size(), found.closest_point.size()}) {
+    if (size == scan.count) continue;
+    throw InvalidInput(Input::result, "result",
+                       "has " + std::to_string(size) + " values for " + std::to_string(scan.count) + " points",
+                       "ask for flags, distances, first_poses and closest_poses of this scan");
+  }
+}
+
+bool touch(const Clash& a, const Clash& b, double nearness)
+{
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (a.low[k] - b.high[k] > nearness || b.low[k] - a.high[k] > nearness) return false;
+  }
+  return true;
+}
+
+double squaredDistance(const Point3& p, const Point3& q)
+{
+  double sum = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) sum += (p[k] - q[k]) * (p[k] - q[k]);
+  return sum;
+}
+
+} // namespace
+
+std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& found, double cluster_distance)
+{
+  check(scan, found, cluster_distance);
+  std::vector<std::int32_t> colliding;
+  for (std::size_t i = 0; i < scan.count; ++i) {
+    if (found.flags[i] != 0) colliding.push_back(static_cast<std::int32_t>(i));
+  }
+  PointsView subset = scan;
+  subset.indices = colliding.data();
+  subset.index_count = colliding.size();
+  if (colliding.empty()) return {};
+  const Clusters clusters = euclideanClusters(SphereHierarchy(subset), cluster_distance);
+
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Clash none;
+  none.low = {infinity, infinity, infinity};
+  none.high = {-infinity, -infinity, -infinity};
+  none.distance = infinity;
+  none.first_pose = std::numeric_limits<std::int32_t>::max();
+  std::vector<Clash> clashes(clusters.sizes.size(), none);
+  for (const std::int32_t i : colliding) {
+    const auto record = static_cast<std::uint32_t>(i);
+    add(clashes[static_cast<std::size_t>(clusters.of[record])], record, scan.point(record), found);
+  }
+  nameByPlace(clashes, cluster_distance);
+  std::sort(clashes.begin(), clashes.end(), [](const Clash& a, const Clash& b) {
+    return std::tie(a.distance, b.points, a.id) < std::tie(b.distance, a.points, b.id);
+  });
+  return clashes;
+}
+
+void compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness)
+{
+  // Every pair that touches, the nearest first; ids pass on one to one.
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  std::vector<bool> there_still(earlier.size(), false);
+  for (std::size_t j = 0; j < earlier.size(); ++j) {
+    if (earlier[j].status == ClashStatus::resolved) {
+      there_still[j] = true; // forgotten
+      continue;
+    }
+    for (std::size_t i = 0; i < clashes.size(); ++i) {
+      if (!touch(clashes[i], earlier[j], nearness)) continue;
+      pairs.emplace_back(squaredDistance(middleOf(clashes[i]), middleOf(earlier[j])), j, i);
+      clashes[i].status = ClashStatus::persisting;
+      there_still[j] = true;
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+
+  std::set<std::string> taken;
+  for (const Clash& clash : earlier) taken.insert(clash.id);
+  std::vector<bool> heir(clashes.size(), false), inherited(earlier.size(), false);
+  for (const auto& [distance, j, i] : pairs) {
+    if (heir[i] || inherited[j]) continue;
+    heir[i] = inherited[j] = true;
+    clashes[i].id = earlier[j].id;
+  }
+  for (std::size_t i = 0; i < clashes.size(); ++i) {
+    if (!heir[i]) clashes[i].id = untaken(clashes[i].id, taken);
+  }
+
+  for (std::size_t j = 0; j < earlier.size(); ++j) {
+    if (there_still[j]) continue;
+    clashes.push_back(earlier[j]);
+    clashes.back().status = ClashStatus::resolved;
+  }
+}
+
+} // namespace pcl_bsh

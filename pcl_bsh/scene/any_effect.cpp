@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which pairs collide, in the scene and within an object; remembered from step to step.
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/scene/effect.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr unsigned kPatience = 8; // queries after which a wider one that failed is tried again
+constexpr double kAhead = 4.0;    // steps of the present speed that a wider query looks ahead
+
+/// Whether a pair of points found earlier still collides.
+bool collides(const Placed& a, const Placed& b, PointPair pair, double clearance, Work& work)
+{
+  ++work.exact_decisions;
+  const PointsView &p = a.hierarchy.view(), &q = b.hierarchy.view();
+  return ExactDistance(a.pose, b.pose)
+             .compare(p.point(pair.a), q.point(pair.b), clearance, p.radius(pair.a), q.radius(pair.b)) <= 0;
+}
+
+} // namespace
+
+void Scene::State::findAny()
+{
+  EffectCost& spent = cost(Effect::any);
+  const Timed timed(spent.seconds);
+  eachPair(near, spent, [this](std::size_t i) { decideAny(*near[i]); });
+  for (const BroadPair* pair : near) {
+    if (pair->memory.colliding) result.any.push_back(pair->memory.witness);
+    if (pair->memory.undecided) result.undecided.push_back(*pair->memory.undecided);
+  }
+}
+
+void Scene::State::decideAny(BroadPair& pair) const
+{
+  const Body &a = bodies[pair.a], &b = bodies[pair.b];
+  PairMemory& memory = pair.memory;
+  if (memory.any_a == a.version && memory.any_b == b.version) {
+    memory.reused = true;
+    return;
+  }
+  memory.any_a = a.version;
+  memory.any_b = b.version;
+  const bool remember = options.remember && options.accuracy.isExact(); // else memory would change answers
+  if (remember && remembersAny(pair)) {
+    memory.reused = true;
+    return;
+  }
+
+  /// Whether any parts collide at the clearance; if so, notes the witness; if not, who may.
+  const auto ask = [&](double clearance) {
+    memory.undecided.reset();
+    for (std::uint32_t i = 0; i < a.world.size(); ++i)
+      for (std::uint32_t j = 0; j < b.world.size(); ++j) {
+        const AnyResult found =
+            anyCollision(placed(pair.a, i), placed(pair.b, j), requestFor(clearance, options.accuracy));
+        memory.work += found.work;
+        ++memory.asked;
+        const PartPair parts{pair.a, pair.b, i, j};
+        if (found.verdict == Verdict::undecided && !memory.undecided) memory.undecided = parts;
+        if (!found.witness) continue;
+        memory.undecided.reset();
+        memory.witness = {{pair.a, pair.b, i, j}, *found.witness};
+        return true;
+      }
+    return false;
+  };
+  memory.has_witness = false;
+  memory.apart = 0.0;
+  const double ahead = remember ? kAhead * (a.last_motion + b.last_motion) : 0.0;
+  if (ahead > 0.0 && std::isfinite(pair.clearance + ahead) && memory.patience == 0) {
+    // What is free at a wider clearance need not be asked again until it has moved that far.
+    memory.colliding = ask(pair.clearance + ahead);
+    if (!memory.colliding) {
+      memory.apart = pair.clearance + ahead;
+      memory.apart_a = a.object.pose;
+      memory.apart_b = b.object.pose;
+      return;
+    }
+    memory.patience = kPatience;
+    memory.has_witness = collides(placed(pair.a, memory.witness.part_a), placed(pair.b, memory.witness.part_b),
+                                  memory.witness.witness, pair.clearance, memory.work);
+    if (memory.has_witness) return;
+  }
+  else if (memory.patience > 0) {
+    --memory.patience;
+  }
+  memory.colliding = memory.has_witness = ask(pair.clearance);
+}
+
+/// Whether what an earlier step found still answers.
+bool Scene::State::remembersAny(BroadPair& pair) const
+{
+  PairMemory& memory = pair.memory;
+  const Body &a = bodies[pair.a], &b = bodies[pair.b];
+  if (memory.apart > pair.clearance) {
+    const double way =
+        motionBound(a.box, memory.apart_a, a.object.pose) + motionBound(b.box, memory.apart_b, b.object.pose);
+    if (memory.apart * (1.0 - scene_rounding) - way > pair.clearance) {
+      memory.colliding = false;
+      return true;
+    }
+  }
+  if (!memory.has_witness) return false;
+  memory.colliding = collides(placed(pair.a, memory.witness.part_a), placed(pair.b, memory.witness.part_b),
+                              memory.witness.witness, pair.clearance, memory.work);
+  return memory.colliding;
+}
+
+/// As `any` has just found.
+bool Scene::State::isKnownFree(const BroadPair& pair) const
+{
+  return options.effects.any && options.accuracy.isProven() && !pair.memory.colliding && !pair.memory.undecided;
+}
+
+void Scene::State::findSelf()
+{
+  EffectCost& spent = cost(Effect::self);
+  const Timed timed(spent.seconds);
+  for (ObjectId object = 0; object < bodies.size(); ++object) {
+    const SceneObject& whole = bodies[object].object;
+    for (std::uint32_t i = 0; i < whole.parts.size(); ++i)
+      for (std::uint32_t j = i + 1; j < whole.parts.size(); ++j) {
+        if (std::find(whole.adjacent.begin(), whole.adjacent.end(), std::make_pair(i, j)) != whole.adjacent.end())
+          continue;
+        // In the object's own frame, where only the parts' poses count.
+        const AnyResult found = anyCollision({*whole.parts[i].hierarchy, whole.parts[i].pose},
+                                             {*whole.parts[j].hierarchy, whole.parts[j].pose},
+                                             requestFor(options.clearance, options.accuracy));
+        spent.work += found.work;
+        ++spent.pairs;
+        if (found.witness) result.self.push_back({object, i, j, *found.witness});
+        if (found.verdict == Verdict::undecided) result.undecided.push_back({object, object, i, j});
+      }
+  }
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/scene/approach.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int kMostInside = 1024; // steps of a pair that starts within the zone and neither leaves nor enters it
+
+/// The smallest h > 0 with gap + slope h - bend h^2 / 2 = 0, for a gap > 0; infinity if there is none.
+double firstRoot(double gap, double slope, double bend)
+{
+  const double under = slope * slope + 2.0 * bend * gap;
+  if (under < 0.0) return infinity;
+  const double root = std::sqrt(under);
+  if (slope <= 0.0) return root > slope ? 2.0 * gap / (root - slope) : infinity;
+  return bend > 0.0 ? (root + slope) / bend : infinity; // the form that does not cancel here
+}
+
+/// Two points on their courses, seen from each other.
+class Couple {
+public:
+  Couple(const PointCourse& a, const PointCourse& b, double end)
+  : a_(a),
+    b_(b),
+    end_(end),
+    turn_a_(a.angle * a.axis),
+    turn_b_(b.angle * b.axis),
+    shift_(a.shift - b.shift),
+    center_(a.center - b.center),
+    drift_(a.drift.norm() + b.drift.norm()),
+    size_a_(a.spoke.norm() + a.drift.norm()),
+    size_b_(b.spoke.norm() + b.drift.norm()),
+    rim_a_(turn_a_.cross(a.spoke).norm() + a.angle * a.drift.norm()),
+    rim_b_(turn_b_.cross(b.spoke).norm() + b.angle * b.drift.norm()),
+    speed_((shift_.norm() + rim_a_ + rim_b_ + drift_) * kUp),
+    bend_((a.angle * (rim_a_ + 2.0 * a.drift.norm()) + b.angle * (rim_b_ + 2.0 * b.drift.norm())) * kUp)
+  {
+    const double mixed = 4.0 * (shift_.cross(turn_a_).norm() * size_a_ + shift_.cross(turn_b_).norm() * size_b_) +
+                         2.0 * (turn_a_ - turn_b_).norm() * (rim_a_ * size_b_ + size_a_ * rim_b_);
+    square_bend_ = mixed * kUp - 2.0 * shift_.squaredNorm() * (1.0 - kDoubleMargin);
+    const Eigen::Vector3d last = center_ + end * shift_;
+    last_a_ = turn_a_.cross(last).norm();
+    last_b_ = turn_b_.cross(last).norm();
+  }
+
+  double distance = 0.0;
+  double closing = 0.0; ///< how fast it shrinks per unit of s; negative: how fast it grows
+  double speed() const { return speed_; }
+
+  void look(double s)
+  {
+    s_ = s;
+    spoke_a_ = a_.spokeAt(s);
+    spoke_b_ = b_.spokeAt(s);
+    middle_ = center_ + s * shift_;
+    apart_ = middle_ + spoke_a_ - spoke_b_;
+    rim_ = turn_a_.cross(spoke_a_) - turn_b_.cross(spoke_b_);
+    distance = apart_.norm();
+    closing = distance > 0.0 ? -apart_.dot(shift_ + rim_) / distance : 0.0;
+  }
+
+  /// For this long the points stay farther apart than `limit`. Three bounds, each true by itself; the longest step
+  /// counts.
+  double safeStep(double limit) const
+  {
+    const double gap = distance - limit;
+    if (!(gap > 0.0)) {
+      // They move off, or not at all. The way back to this distance is as safe as standing still.
+      const double leaving = -(closing + drift_);
+      return leaving > 0.0 ? 2.0 * leaving / bend_ : 0.0;
+    }
+    // No farther than both can go.
+    double step = speed_ > 0.0 ? gap / speed_ : infinity;
+    // The distance of two points in straight motion is convex; turning bends it by no more than this.
+    step = std::max(step, firstRoot(gap, -(closing + drift_), bend_));
+    // The squared distance by its own second derivative, which is small where both turn about one axis: a ring about a
+    // shaft stays as near as it is. Invalid for the drift, which is put on top of the limit for all of the way.
+    const double least = limit + drift_ * (end_ - s_);
+    const double square_gap = (distance - least) * (distance + least);
+    if (square_gap > 0.0) {
+      const double slope = 2.0 * (middle_.dot(shift_ + rim_) + shift_.dot(spoke_a_ - spoke_b_) -
+                                  (turn_a_ - turn_b_).dot(spoke_a_.cross(spoke_b_)));
+      const double bend = square_bend_ + 2.0 * kUp *
+                                             (std::max(last_a_, turn_a_.cross(middle_).norm()) * rim_a_ +
+                                              std::max(last_b_, turn_b_.cross(middle_).norm()) * rim_b_);
+      step = std::max(step, firstRoot(square_gap, slope, bend));
+    }
+    return step;
+  }
+
+private:
+  static constexpr double kUp = 1.0 + 0x1p-40;
+
+  const PointCourse &a_, &b_;
+  double end_, s_ = 0.0;
+  Eigen::Vector3d turn_a_, turn_b_, shift_, center_;
+  double drift_;           // of both, per unit of s
+  double size_a_, size_b_; // no spoke is longer
+  double rim_a_, rim_b_;   // no spoke's end turns faster
+  double speed_, bend_;
+  double square_bend_ = 0.0, last_a_ = 0.0, last_b_ = 0.0;
+  Eigen::Vector3d spoke_a_, spoke_b_, middle_, apart_, rim_;
+};
+
+} // namespace
+
+std::optional<double> meeting(const Eigen::Vector3d& apart, const Eigen::Vector3d& shift, const ContactZone& zone)
+{
+  const double along = apart.dot(shift), length2 = shift.squaredNorm();
+  if (!(along < 0.0) || length2 == 0.0) return std::nullopt; // no nearer than now
+  const double now = apart.norm();
+  const bool inside = now <= zone.outer();
+  const double pass = inside ? zone.floor(now) : zone.inner(), halt = inside ? pass : zone.outer();
+  const double closest = -along / length2;
+  if ((apart + std::min(1.0, closest) * shift).squaredNorm() >= pass * pass) return std::nullopt;
+  // Back from the closest approach by half a chord. The usual root of |apart + s shift| = halt takes a difference of
+  // squares of the whole way, which is all rounding when that is long and the zone thin.
+  const double across = (apart + closest * shift).norm();
+  const double half = std::sqrt(std::max(0.0, (halt - across) * (halt + across) / length2));
+  return std::clamp(closest - half, 0.0, 1.0);
+}
+
+std::optional<double> meeting(const Path& path_a, const Eigen::Vector3d& p, const Path& path_b,
+                              const Eigen::Vector3d& q, const ContactZone& zone, double begin, double end)
+{
+  if (!path_a.turns() && !path_b.turns()) {
+    const Eigen::Vector3d apart = path_a.at(begin) * p - path_b.at(begin) * q;
+    const auto s = meeting(apart, (end - begin) * (path_a.shift() - path_b.shift()), zone);
+    if (!s) return std::nullopt;
+    return begin + *s * (end - begin);
+  }
+  const PointCourse a = path_a.courseOf(p), b = path_b.courseOf(q);
+  Couple couple(a, b, end);
+  couple.look(begin);
+  bool inside = couple.distance <= zone.outer(); // from the start
+  // Steps lead to between this and outer, so that what is halted has room left to inner.
+  const double halt = zone.reach + 0.4375 * zone.tolerance;
+  double limit = inside ? zone.floor(couple.distance) : halt;
+  if (couple.distance < zone.reach - 0.0625 * zone.tolerance) return begin;
+  int steps_inside = 0;
+  for (double s = begin;;) {
+    if (inside) {
+      const bool at_limit = couple.distance - limit <= zone.tolerance / 64;
+      if (at_limit && couple.closing > 0x1p-40 * couple.speed()) return s;
+      if (++steps_inside > kMostInside) return s; // a halt too early, at a distance that a halt may have
+    }
+    const double step = couple.safeStep(limit);
+    s = std::max(s + step, std::nextafter(s, infinity));
+    if (!(s < end)) return std::nullopt;
+    couple.look(s);
+    if (inside && couple.distance > zone.outer()) {
+      inside = false;
+      limit = halt;
+    }
+    if (!inside && couple.distance <= zone.outer()) return s;
+  }
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When two moving points first come near each other.
+#pragma once
+
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/scene/path.h>
+
+#include <optional>
+
+namespace pcl_bsh {
+
+/// How near is near: two points within `reach` collide. A pair that approaches is halted at the outer distance; one
+/// that is between outer and inner already is let pass as long as it stays outside of inner. So what has been halted
+/// can move along and away, and rounding, which is far below the distance from inner to reach, never leads to a
+/// collision.
+struct ContactZone {
+  static constexpr double kNowRounding = 32 * kDoubleUnit; ///< of a distance, as it is measured
+
+  double reach;
+  double tolerance;
+
+  double outer() const { return reach + 0.5 * tolerance; }
+  double inner() const { return reach + 0.25 * tolerance; }
+
+  /// How near a pair may come that is within outer from the start: to inner, or, if it is hardly farther than that, a
+  /// little nearer than now; next to the reach no nearer than rounding has it. There the pair may still move along and
+  /// away, but the distance to a collision is no longer above rounding: only the exact test of poses guards it.
+  double floor(double now) const
+  {
+    if (now > reach + 0.125 * tolerance) return std::min(inner(), now - 0.0625 * tolerance);
+    return now * (1.0 - kNowRounding);
+  }
+};
+
+/// Points `apart` (from the other to the moving one), the moving one going by `shift` while s runs from 0 to 1.
+/// @return s of the contact, in [0, 1]
+std::optional<double> meeting(const Eigen::Vector3d& apart, const Eigen::Vector3d& shift, const ContactZone& zone);
+
+/// Points p and q, given in their objects' frames, on their paths, for s from `begin` to `end`. Conservative
+/// advancement (Mirtich and Canny, Impulse-based Simulation of Rigid Bodies, 1995) with a bound of second order: where
+/// two points hardly come nearer, steps grow with the square root of what is left.
+std::optional<double> meeting(const Path& path_a, const Eigen::Vector3d& p, const Path& path_b,
+                              const Eigen::Vector3d& q, const ContactZone& zone, double begin, double end);
+
+} // namespace pcl_bsh

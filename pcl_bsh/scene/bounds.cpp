@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/scene/bounds.h>
+
+#include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/scene/scene.h>
+
+#include <cmath>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr double kMargin = 0x1p-45; // of the largest number that went into a bound: far above what rounding takes
+
+double largest(const Box3& box)
+{
+  return std::max(box.low.cwiseAbs().maxCoeff(), box.high.cwiseAbs().maxCoeff());
+}
+
+} // namespace
+
+Box3 moved(const Box3& box, const Eigen::Isometry3d& pose)
+{
+  if (box.empty()) return box;
+  const Eigen::Vector3d center = pose * box.center();
+  const Eigen::Vector3d half = pose.linear().cwiseAbs() * box.half();
+  Box3 result{center - half, center + half};
+  result.grow(kMargin * (largest(box) + pose.translation().cwiseAbs().maxCoeff()));
+  if (!result.low.allFinite() || !result.high.allFinite()) { // too large to compute with: it may be anywhere
+    result.low.setConstant(-std::numeric_limits<double>::infinity());
+    result.high.setConstant(std::numeric_limits<double>::infinity());
+  }
+  return result;
+}
+
+Box3 boxOf(const ScenePart& part)
+{
+  const SphereHierarchy::Storage& storage = part.hierarchy->storage();
+  Box3 box;
+  if (storage.size == 0) return box;
+  for (int k = 0; k < 3; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    const double half = (storage.frame.reach[axis] + storage.frame.slack(k)) * storage.frame.unit;
+    box.low[k] = storage.frame.origin[axis] - half;
+    box.high[k] = storage.frame.origin[axis] + half;
+  }
+  box.grow(storage.largest_radius + kMargin * largest(box));
+  return box;
+}
+
+Box3 boxOf(const SceneObject& object)
+{
+  Box3 box;
+  for (const ScenePart& part : object.parts) box.merge(moved(boxOf(part), part.pose));
+  return box;
+}
+
+double motionBound(const Box3& box, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to)
+{
+  if (box.empty()) return 0.0;
+  const Eigen::Vector3d center = box.center();
+  const double shift = (to * center - from * center).norm();
+  const double turn = (to.linear() - from.linear()).norm() * box.half().norm();
+  const double rounding =
+      kMargin * (largest(box) + from.translation().cwiseAbs().maxCoeff() + to.translation().cwiseAbs().maxCoeff());
+  return (shift + turn) * (1.0 + kMargin) + rounding;
+}
+
+} // namespace pcl_bsh

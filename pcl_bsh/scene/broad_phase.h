@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A voxel grid over the scene. Only objects that share a voxel can collide; an object that moves changes only the
+// voxels it leaves and enters.
+#pragma once
+
+#include <pcl_bsh/scene/bounds.h>
+#include <pcl_bsh/scene/pair_rules.h>
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// What is known of a pair from earlier steps. Version 0: nothing.
+struct PairMemory {
+  std::uint64_t version_a = 0, version_b = 0; ///< of the poses at which `near` was found
+  bool near = false;                          ///< boxes within the clearance
+
+  std::uint64_t any_a = 0, any_b = 0; ///< likewise of `colliding`
+  bool colliding = false;
+  std::optional<PartPair> undecided; ///< parts that may collide, if none are known to
+  CollidingPair witness;             ///< of the last collision found
+  bool has_witness = false;
+  double apart = 0.0; ///< no points were nearer than this when the objects stood at the two poses below
+  Eigen::Isometry3d apart_a, apart_b;
+  unsigned patience = 0; ///< queries to come before another wider one is tried
+
+  std::uint64_t distance_a = 0, distance_b = 0; ///< likewise of `distance`
+  bool within = false;
+  DistantPair distance;
+
+  bool reused = false; ///< of the present query
+  std::uint32_t asked = 0;
+  Work work;
+};
+
+struct BroadPair {
+  ObjectId a, b; ///< a < b
+  double clearance;
+  std::uint32_t shared = 0; ///< voxels
+  PairMemory memory;
+};
+
+class BroadPhase {
+public:
+  /// Forgets everything. @param edge of a voxel; infinity: all objects share one.
+  void reset(double edge, const PairRules& rules);
+
+  /// An object is now in these boxes, grown by what pairs may be apart and yet of interest.
+  void place(ObjectId object, const std::vector<Box3>& boxes, BroadPhaseCost& cost);
+
+  /// How many voxels a box reaches over, at most 2^40.
+  double voxelsOf(const Box3& box) const;
+
+  /// The pairs to be tested that share a voxel, by (a, b). Valid until the next change.
+  const std::vector<BroadPair*>& pairs();
+  std::size_t pairCount() const { return pairs_.size(); }
+
+  /// Those of one object, in no order.
+  const std::vector<BroadPair*>& pairsOf(ObjectId object) const { return places_[object].pairs; }
+
+  /// Pairs that share no voxel any more are kept, with shared == 0, until nobody can look at them.
+  bool hasParted() const { return !parted_.empty(); }
+  void dropParted();
+
+  /// Objects that have a voxel in common with the box, ascending. Some more do no harm.
+  void around(const Box3& box, std::vector<ObjectId>& objects) const;
+
+  void forget(ObjectId object); ///< what pairs remember, after its points have changed
+
+private:
+  using Key = std::uint64_t;
+  static constexpr Key kEverywhere = ~Key{0};
+  static constexpr double kMostVoxels = 0x1p16; // of one object; more make it one that is everywhere
+
+  struct Range {
+    std::array<std::int64_t, 3> low, high;
+    bool operator==(const Range& other) const { return low == other.low && high == other.high; }
+  };
+  struct Hash {
+    std::size_t operator()(Key key) const
+    {
+      key = (key ^ key >> 31) * 0x9e3779b97f4a7c15u;
+      return static_cast<std::size_t>(key ^ key >> 29);
+    }
+  };
+  struct Place {
+    std::vector<Key> voxels; // ascending
+    std::vector<Range> ranges;
+    std::vector<BroadPair*> pairs;
+  };
+
+  Range rangeOf(const Box3& box) const;
+  static Key keyOf(std::int64_t x, std::int64_t y, std::int64_t z);
+  void voxelsOf(const std::vector<Range>& ranges, std::vector<Key>& voxels) const;
+  void enter(ObjectId object, Key voxel);
+  void leave(ObjectId object, Key voxel);
+  void share(ObjectId a, ObjectId b);
+  void part(ObjectId a, ObjectId b);
+
+  const PairRules* rules_ = nullptr;
+  double edge_ = 1.0;
+  std::vector<Place> places_;
+  std::vector<std::uint8_t> placed_;
+  std::unordered_map<Key, std::vector<ObjectId>, Hash> voxels_;
+  std::vector<ObjectId> everywhere_;
+  std::unordered_map<std::uint64_t, BroadPair*, Hash> pairs_;
+  std::deque<BroadPair> pool_; // of pairs, which stay where they are
+  std::vector<BroadPair*> unused_, parted_;
+  std::vector<BroadPair*> sorted_;
+  bool is_sorted_ = true;
+  std::vector<Range> ranges_;   // scratch
+  std::vector<Key> new_voxels_; // scratch
+};
+
+} // namespace pcl_bsh

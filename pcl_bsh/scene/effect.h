@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the files of a scene's effects share: each effect times itself, asks its pairs side by side, and adds up their
+// work.
+#pragma once
+
+#include <pcl_bsh/hierarchy/parallel.h>
+#include <pcl_bsh/scene/state.h>
+#include <pcl_bsh/scene/sweep.h>
+
+#include <chrono>
+#include <limits>
+
+namespace pcl_bsh {
+
+constexpr double scene_rounding = 0x1p-40; ///< relative; far above that of a few operations in double
+
+/// Adds the time until its end to a cost.
+class Timed {
+public:
+  explicit Timed(double& seconds) : seconds_(seconds) {}
+  ~Timed() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+inline CollisionRequest requestFor(double clearance, const Accuracy& accuracy = {})
+{
+  CollisionRequest request;
+  request.clearance = clearance;
+  request.accuracy = accuracy;
+  return request;
+}
+
+/// Calls decide(i) for each pair, in parallel, and adds up what the pairs note of it.
+template <class Decide>
+void Scene::State::eachPair(const std::vector<BroadPair*>& pairs, EffectCost& cost, const Decide& decide)
+{
+  parallelFor(pairs.size(), threadCount(options.threads), [&](std::size_t i) {
+    pairs[i]->memory.work = Work();
+    pairs[i]->memory.asked = 0;
+    pairs[i]->memory.reused = false;
+    decide(i);
+  });
+  for (const BroadPair* pair : pairs) {
+    cost.pairs += pair->memory.asked;
+    cost.reused += pair->memory.reused ? 1 : 0;
+    cost.work += pair->memory.work;
+  }
+}
+
+/// Calls ask(k, pair, parts, a, b) for each two parts of pair k of the grid, if the ways of its objects come near
+/// enough to meet.
+template <class Ask>
+void Scene::State::eachSweptPair(EffectCost& cost, const Ask& ask)
+{
+  const std::vector<BroadPair*>& pairs = grid.pairs();
+  eachPair(pairs, cost, [&](std::size_t k) {
+    BroadPair& pair = *pairs[k];
+    const Path path_a = pathOf(pair.a), path_b = pathOf(pair.b);
+    Box3 box = path_a.swept();
+    box.grow((pair.clearance + options.tolerance) * (1.0 + scene_rounding));
+    if (!box.meets(path_b.swept())) return;
+    const std::vector<ScenePart>&parts_a = bodies[pair.a].object.parts, &parts_b = bodies[pair.b].object.parts;
+    for (std::uint32_t i = 0; i < parts_a.size(); ++i)
+      for (std::uint32_t j = 0; j < parts_b.size(); ++j) {
+        const SweptPart a{*parts_a[i].hierarchy, parts_a[i].pose, path_a};
+        const SweptPart b{*parts_b[j].hierarchy, parts_b[j].pose, path_b};
+        ask(k, pair, PartPair{pair.a, pair.b, i, j}, a, b);
+        ++pair.memory.asked;
+      }
+  });
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a scene may be asked for. An effect that is not listed runs no code, allocates nothing and builds nothing.
+#pragma once
+
+#include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/query/result.h>
+#include <pcl_bsh/scene/motion.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace pcl_bsh {
+
+using ObjectId = std::uint32_t; ///< counted from 0 in the order of Scene::add()
+
+enum class Effect : std::uint8_t {
+  any,
+  flags,
+  distance,
+  contacts,
+  first_contact,
+  swept,
+  self,
+  stop,
+  slide,
+  gravity,
+  deform,
+};
+inline constexpr std::size_t kEffects = 11;
+
+/// As it is written in scene files and reports.
+const char* nameOf(Effect effect) noexcept;
+
+enum class Response : std::uint8_t {
+  none,
+  stop, ///< a moving object halts where it first meets another
+  slide ///< it keeps what is left of its motion along what it meets
+};
+
+/// Objects follow the ground: pulled down after each of their own motions, lifted over what is low enough.
+struct Gravity {
+  double step_height = 0.3;                         ///< what an object climbs, and how far it sinks, in one step; > 0
+  Eigen::Vector3d down = -Eigen::Vector3d::UnitZ(); ///< any length but 0
+};
+
+/// The effects of a scene; listed ones are computed by every query() or step().
+struct Effects {
+  bool any = false;   ///< which pairs of objects collide
+  bool flags = false; ///< which points collide with another object
+  /// The smallest distance of each pair that is (or may be, for all that is certain) no farther apart than this;
+  /// infinity: of every pair to be tested.
+  std::optional<double> distance;
+  std::optional<std::size_t> contacts; ///< at most so many per pair of parts, the nearest
+  bool first_contact = false;          ///< when, within the step, a pair first meets
+  bool swept = false;                  ///< which points meet another object anywhere between the poses of a step
+  bool self = false;                   ///< parts of one object that collide with each other
+  Response response = Response::none;
+  std::optional<Gravity> gravity;
+  /// Points of objects move, by Scene::deform(). Spheres follow; those of a voxel, or of all, are built anew once they
+  /// have grown by this factor on average; >= 1.
+  std::optional<double> deform;
+
+  bool has(Effect effect) const noexcept;
+  bool none() const noexcept;
+};
+
+/// What an effect cost. Counts are free of noise and the same for any number of threads.
+struct EffectCost {
+  std::uint64_t pairs = 0;  ///< pairs of parts put to a query; of deform: parts refitted
+  std::uint64_t reused = 0; ///< pairs of objects answered by what was known from an earlier step
+  Work work;
+  double seconds = 0.0;
+};
+
+/// What finding the pairs cost.
+struct BroadPhaseCost {
+  std::uint64_t moved = 0;       ///< objects whose bounds were computed anew
+  std::uint64_t voxels_left = 0; ///< of moved objects
+  std::uint64_t voxels_entered = 0;
+  std::uint64_t box_tests = 0;     ///< pairs sharing a voxel whose boxes were compared
+  std::uint64_t candidates = 0;    ///< of these, pairs whose boxes are near enough to ask further
+  std::uint64_t pairs_sharing = 0; ///< pairs to be tested that share a voxel now
+  double seconds = 0.0;
+};
+
+/// Two objects, a < b, and a part of each.
+struct PartPair {
+  ObjectId a = 0, b = 0;
+  std::uint32_t part_a = 0, part_b = 0;
+};
+
+struct CollidingPair : PartPair {
+  PointPair witness; ///< some colliding pair of points
+};
+
+struct DistantPair : PartPair {
+  double distance = 0.0;
+  Interval interval; ///< holds it for certain, where the scene's accuracy is less than exact
+  PointPair pair;    ///< that realises it; of several, of the smallest parts, then the smallest (a, b)
+};
+
+struct ContactPair : PartPair {
+  std::vector<Contact> contacts; ///< nearest first
+  bool complete = true;          ///< no contact of these two parts was left out
+};
+
+struct PartFirstContact : PartPair {
+  double fraction =
+      0.0;        ///< of the step, in [0, 1]: before it no pair of points collides, at it one is within tolerance
+  PointPair pair; ///< the points that meet
+};
+
+/// The points of a part that collide, or are undecided. Parts without any are not listed.
+struct FlaggedPart {
+  ObjectId object = 0;
+  std::uint32_t part = 0;
+  std::size_t colliding = 0;
+  std::size_t undecided = 0;       ///< 0 unless the scene's accuracy lets a query stop early
+  std::vector<std::uint8_t> flags; ///< one per record of the part's view, as in FlagsResult
+};
+
+/// Parts of one object, part_a < part_b.
+struct SelfCollision {
+  ObjectId object = 0;
+  std::uint32_t part_a = 0, part_b = 0;
+  PointPair witness;
+};
+
+/// What a response or gravity made of an object's wanted motion.
+struct Outcome {
+  ObjectId object = 0;
+  bool touched = false;   ///< it met something
+  ObjectId against = 0;   ///< whom it met last, if so
+  bool stuck = false;     ///< it collided before it moved, and so stays where it is
+  bool grounded = false;  ///< gravity found ground below it
+  double wanted = 0.0;    ///< length of the motion asked for, of the object's centre
+  double travelled = 0.0; ///< how far the centre is from where it was
+  /// The way it took, leg by leg from where it stood to where it stands; empty if it stayed. With a response no instant
+  /// of it collides. Gravity without a response looks only at the last legs, the drop: the motion itself, and the lift
+  /// after it, go through whatever is there.
+  std::vector<Leg> legs;
+};
+
+/// Of an object that has moved, from its pose at the last query: what first_contact and swept look at.
+struct ObjectWay {
+  ObjectId object = 0;
+  Leg leg;
+};
+
+struct SceneResult {
+  double time = 0.0; ///< of the scene, seconds
+  std::vector<CollidingPair> any;
+  /// Of `any`, or where a == b of `self`: who may collide or not, as far as the scene's accuracy goes.
+  std::vector<PartPair> undecided;
+  std::vector<FlaggedPart> flags;
+  std::vector<DistantPair> distance;
+  std::vector<ContactPair> contacts;
+  std::vector<PartFirstContact> first_contact;
+  std::vector<FlaggedPart> swept;
+  std::vector<ObjectWay> ways; ///< by object; with first_contact or swept
+  std::vector<SelfCollision> self;
+  std::vector<Outcome> outcomes; ///< of moved objects, with a response or gravity
+  BroadPhaseCost broad_phase;
+  std::array<EffectCost, kEffects> costs;
+
+  const EffectCost& cost(Effect effect) const noexcept { return costs[static_cast<std::size_t>(effect)]; }
+};
+
+} // namespace pcl_bsh

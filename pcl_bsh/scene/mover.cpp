@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/scene/mover.h>
+#include <pcl_bsh/scene/sweep.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr int kMostContacts = 256;         // of one translation
+constexpr int kMostBounces = 32;           // of these, before points are collected anew
+constexpr std::size_t kFewPairs = 1 << 11; // of points that can meet: a translation is followed at once
+
+} // namespace
+
+Mover::Mover(Scene::State& state, ObjectId object, EffectCost& cost)
+: state_(state),
+  body_(state.bodies[object]),
+  object_(object),
+  tolerance_(state.options.tolerance),
+  cost_(cost)
+{
+}
+
+bool Mover::follow(const Eigen::Isometry3d& target, const Eigen::Vector3d& turn)
+{
+  Leg leg{pose(), target, body_.center(), turn};
+  const Path path(leg, body_.box);
+  double done = 0.0;
+  const bool whole = follow(path, 0.0, 1.0, done);
+  if (done == 0.0) return whole;
+  leg.to = pose();
+  leg.turn *= done;
+  legs.push_back(leg);
+  return whole;
+}
+
+/// On one path from s = begin to end, in halves where too many points can meet. @param done s of the last pose taken
+bool Mover::follow(const Path& path, double begin, double end, double& done)
+{
+  const double length = end - begin;
+  const double reach = (path.shift().norm() * length + path.turningReach(length)) * (1.0 + kDoubleMargin);
+  const bool few = collect(path.swept(), reach, kMostPairs);
+  if (outcome.stuck) return false;
+  const bool wide = path.angle() * length > kWideTurn && encounters_.size() > kFewToTurn;
+  if (!few || wide) {
+    if (reach > 0.25 * tolerance_) {
+      const double middle = 0.5 * (begin + end);
+      return follow(path, begin, middle, done) && follow(path, middle, end, done);
+    }
+    if (!few) return halt();
+  }
+  const Path still(Leg{}, Box3());
+  double last = end;
+  const Encounter* met = nullptr;
+  for (const Encounter& e : encounters_) {
+    const ScenePart& part = body_.object.parts[e.part];
+    const Point3 p = part.hierarchy->view().point(e.pair.a);
+    const Point3 q = hierarchyOf(e).view().point(e.pair.b);
+    const Eigen::Vector3d local = part.pose * Eigen::Vector3d(p[0], p[1], p[2]);
+    const Eigen::Vector3d other = worldOf(e) * Eigen::Vector3d(q[0], q[1], q[2]);
+    const auto s = meeting(path, local, still, other, {e.reach, tolerance_}, begin, last);
+    if (!s) continue;
+    last = *s;
+    met = &e;
+    if (last <= begin) break;
+  }
+  if (met) touch(*met);
+  if (last > begin) {
+    if (!accept(path.at(last))) return false;
+    done = last;
+  }
+  return met == nullptr;
+}
+
+bool Mover::translate(const Eigen::Isometry3d& target, bool slide)
+{
+  // At once where few points can meet on the way, else in portions, each twice as long as the one before while nothing
+  // is met.
+  const double first = 0.5 * state_.rules.largestClearance() + 32 * tolerance_;
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d left = target.translation() - pose().translation();
+  const double negligible = 1e-6 * left.norm(); // of a way that has been bent
+  double portion = unlimited;
+  bool straight = true; // nothing met so far
+  Planes planes;
+  for (int contacts = 0; contacts < kMostContacts;) {
+    const double length = left.norm();
+    if (length <= (straight ? 0.0 : negligible)) return straight;
+    const bool last = length <= portion;
+    const double room = last ? length : portion;
+    const Eigen::Vector3d part = left * (room / length);
+    Box3 swept = body_.world_box; // what stands beside a bent way is collected where it bends
+    swept.merge({swept.low + part, swept.high + part});
+    const std::size_t most = portion == unlimited ? kFewPairs : kMostPairs;
+    if (!collect(swept, room, most)) {
+      if (portion != unlimited && room <= 0.25 * tolerance_) return halt();
+      portion = portion == unlimited ? first : 0.5 * room;
+      continue;
+    }
+    if (outcome.stuck) return false;
+    const Walked walked = walk(left, room, straight && last ? &target : nullptr, slide, most, planes);
+    if (walked == Walked::blocked || (walked == Walked::met && !slide)) return false;
+    if (walked == Walked::free) {
+      portion *= 2;
+      continue;
+    }
+    if (walked == Walked::met && portion == unlimited) return false; // gone, or too many bounces
+    straight = false;
+    ++contacts;
+    portion = first;
+  }
+  return false;
+}
+
+/// On from where points were collected, by `room` at most. @param left what is left of the way, shortened and bent by
+/// what is met @param target the pose at the end of the way
+Mover::Walked Mover::walk(Eigen::Vector3d& left, double room, const Eigen::Isometry3d* target, bool slide,
+                          std::size_t most, Planes& planes)
+{
+  const Eigen::Isometry3d start = pose();
+  const double negligible = 1e-6 * room;
+  Eigen::Vector3d gone = Eigen::Vector3d::Zero();
+  for (int bounce = 0; bounce < kMostBounces; ++bounce) {
+    const double length = left.norm();
+    if (bounce > 0 && (length <= negligible || room <= negligible)) return Walked::met;
+    const bool last = length <= room;
+    const Eigen::Vector3d part = last ? left : Eigen::Vector3d(left * (room / length));
+    const Encounter* met = nullptr;
+    double end = 1.0;
+    for (const Encounter& e : encounters_) {
+      const auto s = meeting(e.apart + gone, part, {e.reach, tolerance_});
+      if (!s || (met && *s >= end)) continue;
+      end = *s;
+      met = &e;
+    }
+    const Eigen::Vector3d moved = end * part;
+    const double distance = moved.norm();
+    if (distance > 0.0) {
+      Eigen::Isometry3d next = start;
+      next.translation() += gone + moved;
+      const bool arrives = bounce == 0 && !met && last && target != nullptr; // straight, without rounding
+      if (!go(arrives ? *target : next)) return Walked::blocked;
+    }
+    gone += moved;
+    room -= distance;
+    left = !met && last ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : Eigen::Vector3d(left - moved);
+    if (!met) return bounce == 0 ? Walked::free : Walked::met;
+    touch(*met);
+    if (distance > tolerance_) planes.forget();
+    left = planes.add((met->apart + gone).stableNormalized(), left);
+    if (!slide) return Walked::met;
+    if (bounce > 0) continue;
+    // Only what is beside the straight way has been collected. From here on the way may lead anywhere within what is
+    // left of the room. Pairs collected hold for that already; those of other objects are added.
+    const std::size_t known = encounters_.size();
+    Box3 swept = body_.world_box;
+    swept.grow(std::max(room, 0.0));
+    if (!collectMore(swept, std::max(room, 0.0), most)) return Walked::crowded;
+    if (outcome.stuck) return Walked::blocked;
+    for (std::size_t i = known; i < encounters_.size(); ++i) encounters_[i].apart -= gone;
+  }
+  return Walked::met;
+}
+
+/// All pairs of points that can meet while the object is within `swept` and none of its points is farther than `length`
+/// from where it is now. @return false when there are more than `most` with one other part
+bool Mover::collect(Box3 swept, double length, std::size_t most)
+{
+  encounters_.clear();
+  collected_.clear();
+  return collectMore(swept, length, most);
+}
+
+/// Those of objects that have not been collected yet.
+bool Mover::collectMore(Box3 swept, double length, std::size_t most)
+{
+  if (body_.box.empty()) return true;
+  swept.grow(state_.rules.largestClearance() * (1.0 + kDoubleMargin) + tolerance_);
+  state_.grid.around(swept, around_);
+  for (const ObjectId other : around_) {
+    if (other == object_) continue;
+    const std::optional<double> clearance = state_.rules.clearanceOf(object_, other);
+    if (!clearance || !swept.meets(state_.bodies[other].world_box)) continue;
+    if (std::find(collected_.begin(), collected_.end(), other) != collected_.end()) continue;
+    collected_.push_back(other);
+    if (!collectFrom(other, *clearance, length, most)) return false;
+    if (outcome.stuck) return true;
+  }
+  return true;
+}
+
+bool Mover::collectFrom(ObjectId other, double clearance, double length, std::size_t most)
+{
+  CollisionRequest request;
+  request.clearance = clearance + length * (1.0 + kDoubleMargin) + 0.75 * tolerance_; // halts are at half the tolerance
+  for (std::uint32_t i = 0; i < body_.world.size(); ++i)
+    for (std::uint32_t j = 0; j < state_.bodies[other].world.size(); ++j) {
+      const Placed mine = state_.placed(object_, i), others = state_.placed(other, j);
+      const PairsWithin found = pairsWithin(mine, others, request, most);
+      ++cost_.pairs;
+      cost_.work += found.work;
+      if (!found.complete) {
+        crowded_ = other;
+        return false;
+      }
+      const ExactDistance exact(mine.pose, others.pose);
+      const PointsView &a = mine.hierarchy.view(), &b = others.hierarchy.view();
+      for (const PointPair pair : found.pairs) {
+        const Point3 p = a.point(pair.a), q = b.point(pair.b);
+        Encounter e{pair, i, other, j, clearance + a.radius(pair.a) + b.radius(pair.b), clearance, {}};
+        e.apart = mine.pose * Eigen::Vector3d(p[0], p[1], p[2]) - others.pose * Eigen::Vector3d(q[0], q[1], q[2]);
+        if (e.apart.norm() <= e.reach + 0.125 * tolerance_) {
+          ++cost_.work.exact_decisions;
+          if (exact.compare(p, q, clearance, a.radius(pair.a), b.radius(pair.b)) <= 0) {
+            outcome.stuck = true;
+            touch(e);
+            return true;
+          }
+        }
+        encounters_.push_back(e);
+      }
+    }
+  return true;
+}
+
+/// Takes the pose, unless any of the pairs that can have met does collide there, in exact arithmetic.
+bool Mover::accept(const Eigen::Isometry3d& target)
+{
+  const Eigen::Isometry3d before = pose();
+  state_.setPose(object_, target);
+  for (std::size_t i = 0; i < encounters_.size();) {
+    const Encounter& first = encounters_[i];
+    const ExactDistance exact(body_.world[first.part], worldOf(first));
+    const PointsView &a = body_.object.parts[first.part].hierarchy->view(), &b = hierarchyOf(first).view();
+    for (; i < encounters_.size(); ++i) {
+      const Encounter& e = encounters_[i];
+      if (e.part != first.part || e.other != first.other || e.other_part != first.other_part) break;
+      if (distanceOf(e) > e.reach + 0.125 * tolerance_) continue; // far above what rounding takes
+      ++cost_.work.exact_decisions;
+      if (exact.compare(a.point(e.pair.a), b.point(e.pair.b), e.clearance, a.radius(e.pair.a), b.radius(e.pair.b)) > 0)
+        continue;
+      state_.setPose(object_, before);
+      touch(e);
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Accepts the end of a straight leg.
+bool Mover::go(const Eigen::Isometry3d& target)
+{
+  const Eigen::Isometry3d before = pose();
+  if (!accept(target)) return false;
+  legs.push_back({before, target, body_.center(), Eigen::Vector3d::Zero()});
+  return true;
+}
+
+double Mover::distanceOf(const Encounter& e) const
+{
+  const Point3 p = body_.object.parts[e.part].hierarchy->view().point(e.pair.a);
+  const Point3 q = hierarchyOf(e).view().point(e.pair.b);
+  return (body_.world[e.part] * Eigen::Vector3d(p[0], p[1], p[2]) - worldOf(e) * Eigen::Vector3d(q[0], q[1], q[2]))
+      .norm();
+}
+
+bool Mover::halt()
+{
+  outcome.touched = true;
+  outcome.against = crowded_;
+  return false;
+}
+
+void Mover::touch(const Encounter& encounter)
+{
+  outcome.touched = true;
+  outcome.against = encounter.other;
+}
+
+const SphereHierarchy& Mover::hierarchyOf(const Encounter& e) const
+{
+  return *state_.bodies[e.other].object.parts[e.other_part].hierarchy;
+}
+
+const Eigen::Isometry3d& Mover::worldOf(const Encounter& e) const
+{
+  return state_.bodies[e.other].world[e.other_part];
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One object on its way among all the others, which stand still meanwhile.
+#pragma once
+
+#include <pcl_bsh/scene/approach.h>
+#include <pcl_bsh/scene/planes.h>
+#include <pcl_bsh/scene/state.h>
+
+#include <vector>
+
+namespace pcl_bsh {
+
+/// Moves an object leg by leg. Before each leg, all pairs of points that can meet on it are collected, whatever object
+/// they are of; a leg ends where the first of them meets, and its end is taken only if none of them collides there, in
+/// exact arithmetic. A way that bends is collected for as far as it may go in any direction.
+class Mover {
+public:
+  Mover(Scene::State& state, ObjectId object, EffectCost& cost);
+
+  Outcome outcome;       ///< touched, against and stuck, of all moves so far
+  std::vector<Leg> legs; ///< gone so far
+
+  const Eigen::Isometry3d& pose() const { return body_.object.pose; }
+  Eigen::Vector3d center() const { return pose() * body_.center(); }
+
+  /// To the target or to the first contact, the centre on a straight line. @return whether it got there
+  bool follow(const Eigen::Isometry3d& target, const Eigen::Vector3d& turn);
+
+  /// To the target, which is turned as it is, or to the first contact, or, sliding, along what it meets. @return
+  /// whether it got there
+  bool translate(const Eigen::Isometry3d& target, bool slide);
+
+private:
+  /// Two points that may meet: one of the mover, one of another object.
+  struct Encounter {
+    PointPair pair; ///< a: the mover's
+    std::uint32_t part = 0;
+    ObjectId other = 0;
+    std::uint32_t other_part = 0;
+    double reach = 0.0;     ///< the pair's clearance and the points' radii
+    double clearance = 0.0; ///< the pair's alone
+    Eigen::Vector3d apart;  ///< from the other's point to the mover's, at the pose they were collected at
+  };
+
+  enum class Walked { free, met, crowded, blocked };
+
+  bool follow(const Path& path, double begin, double end, double& done);
+  Walked walk(Eigen::Vector3d& left, double room, const Eigen::Isometry3d* target, bool slide, std::size_t most,
+              Planes& planes);
+  bool collect(Box3 swept, double length, std::size_t most);
+  bool collectMore(Box3 swept, double length, std::size_t most);
+  bool collectFrom(ObjectId other, double clearance, double length, std::size_t most);
+  bool accept(const Eigen::Isometry3d& target);
+  bool go(const Eigen::Isometry3d& target);
+  double distanceOf(const Encounter& encounter) const;
+  bool halt();
+  void touch(const Encounter& encounter);
+  const SphereHierarchy& hierarchyOf(const Encounter& encounter) const;
+  const Eigen::Isometry3d& worldOf(const Encounter& encounter) const;
+
+  Scene::State& state_;
+  Body& body_;
+  ObjectId object_;
+  double tolerance_;
+  EffectCost& cost_;
+  ObjectId crowded_ = 0; ///< whose points are too many to collect
+  std::vector<ObjectId> around_;
+  std::vector<ObjectId> collected_; ///< whose points are among the encounters
+  std::vector<Encounter> encounters_;
+};
+
+} // namespace pcl_bsh

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How a moving object gives way: it stops, it slides, it follows the ground.
+#include <pcl_bsh/scene/mover.h>
+
+#include <pcl_bsh/geometry/invalid_input.h>
+
+#include <chrono>
+#include <cstdio>
+#include <numbers>
+#include <string>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr double kMostTurns = 1000; // of an object within a step, where its way matters
+
+/// Where an object is to go.
+struct Goal {
+  Eigen::Isometry3d pose;
+  Eigen::Vector3d turn; ///< on the way there
+};
+
+/// Turned as the goal, about the centre of its box, but still where it is.
+Eigen::Isometry3d turnedInPlace(const Body& body, const Goal& goal)
+{
+  Eigen::Isometry3d pose = goal.pose;
+  pose.translation() = body.object.pose * body.center() - goal.pose.linear() * body.center();
+  return pose;
+}
+
+Eigen::Isometry3d shifted(Eigen::Isometry3d pose, const Eigen::Vector3d& shift)
+{
+  pose.translation() += shift;
+  return pose;
+}
+
+/// @return whether the goal was reached
+bool moveTo(Mover& mover, const Body& body, const Goal& goal, Response response)
+{
+  const bool turns = goal.turn != Eigen::Vector3d::Zero() || body.object.pose.linear() != goal.pose.linear();
+  if (response == Response::stop && turns) return mover.follow(goal.pose, goal.turn);
+  bool reached = true;
+  if (turns) {
+    reached = mover.follow(turnedInPlace(body, goal), goal.turn);
+    if (!reached) {
+      const Eigen::Vector3d way = goal.pose * body.center() - mover.center();
+      mover.translate(shifted(mover.pose(), way), true);
+      return false;
+    }
+  }
+  return mover.translate(goal.pose, response == Response::slide);
+}
+
+/// The goal of a body's own motion. @param turning whether anybody looks at the turn
+Goal goalOf(const Body& body, double before, double after, bool turning)
+{
+  const Motion& motion = body.object.motion;
+  const double begin = before - body.start_time, end = after - body.start_time;
+  const Eigen::Isometry3d to = poseAt(motion, body.start, end);
+  Goal goal{to, Eigen::Vector3d::Zero()};
+  const Eigen::Isometry3d& now = body.object.pose;
+  if (!body.on_course) { // the same motion from where it stands
+    const Eigen::Isometry3d from = poseAt(motion, body.start, begin);
+    goal.pose.translation() = now.translation() + (to.translation() - from.translation());
+    goal.pose.linear() = from.linear() == to.linear()
+                             ? Eigen::Matrix3d(now.linear())
+                             : Eigen::Quaterniond(to.linear() * from.linear().transpose() * now.linear())
+                                   .normalized()
+                                   .toRotationMatrix();
+  }
+  if (turning) goal.turn = turnBetween(now.linear(), goal.pose.linear(), turnOf(motion, begin, end));
+  return goal;
+}
+
+Eigen::Vector3d sumOfTurns(const std::vector<Leg>& legs)
+{
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Leg& leg : legs) sum += leg.turn;
+  return sum;
+}
+
+} // namespace
+
+void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, const Eigen::Vector3d& turn)
+{
+  using Clock = std::chrono::steady_clock;
+  const auto seconds = [](Clock::time_point since) {
+    return std::chrono::duration<double>(Clock::now() - since).count();
+  };
+  Body& body = bodies[object];
+  const Response response = options.effects.response;
+  EffectCost unused; // what moves without a response costs nothing to speak of
+  EffectCost& moving =
+      response == Response::none ? unused : cost(response == Response::stop ? Effect::stop : Effect::slide);
+  const Eigen::Isometry3d start = body.object.pose;
+  const Goal goal{target, turn};
+
+  auto begin = Clock::now();
+  Mover mover(*this, object, moving);
+  const Eigen::Vector3d from = mover.center();
+  mover.outcome.wanted = (target * body.center() - from).norm();
+  bool reached = true;
+  if (response == Response::none) {
+    setPose(object, target);
+    mover.legs.push_back({start, target, body.center(), turn});
+  }
+  else {
+    reached = moveTo(mover, body, goal, response);
+  }
+  moving.seconds += seconds(begin);
+
+  if (options.effects.gravity && !mover.outcome.stuck) {
+    EffectCost& spent = cost(Effect::gravity);
+    begin = Clock::now();
+    const double height = options.effects.gravity->step_height;
+    const Eigen::Vector3d down = options.effects.gravity->down.normalized();
+    const Eigen::Vector3d wanted = target.translation() - start.translation();
+    const auto progress = [&](const Eigen::Vector3d& center) { return (center - from).dot(wanted); };
+    const auto drop = [&](Mover& falling, double depth) {
+      falling.outcome.touched = false;
+      return !falling.translate(shifted(falling.pose(), depth * down), false) && falling.outcome.touched &&
+             !falling.outcome.stuck;
+    };
+    Outcome& outcome = mover.outcome;
+    bool lifted_is_better = false;
+    if (!reached && response != Response::none) {
+      // Blocked at this height: it may be a step.
+      const Eigen::Isometry3d plain = body.object.pose;
+      const Eigen::Vector3d plain_center = mover.center();
+      setPose(object, start);
+      Mover climber(*this, object, spent);
+      climber.translate(shifted(start, -height * down), false);
+      const double lifted = (climber.center() - from).norm();
+      climber.outcome = Outcome();
+      moveTo(climber, body, {shifted(target, -lifted * down), turn}, response);
+      const Outcome climbing = climber.outcome;
+      const bool grounded = drop(climber, lifted + height);
+      lifted_is_better =
+          grounded && progress(climber.center()) > progress(plain_center) + options.tolerance * wanted.norm();
+      if (lifted_is_better) {
+        outcome.touched = climbing.touched;
+        outcome.against = climbing.touched ? climbing.against : climber.outcome.against;
+        outcome.grounded = true;
+        mover.legs = std::move(climber.legs);
+      }
+      else {
+        setPose(object, plain);
+      }
+    }
+    if (!lifted_is_better) {
+      Mover faller(*this, object, spent);
+      if (response == Response::none) { // it may have walked into a slope
+        const Eigen::Isometry3d level = body.object.pose, raised = shifted(level, -height * down);
+        setPose(object, raised);
+        outcome.grounded = drop(faller, 2 * height);
+        outcome.stuck = faller.outcome.stuck;
+        if (outcome.stuck) {
+          setPose(object, level);
+        }
+        else {
+          mover.legs.push_back({level, raised, body.center(), Eigen::Vector3d::Zero()});
+        }
+      }
+      else {
+        outcome.grounded = drop(faller, height);
+      }
+      mover.legs.insert(mover.legs.end(), faller.legs.begin(), faller.legs.end());
+    }
+    spent.seconds += seconds(begin);
+  }
+  mover.outcome.object = object;
+  mover.outcome.travelled = (mover.center() - from).norm();
+  body.turned += sumOfTurns(mover.legs);
+  mover.outcome.legs = std::move(mover.legs);
+  result.outcomes.push_back(std::move(mover.outcome));
+  place(object);
+}
+
+/// Refuses a way on which promises cannot be kept. @param rounding that positions may have
+void Scene::State::checkWay(const Body& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
+                            const Eigen::Vector3d& turn, double rounding) const
+{
+  const auto refuse = [&body](const std::string& what) {
+    throw InvalidInput(Input::scene, "Scene", "object '" + body.object.name + "' " + what);
+  };
+  const double turns = turn.norm() / (2.0 * std::numbers::pi);
+  if (!(turns <= kMostTurns))
+    refuse("turns " + std::to_string(turns) + " times within a step: make steps so short that it turns at most " +
+           std::to_string(kMostTurns) + " times");
+  const double found = Path({from, to, body.center(), turn}, body.box).rounding();
+  if (found <= rounding) return;
+  const auto text = [](double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.3g", value);
+    return std::string(digits);
+  };
+  refuse("goes where coordinates round by up to " + text(found) + ": give a tolerance of at least " +
+         text(options.tolerance * found / rounding) + " instead of " + text(options.tolerance) +
+         ", or move the scene nearer to its origin");
+}
+
+/// Of all that is about to move, before anything has. A response may lead elsewhere, to coordinates that round by twice
+/// as much at most: a query allows for that.
+void Scene::State::checkWays(double before, double after) const
+{
+  const auto check = [this](const Body& body, const Goal& goal) {
+    const double rounding = options.tolerance / 32;
+    checkWorld(body.object, goal.pose);
+    checkWay(body, body.object.pose, goal.pose, goal.turn, rounding);
+    if (looksBack(options.effects) && body.last_version > 0)
+      checkWay(body, body.last_pose, goal.pose, body.turned + goal.turn, rounding);
+  };
+  // What has not moved was checked when it came where it is.
+  for (const ObjectId object : moved) check(bodies[object], {bodies[object].object.pose, Eigen::Vector3d::Zero()});
+  for (const Body& body : bodies)
+    if (!std::holds_alternative<NoMotion>(body.object.motion)) check(body, goalOf(body, before, after, true));
+}
+
+void Scene::State::move(double dt)
+{
+  const bool responding = isResponding(options.effects);
+  const bool turning = responding || looksBack(options.effects); // ways matter, not only where they end
+  const double before = time, after = time + dt;
+  if (turning) checkWays(before, after);
+  if (responding) prepareGrid();
+  for (ObjectId i = 0; i < bodies.size(); ++i) {
+    Body& body = bodies[i];
+    if (std::holds_alternative<NoMotion>(body.object.motion)) continue;
+    const Goal goal = goalOf(body, before, after, turning);
+    const bool rests = goal.turn == Eigen::Vector3d::Zero() && goal.pose.matrix() == body.object.pose.matrix();
+    if (rests && !options.effects.gravity) continue;
+    if (responding) {
+      respond(i, goal.pose, goal.turn);
+      if (body.object.pose.matrix() != goal.pose.matrix()) body.on_course = false;
+    }
+    else {
+      body.turned += goal.turn;
+      setPose(i, goal.pose);
+    }
+  }
+  time = after;
+}
+
+} // namespace pcl_bsh

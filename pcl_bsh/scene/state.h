@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a Scene holds between queries.
+#pragma once
+
+#include <pcl_bsh/scene/broad_phase.h>
+#include <pcl_bsh/scene/path.h>
+#include <pcl_bsh/scene/scene.h>
+
+#include <unordered_map>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// An object as it stands.
+struct Body {
+  ObjectId id = 0;
+  bool listed = false; ///< among those that moved since the last query
+  SceneObject object;
+  Eigen::Isometry3d start;              ///< pose at time 0 of its motion
+  double start_time = 0.0;              ///< of the scene, when the motion was given
+  bool on_course = true;                ///< stands where its motion has it
+  std::vector<Eigen::Isometry3d> world; ///< T_world_cloud of each part
+  Box3 box;                             ///< of its points, in the object's frame
+  Box3 world_box;
+  std::uint64_t version = 1;                        ///< grows with every change of a pose or of points
+  Eigen::Isometry3d last_pose;                      ///< at the last query
+  std::uint64_t last_version = 0;                   ///< at the last query; 0: there was none
+  std::uint64_t placed_version = 0;                 ///< in the grid
+  bool placed_swept = false;                        ///< with the way to its place
+  Eigen::Vector3d turned = Eigen::Vector3d::Zero(); ///< since the last query, full turns included
+  double last_motion = 0.0;                         ///< how far its points went between the last two queries, at most
+  Eigen::Isometry3d step_pose;                      ///< before the step in progress
+  bool step_on_course = true;                       ///< likewise
+  Eigen::Vector3d step_turned = Eigen::Vector3d::Zero(); ///< likewise
+
+  /// Of its box, in the object's frame: the point that goes straight.
+  Eigen::Vector3d center() const { return box.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : box.center(); }
+};
+
+/// Whether an effect asks for the way of the last step.
+inline bool looksBack(const Effects& effects)
+{
+  return effects.first_contact || effects.swept;
+}
+
+inline bool isResponding(const Effects& effects)
+{
+  return effects.response != Response::none || effects.gravity.has_value();
+}
+
+class Scene::State {
+public:
+  explicit State(SceneOptions scene_options);
+
+  Placed placed(ObjectId object, std::size_t part) const
+  {
+    return {*bodies[object].object.parts[part].hierarchy, bodies[object].world[part]};
+  }
+
+  EffectCost& cost(Effect effect) { return result.costs[static_cast<std::size_t>(effect)]; }
+  Body& body(ObjectId object);
+  static void checkWorld(const SceneObject& object, const Eigen::Isometry3d& pose);
+
+  void setPose(ObjectId object, const Eigen::Isometry3d& pose);
+  void updateWorld(Body& body);
+  void pointsChanged(ObjectId object);
+  void followPoints(); ///< looks whether points have changed since it last looked, whoever changed them
+
+  SceneResult step(double dt);
+  void move(double dt);
+  void respond(ObjectId object, const Eigen::Isometry3d& target, const Eigen::Vector3d& turn);
+  void recover() noexcept; ///< after a query that threw: drops its result, and all that is remembered
+  void prepareGrid();      ///< the grid, and every object in it
+  SceneResult query();
+
+  SceneOptions options;
+  PairRules rules;
+  std::vector<Body> bodies;
+  std::unordered_map<std::string, ObjectId> names;
+  double time = 0.0;
+  BroadPhase grid;
+  bool grid_stale = true;             ///< must be made anew: rules, clearances or reach have changed
+  double reach = 0.0;                 ///< how far apart pairs are of interest
+  SceneResult result;                 ///< of the query in progress
+  std::vector<BroadPair*> near;       ///< pairs whose boxes are within the clearance, by (a, b)
+  bool near_stale = true;             ///< must be gathered from all pairs
+  std::vector<ObjectId> moved;        ///< since the last query
+  std::vector<ObjectId> moved_before; ///< between the two queries before
+
+  /// The hierarchies of all objects, and their revisions when the scene last looked.
+  std::unordered_map<const SphereHierarchy*, std::uint64_t> watched;
+
+private:
+  void place(ObjectId object);
+  void findNear();
+  void findAny();
+  void findFlags();
+  void findDistances();
+  void findContacts();
+  void findFirstContacts();
+  void findSwept();
+  void findSelf();
+
+  void decideAny(BroadPair& pair) const;
+  bool remembersAny(BroadPair& pair) const;
+  bool isKnownFree(const BroadPair& pair) const;
+  void decideDistance(BroadPair& pair, double within) const;
+  void compareBoxes(BroadPair& pair);
+  template <class Decide>
+  void eachPair(const std::vector<BroadPair*>& pairs, EffectCost& cost, const Decide& decide);
+  template <class Ask>
+  void eachSweptPair(EffectCost& cost, const Ask& ask);
+  Leg legOf(ObjectId object) const; ///< since the last query
+  Path pathOf(ObjectId object) const;
+  void checkWay(const Body& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
+                const Eigen::Vector3d& turn, double rounding) const;
+  void checkWays(double before, double after) const;
+
+  std::vector<Box3> boxes_;            // scratch
+  std::vector<BroadPair*> newly_near_; // scratch
+};
+
+} // namespace pcl_bsh

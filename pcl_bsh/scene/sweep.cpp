@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Both questions in the same way: the pairs of points that can meet at all within an interval are collected, and each
+// is followed by itself. Too many of them: the interval is halved, and they get fewer.
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/scene/sweep.h>
+
+#include <algorithm>
+
+namespace pcl_bsh {
+namespace {
+
+class Sweep {
+public:
+  Sweep(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, Work& work)
+  : a_(a),
+    b_(b),
+    clearance_(clearance),
+    tolerance_(tolerance),
+    angle_(std::max(a.path.angle(), b.path.angle())),
+    work_(work)
+  {
+  }
+
+  std::optional<Meeting> first()
+  {
+    const AnyResult start = anyCollision(a_.at(0), b_.at(0), request(clearance_));
+    work_ += start.work;
+    if (start.witness) return Meeting{0.0, *start.witness};
+    return first(0.0, 1.0);
+  }
+
+  void flag(std::vector<std::uint8_t>& flags_a, std::vector<std::uint8_t>& flags_b)
+  {
+    flags_a_ = &flags_a;
+    flags_b_ = &flags_b;
+    flag(0.0, 1.0);
+  }
+
+private:
+  static CollisionRequest request(double clearance)
+  {
+    CollisionRequest request;
+    request.clearance = clearance;
+    return request;
+  }
+
+  /// What can meet within the interval is within this at its beginning.
+  double reach(double length) const { return clearance_ + closingReach(a_.path, b_.path, length) + 0.5 * tolerance_; }
+  bool isShort(double length) const { return closingReach(a_.path, b_.path, length) <= 0.5 * tolerance_; }
+  bool isWide(double length, const PairsWithin& found) const
+  {
+    return angle_ * length > kWideTurn && found.pairs.size() > kFewToTurn;
+  }
+
+  PairsWithin pairs(double begin, double end)
+  {
+    PairsWithin found = pairsWithin(a_.at(begin), b_.at(begin), request(reach(end - begin)), kMostPairs);
+    work_ += found.work;
+    return found;
+  }
+
+  ContactZone zone(PointPair pair) const
+  {
+    return {clearance_ + a_.hierarchy.view().radius(pair.a) + b_.hierarchy.view().radius(pair.b), tolerance_};
+  }
+
+  std::optional<Meeting> first(double begin, double end)
+  {
+    const PairsWithin found = pairs(begin, end);
+    if ((!found.complete || isWide(end - begin, found)) && !isShort(end - begin)) {
+      const double middle = 0.5 * (begin + end);
+      const auto early = first(begin, middle);
+      return early ? early : first(middle, end);
+    }
+    if (!found.complete) return Meeting{begin, found.pairs.front()};
+    std::optional<Meeting> earliest;
+    for (const PointPair pair : found.pairs) {
+      const auto s = meeting(a_.path, a_.point(pair.a), b_.path, b_.point(pair.b), zone(pair), begin,
+                             earliest ? earliest->s : end);
+      if (s && (!earliest || *s < earliest->s || (*s == earliest->s && pair < earliest->pair)))
+        earliest = Meeting{*s, pair};
+    }
+    return earliest;
+  }
+
+  void flag(double begin, double end)
+  {
+    const PairsWithin found = pairs(begin, end);
+    if ((!found.complete || isWide(end - begin, found)) && !isShort(end - begin)) {
+      const double middle = 0.5 * (begin + end);
+      flag(begin, middle);
+      flag(middle, end);
+      return;
+    }
+    if (!found.complete) {
+      CollisionRequest wide = request(reach(end - begin));
+      wide.flagged = Side::both;
+      const FlagsResult near = collisionFlags(a_.at(begin), b_.at(begin), wide);
+      work_ += near.work;
+      for (std::size_t i = 0; i < near.a.size(); ++i) (*flags_a_)[i] |= near.a[i];
+      for (std::size_t i = 0; i < near.b.size(); ++i) (*flags_b_)[i] |= near.b[i];
+      return;
+    }
+    for (const PointPair pair : found.pairs) {
+      std::uint8_t &flag_a = (*flags_a_)[pair.a], &flag_b = (*flags_b_)[pair.b];
+      if (flag_a != 0 && flag_b != 0) continue;
+      const ContactZone near = zone(pair);
+      const Eigen::Vector3d p = a_.point(pair.a), q = b_.point(pair.b);
+      const double now = (a_.path.at(begin) * p - b_.path.at(begin) * q).norm();
+      if (now <= near.inner() || meeting(a_.path, p, b_.path, q, near, begin, end)) flag_a = flag_b = 1;
+    }
+  }
+
+  const SweptPart &a_, &b_;
+  const double clearance_, tolerance_, angle_;
+  Work& work_;
+  std::vector<std::uint8_t>*flags_a_ = nullptr, *flags_b_ = nullptr;
+};
+
+} // namespace
+
+double closingReach(const Path& a, const Path& b, double length)
+{
+  const double straight = (a.shift() - b.shift()).norm() * length;
+  return (straight + a.turningReach(length) + b.turningReach(length)) * (1.0 + kDoubleMargin);
+}
+
+std::optional<Meeting> firstMeeting(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
+                                    Work& work)
+{
+  return Sweep(a, b, clearance, tolerance, work).first();
+}
+
+void flagMeetings(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
+                  std::vector<std::uint8_t>& flags_a, std::vector<std::uint8_t>& flags_b, Work& work)
+{
+  Sweep(a, b, clearance, tolerance, work).flag(flags_a, flags_b);
+}
+
+} // namespace pcl_bsh

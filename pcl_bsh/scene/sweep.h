@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two parts on their ways: when they first meet, and which points meet at all.
+#pragma once
+
+#include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/scene/approach.h>
+
+#include <optional>
+
+namespace pcl_bsh {
+
+/// A part of an object on the object's way.
+struct SweptPart {
+  const SphereHierarchy& hierarchy;
+  const Eigen::Isometry3d& pose; ///< T_object_cloud
+  const Path& path;
+
+  Placed at(double s) const { return {hierarchy, path.at(s) * pose}; }
+
+  /// A point in the object's frame.
+  Eigen::Vector3d point(std::uint32_t record) const
+  {
+    const Point3 p = hierarchy.view().point(record);
+    return pose * Eigen::Vector3d(p[0], p[1], p[2]);
+  }
+};
+
+struct Meeting {
+  double s = 0.0;
+  PointPair pair;
+};
+
+/// Pairs that a query may collect before the interval is halved instead.
+inline constexpr std::size_t kMostPairs = 1 << 15;
+
+/// An interval in which an object turns by more than this is halved while more than a few pairs can meet in it: to look
+/// for pairs anew costs less than to follow pairs that are far apart for most of a turn.
+inline constexpr double kWideTurn = 1.0; // radians
+inline constexpr std::size_t kFewToTurn = 64;
+
+/// No distance of a point of one to a point of the other shrinks by more than this within an interval of s.
+double closingReach(const Path& a, const Path& b, double length);
+
+/// The first s in [0, 1] at which two points are within clearance + tolerance on their way to collide; at no smaller s
+/// do any collide.
+std::optional<Meeting> firstMeeting(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
+                                    Work& work);
+
+/// Flags, one per record, the points that collide with one of the other part at some s in [0, 1], and none that is
+/// farther than clearance + tolerance at all of them.
+void flagMeetings(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
+                  std::vector<std::uint8_t>& flags_a, std::vector<std::uint8_t>& flags_b, Work& work);
+
+} // namespace pcl_bsh

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/query/brute_force_points.h>
+#include <pcl_bsh/trajectory/check_trajectory.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+namespace pcl_bsh::brute_force {
+namespace {
+
+/// The smallest distance that a point, or a pose, has seen so far.
+struct Closest {
+  const ExactDistance* distance = nullptr;
+  ExactDistance::Pair pair;
+  std::size_t pose = 0;
+  std::uint32_t record = 0;
+
+  void consider(const ExactDistance& at, std::size_t k, const Candidate& p, const Candidate& q)
+  {
+    const ExactDistance::Pair posed{p.point, q.point, p.radius, q.radius};
+    if (distance && at.compareGaps(posed, *distance, pair) >= 0) return;
+    *this = {&at, posed, k, q.record};
+  }
+};
+
+} // namespace
+
+TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
+                              const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
+{
+  check(scan, model_poses, request);
+  if (request.swept)
+    throw InvalidInput(Input::swept, "brute_force::collideAlong", "knows poses only, not what is between");
+  const DefaultFloatEnvironment environment;
+  const std::vector<Candidate> points = candidatesOf(scan.hierarchy.view()), obstacles = candidatesOf(model.view());
+  std::vector<ExactDistance> distances;
+  distances.reserve(model_poses.size());
+  for (const Eigen::Isometry3d& pose : model_poses) distances.emplace_back(scan.pose, pose);
+
+  if (!asksForAnything(request)) return {};
+  const std::size_t records = scan.hierarchy.view().count;
+  const auto sized = [records](bool asked) { return asked ? records : 0; };
+  const bool closest = request.distances || request.closest_poses;
+  TrajectoryResult result;
+  result.flags.assign(sized(request.flags), 0);
+  result.distance.assign(sized(request.distances), std::numeric_limits<float>::quiet_NaN());
+  result.first_pose.assign(sized(request.first_poses), -1);
+  result.closest_pose.assign(sized(request.closest_poses), -1);
+  result.closest_point.assign(sized(closest), 0xffffffffu);
+  if (request.pose_summaries) result.poses.resize(model_poses.size());
+
+  std::vector<Closest> of_poses(model_poses.size());
+  for (const Candidate& p : points) {
+    Closest of_point;
+    std::int32_t first = -1;
+    for (std::size_t k = 0; k < distances.size(); ++k) {
+      bool collides = false;
+      for (const Candidate& q : obstacles) {
+        ++result.work.exact_decisions;
+        if (distances[k].compare(p.point, q.point, request.clearance, p.radius, q.radius) > 0) continue;
+        collides = true;
+        of_point.consider(distances[k], k, p, q);
+        of_poses[k].consider(distances[k], k, p, q);
+      }
+      if (!collides) continue;
+      if (first < 0) first = static_cast<std::int32_t>(k);
+      if (request.pose_summaries) ++result.poses[k].colliding_points;
+    }
+    if (first < 0) continue;
+    ++result.colliding;
+    if (request.flags) result.flags[p.record] = 1;
+    if (request.first_poses) result.first_pose[p.record] = first;
+    if (request.distances) result.distance[p.record] = static_cast<float>(of_point.distance->gap(of_point.pair));
+    if (request.closest_poses) result.closest_pose[p.record] = static_cast<std::int32_t>(of_point.pose);
+    if (closest) result.closest_point[p.record] = of_point.record;
+  }
+  for (std::size_t k = 0; k < result.poses.size(); ++k) {
+    PoseSummary& summary = result.poses[k];
+    summary.colliding = summary.colliding_points > 0;
+    if (summary.colliding) summary.distance = of_poses[k].distance->gap(of_poses[k].pair);
+  }
+  return result;
+}
+
+} // namespace pcl_bsh::brute_force

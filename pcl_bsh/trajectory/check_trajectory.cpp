@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/trajectory/check_trajectory.h>
+
+#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/plain_text.h>
+#include <pcl_bsh/query/request_check.h>
+
+#include <cmath>
+#include <limits>
+
+namespace pcl_bsh {
+
+void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
+{
+  checkClearance(request.clearance);
+  checkAccuracy(request.accuracy);
+  if (request.swept && !request.accuracy.isExact())
+    throw InvalidInput(Input::accuracy, "accuracy", request.accuracy.text(),
+                       "swept motion has a tolerance of its own: give exact");
+  const bool more = request.distances || request.first_poses || request.closest_poses || request.pose_summaries;
+  if (request.accuracy.stopsEarly() && more)
+    throw InvalidInput(Input::accuracy, "accuracy", request.accuracy.text(),
+                       "decides which points collide, not when and how near: ask for flags alone, or give exact, float "
+                       "or tolerance=LENGTH");
+  if (request.swept && !(std::isfinite(*request.swept) && *request.swept > 0.0))
+    throw InvalidInput(Input::swept, "tolerance of the swept motion", plainText(*request.swept),
+                       "give a finite length > 0")
+        .withValue(*request.swept);
+  if (request.swept && request.pose_summaries)
+    throw InvalidInput(Input::summaries, "pose_summaries", "are of poses, swept motion is of what is between",
+                       "ask for one of them");
+  for (const double coordinate : request.pivot)
+    if (!std::isfinite(coordinate))
+      throw InvalidInput(Input::pivot, "pivot", plainText(coordinate), "give three finite coordinates")
+          .withValue(coordinate);
+  constexpr std::size_t most_poses = std::numeric_limits<std::int32_t>::max();
+  if (model_poses.size() > most_poses)
+    throw InvalidInput(Input::trajectory, "trajectory",
+                       plainText(model_poses.size(), " poses are more than an index can name (", most_poses, ")"));
+  checkPose("pose of the scan", scan.pose);
+  for (std::size_t k = 0; k < model_poses.size(); ++k)
+    if (!isRigid(model_poses[k])) // a name for each of millions would cost as much as the path
+      checkPose("pose " + std::to_string(k) + " of the model", model_poses[k], k);
+}
+
+bool asksForAnything(const TrajectoryRequest& request)
+{
+  return request.flags || request.distances || request.first_poses || request.closest_poses || request.pose_summaries ||
+         request.swept;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/trajectory/pose_path.h>
+
+#include <pcl_bsh/geometry/compensated_sum.h>
+#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <algorithm>
+#include <cmath>
+#include <locale>
+#include <sstream>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr double kRounding = 0x1p-45;        ///< of the bounds below: a few dozen operations in double
+constexpr double kExcessRounding = 0x1p-48;  ///< of R'R - I, whose entries are sums of products up to 1
+constexpr double kStretchRounding = 0x1p-50; ///< of differences of stretches, which are about 1
+constexpr double kRigid = 0x1p-47;           ///< what a stretch that rounding makes does not exceed
+
+double distance(const Point3& a, const Point3& b)
+{
+  return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+double excess(const Eigen::Matrix3d& rotation)
+{
+  if (rotation == Eigen::Matrix3d::Identity()) return 0.0;
+  const Eigen::Matrix3d e = rotation.transpose() * rotation - Eigen::Matrix3d::Identity();
+  return e.cwiseAbs().rowwise().sum().maxCoeff() + kExcessRounding;
+}
+
+} // namespace
+
+Point3 carried(const Eigen::Isometry3d& pose, const Point3& p)
+{
+  Point3 result;
+  for (int i = 0; i < 3; ++i) {
+    CompensatedSum sum;
+    for (int j = 0; j < 3; ++j) sum.addProduct(pose.matrix()(i, j), p[static_cast<std::size_t>(j)]);
+    sum.add(pose.matrix()(i, 3));
+    result[static_cast<std::size_t>(i)] = sum.value();
+  }
+  return result;
+}
+
+PosePath::PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::Isometry3d>& model_poses,
+                   const Point3& center, Progress& progress)
+{
+  for (std::size_t k = 0; k < model_poses.size(); ++k) {
+    progress.tick(4);
+    if (k == 0 || model_poses[k].matrix() != model_poses[k - 1].matrix())
+      add(scan_pose, model_poses[k], model_poses[k].linear(), center, static_cast<std::uint32_t>(k), 0.0);
+  }
+  skew += excess(scan_pose.linear());
+  divideAll(progress);
+}
+
+PosePath::PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::Isometry3d>& model_poses,
+                   const Point3& center, const Sweep& sweep, Progress& progress)
+: is_swept(true),
+  stray(sweep.stray),
+  size_(sweep.size)
+{
+  poses.reserve(static_cast<std::size_t>(plan(model_poses, sweep, progress)));
+  bool rigid = true;
+  for (const Eigen::Isometry3d& pose : model_poses)
+    rigid = rigid && (PoseParts(pose.linear()).stretch - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kRigid;
+  if (!rigid) stretches_.reserve(poses.capacity());
+  for (std::size_t k = 0; k < model_poses.size(); ++k) {
+    const PoseMotion motion(model_poses[k], model_poses[std::min(k + 1, model_poses.size() - 1)], sweep.pivot);
+    const double cuts = steps_[k].cuts;
+    for (double i = 0; i < cuts; ++i) {
+      progress.tick(8);
+      const double fraction = i / cuts;
+      add(scan_pose, motion.at(fraction), motion.rotationAt(fraction), center, static_cast<std::uint32_t>(k), fraction);
+      if (rigid) continue;
+      const Eigen::Matrix3d stretch = motion.stretchAt(fraction); // symmetric: rows are columns
+      std::copy(stretch.data(), stretch.data() + 9, stretches_.emplace_back().begin());
+    }
+  }
+  skew += excess(scan_pose.linear());
+  intervals.reserve(2 * poses.size());
+  divideAll(progress);
+}
+
+/// Seen by the model, a point s moves as U(t) = R'(t) (s - c(t)), where R turns by an angle a and the pivot c goes
+/// straight by d: |U''| <= a^2 |s - c| + 2 a |d|, so that U bows out by an eighth of that at most. A stretch that
+/// changes linearly does not bow.
+double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const Sweep& sweep, Progress& progress)
+{
+  double total = 0.0, most = 0.0, longest = 0.0;
+  std::size_t worst = 0;
+  double worst_angle = 0.0, worst_way = 0.0;
+  steps_.resize(model_poses.size());
+  for (std::size_t k = 0; k + 1 < model_poses.size(); ++k) {
+    progress.tick(8);
+    const PoseMotion motion(model_poses[k], model_poses[k + 1], sweep.pivot);
+    Step& step = steps_[k];
+    step.begin = carried(model_poses[k], sweep.pivot);
+    step.end = carried(model_poses[k + 1], sweep.pivot);
+    const double angle = motion.angle() == 0.0 ? 0.0 : motion.angle() * (1.0 + kRounding) + kRounding;
+    const double way = distance(step.begin, step.end) * (1.0 + kRounding);
+    if (motion.isAmbiguous()) {
+      std::ostringstream message;
+      message.imbue(std::locale::classic());
+      message << "from pose " << k << " to the next the model turns by half a turn (" << angle
+              << " rad), and either way round is as short";
+      throw InvalidInput(Input::swept, "swept motion", message.str(), "give a pose between them").withIndex(k);
+    }
+    const double reach = sweep.radius + sweep.reach + way;
+    const double cuts = step.cuts =
+        std::max(1.0, std::ceil(std::sqrt((angle * angle * reach + 2 * angle * way) / (8 * sweep.stray))));
+    step.turn = angle * angle / (cuts * cuts) / 8;
+    step.drift = angle / cuts * (way / cuts) / 4;
+    longest = std::max(longest, (way + angle * reach) / cuts);
+    total += cuts;
+    if (cuts <= most) continue;
+    most = cuts;
+    worst = k;
+    worst_angle = angle;
+    worst_way = way;
+  }
+  if (!steps_.empty()) steps_.back().cuts = 1.0; // itself
+  if (!steps_.empty()) total += 1.0;
+  std::ostringstream message;
+  message.imbue(std::locale::classic());
+  if (total <= kMostPoses) {
+    const double instants = 0x1p-52 * total * longest;
+    if (instants <= sweep.rounding) return total;
+    message << "too small: a double tells an instant among " << total << " parts of the motion, each as long as "
+            << longest << ", within a way of " << instants << ", and " << sweep.rounding << " is needed";
+    throw InvalidInput(Input::swept, "tolerance of the swept motion", message.str(),
+                       "give a larger tolerance, or fewer poses");
+  }
+  message << "too small, the motion would be cut into " << total << " parts, " << kMostPoses
+          << " are the most; from pose " << worst << " to the next the model turns by " << worst_angle
+          << " rad and moves by " << worst_way;
+  throw InvalidInput(Input::swept, "tolerance of the swept motion", message.str(),
+                     "give a larger tolerance, fewer poses, or poses that are nearer to each other")
+      .withIndex(worst);
+}
+
+void PosePath::add(const Eigen::Isometry3d& scan_pose, const Eigen::Isometry3d& pose, const Eigen::Matrix3d& rotation,
+                   const Point3& center, std::uint32_t given, double fraction)
+{
+  const Eigen::Matrix3d back = rotation.transpose(), turn = back * scan_pose.linear();
+  PathPose& added = poses.emplace_back();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      added.back[static_cast<std::size_t>(3 * i + j)] = back(i, j);
+      added.turn[static_cast<std::size_t>(3 * i + j)] = roundToFloat(turn(i, j));
+    }
+  added.center = carried(pose, center);
+  added.given = given;
+  added.fraction = fraction;
+  for (const double x : added.center) far = std::max(far, std::abs(x));
+  skew = std::max(skew, excess(pose.linear()));
+}
+
+void PosePath::divideAll(Progress& progress)
+{
+  progress.begin(Progress::kPath, poses.size());
+  if (!poses.empty()) divide(0, static_cast<std::uint32_t>(poses.size() - 1), progress);
+  progress.end();
+}
+
+std::uint32_t PosePath::divide(std::uint32_t first, std::uint32_t last, Progress& progress)
+{
+  progress.tick(last - first + 1, last - first < 2 ? std::max(last - first, 1u) : 0);
+  const auto index = static_cast<std::uint32_t>(intervals.size());
+  intervals.emplace_back();
+  intervals[index].first = first;
+  intervals[index].last = last;
+  bound(intervals[index]);
+  // Between two poses the way is straight by definition; when swept, its bow is as small as it needs to be.
+  if (last - first < 2) return index;
+  const std::uint32_t middle = first + (last - first) / 2;
+  const std::uint32_t left = divide(first, middle, progress);
+  const std::uint32_t right = divide(is_swept ? middle : middle + 1, last, progress);
+  intervals[index].left = left;
+  intervals[index].right = right;
+  return index;
+}
+
+void PosePath::bound(PathInterval& interval) const
+{
+  const std::uint32_t first = interval.first, last = interval.last;
+  const Point3& pivot = interval.pivot = poses[first + (last - first) / 2].center;
+  const PathPose &from = poses[first], &to = poses[last];
+  const Point3 from_seen = from.see(pivot), to_seen = to.see(pivot);
+  double drift = 0.0, turn = 0.0, extent = distance(from.center, pivot) + distance(to.center, pivot);
+  for (std::uint32_t k = first + 1; k < last; ++k) {
+    const double t = static_cast<double>(k - first) / (last - first);
+    double squared = 0.0;
+    for (std::size_t i = 0; i < 9; ++i) {
+      const double difference = poses[k].back[i] - ((1.0 - t) * from.back[i] + t * to.back[i]);
+      squared += difference * difference;
+    }
+    turn = std::max(turn, squared);
+    const Point3 seen = poses[k].see(pivot);
+    squared = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double difference = seen[i] - ((1.0 - t) * from_seen[i] + t * to_seen[i]);
+      squared += difference * difference;
+    }
+    drift = std::max(drift, squared);
+    extent = std::max(extent, distance(poses[k].center, pivot));
+  }
+  interval.turn = std::sqrt(turn) * (1.0 + kRounding) + (last > first ? kRounding : 0.0);
+  interval.drift = std::sqrt(drift) * (1.0 + kRounding) + kRounding * extent;
+  if (!is_swept || first == last) return;
+  double bow_drift = 0.0, bow_turn = 0.0;
+  for (std::uint32_t k = first; k < last; ++k) {
+    const Step& step = steps_[poses[k].given];
+    if (step.drift == 0.0 && step.turn == 0.0) continue;
+    const double fraction = poses[k].fraction;
+    const double away = std::max(distance(step.pivotAt(fraction), pivot),
+                                 distance(step.pivotAt(std::min(1.0, fraction + 1.0 / step.cuts)), pivot));
+    bow_drift = std::max(bow_drift, step.drift + step.turn * away);
+    bow_turn = std::max(bow_turn, step.turn);
+  }
+  interval.drift += bow_drift * (1.0 + kRounding);
+  interval.turn += bow_turn * (1.0 + kRounding);
+  if (!stretches_.empty()) interval.drift += stretchStray(first, last);
+}
+
+/// How far the model's points stray from straight lines because the poses stretch them, each by a little and otherwise.
+double PosePath::stretchStray(std::uint32_t first, std::uint32_t last) const
+{
+  double most = 0.0;
+  for (std::uint32_t k = first + 1; k < last; ++k) {
+    const double t = static_cast<double>(k - first) / (last - first);
+    double squared = 0.0;
+    for (std::size_t i = 0; i < 9; ++i) {
+      const double difference = stretches_[k][i] - ((1.0 - t) * stretches_[first][i] + t * stretches_[last][i]);
+      squared += difference * difference;
+    }
+    most = std::max(most, squared);
+  }
+  return (std::sqrt(most) * (1.0 + kRounding) + kStretchRounding) * size_;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A trajectory query as a whole: the path, which voxels of the scan come near when, their walks, and what they add up
+// to.
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/hierarchy/parallel.h>
+#include <pcl_bsh/trajectory/check_trajectory.h>
+#include <pcl_bsh/trajectory/trajectory_walk.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+void allocate(TrajectoryResult& result, const TrajectoryRequest& request, std::size_t records, std::size_t poses)
+{
+  const auto sized = [records](bool asked) { return asked ? records : 0; };
+  result.flags.assign(sized(request.flags), 0);
+  result.distance.assign(sized(request.distances), std::numeric_limits<float>::quiet_NaN());
+  result.first_pose.assign(sized(request.first_poses), -1);
+  result.closest_pose.assign(sized(request.closest_poses), -1);
+  result.closest_point.assign(sized(request.distances || request.closest_poses), 0xffffffffu);
+  if (request.pose_summaries) result.poses.resize(poses);
+}
+
+/// Equal poses in a row were looked at once.
+void summarize(const Course& course, TrajectoryResult& result)
+{
+  const std::vector<PathPose>& poses = course.path.poses;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    PoseSummary summary;
+    summary.colliding_points = course.pose_counts[k];
+    summary.colliding = summary.colliding_points > 0;
+    if (summary.colliding) {
+      const PointPair pair = course.pose_best[k].pair;
+      const PointsView &a = course.scan.hierarchy.view(), &b = course.model.view();
+      summary.distance = ExactDistance(course.scan.pose, course.given[poses[k].given])
+                             .gap({a.point(pair.a), b.point(pair.b), a.radius(pair.a), b.radius(pair.b)});
+    }
+    const std::size_t next = k + 1 < poses.size() ? poses[k + 1].given : result.poses.size();
+    std::fill(result.poses.begin() + poses[k].given, result.poses.begin() + static_cast<std::ptrdiff_t>(next), summary);
+  }
+}
+
+/// The instant of a place on a swept path.
+FirstContact instantOf(const PosePath& path, double time)
+{
+  const auto k = static_cast<std::size_t>(time);
+  const PathPose& pose = path.poses[k];
+  if (k + 1 == path.poses.size()) return {pose.given, 0.0};
+  const PathPose& next = path.poses[k + 1];
+  const double end = next.given == pose.given ? next.fraction : 1.0;
+  const double fraction = pose.fraction + (end - pose.fraction) * (time - static_cast<double>(k));
+  return {pose.given, std::min(fraction, 1.0 - kDoubleUnit)};
+}
+
+/// Takes the given voxels along the trajectory.
+std::vector<VoxelAnswer> followAll(const Course& course, const StopRule& rule,
+                                   const std::vector<std::vector<std::uint32_t>>& meetings,
+                                   const std::vector<std::uint32_t>& voxels, Progress& progress)
+{
+  std::vector<VoxelAnswer> answers(voxels.size());
+  const auto walk = [&](std::size_t i, const StopRule& own) {
+    if (progress.stopped()) return;
+    answers[i] = walkVoxel(course, own, voxels[i], meetings[voxels[i]], progress);
+    progress.step();
+  };
+  if (rule.node_pairs == StopRule::kNever) {
+    parallelFor(voxels.size(), threadCount(course.request.threads), [&](std::size_t i) { walk(i, rule); });
+  }
+  else { // one after another: what one leaves is the next one's
+    StopRule own = rule;
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+      walk(i, own);
+      own.node_pairs -= std::min(own.node_pairs, answers[i].work.node_pairs);
+    }
+  }
+  progress.throwIfStopped();
+  return answers;
+}
+
+void markUndecided(const SphereHierarchy& scan, std::uint32_t voxel, std::vector<std::uint8_t>& flags)
+{
+  scan.storage().forEachRecord(voxel, [&](std::uint32_t i) { flags[i] = flagOf(Verdict::undecided); });
+}
+
+void countFlags(TrajectoryResult& result)
+{
+  const auto count = [&](Verdict verdict) {
+    return static_cast<std::size_t>(std::count(result.flags.begin(), result.flags.end(), flagOf(verdict)));
+  };
+  result.colliding = count(Verdict::colliding);
+  result.undecided = count(Verdict::undecided);
+}
+
+/// The same in passes, each for the voxels that the one before left with undecided points.
+void followUntilStopped(const Course& course, StopRule rule, const std::vector<std::vector<std::uint32_t>>& meetings,
+                        std::vector<std::uint32_t> voxels, Progress& progress)
+{
+  for (const std::uint32_t voxel : voxels) markUndecided(course.scan.hierarchy, voxel, course.result.flags);
+  const std::size_t all = voxels.size();
+  const std::uint64_t budget = rule.node_pairs;
+  std::uint64_t spent = 0;
+  std::size_t passed = 0;
+  for (const std::uint64_t deepest : rule.passes()) {
+    rule.deepest = deepest;
+    std::vector<std::uint32_t> left;
+    const std::vector<VoxelAnswer> answers = followAll(course, rule, meetings, voxels, progress);
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+      course.result.work += answers[i].work;
+      spent += answers[i].work.node_pairs;
+      if (answers[i].undecided) left.push_back(voxels[i]);
+    }
+    if (budget != StopRule::kNever) rule.node_pairs = budget - std::min(budget, spent);
+    voxels = std::move(left);
+    progress.skipTo(++passed * all);
+  }
+  countFlags(course.result);
+}
+
+void follow(const Course& course, const StopRule& rule, Progress& progress)
+{
+  const TrajectoryRequest& request = course.request;
+  TrajectoryResult& result = course.result;
+  if (request.pose_summaries) {
+    course.pose_best.resize(course.path.poses.size());
+    course.pose_counts.resize(course.path.poses.size());
+  }
+  const std::vector<std::vector<std::uint32_t>> meetings = course.meetings(rule, progress);
+  std::vector<std::uint32_t> voxels;
+  for (std::uint32_t v = 0; v < meetings.size(); ++v)
+    if (!meetings[v].empty()) voxels.push_back(v);
+
+  progress.begin(1.0, voxels.size() * (rule.mayStop() ? rule.passes().size() : 1));
+  double first_contact = std::numeric_limits<double>::infinity();
+  if (rule.mayStop()) {
+    followUntilStopped(course, rule, meetings, std::move(voxels), progress);
+  }
+  else {
+    for (const VoxelAnswer& answer : followAll(course, rule, meetings, voxels, progress)) {
+      result.work += answer.work;
+      result.colliding += answer.colliding;
+      first_contact = std::min(first_contact, answer.first_contact);
+    }
+  }
+  if (request.swept && std::isfinite(first_contact)) result.first_contact = instantOf(course.path, first_contact);
+  if (request.pose_summaries) summarize(course, result);
+}
+
+} // namespace
+
+TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
+                              const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
+{
+  check(scan, model_poses, request);
+  const DefaultFloatEnvironment environment;
+  TrajectoryResult result;
+  allocate(result, request, scan.hierarchy.view().count, model_poses.size());
+  if (!asksForAnything(request) || scan.hierarchy.empty() || model.empty() || model_poses.empty()) return result;
+  const StopRule rule(request.accuracy);
+  Progress progress(request.progress);
+  try {
+    progress.limit(&rule);
+    const Course course(scan, model, model_poses, request, result, progress);
+    progress.limit(nullptr);
+    if (!course.inFloatRange()) return brute_force::collideAlong(scan, model, model_poses, request);
+    follow(course, rule, progress);
+  }
+  catch (const OutOfTime&) { // before the path was made: nothing is known
+    for (std::uint32_t v = 0; v < scan.hierarchy.storage().voxel_count; ++v)
+      markUndecided(scan.hierarchy, v, result.flags);
+    countFlags(result);
+  }
+  return result;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Along a path: which points of a scan does a model come near to, how near, and when?
+//
+//   SphereHierarchy tunnel(viewOf(tunnel_xyz, n)), wagon(viewOf(wagon_xyz, m));
+//   TrajectoryRequest request;
+//   request.clearance = 0.05;                                            // in the clouds' unit; touching counts
+//   TrajectoryResult run = collideAlong({tunnel}, wagon, wagon_poses, request);
+//
+// Point p of the scan collides at pose k iff |T_scan p - T_k q| <= clearance (+ radii) for a point q of the model,
+// decided as exact arithmetic on the given numbers decides it. The same input gives the same answer, bit for bit, for
+// any number of threads and any processor.
+//
+// Swept: so does the motion between consecutive poses, to a tolerance. The model's pivot moves in a straight line, its
+// rotation is interpolated spherically: poseBetween(). A point reported free stays farther than the clearance during
+// the whole motion, at the given poses exactly as they are; one reported colliding comes within clearance + tolerance.
+// From one pose to the next the model turns the shorter way round, by less than half a turn. Half a turn is refused,
+// for either way would be as short; more than half a turn takes poses on the way.
+//
+// What is answered to one question does not depend on what else is asked for. (Where the accuracy is a tolerance, or
+// float alone, pairs that may count or not may do so for one question and not for another.)
+#pragma once
+
+#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/query/result.h>
+
+#include <Eigen/Geometry>
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace pcl_bsh {
+
+struct TrajectoryRequest {
+  double clearance = 0.0; ///< finite, >= 0; inclusive
+  /// A tolerance: pairs at distances in (clearance, clearance + tolerance] may count or not, at each pose anew; of
+  /// points that nothing else comes near to, the distance is within the tolerance of the smallest. Those that stop
+  /// early (level, pairs, time) decide flags only, and leave the others undecided. Swept motion has a tolerance of its
+  /// own: exact only.
+  Accuracy accuracy;
+  bool flags = true;           ///< per scan point: does it collide at any pose?
+  bool distances = false;      ///< per colliding scan point: the smallest distance over all poses
+  bool first_poses = false;    ///< per colliding scan point: the first pose at which it collides
+  bool closest_poses = false;  ///< per colliding scan point: the pose of smallest distance, of several the first
+  bool pose_summaries = false; ///< per pose: how many points collide, and the smallest distance; not with `swept`
+  std::optional<double> swept; ///< finite, > 0: the motion between poses too, to this tolerance
+  Point3 pivot = {0, 0, 0};    ///< swept: the point of the model that moves in straight lines
+  unsigned threads = 1;        ///< 0: all of the machine's
+  /// Called now and then, by the calling thread, with the fraction done in [0, 1], which never falls, also while
+  /// nothing is near, and at least once where there is anything to do. False: stop, collideAlong() throws Cancelled.
+  /// What it throws itself comes out of collideAlong().
+  std::function<bool(double)> progress;
+};
+
+/// The model at one pose.
+struct PoseSummary {
+  bool colliding = false;
+  std::size_t colliding_points = 0; ///< points of the scan
+  /// Smallest distance of any pair when colliding, infinity when not.
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+/// An instant of the motion: `fraction` in [0, 1) of the way from `pose` to the next; 0 at the last pose.
+struct FirstContact {
+  std::size_t pose = 0;
+  double fraction = 0.0;
+};
+
+/// Vectors have one entry per record of the scan's view, and are empty unless asked for.
+///
+/// When swept, a distance is within half the tolerance of the smallest during the motion, and a pose's number k stands
+/// for the motion from pose k to pose k + 1.
+struct TrajectoryResult {
+  std::vector<std::uint8_t> flags;        ///< 1 = collides, 2 = undecided, where the accuracy lets the walk stop early
+  std::size_t colliding = 0;              ///< points that collide; 0 when nothing is asked for
+  std::size_t undecided = 0;              ///< points that are
+  std::vector<float> distance;            ///< less the radii; the float nearest to the distance in double; NaN: free
+  std::vector<std::int32_t> first_pose;   ///< -1 where free
+  std::vector<std::int32_t> closest_pose; ///< -1 where free
+  std::vector<std::uint32_t> closest_point; ///< with distances or closest_poses: the record of the model that realises
+                                            ///< the distance at the closest pose, of several the smallest;
+                                            ///< 0xffffffff where free
+  std::vector<PoseSummary> poses;           ///< one per pose
+  /// Swept: no pair comes within the clearance before; at it, one is within clearance + tolerance. Empty when free.
+  std::optional<FirstContact> first_contact;
+  Work work; ///< leaf pairs count once per pose they were compared at
+};
+
+/// The model at each of `model_poses` (T_world_model, rigid within 1e-6), against the scan at its pose.
+/// @throws std::invalid_argument naming the value: a clearance, accuracy, tolerance, pivot or pose that is not what its
+///   declaration asks for (a pose by its index); swept: half a turn from one pose to the next, coordinates of 2^100 and
+///   more, a tolerance too small for the size of the coordinates (some 1e-12 of it), or for the motion (which may be
+///   cut into 4,194,304 parts; it is refused before any memory is taken). Cancelled.
+TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
+                              const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
+
+/// The pose at `fraction` in [0, 1] of the motion from one pose to the next: straight for the pivot, a point in the
+/// frame that the poses place, and spherically linear for the rotation, the shorter way round. At 0 and 1 exactly the
+/// poses given; what they lack to rigid ones (1e-6 at most) changes linearly between them.
+/// @throws std::invalid_argument between poses that are half a turn apart: either way round is as short.
+Eigen::Isometry3d poseBetween(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double fraction,
+                              const Point3& pivot = {0, 0, 0});
+
+namespace brute_force {
+
+/// The oracle, pair by pair and pose by pose in exact arithmetic. @throws also when request.swept is set.
+TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
+                              const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
+
+} // namespace brute_force
+} // namespace pcl_bsh

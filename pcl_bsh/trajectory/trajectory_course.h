@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What all voxels of the scan share on a trajectory, and where their answers go.
+#pragma once
+
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/relative_frame.h>
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/query/stop_rule.h>
+#include <pcl_bsh/trajectory/box_tree.h>
+#include <pcl_bsh/trajectory/pose_path.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <mutex>
+
+namespace pcl_bsh {
+
+/// The smallest distance at a pose, so far.
+struct PoseBest {
+  PointPair pair;
+  bool found = false;
+};
+
+/// The question, and what its answer takes that no voxel changes.
+struct Course {
+  Course(const Placed& scan_at, const SphereHierarchy& model_of, const std::vector<Eigen::Isometry3d>& model_poses,
+         const TrajectoryRequest& asked, TrajectoryResult& into, Progress& progress);
+
+  const Placed& scan;
+  const SphereHierarchy& model;
+  const std::vector<Eigen::Isometry3d>& given;
+  const TrajectoryRequest& request;
+  TrajectoryResult& result;
+
+  const BoxTree boxes;
+  const double radii; ///< the largest of the scan and of the model, summed
+  const double reach; ///< of points: the clearance, half of the tolerance, the radii
+  const PosePath path;
+  const bool closest, first; ///< what has to be known of each point, beside whether it collides
+  /// Whether the best so far bounds the search for a point, with all of a path that begins at `from`: what is farther
+  /// changes nothing then. Not where it may collide earlier than is known, nor where it counts for a pose.
+  bool bestBounds(double first_contact, double from) const
+  {
+    return closest && !request.pose_summaries && (!first || first_contact <= from);
+  }
+  bool everything() const { return closest || request.pose_summaries; } ///< whether a collision settles nothing
+
+  /// Bounds what double arithmetic gets wrong about the place of a scan's point seen by the model, for a voxel whose
+  /// origin is there in the world.
+  double error(const Point3& origin) const;
+
+  /// Whether floats can hold the places and lengths that a walk compares. Where not, every pair is looked at.
+  bool inFloatRange() const;
+
+  /// The intervals of the path during which each voxel may be near the model, in their order. Once the rule's time is
+  /// over, whatever was not looked at may be.
+  std::vector<std::vector<std::uint32_t>> meetings(const StopRule& rule, Progress& progress) const;
+
+  mutable std::mutex mutex; ///< of the two below
+  mutable std::vector<PoseBest> pose_best;
+  mutable std::vector<std::size_t> pose_counts;
+
+private:
+  struct Ball {
+    Point3 center; ///< in the world
+    double radius;
+  };
+
+  bool near(const Ball& ball, const PathInterval& interval, double& stray) const;
+  void meet(std::uint32_t node, std::uint32_t lane, std::uint32_t interval, const StopRule& rule, Progress& progress,
+            std::vector<std::vector<std::uint32_t>>& meetings) const;
+};
+
+/// What a voxel's walk returns.
+struct VoxelAnswer {
+  Work work;
+  std::size_t colliding = 0;
+  bool undecided = false;                                         ///< whether points were left so
+  double first_contact = std::numeric_limits<double>::infinity(); ///< swept: pose of the path, and fraction of the way
+};
+
+} // namespace pcl_bsh

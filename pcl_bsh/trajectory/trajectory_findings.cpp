@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/trajectory/trajectory_findings.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace pcl_bsh {
+namespace {
+
+/// Visits the leaves' points whose bits are set: each by its place, and where the places end for which it answers.
+template <class Visit>
+void eachPoint(const Voxel& voxel, const std::vector<std::uint16_t>& bits_of, const Visit& visit)
+{
+  for (std::uint32_t n = 0; n < voxel.nodes.size(); ++n) {
+    const Node& node = voxel.nodes[n];
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+      if (!node.isLeaf(lane)) continue;
+      for (std::uint32_t bits = bits_of[n * kNodeChildren + lane]; bits != 0; bits &= bits - 1) {
+        const std::uint32_t i = node.begin[lane] + static_cast<std::uint32_t>(std::countr_zero(bits));
+        visit(i, node.isCoincident(lane) ? node.begin[lane + 1] : i + 1);
+      }
+    }
+  }
+}
+
+} // namespace
+
+void Findings::begin(const Voxel& voxel)
+{
+  hit.assign(voxel.nodes.size() * kNodeChildren, 0);
+  settled.assign(voxel.nodes.size() * kNodeChildren, 0);
+  undecided.assign(voxel.nodes.size() * kNodeChildren, 0);
+  if (course_.first) first.assign(voxel.count, std::numeric_limits<double>::infinity());
+  if (course_.closest) best.assign(voxel.count, Best{});
+}
+
+void Findings::beginPoses(std::uint32_t first_pose, std::uint32_t last_pose)
+{
+  first_pose_ = first_pose;
+  pose_best_.resize(last_pose + 1 - first_pose);
+  pose_limit_.assign(pose_best_.size(), std::numeric_limits<float>::infinity());
+  pose_counts_.assign(pose_best_.size(), 0);
+}
+
+VoxelAnswer Findings::finish(const Voxel& voxel)
+{
+  const TrajectoryRequest& request = course_.request;
+  TrajectoryResult& result = course_.result;
+  VoxelAnswer answer;
+  eachPoint(voxel, hit, [&](std::uint32_t i, std::uint32_t end) {
+    float distance = 0.0f;
+    if (course_.first) answer.first_contact = std::min(answer.first_contact, first[i]);
+    if (request.distances) distance = distanceOf(voxel.records()[i], best[i]);
+    for (std::uint32_t p = i; p < end; ++p) {
+      const std::uint32_t record = voxel.records()[p];
+      ++answer.colliding;
+      if (request.flags) result.flags[record] = 1;
+      if (request.first_poses) result.first_pose[record] = givenPose(first[i]);
+      if (request.distances) result.distance[record] = distance;
+      if (request.closest_poses) result.closest_pose[record] = givenPose(best[i].time);
+      if (course_.closest) result.closest_point[record] = best[i].record;
+    }
+  });
+  if (request.pose_summaries) mergePoses();
+  return answer;
+}
+
+bool Findings::decide(const Voxel& voxel, bool unsure)
+{
+  const auto mark = [this](std::uint32_t begin, std::uint32_t end, Verdict verdict) {
+    std::fill(verdicts_.begin() + begin, verdicts_.begin() + end, verdict);
+  };
+  verdicts_.assign(voxel.count, unsure ? Verdict::undecided : Verdict::free);
+  for (std::uint32_t n = 0; n < voxel.nodes.size(); ++n) {
+    const Node& node = voxel.nodes[n];
+    for (std::uint32_t lane = 0; lane < node.count; ++lane)
+      if (!node.isLeaf(lane) && undecided[n * kNodeChildren + lane] != 0)
+        mark(node.begin[lane], node.begin[lane + 1], Verdict::undecided);
+  }
+  eachPoint(voxel, undecided, [&](std::uint32_t begin, std::uint32_t end) { mark(begin, end, Verdict::undecided); });
+  eachPoint(voxel, hit, [&](std::uint32_t begin, std::uint32_t end) { mark(begin, end, Verdict::colliding); });
+
+  bool left = false;
+  for (std::uint32_t p = 0; p < voxel.count; ++p) {
+    std::uint8_t& flag = course_.result.flags[voxel.records()[p]];
+    if (flag != flagOf(Verdict::undecided)) continue; // as an earlier pass found
+    flag = flagOf(verdicts_[p]);
+    left = left || verdicts_[p] == Verdict::undecided;
+  }
+  return left;
+}
+
+void Findings::mergePoses() const
+{
+  const std::lock_guard<std::mutex> lock(course_.mutex);
+  for (std::size_t i = 0; i < pose_counts_.size(); ++i) {
+    const auto k = first_pose_ + static_cast<std::uint32_t>(i);
+    course_.pose_counts[k] += pose_counts_[i];
+    PoseBest& nearest = course_.pose_best[k];
+    if (pose_best_[i].found &&
+        (!nearest.found || exactAt(k).compareGaps(posed(pose_best_[i].pair), posed(nearest.pair)) < 0))
+      nearest = pose_best_[i];
+  }
+}
+
+ExactDistance Findings::exactAt(std::uint32_t k) const
+{
+  return ExactDistance(course_.scan.pose, course_.given[course_.path.poses[k].given]);
+}
+
+ExactDistance::Pair Findings::posed(PointPair pair) const
+{
+  const PointsView &a = course_.scan.hierarchy.view(), &b = course_.model.view();
+  return {a.point(pair.a), b.point(pair.b), a.radius(pair.a), b.radius(pair.b)};
+}
+
+bool Findings::collide(PointPair at, std::uint32_t k)
+{
+  ++work.exact_decisions;
+  const ExactDistance::Pair pair = posed(at);
+  return exactAt(k).compare(pair.p, pair.q, course_.request.clearance, pair.radius_p, pair.radius_q) <= 0;
+}
+
+void Findings::consider(Best& nearest, PointPair pair, std::uint32_t k)
+{
+  ++work.exact_decisions;
+  if (nearest.record != 0xffffffffu) {
+    const auto best_pose = static_cast<std::uint32_t>(nearest.time);
+    const int sign = exactAt(k).compareGaps(posed(pair), exactAt(best_pose), posed({pair.a, nearest.record}));
+    if (sign > 0 || (sign == 0 && (k > best_pose || (k == best_pose && pair.b >= nearest.record)))) return;
+  }
+  nearest.time = k;
+  nearest.record = pair.b;
+}
+
+void Findings::considerPose(PointPair pair, std::uint32_t k)
+{
+  PoseBest& nearest = pose_best_[k - first_pose_];
+  ++work.exact_decisions;
+  if (nearest.found && exactAt(k).compareGaps(posed(pair), posed(nearest.pair)) >= 0) return;
+  nearest = {pair, true};
+}
+
+void Findings::lowerPoseLimit(std::uint32_t k, float limit)
+{
+  pose_limit_[k - first_pose_] = std::min(pose_limit_[k - first_pose_], limit);
+}
+
+std::int32_t Findings::givenPose(double time) const
+{
+  return static_cast<std::int32_t>(course_.path.poses[static_cast<std::size_t>(time)].given);
+}
+
+float Findings::distanceOf(std::uint32_t record, const Best& nearest) const
+{
+  return roundToFloat(course_.path.is_swept
+                          ? nearest.gap
+                          : exactAt(static_cast<std::uint32_t>(nearest.time)).gap(posed({record, nearest.record})));
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is known so far of the points of one of the scan's voxels, and of the poses it was looked at.
+#pragma once
+
+#include <pcl_bsh/trajectory/trajectory_course.h>
+
+#include <vector>
+
+namespace pcl_bsh {
+
+/// The nearest point of the model, so far.
+struct Best {
+  double time = 0.0; ///< pose of the path; swept: and fraction of the way to the next
+  double gap = std::numeric_limits<double>::infinity(); ///< swept: the distance
+  std::uint32_t record = 0xffffffffu;
+  float limit = std::numeric_limits<float>::infinity(); ///< a larger squared distance is none better
+  float reach = std::numeric_limits<float>::infinity(); ///< the same, as a distance
+};
+
+/// Leaves of the voxel are named by slots: 8 * the node + the child. Points by their place in the voxel, poses by their
+/// place on the path.
+class Findings {
+public:
+  explicit Findings(const Course& course) : course_(course) {}
+
+  /// Makes room for the points of a voxel that is built.
+  void begin(const Voxel& voxel);
+
+  /// Makes room for poses first..last of the path.
+  void beginPoses(std::uint32_t first, std::uint32_t last);
+
+  /// Writes to the course's result. @return colliding points, and the first contact.
+  VoxelAnswer finish(const Voxel& voxel);
+
+  /// Where flags start as undecided: writes those of the voxel that are decided now.
+  /// @param unsure nothing but a hit is. @return whether points were left undecided.
+  bool decide(const Voxel& voxel, bool unsure);
+
+  std::vector<std::uint16_t> hit, settled; ///< per slot: bits of the leaf's points
+  std::vector<std::uint16_t> undecided;    ///< per slot: likewise, of a child that is no leaf any bit stands for all
+  std::vector<double> first;               ///< per point: when it collides first, if that is asked for
+  std::vector<Best> best;                  ///< per point, if that is asked for
+  Work work;
+
+  /// As exact arithmetic says.
+  bool collide(PointPair pair, std::uint32_t k);
+
+  /// Keeps the nearest for a point; of several the first pose, and there the smallest record.
+  void consider(Best& nearest, PointPair pair, std::uint32_t k);
+
+  /// Keeps the nearest for a pose.
+  void considerPose(PointPair pair, std::uint32_t k);
+
+  /// A larger squared distance, in floats, is not the smallest at the pose.
+  float poseLimit(std::uint32_t k) const { return pose_limit_[k - first_pose_]; }
+  void lowerPoseLimit(std::uint32_t k, float limit);
+
+  void countPose(std::uint32_t k, std::size_t points) { pose_counts_[k - first_pose_] += points; }
+
+private:
+  ExactDistance exactAt(std::uint32_t k) const;
+  ExactDistance::Pair posed(PointPair pair) const;
+  std::int32_t givenPose(double time) const;
+  float distanceOf(std::uint32_t record, const Best& nearest) const;
+  void mergePoses() const;
+
+  const Course& course_;
+  std::uint32_t first_pose_ = 0;
+  std::vector<PoseBest> pose_best_;
+  std::vector<float> pose_limit_;
+  std::vector<std::size_t> pose_counts_;
+  std::vector<Verdict> verdicts_; // per point
+};
+
+} // namespace pcl_bsh

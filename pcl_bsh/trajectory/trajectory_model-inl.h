@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The model's side of a walk along a trajectory: its boxes, opened as they are needed.
+
+#if defined(PCL_BSH_QUERY_TRAJECTORY_MODEL_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_QUERY_TRAJECTORY_MODEL_INL_H_
+#undef PCL_BSH_QUERY_TRAJECTORY_MODEL_INL_H_
+#else
+#define PCL_BSH_QUERY_TRAJECTORY_MODEL_INL_H_
+#endif
+
+#include <pcl_bsh/query/stop_rule.h>
+#include <pcl_bsh/trajectory/trajectory_sight-inl.h>
+
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// A box of the model: a child of one of a voxel's nodes, or of the nodes above the voxels.
+struct Candidate {
+  const BoxNode* boxes;
+  const Node* nodes;
+  std::uint32_t voxel;
+  std::uint32_t node;
+  std::uint32_t lane;
+  std::uint32_t level; ///< of `node` below its voxel, from 1; 0: above
+
+  const BoxNode& box() const { return boxes[node]; }
+  bool isLeaf() const { return voxel != kAboveVoxels && nodes[node].isLeaf(lane); }
+  float size() const
+  {
+    float largest = 0.0f;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      largest = std::max(largest, box().high[axis][lane] - box().low[axis][lane]);
+    return 0.5f * largest;
+  }
+};
+
+/// Opens the model's boxes.
+class ModelWalk {
+public:
+  ModelWalk(const BoxTree& tree, const StopRule& rule, Work& work) : tree_(tree), rule_(rule), work_(work) {}
+
+  /// The node above all boxes, as its first child.
+  Candidate root() const { return {tree_.top().data(), tree_.storage.top.data(), kAboveVoxels, 0, 0, 0}; }
+
+  /// Whether a candidate that is not a leaf may be opened: not below the level where to stop, nor without the time to
+  /// build a voxel.
+  bool mayOpen(const Candidate& c) const
+  {
+    if (!rule_.mayStop()) return true;
+    if (c.voxel != kAboveVoxels) return c.level < rule_.deepest;
+    if (!c.nodes[c.node].isLeaf(c.lane)) return true;
+    return rule_.deepest > 0 && rule_.leavesTimeToBuild(tree_.storage.pointsToBuild(c.nodes[c.node].begin[c.lane]));
+  }
+
+  /// The node below a candidate that is not a leaf, as its first child.
+  Candidate below(const Candidate& c)
+  {
+    if (c.voxel != kAboveVoxels || !c.nodes[c.node].isLeaf(c.lane))
+      return {c.boxes, c.nodes, c.voxel, c.nodes[c.node].child[c.lane], 0, c.voxel == kAboveVoxels ? 0 : c.level + 1};
+    const std::uint32_t voxel = c.nodes[c.node].begin[c.lane];
+    const std::vector<BoxNode>& boxes = tree_.voxel(voxel, work_);
+    return {boxes.data(), tree_.storage.voxels[voxel].nodes.data(), voxel, 0, 0, 1};
+  }
+
+  /// Bits of the children of a node that a thick segment may meet.
+  std::uint32_t near(const Segment& segment, const Candidate& node, float steps)
+  {
+    const std::uint32_t count = node.nodes[node.node].count;
+    work_.node_pairs += count;
+    return boxesOnSegment(segment, node.box().low, node.box().high, steps) & firstBits(count);
+  }
+
+  /// What a thick segment may meet of the model below a node, in boxes no larger than `size`.
+  void collect(const Span& span, const Segment& segment, float size, Candidate node, std::vector<Candidate>& into)
+  {
+    for (std::uint32_t bits = near(segment, node, span.steps); bits != 0; bits &= bits - 1) {
+      node.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (node.isLeaf() || node.size() < size || !mayOpen(node))
+        into.push_back(node);
+      else
+        collect(span, segment, size, below(node), into);
+    }
+  }
+
+private:
+  const BoxTree& tree_;
+  const StopRule& rule_;
+  Work& work_;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The nodes of a scan's voxel as flat as the model finds them: boxes along its axes where it first comes near. What a
+// vehicle passes runs along its way, so that these boxes are thin where spheres reach across the gap to its side.
+
+#if defined(PCL_BSH_QUERY_TRAJECTORY_PATCHES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_QUERY_TRAJECTORY_PATCHES_INL_H_
+#undef PCL_BSH_QUERY_TRAJECTORY_PATCHES_INL_H_
+#else
+#define PCL_BSH_QUERY_TRAJECTORY_PATCHES_INL_H_
+#endif
+
+#include <pcl_bsh/trajectory/trajectory_sight-inl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+class Patches {
+public:
+  explicit Patches(const VoxelSight& sight) : sight_(sight) {}
+
+  /// Fits a box around each child of each node. @param sight whose axes they are parallel to.
+  void fit(const Voxel& voxel, const Sight& sight)
+  {
+    const auto unit = static_cast<float>(sight_.frame.unit);
+    for (std::size_t i = 0; i < 9; ++i) axes_[i] = sight.m[i] / unit;
+    slack_ = kRounding * voxel.radius * unit;
+    halves_.resize(voxel.nodes.size());
+    for (std::size_t n = halves_.size(); n-- > 0;) { // children come after their parents
+      const Node& node = voxel.nodes[n];
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        Half& half = halves_[n];
+        for (std::size_t axis = 0; axis < 3; ++axis) half[axis][lane] = 0.0f;
+        if (lane >= node.count) continue;
+        const Point center{node.x[lane], node.y[lane], node.z[lane]};
+        if (node.isLeaf(lane)) {
+          const std::uint32_t end = node.begin[lane] + node.comparedPoints(lane);
+          for (std::uint32_t i = node.begin[lane]; i < end; ++i)
+            include(half, lane, center, {voxel.x()[i], voxel.y()[i], voxel.z()[i]}, nullptr, 0);
+          continue;
+        }
+        const Node& below = voxel.nodes[node.child[lane]];
+        for (std::uint32_t i = 0; i < below.count; ++i)
+          include(half, lane, center, {below.x[i], below.y[i], below.z[i]}, &halves_[node.child[lane]], i);
+      }
+    }
+  }
+
+  /// How far each child of a node reaches from its centre, along the model's axes, at any instant of a span.
+  /// @param radius of its sphere, which it does not reach beyond.
+  void see(std::uint32_t node, const Span& span, const float (&radius)[kLanes], float (&room)[3][kLanes]) const
+  {
+    const Half& half = halves_[node];
+    const float share = kRounding + 4.0f * static_cast<float>(sight_.path.skew);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      float turn[2][3];
+      const float* ends[2] = {span.from.m + 3 * axis, span.to.m + 3 * axis};
+      for (std::size_t k = 0; k < 2; ++k)
+        for (std::size_t j = 0; j < 3; ++j) {
+          const float* along = axes_ + 3 * j;
+          turn[k][j] = std::abs(ends[k][0] * along[0] + ends[k][1] * along[1] + ends[k][2] * along[2]);
+        }
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        const float first = turn[0][0] * half[0][lane] + turn[0][1] * half[1][lane] + turn[0][2] * half[2][lane];
+        const float last = turn[1][0] * half[0][lane] + turn[1][1] * half[1][lane] + turn[1][2] * half[2][lane];
+        room[axis][lane] = std::min(radius[lane], std::max(first, last) + share * radius[lane] + slack_);
+      }
+    }
+  }
+
+private:
+  /// Of the children's boxes, from their spheres' centres, in the voxel's unit.
+  using Half = std::array<std::array<float, kLanes>, 3>;
+
+  static constexpr float kRounding = 0x1p-17f; ///< some 20 u of the voxel's radius, and of turns
+
+  void include(Half& half, std::uint32_t lane, const Point& center, const Point& at, const Half* around,
+               std::uint32_t its_lane) const
+  {
+    const float x = at.x - center.x, y = at.y - center.y, z = at.z - center.z;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float* along = axes_ + 3 * axis;
+      const float away = std::abs(along[0] * x + along[1] * y + along[2] * z);
+      half[axis][lane] = std::max(half[axis][lane], away + (around ? (*around)[axis][its_lane] : 0.0f));
+    }
+  }
+
+  const VoxelSight& sight_;
+  float axes_[9] = {}; ///< of the boxes, seen by the voxel
+  float slack_ = 0.0f;
+  std::vector<Half> halves_;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the model sees a voxel of the scan that it passes: its points move in nearly straight lines.
+
+#if defined(PCL_BSH_QUERY_TRAJECTORY_SIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_QUERY_TRAJECTORY_SIGHT_INL_H_
+#undef PCL_BSH_QUERY_TRAJECTORY_SIGHT_INL_H_
+#else
+#define PCL_BSH_QUERY_TRAJECTORY_SIGHT_INL_H_
+#endif
+
+#include <pcl_bsh/geometry/sphere_radius.h>
+#include <pcl_bsh/query/acceptance.h>
+#include <pcl_bsh/simd/segment_lanes-inl.h>
+#include <pcl_bsh/trajectory/trajectory_course.h>
+#include <pcl_bsh/traversal/leaf_pair-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// How points of the scan's voxel are seen by the model: y = m x + g.
+struct Sight {
+  float m[9], g[3];
+};
+
+/// An interval of poses, as the scan's voxel moves during it.
+struct Span {
+  const PathInterval* interval;
+  Sight from, to;
+  double stray;       ///< of any point of the voxel from its straight line
+  float steps;        ///< poses after the first; 0 where all instants count
+  float reach;        ///< of points: within this of a straight line, in floats, is all that collides
+  float near_squared; ///< farther from a box than the root of this, in floats at one pose, nothing in it collides
+  float smallest;     ///< motion that floats can tell from none
+  float rounding;     ///< of places in floats
+  bool squares;       ///< whether squares of places and of motions that floats can tell from none are floats
+
+  /// Whether it has halves, and strays farther than `stray_limit`.
+  bool divides(double stray_limit) const { return interval->divided() && stray > stray_limit; }
+};
+
+/// A voxel of the scan as the model sees it.
+class VoxelSight {
+public:
+  VoxelSight(const Course& course, std::uint32_t index)
+  : voxel(course.scan.hierarchy.storage().voxels[index]),
+    frame(voxel.frame),
+    path(course.path),
+    tree(course.boxes),
+    origin(carried(course.scan.pose, frame.origin)),
+    radius(voxel.radius * frame.unit),
+    course_(course)
+  {
+    double slack = 0.0;
+    for (int k = 0; k < 3; ++k) slack += frame.slack(k) * frame.slack(k);
+    slack = std::sqrt(slack) * (1.0 + kDoubleMargin) * frame.unit;
+    const double skew = path.skew;
+    placing_ = course.error(origin) + (1.0 + skew) * (slack + tree.voxel_slack);
+    far = (radius + course.reach) * (1.0 + skew) + placing_ + tree.voxel_reach;
+    // Per axis, of a shift up to `far` and of products that add up to the radius at most: rows are of length 1.
+    const double carried = kCarriedShiftError * far + kCarriedProductError * (1.0 + skew) * radius;
+    error = placing_ + kAxes * carried * (1.0 + kDoubleMargin) + kSmallestLength;
+    const Acceptance acceptance(course.request.clearance, course.request.accuracy);
+    const auto squared = static_cast<float>(acceptance.clearance * acceptance.clearance);
+    band = acceptance.proven ? acceptance.provenBand([&](double distance) { return skewedBand(distance, error, skew); })
+                             : DistanceBand{squared, squared};
+  }
+
+  const Voxel& voxel; ///< sorted at least
+  const LocalFrame& frame;
+  const PosePath& path;
+  const BoxTree& tree;
+  const Point3 origin; ///< of the frame, in the world
+  const double radius; ///< of the voxel, in the clouds' unit
+  double far = 0.0;    ///< no farther from each other, along each axis, are the origins of voxels whose points collide
+  double error = 0.0;  ///< of distances between points of such voxels, evaluated in float
+  DistanceBand band;   ///< of the clearance, for them
+
+  /// @param from in the model, relative to the tree's origin. @param unit of the places seen.
+  Sight sightOf(const PathPose& pose, const Point3& from, double unit) const
+  {
+    Sight sight;
+    const Point3 seen = pose.see(origin);
+    const auto scale = static_cast<float>(frame.unit / unit);
+    for (std::size_t i = 0; i < 9; ++i) sight.m[i] = pose.turn[i] * scale;
+    for (std::size_t i = 0; i < 3; ++i) sight.g[i] = roundToFloat((seen[i] - from[i]) / unit);
+    return sight;
+  }
+
+  Span spanOf(std::uint32_t index) const
+  {
+    Span span;
+    const PathInterval& interval = *(span.interval = &path.intervals[index]);
+    span.from = sightOf(path.poses[interval.first], {0, 0, 0}, 1.0);
+    span.to = sightOf(path.poses[interval.last], {0, 0, 0}, 1.0);
+    double squared = 0.0, coordinate = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      squared += (origin[axis] - interval.pivot[axis]) * (origin[axis] - interval.pivot[axis]);
+      coordinate = std::max({coordinate, std::abs(static_cast<double>(span.from.g[axis])),
+                             std::abs(static_cast<double>(span.to.g[axis]))});
+    }
+    span.stray = interval.drift + interval.turn * ((std::sqrt(squared) + radius) * (1.0 + kDoubleMargin));
+    if (path.is_swept && !interval.divided()) span.stray = std::min(span.stray, path.stray);
+    span.steps = path.is_swept ? 0.0f : static_cast<float>(interval.last - interval.first);
+    const double reach = course_.reach * (1.0 + path.skew) + placing_ + span.stray;
+    const double rounding =
+        static_cast<double>(kSegmentRounding) * (coordinate + 2.01 * radius + tree.radius + reach) + kSmallestRounding;
+    span.reach = roundUp(reach + rounding);
+    span.rounding = roundUp(rounding);
+    const float near = roundUp(reach - span.stray + 2 * rounding);
+    span.near_squared = near * near * (1.0f + kReachRounding) + kVanishingSquare;
+    span.smallest = span.rounding * kSmallestMotion;
+    span.squares = span.smallest >= kSmallestSquared && inFloatRange(coordinate + 2.01 * radius + tree.radius + reach);
+    return span;
+  }
+
+  static Segment ballOn(const Span& span, const Point& center, float ball)
+  {
+    Segment segment = segmentOf(carryPoint(span.from.m, span.from.g, center), carryPoint(span.to.m, span.to.g, center),
+                                span.smallest);
+    std::fill(segment.reach, segment.reach + 3, span.reach + ball);
+    return segment;
+  }
+
+  /// Around `count` straight ways, each with room of its own along the axes.
+  template <std::size_t Count>
+  static Segment aroundWays(const Span& span, const float (&from)[3][Count], const float (&to)[3][Count],
+                            const float (&room)[3][Count], std::size_t count)
+  {
+    float start[3], end[3], reach[3];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      float low[2], high[2];
+      const float* ends[2] = {from[axis], to[axis]};
+      for (std::size_t k = 0; k < 2; ++k) {
+        low[k] = std::numeric_limits<float>::infinity();
+        high[k] = -low[k];
+        for (std::size_t i = 0; i < count; ++i) {
+          low[k] = std::min(low[k], ends[k][i] - room[axis][i]);
+          high[k] = std::max(high[k], ends[k][i] + room[axis][i]);
+        }
+      }
+      start[axis] = 0.5f * (low[0] + high[0]);
+      end[axis] = 0.5f * (low[1] + high[1]);
+      const float half =
+          std::max({high[0] - start[axis], start[axis] - low[0], high[1] - end[axis], end[axis] - low[1]});
+      reach[axis] = (span.reach + span.rounding + half) * (1.0f + kRadiusMargin);
+    }
+    Segment segment = segmentOf({start[0], start[1], start[2]}, {end[0], end[1], end[2]}, span.smallest);
+    std::copy(reach, reach + 3, segment.reach);
+    return segment;
+  }
+
+  /// A radius in the voxel's unit as the model sees it.
+  float seenRadius(float own) const
+  {
+    return static_cast<float>(own * frame.unit * (1.0 + path.skew) * (1.0 + kRadiusMargin));
+  }
+
+  /// The voxel as a box: along each of the model's axes, as far as its own sides reach.
+  Segment aroundVoxel(const Span& span) const
+  {
+    Segment segment = ballOn(span, {0.0f, 0.0f, 0.0f}, 0.0f);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double from = 0.0, to = 0.0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        from += std::abs(static_cast<double>(span.from.m[3 * axis + k])) * frame.reach[k];
+        to += std::abs(static_cast<double>(span.to.m[3 * axis + k])) * frame.reach[k];
+      }
+      const double extent = std::max(from, to) * (1.0 + kRadiusMargin) + span.interval->turn * radius;
+      const auto sphere = static_cast<double>(seenRadius(voxel.radius));
+      segment.reach[axis] = roundUp((span.reach + std::min(sphere, extent)) * (1.0 + kRadiusMargin));
+    }
+    return segment;
+  }
+
+  /// No less than the distance of a pair at this squared one in floats.
+  double highOf(float squared) const
+  {
+    return (lengthOver(squared) + error) * (1.0 + path.skew) * (1.0 + kDoubleMargin);
+  }
+
+  /// A pair at a larger squared distance in floats is farther than one at this.
+  float notBeyond(float squared) const { return skewedBand(highOf(squared), error, path.skew).miss; }
+
+  /// How far from a line a point may be that is as near as the best one.
+  float reachOf(const Span& span, float best) const
+  {
+    return best < span.reach ? (span.reach + (best - static_cast<float>(course_.reach))) * (1.0f + kReachRounding)
+                             : span.reach;
+  }
+
+private:
+  static constexpr double kAxes = 1.7321;               ///< root of 3, rounded up
+  static constexpr double kSmallestRounding = 0x1p-100; ///< above underflow of products and of differences
+  static constexpr float kReachRounding = 0x1p-18f;     ///< of a reach and its square in float: some ten roundings
+  static constexpr float kSmallestSquared = 0x1p-63f;   ///< longer motions keep their precision when squared
+  static constexpr float kSmallestMotion = 0x1p-8f;     ///< of the rounding of places
+
+  static Segment segmentOf(const Point& from, const Point& to, float smallest)
+  {
+    const float start[3] = {from.x, from.y, from.z}, end[3] = {to.x, to.y, to.z};
+    Segment segment;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float motion = end[axis] - start[axis];
+      segment.start[axis] = start[axis];
+      segment.inverse[axis] = 1.0f / std::copysign(std::max(std::abs(motion), smallest), motion);
+    }
+    return segment;
+  }
+
+  const Course& course_;
+  double placing_ = 0.0; // what places of points err by, stored as floats and carried in double
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Along a trajectory: every node of the scan carries the list of what can still matter of the model, for an interval of
+// poses at once. Seen by the model, the scan's points move in nearly straight lines: a node is a thick segment, the
+// model a tree of boxes. How thick follows from the node's sphere and from how far the interval strays from a line;
+// whichever is larger is divided.
+#include <pcl_bsh/trajectory/trajectory_walk.h>
+#include <pcl_bsh/traversal/kept_visits.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/trajectory/trajectory_walk.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/trajectory/trajectory_leaf-inl.h>
+#include <pcl_bsh/trajectory/trajectory_patches-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace {
+
+constexpr double kNodeStray = 0.5; // of a node's radius: an interval that strays farther is divided
+constexpr float kSeedSize = 0.5f;  // of the voxel's radius: larger boxes of the model are opened before its descent
+constexpr float kBoxSize = 1.0f;   // of a node's radius: a larger box of the model is opened
+
+/// One node of the scan on its way through the model, its children tested all at once.
+struct Visit {
+  Segments<kLanes, 3> children;
+  Segment around;
+  float radius[kLanes];
+  std::vector<Candidate> near[kLanes];
+};
+
+/// Takes one voxel of the scan along the trajectory.
+class TrajectoryWalk {
+public:
+  TrajectoryWalk(const Course& course, const StopRule& rule, std::uint32_t voxel, Progress& progress,
+                 std::deque<Visit>& visits)
+  : course_(course),
+    rule_(rule),
+    index_(voxel),
+    sight_(course, voxel),
+    patches_(sight_),
+    findings_(course),
+    progress_(progress),
+    watch_(rule, findings_.work.node_pairs),
+    model_(course.boxes, rule, findings_.work),
+    leaves_(course, sight_, model_, watch_, findings_),
+    settling_(!course.everything() && !course.first && course.radii == 0.0 && sight_.frame.unit == 1.0 &&
+              sight_.band.hit > 0.0f),
+    settled_reach_(settling_ ? std::sqrt(sight_.band.hit) * (1.0f - kRadiusMargin) : 0.0f),
+    visits_(visits)
+  {
+  }
+
+  /// @param intervals of the path, at least one, in their order.
+  VoxelAnswer run(const std::vector<std::uint32_t>& intervals)
+  {
+    if (course_.request.pose_summaries)
+      findings_.beginPoses(course_.path.intervals[intervals.front()].first,
+                           course_.path.intervals[intervals.back()].last);
+    std::vector<Candidate> candidates;
+    for (const std::uint32_t interval : intervals) {
+      if (watch_.isOver() || stopped_) return leave(true);
+      const Span span = sight_.spanOf(interval);
+      candidates.clear();
+      model_.collect(span, sight_.aroundVoxel(span), kSeedSize * static_cast<float>(sight_.radius), model_.root(),
+                     candidates);
+      if (candidates.empty()) continue;
+      if (!voxel_ && !mayEnter()) return leave(true);
+      if (!voxel_) enter(span);
+      if (open_lanes_[0] == 0) break;
+      descend(0, span, candidates, 0);
+    }
+    return leave(watch_.isOver());
+  }
+
+private:
+  bool mayEnter() const
+  {
+    return !rule_.mayStop() ||
+           (rule_.deepest > 0 && rule_.leavesTimeToBuild(course_.scan.hierarchy.storage().pointsToBuild(index_)));
+  }
+
+  /// @param unsure not all was looked at.
+  VoxelAnswer leave(bool unsure)
+  {
+    VoxelAnswer answer;
+    if (voxel_ && !rule_.mayStop()) answer = findings_.finish(*voxel_);
+    if (rule_.mayStop()) answer.undecided = voxel_ ? findings_.decide(*voxel_, unsure) : unsure;
+    if (rule_.mayStop() && !voxel_ && !unsure)
+      course_.scan.hierarchy.storage().forEachRecord(
+          index_, [this](std::uint32_t i) { course_.result.flags[i] = flagOf(Verdict::free); });
+    answer.work = findings_.work;
+    return answer;
+  }
+
+  void enter(const Span& span)
+  {
+    voxel_ = &course_.scan.hierarchy.storage().built(index_, findings_.work.voxels_built);
+    for (const Node& node : voxel_->nodes) open_lanes_.push_back(static_cast<std::uint8_t>(firstBits(node.count)));
+    findings_.begin(*voxel_);
+    patches_.fit(*voxel_, span.from);
+  }
+
+  /// Now and then tells the caller that the walk goes on.
+  bool isStopped()
+  {
+    constexpr std::uint32_t often = 256;
+    if (++descents_ % often == 0) stopped_ = progress_.pulse();
+    return stopped_;
+  }
+
+  /// Takes a node, all its children at once, through its candidates; then each child through its own.
+  void descend(std::uint32_t index, const Span& span, const std::vector<Candidate>& candidates, std::size_t depth)
+  {
+    if (watch_.isOver() || isStopped()) return;
+    const Node& node = voxel_->nodes[index];
+    float largest = 0.0f;
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) largest = std::max(largest, node.r[lane]);
+    if (span.divides(kNodeStray * largest * sight_.frame.unit)) {
+      for (const std::uint32_t half : {span.interval->left, span.interval->right}) {
+        if (open_lanes_[index] == 0) return;
+        descend(index, sight_.spanOf(half), candidates, depth);
+      }
+      return;
+    }
+    if (visits_.size() <= depth) visits_.resize(depth + 1);
+    Visit& visit = visits_[depth];
+    begin(visit, index, span);
+    if (settling_) settleByPoints(visit, index, span, candidates);
+    for (const Candidate& candidate : candidates) take(visit, candidate, span, open_lanes_[index]);
+    for (std::uint32_t bits = open_lanes_[index]; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (visit.near[lane].empty()) continue;
+      bool open = true;
+      if (node.isLeaf(lane)) {
+        const LeafRange points{voxel_, node.begin[lane], node.comparedPoints(lane)};
+        open = leaves_.compare(index * kLanes + lane, points, node, lane, span, visit.near[lane]);
+      }
+      else if (depth + 1 >= rule_.deepest) {
+        findings_.undecided[index * kLanes + lane] = 0xffff;
+      }
+      else {
+        descend(node.child[lane], span, visit.near[lane], depth + 1);
+        open = open_lanes_[node.child[lane]] != 0;
+      }
+      if (!open) open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
+    }
+  }
+
+  void begin(Visit& visit, std::uint32_t index, const Span& span)
+  {
+    const Node& node = voxel_->nodes[index];
+    alignas(64) float from[3][kLanes], to[3][kLanes];
+    carry(span.from.m, span.from.g, node.x, node.y, node.z, kLanes, from[0], from[1], from[2]);
+    carry(span.to.m, span.to.g, node.x, node.y, node.z, kLanes, to[0], to[1], to[2]);
+    visit.children.set(from, to, span.smallest);
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      visit.near[lane].clear();
+      visit.radius[lane] = sight_.seenRadius(node.r[lane]);
+    }
+    float room[3][kLanes];
+    patches_.see(index, span, visit.radius, room);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane)
+        visit.children.reach[axis][lane] = (span.reach + room[axis][lane]) * (1.0f + kReachMargin);
+    visit.around = sight_.aroundWays(span, from, to, room, node.count);
+  }
+
+  /// Settles children that a single point of the model is near enough to, at one pose, for all that they hold.
+  void settleByPoints(Visit& visit, std::uint32_t index, const Span& span, const std::vector<Candidate>& candidates)
+  {
+    const Node& node = voxel_->nodes[index];
+    float smallest = std::numeric_limits<float>::infinity();
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) smallest = std::min(smallest, visit.radius[lane]);
+    if (!(settled_reach_ > smallest)) return;
+    Stays<kLanes> stays;
+    for (const Candidate& candidate : candidates) {
+      const BoxEnds box(candidate);
+      findings_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(open_lanes_[index]));
+      std::uint32_t near = open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, span.steps, &stays);
+      for (; near != 0; near &= near - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+        const float reach = settled_reach_ - visit.radius[lane] * (1.0f + 4 * kRadiusMargin);
+        if (!(reach > 0.0f)) continue;
+        const double middle = 0.5 * (std::max(stays.from[lane], 0.0f) + std::min(stays.to[lane], 1.0f));
+        const double steps = span.interval->last - span.interval->first; // beyond 2^24, span.steps may be more
+        const auto pose = span.interval->first + static_cast<std::uint32_t>(std::lround(middle * steps));
+        const Ball ball{{node.x[lane], node.y[lane], node.z[lane]}, reach, pose};
+        const Sight sight = sight_.sightOf(poseAt(pose), {0, 0, 0}, 1.0);
+        const Point center = carryPoint(sight.m, sight.g, ball.center);
+        if (box.squaredDistance(center) > reach * reach || !hasPointWithin(candidate, ball, center)) continue;
+        settle(index, lane);
+        open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
+      }
+      if (open_lanes_[index] == 0) return;
+    }
+  }
+
+  /// A ball of the scan's voxel, at a pose; its reach in the clouds' unit.
+  struct Ball {
+    Point center;
+    float reach;
+    std::uint32_t pose;
+  };
+
+  struct BoxEnds {
+    float low[3], high[3];
+
+    explicit BoxEnds(const Candidate& candidate)
+    {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = candidate.box().low[axis][candidate.lane];
+        high[axis] = candidate.box().high[axis][candidate.lane];
+      }
+    }
+
+    float squaredDistance(const Point& p) const
+    {
+      const float at[3] = {p.x, p.y, p.z};
+      float squared = 0.0f;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float away = std::max({low[axis] - at[axis], at[axis] - high[axis], 0.0f});
+        squared += away * away;
+      }
+      return squared;
+    }
+  };
+
+  const PathPose& poseAt(std::uint32_t k) const { return course_.path.poses[k]; }
+
+  /// Whether the candidate has a point in the ball; the nearest boxes are asked first.
+  /// @param center of the ball, about where the model sees it.
+  bool hasPointWithin(const Candidate& candidate, const Ball& ball, const Point& center)
+  {
+    if (candidate.isLeaf()) {
+      const Voxel& voxel = course_.boxes.storage.voxels[candidate.voxel];
+      if (voxel.frame.unit != 1.0) return false;
+      const Node& node = candidate.nodes[candidate.node];
+      const Sight sight = sight_.sightOf(poseAt(ball.pose), course_.boxes.offset(candidate.voxel), 1.0);
+      for (const float g : sight.g)
+        if (!(std::abs(g) <= sight_.far)) return false;
+      const Point at = carryPoint(sight.m, sight.g, ball.center);
+      const std::uint32_t begin = node.begin[candidate.lane];
+      return anyPointWithin(voxel.x() + begin, voxel.y() + begin, voxel.z() + begin,
+                            node.comparedPoints(candidate.lane), at.x, at.y, at.z, ball.reach);
+    }
+    if (!model_.mayOpen(candidate)) return false;
+    Candidate child = model_.below(candidate);
+    const std::uint32_t count = child.nodes[child.node].count;
+    findings_.work.node_pairs += count;
+    float distance[kLanes];
+    std::uint32_t near = 0;
+    for (child.lane = 0; child.lane < count; ++child.lane) {
+      distance[child.lane] = BoxEnds(child).squaredDistance(center);
+      if (distance[child.lane] <= ball.reach * ball.reach) near |= 1u << child.lane;
+    }
+    while (near != 0) {
+      child.lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      for (std::uint32_t bits = near & (near - 1); bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+        if (distance[lane] < distance[child.lane]) child.lane = lane;
+      }
+      if (hasPointWithin(child, ball, center)) return true;
+      near &= ~(1u << child.lane);
+    }
+    return false;
+  }
+
+  /// All points of a child collide.
+  void settle(std::uint32_t index, std::uint32_t lane)
+  {
+    const Node& node = voxel_->nodes[index];
+    if (node.isLeaf(lane)) {
+      const auto all = static_cast<std::uint16_t>(firstBits(node.comparedPoints(lane)));
+      findings_.hit[index * kLanes + lane] = findings_.settled[index * kLanes + lane] = all;
+      return;
+    }
+    const std::uint32_t below = node.child[lane];
+    for (std::uint32_t i = 0; i < voxel_->nodes[below].count; ++i) settle(below, i);
+  }
+
+  /// Compares a box of the model with those children of the visit that are in `lanes`: drops it, keeps it for their own
+  /// descent, or opens it.
+  void take(Visit& visit, const Candidate& candidate, const Span& span, std::uint32_t lanes)
+  {
+    const std::uint32_t k = candidate.lane;
+    const BoxNode& box = candidate.box();
+    const float low[3] = {box.low[0][k], box.low[1][k], box.low[2][k]};
+    const float high[3] = {box.high[0][k], box.high[1][k], box.high[2][k]};
+    findings_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
+    const std::uint32_t near_lanes =
+        lanes & segmentsInBox(visit.children, low, high, span.steps, static_cast<Stays<kLanes>*>(nullptr));
+    if (near_lanes == 0) return;
+    const bool opens = !candidate.isLeaf() && model_.mayOpen(candidate);
+    const float size = candidate.size();
+    std::uint32_t opening = 0;
+    for (std::uint32_t bits = near_lanes; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (opens && size > kBoxSize * visit.radius[lane])
+        opening |= 1u << lane;
+      else
+        visit.near[lane].push_back(candidate);
+    }
+    if (opening == 0) return;
+    Candidate child = model_.below(candidate);
+    for (std::uint32_t bits = model_.near(visit.around, child, span.steps); bits != 0; bits &= bits - 1) {
+      child.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      take(visit, child, span, opening);
+    }
+  }
+
+  const Course& course_;
+  const StopRule& rule_;
+  const std::uint32_t index_;
+  const VoxelSight sight_;
+  Patches patches_;
+  Findings findings_;
+  Progress& progress_;
+  Watch watch_;
+  std::uint32_t descents_ = 0;
+  bool stopped_ = false; // by the caller
+  ModelWalk model_;
+  LeafWalk leaves_;
+  const bool settling_;                  // whether any pose, and any point of the model, says all that is asked
+  const float settled_reach_;            // a pair nearer than this, in floats, collides
+  const Voxel* voxel_ = nullptr;         // once it was entered
+  std::vector<std::uint8_t> open_lanes_; // per node: children that are not settled
+  std::deque<Visit>& visits_;            // by depth; a deque, for references to shallower visits stay in use
+};
+
+} // namespace
+
+VoxelAnswer walkVoxelOnTarget(const Course& course, const StopRule& rule, std::uint32_t voxel,
+                              const std::vector<std::uint32_t>& intervals, Progress& progress)
+{
+  thread_local std::deque<Visit> visits; // kept from voxel to voxel for their storage only
+  return TrajectoryWalk(course, rule, voxel, progress, visits).run(intervals);
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(walkVoxelOnTarget);
+
+VoxelAnswer walkVoxel(const Course& course, const StopRule& rule, std::uint32_t voxel,
+                      const std::vector<std::uint32_t>& intervals, Progress& progress)
+{
+  return HWY_DYNAMIC_DISPATCH(walkVoxelOnTarget)(course, rule, voxel, intervals, progress);
+}
+
+} // namespace pcl_bsh
+#endif

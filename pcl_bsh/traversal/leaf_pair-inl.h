@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two leaves, point by point: float bands decide almost every pair, exact arithmetic the rest.
+
+#if defined(PCL_BSH_QUERY_LEAF_PAIR_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_QUERY_LEAF_PAIR_INL_H_
+#undef PCL_BSH_QUERY_LEAF_PAIR_INL_H_
+#else
+#define PCL_BSH_QUERY_LEAF_PAIR_INL_H_
+#endif
+
+#include <pcl_bsh/simd/point_lanes-inl.h>
+#include <pcl_bsh/traversal/point_pairs.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// The centre of a's sphere in the frame of b.
+HWY_INLINE Point carriedCenter(const RelativeFrame& frame, const Node& node, std::uint32_t lane)
+{
+  return carryPoint(frame.m.data(), frame.g.data(), {node.x[lane], node.y[lane], node.z[lane]});
+}
+
+/// Points [begin, begin + count) of a voxel: those of a leaf that are compared, sixteen at most.
+struct LeafRange {
+  const Voxel* voxel = nullptr;
+  std::uint32_t begin = 0;
+  std::uint32_t count = 0;
+
+  const float* x() const { return voxel->x() + begin; }
+  const float* y() const { return voxel->y() + begin; }
+  const float* z() const { return voxel->z() + begin; }
+  std::uint32_t record(std::uint32_t i) const { return voxel->records()[begin + i]; }
+  double radius(std::uint32_t i) const { return voxel->radii ? voxel->radii[begin + i] : 0.0; }
+};
+
+HWY_INLINE LeafRange leafOf(const Spaces& side, std::uint32_t space, const Node& node, std::uint32_t lane)
+{
+  return {&side.storage.voxels[space], node.begin[lane], node.comparedPoints(lane)};
+}
+
+/// A leaf of a in the frame of b's voxel.
+HWY_INLINE void carryLeaf(const RelativeFrame& frame, const LeafRange& leaf, LeafPoints& out)
+{
+  carry(frame.m.data(), frame.g.data(), leaf.x(), leaf.y(), leaf.z(), leaf.count, out.x, out.y, out.z);
+}
+
+/// Which points of leaf a, carried, may collide with anything in the sphere of b's leaf.
+HWY_INLINE std::uint32_t pointsNearLeaf(const RelativeFrame& frame, const LeafPoints& points, const LeafRange& a,
+                                        const Node& node, std::uint32_t lane, double clearance)
+{
+  double radius = 0.0;
+  if (a.voxel->radii)
+    for (std::uint32_t i = 0; i < a.count; ++i) radius = std::max(radius, a.radius(i));
+  const float reach = node.r[lane] * frame.stretch_b + frame.pruneReach(clearance + radius);
+  return pointsNear(points.x, points.y, points.z, a.count, node.x[lane], node.y[lane], node.z[lane], reach,
+                    kSphereMargin);
+}
+
+/// Calls found(i, j, squared) for the pairs among `lanes` of leaf a and the points of leaf b whose float distance does
+/// not exceed `miss`, in the order of b's points; stops when found() returns true.
+template <class Found>
+bool eachPairNotBeyond(const LeafPoints& points, std::uint32_t lanes, const LeafRange& b, float miss,
+                       const Found& found)
+{
+  alignas(64) float squared[kLeafPoints];
+  for (std::uint32_t j = 0; j < b.count && lanes != 0; ++j) {
+    squaredDistances(points, b.x()[j], b.y()[j], b.z()[j], squared);
+    for (std::uint32_t bits = lanes & ~above(squared, miss); bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (found(i, j, squared[i])) return true;
+    }
+  }
+  return false;
+}
+
+/// The same where points have radii: pairs of balls that the clearance may join.
+template <class Found>
+bool eachBallPairNear(const RelativeFrame& frame, const LeafPoints& points, std::uint32_t lanes, const LeafRange& a,
+                      const LeafRange& b, double clearance, const Found& found)
+{
+  alignas(64) float squared[kLeafPoints];
+  for (std::uint32_t j = 0; j < b.count; ++j) {
+    squaredDistances(points, b.x()[j], b.y()[j], b.z()[j], squared);
+    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const float reach = std::max(0.0f, frame.pruneReach(clearance + a.radius(i) + b.radius(j)));
+      if (!(squared[i] > reach * reach * (1.0f + kSphereMargin)) && found(i, j, squared[i])) return true;
+    }
+  }
+  return false;
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "samples.h"
+
+#include <pcl_bsh/filters/cloud_files/text_cursor.h>
+
+namespace pcl_bsh::io {
+
+TEST(TextCursor, WalksWordsOfLinesOfAllSystems)
+{
+  TextCursor text("  one\ttwo \n\n \r\nthree\rfour # five\n# six\nseven", '#');
+  std::vector<std::string> words;
+  while (text.nextLine()) {
+    while (!text.line().empty()) words.emplace_back(text.word());
+    words.emplace_back("/");
+  }
+  EXPECT_EQ(words, (std::vector<std::string>{"one", "two", "/", "three", "/", "four", "/", "seven", "/"}));
+  EXPECT_TRUE(text.word().empty());
+}
+
+TEST(TextCursor, SkipsTheMarkOfUtf8AtItsBeginningAlone)
+{
+  TextCursor text("\xef\xbb\xbf"
+                  "1 2\n\xef\xbb\xbf"
+                  "3");
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(text.number<int>(), 1);
+  EXPECT_EQ(text.number<int>(), 2);
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_THROW(text.number<int>(), FormatError);
+  TextCursor nothing("\xef\xbb\xbf");
+  EXPECT_FALSE(nothing.nextLine());
+}
+
+TEST(TextCursor, TakesOneSeparatorAndNoOther)
+{
+  TextCursor text("1 , 2,,x y,\n1;2\n , ,\n\t \n");
+  text.separateBy(',');
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(text.number<int>(), 1);
+  EXPECT_EQ(text.number<double>(), 2);
+  EXPECT_EQ(defectOf([&] { text.number<int>(); }), "line 1 has an empty value");
+  EXPECT_EQ(text.word(), "x y");
+  EXPECT_NO_THROW(text.requireEndOfLine()) << "one at the end separates nothing";
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(defectOf([&] { text.number<double>(); }), "line 2 is damaged: '1;2' is not a number");
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(text.word(), "");
+  EXPECT_FALSE(text.line().empty());
+  EXPECT_FALSE(text.nextLine()) << "blanks alone are no line";
+
+  TextCursor tabs("1\t\t3 \t4");
+  tabs.separateBy('\t');
+  ASSERT_TRUE(tabs.nextLine());
+  for (const char* word : {"1", "", "3", "4"}) EXPECT_EQ(tabs.word(), word);
+}
+
+TEST(TextCursor, ALineTellsItsSeparator)
+{
+  EXPECT_EQ(separatorOf("1,5;2,5"), ';');
+  EXPECT_EQ(separatorOf("1, 2, 3"), ',');
+  EXPECT_EQ(separatorOf("1\t2\t3"), '\t');
+  EXPECT_EQ(separatorOf("1\t2 3"), ' ');
+  EXPECT_EQ(separatorOf("1"), ' ');
+}
+
+TEST(TextCursor, SkipsAByteOrderMark)
+{
+  TextCursor text("\xef\xbb\xbf"
+                  "1 2");
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(text.number<int>(), 1);
+  for (const char* mark : {"\xff\xfe", "\xfe\xff"})
+    EXPECT_EQ(defectOf([&] { TextCursor(std::string(mark) + "1"); }), "is UTF-16 text");
+}
+
+TEST(TextCursor, RestBeginsBehindTheLine)
+{
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    const std::string file = "header" + end + "\x01 body";
+    TextCursor text(file);
+    ASSERT_TRUE(text.nextLine());
+    EXPECT_EQ(text.rest(), "\x01 body");
+  }
+}
+
+TEST(TextCursor, ErrorsNameTheLine)
+{
+  TextCursor text("1 2\r\n\r\n3 x 5\n");
+  text.nextLine();
+  text.nextLine();
+  EXPECT_EQ(text.number<int>(), 3);
+  EXPECT_EQ(defectOf([&] { text.number<int>(); }),
+            "line 3 is damaged: 'x' is not a whole number in the range of its type");
+  EXPECT_EQ(defectOf([&] { text.requireEndOfLine(); }), "line 3 has more values than it should, from '5' on");
+  EXPECT_EQ(text.number<int>(), 5);
+  EXPECT_EQ(defectOf([&] { text.number<int>(); }), "line 3 has fewer values than it should");
+}
+
+} // namespace pcl_bsh::io
