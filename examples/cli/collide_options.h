@@ -6,6 +6,7 @@
 #include "path.h"
 #include "used_files.h"
 
+#include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/filters/cloud_files/field_type.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/trajectory/trajectory.h>

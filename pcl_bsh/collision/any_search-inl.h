@@ -38,7 +38,7 @@ public:
   AnySearch(const Placed& a, const Placed& b, const CollisionRequest& request, Watch watch)
   : walk_(a, b),
     pairs_(a, b, request.clearance),
-    acceptance_(request),
+    acceptance_(request.clearance, request.accuracy),
     watch_(std::move(watch))
   {
     walk_.accepted_beyond = acceptance_.accepted - acceptance_.clearance;
