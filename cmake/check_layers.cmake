@@ -1,21 +1,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Fails when a file includes something of a room above its own, or a library that its room must not know.
+# Holds the plan of the house, the table of rooms in ARCHITECTURE.md, against what the files include. Fails when a room
+# includes one that stands below it in the table, when the table's last column is not what the room includes, or when a
+# file includes a library that its room must not know.
 #   cmake -P cmake/check_layers.cmake
 cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
-# From the bottom up: a room may include itself and those before it.
-set(core pcl_bsh/simd pcl_bsh/geometry pcl_bsh/hierarchy pcl_bsh/query pcl_bsh/traversal pcl_bsh/collision pcl_bsh/neighbors
-    pcl_bsh/clusters pcl_bsh/trajectory pcl_bsh/scene pcl_bsh/report pcl_bsh/certify) # without PCL
-set(rooms pcl_bsh/files ${core} pcl_bsh/search filters filters/cloud_files filters/pose_files filters/json filters/scene_files
-    filters/reports filters/pipeline pcl_bsh/vtk examples/cli examples/tunnel examples/viewer examples/programs examples)
+set(without_pcl "^pcl_bsh/(simd|geometry|hierarchy|query|traversal|collision|neighbors|clusters|trajectory|scene|report|certify)$")
+set(never_without_pcl "^(pcl/|pcl_bsh/files/|iostream$|fstream$)")
+set(with_vtk "^(pcl_bsh/vtk|examples/viewer)$")
+set(gpl "^(CGAL/|pcl_bsh/certify/)") # only in pcl_bsh/certify, and in its program what that offers
+set(gpl_program "^examples/(programs/pcl_bsh_certify\\.cpp|cli/certify_[a-z]+\\.(h|cpp))$")
 
-set(never "^vtk")                     # nowhere in these rooms, but for
-set(allowed_pcl_bsh/vtk "^vtk")       # a room made for it, which only programs see
-set(allowed_examples/viewer "^vtk")   # and the program that shows things
-set(gpl "^(CGAL/|pcl_bsh/certify/)")  # only in pcl_bsh/certify, and in its program what that offers
-set(gpl_program "^examples/(programs/pcl_bsh_certify\\.cpp|cli/certify_[a-z]+\\.h)$")
-set(never_in_core "^(pcl/|pcl_bsh/files/|iostream$|fstream$)")
+# The table's rows from the bottom room up: | `folder` | target | what | never | includes |
+set(rooms "")
+file(STRINGS "${root}/ARCHITECTURE.md" rows REGEX "^\\| `[a-z_/]+` \\|[^|]*\\|[^|]*\\|[^|]*\\|[^|]*\\|$")
+foreach(row IN LISTS rows)
+  string(REGEX MATCH "^\\| `([a-z_/]+)` \\|[^|]*\\|[^|]*\\|[^|]*\\| ?([^|]*)\\|$" row "${row}")
+  set(room "${CMAKE_MATCH_1}")
+  list(APPEND rooms "${room}")
+  string(REGEX REPLACE "[ ,]+" ";" drawn_${room} "${CMAKE_MATCH_2}")
+  list(REMOVE_ITEM drawn_${room} "")
+  set(found_${room} "")
+endforeach()
 
 # The room of an included path, or empty when it is not one of ours.
 function(room_of path room_variable)
@@ -35,41 +42,59 @@ endfunction()
 
 set(file_count 0)
 set(defects "")
-foreach(room IN LISTS rooms)
+file(GLOB_RECURSE files RELATIVE "${root}" "${root}/pcl_bsh/*.h" "${root}/pcl_bsh/*.hpp" "${root}/pcl_bsh/*.cpp"
+     "${root}/filters/*.h" "${root}/filters/*.hpp" "${root}/filters/*.cpp" "${root}/examples/*.h" "${root}/examples/*.cpp")
+foreach(file IN LISTS files)
+  math(EXPR file_count "${file_count} + 1")
+  room_of("${file}" room)
   list(FIND rooms "${room}" rank)
-  file(GLOB_RECURSE files RELATIVE "${root}" "${root}/${room}/*.h" "${root}/${room}/*.hpp" "${root}/${room}/*.cpp")
-  foreach(file IN LISTS files)
-    room_of("${file}" own_room)
-    if(NOT own_room STREQUAL room)
-      continue() # a room inside this one, with its own turn
+  if(rank EQUAL -1 AND NOT file MATCHES "^pcl_bsh/[a-z_]+\\.h$") # of all rooms, such as a version
+    list(APPEND defects "${file}: its folder is not in the table of rooms in ARCHITECTURE.md")
+    continue()
+  endif()
+  file(STRINGS "${root}/${file}" includes REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")
+  foreach(line IN LISTS includes)
+    string(REGEX REPLACE "^[^<\"]*[<\"]([^>\"]*)[>\"].*$" "\\1" path "${line}")
+    room_of("${path}" included_room)
+    list(FIND rooms "${included_room}" included_rank)
+    if(included_rank GREATER rank)
+      list(APPEND defects "${file}: includes ${path}: ${room} lies below ${included_room}")
+    elseif(path MATCHES "\\.\\./")
+      list(APPEND defects "${file}: includes ${path}: write the path from the project's root")
+    elseif(path MATCHES "^vtk" AND NOT room MATCHES "${with_vtk}")
+      list(APPEND defects "${file}: includes ${path}: not allowed in ${room}")
+    elseif(room MATCHES "${without_pcl}" AND path MATCHES "${never_without_pcl}")
+      list(APPEND defects "${file}: includes ${path}: not allowed in ${room}")
+    elseif(path MATCHES "${gpl}" AND NOT room STREQUAL "pcl_bsh/certify" AND NOT (file MATCHES "${gpl_program}" AND path
+                                                                                      MATCHES "^pcl_bsh/"))
+      list(APPEND defects "${file}: includes ${path}: only pcl_bsh_certify may bring the GPL in")
     endif()
-    math(EXPR file_count "${file_count} + 1")
-    file(STRINGS "${root}/${file}" includes REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")
-    foreach(line IN LISTS includes)
-      string(REGEX REPLACE "^[^<\"]*[<\"]([^>\"]*)[>\"].*$" "\\1" path "${line}")
-      room_of("${path}" included_room)
-      list(FIND rooms "${included_room}" included_rank)
-      if(included_rank GREATER rank)
-        list(APPEND defects "${file}: includes ${path}: ${room} lies below ${included_room}")
-      elseif(path MATCHES "\\.\\./")
-        list(APPEND defects "${file}: includes ${path}: write the path from the project's root")
-      elseif(DEFINED allowed_${room} AND path MATCHES "${allowed_${room}}")
-        continue()
-      elseif(path MATCHES "${never}" OR (room IN_LIST core AND path MATCHES "${never_in_core}"))
-        list(APPEND defects "${file}: includes ${path}: not allowed in ${room}")
-      elseif(path MATCHES "${gpl}" AND NOT room STREQUAL "pcl_bsh/certify" AND NOT (file MATCHES "${gpl_program}" AND path
-                                                                                        MATCHES "^pcl_bsh/"))
-        list(APPEND defects "${file}: includes ${path}: only pcl_bsh_certify may bring the GPL in")
+    if(included_room AND NOT included_room STREQUAL room)
+      cmake_path(GET included_room FILENAME name)
+      list(APPEND found_${room} "${name}")
+      if(NOT name IN_LIST drawn_${room})
+        list(APPEND defects "${file}: includes ${path}: the table in ARCHITECTURE.md does not let ${room} include ${name}")
       endif()
-    endforeach()
+    endif()
   endforeach()
 endforeach()
 
-if(file_count EQUAL 0)
-  message(FATAL_ERROR "no files found under ${root}")
+set(arrow_count 0)
+foreach(room IN LISTS rooms)
+  foreach(name IN LISTS drawn_${room})
+    math(EXPR arrow_count "${arrow_count} + 1")
+    if(NOT name IN_LIST found_${room})
+      list(APPEND defects "ARCHITECTURE.md: ${room} includes ${name}: no file does")
+    endif()
+  endforeach()
+endforeach()
+
+list(LENGTH rooms room_count)
+if(file_count EQUAL 0 OR room_count EQUAL 0)
+  message(FATAL_ERROR "no files or no table of rooms found under ${root}")
 endif()
 if(defects)
   list(JOIN defects "\n  " text)
-  message(FATAL_ERROR "these includes break the layers:\n  ${text}")
+  message(FATAL_ERROR "the plan in ARCHITECTURE.md and the includes differ:\n  ${text}")
 endif()
-message(STATUS "${file_count} files keep to their layers")
+message(STATUS "${file_count} files in ${room_count} rooms with ${arrow_count} arrows: as drawn")
