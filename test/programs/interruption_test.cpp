@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ctrl-C, and what a system says when it shuts down.
-#include "cli/interruption.h"
+#include "../../examples/cli/interruption.h"
 #include "jobs.h"
 
 #include <pcl_bsh/files/output_folder.h>

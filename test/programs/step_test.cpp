@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/step.h"
+#include "../../examples/cli/step.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The same answers and the same work on every instruction set that this machine has.
+#include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "random_clouds.h"
