@@ -4,10 +4,10 @@
 
 #include "../programs/program_run.h"
 
-#include <view/options.h>
-#include <view/palette.h>
-#include <view/stage.h>
-#include <view/world.h>
+#include <viewer/options.h>
+#include <viewer/palette.h>
+#include <viewer/stage.h>
+#include <viewer/world.h>
 
 #include <pcl_bsh/vtk/offscreen_window.h>
 

@@ -2,8 +2,8 @@
 // Scenes: where objects are at each step, what collides there, and that the picture says so.
 #include "pixels.h"
 
-#include <view/scene_run.h>
-#include <view/viewer.h>
+#include <viewer/scene_run.h>
+#include <viewer/viewer.h>
 
 #include <pcl_bsh/collision/collide.h>
 

@@ -2,8 +2,8 @@
 // The window, driven by events as a mouse and a keyboard make them.
 #include "pixels.h"
 
-#include <view/clouds_world.h>
-#include <view/viewer.h>
+#include <viewer/clouds_world.h>
+#include <viewer/viewer.h>
 
 #include <gmock/gmock.h>
 
