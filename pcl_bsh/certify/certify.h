@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Proof that no point lies outside the spheres above it, and by how much those are larger than they need be.
+// Proof that no point lies outside the spheres above it, and how much larger than necessary these spheres are.
 //
 //   Certificate certificate = certify(hierarchy);
 //   if (!certificate.holds()) ...                 // certificate.leaks names the points
@@ -25,7 +25,7 @@ struct CertifyOptions {
   std::size_t sample = 1000;
   std::uint64_t seed = 1; ///< of the sample
   unsigned threads = 1;   ///< 0: all of the machine's; the certificate is the same for any number
-  /// Told the share that is done, from 0 to 1, now and then; by one thread at a time, not always the caller's.
+  /// Called now and then with the share that is done, from 0 to 1; by one thread at a time, not always the caller's.
   std::function<void(double)> progress;
 };
 
@@ -70,14 +70,14 @@ struct LevelCertificate {
   std::size_t checks = 0;       ///< points looked at, over all spheres
   std::size_t exact_checks = 0; ///< of these, decided in rationals; double arithmetic with its bound sufficed otherwise
   std::size_t leaks = 0;
-  RadiusRatios ratio; ///< none for SphereLevel::voxel: that one is not meant to be small
+  RadiusRatios ratio; ///< none for SphereLevel::voxel, whose sphere is not meant to be small
 };
 
 struct Certificate {
   static constexpr std::size_t most_leaks = 100;
 
   std::vector<LevelCertificate> levels; ///< from the top down
-  LevelCertificate total;               ///< its level means nothing
+  LevelCertificate total;               ///< of all levels; its `level` has no meaning
   std::vector<Leak> leaks;              ///< the first, in the order of voxels and levels
   std::size_t missing = 0;              ///< finite points of the view that no leaf holds
 

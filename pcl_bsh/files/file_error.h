@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How reading and writing of files fails.
+// The error of reading and writing files.
 #pragma once
 
 #include <algorithm>

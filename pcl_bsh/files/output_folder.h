@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A folder for results that is there only if the results are.
+// A folder for results, which exists only if results do.
 #pragma once
 
 #include <filesystem>

@@ -26,7 +26,7 @@ namespace {
                   "choose a folder with room that you may write to");
 }
 
-/// What is written to as it stands: there is no file to replace.
+/// Whether the output is written to directly, because there is no file to replace.
 bool isDirect(const fs::path& path)
 {
   if (path == standard_stream || path == "/dev/stdout") return true;
@@ -59,7 +59,7 @@ fs::path temporaryName(const fs::path& path, int attempt)
   return path.parent_path() / ((name.size() > longest ? "pcl_bsh" : name) + ".part" + std::to_string(attempt));
 }
 
-/// Makes a name outlive a loss of power. Some systems of files cannot, and say so.
+/// Makes a name survive a loss of power. Some file systems cannot, and report so.
 void syncFolder(const fs::path& folder, const fs::path& named)
 {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -75,7 +75,7 @@ FileReplacement::FileReplacement() : stream_(nullptr)
 {
 }
 
-// What throws below is put in order by the destructor, since the other constructor is done.
+// When a statement below throws, the destructor cleans up, because the delegated constructor has ended.
 FileReplacement::FileReplacement(const fs::path& path) : FileReplacement()
 {
   requireSense(path);
@@ -93,7 +93,7 @@ FileReplacement::FileReplacement(const fs::path& path) : FileReplacement()
     makeTemporary();
   }
   stream_.rdbuf(&buffer_.emplace(descriptor_)); // which clears the stream's state, too
-  stream_.imbue(std::locale::classic());        // the host's language is not the files'
+  stream_.imbue(std::locale::classic());        // files do not depend on the host's language
 }
 
 FileReplacement::~FileReplacement()
@@ -109,7 +109,7 @@ FileReplacement::~FileReplacement()
 void FileReplacement::makeTemporary()
 {
   std::error_code error;
-  // What replaces a private file is private from its first byte on.
+  // The replacement of a private file is private from its first byte on.
   const mode_t mode = fs::exists(destination_, error) ? 0600 : 0666;
   const auto lock = lockUnfinished();
   for (int attempt = 0; attempt < 1000; ++attempt) {

@@ -11,8 +11,9 @@
 
 namespace pcl_bsh::files {
 
-/// A file that is being written beside the one it is to replace, as NAME.part0. Until commit(), and when that throws,
-/// `path` is as it was; without commit(), nothing is left behind. Only a program that is killed leaves the .part0.
+/// A file that is being written beside the one it is to replace, as NAME.part0. Until commit(), and when commit()
+/// throws, `path` is as it was. Without commit(), no file is left behind; only a program that is killed leaves the
+/// .part0.
 ///
 /// Links are followed, also where they lead to no file yet. Devices, pipes and `standard_stream` are written to
 /// directly.

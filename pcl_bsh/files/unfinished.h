@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a program would leave behind if it ended now.
+// The files and folders that a program would leave behind if it ended now.
 #pragma once
 
 #include <filesystem>
@@ -7,12 +7,12 @@
 
 namespace pcl_bsh::files {
 
-/// Removes the temporary file of every FileReplacement that is under way, and the folders of every OutputFolder that
-/// are empty then; those fail. While the lock that is returned lives, no other is begun or ends. For programs that are
-/// told to stop.
+/// Removes the temporary file of every FileReplacement that is under way, which then fails, and every folder of an
+/// OutputFolder that is empty then. While the returned lock lives, no other replacement begins or ends. For programs
+/// that are told to stop.
 std::unique_lock<std::mutex> discardUnfinished();
 
-/// Held by whoever makes or removes something that is listed: what is on disk and what is listed change together.
+/// To be held while a listed file or folder is made or removed: the disk and the list change together.
 std::unique_lock<std::mutex> lockUnfinished();
 
 /// Under that lock: lists a file or folder, or takes it off the list.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// No file of a job may be written over another of the same job: who would read it, or look for it, finds something
-// else.
+// No file of a job may be written over another file of the same job.
 #pragma once
 
 #include <pcl_bsh/files/file_identity.h>
@@ -21,7 +20,7 @@ struct UsedFile {
   std::string replaces = {}; ///< when written: the name of the one input which the user wants to have replaced
 };
 
-/// Two of them that are one.
+/// Two names of one file.
 struct FileClash {
   std::size_t file;  ///< the one to choose another name for: written, or a pipe
   std::size_t other; ///< never the same
@@ -29,7 +28,7 @@ struct FileClash {
 };
 
 /// Whether two names that stand for one file would be in each other's way: one is written and the other read or
-/// written; or both are read and it is a pipe. Devices as /dev/null are in nobody's way.
+/// written; or both are read and it is a pipe. Devices such as /dev/null never are.
 /// @return of several, the first by `file`, then by `other`
 /// @throws FileError for a link that leads back to itself
 std::optional<FileClash> findClash(const std::vector<UsedFile>& files);

@@ -5,7 +5,7 @@
 //   normals.setSearchMethod(search);          // features, keypoints, clustering, smoothing
 //   icp.setSearchMethodTarget(search);        // registration
 //
-// Answers are those of exact arithmetic on the given coordinates, where PCL's own round: see below.
+// Answers are those of exact arithmetic on the given coordinates; PCL's own classes round: see below.
 #pragma once
 
 #include <pcl_bsh/neighbors/neighbors.h>
@@ -66,7 +66,7 @@ public:
   /// @param sorted whether radiusSearch() sorts
   explicit BoundingSphereSearch(bool sorted = true);
 
-  /// Builds the hierarchy, all of it: queries find nothing left to do. @throws std::invalid_argument when the cloud is
+  /// Builds the whole hierarchy, so that queries build nothing. @throws std::invalid_argument when the cloud is
   /// null, or an index is outside of it; the former input stays then.
   SetInputCloudResult setInputCloud(const PointCloudConstPtr& cloud,
                                     const IndicesConstPtr& indices = IndicesConstPtr()) override;
@@ -101,7 +101,7 @@ public:
   void setNumberOfThreads(unsigned int threads = 0) { threads_ = threads; }
   unsigned int getNumberOfThreads() const { return threads_; }
 
-  /// What answers: also for queries of pcl_bsh/query. Replaced by setInputCloud().
+  /// The hierarchy behind the searches, for other queries too. setInputCloud() replaces it.
   const SphereHierarchy& getHierarchy() const;
 
 private:

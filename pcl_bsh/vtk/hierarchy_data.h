@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A hierarchy as VTK's data: spheres of a level, voxels, octree cells, and the spheres that a query looked at.
+// A hierarchy as VTK's data: spheres of a level, voxels, octree cells, and the spheres that a query tested.
 //
 // Levels count as those of Accuracy::level(): 0 the voxels' spheres, each level more one node further down; where a
 // tree ends before, its leaves stay. A level above 0 builds every voxel.
@@ -15,7 +15,7 @@
 
 namespace pcl_bsh::vtk {
 
-/// The last level at which anything changes: where all spheres are leaves'. Builds every voxel.
+/// The deepest level: all its spheres are those of leaves. Builds every voxel.
 unsigned deepestLevel(const SphereHierarchy& hierarchy);
 
 /// The level's spheres, a point at each centre. Point arrays: `radius` (cloud's unit), `level`, `voxel` (number, in

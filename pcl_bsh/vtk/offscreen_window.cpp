@@ -69,8 +69,8 @@ void makeCurrent(vtkObject*, unsigned long, void*, void*)
   EglContext::makeCurrent();
 }
 
-/// GLEW misses the GLX display, which VTK reports as an error, and all works the same: nobody should read that. Other
-/// errors go where VTK's go.
+/// GLEW does not find a GLX display, which VTK reports as an error although drawing works: that message is dropped.
+/// Other errors go where VTK's go.
 void passOnErrors(vtkObject*, unsigned long, void*, void* text)
 {
   const char* const error = static_cast<const char*>(text);
@@ -103,7 +103,7 @@ vtkSmartPointer<vtkRenderWindow> makeOffscreenWindow(int width, int height)
 {
   vtkSmartPointer<vtkRenderWindow> window = haveDisplay() ? vtkSmartPointer<vtkRenderWindow>::New() : makeEglWindow();
   window->SetOffScreenRendering(1);
-  window->SetMultiSamples(0); // what a picture shows should not depend on the driver
+  window->SetMultiSamples(0); // pictures must not depend on the driver
   window->SetSize(width, height);
   return window;
 }

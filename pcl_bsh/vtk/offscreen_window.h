@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A window to draw into that nobody sees, with or without a display.
+// A window to draw into which is not shown, with or without a display.
 #pragma once
 
 #include <vtkRenderWindow.h>
@@ -11,7 +11,7 @@ namespace pcl_bsh::vtk {
 
 /// A window of width x height pixels for vtkRenderers. Needs no display: without one it draws through EGL, where an
 /// ordinary window of VTK would end the program.
-/// @throws std::runtime_error when neither is to be had
+/// @throws std::runtime_error when there is neither
 vtkSmartPointer<vtkRenderWindow> makeOffscreenWindow(int width, int height);
 
 /// Renders the window and writes it as a PNG file; through a temporary one, so that nothing is left half-written.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way of a moving cloud as VTK's data.
+// The path of a moving cloud as VTK's data.
 #pragma once
 
 #include <pcl_bsh/hierarchy/points_view.h>

@@ -60,7 +60,7 @@ void writeVtm(const std::vector<NamedData>& blocks, const fs::path& path)
     pieces.commit(file, name, block.first);
   }
   list.stream() << pieces.list();
-  list.commit([&] { pieces.keep(); }); // told to stop, either list finds its blocks
+  list.commit([&] { pieces.keep(); }); // a program that is stopped here leaves either list with its blocks
   pieces.removeEarlier();
 }
 

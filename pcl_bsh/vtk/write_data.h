@@ -20,10 +20,10 @@ using NamedData = std::pair<std::string, vtkSmartPointer<vtkPolyData>>;
 /// Writes a .vtm file, NAME.vtm, which lists named blocks, and beside it a folder NAME, which holds them as files
 /// NAME_0_0.vtp, NAME_0_1.vtp ... An earlier NAME.vtm is replaced when all blocks are there; then those of its blocks
 /// that are named so are removed. Nothing else is touched.
-/// @throws std::runtime_error naming the file; when NAME is no folder, or one with other things in it
+/// @throws std::runtime_error naming the file; when NAME is not a folder, or holds other files
 void writeVtm(const std::vector<NamedData>& blocks, const std::filesystem::path& path);
 
-/// Fails early where writeVtp() or writeVtm() would for the path's sake: a .vtm is told by its extension.
+/// Fails early where writeVtp() or writeVtm() would fail because of the path. The extension .vtm selects writeVtm().
 /// @throws std::runtime_error naming the file
 void requireWritableData(const std::filesystem::path& path);
 
