@@ -138,7 +138,7 @@ std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input)
   warnOfCoarse("input", hierarchy);
   warnOfCoarse("obstacle", obstacle);
 
-  CollisionRequest request;
+  FlagsRequest request;
   request.clearance = clearance_;
   request.flagged = Side::a;
   request.threads = threads_;

@@ -37,7 +37,9 @@ struct CollideOptions {
   std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;
-  CollisionRequest request;
+  double clearance = 0.0;
+  unsigned threads = 1;
+  Accuracy accuracy;
   std::vector<std::string> warnings; ///< of the options themselves
 
   bool moves() const { return !trajectory.empty() || !path.empty(); }
@@ -142,9 +144,9 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   options.output = output;
   if (!report.empty()) options.report = report;
   options.keep = parseKeep(keep);
-  options.request.clearance = parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
-  options.request.threads = parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
-  options.request.accuracy = parseAccuracy(accuracy);
+  options.clearance = parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
+  options.threads = parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
+  options.accuracy = parseAccuracy(accuracy);
   path.requireSense(pose);
   if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
   options.trajectory = path.file;
@@ -172,9 +174,9 @@ inline std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   options.files.reads("--previous", previous).writes("OUTPUT", output, in_place ? "INPUT" : "");
   options.files.writes("--report", report);
   for (const std::string& list : clashes) options.files.writes("--clashes", list, "--previous"); // brought up to date
-  if (options.request.accuracy.stopsEarly() && !clashes.empty())
+  if (options.accuracy.stopsEarly() && !clashes.empty())
     throw UsageError("--accuracy: " + accuracy + ": clashes need distances: give exact, float or tolerance=LENGTH");
-  if (!options.request.accuracy.isExact() && options.swept)
+  if (!options.accuracy.isExact() && options.swept)
     throw UsageError("--accuracy: " + accuracy + ": swept motion has a tolerance of its own: give exact");
   return options;
 }

@@ -88,7 +88,7 @@ void showDial(const SphereHierarchy& building, const Placed& man)
   std::printf(" setting          at least [m]  at most [m]  sphere tests  time [ms]\n");
   for (const char* setting :
        {"level=0", "level=2", "pairs=300", "pairs=1000", "pairs=2000", "tolerance=0.01", "exact"}) {
-    CollisionRequest request;
+    DistanceRequest request;
     request.accuracy = Accuracy::parse(setting);
     std::vector<double> milliseconds;
     DistanceResult found = closestPair({building}, man, request); // builds what it visits
@@ -120,7 +120,7 @@ int demonstrate(const char* building_path, const char* man_path, const char* out
 
   const SphereHierarchy building_spheres(viewOf(building));
   const SphereHierarchy man_spheres(viewOf(man.data(), man.size() / 3));
-  CollisionRequest request;
+  FlagsRequest request;
   request.clearance = clearance;
 
   std::printf("A man of %zu points walks through a scanned building of %zu points; clearance %.1f m\n\n",
@@ -133,7 +133,7 @@ int demonstrate(const char* building_path, const char* man_path, const char* out
     const auto start = Clock::now();
     const Placed placed = {man_spheres, Eigen::Isometry3d(Eigen::Translation3d(stand.x, 0, floor_z))};
     FlagsResult flags = collisionFlags({building_spheres}, placed, request);
-    const DistanceResult closest = closestPair({building_spheres}, placed, request);
+    const DistanceResult closest = closestPair({building_spheres}, placed);
     const std::chrono::duration<double, std::milli> milliseconds = Clock::now() - start;
 
     printRow(stand, flags, closest, milliseconds.count());

@@ -61,8 +61,9 @@ void requireClashFormat(const fs::path& list)
 void check(const Options& options)
 {
   options.files.requireApart();
-  requireAccepted("--clearance",
-                  [&](const SphereHierarchy& nothing) { anyCollision({nothing}, {nothing}, options.request); });
+  requireAccepted("--clearance", [&](const SphereHierarchy& nothing) {
+    anyCollision({nothing}, {nothing}, {options.clearance, options.accuracy});
+  });
   requireAccepted("--pose", [&](const SphereHierarchy& nothing) {
     anyCollision({nothing}, {nothing, options.pose}, {});
   });
@@ -151,7 +152,7 @@ pcl::PCLPointCloud2 marked(const fs::path& path, const pcl::PCLPointCloud2& clou
 /// What the output gets beside all the input had.
 std::vector<NewField> newFields(const Options& options, const TrajectoryResult& found)
 {
-  const bool all = options.moves() && !options.request.accuracy.stopsEarly();
+  const bool all = options.moves() && !options.accuracy.stopsEarly();
   return all ? fieldsOf(found) : std::vector<NewField>{{collision_field_name, &found.flags}};
 }
 
@@ -223,8 +224,12 @@ TrajectoryResult atPose(const Options& options, const SphereHierarchy& a, const 
                         cli::CollisionReport& report)
 {
   cli::Step query("Comparing");
-  FlagsResult flags = collisionFlags({a}, {b, options.pose}, options.request);
-  report.closest = closestPair({a}, {b, options.pose}, options.request);
+  FlagsRequest request;
+  request.clearance = options.clearance;
+  request.threads = options.threads;
+  request.accuracy = options.accuracy;
+  FlagsResult flags = collisionFlags({a}, {b, options.pose}, request);
+  report.closest = closestPair({a}, {b, options.pose}, {options.accuracy});
   report.seconds.query = query.done(std::to_string(flags.colliding_a) + " colliding");
   report.work = flags.work;
   report.work += report.closest.work;
@@ -253,13 +258,13 @@ TrajectoryResult alongPath(const Options& options, const std::vector<Eigen::Isom
 {
   cli::Step query("Following " + std::to_string(poses.size()) + " poses");
   TrajectoryRequest request;
-  request.clearance = options.request.clearance;
-  request.accuracy = options.request.accuracy;
+  request.clearance = options.clearance;
+  request.accuracy = options.accuracy;
   const bool all = !request.accuracy.stopsEarly(); // that leaves times and distances open
   request.distances = request.first_poses = request.closest_poses = all;
   request.swept = options.swept;
   request.pose_summaries = all && !options.swept; // swept motion is of what lies between poses
-  request.threads = options.request.threads;
+  request.threads = options.threads;
   request.progress = [&](double fraction) {
     query.share(fraction);
     return true;
@@ -291,7 +296,7 @@ std::vector<Clash> listClashes(const Options& options, const std::vector<Eigen::
   cli::Step step("Listing clashes");
   const double distance = options.cluster_distance > 0
                               ? options.cluster_distance
-                              : io::clusterDistanceFor(options.request.clearance, report.density.input);
+                              : io::clusterDistanceFor(options.clearance, report.density.input);
   io::ClashReport list{options.input.string(),
                        options.obstacle.string(),
                        report.clearance,
@@ -322,9 +327,9 @@ std::vector<Clash> readEarlier(const Options& options, std::vector<std::string>&
 {
   if (!options.previous) return {};
   const io::ClashList list = io::readClashes(*options.previous);
-  for (std::string& warning : io::requireComparable(
-           *options.previous, list,
-           {options.input.string(), options.obstacle.string(), options.request.clearance, options.swept, {}}))
+  for (std::string& warning :
+       io::requireComparable(*options.previous, list,
+                             {options.input.string(), options.obstacle.string(), options.clearance, options.swept, {}}))
     warnings.push_back(std::move(warning));
   return list.clashes;
 }
@@ -336,14 +341,14 @@ int collide(const Options& options)
   report.warnings = options.warnings;
   const std::vector<Eigen::Isometry3d> poses = posesOf(options, report.warnings);
   const std::vector<Clash> earlier = readEarlier(options, report.warnings);
-  report.clearance = options.request.clearance;
-  report.accuracy = options.request.accuracy;
+  report.clearance = options.clearance;
+  report.accuracy = options.accuracy;
 
   const Scan input = load(options.input, report.seconds.load);
   if (options.keep == Keep::flagged) marked(options.input, emptyLike(input.cloud), newFields(options, {})); // fails now
   const Scan obstacle = load(options.obstacle, report.seconds.load);
-  const auto a = build(input, options.input, options.request.threads, report.seconds.build);
-  const auto b = build(obstacle, options.obstacle, options.request.threads, report.seconds.build);
+  const auto a = build(input, options.input, options.threads, report.seconds.build);
+  const auto b = build(obstacle, options.obstacle, options.threads, report.seconds.build);
 
   const bool by_place = options.moves() || !options.clashes.empty();
   const TrajectoryResult found = by_place ? alongPath(options, poses, a, b, report) : atPose(options, a, b, report);

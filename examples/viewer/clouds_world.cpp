@@ -59,9 +59,9 @@ Eigen::Isometry3d CloudsWorld::poseOf(std::size_t thing, std::size_t step) const
   return thing == model_ ? poses_[step] : Eigen::Isometry3d::Identity();
 }
 
-CollisionRequest CloudsWorld::request() const
+FlagsRequest CloudsWorld::flagsRequest() const
 {
-  CollisionRequest request;
+  FlagsRequest request;
   request.clearance = options_.clearance.value_or(0.0);
   request.threads = options_.threads;
   request.flagged = Side::both;
@@ -85,7 +85,7 @@ Findings CloudsWorld::findings(std::size_t step) const
     found.known = true;
     found.flags[0].assign(scan().points().count, 0);
     for (std::size_t other = 1; other < things_.size(); ++other) {
-      FlagsResult flags = collisionFlags(placed(0, step), placed(other, step), request());
+      FlagsResult flags = collisionFlags(placed(0, step), placed(other, step), flagsRequest());
       for (std::size_t i = 0; i < flags.a.size(); ++i) found.flags[0][i] |= flags.a[i];
       found.flags[other] = std::move(flags.b);
     }
@@ -199,7 +199,8 @@ std::vector<Trace> CloudsWorld::traces(std::size_t step) const
 {
   std::vector<Trace> traces;
   for (std::size_t other = 1; other < things_.size(); ++other)
-    traces.push_back({0, other, traceCollision(placed(0, step), placed(other, step), request())});
+    traces.push_back(
+        {0, other, traceCollision(placed(0, step), placed(other, step), {options_.clearance.value_or(0.0), {}})});
   return traces;
 }
 

@@ -37,7 +37,7 @@ public:
 
 private:
   Placed placed(std::size_t thing, std::size_t step) const { return {*things_[thing].hierarchy, poseOf(thing, step)}; }
-  CollisionRequest request() const;
+  FlagsRequest flagsRequest() const;
   TrajectoryRequest along() const;
   std::optional<Closest> closest(std::size_t step) const;
   std::optional<double> distanceOf(std::uint32_t record, std::size_t step) const;

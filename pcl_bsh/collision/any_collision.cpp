@@ -41,13 +41,12 @@ private:
 
 } // namespace
 
-AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const CollisionRequest& request)
+AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const AnyRequest& request)
 {
   return AnySearch(a, b, request, Unwatched{}).run();
 }
 
-AnyResult anyCollisionInTimeOnTarget(const Placed& a, const Placed& b, const CollisionRequest& request,
-                                     const StopRule& rule)
+AnyResult anyCollisionInTimeOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, const StopRule& rule)
 {
   return AnySearch(a, b, request, Hurried(rule)).run();
 }
@@ -70,7 +69,7 @@ constexpr double kWitnessShare = 15.0 / 16;
 
 } // namespace
 
-AnyResult anyCollision(const Placed& a, const Placed& b, const CollisionRequest& request)
+AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;

@@ -35,7 +35,7 @@ struct Unwatched {
 template <class Watch>
 class AnySearch {
 public:
-  AnySearch(const Placed& a, const Placed& b, const CollisionRequest& request, Watch watch)
+  AnySearch(const Placed& a, const Placed& b, const AnyRequest& request, Watch watch)
   : walk_(a, b),
     pairs_(a, b, request.clearance),
     acceptance_(request.clearance, request.accuracy),

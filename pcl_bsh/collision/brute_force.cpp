@@ -13,13 +13,13 @@ namespace {
 
 /// Calls visit(p, q, collide) for every pair, in ascending order, until it answers false.
 template <class Visit>
-void forEachPair(const Placed& a, const Placed& b, const CollisionRequest& request, const Visit& visit)
+void forEachPair(const Placed& a, const Placed& b, double clearance, const Visit& visit)
 {
   const ExactDistance distance(a.pose, b.pose);
-  const std::vector<Candidate> obstacles = candidatesOf(b.hierarchy.view());
-  for (const Candidate& p : candidatesOf(a.hierarchy.view())) {
+  const std::vector<Candidate> obstacles = candidatesOf(b.hierarchy().view());
+  for (const Candidate& p : candidatesOf(a.hierarchy().view())) {
     for (const Candidate& q : obstacles) {
-      const bool collide = distance.compare(p.point, q.point, request.clearance, p.radius, q.radius) <= 0;
+      const bool collide = distance.compare(p.point, q.point, clearance, p.radius, q.radius) <= 0;
       if (!visit(p, q, collide)) return;
     }
   }
@@ -27,12 +27,12 @@ void forEachPair(const Placed& a, const Placed& b, const CollisionRequest& reque
 
 } // namespace
 
-AnyResult anyCollision(const Placed& a, const Placed& b, const CollisionRequest& request)
+AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   AnyResult result;
-  forEachPair(a, b, request, [&](const Candidate& p, const Candidate& q, bool collide) {
+  forEachPair(a, b, request.clearance, [&](const Candidate& p, const Candidate& q, bool collide) {
     ++result.work.exact_decisions;
     if (!collide) return true;
     result.verdict = Verdict::colliding;
@@ -42,14 +42,14 @@ AnyResult anyCollision(const Placed& a, const Placed& b, const CollisionRequest&
   return result;
 }
 
-FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request)
+FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   FlagsResult result;
-  std::vector<std::uint8_t> flags_a(a.hierarchy.view().count);
-  std::vector<std::uint8_t> flags_b(b.hierarchy.view().count);
-  forEachPair(a, b, request, [&](const Candidate& p, const Candidate& q, bool collide) {
+  std::vector<std::uint8_t> flags_a(a.hierarchy().view().count);
+  std::vector<std::uint8_t> flags_b(b.hierarchy().view().count);
+  forEachPair(a, b, request.clearance, [&](const Candidate& p, const Candidate& q, bool collide) {
     ++result.work.exact_decisions;
     if (collide) flags_a[p.record] = flags_b[q.record] = 1;
     return true;
@@ -71,15 +71,15 @@ FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequ
   return result;
 }
 
-DistanceResult closestPair(const Placed& a, const Placed& b, const CollisionRequest& request)
+DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceRequest& request)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   const ExactDistance distance(a.pose, b.pose);
-  const std::vector<Candidate> obstacles = candidatesOf(b.hierarchy.view());
+  const std::vector<Candidate> obstacles = candidatesOf(b.hierarchy().view());
   DistanceResult result;
   ExactDistance::Pair closest;
-  for (const Candidate& p : candidatesOf(a.hierarchy.view())) {
+  for (const Candidate& p : candidatesOf(a.hierarchy().view())) {
     for (const Candidate& q : obstacles) {
       ++result.work.exact_decisions;
       const ExactDistance::Pair pair{p.point, q.point, p.radius, q.radius};

@@ -8,8 +8,8 @@ namespace pcl_bsh::brute_force {
 
 /// Same contracts as their namesakes in collide.h. Work counts one exact decision per pair looked at; the witness of
 /// anyCollision() is the smallest colliding (a, b).
-AnyResult anyCollision(const Placed& a, const Placed& b, const CollisionRequest& request);
-FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request);
-DistanceResult closestPair(const Placed& a, const Placed& b, const CollisionRequest& request = {});
+AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request);
+FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request);
+DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceRequest& request = {});
 
 } // namespace pcl_bsh::brute_force

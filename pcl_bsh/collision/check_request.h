@@ -2,12 +2,16 @@
 #pragma once
 
 #include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collision/contacts.h>
 
 namespace pcl_bsh {
 
-/// Every query of two clouds calls this before anything else, whatever it computes.
+/// Every query of two clouds calls one of these before anything else, whatever it computes.
 /// @throws InvalidInput naming the value: a clearance or an accuracy that is negative or not finite; a pose that is not
 ///   finite, whose last row is not 0 0 0 1, that mirrors, or whose rotation R has |R'R - I| > 1e-6 (Frobenius norm).
-void check(const Placed& a, const Placed& b, const CollisionRequest& request);
+void check(const Placed& a, const Placed& b, const AnyRequest& request);
+void check(const Placed& a, const Placed& b, const FlagsRequest& request);
+void check(const Placed& a, const Placed& b, const DistanceRequest& request);
+void check(const Placed& a, const Placed& b, const ContactsRequest& request);
 
 } // namespace pcl_bsh

@@ -196,7 +196,7 @@ namespace pcl_bsh {
 
 HWY_EXPORT(closestPairOnTarget);
 
-DistanceResult closestPair(const Placed& a, const Placed& b, const CollisionRequest& request)
+DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceRequest& request)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;

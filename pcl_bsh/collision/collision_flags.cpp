@@ -583,8 +583,7 @@ void markUndecided(const SphereHierarchy& hierarchy, std::vector<std::uint8_t>& 
 /// The flags of one cloud.
 class FlagSide {
 public:
-  FlagSide(const Placed& a, const Placed& b, const CollisionRequest& request, const StopRule& rule,
-           const FlagSheet& sheet)
+  FlagSide(const Placed& a, const Placed& b, const FlagsRequest& request, const StopRule& rule, const FlagSheet& sheet)
   : sheet_(sheet),
     pairs_(a, b, request.clearance),
     // A budget may end before a voxel is looked at. A level looks at all, and has to mark only those that come near.
@@ -596,12 +595,12 @@ public:
            rule.mayStop() && rule.deepest == StopRule::kNever},
     threads_(threadCount(request.threads))
   {
-    sheet_.flags.assign(a.hierarchy.view().count, kFree);
-    if (a.hierarchy.empty() || b.hierarchy.empty()) return;
+    sheet_.flags.assign(a.hierarchy().view().count, kFree);
+    if (a.hierarchy().empty() || b.hierarchy().empty()) return;
     if (query_.marked) {
-      voxels_.resize(a.hierarchy.storage().voxel_count);
+      voxels_.resize(a.hierarchy().storage().voxel_count);
       std::iota(voxels_.begin(), voxels_.end(), 0u);
-      markUndecided(a.hierarchy, sheet_.flags);
+      markUndecided(a.hierarchy(), sheet_.flags);
     }
     else { // what is not near is free, as flags are at first
       voxels_ = HWY_DYNAMIC_DISPATCH(nearVoxelsOnTarget)(query_, sheet_.work);
@@ -665,7 +664,7 @@ std::size_t countUndecided(const std::vector<std::uint8_t>& flags)
 
 } // namespace
 
-void collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request, FlagsResult& result)
+void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request, FlagsResult& result)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
@@ -692,7 +691,7 @@ void collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& re
   result = std::move(found);
 }
 
-FlagsResult collisionFlags(const Placed& a, const Placed& b, const CollisionRequest& request)
+FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request)
 {
   FlagsResult result;
   collisionFlags(a, b, request, result);

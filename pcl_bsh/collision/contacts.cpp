@@ -212,7 +212,7 @@ public:
     if (!result.complete) kept_.pop_back();
     result.contacts.reserve(kept_.size());
     for (const Entry& entry : kept_) {
-      const Point3 p = a.hierarchy.view().point(entry.pair.a), q = b.hierarchy.view().point(entry.pair.b);
+      const Point3 p = a.hierarchy().view().point(entry.pair.a), q = b.hierarchy().view().point(entry.pair.b);
       const Eigen::Vector3d apart =
           a.pose * Eigen::Vector3d(p[0], p[1], p[2]) - b.pose * Eigen::Vector3d(q[0], q[1], q[2]);
       result.contacts.push_back({entry.pair, entry.gap, apart.stableNormalized()});
@@ -257,18 +257,18 @@ namespace pcl_bsh {
 HWY_EXPORT(nearestContactsOnTarget);
 HWY_EXPORT(pairsWithinOnTarget);
 
-ContactsResult nearestContacts(const Placed& a, const Placed& b, const CollisionRequest& request, std::size_t most)
+ContactsResult nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& request)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
-  return HWY_DYNAMIC_DISPATCH(nearestContactsOnTarget)(a, b, request.clearance, most);
+  return HWY_DYNAMIC_DISPATCH(nearestContactsOnTarget)(a, b, request.clearance, request.most);
 }
 
-PairsWithin pairsWithin(const Placed& a, const Placed& b, const CollisionRequest& request, std::size_t most)
+PairsWithin pairsWithin(const Placed& a, const Placed& b, const ContactsRequest& request)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
-  return HWY_DYNAMIC_DISPATCH(pairsWithinOnTarget)(a, b, request.clearance, most);
+  return HWY_DYNAMIC_DISPATCH(pairsWithinOnTarget)(a, b, request.clearance, request.most);
 }
 
 } // namespace pcl_bsh

@@ -2,11 +2,20 @@
 // The pairs of points themselves: where two posed clouds collide, how deep, and which way is out.
 #pragma once
 
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/query/result.h>
 
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace pcl_bsh {
+
+/// What nearestContacts() and pairsWithin() read. Both are exact.
+struct ContactsRequest {
+  double clearance = 0.0;                                     ///< finite, >= 0; inclusive
+  std::size_t most = std::numeric_limits<std::size_t>::max(); ///< pairs in the result; they may be as many as a x b
+};
 
 /// A colliding pair of points.
 struct Contact {
@@ -22,16 +31,18 @@ struct ContactsResult {
   Work work;
 };
 
-/// The `most` nearest of the colliding pairs, or all of them when they are fewer; of pairs at the same distance, the
-/// smallest (a, b) first. Throws as anyCollision() does.
-ContactsResult nearestContacts(const Placed& a, const Placed& b, const CollisionRequest& request, std::size_t most);
+/// The `request.most` nearest of the colliding pairs, or all of them when they are fewer; of pairs at the same
+/// distance, the smallest (a, b) first. One thread.
+/// @throws std::invalid_argument when the clearance or a pose is not what its declaration asks for.
+ContactsResult nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& request);
 
 /// Pairs of points within the clearance, in no useful order, for those who go through them all.
 struct PairsWithin {
   std::vector<PointPair> pairs;
-  bool complete = true; ///< false: there are more than `most`, and `pairs` holds any of them
+  bool complete = true; ///< false: there are more than `request.most`, and `pairs` holds any of them
   Work work;
 };
-PairsWithin pairsWithin(const Placed& a, const Placed& b, const CollisionRequest& request, std::size_t most);
+/// Throws as nearestContacts() does.
+PairsWithin pairsWithin(const Placed& a, const Placed& b, const ContactsRequest& request);
 
 } // namespace pcl_bsh

@@ -106,7 +106,7 @@ struct Watch {
 
 } // namespace
 
-CollisionTrace traceOnTarget(const Placed& a, const Placed& b, const CollisionRequest& request)
+CollisionTrace traceOnTarget(const Placed& a, const Placed& b, const AnyRequest& request)
 {
   Met met_a(a), met_b(b);
   CollisionTrace trace;
@@ -130,7 +130,7 @@ namespace pcl_bsh {
 
 HWY_EXPORT(traceOnTarget);
 
-CollisionTrace traceCollision(const Placed& a, const Placed& b, const CollisionRequest& request)
+CollisionTrace traceCollision(const Placed& a, const Placed& b, const AnyRequest& request)
 {
   check(a, b, request);
   if (request.accuracy.stopsEarly())

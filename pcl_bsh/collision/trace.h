@@ -32,6 +32,6 @@ struct CollisionTrace {
 /// Answers as anyCollision() does, with the same work, and tells how. The request's accuracy must be exact, float only
 /// or a tolerance: those that search depth first.
 /// @throws std::invalid_argument as anyCollision() does, and for an accuracy that stops early
-CollisionTrace traceCollision(const Placed& a, const Placed& b, const CollisionRequest& request);
+CollisionTrace traceCollision(const Placed& a, const Placed& b, const AnyRequest& request);
 
 } // namespace pcl_bsh

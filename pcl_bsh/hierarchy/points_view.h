@@ -8,22 +8,25 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 
 namespace pcl_bsh {
 
 enum class Scalar : std::uint8_t { float32, float64 };
 
-/// A read-only view of `count` records. The memory must outlive whatever is built on it, unchanged: exact decisions
-/// return to the original coordinates. Records need not be aligned.
+/// A read-only view of `count` records. Records need not be aligned. The memory must stay unchanged while anything that
+/// was built on it is in use, since exact decisions return to the original coordinates. It must outlive that, or
+/// `owner` must keep it alive: a hierarchy holds its view, and with it the owner.
 struct PointsView {
   const void* data = nullptr;                    ///< first byte of record 0; may be null only when count is 0
   std::size_t count = 0;                         ///< records; at most 2^31 - 1, so that pcl::Indices can name them
   std::size_t stride = 0;                        ///< bytes from one record to the next
   std::array<std::size_t, 3> offset = {0, 0, 0}; ///< bytes from a record's start to its x, y, z
   Scalar scalar = Scalar::float32;
-  const std::int32_t* indices = nullptr; ///< optional subset: only these records are points
-  std::size_t index_count = 0;           ///< length of `indices`; ignored when that is null
-  const float* radii = nullptr;          ///< optional, one per record (not per index): finite and >= 0
+  const std::int32_t* indices = nullptr;       ///< optional subset: only these records are points
+  std::size_t index_count = 0;                 ///< length of `indices`; ignored when that is null
+  const float* radii = nullptr;                ///< optional, one per record (not per index): finite and >= 0
+  std::shared_ptr<const void> owner = nullptr; ///< optional: keeps alive whatever the pointers above point to
 
   /// How many points the view names (a subset counts its indices).
   std::size_t size() const noexcept { return indices ? index_count : count; }

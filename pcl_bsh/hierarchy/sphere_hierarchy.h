@@ -57,7 +57,8 @@ struct RefitReport {
 
 /// The hierarchy of one cloud, in the cloud's own frame; poses belong to queries. Construction sorts the points into
 /// voxels; a voxel's octree and spheres are built on its first visit, once, safely from several threads. Non-finite
-/// points are left out. Holds about 20 bytes per point; the caller's points must outlive it, unchanged.
+/// points are left out. Holds about 20 bytes per point, and the view: the points must outlive the hierarchy, unless
+/// PointsView::owner keeps them alive, and must not change but through refit() and HierarchyUpdate.
 class SphereHierarchy {
 public:
   /// @throws std::invalid_argument naming the offending value: a null or too large view, a stride or offsets for which

@@ -8,9 +8,20 @@
 namespace pcl_bsh {
 
 /// A cloud's hierarchy and where it stands. The hierarchy is borrowed, and builds its voxels as queries visit them.
-struct Placed {
-  const SphereHierarchy& hierarchy;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_world_cloud; rigid within 1e-6
+class Placed {
+public:
+  Placed(const SphereHierarchy& hierarchy, const Eigen::Isometry3d& T_world_cloud = Eigen::Isometry3d::Identity())
+  : pose(T_world_cloud),
+    hierarchy_(&hierarchy)
+  {
+  }
+
+  const SphereHierarchy& hierarchy() const noexcept { return *hierarchy_; }
+
+  Eigen::Isometry3d pose; ///< T_world_cloud; rigid within 1e-6
+
+private:
+  const SphereHierarchy* hierarchy_;
 };
 
 } // namespace pcl_bsh

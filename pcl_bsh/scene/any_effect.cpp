@@ -16,7 +16,7 @@ constexpr double kAhead = 4.0;    // steps of the present speed that a wider que
 bool collides(const Placed& a, const Placed& b, PointPair pair, double clearance, Work& work)
 {
   ++work.exact_decisions;
-  const PointsView &p = a.hierarchy.view(), &q = b.hierarchy.view();
+  const PointsView &p = a.hierarchy().view(), &q = b.hierarchy().view();
   return ExactDistance(a.pose, b.pose)
              .compare(p.point(pair.a), q.point(pair.b), clearance, p.radius(pair.a), q.radius(pair.b)) <= 0;
 }
@@ -55,8 +55,7 @@ void Scene::State::decideAny(BroadPair& pair) const
     memory.undecided.reset();
     for (std::uint32_t i = 0; i < a.world.size(); ++i)
       for (std::uint32_t j = 0; j < b.world.size(); ++j) {
-        const AnyResult found =
-            anyCollision(placed(pair.a, i), placed(pair.b, j), requestFor(clearance, options.accuracy));
+        const AnyResult found = anyCollision(placed(pair.a, i), placed(pair.b, j), {clearance, options.accuracy});
         memory.work += found.work;
         ++memory.asked;
         const PartPair parts{pair.a, pair.b, i, j};
@@ -127,9 +126,9 @@ void Scene::State::findSelf()
         if (std::find(whole.adjacent.begin(), whole.adjacent.end(), std::make_pair(i, j)) != whole.adjacent.end())
           continue;
         // In the object's own frame, where only the parts' poses count.
-        const AnyResult found = anyCollision({*whole.parts[i].hierarchy, whole.parts[i].pose},
-                                             {*whole.parts[j].hierarchy, whole.parts[j].pose},
-                                             requestFor(options.clearance, options.accuracy));
+        const AnyResult found =
+            anyCollision({*whole.parts[i].hierarchy, whole.parts[i].pose},
+                         {*whole.parts[j].hierarchy, whole.parts[j].pose}, {options.clearance, options.accuracy});
         spent.work += found.work;
         ++spent.pairs;
         if (found.witness) result.self.push_back({object, i, j, *found.witness});

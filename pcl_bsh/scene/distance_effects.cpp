@@ -36,8 +36,7 @@ void Scene::State::decideDistance(BroadPair& pair, double within) const
   bool first = true;
   for (std::uint32_t i = 0; i < a.world.size(); ++i)
     for (std::uint32_t j = 0; j < b.world.size(); ++j) {
-      const DistanceResult found =
-          closestPair(placed(pair.a, i), placed(pair.b, j), requestFor(pair.clearance, options.accuracy));
+      const DistanceResult found = closestPair(placed(pair.a, i), placed(pair.b, j), {options.accuracy});
       memory.work += found.work;
       ++memory.asked;
       interval.lower = std::min(interval.lower, found.interval.lower);
@@ -64,8 +63,8 @@ void Scene::State::findContacts()
     }
     for (std::uint32_t i = 0; i < bodies[pair.a].world.size(); ++i)
       for (std::uint32_t j = 0; j < bodies[pair.b].world.size(); ++j) {
-        ContactsResult contacts = nearestContacts(placed(pair.a, i), placed(pair.b, j), requestFor(pair.clearance),
-                                                  *options.effects.contacts);
+        ContactsResult contacts =
+            nearestContacts(placed(pair.a, i), placed(pair.b, j), {pair.clearance, *options.effects.contacts});
         memory.work += contacts.work;
         ++memory.asked;
         if (contacts.contacts.empty() && contacts.complete) continue;

@@ -3,6 +3,7 @@
 // work.
 #pragma once
 
+#include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/scene/state.h>
 #include <pcl_bsh/scene/sweep.h>
@@ -26,14 +27,6 @@ private:
   double& seconds_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-inline CollisionRequest requestFor(double clearance, const Accuracy& accuracy = {})
-{
-  CollisionRequest request;
-  request.clearance = clearance;
-  request.accuracy = accuracy;
-  return request;
-}
 
 /// Calls decide(i) for each pair, in parallel, and adds up what the pairs note of it.
 template <class Decide>

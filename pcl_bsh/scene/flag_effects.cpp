@@ -79,8 +79,10 @@ void Scene::State::findFlags()
       memory.reused = true;
       return;
     }
-    CollisionRequest request = requestFor(pair.clearance, options.accuracy);
+    FlagsRequest request;
+    request.clearance = pair.clearance;
     request.flagged = Side::both;
+    request.accuracy = options.accuracy;
     for (std::uint32_t i = 0; i < bodies[pair.a].world.size(); ++i)
       for (std::uint32_t j = 0; j < bodies[pair.b].world.size(); ++j) {
         FlagsResult flags = collisionFlags(placed(pair.a, i), placed(pair.b, j), request);

@@ -195,12 +195,12 @@ bool Mover::collectMore(Box3 swept, double length, std::size_t most)
 
 bool Mover::collectFrom(ObjectId other, double clearance, double length, std::size_t most)
 {
-  CollisionRequest request;
-  request.clearance = clearance + length * (1.0 + kDoubleMargin) + 0.75 * tolerance_; // halts are at half the tolerance
+  const double reach =
+      clearance + length * (1.0 + kDoubleMargin) + 0.75 * tolerance_; // halts are at half the tolerance
   for (std::uint32_t i = 0; i < body_.world.size(); ++i)
     for (std::uint32_t j = 0; j < state_.bodies[other].world.size(); ++j) {
       const Placed mine = state_.placed(object_, i), others = state_.placed(other, j);
-      const PairsWithin found = pairsWithin(mine, others, request, most);
+      const PairsWithin found = pairsWithin(mine, others, {reach, most});
       ++cost_.pairs;
       cost_.work += found.work;
       if (!found.complete) {
@@ -208,7 +208,7 @@ bool Mover::collectFrom(ObjectId other, double clearance, double length, std::si
         return false;
       }
       const ExactDistance exact(mine.pose, others.pose);
-      const PointsView &a = mine.hierarchy.view(), &b = others.hierarchy.view();
+      const PointsView &a = mine.hierarchy().view(), &b = others.hierarchy().view();
       for (const PointPair pair : found.pairs) {
         const Point3 p = a.point(pair.a), q = b.point(pair.b);
         Encounter e{pair, i, other, j, clearance + a.radius(pair.a) + b.radius(pair.b), clearance, {}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Both questions in the same way: the pairs of points that can meet at all within an interval are collected, and each
 // is followed by itself. Too many of them: the interval is halved, and they get fewer.
+#include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/scene/sweep.h>
 
@@ -23,7 +24,7 @@ public:
 
   std::optional<Meeting> first()
   {
-    const AnyResult start = anyCollision(a_.at(0), b_.at(0), request(clearance_));
+    const AnyResult start = anyCollision(a_.at(0), b_.at(0), {clearance_, {}});
     work_ += start.work;
     if (start.witness) return Meeting{0.0, *start.witness};
     return first(0.0, 1.0);
@@ -37,13 +38,6 @@ public:
   }
 
 private:
-  static CollisionRequest request(double clearance)
-  {
-    CollisionRequest request;
-    request.clearance = clearance;
-    return request;
-  }
-
   /// What can meet within the interval is within this at its beginning.
   double reach(double length) const { return clearance_ + closingReach(a_.path, b_.path, length) + 0.5 * tolerance_; }
   bool isShort(double length) const { return closingReach(a_.path, b_.path, length) <= 0.5 * tolerance_; }
@@ -54,7 +48,7 @@ private:
 
   PairsWithin pairs(double begin, double end)
   {
-    PairsWithin found = pairsWithin(a_.at(begin), b_.at(begin), request(reach(end - begin)), kMostPairs);
+    PairsWithin found = pairsWithin(a_.at(begin), b_.at(begin), {reach(end - begin), kMostPairs});
     work_ += found.work;
     return found;
   }
@@ -93,7 +87,8 @@ private:
       return;
     }
     if (!found.complete) {
-      CollisionRequest wide = request(reach(end - begin));
+      FlagsRequest wide;
+      wide.clearance = reach(end - begin);
       wide.flagged = Side::both;
       const FlagsResult near = collisionFlags(a_.at(begin), b_.at(begin), wide);
       work_ += near.work;

@@ -33,13 +33,13 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   if (request.swept)
     throw InvalidInput(Input::swept, "brute_force::collideAlong", "knows poses only, not what is between");
   const DefaultFloatEnvironment environment;
-  const std::vector<Candidate> points = candidatesOf(scan.hierarchy.view()), obstacles = candidatesOf(model.view());
+  const std::vector<Candidate> points = candidatesOf(scan.hierarchy().view()), obstacles = candidatesOf(model.view());
   std::vector<ExactDistance> distances;
   distances.reserve(model_poses.size());
   for (const Eigen::Isometry3d& pose : model_poses) distances.emplace_back(scan.pose, pose);
 
   if (!asksForAnything(request)) return {};
-  const std::size_t records = scan.hierarchy.view().count;
+  const std::size_t records = scan.hierarchy().view().count;
   const auto sized = [records](bool asked) { return asked ? records : 0; };
   const bool closest = request.distances || request.closest_poses;
   TrajectoryResult result;

@@ -35,7 +35,7 @@ void summarize(const Course& course, TrajectoryResult& result)
     summary.colliding = summary.colliding_points > 0;
     if (summary.colliding) {
       const PointPair pair = course.pose_best[k].pair;
-      const PointsView &a = course.scan.hierarchy.view(), &b = course.model.view();
+      const PointsView &a = course.scan.hierarchy().view(), &b = course.model.view();
       summary.distance = ExactDistance(course.scan.pose, course.given[poses[k].given])
                              .gap({a.point(pair.a), b.point(pair.b), a.radius(pair.a), b.radius(pair.b)});
     }
@@ -99,7 +99,7 @@ void countFlags(TrajectoryResult& result)
 void followUntilStopped(const Course& course, StopRule rule, const std::vector<std::vector<std::uint32_t>>& meetings,
                         std::vector<std::uint32_t> voxels, Progress& progress)
 {
-  for (const std::uint32_t voxel : voxels) markUndecided(course.scan.hierarchy, voxel, course.result.flags);
+  for (const std::uint32_t voxel : voxels) markUndecided(course.scan.hierarchy(), voxel, course.result.flags);
   const std::size_t all = voxels.size();
   const std::uint64_t budget = rule.node_pairs;
   std::uint64_t spent = 0;
@@ -157,8 +157,8 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   check(scan, model_poses, request);
   const DefaultFloatEnvironment environment;
   TrajectoryResult result;
-  allocate(result, request, scan.hierarchy.view().count, model_poses.size());
-  if (!asksForAnything(request) || scan.hierarchy.empty() || model.empty() || model_poses.empty()) return result;
+  allocate(result, request, scan.hierarchy().view().count, model_poses.size());
+  if (!asksForAnything(request) || scan.hierarchy().empty() || model.empty() || model_poses.empty()) return result;
   const StopRule rule(request.accuracy);
   Progress progress(request.progress);
   try {
@@ -169,8 +169,8 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
     follow(course, rule, progress);
   }
   catch (const OutOfTime&) { // before the path was made: nothing is known
-    for (std::uint32_t v = 0; v < scan.hierarchy.storage().voxel_count; ++v)
-      markUndecided(scan.hierarchy, v, result.flags);
+    for (std::uint32_t v = 0; v < scan.hierarchy().storage().voxel_count; ++v)
+      markUndecided(scan.hierarchy(), v, result.flags);
     countFlags(result);
   }
   return result;

@@ -39,7 +39,7 @@ void checkTolerance(const Placed& scan, const std::vector<Eigen::Isometry3d>& po
                     const BoxTree& boxes, double reach)
 {
   double size = 4 * boxes.radius + reach;
-  const LocalFrame& frame = scan.hierarchy.storage().frame;
+  const LocalFrame& frame = scan.hierarchy().storage().frame;
   const Point3 origin = carried(scan.pose, frame.origin);
   for (std::size_t axis = 0; axis < 3; ++axis)
     size += std::abs(origin[axis]) + 2 * frame.reach[axis] * frame.unit + std::abs(boxes.origin[axis]) +
@@ -81,7 +81,7 @@ PosePath pathOf(const Placed& scan, const std::vector<Eigen::Isometry3d>& poses,
 
 double largestRadii(const Placed& scan, const SphereHierarchy& model)
 {
-  return scan.hierarchy.storage().largest_radius + model.storage().largest_radius;
+  return scan.hierarchy().storage().largest_radius + model.storage().largest_radius;
 }
 
 } // namespace
@@ -111,7 +111,7 @@ double Course::error(const Point3& origin) const
 
 bool Course::inFloatRange() const
 {
-  const LocalFrame& frame = scan.hierarchy.storage().frame;
+  const LocalFrame& frame = scan.hierarchy().storage().frame;
   double largest = std::max({path.far, boxes.radius, reach});
   const Point3 center = carried(scan.pose, frame.origin);
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -146,7 +146,7 @@ void Course::meet(std::uint32_t node, std::uint32_t lane, std::uint32_t index, c
                   std::vector<std::vector<std::uint32_t>>& meetings) const
 {
   progress.tick(4);
-  const SphereHierarchy::Storage& storage = scan.hierarchy.storage();
+  const SphereHierarchy::Storage& storage = scan.hierarchy().storage();
   const Node& of = storage.top[node];
   const bool is_voxel = of.isLeaf(lane);
   const LocalFrame& frame = is_voxel ? storage.voxels[of.begin[lane]].frame : storage.frame;
@@ -175,7 +175,7 @@ void Course::meet(std::uint32_t node, std::uint32_t lane, std::uint32_t index, c
 
 std::vector<std::vector<std::uint32_t>> Course::meetings(const StopRule& rule, Progress& progress) const
 {
-  const SphereHierarchy::Storage& storage = scan.hierarchy.storage();
+  const SphereHierarchy::Storage& storage = scan.hierarchy().storage();
   std::vector<std::vector<std::uint32_t>> meetings(storage.voxel_count);
   if (storage.size == 0 || boxes.storage.size == 0 || path.poses.empty()) return meetings;
   progress.begin(Progress::kMeetings, storage.top[0].count);

@@ -110,7 +110,7 @@ ExactDistance Findings::exactAt(std::uint32_t k) const
 
 ExactDistance::Pair Findings::posed(PointPair pair) const
 {
-  const PointsView &a = course_.scan.hierarchy.view(), &b = course_.model.view();
+  const PointsView &a = course_.scan.hierarchy().view(), &b = course_.model.view();
   return {a.point(pair.a), b.point(pair.b), a.radius(pair.a), b.radius(pair.b)};
 }
 

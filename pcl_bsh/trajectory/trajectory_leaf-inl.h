@@ -315,7 +315,7 @@ private:
       for (std::uint32_t j = 0; j < other.count; ++j) {
         ++findings_.work.exact_decisions;
         const std::uint32_t q = other.record(j);
-        const double radii = course_.scan.hierarchy.view().radius(record) + course_.model.view().radius(q);
+        const double radii = course_.scan.hierarchy().view().radius(record) + course_.model.view().radius(q);
         const Approach approach = approachTo(way, q, course_.reach - course_.radii + radii);
         if (!approach.contact) continue;
         findings_.hit[leaf.slot] = static_cast<std::uint16_t>(findings_.hit[leaf.slot] | 1u << i);
@@ -346,7 +346,7 @@ private:
 
   Way wayOf(std::uint32_t record, const Span& span) const
   {
-    const Point3 world = carried(course_.scan.pose, course_.scan.hierarchy.view().point(record));
+    const Point3 world = carried(course_.scan.pose, course_.scan.hierarchy().view().point(record));
     const std::uint32_t first = span.interval->first, last = span.interval->last;
     return {first, last, path_.poses[first].see(world), path_.poses[last].see(world)};
   }

@@ -43,7 +43,7 @@ struct Span {
 class VoxelSight {
 public:
   VoxelSight(const Course& course, std::uint32_t index)
-  : voxel(course.scan.hierarchy.storage().voxels[index]),
+  : voxel(course.scan.hierarchy().storage().voxels[index]),
     frame(voxel.frame),
     path(course.path),
     tree(course.boxes),

@@ -84,7 +84,7 @@ private:
   bool mayEnter() const
   {
     return !rule_.mayStop() ||
-           (rule_.deepest > 0 && rule_.leavesTimeToBuild(course_.scan.hierarchy.storage().pointsToBuild(index_)));
+           (rule_.deepest > 0 && rule_.leavesTimeToBuild(course_.scan.hierarchy().storage().pointsToBuild(index_)));
   }
 
   /// @param unsure not all was looked at.
@@ -94,7 +94,7 @@ private:
     if (voxel_ && !rule_.mayStop()) answer = findings_.finish(*voxel_);
     if (rule_.mayStop()) answer.undecided = voxel_ ? findings_.decide(*voxel_, unsure) : unsure;
     if (rule_.mayStop() && !voxel_ && !unsure)
-      course_.scan.hierarchy.storage().forEachRecord(
+      course_.scan.hierarchy().storage().forEachRecord(
           index_, [this](std::uint32_t i) { course_.result.flags[i] = flagOf(Verdict::free); });
     answer.work = findings_.work;
     return answer;
@@ -102,7 +102,7 @@ private:
 
   void enter(const Span& span)
   {
-    voxel_ = &course_.scan.hierarchy.storage().built(index_, findings_.work.voxels_built);
+    voxel_ = &course_.scan.hierarchy().storage().built(index_, findings_.work.voxels_built);
     for (const Node& node : voxel_->nodes) open_lanes_.push_back(static_cast<std::uint8_t>(firstBits(node.count)));
     findings_.begin(*voxel_);
     patches_.fit(*voxel_, span.from);

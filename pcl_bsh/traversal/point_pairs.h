@@ -12,8 +12,8 @@ public:
   PointPairs(const Placed& a, const Placed& b, double clearance)
   : clearance(clearance),
     distance(a.pose, b.pose),
-    a_(a.hierarchy.view()),
-    b_(b.hierarchy.view())
+    a_(a.hierarchy().view()),
+    b_(b.hierarchy().view())
   {
   }
 

@@ -19,7 +19,7 @@ inline constexpr std::uint32_t kAboveVoxels =
 /// A cloud's spaces. Voxels are built as a walk enters them.
 class Spaces {
 public:
-  explicit Spaces(const Placed& placed) : storage(placed.hierarchy.storage()), pose(placed.pose) {}
+  explicit Spaces(const Placed& placed) : storage(placed.hierarchy().storage()), pose(placed.pose) {}
 
   const LocalFrame& frame(std::uint32_t space) const
   {

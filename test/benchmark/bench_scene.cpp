@@ -195,7 +195,7 @@ void measureOneEffect(const Options& options, Table& table)
   const std::size_t count = std::max<std::size_t>(options.objects / 2, 2);
   Crowd crowd(count, options.points / 4, forgetful, true);
   crowd.scene.query();
-  CollisionRequest request;
+  AnyRequest request;
   request.clearance = forgetful.clearance;
   std::vector<double> scene_seconds, bare_seconds;
   bool same = true;

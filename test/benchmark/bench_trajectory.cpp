@@ -199,16 +199,17 @@ void showOnePose(const Options& options, const std::string& scene_name, Table& t
   const SphereHierarchy scan(viewOf(scene.scan)), model(viewOf(scene.model));
   scan.buildAll();
   model.buildAll();
-  pcl_bsh::CollisionRequest request;
+  pcl_bsh::FlagsRequest request;
   request.clearance = scene.clearance;
   const auto poseAt = [&](std::size_t i) { return scene.poses[i * scene.poses.size() / options.warm_poses]; };
-  for (std::size_t i = 0; i < options.warm_poses; ++i) anyCollision({scan}, {model, poseAt(i)}, request); // fits slabs
+  for (std::size_t i = 0; i < options.warm_poses; ++i)
+    anyCollision({scan}, {model, poseAt(i)}, {scene.clearance, {}}); // fits slabs
   std::vector<double> flags, any;
   pcl_bsh::FlagsResult result;
   for (std::size_t i = 0; i < options.warm_poses; ++i) {
     const auto pose = poseAt(i);
     const Stopwatch for_any;
-    anyCollision({scan}, {model, pose}, request);
+    anyCollision({scan}, {model, pose}, {scene.clearance, {}});
     any.push_back(for_any.seconds());
     const Stopwatch for_flags;
     collisionFlags({scan}, {model, pose}, request, result);

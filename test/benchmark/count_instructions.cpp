@@ -36,7 +36,7 @@ Work flags(const SphereHierarchy& a, const SphereHierarchy& b, const Eigen::Isom
 {
   Work work;
   for (const double clearance : {1.0, 5.0, 20.0}) {
-    CollisionRequest request;
+    FlagsRequest request;
     request.clearance = clearance;
     work += collisionFlags({a}, {b, pose}, request).work;
   }
@@ -46,7 +46,7 @@ Work flags(const SphereHierarchy& a, const SphereHierarchy& b, const Eigen::Isom
 Work anyAndDistance(const SphereHierarchy& a, const SphereHierarchy& b, Eigen::Isometry3d pose)
 {
   Work work;
-  CollisionRequest request;
+  AnyRequest request;
   request.clearance = 0.4;
   for (int i = 0; i < 40; ++i) {
     pose.translation().z() = 3 + 0.2 * i;

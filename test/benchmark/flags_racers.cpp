@@ -27,7 +27,7 @@ public:
   {
     HierarchyOptions options;
     options.threads = threads;
-    CollisionRequest request;
+    FlagsRequest request;
     request.clearance = d;
     request.threads = threads;
 

@@ -34,7 +34,7 @@ std::size_t countOurs(const HardCase& c)
 {
   const test::Cloud b(c.b, {c.scalar});
   const SphereHierarchy obstacle(b.view());
-  CollisionRequest request;
+  FlagsRequest request;
   request.clearance = c.clearance;
   request.flagged = Side::b;
   std::size_t pairs = 0;

@@ -64,7 +64,7 @@ private:
   }
 
   std::optional<SphereHierarchy> a_, b_;
-  CollisionRequest request_;
+  AnyRequest request_;
   mutable Work work_;
   mutable std::size_t answers_ = 0;
 };

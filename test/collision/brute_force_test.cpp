@@ -2,6 +2,7 @@
 // The oracle itself, against answers known beforehand.
 #include <pcl_bsh/collision/brute_force.h>
 
+#include "../query/question.h"
 #include "../query/random_clouds.h"
 
 #include <gtest/gtest.h>
@@ -19,9 +20,9 @@ using test::Cloud;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-CollisionRequest within(double clearance, Side flagged = Side::a)
+test::Question within(double clearance, Side flagged = Side::a)
 {
-  CollisionRequest request;
+  test::Question request;
   request.clearance = clearance;
   request.flagged = flagged;
   return request;
@@ -126,7 +127,7 @@ TEST_F(BruteForce, ChecksTheRequest)
 {
   EXPECT_THROW(brute_force::anyCollision(pa_, pb_, within(-1)), std::invalid_argument);
   EXPECT_THROW(brute_force::collisionFlags(pa_, pb_, within(nan)), std::invalid_argument);
-  EXPECT_THROW(brute_force::closestPair(pa_, pb_, within(-1)), std::invalid_argument);
+  EXPECT_THROW(brute_force::closestPair(pa_, pb_, {Accuracy::tolerance(-1)}), std::invalid_argument);
 }
 
 } // namespace

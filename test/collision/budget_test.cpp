@@ -4,6 +4,7 @@
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/query/accuracy.h>
 
+#include "../query/question.h"
 #include "../trajectory/journeys.h"
 
 #include <gtest/gtest.h>
@@ -26,9 +27,9 @@ using test::Shape;
 
 constexpr std::uint8_t kUndecided = 2;
 
-CollisionRequest asking(const Accuracy& accuracy, double clearance, Side flagged = Side::both)
+test::Question asking(const Accuracy& accuracy, double clearance, Side flagged = Side::both)
 {
-  CollisionRequest request;
+  test::Question request;
   request.accuracy = accuracy;
   request.clearance = clearance;
   request.flagged = flagged;

@@ -19,10 +19,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 std::string verdict(double clearance, const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b)
 {
   const SphereHierarchy empty{PointsView{}};
-  CollisionRequest request;
-  request.clearance = clearance;
   try {
-    check({empty, pose_a}, {empty, pose_b}, request);
+    check({empty, pose_a}, {empty, pose_b}, AnyRequest{clearance, {}});
     return {};
   }
   catch (const std::invalid_argument& error) {

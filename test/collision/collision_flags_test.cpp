@@ -30,9 +30,9 @@ const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-CollisionRequest within(double clearance, Side flagged = Side::a, unsigned threads = 1)
+FlagsRequest within(double clearance, Side flagged = Side::a, unsigned threads = 1)
 {
-  CollisionRequest request;
+  FlagsRequest request;
   request.clearance = clearance;
   request.flagged = flagged;
   request.threads = threads;
@@ -406,7 +406,7 @@ TEST(CollisionFlags, SameIntoAResultUsedBefore)
   FlagsResult result;
   collisionFlags({a, large.pose_a}, {b, large.pose_b}, within(large.clearance, Side::both), result);
   for (const Side side : {Side::a, Side::both, Side::b}) {
-    const CollisionRequest request = within(small.clearance, side);
+    const FlagsRequest request = within(small.clearance, side);
     collisionFlags({c, small.pose_a}, {d, small.pose_b}, request, result);
     const FlagsResult expected = collisionFlags({c, small.pose_a}, {d, small.pose_b}, request);
     EXPECT_EQ(result.a, expected.a);

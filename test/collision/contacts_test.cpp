@@ -17,11 +17,9 @@ using test::Scene;
 
 const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
 
-CollisionRequest within(double clearance)
+ContactsRequest within(double clearance, std::size_t most)
 {
-  CollisionRequest request;
-  request.clearance = clearance;
-  return request;
+  return {clearance, most};
 }
 
 std::vector<std::uint32_t> finiteRecords(const PointsView& view)
@@ -62,7 +60,7 @@ void expectSameAsOracle(const Scene& scene)
   const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
   const ExactDistance distance(scene.pose_a, scene.pose_b);
   for (const std::size_t most : {std::size_t{0}, std::size_t{1}, std::size_t{7}, expected.size(), ~std::size_t{0}}) {
-    const ContactsResult result = nearestContacts(placed_a, placed_b, within(scene.clearance), most);
+    const ContactsResult result = nearestContacts(placed_a, placed_b, within(scene.clearance, most));
     ASSERT_EQ(result.contacts.size(), std::min(most, expected.size()));
     ASSERT_EQ(result.complete, expected.size() <= most);
     for (std::size_t i = 0; i < result.contacts.size(); ++i) {
@@ -75,16 +73,16 @@ void expectSameAsOracle(const Scene& scene)
       ASSERT_TRUE(norm == 0.0 || std::abs(norm - 1.0) < 1e-9) << norm;
     }
   }
-  PairsWithin all = pairsWithin(placed_a, placed_b, within(scene.clearance), ~std::size_t{0});
+  PairsWithin all = pairsWithin(placed_a, placed_b, within(scene.clearance, ~std::size_t{0}));
   std::sort(all.pairs.begin(), all.pairs.end());
   std::vector<PointPair> sorted = expected;
   std::sort(sorted.begin(), sorted.end());
   ASSERT_TRUE(all.complete);
   ASSERT_EQ(all.pairs, sorted);
   if (expected.empty()) return;
-  const PairsWithin some = pairsWithin(placed_a, placed_b, within(scene.clearance), expected.size() - 1);
+  const PairsWithin some = pairsWithin(placed_a, placed_b, within(scene.clearance, expected.size() - 1));
   ASSERT_FALSE(some.complete);
-  ASSERT_TRUE(pairsWithin(placed_a, placed_b, within(scene.clearance), expected.size()).complete);
+  ASSERT_TRUE(pairsWithin(placed_a, placed_b, within(scene.clearance, expected.size())).complete);
 }
 
 TEST(Contacts, SameAsComparingAllPairs)
@@ -103,7 +101,7 @@ TEST(Contacts, NormalsPointFromTheOtherToTheFirst)
 {
   const Cloud low({{0, 0, 0}}), high({{0, 0, 0.5}});
   const SphereHierarchy a(high.view()), b(low.view());
-  const ContactsResult result = nearestContacts({a}, {b}, within(0.5), 3);
+  const ContactsResult result = nearestContacts({a}, {b}, within(0.5, 3));
   ASSERT_EQ(result.contacts.size(), 1u);
   EXPECT_EQ(result.contacts[0].distance, 0.5);
   EXPECT_EQ(result.contacts[0].normal, Eigen::Vector3d(0, 0, 1));
@@ -113,8 +111,8 @@ TEST(Contacts, RefusesWhatTheOthersRefuse)
 {
   const Cloud point({{0, 0, 0}});
   const SphereHierarchy a(point.view());
-  EXPECT_THROW(nearestContacts({a}, {a}, within(-1), 1), std::invalid_argument);
-  EXPECT_THROW(pairsWithin({a}, {a}, within(-1), 1), std::invalid_argument);
+  EXPECT_THROW(nearestContacts({a}, {a}, within(-1, 1)), std::invalid_argument);
+  EXPECT_THROW(pairsWithin({a}, {a}, within(-1, 1)), std::invalid_argument);
 }
 
 } // namespace

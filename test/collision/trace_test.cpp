@@ -18,9 +18,9 @@ using test::makePoints;
 using test::Random;
 using test::Shape;
 
-CollisionRequest within(double clearance)
+AnyRequest within(double clearance)
 {
-  CollisionRequest request;
+  AnyRequest request;
   request.clearance = clearance;
   return request;
 }
@@ -100,7 +100,7 @@ TEST(Trace, EmptyCloudsAndRefusals)
   const CollisionTrace trace = traceCollision({nothing}, {nothing}, within(1.0));
   EXPECT_EQ(trace.result.verdict, Verdict::free);
   EXPECT_TRUE(trace.a.empty() && trace.b.empty());
-  CollisionRequest request = within(-1.0);
+  AnyRequest request = within(-1.0);
   EXPECT_THROW(traceCollision({nothing}, {nothing}, request), std::invalid_argument);
   request = within(1.0);
   request.accuracy = Accuracy::nodePairs(5);

@@ -11,7 +11,7 @@ int main()
   const double robot[] = {0.5, 1, 0};
   const pcl_bsh::SphereHierarchy a(pcl_bsh::viewOf(wall, 3)), b(pcl_bsh::viewOf(robot, 1));
 
-  pcl_bsh::CollisionRequest request;
+  pcl_bsh::FlagsRequest request;
   request.clearance = 0.5;
   const auto found = pcl_bsh::collisionFlags({a}, {b}, request);
   const auto expected = pcl_bsh::brute_force::collisionFlags({a}, {b}, request);

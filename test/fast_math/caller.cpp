@@ -17,9 +17,9 @@ int failures = 0;
 void expect(const char* name, const float (&p)[3], const float (&q)[3], double clearance, bool hit, double distance)
 {
   const pcl_bsh::SphereHierarchy a(pcl_bsh::viewOf(p, 1)), b(pcl_bsh::viewOf(q, 1));
-  pcl_bsh::CollisionRequest request;
+  pcl_bsh::FlagsRequest request;
   request.clearance = clearance;
-  const bool any = pcl_bsh::anyCollision({a}, {b}, request).verdict == pcl_bsh::Verdict::colliding;
+  const bool any = pcl_bsh::anyCollision({a}, {b}, {clearance, {}}).verdict == pcl_bsh::Verdict::colliding;
   const bool flag = pcl_bsh::collisionFlags({a}, {b}, request).a[0] == 1;
   const double closest = pcl_bsh::closestPair({a}, {b}).distance;
   // As text: under -ffast-math a denormal compares equal to zero.

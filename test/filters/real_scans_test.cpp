@@ -5,6 +5,7 @@
 #include <pcl_bsh/search/cloud_view.h>
 
 #include "../query/kd_tree.h"
+#include "../query/question.h"
 #include "shared_scans.h"
 
 #include <gtest/gtest.h>
@@ -44,9 +45,9 @@ protected:
     if (!hasScan("lidar_sweep_a")) GTEST_SKIP() << scanFile("*") << " are not there";
   }
 
-  static CollisionRequest within(double clearance)
+  static test::Question within(double clearance)
   {
-    CollisionRequest request;
+    test::Question request;
     request.clearance = clearance;
     request.flagged = Side::both;
     request.threads = 2;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Any two clouds, poses and clearance: all queries against brute force, and both hierarchies validated.
+#include "../query/question.h"
 #include "bytes.h"
 #include "scene.h"
 #include "target.h"
@@ -43,7 +44,7 @@ void requireSound(const SphereHierarchy& hierarchy)
   require(defects.none(), defects.none() ? "" : defects.lines.front().c_str());
 }
 
-void compareAnswers(const Placed& a, const Placed& b, const CollisionRequest& request)
+void compareAnswers(const Placed& a, const Placed& b, const test::Question& request)
 {
   const auto [any, expected_any] =
       compared([&] { return anyCollision(a, b, request); }, [&] { return brute_force::anyCollision(a, b, request); });
@@ -53,7 +54,7 @@ void compareAnswers(const Placed& a, const Placed& b, const CollisionRequest& re
   require(any->verdict == expected_any->verdict, "anyCollision differs from brute force");
   require(any->witness.has_value() == (any->verdict == Verdict::colliding), "a witness belongs to a collision");
   if (any->witness) {
-    const PointsView &p = a.hierarchy.view(), &q = b.hierarchy.view();
+    const PointsView &p = a.hierarchy().view(), &q = b.hierarchy().view();
     const auto [i, j] = *any->witness;
     require(
         ExactDistance(a.pose, b.pose).compare(p.point(i), q.point(j), request.clearance, p.radius(i), q.radius(j)) <= 0,
@@ -84,7 +85,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
   if (!first || !second) return 0;
 
   const Placed placed_a{*first, fuzz::anyPose(bytes)}, placed_b{*second, fuzz::anyPose(bytes)};
-  CollisionRequest request;
+  test::Question request;
   request.flagged = static_cast<Side>(1 + bytes.below(3));
   request.threads = 1 + bytes.below(2);
   request.clearance = fuzz::anyClearance(bytes, placed_a, placed_b);

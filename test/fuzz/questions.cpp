@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "questions.h"
+#include "../query/question.h"
 
 #include "target.h"
 
@@ -64,7 +65,7 @@ double anyLength(double tie, double unit, Random& random)
 
 ExactDistance::Pair posed(const Placed& a, const Placed& b, PointPair pair)
 {
-  const PointsView &p = a.hierarchy.view(), &q = b.hierarchy.view();
+  const PointsView &p = a.hierarchy().view(), &q = b.hierarchy().view();
   return {p.point(pair.a), q.point(pair.b), p.radius(pair.a), q.radius(pair.b)};
 }
 
@@ -89,7 +90,7 @@ void requireFlags(const std::vector<std::uint8_t>& flags, const std::vector<std:
   }
 }
 
-void requireHeld(const Interval& interval, double distance, const CollisionRequest& request, const char* what)
+void requireHeld(const Interval& interval, double distance, const test::Question& request, const char* what)
 {
   if (!request.accuracy.isProven() || (interval.lower <= distance && distance <= interval.upper)) return;
   std::ostringstream text;
@@ -127,7 +128,7 @@ Accuracy anyAccuracy(double unit, Random& random)
   }
 }
 
-double withTolerance(const CollisionRequest& request)
+double withTolerance(const test::Question& request)
 {
   const double more = request.accuracy.mode == Accuracy::Mode::tolerance ? request.accuracy.value : 0.0;
   return std::min(request.clearance + more, std::numeric_limits<double>::max());
@@ -140,7 +141,7 @@ std::vector<PointPair> collidingPairs(const Placed& a, const Placed& b, double c
   const DefaultFloatEnvironment environment;
   const ExactDistance distance(a.pose, b.pose);
   std::vector<PointPair> pairs;
-  const std::vector<Candidate> points = candidatesOf(a.hierarchy.view()), others = candidatesOf(b.hierarchy.view());
+  const std::vector<Candidate> points = candidatesOf(a.hierarchy().view()), others = candidatesOf(b.hierarchy().view());
   for (const Candidate& p : points)
     for (const Candidate& q : others)
       if (distance.compare(p.point, q.point, clearance, p.radius, q.radius) <= 0) pairs.push_back({p.record, q.record});
@@ -175,14 +176,14 @@ void requireNearest(const Placed& a, const Placed& b, const std::vector<PointPai
 
 double Questions::anyClearance(const Placed& a, const Placed& b, double unit, Random& random)
 {
-  const auto p = anyPoint(a.hierarchy.view(), random), q = anyPoint(b.hierarchy.view(), random);
+  const auto p = anyPoint(a.hierarchy().view(), random), q = anyPoint(b.hierarchy().view(), random);
   const double tie = p && q ? ExactDistance(a.pose, b.pose).gap(posed(a, b, {*p, *q})) : unit;
   return anyLength(tie, unit, random);
 }
 
 void Questions::ask(const Placed& a, const Placed& b, double unit, unsigned kinds, Random& random)
 {
-  CollisionRequest request;
+  test::Question request;
   request.clearance = anyClearance(a, b, unit, random);
   request.flagged = static_cast<Side>(random.integer(1, 3));
   request.threads = static_cast<unsigned>(random.integer(1, 3));
@@ -191,14 +192,14 @@ void Questions::ask(const Placed& a, const Placed& b, double unit, unsigned kind
   if ((kinds & 2) != 0) askFlags(a, b, request);
   if ((kinds & 4) != 0) askClosest(a, b, request);
   if ((kinds & 8) != 0) askContacts(a, b, request, random);
-  if ((kinds & 16) != 0) askNeighbors(a.hierarchy, b.hierarchy.view(), unit, random);
-  if ((kinds & 32) != 0) askBoxes(a.hierarchy, unit, random);
-  if ((kinds & 64) != 0) askClusters(a.hierarchy, unit, random);
+  if ((kinds & 16) != 0) askNeighbors(a.hierarchy(), b.hierarchy().view(), unit, random);
+  if ((kinds & 32) != 0) askBoxes(a.hierarchy(), unit, random);
+  if ((kinds & 64) != 0) askClusters(a.hierarchy(), unit, random);
   if ((kinds & 128) != 0) askAlong(a, b, unit, random);
-  if ((kinds & 256) != 0) askSpacing(a.hierarchy);
+  if ((kinds & 256) != 0) askSpacing(a.hierarchy());
 }
 
-void Questions::askAny(const Placed& a, const Placed& b, const CollisionRequest& request)
+void Questions::askAny(const Placed& a, const Placed& b, const test::Question& request)
 {
   const bool expected = brute_force::anyCollision(a, b, request).verdict == Verdict::colliding;
   const AnyResult any = anyCollision(a, b, request);
@@ -218,10 +219,10 @@ void Questions::askAny(const Placed& a, const Placed& b, const CollisionRequest&
           "trace: other work");
 }
 
-void Questions::askFlags(const Placed& a, const Placed& b, const CollisionRequest& request)
+void Questions::askFlags(const Placed& a, const Placed& b, const test::Question& request)
 {
   collisionFlags(a, b, request, flags_);
-  CollisionRequest wider = request;
+  test::Question wider = request;
   wider.clearance = withTolerance(request);
   const FlagsResult expected = brute_force::collisionFlags(a, b, request);
   if (request.accuracy.isExact()) {
@@ -239,7 +240,7 @@ void Questions::askFlags(const Placed& a, const Placed& b, const CollisionReques
   require(flags_.undecided_a == count(flags_.a, 2) && flags_.undecided_b == count(flags_.b, 2), "flags: undecided");
 }
 
-void Questions::askClosest(const Placed& a, const Placed& b, const CollisionRequest& request)
+void Questions::askClosest(const Placed& a, const Placed& b, const test::Question& request)
 {
   const DistanceResult found = closestPair(a, b, request), expected = brute_force::closestPair(a, b);
   requireHeld(found.interval, expected.distance, request, "closest pair");
@@ -252,15 +253,15 @@ void Questions::askClosest(const Placed& a, const Placed& b, const CollisionRequ
   }
 }
 
-void Questions::askContacts(const Placed& a, const Placed& b, const CollisionRequest& request, Random& random)
+void Questions::askContacts(const Placed& a, const Placed& b, const test::Question& request, Random& random)
 {
   const std::vector<PointPair> expected = collidingPairs(a, b, request.clearance);
   constexpr int counts[] = {0, 1, 2, 10, 1000000};
   const auto most = static_cast<std::size_t>(random.pick(counts));
-  const ContactsResult contacts = nearestContacts(a, b, request, most);
+  const ContactsResult contacts = nearestContacts(a, b, {request.clearance, most});
   require(contacts.complete == (expected.size() <= most), "contacts: complete or not");
   requireNearest(a, b, expected, most, contacts.contacts);
-  PairsWithin within = pairsWithin(a, b, request, most);
+  PairsWithin within = pairsWithin(a, b, {request.clearance, most});
   require(within.complete == (expected.size() <= most), "pairs: complete or not");
   require(within.pairs.size() == std::min(most, expected.size()), "pairs: another number");
   std::sort(within.pairs.begin(), within.pairs.end());
@@ -388,8 +389,8 @@ void Questions::askAlong(const Placed& a, const Placed& b, double unit, Random& 
   request.pose_summaries = random.chance(0.5);
   TrajectoryRequest all = request;
   all.flags = all.distances = all.first_poses = all.closest_poses = all.pose_summaries = true;
-  const TrajectoryResult expected = brute_force::collideAlong(a, b.hierarchy, poses, all);
-  const TrajectoryResult found = collideAlong(a, b.hierarchy, poses, request);
+  const TrajectoryResult expected = brute_force::collideAlong(a, b.hierarchy(), poses, all);
+  const TrajectoryResult found = collideAlong(a, b.hierarchy(), poses, request);
   const auto same = [&](const auto& x, const auto& y, bool asked, const char* what) {
     if (asked ? x == y : x.empty()) return;
     std::ostringstream text;
@@ -426,7 +427,7 @@ void Questions::askAlong(const Placed& a, const Placed& b, double unit, Random& 
     early.flags = true;
     early.accuracy = random.chance(0.5) ? Accuracy::level(static_cast<unsigned>(random.integer(0, 2)))
                                         : Accuracy::nodePairs(static_cast<std::uint64_t>(random.integer(0, 300)));
-    requireFlags(collideAlong(a, b.hierarchy, poses, early).flags, expected.flags, expected.flags, early.accuracy,
+    requireFlags(collideAlong(a, b.hierarchy(), poses, early).flags, expected.flags, expected.flags, early.accuracy,
                  "along: not what the accuracy grants");
   }
   if (random.chance(0.3)) {
@@ -436,7 +437,7 @@ void Questions::askAlong(const Placed& a, const Placed& b, double unit, Random& 
     swept.swept = unit / 64;
     std::vector<std::uint8_t> flags;
     try {
-      flags = collideAlong(a, b.hierarchy, poses, swept).flags;
+      flags = collideAlong(a, b.hierarchy(), poses, swept).flags;
     }
     catch (const std::invalid_argument&) { // coordinates too large for the tolerance
       return;
@@ -447,7 +448,7 @@ void Questions::askAlong(const Placed& a, const Placed& b, double unit, Random& 
   if (!isFinite({request.clearance, 0, 0}) || request.clearance > 1e100) return;
   const double step = unit / 4;
   std::vector<std::uint32_t> clashing;
-  const std::vector<Clash> clashes = findClashes(a.hierarchy.view(), expected, step);
+  const std::vector<Clash> clashes = findClashes(a.hierarchy().view(), expected, step);
   for (const Clash& clash : clashes) clashing.insert(clashing.end(), clash.records.begin(), clash.records.end());
   std::sort(clashing.begin(), clashing.end());
   std::vector<std::uint32_t> colliding;
@@ -456,7 +457,7 @@ void Questions::askAlong(const Placed& a, const Placed& b, double unit, Random& 
   require(clashing == colliding, "clashes: do not hold the colliding points once each");
   std::vector<std::int32_t> subset(colliding.begin(), colliding.end());
   subset.push_back(0); // so that there is an address
-  PointsView those = a.hierarchy.view();
+  PointsView those = a.hierarchy().view();
   those.indices = subset.data();
   those.index_count = colliding.size();
   const Clusters clusters = brute_force::euclideanClusters(SphereHierarchy(those), step);

@@ -2,6 +2,7 @@
 // Every public query, with all of its options, against brute force.
 #pragma once
 
+#include "../query/question.h"
 #include "changing_cloud.h"
 
 #include <pcl_bsh/collision/collide.h>
@@ -25,12 +26,12 @@ public:
   /// 0; the distance of two points, or one of the neighbouring numbers; some units; more than all.
   static double anyClearance(const Placed& a, const Placed& b, double unit, test::Random& random);
 
-  void askAny(const Placed& a, const Placed& b, const CollisionRequest& request);
-  void askFlags(const Placed& a, const Placed& b, const CollisionRequest& request);
-  void askClosest(const Placed& a, const Placed& b, const CollisionRequest& request);
+  void askAny(const Placed& a, const Placed& b, const test::Question& request);
+  void askFlags(const Placed& a, const Placed& b, const test::Question& request);
+  void askClosest(const Placed& a, const Placed& b, const test::Question& request);
 
 private:
-  void askContacts(const Placed& a, const Placed& b, const CollisionRequest& request, test::Random& random);
+  void askContacts(const Placed& a, const Placed& b, const test::Question& request, test::Random& random);
   void askNeighbors(const SphereHierarchy& cloud, const PointsView& queries, double unit, test::Random& random);
   void askBoxes(const SphereHierarchy& cloud, double unit, test::Random& random);
   void askClusters(const SphereHierarchy& cloud, double unit, test::Random& random);

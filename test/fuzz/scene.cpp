@@ -182,7 +182,7 @@ double anyClearance(Bytes& bytes, const Placed& a, const Placed& b)
   if (mode == 1) return bytes.take<double>();
   if (mode == 2) return troubles[bytes.below(std::size(troubles))];
   if (mode == 3) return bytes.below(256) / 16.0;
-  const PointsView &p = a.hierarchy.view(), &q = b.hierarchy.view();
+  const PointsView &p = a.hierarchy().view(), &q = b.hierarchy().view();
   const bool usable = p.size() > 0 && q.size() > 0 && a.pose.matrix().allFinite() && b.pose.matrix().allFinite();
   const unsigned i = bytes.take<std::uint8_t>(), j = bytes.take<std::uint8_t>();
   if (!usable) return 1.0;

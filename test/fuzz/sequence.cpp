@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sequence.h"
+#include "../query/question.h"
 
 #include "changing_cloud.h"
 #include "questions.h"
@@ -52,7 +53,7 @@ public:
     std::vector<std::vector<std::uint8_t>> flags(size());
     for (ObjectId i = 0; i < size(); ++i) flags[i].assign(clouds_[cloud_of_[i]].view().count, 0);
     std::size_t colliding = 0, near = 0, touching = 0;
-    CollisionRequest request;
+    test::Question request;
     request.clearance = clearance_;
     request.flagged = Side::both;
     for (ObjectId i = 0; i < size(); ++i)
@@ -116,7 +117,7 @@ private:
 
   void requireColliding(const Placed& a, const Placed& b, const PointPair& pair) const
   {
-    const PointsView &p = a.hierarchy.view(), &q = b.hierarchy.view();
+    const PointsView &p = a.hierarchy().view(), &q = b.hierarchy().view();
     require(pair.a < p.count && pair.b < q.count, "scene: a witness that there is not");
     require(ExactDistance(a.pose, b.pose)
                     .compare(p.point(pair.a), q.point(pair.b), clearance_, p.radius(pair.a), q.radius(pair.b)) <= 0,

@@ -81,7 +81,7 @@ TEST_F(RetainedMemory, IsGivenBackAltogether)
   {
     const SphereHierarchy hierarchy(cloud.view()), other(small.view());
     searchEverything(hierarchy);
-    CollisionRequest request;
+    FlagsRequest request;
     request.clearance = 0.01;
     collisionFlags({hierarchy}, {other}, request);
     EXPECT_GT(retainedMemory(), 0u);
@@ -112,7 +112,7 @@ TEST_F(RetainedMemory, OfNothingWorks)
   for (int i = 0; i < 2; ++i) {
     const SphereHierarchy hierarchy(cloud.view()), other(other_cloud.view());
     searchEverything(hierarchy);
-    CollisionRequest request;
+    FlagsRequest request;
     request.threads = 2;
     EXPECT_GT(collisionFlags({hierarchy}, {other}, request).colliding_a, 0u); // the same first points
     EXPECT_EQ(retainedMemory(), 0u);

@@ -70,7 +70,7 @@ void expectAsNew(const SphereHierarchy& updated, const PointsView& view, Random&
   const std::vector<Point3> points = test::makePoints(Shape::uniform, 50, 1, random);
   const test::Cloud probe_cloud(points);
   const SphereHierarchy probe(probe_cloud.view());
-  CollisionRequest request;
+  FlagsRequest request;
   request.clearance = 0.1;
   const Eigen::Isometry3d pose = random.pose(0.5);
   EXPECT_EQ(collisionFlags({updated}, {probe, pose}, request).a, collisionFlags({anew}, {probe, pose}, request).a);
@@ -235,7 +235,7 @@ TEST(HierarchyUpdate, AtTheLargestNumbers)
   EXPECT_FALSE(update.commit(viewOf(xyz.data(), 60)).sorted_anew);
   expectSound(hierarchy);
   EXPECT_TRUE(closestPair({hierarchy}, {hierarchy}).pair);
-  CollisionRequest request;
+  FlagsRequest request;
   EXPECT_EQ(collisionFlags({hierarchy}, {hierarchy}, request).colliding_a, 60u);
 
   for (double& x : xyz) x = -x;

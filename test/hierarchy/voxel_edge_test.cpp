@@ -89,7 +89,7 @@ TEST(VoxelEdge, AnswersAreRightWhateverItIs)
     const Cloud cloud(*points, Layout{Scalar::float64, 0, 0});
     const Cloud other(makePoints(Shape::uniform, 50, 1.0, random), Layout{Scalar::float64, 0, 0});
     const SphereHierarchy b(other.view());
-    CollisionRequest request;
+    FlagsRequest request;
     request.clearance = 0.25;
     request.flagged = Side::both;
     for (const double edge : {0.0, 1e-308, 1e-3, 1.0, 1e30, 1e308}) {

@@ -18,7 +18,7 @@ auto answerOf(const SphereHierarchy& hierarchy)
 {
   static const Cloud cloud = richCloud(8, 200);
   static const SphereHierarchy other(cloud.view());
-  CollisionRequest request;
+  FlagsRequest request;
   request.clearance = 0.05;
   request.flagged = Side::both;
   const FlagsResult found = collisionFlags({hierarchy}, {other}, request);
@@ -119,7 +119,7 @@ void build(const SphereHierarchy& hierarchy, Built built)
   if (built == Built::some) {
     const Cloud near(std::vector<Point3>{{0.25, 0.25, 0.25}}, Layout{Scalar::float64, 0, 0});
     const SphereHierarchy one(near.view());
-    CollisionRequest request;
+    FlagsRequest request;
     request.clearance = 0.1;
     collisionFlags({hierarchy}, {one}, request);
   }
@@ -213,7 +213,7 @@ TEST(HierarchyAllocationFailure, OfAQueryBeforeAChange)
         {
           const FailingAllocation failing(k);
           try {
-            CollisionRequest request;
+            FlagsRequest request;
             request.clearance = 0.05;
             collisionFlags({hierarchy}, {other}, request);
           }

@@ -7,6 +7,7 @@
 #include <pcl_bsh/report/clashes.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include "../query/question.h"
 #include "clouds.h"
 #include "every_allocation.h"
 
@@ -39,9 +40,9 @@ std::unique_ptr<FreshPair> freshPair()
   return std::make_unique<FreshPair>(scan(), model());
 }
 
-CollisionRequest request(unsigned threads = 1, Side flagged = Side::both)
+test::Question request(unsigned threads = 1, Side flagged = Side::both)
 {
-  CollisionRequest request;
+  test::Question request;
   request.clearance = 0.05;
   request.threads = threads;
   request.flagged = flagged;
@@ -124,7 +125,7 @@ TEST(AllocationFailure, OfFlagsInThreads)
 TEST(AllocationFailure, OfAnyCollisionAndTraces)
 {
   for (const double clearance : {0.0, 0.05}) {
-    CollisionRequest asked = request();
+    test::Question asked = request();
     asked.clearance = clearance;
     failEachAllocation(
         freshPair, [&](const auto& pair) { return answerOf(anyCollision(pair->placedA(), pair->placedB(), asked)); });
@@ -140,13 +141,13 @@ TEST(AllocationFailure, OfDistancesContactsAndPairs)
   failEachAllocation(freshPair,
                      [](const auto& pair) { return answerOf(closestPair(pair->placedA(), pair->placedB())); });
   failEachAllocation(freshPair, [](const auto& pair) {
-    const ContactsResult found = nearestContacts(pair->placedA(), pair->placedB(), request(), 20);
+    const ContactsResult found = nearestContacts(pair->placedA(), pair->placedB(), {request().clearance, 20});
     std::vector<double> answer{found.complete ? 1.0 : 0.0};
     for (const Contact& contact : found.contacts) answer.insert(answer.end(), {contact.distance, contact.normal.x()});
     return answer;
   });
   failEachAllocation(freshPair, [](const auto& pair) {
-    PairsWithin found = pairsWithin(pair->placedA(), pair->placedB(), request(), 100000);
+    PairsWithin found = pairsWithin(pair->placedA(), pair->placedB(), {request().clearance, 100000});
     std::sort(found.pairs.begin(), found.pairs.end());
     return std::tuple(found.pairs, found.complete);
   });
@@ -156,7 +157,7 @@ TEST(AllocationFailure, OfLessThanExactQueries)
 {
   for (const Accuracy& accuracy :
        {Accuracy::floatOnly(), Accuracy::tolerance(0.01), Accuracy::level(1), Accuracy::nodePairs(2000)}) {
-    CollisionRequest asked = request();
+    test::Question asked = request();
     asked.accuracy = accuracy;
     failEachAllocation(freshPair, [&](const auto& pair) {
       return std::tuple(answerOf(anyCollision(pair->placedA(), pair->placedB(), asked)),

@@ -3,6 +3,7 @@
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/query/accuracy.h>
 
+#include "question.h"
 #include "random_clouds.h"
 
 #include <gtest/gtest.h>
@@ -43,9 +44,9 @@ public:
   Placed placedA() const { return {a, scene.pose_a}; }
   Placed placedB() const { return {b, scene.pose_b}; }
 
-  CollisionRequest at(const Accuracy& accuracy) const
+  test::Question at(const Accuracy& accuracy) const
   {
-    CollisionRequest request;
+    test::Question request;
     request.clearance = scene.clearance;
     request.flagged = Side::both;
     request.accuracy = accuracy;
@@ -142,7 +143,7 @@ TEST(Accuracy, RefusesWhatIsNone)
   const Cloud one({{1, 2, 3}});
   const SphereHierarchy point(one.view());
   for (const double bad : {-1.0, infinity, std::numeric_limits<double>::quiet_NaN()}) {
-    CollisionRequest request;
+    test::Question request;
     request.accuracy = Accuracy::tolerance(bad);
     EXPECT_THROW(anyCollision({point}, {point}, request), std::invalid_argument);
     EXPECT_THROW(collisionFlags({point}, {point}, request), std::invalid_argument);
@@ -227,7 +228,7 @@ TEST(Accuracy, BudgetsAreTheSameForAnyNumberOfThreads)
   for (std::uint64_t seed = 900; seed < 930; ++seed) {
     const Truth truth(seed, 1000);
     for (const Accuracy& accuracy : {Accuracy::level(1), Accuracy::level(2), Accuracy::nodePairs(500)}) {
-      CollisionRequest request = truth.at(accuracy);
+      test::Question request = truth.at(accuracy);
       const FlagsResult expected = collisionFlags(truth.placedA(), truth.placedB(), request);
       request.threads = 4;
       const FlagsResult result = collisionFlags(truth.placedA(), truth.placedB(), request);
@@ -246,7 +247,7 @@ TEST(Accuracy, ToleranceErrsOnlyWithinIt)
       const double length = part * (truth.scene.clearance + 1e-3);
       const Accuracy accuracy = Accuracy::tolerance(length);
       SCOPED_TRACE(truth.scene.name + " at " + accuracy.text());
-      CollisionRequest wide = truth.at(Accuracy::exact());
+      test::Question wide = truth.at(Accuracy::exact());
       wide.clearance = truth.scene.clearance + length;
       const FlagsResult most = brute_force::collisionFlags(truth.placedA(), truth.placedB(), wide);
       const FlagsResult flags = truth.flagsAt(accuracy);
@@ -280,7 +281,7 @@ TEST(Accuracy, FloatAloneErrsOnlyNearTheClearance)
   for (std::uint64_t seed = 1200; seed < 1300; ++seed) {
     const Truth truth(seed);
     const double near = 1e-5 * (truth.scene.clearance + 1500); // scales go up to 2^10
-    CollisionRequest request = truth.at(Accuracy::exact());
+    test::Question request = truth.at(Accuracy::exact());
     request.clearance += near;
     const FlagsResult most = brute_force::collisionFlags(truth.placedA(), truth.placedB(), request);
     request.clearance = std::max(0.0, truth.scene.clearance - near);
@@ -321,7 +322,7 @@ struct TwoSurfaces {
 TEST(Accuracy, LevelZeroBuildsNothing)
 {
   const TwoSurfaces scene;
-  CollisionRequest request;
+  test::Question request;
   request.clearance = 0.25;
   request.flagged = Side::both;
   request.accuracy = Accuracy::level(0);
@@ -338,7 +339,7 @@ TEST(Accuracy, LessAccuracyIsLessWork)
 {
   const TwoSurfaces scene;
   const auto cost = [&](const Accuracy& accuracy) {
-    CollisionRequest request;
+    test::Question request;
     request.accuracy = accuracy;
     const Work work = closestPair({scene.a}, {scene.b, scene.pose}, request).work;
     return work.node_pairs + 16 * work.leaf_pairs;
@@ -372,7 +373,7 @@ TEST(Accuracy, BoundsInVoxelsOfAnotherUnit)
       for (const Accuracy& accuracy :
            {Accuracy::level(0), Accuracy::level(2), Accuracy::level(9), Accuracy::nodePairs(1), Accuracy::nodePairs(30),
             Accuracy::nodePairs(100000), Accuracy::time(10.0)}) {
-        CollisionRequest request;
+        test::Question request;
         request.accuracy = accuracy;
         const DistanceResult found = closestPair(first, second, request);
         EXPECT_LE(found.interval.lower, truth) << accuracy.text() << ", size " << size;
@@ -389,7 +390,7 @@ TEST(Accuracy, EmptyCloudsCollideWithNothingAtAnySetting)
   const Cloud none({}), one({{1, 2, 3}});
   const SphereHierarchy empty(none.view()), point(one.view());
   for (const char* text : {"exact", "float", "tolerance=1", "level=0", "pairs=0", "time=0"}) {
-    CollisionRequest request;
+    test::Question request;
     request.accuracy = Accuracy::parse(text);
     EXPECT_EQ(anyCollision({empty}, {point}, request).verdict, Verdict::free) << text;
     EXPECT_EQ(collisionFlags({point}, {empty}, request).a, std::vector<std::uint8_t>{kFree}) << text;

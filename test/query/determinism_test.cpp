@@ -3,6 +3,7 @@
 // voxels come to be built.
 #include <pcl_bsh/collision/collide.h>
 
+#include "question.h"
 #include "random_clouds.h"
 #include "simd_target.h"
 
@@ -49,7 +50,7 @@ void addAnswers(const Scene& scene, unsigned threads, BuildOrder order, Hash& ha
   options.threads = threads;
   const SphereHierarchy a(scene.a.view(), options), b(scene.b.view(), options);
   const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
-  CollisionRequest request;
+  test::Question request;
   request.clearance = scene.clearance;
   request.flagged = Side::both;
   request.threads = threads;

@@ -7,6 +7,7 @@
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include "question.h"
 #include "random_clouds.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +55,7 @@ TEST(FloatLimits, EveryRoundingInTheSameDirection)
     const Placed at_a{a.cloud, pose}, at_b{b.cloud, identity};
     const double gap = ExactDistance(pose, identity).gap({p0, q0});
     for (int i = -60; i <= 60; ++i) {
-      CollisionRequest request;
+      test::Question request;
       request.clearance = i == 0 && side > 0 ? clearance : gap + i * 1e-8;
       request.flagged = Side::both;
       const FlagsResult expected = brute_force::collisionFlags(at_a, at_b, request);

@@ -5,6 +5,7 @@
 #include <pcl_bsh/collision/collide.h>
 
 #include "hard_cases.h"
+#include "question.h"
 #include "random_clouds.h"
 #include "simd_target.h"
 
@@ -26,9 +27,9 @@ using namespace hard_cases;
 using test::Cloud;
 using test::Random;
 
-CollisionRequest within(double clearance, unsigned threads)
+test::Question within(double clearance, unsigned threads)
 {
-  CollisionRequest request;
+  test::Question request;
   request.clearance = clearance;
   request.flagged = Side::both;
   request.threads = threads;
@@ -57,14 +58,14 @@ int checks = 0; ///< answers compared so far
 
 void expectTruth(const Truth& truth, const HardCase& c, const Placed& a, const Placed& b, unsigned threads)
 {
-  const CollisionRequest request = within(c.clearance, threads);
+  const test::Question request = within(c.clearance, threads);
   const AnyResult any = anyCollision(a, b, request);
   ASSERT_EQ(any.verdict, truth.any.verdict);
   if (any.witness) {
-    EXPECT_LE(
-        ExactDistance(a.pose, b.pose)
-            .compare(a.hierarchy.view().point(any.witness->a), b.hierarchy.view().point(any.witness->b), c.clearance),
-        0);
+    EXPECT_LE(ExactDistance(a.pose, b.pose)
+                  .compare(a.hierarchy().view().point(any.witness->a), b.hierarchy().view().point(any.witness->b),
+                           c.clearance),
+              0);
   }
   const FlagsResult flags = collisionFlags(a, b, request);
   EXPECT_EQ(flags.a, truth.flags.a);

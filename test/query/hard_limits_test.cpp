@@ -4,6 +4,7 @@
 // each.
 #include <pcl_bsh/collision/collide.h>
 
+#include "question.h"
 #include "random_clouds.h"
 
 #include <gtest/gtest.h>
@@ -69,7 +70,7 @@ void expectOrdinaryWork(std::size_t count, const std::function<Point3(std::size_
   const Cloud a(points, {scalar}), b(others, {scalar});
   onSmallStack([&] {
     const SphereHierarchy ha(a.view()), hb(b.view());
-    CollisionRequest request;
+    test::Question request;
     request.flagged = Side::both;
     const FlagsResult itself = collisionFlags({ha}, {ha}, request);
     EXPECT_EQ(itself.colliding_a, count);

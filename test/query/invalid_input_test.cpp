@@ -9,6 +9,8 @@
 #include <pcl_bsh/scene/scene.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include "question.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,7 +49,7 @@ protected:
 
 TEST_F(InvalidInputTest, NamesWhatAQueryRefuses)
 {
-  CollisionRequest request;
+  test::Question request;
   request.clearance = -0.25;
   const InvalidInput clearance = thrownBy([&] { anyCollision({nothing}, {nothing}, request); });
   EXPECT_EQ(clearance.input(), Input::clearance);

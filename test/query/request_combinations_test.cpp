@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Options that are each right by themselves may not be so together: all of them at once, against brute force.
 #include "../fuzz/questions.h"
+#include "question.h"
 #include "random_clouds.h"
 
 #include <pcl_bsh/neighbors/brute_force_neighbors.h>
@@ -56,7 +57,7 @@ TEST(RequestCombinations, AnyFlagsAndClosestPair)
   for (unsigned options = 0; options < 256; ++options) {
     const Cloud a = cloudWith(options & 15, 20, random), b = cloudWith(options >> 4, 17, random);
     const SphereHierarchy scan(a.view(), voxels(options & 15)), model(b.view(), voxels(options >> 4));
-    CollisionRequest request;
+    test::Question request;
     request.clearance = random.integer(0, 4) / 8.0;
     for (const Accuracy& accuracy : accuracies)
       for (const Side side : {Side::a, Side::b, Side::both})

@@ -3,6 +3,7 @@
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include "question.h"
 #include "random_clouds.h"
 #include "simd_target.h"
 
@@ -37,7 +38,7 @@ TrajectoryResult alongPath(const test::Scene& scene, const SphereHierarchy& a, c
 Answers answersOn(std::int64_t target, const test::Scene& scene)
 {
   const test::OnTarget on_target(target);
-  CollisionRequest request;
+  test::Question request;
   request.clearance = scene.clearance;
   request.flagged = Side::both;
   const SphereHierarchy a(scene.a.view()), b(scene.b.view());

@@ -5,6 +5,7 @@
 #include <pcl_bsh/collision/brute_force.h>
 #include <pcl_bsh/scene/scene.h>
 
+#include "../query/question.h"
 #include "scene_worlds.h"
 
 #include <gtest/gtest.h>
@@ -130,9 +131,9 @@ void eachPartPair(const RandomWorld& world, const pcl_bsh::Scene& scene, const V
           for (std::uint32_t j = 0; j < scene[b].parts.size(); ++j) visit(a, b, i, j, *clearance);
 }
 
-inline CollisionRequest within(double clearance)
+inline Question within(double clearance)
 {
-  CollisionRequest request;
+  Question request;
   request.clearance = clearance;
   request.flagged = Side::both;
   return request;
@@ -217,7 +218,7 @@ inline void expectContactsAsQueried(const RandomWorld& world, const pcl_bsh::Sce
 {
   std::vector<std::vector<Contact>> expected;
   eachPartPair(world, scene, [&](ObjectId a, ObjectId b, std::uint32_t i, std::uint32_t j, double clearance) {
-    const ContactsResult contacts = nearestContacts(placed(scene, a, i), placed(scene, b, j), within(clearance), most);
+    const ContactsResult contacts = nearestContacts(placed(scene, a, i), placed(scene, b, j), {clearance, most});
     if (!contacts.contacts.empty()) expected.push_back(contacts.contacts);
   });
   ASSERT_EQ(result.contacts.size(), expected.size());

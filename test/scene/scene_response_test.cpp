@@ -43,7 +43,7 @@ double distance(const Scene& scene, ObjectId a, ObjectId b)
 
 bool collides(const Scene& scene, ObjectId a, ObjectId b)
 {
-  CollisionRequest request;
+  AnyRequest request;
   request.clearance = scene.options().clearance;
   return brute_force::anyCollision({*scene[a].parts[0].hierarchy, scene.worldPose(a)},
                                    {*scene[b].parts[0].hierarchy, scene.worldPose(b)}, request)

@@ -310,7 +310,7 @@ TEST(Scene, WhatIsRememberedLastsNoLongerThanItHolds)
     int colliding = 0;
     for (int step = 0; step < 60; ++step) {
       const SceneResult result = scene.step(0.1);
-      CollisionRequest request = within(options.clearance);
+      const AnyRequest request{options.clearance, {}};
       const bool expected =
           brute_force::anyCollision(placed(scene, 0, 0), placed(scene, 1, 0), request).witness.has_value();
       ASSERT_EQ(result.any.size(), expected ? 1u : 0u) << step;

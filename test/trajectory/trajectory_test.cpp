@@ -96,7 +96,7 @@ Samples sample(const Placed& scan, const SphereHierarchy& model, const Poses& po
     }
     return points;
   };
-  const PointsView &a = scan.hierarchy.view(), &b = model.view();
+  const PointsView &a = scan.hierarchy().view(), &b = model.view();
   const auto points = finite(a), obstacles = finite(b);
   Samples samples;
   samples.smallest.assign(a.count, std::numeric_limits<double>::infinity());

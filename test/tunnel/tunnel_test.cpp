@@ -88,7 +88,7 @@ TEST(TunnelPassage, BendsShowCollisionsThatTheCrossSectionDoesNot)
 {
   const Passage run = makePassage(Size::atScale(0.02));
   const SphereHierarchy scan(viewOf(run.scan)), wagon(viewOf(run.wagon));
-  CollisionRequest request;
+  FlagsRequest request;
   request.clearance = clearance;
   std::vector<std::uint8_t> collides(run.scan.size(), 0);
   for (const Eigen::Isometry3d& pose : run.poses) {

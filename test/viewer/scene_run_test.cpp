@@ -45,7 +45,7 @@ protected:
   /// What collides at a step, by the query for two clouds.
   static std::size_t collidingAt(const World& world, std::size_t step, double clearance)
   {
-    CollisionRequest request;
+    FlagsRequest request;
     request.clearance = clearance;
     request.flagged = Side::both;
     const FlagsResult flags = collisionFlags({*world.things()[0].hierarchy, world.poseOf(0, step)},

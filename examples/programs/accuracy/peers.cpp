@@ -80,7 +80,7 @@ public:
   {
     const SphereHierarchy a(subject.a), b(subject.b);
     for (const Eigen::Isometry3d& pose : subject.poses) {
-      CollisionRequest request;
+      FlagsRequest request;
       request.clearance = subject.clearance;
       truths_.push_back(collisionFlags({a}, {b, pose}, request).a);
       distances_.push_back(closestPair({a}, {b, pose}).distance);

@@ -62,10 +62,9 @@ public:
     a_.buildAll(threads);
     b_.buildAll(threads);
     for (const Eigen::Isometry3d& pose : subject.poses) {
-      const CollisionRequest exact = request({});
-      FlagsResult flags = collisionFlags({a_}, {b_, pose}, exact);
-      truths_.push_back({anyCollision({a_}, {b_, pose}, exact).verdict, std::move(flags.a),
-                         closestPair({a_}, {b_, pose}, exact).distance});
+      FlagsResult flags = collisionFlags({a_}, {b_, pose}, flagsRequest({}));
+      truths_.push_back({anyCollision({a_}, {b_, pose}, anyRequest({})).verdict, std::move(flags.a),
+                         closestPair({a_}, {b_, pose}).distance});
     }
   }
 
@@ -74,9 +73,9 @@ public:
   {
     const auto start = Clock::now();
     for (const Eigen::Isometry3d& pose : subject_.poses) {
-      if (query == Query::any) anyCollision({a_}, {b_, pose}, request(accuracy));
-      if (query == Query::flags) collisionFlags({a_}, {b_, pose}, request(accuracy));
-      if (query == Query::distance) closestPair({a_}, {b_, pose}, request(accuracy));
+      if (query == Query::any) anyCollision({a_}, {b_, pose}, anyRequest(accuracy));
+      if (query == Query::flags) collisionFlags({a_}, {b_, pose}, flagsRequest(accuracy));
+      if (query == Query::distance) closestPair({a_}, {b_, pose}, {accuracy});
     }
     return std::chrono::duration<double>(Clock::now() - start).count() / static_cast<double>(subject_.poses.size());
   }
@@ -95,14 +94,14 @@ public:
       const Placed b{b_, subject_.poses[i]};
       const Truth& truth = truths_[i];
       if (query == Query::any) {
-        const AnyResult result = anyCollision({a_}, b, request(accuracy));
+        const AnyResult result = anyCollision({a_}, b, anyRequest(accuracy));
         answers += 1;
         undecided += result.verdict == Verdict::undecided ? 1 : 0;
         m.wrong += result.verdict != Verdict::undecided && result.verdict != truth.any ? 1 : 0;
         m.work += result.work;
       }
       else if (query == Query::flags) {
-        const FlagsResult result = collisionFlags({a_}, b, request(accuracy));
+        const FlagsResult result = collisionFlags({a_}, b, flagsRequest(accuracy));
         answers += static_cast<double>(a_.size());
         undecided += static_cast<double>(result.undecided_a);
         for (std::size_t k = 0; k < result.a.size(); ++k)
@@ -110,7 +109,7 @@ public:
         m.work += result.work;
       }
       else {
-        const DistanceResult result = closestPair({a_}, b, request(accuracy));
+        const DistanceResult result = closestPair({a_}, b, {accuracy});
         answers += 1;
         m.certified_error += result.interval.upper - result.interval.lower;
         m.actual_error += std::abs(result.distance - truth.distance);
@@ -130,9 +129,11 @@ public:
   }
 
 private:
-  CollisionRequest request(const Accuracy& accuracy) const
+  AnyRequest anyRequest(const Accuracy& accuracy) const { return {subject_.clearance, accuracy}; }
+
+  FlagsRequest flagsRequest(const Accuracy& accuracy) const
   {
-    CollisionRequest request;
+    FlagsRequest request;
     request.clearance = subject_.clearance;
     request.threads = threads_;
     request.accuracy = accuracy;
@@ -182,7 +183,7 @@ FitMeasurement measureFit(const Subject& subject, SphereFit fit, const char* nam
     a.buildAll(threads);
     b.buildAll(threads);
     build.push_back(std::chrono::duration<double>(Clock::now() - start).count());
-    CollisionRequest request;
+    FlagsRequest request;
     request.clearance = subject.clearance;
     request.threads = threads;
     const auto timed = [&](const auto& ask) {
@@ -191,7 +192,7 @@ FitMeasurement measureFit(const Subject& subject, SphereFit fit, const char* nam
       return std::chrono::duration<double>(Clock::now() - begin).count() / static_cast<double>(subject.poses.size());
     };
     flags.push_back(timed([&](const Placed& placed) { collisionFlags({a}, placed, request); }));
-    distance.push_back(timed([&](const Placed& placed) { closestPair({a}, placed, request); }));
+    distance.push_back(timed([&](const Placed& placed) { closestPair({a}, placed); }));
     m.mean_leaf_radius = a.statistics().mean_leaf_radius;
   }
   m.build = spreadOf(build);

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The smallest distance of two posed clouds, and the pair of points that realises it.
+#pragma once
+
+#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/query/result.h>
+
+#include <limits>
+#include <optional>
+
+namespace pcl_bsh {
+
+/// What closestPair() reads.
+struct DistanceRequest {
+  Accuracy accuracy; ///< exact, unless the caller asks for less
+};
+
+struct DistanceResult {
+  /// Smallest |T_a p - T_b q|, less the two points' radii where given (then negative = depth of overlap); rounded to
+  /// the nearest double. Infinity when a cloud has no finite point.
+  double distance = std::numeric_limits<double>::infinity();
+  std::optional<PointPair> pair; ///< the pair that realises it; of several, the smallest (a, b)
+  /// Holds the smallest distance for certain. The neighbouring doubles of `distance` when the request's accuracy is
+  /// exact; otherwise `distance` and `pair` are those of the nearest pair that was found, and the upper end.
+  Interval interval;
+  Work work;
+};
+
+/// The smallest distance and the pair that realises it. One thread.
+/// @throws std::invalid_argument when the accuracy or a pose is not what its declaration asks for.
+DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceRequest& request = {});
+
+} // namespace pcl_bsh
