@@ -130,6 +130,8 @@ inline nlohmann::ordered_json toJson(const CollisionReport& report)
                      {"could_hide_collisions", report.density.couldHide(report.clearance)}};
   if (report.path) json["path"] = toJson(*report.path);
   json["work"] = {{"node_pairs", report.work.node_pairs},
+                  {"volumes_carried", report.work.volumes_carried},
+                  {"volumes_built", report.work.volumes_built},
                   {"leaf_pairs", report.work.leaf_pairs},
                   {"exact_decisions", report.work.exact_decisions},
                   {"voxels_built", report.work.voxels_built},

@@ -84,7 +84,8 @@ public:
       if (effect == Effect::first_contact) out << ",first_contacts,earliest_fraction";
       if (effect == Effect::swept) out << ",swept_points";
       if (effect == Effect::self) out << ",self_collisions";
-      out << ',' << name << "_queries," << name << "_reused," << name << "_node_pairs," << name << "_seconds";
+      out << ',' << name << "_queries," << name << "_reused," << name << "_node_pairs," << name << "_updates," << name
+          << "_seconds";
     }
     if (moves()) out << ",touched,stuck,grounded,travelled,wanted";
     out << '\n';
@@ -110,7 +111,8 @@ public:
       if (effect == Effect::swept) out << ',' << flaggedPoints(result.swept);
       if (effect == Effect::self) out << ',' << result.self.size();
       const EffectCost& cost = result.cost(effect);
-      out << ',' << cost.pairs << ',' << cost.reused << ',' << cost.work.node_pairs << ',' << shortest(cost.seconds);
+      out << ',' << cost.pairs << ',' << cost.reused << ',' << cost.work.node_pairs << ',' << cost.work.updates() << ','
+          << shortest(cost.seconds);
     }
     if (moves()) {
       std::size_t touched = 0, stuck = 0, grounded = 0;
@@ -146,10 +148,9 @@ private:
 
 inline nlohmann::ordered_json toJson(const Work& work)
 {
-  return {{"node_pairs", work.node_pairs},
-          {"leaf_pairs", work.leaf_pairs},
-          {"exact_decisions", work.exact_decisions},
-          {"voxels_built", work.voxels_built}};
+  return {{"node_pairs", work.node_pairs},           {"volumes_carried", work.volumes_carried},
+          {"volumes_built", work.volumes_built},     {"leaf_pairs", work.leaf_pairs},
+          {"exact_decisions", work.exact_decisions}, {"voxels_built", work.voxels_built}};
 }
 
 inline nlohmann::ordered_json toJson(const EffectCost& cost)

@@ -74,9 +74,9 @@ void printRow(const Stand& stand, const FlagsResult& flags, const DistanceResult
   Work work = flags.work;
   work += closest.work;
   const auto counted = [](std::uint64_t count) { return static_cast<unsigned long long>(count); };
-  std::printf("%6.1f %10zu %13.3f %11llu %11llu %16llu %13llu %10.2f", stand.x, flags.colliding_a, closest.distance,
-              counted(work.node_pairs), counted(work.leaf_pairs), counted(work.exact_decisions),
-              counted(work.voxels_built), milliseconds);
+  std::printf("%6.1f %10zu %13.3f %13llu %8llu %8llu %11llu %16llu %10.2f", stand.x, flags.colliding_a,
+              closest.distance, counted(work.node_pairs), counted(work.volumes_carried), counted(work.volumes_built),
+              counted(work.leaf_pairs), counted(work.exact_decisions), milliseconds);
   if (!agrees(stand, flags, closest)) std::printf("  not the reference: %zu, %.3f", stand.colliding, stand.distance);
   std::printf("\n");
 }
@@ -85,7 +85,7 @@ void printRow(const Stand& stand, const FlagsResult& flags, const DistanceResult
 void showDial(const SphereHierarchy& building, const Placed& man)
 {
   std::printf("\nWhat accuracy costs: the smallest distance with the man at x = %.1f\n\n", dial_x);
-  std::printf(" setting          at least [m]  at most [m]  sphere tests  time [ms]\n");
+  std::printf(" setting          at least [m]  at most [m]  sphere tests  updates  time [ms]\n");
   for (const char* setting :
        {"level=0", "level=2", "pairs=300", "pairs=1000", "pairs=2000", "tolerance=0.01", "exact"}) {
     DistanceRequest request;
@@ -99,8 +99,9 @@ void showDial(const SphereHierarchy& building, const Placed& man)
           std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
     std::nth_element(milliseconds.begin(), milliseconds.begin() + 4, milliseconds.end());
-    std::printf(" %-16s %12.4f %12.4f %13llu %10.3f\n", setting, std::max(found.interval.lower, 0.0),
-                found.interval.upper, static_cast<unsigned long long>(found.work.node_pairs), milliseconds[4]);
+    std::printf(" %-16s %12.4f %12.4f %13llu %8llu %10.3f\n", setting, std::max(found.interval.lower, 0.0),
+                found.interval.upper, static_cast<unsigned long long>(found.work.node_pairs),
+                static_cast<unsigned long long>(found.work.updates()), milliseconds[4]);
   }
 }
 
@@ -125,7 +126,8 @@ int demonstrate(const char* building_path, const char* man_path, const char* out
 
   std::printf("A man of %zu points walks through a scanned building of %zu points; clearance %.1f m\n\n",
               man_spheres.size(), building_spheres.size(), clearance);
-  std::printf(" x [m]  colliding  distance [m]  node pairs  leaf pairs  exact decisions  voxels built  time [ms]\n");
+  std::printf(
+      " x [m]  colliding  distance [m]  sphere tests  carried    built  leaf pairs  exact decisions  time [ms]\n");
 
   FlagsResult marked;
   std::size_t agreeing = 0;

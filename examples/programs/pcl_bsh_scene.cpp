@@ -150,14 +150,14 @@ nlohmann::ordered_json summaryOf(const io::SceneFile& file, const cli::SceneTota
 void printSummary(const io::SceneFile& file, const cli::SceneTotals& totals)
 {
   const auto counted = [](std::uint64_t count) { return static_cast<unsigned long long>(count); };
-  std::printf("%-14s %10s %10s %12s %12s %8s %10s\n", "effect", "queries", "reused", "node pairs", "leaf pairs",
-              "exact", "time [ms]");
+  std::printf("%-14s %10s %10s %12s %12s %12s %8s %10s\n", "effect", "queries", "reused", "node pairs", "updates",
+              "leaf pairs", "exact", "time [ms]");
   for (std::size_t e = 0; e < kEffects; ++e) {
     if (!file.options.effects.has(static_cast<Effect>(e))) continue;
     const EffectCost& cost = totals.costs[e];
-    std::printf("%-14s %10llu %10llu %12llu %12llu %8llu %10.2f\n", nameOf(static_cast<Effect>(e)), counted(cost.pairs),
-                counted(cost.reused), counted(cost.work.node_pairs), counted(cost.work.leaf_pairs),
-                counted(cost.work.exact_decisions), 1e3 * cost.seconds);
+    std::printf("%-14s %10llu %10llu %12llu %12llu %12llu %8llu %10.2f\n", nameOf(static_cast<Effect>(e)),
+                counted(cost.pairs), counted(cost.reused), counted(cost.work.node_pairs), counted(cost.work.updates()),
+                counted(cost.work.leaf_pairs), counted(cost.work.exact_decisions), 1e3 * cost.seconds);
   }
   const BroadPhaseCost& grid = totals.broad_phase;
   std::printf("%-14s %llu objects moved, %llu voxels left, %llu entered, %llu boxes compared, %.2f ms\n", "grid",

@@ -196,8 +196,8 @@ private:
     std::vector<VoxelFindings> findings(storage_.voxel_count);
     Progress progress(half(0.0), storage_.size);
     parallelFor(storage_.voxel_count, threads_, [&](std::size_t v) {
-      std::uint64_t built_now = 0;
-      storage_.built(v, built_now);
+      BuildWork unasked;
+      storage_.built(v, unasked);
       findings[v] = VoxelCheck(storage_, static_cast<std::uint32_t>(v), held_).run();
       progress.add(storage_.voxels[v].count);
     });

@@ -127,6 +127,7 @@ public:
     }
     std::vector<std::uint32_t> reached;
     const bool apart = above.separates(pairs_.clearance + a_.storage.largest_radius + b_.storage.largest_radius);
+    if (!apart) ++found.work.volumes_carried; // the voxel's own sphere
     const bool all = !apart && !reach(voxel, above, b_.storage.top[0], reached);
     if (all) return a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { settle(record); });
     if (apart || reached.empty()) {
@@ -267,6 +268,8 @@ private:
     carry(frame.m.data(), frame.g.data(), visit.node->x, visit.node->y, visit.node->z, kLanes, visit.x, visit.y,
           visit.z);
     const Point center = carryPoint(frame.m.data(), frame.g.data(), visit.around.center);
+    found.work.volumes_carried +=
+        visit.node->count + std::uint64_t{1}; // the children's spheres and the one around them
     visit.ball = {center.x, center.y, center.z, visit.around.radius * frame.stretch_a + meetings_[meeting].prune_reach,
                   0.0f};
     visit.smallest = std::numeric_limits<float>::infinity();
@@ -492,6 +495,7 @@ void findNearVoxels(const Spaces& a, const Node& others, const RelativeFrame& fr
 {
   const SphereLanes spheres{others.x, others.y, others.z, others.r, frame.stretch_b};
   work.node_pairs += std::uint64_t{node.count} * others.count;
+  work.volumes_carried += node.count;
   for (std::uint32_t lane = 0; lane < node.count; ++lane) {
     const Point center = carriedCenter(frame, node, lane);
     const Ball ball{center.x, center.y, center.z, node.r[lane] * frame.stretch_a + reach, 0.0f};

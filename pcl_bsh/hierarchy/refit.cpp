@@ -94,9 +94,9 @@ bool readRange(const Voxel& voxel, const PointsView& view, Range& range, float& 
 
 /// Gives the voxel its points' new coordinates and its frame. Its tree follows where it can, else it is to be built
 /// anew: where points of one place may have parted, where spheres have grown by more than `most_growth` on average, and
-/// where there is no memory. @param points room for as many as the voxel has. @return whether a tree was dropped
-bool follow(Voxel& voxel, const LocalFrame& frame, const PointsView& now, double most_growth, SphereFit fit,
-            PointRecord* points) noexcept
+/// where there is no memory. @param points room for as many as the voxel has. @param report what became of the voxel
+void follow(Voxel& voxel, const LocalFrame& frame, const PointsView& now, double most_growth, SphereFit fit,
+            PointRecord* points, RefitReport& report) noexcept
 {
   const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;
   if (built && voxel.leaf_radii == 0.0) voxel.leaf_radii = sumOfLeafRadii(voxel);
@@ -121,7 +121,8 @@ bool follow(Voxel& voxel, const LocalFrame& frame, const PointsView& now, double
     voxel.state.store(Voxel::sorted, std::memory_order_release);
   }
   measureVoxel(voxel, now);
-  return built && !keep;
+  report.voxels_dropped += built && !keep;
+  report.volumes_refitted += 1 + countChildren(voxel.nodes);
 }
 
 std::size_t countFinite(const PointsView& view)
@@ -141,6 +142,7 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
   const auto sortAnew = [&] {
     storage_ = std::make_unique<Storage>(now, storage_->options);
     report.sorted_anew = true;
+    report.volumes_refitted = storage_->voxel_count + countChildren(storage_->top);
     return report;
   };
   Storage& s = *storage_;
@@ -171,11 +173,12 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
     s.view = now;
     s.strayed = strayed;
     for (std::size_t v = 0; v < s.voxel_count; ++v)
-      report.voxels_dropped += follow(s.voxels[v], frames[v], now, most_growth, s.options.fit, points.data());
+      follow(s.voxels[v], frames[v], now, most_growth, s.options.fit, points.data(), report);
     s.frame = frame;
     s.setAbove(Storage::raise(voxels, frame, s.takeAbove()));
   }();
   report.voxels_refitted = s.voxel_count;
+  report.volumes_refitted += countChildren(s.top);
   return report;
 }
 

@@ -120,10 +120,13 @@ namespace pcl_bsh {
 
 HWY_EXPORT(fitSlabsOnTarget);
 
-Slabs* fitSlabs(const Voxel& voxel)
+const Slabs* LazySlabs::fit(const Voxel& voxel, BuildWork& work)
 {
   auto slabs = std::make_unique<Slabs[]>(voxel.nodes.size()); // all zero
   HWY_DYNAMIC_DISPATCH(fitSlabsOnTarget)(voxel, slabs.get());
+  Slabs* known = nullptr;
+  if (!slabs_.compare_exchange_strong(known, slabs.get(), std::memory_order_acq_rel)) return known;
+  work.volumes_built += voxel.nodes.size() - 1; // every node but the root is a child that is no leaf
   return slabs.release();
 }
 

@@ -2,7 +2,7 @@
 // Scans are surfaces: where spheres of two that face each other overlap, planes may still separate them.
 #pragma once
 
-#include <pcl_bsh/hierarchy/node.h>
+#include <pcl_bsh/hierarchy/build_work.h>
 
 #include <atomic>
 
@@ -17,9 +17,6 @@ struct alignas(32) Slabs {
   float x[kNodeChildren], y[kNodeChildren], z[kNodeChildren], h[kNodeChildren];
 };
 
-/// One per node of a built voxel whose points have no radii.
-Slabs* fitSlabs(const Voxel& voxel);
-
 /// The slabs of a voxel, fitted when they are first asked for.
 class LazySlabs {
 public:
@@ -28,15 +25,13 @@ public:
   LazySlabs& operator=(const LazySlabs&) = delete;
   ~LazySlabs() { reset(); }
 
-  /// Any number of threads may ask at once: all that are too early fit the same.
-  const Slabs* of(const Voxel& voxel)
+  /// One per node of a built voxel whose points have no radii. Any number of threads may ask at once: all that are too
+  /// early fit the same, and one of them counts.
+  /// @param work the slabs that this call added to the voxel are added to it
+  const Slabs* of(const Voxel& voxel, BuildWork& work)
   {
-    Slabs* known = slabs_.load(std::memory_order_acquire);
-    if (known) return known;
-    Slabs* fitted = fitSlabs(voxel);
-    if (slabs_.compare_exchange_strong(known, fitted, std::memory_order_acq_rel)) return fitted;
-    delete[] fitted;
-    return known;
+    const Slabs* known = slabs_.load(std::memory_order_acquire);
+    return known ? known : fit(voxel, work);
   }
 
   bool isFitted() const noexcept { return slabs_.load(std::memory_order_relaxed) != nullptr; }
@@ -50,6 +45,8 @@ public:
   }
 
 private:
+  const Slabs* fit(const Voxel& voxel, BuildWork& work);
+
   std::atomic<Slabs*> slabs_{nullptr};
 };
 

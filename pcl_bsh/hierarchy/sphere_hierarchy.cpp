@@ -65,8 +65,8 @@ void SphereHierarchy::buildAll(unsigned threads) const
 {
   const DefaultFloatEnvironment environment;
   parallelFor(storage_->voxel_count, threadCount(threads), [&](std::size_t v) {
-    std::uint64_t built_now = 0;
-    storage_->built(v, built_now);
+    BuildWork unasked;
+    storage_->built(v, unasked);
   });
 }
 

@@ -51,8 +51,10 @@ struct HierarchyDefects {
 struct RefitReport {
   bool sorted_anew = false; ///< everything was made anew: points had scattered, or some came or went
   std::size_t voxels_refitted = 0;
-  std::size_t voxels_dropped = 0; ///< built ones that had grown loose: their next visit builds them anew
-  double looseness = 1.0;         ///< mean growth of the voxels since points were sorted into them
+  std::size_t voxels_dropped = 0;   ///< built ones that had grown loose: their next visit builds them anew
+  std::size_t volumes_refitted = 0; ///< spheres fitted to the points: of the voxels, above them, and in those that keep
+                                    ///< their tree
+  double looseness = 1.0;           ///< mean growth of the voxels since points were sorted into them
 };
 
 /// The hierarchy of one cloud, in the cloud's own frame; poses belong to queries. Construction sorts the points into

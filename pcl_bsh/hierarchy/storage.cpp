@@ -140,7 +140,7 @@ void SphereHierarchy::Storage::release(Voxel& voxel, Voxel::State state)
   voxel.state.notify_all();
 }
 
-void SphereHierarchy::Storage::build(std::size_t index, std::uint64_t& built_now) const
+void SphereHierarchy::Storage::build(std::size_t index, BuildWork& work) const
 {
   Voxel& voxel = voxels[index];
   if (!claim(voxel)) return;
@@ -152,7 +152,8 @@ void SphereHierarchy::Storage::build(std::size_t index, std::uint64_t& built_now
     release(voxel, Voxel::sorted);
     throw;
   }
-  ++built_now;
+  ++work.voxels_built;
+  work.volumes_built += countChildren(voxel.nodes);
   release(voxel, Voxel::built);
 }
 

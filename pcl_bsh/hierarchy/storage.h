@@ -5,6 +5,7 @@
 #include <pcl_bsh/geometry/given_sphere.h>
 #include <pcl_bsh/geometry/local_frame.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/hierarchy/build_work.h>
 #include <pcl_bsh/hierarchy/large_buffer.h>
 #include <pcl_bsh/hierarchy/node.h>
 #include <pcl_bsh/hierarchy/slabs.h>
@@ -88,11 +89,11 @@ public:
   Storage(const PointsView& points, const HierarchyOptions& options);
 
   /// The voxel with its octree and spheres. Builds it on the first call; other threads wait.
-  /// @param built_now incremented when this call built it.
-  const Voxel& built(std::size_t voxel, std::uint64_t& built_now) const
+  /// @param work what this call built is added to it
+  const Voxel& built(std::size_t voxel, BuildWork& work) const
   {
     const Voxel& v = voxels[voxel];
-    if (v.state.load(std::memory_order_acquire) != Voxel::built) build(voxel, built_now);
+    if (v.state.load(std::memory_order_acquire) != Voxel::built) build(voxel, work);
     return v;
   }
 
@@ -186,7 +187,7 @@ public:
   std::size_t floats_unused = 0;                       ///< in the buffers, left behind by updates
 
 private:
-  void build(std::size_t voxel, std::uint64_t& built_now) const;
+  void build(std::size_t voxel, BuildWork& work) const;
 
   static std::size_t slotOf(std::uint64_t key, std::size_t slots) noexcept
   {

@@ -180,6 +180,7 @@ UpdateReport HierarchyUpdate::sortAnew(const PointsView& now)
   report.sorted_anew = true;
   report.points_read = hierarchy_.size();
   report.voxels_touched = hierarchy_.storage().voxel_count;
+  report.volumes_built = hierarchy_.storage().voxel_count + countChildren(hierarchy_.storage().top);
   return report;
 }
 
@@ -293,6 +294,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
       ++source;
     }
     if (t.records.empty()) continue;
+    ++report.volumes_built;
     Voxel& voxel = voxels[after.size()];
     fill(voxel, t, now, next_block, next_radii);
     measureVoxel(voxel, now);
@@ -303,6 +305,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
   takeUntil(storage.voxels.get() + storage.voxel_count);
   const LocalFrame frame = count > 0 ? frameOfAll(after, now.scalar) : LocalFrame();
   SphereHierarchy::Storage::Above above = SphereHierarchy::Storage::raise(after, frame, {});
+  report.volumes_built += countChildren(above.top);
   storage.buffers.reserve(storage.buffers.size() + 1);
   storage.radii_buffers.reserve(storage.radii_buffers.size() + 1);
 

@@ -21,6 +21,7 @@ struct UpdateReport {
   std::size_t voxels_added = 0;   ///< of these, new ones
   std::size_t voxels_removed = 0; ///< of these, ones left without a point
   std::size_t points_read = 0;    ///< of the touched voxels, afterwards
+  std::size_t volumes_built = 0;  ///< spheres fitted at once: of the touched voxels, and above all voxels
   bool sorted_anew = false;       ///< the whole cloud was, since the change reached into most of it or beyond its grid
 };
 

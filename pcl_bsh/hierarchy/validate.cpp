@@ -18,10 +18,10 @@ public:
 
   HierarchyDefects run()
   {
-    std::uint64_t built_now = 0;
+    BuildWork unasked;
     std::size_t points = 0;
     for (std::size_t v = 0; v < s_.voxel_count; ++v) {
-      const Voxel& voxel = s_.built(v, built_now);
+      const Voxel& voxel = s_.built(v, unasked);
       name_ = "voxel " + std::to_string(v);
       if (v > 0 && !(s_.voxels[v - 1].key < voxel.key)) defect("key out of order");
       if (voxel.begin != points) defect("its points do not begin where the last voxel's end");
@@ -151,7 +151,8 @@ private:
   /// its sphere's radius thicker than its points.
   void checkSlab(const Node& node, std::uint32_t index, std::uint32_t i, Voxel& voxel, const std::string& here)
   {
-    const Slabs& slabs = voxel.slabs.of(voxel)[index];
+    BuildWork unasked;
+    const Slabs& slabs = voxel.slabs.of(voxel, unasked)[index];
     const LocalFrame& f = voxel.frame;
     for (std::uint32_t k = node.begin[i]; k < node.begin[i + 1]; ++k) {
       const Point3 p = s_.view.point(voxel.records()[k]);

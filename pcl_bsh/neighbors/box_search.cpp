@@ -75,7 +75,9 @@ public:
 
   void run()
   {
-    if (cloud_.size > 0) visitAbove(LocalBox(cloud_.frame, box_), cloud_.top[0]);
+    if (cloud_.size == 0) return;
+    ++work_.volumes_carried;
+    visitAbove(LocalBox(cloud_.frame, box_), cloud_.top[0]);
   }
 
 private:
@@ -88,11 +90,12 @@ private:
       if (box.misses(center, radius)) continue;
       if (box.holds(center, radius)) {
         for (std::uint32_t v = node.begin[i]; v < node.begin[i + 1]; ++v)
-          takeAll(cloud_.built(v, work_.voxels_built), 0, cloud_.voxels[v].count);
+          takeAll(cloud_.built(v, work_), 0, cloud_.voxels[v].count);
       }
       else if (node.isLeaf(i)) {
         const Voxel& voxel = cloud_.voxels[node.begin[i]];
-        visit(LocalBox(voxel.frame, box_), cloud_.built(node.begin[i], work_.voxels_built), 0);
+        ++work_.volumes_carried;
+        visit(LocalBox(voxel.frame, box_), cloud_.built(node.begin[i], work_), 0);
       }
       else {
         visitAbove(box, cloud_.top[node.child[i]]);

@@ -104,6 +104,7 @@ private:
   {
     const PointFrame point(cloud_.frame, query_);
     if (point.separates(cloud_.frame, static_cast<double>(distance_))) return;
+    ++work_.volumes_carried;
     visitAbove(NearFrame(point, cloud_.frame.unit), 0);
   }
 
@@ -144,7 +145,8 @@ private:
         point.separates(local, static_cast<double>(distance_) * static_cast<double>(frame.inverse_unit)))
       return;
     most_slack_ = std::max(most_slack_, frame.slack);
-    const Voxel& voxel = cloud_.built(index, work_.voxels_built);
+    ++work_.volumes_carried;
+    const Voxel& voxel = cloud_.built(index, work_);
     voxels_.room(1);
     voxels_.push(&voxel);
     visit(frame, voxel, 0);

@@ -112,7 +112,9 @@ public:
     }
     const PointFrame frame(cloud_.frame, query_);
     const double length = radius_ / frame.unit;
-    return !frame.separates(cloud_.frame, length) && visitAbove(ballOf(frame, length), 0);
+    if (frame.separates(cloud_.frame, length)) return false;
+    ++work_.volumes_carried;
+    return visitAbove(ballOf(frame, length), 0);
   }
 
 private:
@@ -141,7 +143,7 @@ private:
       const int i = std::countr_zero(bits);
       if constexpr (!Sink::kNeedsRecords) return true;
       for (std::uint32_t v = node.begin[i]; v < node.begin[i + 1]; ++v)
-        sink_.takeAll(cloud_.built(v, work_.voxels_built), 0, cloud_.voxels[v].count);
+        sink_.takeAll(cloud_.built(v, work_), 0, cloud_.voxels[v].count);
     }
     for (std::uint32_t bits = children.near & ~children.inside; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
@@ -164,7 +166,8 @@ private:
     const PointFrame query(frame, query_);
     const double length = radius_ / query.unit;
     if (query.separates(frame, length)) return false;
-    const Local local{cloud_.built(index, work_.voxels_built), ballOf(query, length), query.band(length)};
+    ++work_.volumes_carried;
+    const Local local{cloud_.built(index, work_), ballOf(query, length), query.band(length)};
     return visit(local, 0);
   }
 

@@ -23,6 +23,7 @@ RefitReport Scene::deform(ObjectId object, std::uint32_t part, const PointsView&
   state_->followPoints();
   EffectCost& cost = state_->cost(Effect::deform);
   ++cost.pairs;
+  cost.work.volumes_built += report.volumes_refitted;
   cost.seconds += std::chrono::duration<double>(Clock::now() - start).count();
   return report;
 }

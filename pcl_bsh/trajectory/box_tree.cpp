@@ -87,7 +87,11 @@ void BoxTree::fitTop()
 const std::vector<BoxNode>& BoxTree::voxel(std::uint32_t index, Work& work) const
 {
   Entry& entry = voxels_[index];
-  std::call_once(entry.once, [&] { fitVoxel(storage.built(index, work.voxels_built), index, entry.boxes); });
+  std::call_once(entry.once, [&] {
+    const Voxel& built = storage.built(index, work);
+    fitVoxel(built, index, entry.boxes);
+    work.volumes_built += countChildren(built.nodes);
+  });
   return entry.boxes;
 }
 

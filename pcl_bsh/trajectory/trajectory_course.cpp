@@ -101,6 +101,7 @@ Course::Course(const Placed& scan_at, const SphereHierarchy& model_of,
   closest(asked.distances || asked.closest_poses),
   first(asked.first_poses || asked.swept.has_value())
 {
+  result.work.volumes_built += countChildren(boxes.storage.top);
 }
 
 double Course::error(const Point3& origin) const
@@ -159,7 +160,11 @@ void Course::meet(std::uint32_t node, std::uint32_t lane, std::uint32_t index, c
   const Ball ball{carried(scan.pose, center), radius * (1.0 + path.skew + kDoubleMargin)};
   const PathInterval& interval = path.intervals[index];
   double stray = 0.0;
-  if (!rule.isOver() && !near(ball, interval, stray)) return;
+  if (!rule.isOver()) {
+    ++result.work.node_pairs;
+    ++result.work.volumes_carried;
+    if (!near(ball, interval, stray)) return;
+  }
   if (interval.divided() && stray > (is_voxel ? 0.5 : 1.0) * ball.radius) {
     meet(node, lane, interval.left, rule, progress, meetings);
     meet(node, lane, interval.right, rule, progress, meetings);

@@ -79,6 +79,7 @@ public:
         leaf.ways.reach[0][i] = std::min(span.reach, sight_.reachOf(span, findings_.best[points.begin + i].reach));
     const float no_room[3][kLeafPoints] = {};
     leaf.around = sight_.aroundWays(span, from, to, no_room, points.count);
+    ++findings_.work.volumes_carried;
     if (course_.request.pose_summaries) pose_hits_.assign(span.interval->last - span.interval->first + 1, 0);
 
     ++visit_;

@@ -69,6 +69,7 @@ public:
       if (watch_.isOver() || stopped_) return leave(true);
       const Span span = sight_.spanOf(interval);
       candidates.clear();
+      ++findings_.work.volumes_carried;
       model_.collect(span, sight_.aroundVoxel(span), kSeedSize * static_cast<float>(sight_.radius), model_.root(),
                      candidates);
       if (candidates.empty()) continue;
@@ -102,10 +103,11 @@ private:
 
   void enter(const Span& span)
   {
-    voxel_ = &course_.scan.hierarchy().storage().built(index_, findings_.work.voxels_built);
+    voxel_ = &course_.scan.hierarchy().storage().built(index_, findings_.work);
     for (const Node& node : voxel_->nodes) open_lanes_.push_back(static_cast<std::uint8_t>(firstBits(node.count)));
     findings_.begin(*voxel_);
     patches_.fit(*voxel_, span.from);
+    findings_.work.volumes_built += countChildren(voxel_->nodes);
   }
 
   /// Now and then tells the caller that the walk goes on.
@@ -171,6 +173,7 @@ private:
       for (std::uint32_t lane = 0; lane < kLanes; ++lane)
         visit.children.reach[axis][lane] = (span.reach + room[axis][lane]) * (1.0f + kReachMargin);
     visit.around = sight_.aroundWays(span, from, to, room, node.count);
+    findings_.work.volumes_carried += node.count + std::uint64_t{1}; // the children and what is around them
   }
 
   /// Settles children that a single point of the model is near enough to, at one pose, for all that they hold.
@@ -195,6 +198,7 @@ private:
         const Ball ball{{node.x[lane], node.y[lane], node.z[lane]}, reach, pose};
         const Sight sight = sight_.sightOf(poseAt(pose), {0, 0, 0}, 1.0);
         const Point center = carryPoint(sight.m, sight.g, ball.center);
+        ++findings_.work.volumes_carried;
         if (box.squaredDistance(center) > reach * reach || !hasPointWithin(candidate, ball, center)) continue;
         settle(index, lane);
         open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));

@@ -123,6 +123,7 @@ public:
     const Node& other = nodeOf(b, lane_b);
     alignas(32) float x[kLanes], y[kLanes], z[kLanes];
     carry(frame.m.data(), frame.g.data(), node.x, node.y, node.z, kLanes, x, y, z);
+    work.volumes_carried += node.count;
     out.entered = entered;
     const SphereLanes spheres{x, y, z, node.r, frame.stretch_a};
     const Point center{other.x[lane_b.lane], other.y[lane_b.lane], other.z[lane_b.lane]};
@@ -147,6 +148,7 @@ public:
     out.entered = entered;
     const SphereLanes spheres{node.x, node.y, node.z, node.r, frame.stretch_b};
     const Point center = carriedCenter(frame, other, lane_a.lane);
+    ++work.volumes_carried;
     test(frame, spheres, node.count, center, other.r[lane_a.lane] * frame.stretch_a, clearance, out);
     if (out.near == 0 || !haveSlabs(lane_a, entered)) return;
     const Slabs &own = slabsOf(b, entered), &others = slabsOf(a, lane_a);
@@ -207,10 +209,10 @@ private:
            !b.storage.view.radii && a.frame(lane_a.space).unit == b.frame(lane_b.space).unit;
   }
 
-  static const Slabs& slabsOf(const Spaces& side, const Lane& lane)
+  const Slabs& slabsOf(const Spaces& side, const Lane& lane)
   {
     Voxel& voxel = side.storage.voxels[lane.space];
-    return voxel.slabs.of(voxel)[lane.node];
+    return voxel.slabs.of(voxel, work)[lane.node];
   }
 
   /// Whether float arithmetic says little about a pair of which one is child `lane` of the step.

@@ -32,7 +32,7 @@ public:
     return space == kAboveVoxels ? storage.top[index] : storage.voxels[space].nodes[index];
   }
 
-  const Voxel& voxel(std::uint32_t space, Work& work) const { return storage.built(space, work.voxels_built); }
+  const Voxel& voxel(std::uint32_t space, Work& work) const { return storage.built(space, work); }
 
   const SphereHierarchy::Storage& storage;
   const Eigen::Isometry3d& pose;

@@ -64,8 +64,8 @@ void eachCell(const SphereHierarchy& hierarchy, unsigned level, const Visit& vis
   const Storage& storage = hierarchy.storage();
   if (level > 0) {
     for (std::size_t v = 0; v < storage.voxel_count; ++v) {
-      std::uint64_t built_now = 0;
-      eachBelow(storage.built(v, built_now), static_cast<int>(v), 0, 1, static_cast<int>(level), visit);
+      BuildWork unasked;
+      eachBelow(storage.built(v, unasked), static_cast<int>(v), 0, 1, static_cast<int>(level), visit);
     }
     return;
   }

@@ -112,7 +112,7 @@ int main(int argc, char** argv)
     std::fputs("count_instructions: give one of build, flags, pairs, neighbors, path\n", stderr);
     return 2;
   }
-  std::printf("node pairs %llu, leaf pairs %llu, exact decisions %llu\n",
-              static_cast<unsigned long long>(work.node_pairs), static_cast<unsigned long long>(work.leaf_pairs),
-              static_cast<unsigned long long>(work.exact_decisions));
+  const auto counted = [](std::uint64_t count) { return static_cast<unsigned long long>(count); };
+  std::printf("node pairs %llu, updates %llu, leaf pairs %llu, exact decisions %llu\n", counted(work.node_pairs),
+              counted(work.updates()), counted(work.leaf_pairs), counted(work.exact_decisions));
 }

@@ -42,8 +42,9 @@ public:
     FlagsResult result = collisionFlags({a}, {b}, request);
     const double query_seconds = query.seconds();
     return {build_seconds, query_seconds, std::move(result.a),
-            std::to_string(result.work.node_pairs) + " node pairs, " + std::to_string(result.work.leaf_pairs) +
-                " leaf pairs, " + std::to_string(result.work.exact_decisions) + " exact"};
+            std::to_string(result.work.node_pairs) + " node pairs, " + std::to_string(result.work.updates()) +
+                " updates, " + std::to_string(result.work.leaf_pairs) + " leaf pairs, " +
+                std::to_string(result.work.exact_decisions) + " exact"};
   }
 
 private:

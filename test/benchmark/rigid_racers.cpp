@@ -48,6 +48,7 @@ public:
   std::string remark() override
   {
     const std::string words = std::to_string(work_.node_pairs / answers_) + " node pairs, " +
+                              std::to_string(work_.updates() / answers_) + " updates, " +
                               std::to_string(work_.leaf_pairs / answers_) + " leaf pairs a pose";
     work_ = {};
     answers_ = 0;

@@ -118,10 +118,13 @@ TEST_F(Collide, ReportsWhatItFoundAndWhatItCost)
   EXPECT_EQ(json["distance"], 0.5);
   EXPECT_EQ(json["closest_pair"], (Json{1, 0}));
   EXPECT_EQ(json["accuracy"], "exact");
-  for (const char* count : {"node_pairs", "leaf_pairs", "exact_decisions", "voxels_built", "voxels_total"}) {
+  for (const char* count : {"node_pairs", "volumes_carried", "volumes_built", "leaf_pairs", "exact_decisions",
+                            "voxels_built", "voxels_total"}) {
     EXPECT_TRUE(json["work"][count].is_number_unsigned()) << count;
   }
   EXPECT_GT(json["work"]["voxels_built"], 0);
+  EXPECT_GT(json["work"]["volumes_carried"], 0);
+  EXPECT_GT(json["work"]["volumes_built"], 0);
   EXPECT_LE(json["work"]["voxels_built"], json["work"]["voxels_total"]);
   for (const char* step : {"load", "build", "query", "write"}) {
     EXPECT_TRUE(json["seconds"][step].is_number_float()) << step;

@@ -34,13 +34,13 @@ bool isPeer(const Measurement& m)
 
 void writeCsv(std::ostream& out, const Study& study)
 {
-  out << "query,knob,setting,poses,time_median_s,time_low_s,time_high_s,node_pairs,leaf_pairs,exact_decisions,"
-         "certified,certified_error,actual_error,wrong\n";
+  out << "query,knob,setting,poses,time_median_s,time_low_s,time_high_s,node_pairs,updates,leaf_pairs,"
+         "exact_decisions,certified,certified_error,actual_error,wrong\n";
   for (const Measurement& m : study.measurements) {
     out << m.query << ',' << m.knob << ',' << m.setting << ',' << m.poses << ','
         << format("%.6e,%.6e,%.6e", m.seconds.median, m.seconds.low, m.seconds.high) << ',' << m.work.node_pairs << ','
-        << m.work.leaf_pairs << ',' << m.work.exact_decisions << ',' << (m.certified ? 1 : 0) << ','
-        << format("%.9g,%.9g", m.certified_error, m.actual_error) << ',' << m.wrong << '\n';
+        << m.work.updates() << ',' << m.work.leaf_pairs << ',' << m.work.exact_decisions << ',' << (m.certified ? 1 : 0)
+        << ',' << format("%.9g,%.9g", m.certified_error, m.actual_error) << ',' << m.wrong << '\n';
   }
 }
 
