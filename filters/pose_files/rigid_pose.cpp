@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pose_files/rigid_pose.h>
 
+#include <pcl_bsh/geometry/polar_decomposition.h>
 #include <pcl_bsh/query/request_check.h>
 
-#include <Eigen/SVD>
+#include <Eigen/LU>
 
 #include <sstream>
 
@@ -16,9 +17,8 @@ RigidPose nearestRigid(const Eigen::Isometry3d& given)
   const bool refused = !given.matrix().allFinite() || given.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1) ||
                        !(deviation <= printed_rigidity) || matrix.determinant() < 0;
   if (refused || deviation <= rigidity_tolerance) return {given, 0};
-  const Eigen::JacobiSVD<Eigen::Matrix3d> parts(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   RigidPose rigid{given, deviation};
-  rigid.pose.linear() = parts.matrixU() * parts.matrixV().transpose();
+  rigid.pose.linear() = PolarDecomposition(matrix).rotation;
   return rigid;
 }
 

@@ -24,7 +24,7 @@ double firstRoot(double gap, double slope, double bend)
 /// Two points on their courses, seen from each other.
 class Couple {
 public:
-  Couple(const PointCourse& a, const PointCourse& b, double end)
+  Couple(const PointMotion& a, const PointMotion& b, double end)
   : a_(a),
     b_(b),
     end_(end),
@@ -96,7 +96,7 @@ public:
 private:
   static constexpr double kUp = 1.0 + 0x1p-40;
 
-  const PointCourse &a_, &b_;
+  const PointMotion &a_, &b_;
   double end_, s_ = 0.0;
   Eigen::Vector3d turn_a_, turn_b_, shift_, center_;
   double drift_;           // of both, per unit of s
@@ -125,16 +125,16 @@ std::optional<double> meeting(const Eigen::Vector3d& apart, const Eigen::Vector3
   return std::clamp(closest - half, 0.0, 1.0);
 }
 
-std::optional<double> meeting(const Path& path_a, const Eigen::Vector3d& p, const Path& path_b,
+std::optional<double> meeting(const RigidMotion& motion_a, const Eigen::Vector3d& p, const RigidMotion& motion_b,
                               const Eigen::Vector3d& q, const ContactZone& zone, double begin, double end)
 {
-  if (!path_a.turns() && !path_b.turns()) {
-    const Eigen::Vector3d apart = path_a.at(begin) * p - path_b.at(begin) * q;
-    const auto s = meeting(apart, (end - begin) * (path_a.shift() - path_b.shift()), zone);
+  if (!motion_a.turns() && !motion_b.turns()) {
+    const Eigen::Vector3d apart = motion_a.at(begin) * p - motion_b.at(begin) * q;
+    const auto s = meeting(apart, (end - begin) * (motion_a.shift() - motion_b.shift()), zone);
     if (!s) return std::nullopt;
     return begin + *s * (end - begin);
   }
-  const PointCourse a = path_a.courseOf(p), b = path_b.courseOf(q);
+  const PointMotion a = motion_a.motionOf(p), b = motion_b.motionOf(q);
   Couple couple(a, b, end);
   couple.look(begin);
   bool inside = couple.distance <= zone.outer(); // from the start

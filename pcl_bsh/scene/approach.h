@@ -2,8 +2,8 @@
 // When two moving points first come near each other.
 #pragma once
 
+#include <pcl_bsh/geometry/rigid_motion.h>
 #include <pcl_bsh/geometry/rounding.h>
-#include <pcl_bsh/scene/path.h>
 
 #include <optional>
 
@@ -39,7 +39,7 @@ std::optional<double> meeting(const Eigen::Vector3d& apart, const Eigen::Vector3
 /// Points p and q, given in their objects' frames, on their paths, for s from `begin` to `end`. Conservative
 /// advancement (Mirtich and Canny, Impulse-based Simulation of Rigid Bodies, 1995) with a bound of second order: where
 /// two points hardly come nearer, steps grow with the square root of what is left.
-std::optional<double> meeting(const Path& path_a, const Eigen::Vector3d& p, const Path& path_b,
+std::optional<double> meeting(const RigidMotion& motion_a, const Eigen::Vector3d& p, const RigidMotion& motion_b,
                               const Eigen::Vector3d& q, const ContactZone& zone, double begin, double end);
 
 } // namespace pcl_bsh

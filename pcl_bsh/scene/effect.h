@@ -53,15 +53,15 @@ void Scene::State::eachSweptPair(EffectCost& cost, const Ask& ask)
   const std::vector<BroadPair*>& pairs = grid.pairs();
   eachPair(pairs, cost, [&](std::size_t k) {
     BroadPair& pair = *pairs[k];
-    const Path path_a = pathOf(pair.a), path_b = pathOf(pair.b);
-    Box3 box = path_a.swept();
+    const ObjectMotion motion_a = motionOf(pair.a), motion_b = motionOf(pair.b);
+    Box3 box = motion_a.swept();
     box.grow((pair.clearance + options.tolerance) * (1.0 + scene_rounding));
-    if (!box.meets(path_b.swept())) return;
+    if (!box.meets(motion_b.swept())) return;
     const std::vector<ScenePart>&parts_a = bodies[pair.a].object.parts, &parts_b = bodies[pair.b].object.parts;
     for (std::uint32_t i = 0; i < parts_a.size(); ++i)
       for (std::uint32_t j = 0; j < parts_b.size(); ++j) {
-        const SweptPart a{*parts_a[i].hierarchy, parts_a[i].pose, path_a};
-        const SweptPart b{*parts_b[j].hierarchy, parts_b[j].pose, path_b};
+        const SweptPart a{*parts_a[i].hierarchy, parts_a[i].pose, motion_a};
+        const SweptPart b{*parts_b[j].hierarchy, parts_b[j].pose, motion_b};
         ask(k, pair, PartPair{pair.a, pair.b, i, j}, a, b);
         ++pair.memory.asked;
       }

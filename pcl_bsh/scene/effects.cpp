@@ -11,10 +11,10 @@ Leg Scene::State::legOf(ObjectId object) const
   const Body& body = bodies[object];
   const Eigen::Isometry3d& to = body.object.pose;
   if (body.last_version == 0) return {to, to, body.center(), Eigen::Vector3d::Zero()};
-  return {body.last_pose, to, body.center(), turnBetween(body.last_pose.linear(), to.linear(), body.turned)};
+  return {body.last_pose, to, body.center(), turnNearestTo(body.turned, body.last_pose.linear(), to.linear())};
 }
 
-Path Scene::State::pathOf(ObjectId object) const
+ObjectMotion Scene::State::motionOf(ObjectId object) const
 {
   return {legOf(object), bodies[object].box};
 }

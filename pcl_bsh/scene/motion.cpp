@@ -2,23 +2,15 @@
 #include <pcl_bsh/scene/motion.h>
 
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/rigid_motion.h>
 #include <pcl_bsh/query/request_check.h>
-#include <pcl_bsh/scene/path.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 namespace pcl_bsh {
 namespace {
-
-Eigen::Matrix3d turn(const Eigen::Vector3d& axis_times_angle)
-{
-  const double angle = axis_times_angle.norm();
-  if (angle == 0.0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, axis_times_angle / angle).toRotationMatrix();
-}
 
 struct At {
   const Eigen::Isometry3d& start;
@@ -30,13 +22,13 @@ struct At {
   {
     Eigen::Isometry3d pose = start;
     pose.translation() += time * motion.linear;
-    pose.linear() = turn(time * motion.angular) * start.linear();
+    pose.linear() = rotationBy(time * motion.angular) * start.linear();
     return pose;
   }
 
   Eigen::Isometry3d operator()(const CircularMotion& motion) const
   {
-    const Eigen::Matrix3d rotation = turn(time * motion.speed * motion.axis.normalized());
+    const Eigen::Matrix3d rotation = rotationBy(time * motion.speed * motion.axis.normalized());
     Eigen::Isometry3d pose = start;
     pose.translation() = motion.center + rotation * (start.translation() - motion.center);
     if (motion.turning) pose.linear() = rotation * start.linear();
@@ -50,24 +42,11 @@ struct At {
     const auto i = static_cast<std::size_t>(after);
     if (i == motion.times.size() || motion.times[i - 1] == time) return motion.poses[i - 1];
     const Eigen::Isometry3d &from = motion.poses[i - 1], &to = motion.poses[i];
+    const Eigen::Vector3d turn = shorterTurn(from.linear(), to.linear());
     const double s = (time - motion.times[i - 1]) / (motion.times[i] - motion.times[i - 1]);
-    Eigen::Isometry3d pose = from;
-    pose.translation() += s * (to.translation() - from.translation());
-    if (from.linear() != to.linear()) {
-      const Eigen::Quaterniond q(from.linear()), r(to.linear());
-      pose.linear() = q.slerp(s, r).normalized().toRotationMatrix();
-    }
-    return pose;
+    return RigidMotion(from, to, Eigen::Vector3d::Zero(), turn).at(s);
   }
 };
-
-/// The shorter turn from one rotation to another.
-Eigen::Vector3d turnTo(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to)
-{
-  if (from == to) return Eigen::Vector3d::Zero();
-  const Eigen::AngleAxisd turn(Eigen::Quaterniond(to * from.transpose()).normalized());
-  return turn.angle() * turn.axis();
-}
 
 struct Turn {
   double from, to;
@@ -89,7 +68,7 @@ struct Turn {
     for (auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after, 1)); i < times.size(); ++i) {
       if (times[i - 1] >= to) break;
       const double part = (std::min(to, times[i]) - std::max(from, times[i - 1])) / (times[i] - times[i - 1]);
-      sum += part * turnTo(motion.poses[i - 1].linear(), motion.poses[i].linear());
+      sum += part * shorterTurn(motion.poses[i - 1].linear(), motion.poses[i].linear());
     }
     return sum;
   }
@@ -135,21 +114,9 @@ Eigen::Vector3d turnOf(const Motion& motion, double from, double to)
   return std::visit(Turn{from, to}, motion);
 }
 
-Eigen::Vector3d turnBetween(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to, const Eigen::Vector3d& asked)
+Eigen::Isometry3d Leg::at(double s) const
 {
-  const Eigen::Vector3d shorter = turnTo(from, to);
-  const double length = asked.norm();
-  if (length == 0.0) return shorter;
-  const Eigen::AngleAxisd all(length, asked / length);
-  // Rounding of long turns is the path's affair: it arrives at the pose given.
-  if (turnTo(all.toRotationMatrix() * from, to).norm() <= 1e-6) return asked;
-  // Something else turned it as well. Of all turns that arrive, the one nearest to what was asked for: full turns more
-  // or less about the axis of the shorter one, which noise alone decides where that is next to nothing.
-  constexpr double full = 2.0 * std::numbers::pi;
-  const double angle = shorter.norm();
-  if (angle <= 1e-9) return full * std::round(length / full) * all.axis();
-  const Eigen::Vector3d axis = shorter / angle;
-  return (angle + full * std::round((asked.dot(axis) - angle) / full)) * axis;
+  return RigidMotion(from, to, center, turn).at(s);
 }
 
 void check(const Motion& motion)

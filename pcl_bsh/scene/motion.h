@@ -26,8 +26,8 @@ struct CircularMotion {
   bool turning = true;                             ///< false: keeps its rotation, as a gondola does
 };
 
-/// From pose to pose: origins on straight lines, rotations at constant speed. Rests before the first and after the
-/// last.
+/// From pose to pose: the object's origin moves in a straight line at constant speed, and the object turns the shorter
+/// way at constant speed. At rest before the first and after the last.
 struct WaypointMotion {
   std::vector<double> times; ///< strictly ascending, as many as poses
   std::vector<Eigen::Isometry3d> poses;
@@ -44,12 +44,13 @@ Eigen::Isometry3d poseAt(const Motion& motion, const Eigen::Isometry3d& start, d
 /// each.
 Eigen::Vector3d turnOf(const Motion& motion, double from, double to);
 
-/// A piece of an object's way: one point of it goes straight, its rotation turns at constant speed.
+/// A piece of an object's motion: one point of the object moves in a straight line at constant speed, and the object
+/// turns at constant speed about an axis of fixed direction, by any angle.
 struct Leg {
   Eigen::Isometry3d from = Eigen::Isometry3d::Identity(); ///< T_world_object
   Eigen::Isometry3d to = Eigen::Isometry3d::Identity();   ///< likewise
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();       ///< the point that goes straight, in the object's frame
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero(); ///< from `from` to `to`, as the world sees it: axis times radians
+  Eigen::Vector3d center = Eigen::Vector3d::Zero(); ///< the point that moves in a straight line, in the object's frame
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();   ///< from `from` to `to`, as the world sees it: axis times radians
 
   /// @param s in [0, 1], clamped; at(0) and at(1) are `from` and `to` themselves
   Eigen::Isometry3d at(double s) const;

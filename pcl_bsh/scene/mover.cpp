@@ -28,9 +28,9 @@ Mover::Mover(Scene::State& state, ObjectId object, EffectCost& cost)
 bool Mover::follow(const Eigen::Isometry3d& target, const Eigen::Vector3d& turn)
 {
   Leg leg{pose(), target, body_.center(), turn};
-  const Path path(leg, body_.box);
+  const ObjectMotion motion(leg, body_.box);
   double done = 0.0;
-  const bool whole = follow(path, 0.0, 1.0, done);
+  const bool whole = follow(motion, 0.0, 1.0, done);
   if (done == 0.0) return whole;
   leg.to = pose();
   leg.turn *= done;
@@ -39,21 +39,22 @@ bool Mover::follow(const Eigen::Isometry3d& target, const Eigen::Vector3d& turn)
 }
 
 /// On one path from s = begin to end, in halves where too many points can meet. @param done s of the last pose taken
-bool Mover::follow(const Path& path, double begin, double end, double& done)
+bool Mover::follow(const ObjectMotion& motion, double begin, double end, double& done)
 {
   const double length = end - begin;
-  const double reach = (path.shift().norm() * length + path.turningReach(length)) * (1.0 + kDoubleMargin);
-  const bool few = collect(path.swept(), reach, kMostPairs);
+  const double reach = (motion.shift().norm() * length + motion.turningReach(length)) * (1.0 + kDoubleMargin);
+  const bool few = collect(motion.swept(), reach, kMostPairs);
   if (outcome.stuck) return false;
-  const bool wide = path.angle() * length > kWideTurn && encounters_.size() > kFewToTurn;
+  const bool wide = motion.angle() * length > kWideTurn && encounters_.size() > kFewToTurn;
   if (!few || wide) {
     if (reach > 0.25 * tolerance_) {
       const double middle = 0.5 * (begin + end);
-      return follow(path, begin, middle, done) && follow(path, middle, end, done);
+      return follow(motion, begin, middle, done) && follow(motion, middle, end, done);
     }
     if (!few) return halt();
   }
-  const Path still(Leg{}, Box3());
+  const RigidMotion still(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity(), Eigen::Vector3d::Zero(),
+                          Eigen::Vector3d::Zero());
   double last = end;
   const Encounter* met = nullptr;
   for (const Encounter& e : encounters_) {
@@ -62,7 +63,7 @@ bool Mover::follow(const Path& path, double begin, double end, double& done)
     const Point3 q = hierarchyOf(e).view().point(e.pair.b);
     const Eigen::Vector3d local = part.pose * Eigen::Vector3d(p[0], p[1], p[2]);
     const Eigen::Vector3d other = worldOf(e) * Eigen::Vector3d(q[0], q[1], q[2]);
-    const auto s = meeting(path, local, still, other, {e.reach, tolerance_}, begin, last);
+    const auto s = meeting(motion, local, still, other, {e.reach, tolerance_}, begin, last);
     if (!s) continue;
     last = *s;
     met = &e;
@@ -70,7 +71,7 @@ bool Mover::follow(const Path& path, double begin, double end, double& done)
   }
   if (met) touch(*met);
   if (last > begin) {
-    if (!accept(path.at(last))) return false;
+    if (!accept(motion.at(last))) return false;
     done = last;
   }
   return met == nullptr;

@@ -44,7 +44,7 @@ private:
 
   enum class Walked { free, met, crowded, blocked };
 
-  bool follow(const Path& path, double begin, double end, double& done);
+  bool follow(const ObjectMotion& motion, double begin, double end, double& done);
   Walked walk(Eigen::Vector3d& left, double room, const Eigen::Isometry3d* target, bool slide, std::size_t most,
               Planes& planes);
   bool collect(Box3 swept, double length, std::size_t most);

@@ -57,7 +57,7 @@ void Scene::State::place(ObjectId object)
   body.placed_version = body.version;
   body.placed_swept = way;
   ++result.broad_phase.moved;
-  boxes_.assign(1, way ? pathOf(object).swept() : body.world_box);
+  boxes_.assign(1, way ? motionOf(object).swept() : body.world_box);
   boxes_.front().grow(0.5 * reach);
   if (!way && grid.voxelsOf(boxes_.front()) > kCoarse) {
     boxes_.clear();

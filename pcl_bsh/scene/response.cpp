@@ -68,7 +68,7 @@ Goal goalOf(const Body& body, double before, double after, bool turning)
                                    .normalized()
                                    .toRotationMatrix();
   }
-  if (turning) goal.turn = turnBetween(now.linear(), goal.pose.linear(), turnOf(motion, begin, end));
+  if (turning) goal.turn = turnNearestTo(turnOf(motion, begin, end), now.linear(), goal.pose.linear());
   return goal;
 }
 
@@ -187,7 +187,7 @@ void Scene::State::checkWay(const Body& body, const Eigen::Isometry3d& from, con
   if (!(turns <= kMostTurns))
     refuse("turns " + std::to_string(turns) + " times within a step: make steps so short that it turns at most " +
            std::to_string(kMostTurns) + " times");
-  const double found = Path({from, to, body.center(), turn}, body.box).rounding();
+  const double found = ObjectMotion({from, to, body.center(), turn}, body.box).rounding();
   if (found <= rounding) return;
   const auto text = [](double value) {
     char digits[32];

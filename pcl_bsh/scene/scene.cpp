@@ -302,7 +302,7 @@ void Scene::setPose(ObjectId object, const Eigen::Isometry3d& pose)
   body.on_course = false;
   state_->setPose(object, pose);
   if (looksBack(state_->options.effects)) // straight there, the shorter way round
-    body.turned = turnBetween(body.last_pose.linear(), pose.linear(), Eigen::Vector3d::Zero());
+    body.turned = shorterTurn(body.last_pose.linear(), pose.linear());
 }
 
 void Scene::setPartPose(ObjectId object, std::uint32_t part, const Eigen::Isometry3d& pose)

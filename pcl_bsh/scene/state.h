@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/scene/broad_phase.h>
-#include <pcl_bsh/scene/path.h>
+#include <pcl_bsh/scene/object_motion.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include <unordered_map>
@@ -111,7 +111,7 @@ private:
   template <class Ask>
   void eachSweptPair(EffectCost& cost, const Ask& ask);
   Leg legOf(ObjectId object) const; ///< since the last query
-  Path pathOf(ObjectId object) const;
+  ObjectMotion motionOf(ObjectId object) const;
   void checkWay(const Body& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
                 const Eigen::Vector3d& turn, double rounding) const;
   void checkWays(double before, double after) const;

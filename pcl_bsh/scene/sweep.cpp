@@ -17,7 +17,7 @@ public:
     b_(b),
     clearance_(clearance),
     tolerance_(tolerance),
-    angle_(std::max(a.path.angle(), b.path.angle())),
+    angle_(std::max(a.motion.angle(), b.motion.angle())),
     work_(work)
   {
   }
@@ -39,8 +39,11 @@ public:
 
 private:
   /// What can meet within the interval is within this at its beginning.
-  double reach(double length) const { return clearance_ + closingReach(a_.path, b_.path, length) + 0.5 * tolerance_; }
-  bool isShort(double length) const { return closingReach(a_.path, b_.path, length) <= 0.5 * tolerance_; }
+  double reach(double length) const
+  {
+    return clearance_ + closingReach(a_.motion, b_.motion, length) + 0.5 * tolerance_;
+  }
+  bool isShort(double length) const { return closingReach(a_.motion, b_.motion, length) <= 0.5 * tolerance_; }
   bool isWide(double length, const PairsWithin& found) const
   {
     return angle_ * length > kWideTurn && found.pairs.size() > kFewToTurn;
@@ -69,7 +72,7 @@ private:
     if (!found.complete) return Meeting{begin, found.pairs.front()};
     std::optional<Meeting> earliest;
     for (const PointPair pair : found.pairs) {
-      const auto s = meeting(a_.path, a_.point(pair.a), b_.path, b_.point(pair.b), zone(pair), begin,
+      const auto s = meeting(a_.motion, a_.point(pair.a), b_.motion, b_.point(pair.b), zone(pair), begin,
                              earliest ? earliest->s : end);
       if (s && (!earliest || *s < earliest->s || (*s == earliest->s && pair < earliest->pair)))
         earliest = Meeting{*s, pair};
@@ -101,8 +104,8 @@ private:
       if (flag_a != 0 && flag_b != 0) continue;
       const ContactZone near = zone(pair);
       const Eigen::Vector3d p = a_.point(pair.a), q = b_.point(pair.b);
-      const double now = (a_.path.at(begin) * p - b_.path.at(begin) * q).norm();
-      if (now <= near.inner() || meeting(a_.path, p, b_.path, q, near, begin, end)) flag_a = flag_b = 1;
+      const double now = (a_.motion.at(begin) * p - b_.motion.at(begin) * q).norm();
+      if (now <= near.inner() || meeting(a_.motion, p, b_.motion, q, near, begin, end)) flag_a = flag_b = 1;
     }
   }
 
@@ -114,7 +117,7 @@ private:
 
 } // namespace
 
-double closingReach(const Path& a, const Path& b, double length)
+double closingReach(const ObjectMotion& a, const ObjectMotion& b, double length)
 {
   const double straight = (a.shift() - b.shift()).norm() * length;
   return (straight + a.turningReach(length) + b.turningReach(length)) * (1.0 + kDoubleMargin);

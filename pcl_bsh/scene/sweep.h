@@ -13,9 +13,9 @@ namespace pcl_bsh {
 struct SweptPart {
   const SphereHierarchy& hierarchy;
   const Eigen::Isometry3d& pose; ///< T_object_cloud
-  const Path& path;
+  const ObjectMotion& motion;
 
-  Placed at(double s) const { return {hierarchy, path.at(s) * pose}; }
+  Placed at(double s) const { return {hierarchy, motion.at(s) * pose}; }
 
   /// A point in the object's frame.
   Eigen::Vector3d point(std::uint32_t record) const
@@ -39,7 +39,7 @@ inline constexpr double kWideTurn = 1.0; // radians
 inline constexpr std::size_t kFewToTurn = 64;
 
 /// No distance of a point of one to a point of the other shrinks by more than this within an interval of s.
-double closingReach(const Path& a, const Path& b, double length);
+double closingReach(const ObjectMotion& a, const ObjectMotion& b, double length);
 
 /// The first s in [0, 1] at which two points are within clearance + tolerance on their way to collide; at no smaller s
 /// do any collide.

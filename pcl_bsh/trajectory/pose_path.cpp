@@ -30,7 +30,30 @@ double excess(const Eigen::Matrix3d& rotation)
   return e.cwiseAbs().rowwise().sum().maxCoeff() + kExcessRounding;
 }
 
+std::vector<PolarDecomposition> partsOf(const std::vector<Eigen::Isometry3d>& poses)
+{
+  std::vector<PolarDecomposition> parts;
+  parts.reserve(poses.size());
+  for (const Eigen::Isometry3d& pose : poses) parts.emplace_back(pose.linear());
+  return parts;
+}
+
+bool isRigid(const PolarDecomposition& parts)
+{
+  return (parts.stretch - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kRigid;
+}
+
 } // namespace
+
+Eigen::Isometry3d poseBetween(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double fraction,
+                              const Point3& pivot)
+{
+  const Eigen::Vector3d turn = shorterTurn(from.linear(), to.linear());
+  if (fraction > 0.0 && fraction < 1.0 && isHalfTurn(turn))
+    throw InvalidInput(Input::pose, "motion between two poses", "half a turn, and either way round is as short",
+                       "give a pose between them");
+  return RigidMotion(from, to, {pivot[0], pivot[1], pivot[2]}, turn).at(fraction);
+}
 
 Point3 carried(const Eigen::Isometry3d& pose, const Point3& p)
 {
@@ -62,20 +85,23 @@ PosePath::PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::
   stray(sweep.stray),
   size_(sweep.size)
 {
-  poses.reserve(static_cast<std::size_t>(plan(model_poses, sweep, progress)));
-  bool rigid = true;
-  for (const Eigen::Isometry3d& pose : model_poses)
-    rigid = rigid && (PoseParts(pose.linear()).stretch - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kRigid;
+  const std::vector<PolarDecomposition> parts = partsOf(model_poses);
+  poses.reserve(static_cast<std::size_t>(plan(model_poses, parts, sweep, progress)));
+  const bool rigid = std::all_of(parts.begin(), parts.end(), isRigid);
   if (!rigid) stretches_.reserve(poses.capacity());
+  const Eigen::Vector3d pivot(sweep.pivot[0], sweep.pivot[1], sweep.pivot[2]);
   for (std::size_t k = 0; k < model_poses.size(); ++k) {
-    const PoseMotion motion(model_poses[k], model_poses[std::min(k + 1, model_poses.size() - 1)], sweep.pivot);
-    const double cuts = steps_[k].cuts;
-    for (double i = 0; i < cuts; ++i) {
+    const std::size_t next = std::min(k + 1, model_poses.size() - 1);
+    const Step& step = steps_[k];
+    const RigidMotion motion(model_poses[k], model_poses[next], pivot, step.turn);
+    for (double i = 0; i < step.cuts; ++i) {
       progress.tick(8);
-      const double fraction = i / cuts;
-      add(scan_pose, motion.at(fraction), motion.rotationAt(fraction), center, static_cast<std::uint32_t>(k), fraction);
+      const double fraction = i / step.cuts;
+      add(scan_pose, motion.at(fraction), rotationBy(fraction * step.turn) * parts[k].rotation, center,
+          static_cast<std::uint32_t>(k), fraction);
       if (rigid) continue;
-      const Eigen::Matrix3d stretch = motion.stretchAt(fraction); // symmetric: rows are columns
+      const Eigen::Matrix3d stretch = // symmetric: rows are columns
+          (1.0 - fraction) * parts[k].stretch + fraction * parts[next].stretch;
       std::copy(stretch.data(), stretch.data() + 9, stretches_.emplace_back().begin());
     }
   }
@@ -84,10 +110,8 @@ PosePath::PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::
   divideAll(progress);
 }
 
-/// Seen by the model, a point s moves as U(t) = R'(t) (s - c(t)), where R turns by an angle a and the pivot c goes
-/// straight by d: |U''| <= a^2 |s - c| + 2 a |d|, so that U bows out by an eighth of that at most. A stretch that
-/// changes linearly does not bow.
-double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const Sweep& sweep, Progress& progress)
+double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const std::vector<PolarDecomposition>& parts,
+                      const Sweep& sweep, Progress& progress)
 {
   double total = 0.0, most = 0.0, longest = 0.0;
   std::size_t worst = 0;
@@ -95,13 +119,14 @@ double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const S
   steps_.resize(model_poses.size());
   for (std::size_t k = 0; k + 1 < model_poses.size(); ++k) {
     progress.tick(8);
-    const PoseMotion motion(model_poses[k], model_poses[k + 1], sweep.pivot);
     Step& step = steps_[k];
+    step.turn = shorterTurnOfRotations(parts[k].rotation, parts[k + 1].rotation);
     step.begin = carried(model_poses[k], sweep.pivot);
     step.end = carried(model_poses[k + 1], sweep.pivot);
-    const double angle = motion.angle() == 0.0 ? 0.0 : motion.angle() * (1.0 + kRounding) + kRounding;
+    const double turned = step.turn.norm();
+    const double angle = turned == 0.0 ? 0.0 : turned * (1.0 + kRounding) + kRounding;
     const double way = distance(step.begin, step.end) * (1.0 + kRounding);
-    if (motion.isAmbiguous()) {
+    if (isHalfTurn(step.turn)) {
       std::ostringstream message;
       message.imbue(std::locale::classic());
       message << "from pose " << k << " to the next the model turns by half a turn (" << angle
@@ -109,10 +134,10 @@ double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const S
       throw InvalidInput(Input::swept, "swept motion", message.str(), "give a pose between them").withIndex(k);
     }
     const double reach = sweep.radius + sweep.reach + way;
+    const Bow whole = bowSeenByBody(angle, way); // of parts, it falls with the square of their number
     const double cuts = step.cuts =
-        std::max(1.0, std::ceil(std::sqrt((angle * angle * reach + 2 * angle * way) / (8 * sweep.stray))));
-    step.turn = angle * angle / (cuts * cuts) / 8;
-    step.drift = angle / cuts * (way / cuts) / 4;
+        std::max(1.0, std::ceil(std::sqrt((whole.turn * reach + whole.drift) / sweep.stray)));
+    step.bow = bowSeenByBody(angle / cuts, way / cuts);
     longest = std::max(longest, (way + angle * reach) / cuts);
     total += cuts;
     if (cuts <= most) continue;
@@ -213,12 +238,12 @@ void PosePath::bound(PathInterval& interval) const
   double bow_drift = 0.0, bow_turn = 0.0;
   for (std::uint32_t k = first; k < last; ++k) {
     const Step& step = steps_[poses[k].given];
-    if (step.drift == 0.0 && step.turn == 0.0) continue;
+    if (step.bow.drift == 0.0 && step.bow.turn == 0.0) continue;
     const double fraction = poses[k].fraction;
     const double away = std::max(distance(step.pivotAt(fraction), pivot),
                                  distance(step.pivotAt(std::min(1.0, fraction + 1.0 / step.cuts)), pivot));
-    bow_drift = std::max(bow_drift, step.drift + step.turn * away);
-    bow_turn = std::max(bow_turn, step.turn);
+    bow_drift = std::max(bow_drift, step.bow.drift + step.bow.turn * away);
+    bow_turn = std::max(bow_turn, step.bow.turn);
   }
   interval.drift += bow_drift * (1.0 + kRounding);
   interval.turn += bow_turn * (1.0 + kRounding);

@@ -4,7 +4,8 @@
 #pragma once
 
 #include <pcl_bsh/geometry/point3.h>
-#include <pcl_bsh/trajectory/pose_motion.h>
+#include <pcl_bsh/geometry/polar_decomposition.h>
+#include <pcl_bsh/geometry/rigid_motion.h>
 #include <pcl_bsh/trajectory/trajectory_progress.h>
 
 #include <Eigen/Geometry>
@@ -88,11 +89,12 @@ public:
   }
 
 private:
-  /// A given pose and the motion from there to the next. A way between two poses of the path that it is cut into strays
-  /// by at most `drift` + `turn` * (distance from the pivot's way).
+  /// A given pose and the motion from there to the next.
   struct Step {
-    double cuts = 0.0, drift = 0.0, turn = 0.0;
-    Point3 begin = {0, 0, 0}, end = {0, 0, 0}; ///< of the pivot's way
+    double cuts = 0.0;                              ///< parts that it is cut into
+    Bow bow = {0.0, 0.0};                           ///< of each of them
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero(); ///< of the whole: axis times angle
+    Point3 begin = {0, 0, 0}, end = {0, 0, 0};      ///< of the pivot's way
 
     Point3 pivotAt(double fraction) const
     {
@@ -102,7 +104,8 @@ private:
   };
 
   /// @return how many poses it takes
-  double plan(const std::vector<Eigen::Isometry3d>& model_poses, const Sweep& sweep, Progress& progress);
+  double plan(const std::vector<Eigen::Isometry3d>& model_poses, const std::vector<PolarDecomposition>& parts,
+              const Sweep& sweep, Progress& progress);
   void add(const Eigen::Isometry3d& scan_pose, const Eigen::Isometry3d& pose, const Eigen::Matrix3d& rotation,
            const Point3& center, std::uint32_t given, double fraction);
   void divideAll(Progress& progress);

@@ -2,6 +2,7 @@
 // When two moving points meet, judged in exact integers where they go straight, and in extended precision at many
 // instants where they turn.
 #include <pcl_bsh/scene/approach.h>
+#include <pcl_bsh/scene/object_motion.h>
 
 #include "../geometry/random.h"
 
@@ -128,8 +129,8 @@ TEST(Approach, StraightWaysAreJudgedExactly)
       const StraightPair exact = passing.exact();
       const double reach = setting.clearance;
       if (!exact.staysBeyond(reach, 0.0)) continue;
-      const auto s =
-          meeting(Path(passing.a, Box3()), passing.p, Path(passing.b, Box3()), passing.q, passing.zone, 0, 1);
+      const auto s = meeting(ObjectMotion(passing.a, Box3()), passing.p, ObjectMotion(passing.b, Box3()), passing.q,
+                             passing.zone, 0, 1);
       ASSERT_TRUE(exact.staysBeyond(reach, s.value_or(1.0))) << i << " at " << setting.length;
       if (s) {
         ++met;
@@ -197,7 +198,7 @@ TEST(Approach, TurningWaysAreWatchedDensely)
     a.to.translation() += moved;
     const auto distance = [&](Real s) { return (placeOn(a, p, s) - placeOn(b, q, s)).norm(); };
     if (distance(0) <= reach + tolerance) continue;
-    const auto s = meeting(Path(a, Box3()), p, Path(b, Box3()), q, zone, 0, 1);
+    const auto s = meeting(ObjectMotion(a, Box3()), p, ObjectMotion(b, Box3()), q, zone, 0, 1);
     const double last = s.value_or(1.0);
     for (int i = 0; i < 300; ++i) ASSERT_GT(distance(last * i / Real(300)), reach) << i;
     for (int i = -300; i <= 300; ++i) { // around the nearest instant
@@ -228,7 +229,7 @@ TEST(Approach, PathsHaveNoJumpsAndPassThroughBothPoses)
     }
     const Box3 box{{-1, -2, -1}, {2, 2, 1}};
     leg.center = box.center();
-    const Path path(leg, box);
+    const ObjectMotion path(leg, box);
     EXPECT_EQ(path.at(0).matrix(), leg.from.matrix());
     EXPECT_EQ(path.at(1).matrix(), leg.to.matrix());
     EXPECT_LT((path.at(1e-12).matrix() - leg.from.matrix()).norm(), 1e-8);
@@ -240,37 +241,16 @@ TEST(Approach, PathsHaveNoJumpsAndPassThroughBothPoses)
       for (int c = 0; c < 8; ++c) {
         const Eigen::Vector3d corner(c & 1 ? box.low.x() : box.high.x(), c & 2 ? box.low.y() : box.high.y(),
                                      c & 4 ? box.low.z() : box.high.z());
-        const PointCourse course = path.courseOf(corner);
+        const PointMotion course = path.motionOf(corner);
         const Eigen::Vector3d place = now * corner;
         EXPECT_LT((course.center + i / 200.0 * course.shift + course.spokeAt(i / 200.0) - place).norm(), 1e-12);
         EXPECT_LE((place - last * corner).norm(), path.speed() / 200 + 1e-12);
         EXPECT_LE((place - last * corner).norm(), path.shift().norm() / 200 + path.turningReach(1 / 200.0) + 1e-12);
-        EXPECT_LE((place - leg.from * corner).norm(), path.reach() + 1e-12);
+        EXPECT_LE((place - leg.from * corner).norm(), path.shift().norm() + path.turningReach(1) + 1e-12);
         EXPECT_TRUE((place.array() >= swept.low.array()).all() && (place.array() <= swept.high.array()).all());
       }
       last = now;
     }
-  }
-}
-
-TEST(Approach, TurnBetweenArrivesAndIsNearestToWhatWasAsked)
-{
-  Random random(3);
-  for (int i = 0; i < 1000; ++i) {
-    const Eigen::Matrix3d from = random.rotation().toRotationMatrix();
-    const Eigen::Vector3d asked = random.pick(asked_angles) * direction(random);
-    const double length = asked.norm();
-    Eigen::Matrix3d to = from;
-    if (length > 0) to = Eigen::AngleAxisd(length, asked / length).toRotationMatrix() * from;
-    EXPECT_LT((turnBetween(from, to, asked) - asked).norm(), 1e-9);
-    EXPECT_LE(turnBetween(from, to, Eigen::Vector3d::Zero()).norm(), pi * (1 + 1e-12));
-    // Something else has turned it as well.
-    const Eigen::Matrix3d other = random.rotation().toRotationMatrix() * to;
-    const Eigen::Vector3d turn = turnBetween(from, other, asked);
-    const Eigen::Matrix3d arrived = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() * from;
-    EXPECT_LT((arrived - other).norm(), 1e-9);
-    for (const double more : {-2 * pi, 2 * pi})
-      EXPECT_LE((turn - asked).norm(), (turn + more * turn.normalized() - asked).norm() + 1e-9);
   }
 }
 

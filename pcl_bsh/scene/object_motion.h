@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The motion of an object within a step, with bounds for all of its points.
+#pragma once
+
+#include <pcl_bsh/geometry/rigid_motion.h>
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/scene/bounds.h>
+#include <pcl_bsh/scene/motion.h>
+
+namespace pcl_bsh {
+
+/// A RigidMotion and the box of what it moves, in the frame that the poses place.
+class ObjectMotion : public RigidMotion {
+public:
+  ObjectMotion(const Leg& leg, const Box3& box);
+
+  /// As in RigidMotion, for all points of the box.
+  double turningSpeed() const { return RigidMotion::turningSpeed(radius_); }
+  double turningReach(double length) const { return RigidMotion::turningReach(radius_, length); }
+
+  /// No point of the box travels farther per unit of s.
+  double speed() const { return shift().norm() + turningSpeed(); }
+
+  /// Holds the object at every instant.
+  Box3 swept() const;
+
+  /// Positions that are computed in double err by less: some forty roundings of the largest coordinate that goes into
+  /// them, and of the whole length, since s is rounded, too.
+  double rounding() const;
+
+private:
+  Box3 box_;
+  double radius_; // of the box around the pivot
+};
+
+} // namespace pcl_bsh
