@@ -5,9 +5,12 @@
 
 #include <pcl_bsh/query/cancelled.h>
 
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -59,13 +62,17 @@ public:
   PipelineResult run()
   {
     const Clock::time_point start = Clock::now();
-    const unsigned wanted = graph_.threads != 0 ? graph_.threads : std::max(std::thread::hardware_concurrency(), 1U);
-    const std::size_t threads = std::min<std::size_t>(wanted, graph_.nodes.size());
-    {
-      std::vector<std::jthread> others;
-      for (std::size_t i = 1; i < threads; ++i) others.emplace_back([this] { work(); });
-      work();
-    }
+    const std::size_t machine = std::max(std::thread::hardware_concurrency(), 1U);
+    const std::size_t threads = std::min(graph_.threads != 0 ? graph_.threads : machine, graph_.nodes.size());
+    // By default, oneTBB has no more threads than the machine; stages that wait for files can use more.
+    const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, std::max(threads, machine));
+    tbb::task_arena arena(static_cast<int>(threads));
+    arena.execute([this] {
+      group_.run_and_wait([this] {
+        const std::lock_guard lock(mutex_);
+        addTasks(ready_.size());
+      });
+    });
     if (callback_error_) std::rethrow_exception(callback_error_);
     for (const std::exception_ptr& error : errors_) {
       if (error) std::rethrow_exception(error);
@@ -81,25 +88,27 @@ private:
     ++inputs_left_[to];
   }
 
-  /// Takes one stage after the other, in the document's order, until none is left or the run is to end. Lets nothing
-  /// that is thrown out of its thread.
-  void work()
+  /// One task for each stage that is ready.
+  void addTasks(std::size_t count)
+  {
+    for (std::size_t i = 0; i < count; ++i) group_.run([this] { runLowestReady(); });
+  }
+
+  /// A task takes the lowest ready stage, whichever stage added the task. An exception must not leave it: oneTBB would
+  /// cancel the parallel loops of stages that still run, and a writer among them would write a part of its result.
+  void runLowestReady()
   {
     std::unique_lock lock(mutex_);
-    while (true) {
-      changed_.wait(lock, [this] { return !ready_.empty() || finished_ == graph_.nodes.size() || isStopped(); });
-      if (ready_.empty() || isStopped()) return;
-      const std::size_t node = *ready_.begin();
-      ready_.erase(ready_.begin());
-      try {
-        runStage(node, lock);
-      }
-      catch (...) {
-        if (!lock.owns_lock()) lock.lock();
-        errors_[node] = std::current_exception();
-        stopped_ = true;
-      }
-      changed_.notify_all();
+    if (isStopped()) return;
+    const std::size_t node = *ready_.begin();
+    ready_.erase(ready_.begin());
+    try {
+      runStage(node, lock);
+    }
+    catch (...) {
+      if (!lock.owns_lock()) lock.lock();
+      errors_[node] = std::current_exception();
+      stopped_ = true;
     }
   }
 
@@ -118,7 +127,9 @@ private:
 
     cost.resident_before = residentBytes();
     const Clock::time_point start = Clock::now();
-    StageCloudPtr output = outputOf(position, std::move(inputs));
+    StageCloudPtr output;
+    // While a stage waits for its own parallel loops, its thread must not begin another stage.
+    tbb::this_task_arena::isolate([&] { output = outputOf(position, std::move(inputs)); });
     cost.points_out = pointsOf(*output);
     cost.bytes_out = output->cloud.data.size();
     releaseClouds(position);
@@ -130,9 +141,11 @@ private:
     report(node, cost, true);
     const bool wanted = readers_left_[position] > 0 || !node.type->isWriter();
     if (wanted) clouds_[position] = std::move(output);
+    const std::size_t ready_before = ready_.size();
     for (const std::size_t consumer : consumers_[position]) {
       if (--inputs_left_[consumer] == 0) ready_.insert(consumer);
     }
+    addTasks(ready_.size() - ready_before);
   }
 
   /// A cloud goes to its last reader for good.
@@ -233,8 +246,7 @@ private:
   const std::vector<std::unique_ptr<Stage>> stages_;
   std::vector<Cost> costs_;
 
-  std::mutex mutex_; ///< of all below
-  std::condition_variable changed_;
+  std::mutex mutex_;   ///< of all below
   StageClouds clouds_; ///< of each node, from when it is done until its last reader begins
   std::vector<std::size_t> readers_left_;
   std::vector<std::size_t> inputs_left_; ///< that are not done yet
@@ -244,6 +256,8 @@ private:
   std::vector<std::exception_ptr> errors_; ///< of each node
   std::exception_ptr callback_error_;
   bool stopped_ = false; ///< something was thrown: no more stages begin
+
+  tbb::task_group group_;
 };
 
 } // namespace

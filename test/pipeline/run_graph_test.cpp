@@ -9,9 +9,13 @@
 
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
-#include <set>
+#include <thread>
 
 namespace pcl_bsh::pipeline {
 namespace {
@@ -26,7 +30,8 @@ struct Stage2Stage {
   std::condition_variable changed;
   std::vector<std::weak_ptr<const StageCloud>> seen;
   std::vector<std::size_t> alive; ///< of `seen`, whenever a stage begins
-  int meeting = 0;
+  unsigned meeting = 0, expected = 2;
+  std::atomic<int> loops{0};
 };
 Stage2Stage shared;
 
@@ -45,21 +50,49 @@ struct Copy : Stage {
   }
 };
 
-/// Ends only when another one runs at the same time.
+/// Ends only when as many as expected run at the same time.
 struct Meet : Stage {
   StageCloudPtr run(StageClouds&& inputs) override
   {
     std::unique_lock lock(shared.mutex);
     ++shared.meeting;
     shared.changed.notify_all();
-    const bool met = shared.changed.wait_for(lock, std::chrono::seconds(20), [] { return shared.meeting >= 2; });
-    if (!met) throw std::runtime_error("was alone");
+    const auto all_here = [] { return shared.meeting >= shared.expected; };
+    if (!shared.changed.wait_for(lock, std::chrono::seconds(20), all_here)) throw std::runtime_error("was alone");
     return inputs[0];
   }
 };
 
 struct Fail : Stage {
   StageCloudPtr run(StageClouds&&) override { throw std::runtime_error("went wrong: mend it"); }
+};
+
+/// Goes on with its loop when the other stage has failed.
+struct Loop : Stage {
+  static constexpr int count = 1000;
+  StageCloudPtr run(StageClouds&& inputs) override
+  {
+    std::unique_lock lock(shared.mutex);
+    shared.meeting = 1;
+    shared.changed.notify_all();
+    shared.changed.wait_for(lock, std::chrono::seconds(20), [] { return shared.meeting == 2; });
+    lock.unlock();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    tbb::parallel_for(0, count, [](int) { ++shared.loops; });
+    return inputs[0];
+  }
+};
+
+/// Fails while the other stage works.
+struct FailLater : Stage {
+  StageCloudPtr run(StageClouds&&) override
+  {
+    std::unique_lock lock(shared.mutex);
+    shared.changed.wait_for(lock, std::chrono::seconds(20), [] { return shared.meeting == 1; });
+    shared.meeting = 2;
+    shared.changed.notify_all();
+    throw std::runtime_error("went wrong: mend it");
+  }
 };
 
 struct Nothing : Stage {
@@ -80,6 +113,8 @@ struct InPlace : Stage {
 const bool registered = registerStage(describe<Copy>("filters.test_copy", "").option(&Copy::warning, "warning", "")) &&
                         registerStage(describe<Meet>("filters.test_meet", "")) &&
                         registerStage(describe<Fail>("filters.test_fail", "")) &&
+                        registerStage(describe<Loop>("filters.test_loop", "")) &&
+                        registerStage(describe<FailLater>("filters.test_fail_later", "")) &&
                         registerStage(describe<Nothing>("filters.test_nothing", "")) &&
                         registerStage(describe<InPlace>("filters.test_in_place", ""));
 
@@ -105,6 +140,8 @@ protected:
     shared.seen.clear();
     shared.alive.clear();
     shared.meeting = 0;
+    shared.expected = 2;
+    shared.loops = 0;
   }
 };
 
@@ -152,6 +189,50 @@ TEST_F(RunGraph, BranchesRunAtTheSameTime)
                                  someCloud());
   pipeline.setNumberOfThreads(2);
   EXPECT_EQ(pipeline.run().clouds.begin()->second->cloud.width, 200U);
+}
+
+TEST_F(RunGraph, MoreStagesThanTheMachineHasThreadsRunAtTheSameTime)
+{
+  const unsigned threads = std::thread::hardware_concurrency() + 2;
+  std::string stages, tags;
+  for (unsigned i = 0; i < threads; ++i) {
+    const std::string tag = "meet" + std::to_string(i);
+    stages += R"({"type": "filters.test_meet", "inputs": ["in"], "tag": ")" + tag + "\"}, ";
+    tags += (i == 0 ? "\"" : ", \"") + tag + "\"";
+  }
+  Pipeline pipeline = pipelineOf(stages + R"({"type": "filters.merge", "inputs": [)" + tags + "]}", someCloud(10));
+  pipeline.setNumberOfThreads(threads);
+  shared.expected = threads;
+  EXPECT_EQ(pipeline.run().clouds.begin()->second->cloud.width, 10 * threads);
+}
+
+TEST_F(RunGraph, OneThreadRunsTheLowestReadyStageFirst)
+{
+  Pipeline pipeline = pipelineOf(R"({"type": "filters.test_copy", "tag": "a", "inputs": ["in"]},
+                                    {"type": "filters.test_copy", "tag": "b", "inputs": ["a"]},
+                                    {"type": "filters.test_copy", "tag": "c", "inputs": ["in"]},
+                                    {"type": "filters.test_copy", "tag": "d", "inputs": ["b"]},
+                                    {"type": "filters.merge", "tag": "e", "inputs": ["c", "d"]})",
+                                 someCloud());
+  pipeline.setNumberOfThreads(1);
+  std::string begun;
+  pipeline.setProgress([&](const StageProgress& stage) {
+    if (!stage.done) begun += stage.tag + ' ';
+  });
+  pipeline.run();
+  EXPECT_EQ(begun, "in a b c d e ");
+}
+
+/// A stage that fails must not cut short the parallel loop of one that still runs.
+TEST_F(RunGraph, AFailureLeavesLoopsOfOtherStagesWhole)
+{
+  Pipeline pipeline = pipelineOf(R"({"type": "filters.test_loop", "tag": "a", "inputs": ["in"]},
+                                    {"type": "filters.test_fail_later", "tag": "b", "inputs": ["in"]},
+                                    {"type": "filters.merge", "inputs": ["a", "b"]})",
+                                 someCloud());
+  pipeline.setNumberOfThreads(2);
+  EXPECT_EQ(errorOf([&] { pipeline.run(); }), "p.json: b: /2: went wrong: mend it");
+  EXPECT_EQ(shared.loops, Loop::count);
 }
 
 TEST_F(RunGraph, NamesTheStageThatFails)
