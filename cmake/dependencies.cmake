@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Everything comes from the packages listed in packages.txt.
+# Everything comes from the packages listed in packages.txt; of its sections, the first is enough for the core alone.
 
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
@@ -7,7 +7,20 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Boost 1.74 REQUIRED) # headers of Multiprecision
 find_package(TBB 2021 REQUIRED CONFIG)
 find_package(hwy 1.0 REQUIRED CONFIG)
+if(PCL_BSH_CORE_ONLY)
+  return()
+endif()
 find_package(nlohmann_json 3.11 REQUIRED CONFIG)
+
+# Without what they need, tests are left out: who only runs the programs need not install it.
+if(PCL_BSH_BUILD_TESTS)
+  find_package(GTest 1.12 QUIET CONFIG)
+  find_package(nanoflann 1.4 QUIET CONFIG)
+  if(NOT GTest_FOUND OR NOT nanoflann_FOUND)
+    message(STATUS "No tests: GoogleTest or nanoflann (libgtest-dev, libgmock-dev, libnanoflann-dev) is not found")
+    set(PCL_BSH_BUILD_TESTS OFF)
+  endif()
+endif()
 
 # Reading and writing clouds needs nothing of what pcl_io would drag in for cameras and windows.
 set(unwanted VTK OpenNI OpenNI2 libusb)
@@ -26,17 +39,13 @@ endforeach()
 # Optional, and for pcl_bsh::certify alone: GPL-3.0-or-later, see pcl_bsh/certify/LICENSE.
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL 5.4 QUIET)
-option(PCL_BSH_BUILD_CERTIFY "pcl_bsh::certify and pcl_bsh_certify; binaries are under GPL-3.0-or-later" ${CGAL_FOUND})
+option(PCL_BSH_BUILD_CERTIFY "pcl_bsh::certify and pcl_bsh_certify, where CGAL is found; binaries are GPL-3.0-or-later" ON)
 if(PCL_BSH_BUILD_CERTIFY AND NOT CGAL_FOUND)
-  message(FATAL_ERROR "PCL_BSH_BUILD_CERTIFY: CGAL is not found: install libcgal-dev or set it OFF")
-elseif(NOT PCL_BSH_BUILD_CERTIFY)
-  message(STATUS "pcl_bsh::certify is left out: CGAL (libcgal-dev) is not found, or PCL_BSH_BUILD_CERTIFY is OFF")
+  message(STATUS "pcl_bsh::certify is left out: CGAL (libcgal-dev) is not found")
+  set(PCL_BSH_BUILD_CERTIFY OFF)
 endif()
 
-if(PCL_BSH_BUILD_TESTS)
-  find_package(GTest 1.12 REQUIRED CONFIG)
-endif()
-if(PCL_BSH_BUILD_TESTS OR PCL_BSH_BUILD_BENCHMARKS)
+if(PCL_BSH_BUILD_BENCHMARKS)
   find_package(nanoflann 1.4 REQUIRED CONFIG)
 endif()
 if(PCL_BSH_BUILD_EXAMPLES)

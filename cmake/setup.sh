@@ -2,14 +2,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian packages that are missing, configures and builds. Does no more than is left to do.
 #   bash cmake/setup.sh [PRESET [TARGET...]]     default: release, all targets; into build/PRESET
+# For the targets `demonstration` and `programs` it installs the sections of packages.txt down to theirs, for others all.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 say() { printf '== %s\n' "$*"; }
 die() { printf 'setup.sh: %s\n' "$*" >&2; exit 1; }
 
+preset="${1:-release}"
+targets=("${@:2}")
+case "${targets[*]}" in
+  demonstration | programs) last_section="${targets[0]}" ;;
+  *) last_section="" ;;
+esac
+
+# The packages that are not installed, down to the end of a section; without one, all.
 missing_packages() {
-  sed -e 's/#.*//' -e '/^[[:space:]]*$/d' cmake/packages.txt | while read -r package; do
+  sed -e 's/#.*//' -e 's/[[:space:]]*$//' cmake/packages.txt | awk -v last="$1" '
+    /^\[/ { if (done) exit; done = last != "" && $0 == "[" last "]"; next }
+    NF { print }' | while read -r package; do
     dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed ||
       printf '%s\n' "$package"
   done
@@ -19,29 +30,55 @@ as_root() {
   if [[ "$(id -u)" == 0 ]]; then "$@"; else sudo "$@"; fi
 }
 
-install_packages() {
-  if [[ "$(id -u)" != 0 ]] && ! command -v sudo >/dev/null; then
-    die "not root and no sudo: as root, run: apt-get install --no-install-recommends $*"
-  fi
-  say "installing $# Debian packages and what they need: $*"
-  local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300)
-  as_root "${apt[@]}" update || say "apt-get update failed; going on with the package lists at hand"
-  as_root "${apt[@]}" install --yes --no-install-recommends "$@" || die "apt-get install failed: see the lines above"
+apt_get() {
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 "$@"
 }
 
-preset="${1:-release}"
+install_packages() {
+  apt_get install --yes --no-install-recommends "$@" || die "apt-get install failed: see the lines above"
+}
+
+configure() { cmake --preset "$preset" --log-level=WARNING "$@"; }
+
+# Most packages are PCL's and VTK's, which the core does not need: it is compiled while they are installed.
+install_all_and_build_core() {
+  local core rest log="build/apt.log"
+  mapfile -t core < <(missing_packages core)
+  if ((${#core[@]})); then install_packages "${core[@]}"; fi
+  mapfile -t rest < <(missing_packages "$last_section")
+  mkdir -p build
+  say "installing the others while the core is built; what apt-get says is in $log"
+  install_packages "${rest[@]}" >"$log" 2>&1 &
+  local installing=$!
+  trap 'wait' EXIT # whatever fails: apt-get is not left half done
+  configure -D PCL_BSH_CORE_ONLY=ON
+  cmake --build --preset "$preset" --target pcl_bsh_core pcl_bsh_files
+  trap - EXIT
+  wait "$installing" || { tail -n 20 "$log" >&2; die "apt-get install failed: see the lines above, and $log"; }
+}
 
 if command -v apt-get >/dev/null; then
-  mapfile -t missing < <(missing_packages)
-  if ((${#missing[@]})); then install_packages "${missing[@]}"; fi
+  mapfile -t missing < <(missing_packages "$last_section")
+  if ((${#missing[@]})); then
+    if [[ "$(id -u)" != 0 ]] && ! command -v sudo >/dev/null; then
+      die "not root and no sudo: as root, run: apt-get install --no-install-recommends ${missing[*]}"
+    fi
+    say "installing ${#missing[@]} Debian packages and what they need: ${missing[*]}"
+    apt_get update || say "apt-get update failed; going on with the package lists at hand"
+    if [[ " ${missing[*]} " == *" libpcl-dev "* && "$preset" == release ]]; then
+      install_all_and_build_core
+    else
+      install_packages "${missing[@]}"
+    fi
+  fi
 else
   say "not a Debian system: cmake/packages.txt lists what must be there"
 fi
 
 say "configuring build/$preset"
-cmake --preset "$preset" --log-level=WARNING
+configure
 
 say "building build/$preset"
 build=(cmake --build --preset "$preset")
-if (($# > 1)); then build+=(--target "${@:2}"); fi
+if ((${#targets[@]})); then build+=(--target "${targets[@]}"); fi
 "${build[@]}"

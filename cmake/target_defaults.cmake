@@ -51,6 +51,7 @@ function(pcl_bsh_add_library name)
     PROPERTIES EXPORT_NAME ${name}
                INSTALL_RPATH "$ORIGIN" # wherever they are installed, they lie side by side
                VERIFY_INTERFACE_HEADER_SETS ON
+               DEFINE_SYMBOL "" # unused, and another one for each library would forbid them a common precompiled header
                VERSION ${PROJECT_VERSION}
                SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 endfunction()
