@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/plain_text.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,11 +23,8 @@ Point3 middleOf(const Clash& clash)
 
 std::string idAt(const Point3& place, double cell)
 {
-  std::string id = "C";
-  for (std::size_t k = 0; k < 3; ++k) {
-    id += (k == 0 ? "" : "_") + std::to_string(static_cast<long long>(std::floor(place[k] / cell)));
-  }
-  return id;
+  const auto number = [&](std::size_t axis) { return static_cast<long long>(std::floor(place[axis] / cell)); };
+  return plainText("C", number(0), "_", number(1), "_", number(2));
 }
 
 /// `id`, or with #2, #3, ... behind it, whichever is not taken yet.
