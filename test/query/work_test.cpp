@@ -21,9 +21,11 @@ using test::countsOf;
 using test::Random;
 using test::Shape;
 
-CollisionRequest within(double clearance)
+/// A request of what is wanted: any collision, flags or contacts.
+template <class Request>
+Request within(double clearance)
 {
-  CollisionRequest request;
+  Request request;
   request.clearance = clearance;
   return request;
 }
@@ -73,9 +75,10 @@ TEST(Work, OfTwoPoints)
   const Eigen::Isometry3d pose(Eigen::Translation3d(1, 0, 0));
   // Tested: the two voxels' spheres, b's leaf against a's voxel, a's leaf against b's. Each test carries a sphere of a.
   // Decided exactly: two spheres of radius 0, and their two points.
-  EXPECT_EQ(countsOf(anyCollision({a}, {b, pose}, within(1)).work), counts(3, 3, 2, 1, 2, 2));
-  EXPECT_EQ(countsOf(anyCollision({a}, {b, pose}, within(1)).work), counts(3, 3, 0, 1, 2, 0));
-  EXPECT_EQ(countsOf(anyCollision({a}, {b, pose}, within(0.5)).work), counts(0, 0, 0, 0, 0, 0)); // the clouds' bounds
+  EXPECT_EQ(countsOf(anyCollision({a}, {b, pose}, within<AnyRequest>(1)).work), counts(3, 3, 2, 1, 2, 2));
+  EXPECT_EQ(countsOf(anyCollision({a}, {b, pose}, within<AnyRequest>(1)).work), counts(3, 3, 0, 1, 2, 0));
+  EXPECT_EQ(countsOf(anyCollision({a}, {b, pose}, within<AnyRequest>(0.5)).work),
+            counts(0, 0, 0, 0, 0, 0)); // the clouds' bounds
 }
 
 // 32 points in a row are a root with leaves of sixteen, or a few more of fewer points.
@@ -84,7 +87,7 @@ TEST(Work, OfARowOfPointsAgainstOne)
   const Cloud points = row(32), point = row(1);
   const SphereHierarchy a(points.view(), oneVoxel()), b(point.view(), oneVoxel());
   const Eigen::Isometry3d beside(Eigen::Translation3d(0, 0.25, 0));
-  const Work cold = collisionFlags({a}, {b, beside}, within(0.25)).work;
+  const Work cold = collisionFlags({a}, {b, beside}, within<FlagsRequest>(0.25)).work;
   const std::uint64_t leaves = a.statistics().leaves;
   EXPECT_EQ(cold.volumes_built, leaves + 1);
   // Carried: a's voxel twice, to find which voxels are near and for its own walk, its leaves, and the sphere that they
@@ -126,10 +129,10 @@ TEST(Work, BuildsEachVolumeOnce)
 {
   const Clouds clouds;
   const SphereHierarchy a(clouds.a.view()), b(clouds.b.view());
-  const Work first = collisionFlags({a}, {b, clouds.pose}, within(0.02)).work;
+  const Work first = collisionFlags({a}, {b, clouds.pose}, within<FlagsRequest>(0.02)).work;
   EXPECT_GT(first.volumes_built, 0u);
   EXPECT_EQ(first.volumes_built, spheresBuilt(a) + spheresBuilt(b));
-  const Work second = collisionFlags({a}, {b, clouds.pose}, within(0.02)).work;
+  const Work second = collisionFlags({a}, {b, clouds.pose}, within<FlagsRequest>(0.02)).work;
   EXPECT_EQ(second.volumes_built, 0u);
   EXPECT_EQ(second.volumes_carried, first.volumes_carried);
   EXPECT_EQ(second.node_pairs, first.node_pairs);
@@ -161,15 +164,13 @@ TEST(Work, OfEveryQueryThatDescendsHasUpdates)
     EXPECT_GT(work.volumes_carried, 0u) << query;
     EXPECT_LE(work.volumes_carried, 2 * work.node_pairs) << query;
   };
-  expectUpdates("any", anyCollision({a}, placed, within(0.01)).work);
-  expectUpdates("flags", collisionFlags({a}, placed, within(0.01)).work);
+  expectUpdates("any", anyCollision({a}, placed, within<AnyRequest>(0.01)).work);
+  expectUpdates("flags", collisionFlags({a}, placed, within<FlagsRequest>(0.01)).work);
   expectUpdates("distance", closestPair({a}, placed).work);
-  expectUpdates("contacts", nearestContacts({a}, placed, within(0.01), 20).work);
-  expectUpdates("pairs", pairsWithin({a}, placed, within(0.01), 100000).work);
+  expectUpdates("contacts", nearestContacts({a}, placed, {0.01, 20}).work);
+  expectUpdates("pairs", pairsWithin({a}, placed, {0.01, 100000}).work);
   expectUpdates("clusters", euclideanClusters(a, 0.05).work);
-  CollisionRequest early = within(0.01);
-  early.accuracy = Accuracy::level(2);
-  expectUpdates("interval", closestPair({a}, placed, early).work);
+  expectUpdates("interval", closestPair({a}, placed, {Accuracy::level(2)}).work);
   TrajectoryRequest request;
   request.clearance = 0.01;
   request.distances = true;
