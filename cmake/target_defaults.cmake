@@ -30,6 +30,10 @@ endfunction()
 function(pcl_bsh_precompile target set)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -fpch-preprocess) # for ccache
+    if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+      # GCC 12 suspects "text" + std::string, and does not know that a precompiled <string> is the system's
+      target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
+    endif()
   endif()
   get_property(first GLOBAL PROPERTY pcl_bsh_first_of_${set})
   if(first)
