@@ -11,6 +11,8 @@ if(PCL_BSH_CORE_ONLY)
   return()
 endif()
 find_package(nlohmann_json 3.11 REQUIRED CONFIG)
+find_path(KAINJOW_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)
+mark_as_advanced(KAINJOW_INCLUDE_DIR)
 
 # Without what they need, tests are left out: who only runs the programs need not install it.
 if(PCL_BSH_BUILD_TESTS)

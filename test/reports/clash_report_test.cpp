@@ -247,7 +247,7 @@ TEST_F(ClashReports, NamesDoNoHarm)
   const std::string page = clashPage(list);
   EXPECT_EQ(faultOfMarkup(page), "");
   EXPECT_EQ(occurrences(page, "<script"), 0U);
-  EXPECT_EQ(occurrences(page, "&lt;script&gt;&amp;&quot;&#39;\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd(.ply"), 4U);
+  EXPECT_EQ(occurrences(page, "&lt;script&gt;&amp;&quot;&apos;\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd(.ply"), 4U);
   EXPECT_EQ(validUtf8(page), page);
   const std::string csv = clashCsv(list);
   EXPECT_THAT(csv, HasSubstr("\n\"a\"\",b\n<i>\",new,1,"));
@@ -255,6 +255,19 @@ TEST_F(ClashReports, NamesDoNoHarm)
   EXPECT_EQ(validUtf8(json), json);
   EXPECT_EQ(parseClashes(json, "list.json").clashes[1].id, list.clashes[1].id);
   EXPECT_EQ(parseClashes(json, "list.json").input, validUtf8(odd));
+}
+
+TEST_F(ClashReports, EveryPlaceOfTheTemplateIsFilled)
+{
+  ClashReport list = twoClashes();
+  list.previous = "{{clearance}}";
+  list.swept = 0.01;
+  const std::string page = clashPage(list);
+  EXPECT_TRUE(has(page, "compared with {{clearance}}</p>")) << "names are no templates";
+  EXPECT_EQ(occurrences(page, "{{"), 1U);
+  for (const char* empty :
+       {"=\"\"", "<b></b>", "<td></td>", "<text></text>", "\"middle\"></text>", "\"end\"></text>", "()"})
+    EXPECT_FALSE(has(page, empty)) << empty;
 }
 
 TEST_F(ClashReports, CsvReadsBackToTheSameBits)
