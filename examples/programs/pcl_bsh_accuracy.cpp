@@ -43,13 +43,14 @@ struct Options {
   double clearance = 0.0;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   unsigned poses = 1, repetitions = 5, threads = 1;
+  std::string unit;
   bool peers = false;
   cli::CommandFiles files;
 };
 
 std::optional<Options> parse(int argc, char** argv)
 {
-  std::string a, b, out, clearance, pose, poses, trajectory, repetitions = "5", threads = "1";
+  std::string a, b, out, clearance, pose, poses, trajectory, unit, repetitions = "5", threads = "1";
   Options options;
   CLI::App app("Measures what accuracy costs in time, on two clouds of yours.", program);
   app.footer(footer);
@@ -69,11 +70,13 @@ std::optional<Options> parse(int argc, char** argv)
       ->type_name("FILE");
   app.add_option("--repeat", repetitions, "repetitions of every measurement (default 5)")->type_name("N");
   app.add_option("--threads", threads, "0: all of the machine's (default 1)")->type_name("N");
+  app.add_option("--unit", unit, "name of the clouds' unit, for the picture")->type_name("NAME");
   app.add_flag("--peers", options.peers, "measure PCL's kd-tree, octree and VoxelGrid on the same clouds, too");
   if (!cli::understood(app, program, argc, argv)) return std::nullopt;
   options.a = a;
   options.b = b;
   options.out = out;
+  options.unit = unit;
   options.clearance = cli::parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
   if (!trajectory.empty() && !(pose.empty() && poses.empty()))
     throw cli::UsageError(std::string(pose.empty() ? "--poses" : "--pose") + ": --trajectory is given too: give one");
@@ -149,7 +152,7 @@ int study(const Options& options)
   const files::OutputFolder folder(options.out);
   for (const char* name : results) files::requireWritable(options.out / name);
   const pcl::PCLPointCloud2 cloud_a = load(options.a), cloud_b = load(options.b);
-  accuracy::Subject subject{viewOf(cloud_a), viewOf(cloud_b), options.clearance, {}, 0.0};
+  accuracy::Subject subject{viewOf(cloud_a), viewOf(cloud_b), options.clearance, {}, 0.0, options.unit};
   const Box a(subject.a), b(subject.b);
   if (a.box.isEmpty() || b.box.isEmpty())
     throw std::runtime_error((a.box.isEmpty() ? options.a : options.b).string() +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Curves on logarithmic axes, as a PNG file.
+// What something costs against how far off it is, on logarithmic axes with a row of its own for "not at all": a PNG
+// file.
 #pragma once
 
 #include <array>
@@ -9,24 +10,52 @@
 
 namespace pcl_bsh::vtk {
 
-struct Curve {
-  std::string name;
-  std::vector<double> x, y;                ///< as many of each; what is 0, or nearly, is drawn at the axis' lower end
-  std::array<unsigned char, 3> color = {}; ///< red, green, blue
-  bool dashed = false;
-  bool line = true; ///< false: marks only
+struct Tick {
+  double value = 0.0; ///< > 0
+  std::string text;
+};
+
+struct Axis {
+  std::string title;
+  std::vector<Tick> ticks; ///< ascending, two or more; the first and the last are the ends of the axis
+};
+
+struct ChartPoint {
+  double x = 0.0, y = 0.0;
+  std::string label; ///< empty: none. A label without a free place is left out: the earlier ones of a series stay
+};
+
+enum class Mark { circle, square, triangle, diamond };
+
+struct Series {
+  std::string name; ///< in the legend; empty: not there
+  std::array<unsigned char, 3> color = {};
+  Mark mark = Mark::circle;
+  bool filled = true;
+  bool joined = false; ///< by a line, in the order given
+  bool faint = false;  ///< small and pale, without labels
+  std::vector<ChartPoint> points;
+};
+
+/// An arrow between two places of the lowest row, with a text.
+struct Span {
+  double from = 0.0, to = 0.0;
+  std::string text;
 };
 
 struct Chart {
   std::string title;
-  std::string x_label, y_label; ///< with units
-  std::vector<Curve> curves;
+  Axis x, y;             ///< points beyond their ends are drawn at the ends
+  std::string lowest;    ///< name of the row below the y axis
+  double lowest_y = 0.0; ///< points up to here are in that row
+  std::vector<Series> series;
+  std::vector<Span> spans;
 };
 
 /// Colours that readers with any colour vision tell apart (Okabe, Ito: Color Universal Design, 2008).
 std::array<unsigned char, 3> distinctColor(std::size_t i);
 
-/// Draws the charts one below the other. @throws std::runtime_error naming the file
-void writeChartsPng(const std::vector<Chart>& charts, int width, int height_each, const std::filesystem::path& path);
+/// Draws the charts side by side, under one legend of all series. @throws std::runtime_error naming the file
+void writeChartsPng(const std::vector<Chart>& charts, int width, int height, const std::filesystem::path& path);
 
 } // namespace pcl_bsh::vtk

@@ -65,7 +65,7 @@ TEST_F(AccuracyProgram, MeasuresEveryKnobAndIsNeverWrongWhereCertified)
 {
   const Outcome done =
       run("pcl_bsh_accuracy", a.string() + " " + b.string() + " --clearance 0.01 --poses 2 --repeat 1 " +
-                                  "--peers --out " + (folder / "study").string());
+                                  "--peers --unit m --out " + (folder / "study").string());
   ASSERT_EQ(done.exit_code, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("| exact | `exact`"));
   std::map<std::string, int> knobs, certified_of; ///< rows that were checked, by query
@@ -83,8 +83,8 @@ TEST_F(AccuracyProgram, MeasuresEveryKnobAndIsNeverWrongWhereCertified)
     ++certified_of[row.at("query")];
   }
   for (const char* query : {"distance", "flags", "any"}) EXPECT_GE(certified_of[query], 5) << query;
-  for (const char* knob : {"exact", "float only", "tolerance", "level of detail", "budget of tests", "PCL kd-tree",
-                           "PCL approximate kd-tree", "PCL octree", "VoxelGrid + kd-tree"})
+  for (const char* knob : {"exact", "float only", "tolerance", "level of detail", "budget of tests", "k-d tree",
+                           "approximate k-d tree", "octree", "VoxelGrid + k-d tree"})
     EXPECT_EQ(knobs.count(knob), 1u) << knob;
   const std::string text = io::contentOf(folder / "study" / "accuracy.md");
   for (const char* part :

@@ -7,14 +7,19 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace pcl_bsh::accuracy {
 namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+using Tree = pcl::KdTreeFLANN<pcl::PointXYZ>;
+using Octree = pcl::octree::OctreePointCloudSearch<pcl::PointXYZ>;
 using Clock = std::chrono::steady_clock;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -53,18 +58,46 @@ Point3 middleOf(const PointsView& view)
 
 /// What one way of asking PCL found at one pose.
 struct Answer {
-  std::vector<std::uint8_t> flags; ///< per point of the cloud that asked; empty: not asked
+  std::vector<std::uint8_t> flags; ///< per finite point of a; empty: not asked
   double distance = infinity;
 };
 
-Cloud thinned(const Cloud::Ptr& cloud, double leaf)
+/// The leaf sizes that users try first: from below the clearance to several times it, in round numbers.
+std::vector<double> leavesFor(const Subject& subject)
 {
-  Cloud thin;
+  const double base = subject.clearance > 0.0 ? subject.clearance : 1e-3 * subject.diameter;
+  std::vector<double> leaves;
+  for (const double part : {0.3, 1.0, 3.0, 10.0}) leaves.push_back(roundLength(part * base));
+  return leaves;
+}
+
+Cloud::Ptr thinned(const Cloud::Ptr& cloud, double leaf)
+{
+  auto thin = pcl::make_shared<Cloud>();
   pcl::VoxelGrid<pcl::PointXYZ> grid;
   grid.setInputCloud(cloud);
   grid.setLeafSize(static_cast<float>(leaf), static_cast<float>(leaf), static_cast<float>(leaf));
-  grid.filter(thin);
+  grid.filter(*thin);
   return thin;
+}
+
+/// The squared distance to the nearest point.
+auto nearestIn(const Tree& tree)
+{
+  return [&tree, index = pcl::Indices(1), squared = std::vector<float>(1)](const pcl::PointXYZ& p) mutable {
+    return tree.nearestKSearch(p, 1, index, squared) > 0 ? squared[0] : std::numeric_limits<float>::infinity();
+  };
+}
+
+/// One way down the octree, without a look at the neighbouring cells.
+auto roughlyIn(Octree& tree)
+{
+  return [&tree](const pcl::PointXYZ& p) {
+    pcl::index_t index = 0;
+    float squared = 0.0f;
+    tree.approxNearestSearch(p, index, squared);
+    return squared;
+  };
 }
 
 class Peers {
@@ -73,10 +106,11 @@ public:
   : subject_(subject),
     repetitions_(repetitions),
     progress_(progress),
-    origin_(middleOf(subject.a)),
-    a_(finiteOf(subject.a, origin_)),
-    b_(finiteOf(subject.b, middleOf(subject.b))),
-    origin_b_(middleOf(subject.b))
+    origin_a_(middleOf(subject.a)),
+    origin_b_(middleOf(subject.b)),
+    a_(finiteOf(subject.a, origin_a_)),
+    b_(finiteOf(subject.b, origin_b_)),
+    a_asks_(a_.cloud->size() <= b_.cloud->size())
   {
     const SphereHierarchy a(subject.a), b(subject.b);
     for (const Eigen::Isometry3d& pose : subject.poses) {
@@ -89,134 +123,163 @@ public:
 
   std::vector<Measurement> run()
   {
+    const std::vector<double> leaves = leavesFor(subject_);
     for (const float epsilon : {0.0f, 0.5f, 2.0f}) {
-      pcl::KdTreeFLANN<pcl::PointXYZ> tree;
+      Tree tree;
       tree.setEpsilon(epsilon);
-      tree.setInputCloud(b_.cloud);
-      const std::string knob = epsilon == 0.0f ? "PCL kd-tree" : "PCL approximate kd-tree";
-      measure(knob, "epsilon=" + trimmed(epsilon), *a_.cloud, tree, true);
+      tree.setInputCloud(a_asks_ ? b_.cloud : a_.cloud);
+      begin(epsilon == 0.0f ? "k-d tree" : "approximate k-d tree", "epsilon", epsilon);
+      const Cloud& asking = a_asks_ ? *a_.cloud : *b_.cloud;
+      measure("flags", [&](const Eigen::Affine3f& to_b) { return flagsOf(asking, tree, to_b); });
+      measure("distance", [&](const Eigen::Affine3f& to_b) { return nearestOf(asking, nearestIn(tree), to_b); });
     }
-    {
-      pcl::octree::OctreePointCloudSearch<pcl::PointXYZ> tree(std::max(subject_.clearance, 1e-4 * subject_.diameter));
-      tree.setInputCloud(b_.cloud);
+    for (const double leaf : leaves) {
+      if (leaf < subject_.clearance) continue; // finds still less, and takes much memory
+      begin("octree", "leaf", leaf);
+      Octree tree(leaf);
+      tree.setInputCloud(a_asks_ ? b_.cloud : a_.cloud);
       tree.addPointsFromInputCloud();
-      measure("PCL octree", "resolution=clearance", *a_.cloud, tree, true);
+      const Cloud& asking = a_asks_ ? *a_.cloud : *b_.cloud;
+      measure("distance", [&](const Eigen::Affine3f& to_b) { return nearestOf(asking, roughlyIn(tree), to_b); });
+      measure("flags", [&](const Eigen::Affine3f& to_b) { return sharedVoxels(asking, tree, to_b); });
     }
-    for (const double part : {0.001, 0.003, 0.01, 0.03}) {
-      const double leaf = part * subject_.diameter;
-      const Cloud thin_a = thinned(a_.cloud, leaf), thin_b = thinned(b_.cloud, leaf);
-      pcl::KdTreeFLANN<pcl::PointXYZ> tree;
-      tree.setInputCloud(thin_b.makeShared());
-      // Flags are wanted of every point; a distance is not.
-      measure("VoxelGrid + kd-tree", "leaf=" + trimmed(leaf), *a_.cloud, tree, true, false);
-      measure("VoxelGrid + kd-tree", "leaf=" + trimmed(leaf), thin_a, tree, false);
+    for (const double leaf : leaves) {
+      begin("VoxelGrid + k-d tree", "leaf", leaf);
+      const Cloud::Ptr thin_a = thinned(a_.cloud, leaf), thin_b = thinned(b_.cloud, leaf);
+      Tree tree;
+      tree.setInputCloud(a_asks_ ? thin_b : thin_a);
+      const Cloud& asking = a_asks_ ? *thin_a : *thin_b;
+      measure("distance", [&](const Eigen::Affine3f& to_b) { return nearestOf(asking, nearestIn(tree), to_b); });
+      // Flags are wanted of every point of a.
+      tree.setInputCloud(a_asks_ ? thin_b : a_.cloud);
+      const Cloud& flagging = a_asks_ ? *a_.cloud : *thin_b;
+      measure("flags", [&](const Eigen::Affine3f& to_b) { return flagsOf(flagging, tree, to_b); });
     }
     return std::move(measurements_);
   }
 
 private:
-  static std::string trimmed(double value)
+  /// What follows is measured of this way.
+  void begin(const std::string& knob, const char* dial, double value)
   {
     std::array<char, 32> text;
-    std::snprintf(text.data(), text.size(), "%.3g", value);
-    return text.data();
+    std::snprintf(text.data(), text.size(), "%s=%.3g", dial, value);
+    knob_ = knob;
+    setting_ = text.data();
+    progress_(knob_ + " " + setting_, 0.9);
   }
 
-  template <class Search>
-  void measure(const std::string& knob, const std::string& setting, const Cloud& asking, Search& search, bool flags,
-               bool distance = true)
+  template <class Ask>
+  void measure(const char* query, const Ask& ask)
   {
-    progress_(knob + " " + setting, 0.9);
-    if (flags) measureQuery("flags", knob, setting, asking, search);
-    if (distance) measureQuery("distance", knob, setting, asking, search);
-  }
-
-  template <class Search>
-  void measureQuery(const char* query, const std::string& knob, const std::string& setting, const Cloud& asking,
-                    Search& search)
-  {
-    const bool flags = std::string(query) == "flags";
     Measurement m;
     m.query = query;
-    m.knob = knob;
-    m.setting = setting;
+    m.knob = knob_;
+    m.setting = setting_;
+    m.peer = true;
     m.certified = false;
     m.poses = subject_.poses.size();
-    std::vector<double> seconds;
+    std::vector<std::vector<double>> seconds(m.poses);
     for (unsigned repetition = 0; repetition < repetitions_; ++repetition) {
-      double total = 0.0;
       for (std::size_t i = 0; i < subject_.poses.size(); ++i) {
         const auto start = Clock::now();
-        const Answer answer = flags ? flagsOf(asking, search, i) : nearestOf(asking, search, i);
-        total += std::chrono::duration<double>(Clock::now() - start).count();
-        if (repetition == 0) judge(answer, i, flags, m);
+        const Answer answer = ask(fromAToB(i));
+        seconds[i].push_back(std::chrono::duration<double>(Clock::now() - start).count());
+        if (repetition == 0) judge(answer, i, m);
       }
-      seconds.push_back(total / static_cast<double>(subject_.poses.size()));
     }
-    const auto poses = static_cast<double>(subject_.poses.size());
-    m.actual_error =
-        flags ? static_cast<double>(m.wrong) / (poses * static_cast<double>(a_.cloud->size())) : m.actual_error / poses;
-    m.seconds = spreadOf(seconds);
+    if (m.query == "flags")
+      m.actual_error = static_cast<double>(m.wrong) /
+                       static_cast<double>(subject_.poses.size() * std::max<std::size_t>(1, a_.cloud->size()));
+    m.seconds = meanSpreadOf(seconds);
     measurements_.push_back(std::move(m));
   }
 
-  void judge(const Answer& answer, std::size_t pose, bool flags, Measurement& m) const
+  void judge(const Answer& answer, std::size_t pose, Measurement& m) const
   {
-    if (!flags) {
-      m.actual_error += std::abs(answer.distance - distances_[pose]);
-      return;
-    }
+    if (m.query == "distance") m.actual_error = std::max(m.actual_error, std::abs(answer.distance - distances_[pose]));
     for (std::size_t i = 0; i < answer.flags.size(); ++i)
       m.wrong += answer.flags[i] != truths_[pose][a_.records[i]] ? 1 : 0;
   }
 
   /// From the frame about a's middle to that about b's.
-  Eigen::Affine3f toB(std::size_t pose) const
+  Eigen::Affine3f fromAToB(std::size_t pose) const
   {
-    const Eigen::Vector3d about_a(origin_[0], origin_[1], origin_[2]),
+    const Eigen::Vector3d about_a(origin_a_[0], origin_a_[1], origin_a_[2]),
         about_b(origin_b_[0], origin_b_[1], origin_b_[2]);
     const Eigen::Isometry3d b_a = subject_.poses[pose].inverse();
     return Eigen::Affine3f(
         (Eigen::Translation3d(-about_b) * b_a * Eigen::Translation3d(about_a)).matrix().cast<float>());
   }
 
-  template <class Search>
-  Answer flagsOf(const Cloud& asking, Search& search, std::size_t pose) const
+  Eigen::Affine3f toTree(const Eigen::Affine3f& to_b) const
   {
-    const Eigen::Affine3f motion = toB(pose);
+    return a_asks_ ? to_b : Eigen::Affine3f(Eigen::Isometry3f(to_b.matrix()).inverse().matrix());
+  }
+
+  static pcl::PointXYZ moved(const pcl::PointXYZ& point, const Eigen::Affine3f& motion)
+  {
+    pcl::PointXYZ p;
+    p.getVector3fMap() = motion * point.getVector3fMap();
+    return p;
+  }
+
+  /// The points of a that ask whether any of the tree is near, or those that points of b find in the tree of a.
+  Answer flagsOf(const Cloud& asking, const Tree& tree, const Eigen::Affine3f& to_b) const
+  {
+    const Eigen::Affine3f motion = toTree(to_b);
     Answer answer;
-    answer.flags.resize(asking.size());
-    pcl::Indices indices;
+    answer.flags.resize(a_.cloud->size());
+    pcl::Indices found;
     std::vector<float> squared;
     for (std::size_t i = 0; i < asking.size(); ++i) {
-      pcl::PointXYZ p;
-      p.getVector3fMap() = motion * asking[i].getVector3fMap();
-      answer.flags[i] = search.radiusSearch(p, subject_.clearance, indices, squared, 1) > 0 ? 1 : 0;
+      const int count =
+          tree.radiusSearch(moved(asking[i], motion), subject_.clearance, found, squared, a_asks_ ? 1 : 0);
+      if (a_asks_)
+        answer.flags[i] = count > 0 ? 1 : 0;
+      else
+        for (const pcl::index_t index : found) answer.flags[static_cast<std::size_t>(index)] = 1;
     }
     return answer;
   }
 
-  template <class Search>
-  Answer nearestOf(const Cloud& asking, Search& search, std::size_t pose) const
+  /// What lies in one voxel of the octree collides.
+  Answer sharedVoxels(const Cloud& asking, Octree& tree, const Eigen::Affine3f& to_b) const
   {
-    const Eigen::Affine3f motion = toB(pose);
-    pcl::Indices indices(1);
-    std::vector<float> squared(1);
-    float least = std::numeric_limits<float>::infinity();
-    for (const pcl::PointXYZ& q : asking) {
-      pcl::PointXYZ p;
-      p.getVector3fMap() = motion * q.getVector3fMap();
-      if (search.nearestKSearch(p, 1, indices, squared) > 0) least = std::min(least, squared[0]);
+    const Eigen::Affine3f motion = toTree(to_b);
+    Answer answer;
+    answer.flags.resize(a_.cloud->size());
+    pcl::Indices found;
+    for (std::size_t i = 0; i < asking.size(); ++i) {
+      const pcl::PointXYZ point = moved(asking[i], motion);
+      if (!tree.isVoxelOccupiedAtPoint(point)) continue;
+      if (a_asks_) {
+        answer.flags[i] = 1;
+        continue;
+      }
+      found.clear();
+      tree.voxelSearch(point, found);
+      for (const pcl::index_t index : found) answer.flags[static_cast<std::size_t>(index)] = 1;
     }
+    return answer;
+  }
+
+  template <class Nearest>
+  Answer nearestOf(const Cloud& asking, Nearest nearest, const Eigen::Affine3f& to_b) const
+  {
+    const Eigen::Affine3f motion = toTree(to_b);
+    float least = std::numeric_limits<float>::infinity();
+    for (const pcl::PointXYZ& point : asking) least = std::min(least, nearest(moved(point, motion)));
     return {{}, std::sqrt(static_cast<double>(least))};
   }
 
   const Subject& subject_;
   unsigned repetitions_;
   const Progress& progress_;
-  Point3 origin_;
+  Point3 origin_a_, origin_b_;
   Finite a_, b_;
-  Point3 origin_b_;
+  bool a_asks_; ///< the smaller cloud asks a tree of the larger, which is the faster way round
+  std::string knob_, setting_;
   std::vector<std::vector<std::uint8_t>> truths_;
   std::vector<double> distances_;
   std::vector<Measurement> measurements_;

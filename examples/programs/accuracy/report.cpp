@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.h"
 
+#include "picture.h"
+
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/vtk/chart.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <optional>
 
 namespace pcl_bsh::accuracy {
@@ -27,11 +27,6 @@ std::string milliseconds(double seconds)
   return format("%.4g", 1e3 * seconds);
 }
 
-bool isPeer(const Measurement& m)
-{
-  return m.knob.rfind("PCL", 0) == 0 || m.knob.rfind("VoxelGrid", 0) == 0;
-}
-
 void writeCsv(std::ostream& out, const Study& study)
 {
   out << "query,knob,setting,poses,time_median_s,time_low_s,time_high_s,node_pairs,updates,leaf_pairs,"
@@ -48,8 +43,8 @@ void writeTable(std::ostream& out, const Study& study, const std::string& query)
 {
   const bool distance = query == "distance";
   out << "| knob | setting | time [ms], median | low .. high | "
-      << (distance ? "interval [unit], mean width" : "undecided [%]") << " | "
-      << (distance ? "off exact [unit], mean" : "wrong [answers]") << " | sphere tests a query |\n"
+      << (distance ? "error at most [unit]" : "undecided [%]") << " | "
+      << (distance ? "off exact [unit], largest" : "wrong [answers]") << " | sphere tests a query |\n"
       << "|---|---|---:|---:|---:|---:|---:|\n";
   for (const Measurement& m : study.measurements) {
     if (m.query != query) continue;
@@ -59,26 +54,12 @@ void writeTable(std::ostream& out, const Study& study, const std::string& query)
     out << "| " << m.knob << " | `" << m.setting << "` | " << milliseconds(m.seconds.median) << " | "
         << milliseconds(m.seconds.low) << " .. " << milliseconds(m.seconds.high) << " | " << error << " | "
         << (distance ? format("%.3g", m.actual_error) : std::to_string(m.wrong)) << " | "
-        << (isPeer(m) ? std::string("-") : std::to_string(m.work.node_pairs / std::max<std::size_t>(m.poses, 1)))
+        << (m.peer ? std::string("-") : std::to_string(m.work.node_pairs / std::max<std::size_t>(m.poses, 1)))
         << " |\n";
   }
 }
 
-/// The certified distance settings that nothing beats in both time and error, by time.
-std::vector<const Measurement*> front(const Study& study)
-{
-  std::vector<const Measurement*> all;
-  for (const Measurement& m : study.measurements)
-    if (m.query == "distance" && m.certified) all.push_back(&m);
-  std::sort(all.begin(), all.end(),
-            [](const Measurement* x, const Measurement* y) { return x->seconds.median < y->seconds.median; });
-  std::vector<const Measurement*> best;
-  for (const Measurement* m : all)
-    if (best.empty() || m->certified_error < best.back()->certified_error) best.push_back(m);
-  return best;
-}
-
-/// Where the front turns: farthest below the straight line between its ends, both axes logarithmic.
+/// Where the frontier bends: farthest below the straight line between its ends, both axes logarithmic.
 const Measurement* knee(std::vector<const Measurement*> best, double floor)
 {
   while (!best.empty() && best.back()->certified_error <= floor) best.pop_back(); // exact has no place on such an axis
@@ -126,13 +107,22 @@ void writeMarkdown(std::ostream& out, const std::string& heading, const Subject&
                 subject.poses.size(), subject.diameter)
       << "Trees are built before; times are of one query, averaged over the poses: the median of the repetitions, and "
          "from their tenth to their nine tenths.\n\n"
-      << advice(subject, study) << "\n![error against time](accuracy.png)\n";
-  out << "\n## Smallest distance\n\nThe interval is certified to hold the exact distance.\n\n";
+      << advice(subject, study)
+      << "\n![error against time](accuracy.png)\n\n"
+         "The line joins the settings that no other setting beats in both time and error. Its errors are guaranteed.";
+  if (std::any_of(study.measurements.begin(), study.measurements.end(), [](const Measurement& m) { return m.peer; }))
+    out << " PCL's errors are the largest that were measured at these poses: nothing bounds them at others. PCL's "
+           "times "
+           "include moving the points of the smaller cloud to the pose, and for each of them a search in a tree of the "
+           "larger cloud. Trees and thinned clouds are made before, as the sphere trees are.";
+  out << "\n\n## Smallest distance\n\n"
+         "The answer is an interval that holds the exact distance. Its width, the largest over the poses, is the "
+         "error.\n\n";
   writeTable(out, study, "distance");
-  out << "\n## Flags per point\n\nUndecided points are neither called free nor colliding. With a tolerance, answers "
-         "that differ from exact are those the tolerance allows.\n\n";
+  out << "\n## Flags per point\n\nAn undecided point is called neither free nor colliding. The "
+         "wrong answers of a tolerance are those that it allows.\n\n";
   writeTable(out, study, "flags");
-  out << "\n## Any collision\n\nUndecided counts poses.\n\n";
+  out << "\n## Any collision\n\nThe share of poses that stay undecided.\n\n";
   writeTable(out, study, "any");
   out << "\n## Fits of spheres\n\n| fit | build, both clouds [ms] | mean leaf radius [unit] | exact flags [ms] | exact "
          "distance [ms] |\n|---|---:|---:|---:|---:|\n";
@@ -142,57 +132,20 @@ void writeMarkdown(std::ostream& out, const std::string& heading, const Subject&
   }
 }
 
-/// One curve a knob: what is certified, and dashed, what it was off.
-vtk::Chart chartOf(const Study& study, const std::string& query, const std::string& title, const std::string& y_label,
-                   double scale)
-{
-  vtk::Chart chart;
-  chart.title = title;
-  chart.x_label = "time of a query [ms], median";
-  chart.y_label = y_label;
-  std::map<std::string, std::size_t> colors;
-  std::vector<std::string> knobs;
-  for (const Measurement& m : study.measurements) {
-    if (m.query == query && colors.emplace(m.knob, colors.size()).second) knobs.push_back(m.knob);
-  }
-  for (const std::string& knob : knobs) {
-    vtk::Curve certified, actual;
-    certified.color = actual.color = vtk::distinctColor(colors[knob]);
-    bool peer = false;
-    for (const Measurement& m : study.measurements) {
-      if (m.query != query || m.knob != knob) continue;
-      peer = isPeer(m);
-      if (m.certified && m.knob != "exact" && !(query == "flags" && m.knob == "tolerance")) {
-        certified.x.push_back(1e3 * m.seconds.median);
-        certified.y.push_back(scale * m.certified_error);
-      }
-      actual.x.push_back(1e3 * m.seconds.median);
-      actual.y.push_back(scale * m.actual_error);
-    }
-    actual.dashed = true;
-    actual.line = actual.x.size() > 1 && !peer;
-    certified.name = knob + ", certified";
-    actual.name = knob == "exact" || peer ? knob : knob + ", actual";
-    if (!certified.x.empty()) chart.curves.push_back(certified);
-    chart.curves.push_back(actual);
-  }
-  return chart;
-}
-
 } // namespace
 
 std::string advice(const Subject& subject, const Study& study)
 {
   std::string text;
   const auto describe = [&](const Measurement* m) {
-    return "`" + m->setting + "` (" + milliseconds(m->seconds.median) + " ms, interval " +
+    return "`" + m->setting + "` (" + milliseconds(m->seconds.median) + " ms, error at most " +
            format("%.3g", m->certified_error) +
            format(" = %.2g %% of the diameter)", 100 * m->certified_error / subject.diameter);
   };
-  const std::vector<const Measurement*> best = front(study);
+  const std::vector<const Measurement*> best = frontier(study, "distance", 1e-9 * subject.diameter);
   if (const Measurement* turn = knee(best, 1e-9 * subject.diameter)) {
-    text += "The knee for the smallest distance is " + describe(turn) +
-            ": less time costs much accuracy, more buys little.\n\n";
+    text += "For the smallest distance " + describe(turn) +
+            " is where the curve bends: with less time the error grows fast, with more time it shrinks slowly.\n\n";
   }
   text += "| time for one query | smallest distance | flags per point |\n|---|---|---|\n";
   for (const double seconds : {1e-3, 1e-2}) {
@@ -218,11 +171,7 @@ void writeReports(const std::filesystem::path& folder, const std::string& headin
 {
   files::replaceFile(folder / "accuracy.csv", [&](std::ostream& out) { writeCsv(out, study); });
   files::replaceFile(folder / "accuracy.md", [&](std::ostream& out) { writeMarkdown(out, heading, subject, study); });
-  vtk::writeChartsPng({chartOf(study, "distance", "Smallest distance: error against time",
-                               "error [the clouds' unit]; bottom line: 0", 1.0),
-                       chartOf(study, "flags", "Flags: undecided (certified) and wrong (actual) points against time",
-                               "points [%]; bottom line: 0", 100.0)},
-                      1100, 620, folder / "accuracy.png");
+  vtk::writeChartsPng(chartsOf(subject, study), 1600, 800, folder / "accuracy.png");
 }
 
 } // namespace pcl_bsh::accuracy

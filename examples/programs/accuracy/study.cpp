@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 
 namespace pcl_bsh::accuracy {
 namespace {
@@ -48,7 +49,7 @@ struct Trial {
   Accuracy accuracy;
   Query query;
   Measurement measurement;
-  std::vector<double> seconds;
+  std::vector<std::vector<double>> seconds; ///< of each pose, one a repetition
 };
 
 class Laboratory {
@@ -68,16 +69,26 @@ public:
     }
   }
 
-  /// Mean over the poses, in seconds.
-  double time(Query query, const Accuracy& accuracy) const
+  std::size_t colliding() const
   {
-    const auto start = Clock::now();
-    for (const Eigen::Isometry3d& pose : subject_.poses) {
+    std::size_t count = 0;
+    for (const Truth& truth : truths_)
+      count += static_cast<std::size_t>(std::count(truth.flags.begin(), truth.flags.end(), std::uint8_t{1}));
+    return count;
+  }
+
+  /// Adds the seconds of one query at each pose.
+  void time(Query query, const Accuracy& accuracy, std::vector<std::vector<double>>& seconds) const
+  {
+    seconds.resize(subject_.poses.size());
+    for (std::size_t i = 0; i < seconds.size(); ++i) {
+      const Eigen::Isometry3d& pose = subject_.poses[i];
+      const auto start = Clock::now();
       if (query == Query::any) anyCollision({a_}, {b_, pose}, anyRequest(accuracy));
       if (query == Query::flags) collisionFlags({a_}, {b_, pose}, flagsRequest(accuracy));
       if (query == Query::distance) closestPair({a_}, {b_, pose}, {accuracy});
+      seconds[i].push_back(std::chrono::duration<double>(Clock::now() - start).count());
     }
-    return std::chrono::duration<double>(Clock::now() - start).count() / static_cast<double>(subject_.poses.size());
   }
 
   /// What the answers at a setting are worth.
@@ -110,16 +121,14 @@ public:
       }
       else {
         const DistanceResult result = closestPair({a_}, b, {accuracy});
-        answers += 1;
-        m.certified_error += result.interval.upper - result.interval.lower;
-        m.actual_error += std::abs(result.distance - truth.distance);
+        m.certified_error = std::max(m.certified_error, result.interval.upper - result.interval.lower);
+        m.actual_error = std::max(m.actual_error, std::abs(result.distance - truth.distance));
         m.work += result.work;
       }
     }
     if (query == Query::distance) {
-      m.certified_error = m.certified ? m.certified_error / answers : 0.0;
-      m.actual_error /= answers;
-      if (accuracy.isExact()) m.certified_error = 0.0; // but for the rounding of the number given
+      // The width of an exact answer is the rounding of the number given.
+      if (!m.certified || accuracy.isExact()) m.certified_error = 0.0;
     }
     else {
       m.certified_error = undecided / answers;
@@ -150,21 +159,24 @@ private:
 std::vector<Accuracy> dialOf(Query query, const Laboratory& laboratory, double diameter)
 {
   std::vector<Accuracy> dial = {Accuracy::exact(), Accuracy::floatOnly()};
-  for (const double part : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) {
-    const double length = part * diameter;
-    dial.push_back(Accuracy::tolerance(std::pow(10.0, std::round(std::log10(length)))));
-  }
+  for (const double part : {1e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2})
+    dial.push_back(Accuracy::tolerance(roundLength(part * diameter)));
   for (unsigned level = 0; level <= 16; ++level) {
     dial.push_back(Accuracy::level(level));
     if (laboratory.judge(query, dial.back()).certified_error <= 1e-9 * diameter) break;
   }
-  const double exact = laboratory.time(query, Accuracy::exact());
+  std::vector<std::vector<double>> seconds;
+  laboratory.time(query, Accuracy::exact(), seconds);
+  const double exact = meanSpreadOf(seconds).median;
   for (const char* text : {"1e-5", "3e-5", "1e-4", "3e-4", "0.001", "0.003", "0.01", "0.03", "0.1", "0.3", "1", "3"}) {
     const Accuracy budget = Accuracy::parse(std::string("time=") + text);
     if (budget.value >= exact / 300.0 && budget.value <= 2.0 * exact) dial.push_back(budget);
   }
   const std::uint64_t tests = laboratory.judge(query, Accuracy::exact()).work.node_pairs;
-  for (std::uint64_t count = 100; count < tests; count *= 10) dial.push_back(Accuracy::nodePairs(count));
+  for (std::uint64_t count = 100; count < tests; count *= 10) {
+    dial.push_back(Accuracy::nodePairs(count));
+    if (3 * count < tests) dial.push_back(Accuracy::nodePairs(3 * count));
+  }
   return dial;
 }
 
@@ -212,11 +224,32 @@ Spread spreadOf(std::vector<double> values)
   return {at(0.1), at(0.5), at(0.9)};
 }
 
+Spread meanSpreadOf(const std::vector<std::vector<double>>& samples)
+{
+  Spread mean;
+  for (const std::vector<double>& of_pose : samples) {
+    const Spread spread = spreadOf(of_pose);
+    mean.low += spread.low / static_cast<double>(samples.size());
+    mean.median += spread.median / static_cast<double>(samples.size());
+    mean.high += spread.high / static_cast<double>(samples.size());
+  }
+  return mean;
+}
+
+double roundLength(double length)
+{
+  const double decade = std::floor(std::log10(length));
+  const double lead = length / std::pow(10.0, decade);
+  const int rounded = lead < std::sqrt(3.0) ? 1 : lead < std::sqrt(30.0) ? 3 : 10;
+  return std::strtod((std::to_string(rounded) + "e" + std::to_string(static_cast<int>(decade))).c_str(), nullptr);
+}
+
 Study runStudy(const Subject& subject, unsigned repetitions, unsigned threads, const Progress& progress)
 {
   Study study;
   progress("building and exact answers", 0.0);
   const Laboratory laboratory(subject, threads);
+  study.colliding = laboratory.colliding();
   std::vector<Trial> trials;
   for (const Query query : {Query::any, Query::flags, Query::distance}) {
     progress(std::string("range of the dial for ") + nameOf(query), 0.05);
@@ -227,11 +260,11 @@ Study runStudy(const Subject& subject, unsigned repetitions, unsigned threads, c
     progress("repetition " + std::to_string(repetition + 1) + " of " + std::to_string(repetitions),
              0.1 + 0.7 * repetition / repetitions);
     for (Trial& trial : trials) {
-      trial.seconds.push_back(laboratory.time(trial.query, trial.accuracy));
+      laboratory.time(trial.query, trial.accuracy, trial.seconds);
     }
   }
   for (Trial& trial : trials) {
-    trial.measurement.seconds = spreadOf(trial.seconds);
+    trial.measurement.seconds = meanSpreadOf(trial.seconds);
     study.measurements.push_back(std::move(trial.measurement));
   }
   progress("fits of spheres", 0.8);

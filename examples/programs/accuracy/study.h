@@ -16,6 +16,7 @@ struct Subject {
   double clearance = 0.0;
   std::vector<Eigen::Isometry3d> poses; ///< T_a_b
   double diameter = 0.0;                ///< of a's bounding box
+  std::string unit;                     ///< of lengths, for titles; empty: not known
 };
 
 struct Spread {
@@ -27,11 +28,12 @@ struct Measurement {
   std::string query; ///< any, flags or distance
   std::string knob;  ///< which of the dials, or which peer
   std::string setting;
-  Spread seconds; ///< of one query, averaged over the poses
-  Work work;      ///< of all poses together
+  bool peer = false; ///< not ours
+  Spread seconds;    ///< of one query: of each pose over the repetitions, averaged over the poses
+  Work work;         ///< of all poses together
   bool certified = true;
-  double certified_error = 0.0; ///< distance: mean width of the interval; flags, any: share left undecided
-  double actual_error = 0.0;    ///< distance: mean deviation from exact; flags, any: share of wrong answers
+  double certified_error = 0.0; ///< distance: widest interval of all poses; flags, any: share left undecided
+  double actual_error = 0.0;    ///< distance: farthest from exact at any pose; flags, any: share of wrong answers
   std::size_t wrong = 0;        ///< flags, any: answers that differ from exact
   std::size_t poses = 0;
 };
@@ -45,6 +47,7 @@ struct FitMeasurement {
 };
 
 struct Study {
+  std::size_t colliding = 0; ///< points of a, counted at every pose
   std::vector<Measurement> measurements;
   std::vector<FitMeasurement> fits;
 };
@@ -56,5 +59,12 @@ using Progress = std::function<void(const std::string&, double)>;
 Study runStudy(const Subject& subject, unsigned repetitions, unsigned threads, const Progress& progress);
 
 Spread spreadOf(std::vector<double> values);
+
+/// The mean of the poses' spreads: an interruption at one pose in one repetition moves no median.
+/// @param samples of each pose, one a repetition
+Spread meanSpreadOf(const std::vector<std::vector<double>>& samples);
+
+/// The nearest of 1, 3 and 10 times a power of ten. @param length > 0
+double roundLength(double length);
 
 } // namespace pcl_bsh::accuracy

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace pcl_bsh::accuracy {
+namespace {
+
+std::string shortText(double value)
+{
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
+
+std::string timeText(double seconds)
+{
+  if (seconds >= 1.0) return shortText(seconds) + " s";
+  if (seconds >= 1e-3) return shortText(1e3 * seconds) + " ms";
+  if (seconds >= 1e-6) return shortText(1e6 * seconds) + " \xc2\xb5s";
+  return shortText(1e9 * seconds) + " ns";
+}
+
+std::string lengthText(double length, const std::string& unit)
+{
+  if (unit == "m" && length >= 1e3) return shortText(1e-3 * length) + " km";
+  if (unit == "m" && length < 1e-2) return shortText(1e3 * length) + " mm";
+  if (unit == "m" && length < 1.0) return shortText(1e2 * length) + " cm";
+  return unit.empty() ? shortText(length) : shortText(length) + ' ' + unit;
+}
+
+/// Whole decades that hold the values, two ticks at least.
+template <class Text>
+std::vector<vtk::Tick> decades(const std::vector<double>& values, const Text& text)
+{
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (const double value : values) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (!(high > 0.0)) low = high = 1.0;
+  // A value just beyond a decade needs no decade more.
+  const int first = static_cast<int>(std::floor(std::log10(low) + 0.02));
+  const int last = std::max(first + 1, static_cast<int>(std::ceil(std::log10(high) - 0.02)));
+  std::vector<vtk::Tick> ticks;
+  for (int decade = first; decade <= last; ++decade) {
+    const double value = std::pow(10.0, decade);
+    ticks.push_back({value, text(value)});
+  }
+  return ticks;
+}
+
+/// A query, and how its errors become heights.
+struct View {
+  std::string query;
+  double scale = 1.0;      ///< of the errors
+  double negligible = 0.0; ///< scaled errors up to here are in the lowest row
+};
+
+double errorOf(const Measurement& m, const View& view)
+{
+  return view.scale * (m.peer ? m.actual_error : m.certified_error);
+}
+
+vtk::ChartPoint pointOf(const Measurement& m, const View& view)
+{
+  return {m.seconds.median, errorOf(m, view), m.setting};
+}
+
+vtk::Series oursOf(const Study& study, const View& view)
+{
+  vtk::Series series{"pcl_bsh, guaranteed", vtk::distinctColor(0), vtk::Mark::circle, true, true, false, {}};
+  for (const Measurement* m : frontier(study, view.query, view.negligible / view.scale))
+    series.points.push_back(pointOf(*m, view));
+  std::reverse(series.points.begin(), series.points.end()); // exact has the first choice of a place for its label
+  return series;
+}
+
+/// A way of PCL's, by the knobs it covers.
+vtk::Series peerOf(const Study& study, const View& view, const std::string& knob, std::size_t color, vtk::Mark mark)
+{
+  vtk::Series series{"PCL " + knob + (mark == vtk::Mark::diamond ? "" : ", no guarantee"),
+                     vtk::distinctColor(color),
+                     mark,
+                     false,
+                     false,
+                     false,
+                     {}};
+  for (const Measurement& m : study.measurements)
+    if (m.query == view.query && m.knob == knob) series.points.push_back(pointOf(m, view));
+  return series;
+}
+
+/// How much sooner the exact answer is there than from PCL's exact tree.
+std::vector<vtk::Span> spansOf(const vtk::Series& ours, const vtk::Series& tree)
+{
+  if (ours.points.empty() || tree.points.empty()) return {};
+  const double from = ours.points.front().x, to = tree.points.front().x;
+  if (!(to > 1.5 * from)) return {};
+  const double digits = std::pow(10.0, std::floor(std::log10(to / from)) - 1.0); // two digits are as many as last
+  return {{from, to, shortText(std::round(to / from / digits) * digits) + " x faster"}};
+}
+
+vtk::Chart chartOf(const Study& study, const View& view)
+{
+  vtk::Chart chart;
+  chart.lowest_y = view.negligible;
+  const vtk::Series ours = oursOf(study, view);
+  const vtk::Series tree = peerOf(study, view, "k-d tree", 6, vtk::Mark::diamond);
+  chart.series = {ours, tree, peerOf(study, view, "VoxelGrid + k-d tree", 1, vtk::Mark::square),
+                  peerOf(study, view, "octree", 2, vtk::Mark::triangle)};
+  chart.spans = spansOf(ours, tree);
+  const auto isEmpty = [](const vtk::Series& series) { return series.points.empty(); };
+  chart.series.erase(std::remove_if(chart.series.begin(), chart.series.end(), isEmpty), chart.series.end());
+  return chart;
+}
+
+std::vector<double> timesOf(const std::vector<vtk::Chart>& charts)
+{
+  std::vector<double> times;
+  for (const vtk::Chart& chart : charts)
+    for (const vtk::Series& series : chart.series)
+      for (const vtk::ChartPoint& point : series.points) times.push_back(point.x);
+  return times;
+}
+
+std::vector<double> errorsOf(const vtk::Chart& chart)
+{
+  std::vector<double> errors;
+  for (const vtk::Series& series : chart.series)
+    for (const vtk::ChartPoint& point : series.points)
+      if (point.y > chart.lowest_y) errors.push_back(point.y);
+  return errors;
+}
+
+} // namespace
+
+std::vector<const Measurement*> frontier(const Study& study, const std::string& query, double negligible)
+{
+  std::vector<const Measurement*> all;
+  const Measurement* exact = nullptr;
+  for (const Measurement& m : study.measurements) {
+    if (m.query != query || m.peer || !m.certified) continue;
+    if (m.knob == "exact")
+      exact = &m;
+    else if (m.certified_error > negligible)
+      all.push_back(&m);
+  }
+  std::sort(all.begin(), all.end(),
+            [](const Measurement* x, const Measurement* y) { return x->seconds.median < y->seconds.median; });
+  std::vector<const Measurement*> best;
+  for (const Measurement* m : all) {
+    if (exact && m->seconds.median >= exact->seconds.median) break;
+    if (best.empty() || m->certified_error < best.back()->certified_error) best.push_back(m);
+  }
+  if (exact) best.push_back(exact);
+  return best;
+}
+
+std::vector<vtk::Chart> chartsOf(const Subject& subject, const Study& study)
+{
+  const double colliding_share = static_cast<double>(std::max<std::size_t>(study.colliding, 1)) /
+                                 static_cast<double>(subject.poses.size() * std::max<std::size_t>(subject.a.size(), 1));
+  vtk::Chart distance = chartOf(study, {"distance", 1.0, 1e-7 * subject.diameter});
+  vtk::Chart flags = chartOf(study, {"flags", 1.0 / colliding_share, 0.0});
+  const std::vector<vtk::Tick> times = decades(timesOf({distance, flags}), timeText);
+  distance.title = "How far apart are the clouds?";
+  distance.x = {"time per pose", times};
+  distance.y = {"error of the distance",
+                decades(errorsOf(distance), [&](double length) { return lengthText(length, subject.unit); })};
+  distance.lowest = "exact";
+  flags.title = "Which points collide?";
+  flags.x = {"time per pose", times};
+  flags.y = {"wrong or undecided / colliding",
+             decades(errorsOf(flags), [](double share) { return shortText(100.0 * share) + " %"; })};
+  flags.lowest = "exact";
+  return {distance, flags};
+}
+
+} // namespace pcl_bsh::accuracy

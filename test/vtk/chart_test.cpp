@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "../files/temporary_folder.h"
+
+#include <pcl_bsh/vtk/chart.h>
+
+#include <gtest/gtest.h>
+
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPNGReader.h>
+
+#include <cstdlib>
+
+namespace pcl_bsh::vtk {
+namespace {
+
+class ChartPicture : public testing::Test {
+protected:
+  ChartPicture()
+  {
+    unsetenv("DISPLAY");
+    chart.title = "title";
+    chart.x = {"time", {{1e-5, "10"}, {1e-4, "100"}, {1e-3, "1000"}}};
+    chart.y = {"error", {{0.01, "1"}, {0.1, "10"}, {1, "100"}}};
+    chart.lowest = "exact";
+  }
+
+  void draw(const std::vector<Chart>& charts)
+  {
+    writeChartsPng(charts, 800, 500, folder / "chart.png");
+    reader->SetFileName((folder / "chart.png").c_str());
+    reader->Modified(); // the file has changed
+    reader->Update();
+    image = reader->GetOutput();
+  }
+
+  /// The middle of all pixels of a colour, and how many there are; from the lower left.
+  struct Blot {
+    double x = 0.0, y = 0.0;
+    std::size_t count = 0;
+  };
+  Blot blotOf(const std::array<unsigned char, 3>& color) const
+  {
+    Blot blot;
+    const int* const size = image->GetDimensions();
+    for (int y = 0; y < size[1]; ++y) {
+      for (int x = 0; x < size[0]; ++x) {
+        const auto* const c = static_cast<const unsigned char*>(image->GetScalarPointer(x, y, 0));
+        if (c[0] != color[0] || c[1] != color[1] || c[2] != color[2]) continue;
+        blot.x += x;
+        blot.y += y;
+        ++blot.count;
+      }
+    }
+    blot.x /= static_cast<double>(blot.count);
+    blot.y /= static_cast<double>(blot.count);
+    return blot;
+  }
+
+  static Series seriesAt(std::size_t color, double x, double y)
+  {
+    return {"", distinctColor(color), Mark::circle, true, false, false, {{x, y, ""}}};
+  }
+
+  files::TemporaryFolder folder;
+  Chart chart;
+  vtkNew<vtkPNGReader> reader;
+  vtkImageData* image = nullptr;
+};
+
+TEST_F(ChartPicture, PutsPointsByTheLogarithmOfTimeAndError)
+{
+  chart.series = {seriesAt(0, 1e-5, 1.0), seriesAt(1, 1e-4, 0.1), seriesAt(2, 1e-3, 0.01), seriesAt(3, 1e-4, 0.0)};
+  draw({chart});
+  EXPECT_EQ(image->GetDimensions()[0], 800);
+  EXPECT_EQ(image->GetDimensions()[1], 500);
+  const Blot slowless = blotOf(distinctColor(0)), middle = blotOf(distinctColor(1)), slow = blotOf(distinctColor(2)),
+             exact = blotOf(distinctColor(3));
+  for (const Blot& blot : {slowless, middle, slow, exact}) EXPECT_GT(blot.count, 100u);
+  EXPECT_NEAR(middle.x, 0.5 * (slowless.x + slow.x), 1.0);
+  EXPECT_NEAR(middle.y, 0.5 * (slowless.y + slow.y), 1.0);
+  EXPECT_GT(slowless.y, slow.y);
+  EXPECT_NEAR(exact.x, middle.x, 1.0);
+  EXPECT_LT(exact.y, slow.y - 20.0); // a row of its own
+}
+
+TEST_F(ChartPicture, DrawsChartsSideBySideAndPointsBeyondTheEndsAtTheEnds)
+{
+  Chart right = chart;
+  chart.series = {seriesAt(0, 1e-9, 0.1)};
+  right.series = {seriesAt(1, 1e-5, 0.1)};
+  draw({chart, right});
+  const Blot first = blotOf(distinctColor(0)), second = blotOf(distinctColor(1));
+  EXPECT_NEAR(second.x - first.x, 400.0, 1.0);
+  EXPECT_NEAR(second.y, first.y, 1.0);
+}
+
+TEST_F(ChartPicture, JoinsASeriesAndTellsHollowFromFilled)
+{
+  chart.series = {seriesAt(0, 1e-5, 0.1)};
+  draw({chart});
+  const std::size_t filled = blotOf(distinctColor(0)).count;
+  chart.series[0].filled = false;
+  draw({chart});
+  EXPECT_LT(blotOf(distinctColor(0)).count, filled);
+  chart.series[0].points.push_back({1e-3, 0.1, ""});
+  draw({chart});
+  const std::size_t apart = blotOf(distinctColor(0)).count;
+  chart.series[0].joined = true;
+  draw({chart});
+  EXPECT_GT(blotOf(distinctColor(0)).count, apart + 1000);
+}
+
+} // namespace
+} // namespace pcl_bsh::vtk
