@@ -11,7 +11,15 @@ bash examples/demo/fetch_scans.sh "$scans"
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 
-view() { "$programs/pcl_bsh_view" "$@" --unit m --size 1080x720; }
+view() { "$programs/pcl_bsh_view" --size 1080x720 "$@" --unit m; }
+
+# A wagon in its tunnel, which is cut off before the wagon's front: how near is the wall, and where does it touch?
+"$programs/pcl_bsh_tunnel" "$work/tunnel" >/dev/null
+mv "$work/tunnel/scan.ply" "$work/tunnel/tunnel.ply"
+sed --quiet 304p "$work/tunnel/poses.txt" >"$work/tunnel/pose.txt"
+view "$work/tunnel/tunnel.ply" --model "$work/tunnel/wagon.ply" --pose "$work/tunnel/pose.txt" --clearance 0.05 \
+  --color distance --range 1 --cut=193.034,8.775,2.622,0.963,0.270,0.008 \
+  --camera=208.704,26.682,10.991,190.042,7.935,3.496 --size 1200x600 --screenshot examples/pictures/tunnel.png
 
 # The building, and what the grown man touches at x = -6.5.
 "$programs/pcl_bsh_demo" "$scans/building.ply" "$scans/man.off" "$work/building.pcd" >/dev/null
