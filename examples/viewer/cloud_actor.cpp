@@ -95,6 +95,12 @@ void CloudActor::setMoving(bool moving)
   marks_.setMoving(moving);
 }
 
+void CloudActor::cut(const Cut& plane)
+{
+  points_.cut(plane);
+  marks_.cut(plane);
+}
+
 std::optional<std::uint32_t> CloudActor::recordOf(const vtkProp* prop, vtkIdType id) const
 {
   if (!points_.owns(prop) && !marks_.owns(prop)) return std::nullopt;

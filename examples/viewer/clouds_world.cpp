@@ -149,6 +149,7 @@ std::vector<float> CloudsWorld::distances(std::size_t step) const
   if (!options_.clearance) return distances;
   TrajectoryRequest asked = along();
   asked.distances = true;
+  asked.clearance = options_.range.value_or(*options_.clearance);
   for (std::size_t other = 1; other < things_.size(); ++other) {
     const TrajectoryResult found =
         collideAlong(placed(0, step), *things_[other].hierarchy, {poseOf(other, step)}, asked);

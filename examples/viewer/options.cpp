@@ -83,6 +83,27 @@ Camera parseCamera(const std::string& text)
   return camera;
 }
 
+Cut parseCut(const std::string& text)
+{
+  std::vector<double> n;
+  try {
+    n = io::numbersOf(text);
+  }
+  catch (const io::FormatError&) {
+    // Not numbers.
+  }
+  Cut cut;
+  if (n.size() == 6) {
+    std::copy_n(n.begin(), 3, cut.point.begin());
+    std::copy_n(n.begin() + 3, 3, cut.normal.begin());
+  }
+  if (n.size() != 6 || !std::all_of(n.begin(), n.end(), [](double number) { return std::isfinite(number); }) ||
+      cut.normal == std::array<double, 3>{})
+    throw UsageError("--cut: '" + text +
+                     "' is no plane: give x,y,z of a point in it and nx,ny,nz of its normal, not 0");
+  return cut;
+}
+
 void parseSize(const std::string& text, Options& options)
 {
   const std::size_t x = text.find('x');
@@ -105,6 +126,7 @@ void checkScene(const Options& options)
   if (!options.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) refuse("--pose");
   if (options.trajectory) refuse("--trajectory");
   if (options.trace) throw UsageError("--trace: shows a query of clouds: give these in place of --scene");
+  if (options.cut) throw UsageError("--cut: cuts a cloud: give clouds in place of --scene");
   if (options.color && *options.color != Coloring::collision)
     throw UsageError("--color: a --scene is coloured by collision: leave it out");
   if (options.export_to && options.export_to->extension() == ".vtp")
@@ -128,6 +150,15 @@ void checkClouds(const Options& options)
     throw UsageError("--closest: there is nothing to be close to: give a second cloud or --model");
 }
 
+void checkRange(const Options& options)
+{
+  if (!options.range) return;
+  if (!options.clearance || options.color != Coloring::distance)
+    throw UsageError("--range: is for distances at a clearance: give --clearance and --color distance");
+  if (!(*options.range > *options.clearance) || !std::isfinite(*options.range))
+    throw UsageError("--range: give a length greater than --clearance");
+}
+
 void checkFiles(const Options& options)
 {
   if (options.export_to) {
@@ -146,8 +177,8 @@ std::optional<Options> parseOptions(int argc, char** argv)
 {
   Options options;
   std::vector<std::string> clouds;
-  std::string scene, model, trajectory, pose, clearance, color, level, step = "0", screenshot, size = "1280x960",
-                                                                       camera = "slanted", export_to, threads = "0";
+  std::string scene, model, trajectory, pose, clearance, color, range, cut, level,
+      step = "0", screenshot, size = "1280x960", camera = "slanted", export_to, threads = "0";
   CLI::App app("Shows clouds, where they collide, and the spheres that find it.", program);
   app.footer(footer);
   app.add_option("CLOUD", clouds, "the cloud asked about, then obstacles in the same frame")->type_name("");
@@ -167,6 +198,13 @@ std::optional<Options> parseOptions(int argc, char** argv)
       ->type_name("D");
   app.add_option("--color", color, "collision (default where known), distance, first_pose, height,\nrgb or intensity")
       ->type_name("BY");
+  app.add_option("--range", range,
+                 "with --color distance: colour points up to this distance, and\nthose that collide in orange "
+                 "(default: the clearance)")
+      ->type_name("D");
+  app.add_option("--cut", cut,
+                 "a plane x,y,z,nx,ny,nz: the first cloud is not drawn on the side\nthat nx,ny,nz points to")
+      ->type_name("PLANE");
   app.add_option("--level", level, "draw the hierarchies' spheres: 0 the voxels', 1, 2 ... finer")->type_name("L");
   app.add_flag("--voxels", options.voxels, "draw the voxels");
   app.add_flag("--cells", options.cells, "draw boxes around the octree cells of the level");
@@ -202,6 +240,8 @@ std::optional<Options> parseOptions(int argc, char** argv)
   if (!clearance.empty())
     options.clearance = cli::parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
   if (!color.empty()) options.color = parseColoring(color);
+  if (!range.empty()) options.range = cli::parseOption<double>("--range", range, "give a length in the clouds' unit");
+  if (!cut.empty()) options.cut = parseCut(cut);
   if (!level.empty()) options.level = cli::parseOption<unsigned>("--level", level, "give 0 or more");
   options.step = cli::parseOption<unsigned>("--step", step, "give the number of a pose or step, from 0");
   options.threads = cli::parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
@@ -211,6 +251,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
   parseSize(size, options);
   options.camera = parseCamera(camera);
   options.scene ? checkScene(options) : checkClouds(options);
+  checkRange(options);
   checkFiles(options);
   return options;
 }

@@ -26,6 +26,11 @@ struct Camera {
   std::array<double, 3> eye = {}, focus = {}, up = {0, 0, 1}; ///< of a given one
 };
 
+/// A plane; what lies on the side that its normal points to is not drawn.
+struct Cut {
+  std::array<double, 3> point = {}, normal = {};
+};
+
 struct Options {
   std::vector<std::filesystem::path> clouds;  ///< the first is the one asked about, the others are obstacles
   std::optional<std::filesystem::path> scene; ///< in place of clouds
@@ -34,6 +39,8 @@ struct Options {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< of the model, without a trajectory
   std::optional<double> clearance;
   std::optional<Coloring> color;
+  std::optional<double> range; ///< distances up to here have colours; what collides, the colour of collisions
+  std::optional<Cut> cut;      ///< of the first cloud
   std::optional<unsigned> level;
   unsigned step = 0; ///< of the trajectory or the scene
   bool voxels = false, cells = false, trace = false, closest = false;

@@ -79,13 +79,18 @@ void paintValues(CloudActor& cloud, ValueBar& bar, const Values& shown)
 }
 
 /// Marks the points that have a value.
-void markValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Range& range)
+/// @param colliding per record, drawn in the colour of collisions; empty: none
+void markValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Range& range,
+                const std::vector<std::uint8_t>& colliding = {})
 {
   const auto table = colorTable(range.low, range.high, shown.reversed);
   std::vector<std::uint8_t> known;
   known.reserve(shown.values.size());
   for (const float value : shown.values) known.push_back(std::isfinite(value) ? 1 : 0);
-  cloud.mark(known, colorsOf(shown, *table));
+  std::vector<Color> colors = colorsOf(shown, *table);
+  for (std::size_t i = 0; i < colliding.size(); ++i)
+    if (colliding[i] != 0) colors[i] = colliding_color;
+  cloud.mark(known, colors);
   if (std::find(known.begin(), known.end(), 1) != known.end())
     bar.show(*table, shown.title, shown.counts);
   else
@@ -155,7 +160,10 @@ void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, co
   if (coloring == Coloring::distance) {
     requireFindings(findings, "distance");
     const Values shown{world.distances(step), lengthTitle("distance", options), true};
-    markValues(clouds[0], bar, shown, {0.0, options.clearance.value_or(rangeOf(shown.values, 0.0).high)});
+    if (options.range)
+      markValues(clouds[0], bar, shown, {0.0, *options.range}, findings.flags[0]);
+    else
+      markValues(clouds[0], bar, shown, {0.0, options.clearance.value_or(rangeOf(shown.values, 0.0).high)});
   }
   else if (coloring == Coloring::first_pose) {
     requireFindings(findings, "first_pose");

@@ -5,6 +5,8 @@
 
 #include <pcl_bsh/vtk/cloud_data.h>
 
+#include <vtkNew.h>
+#include <vtkPlane.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
@@ -50,6 +52,14 @@ void PointLayer::place(const Eigen::Isometry3d& pose)
   const auto matrix = matrixOf(pose);
   all_->SetUserMatrix(matrix);
   few_->SetUserMatrix(matrix);
+}
+
+void PointLayer::cut(const Cut& plane)
+{
+  vtkNew<vtkPlane> kept;
+  kept->SetOrigin(plane.point.data());
+  kept->SetNormal(-plane.normal[0], -plane.normal[1], -plane.normal[2]);
+  for (vtkActor* actor : {all_.Get(), few_.Get()}) actor->GetMapper()->AddClippingPlane(kept);
 }
 
 void PointLayer::setMoving(bool moving)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "options.h"
+
 #include <Eigen/Geometry>
 #include <vtkActor.h>
 #include <vtkPolyData.h>
@@ -23,6 +25,7 @@ public:
   vtkActor& actor() { return *all_; }
   void place(const Eigen::Isometry3d& pose);
   void setMoving(bool moving);
+  void cut(const Cut& plane);
   bool owns(const vtkProp* prop) const { return prop == all_.Get(); } ///< one picks while nothing moves
 
 private:

@@ -33,6 +33,7 @@ Stage::Stage(const World& world, vtkRenderer& renderer)
   for (const Thing& thing : world.things())
     clouds_.emplace_back(thing.points(), renderer,
                          thing.role == Thing::Role::scan ? colliding_color : obstacle_colliding_color);
+  if (options.cut) clouds_[0].cut(*options.cut);
   extras_ = {options.level, options.voxels, options.cells, options.trace};
   findings_ = world.findings(options.step);
   coloring_ = coloringOf(world, findings_);
@@ -127,7 +128,7 @@ std::vector<LegendEntry> Stage::legend() const
     }
     const bool by_value = coloring_ == Coloring::distance || coloring_ == Coloring::first_pose;
     if (by_value || coloring_ == Coloring::collision) add(thing.legend + (findings_.known ? ", free" : ""), scan_color);
-    if (findings_.known && !by_value) add(thing.legend + ", colliding", colliding_color);
+    if (findings_.known && (!by_value || world_.options().range)) add(thing.legend + ", colliding", colliding_color);
   }
   if (const Ways ways = world_.ways(step_); !ways.poses.empty()) add(ways.name, path_color);
   if (findings_.closest) add("closest pair", segment_color);

@@ -76,6 +76,47 @@ TEST_F(Picture, MarksWhatCollidesWhereItIs)
   EXPECT_EQ(apart.draw().countNear(colliding_color, x, y, 40), 0u);
 }
 
+TEST_F(Picture, DistancesHaveColoursUpToTheRangeAndCollisionsTheirOwn)
+{
+  Options near = options();
+  near.color = Coloring::distance;
+  near.camera.kind = Camera::Kind::given;
+  near.camera.eye = {0, 0, -6};
+  near.camera.focus = {0, 0, 0};
+  near.camera.up = {0, 1, 0};
+  OffscreenStage to_clearance(near);
+  const double contact[3] = {-0.5, 0.5, 0.0}, beside[3] = {-0.5, 1.1, 0.0};
+  const auto [x, y] = to_clearance.seen(contact);
+  EXPECT_EQ(to_clearance.draw().countNear(colliding_color, x, y, 40), 0u);
+  near.range = 1.0;
+  OffscreenStage to_range(near);
+  const Pixels pixels = to_range.draw();
+  EXPECT_GT(pixels.countNear(colliding_color, x, y, 40), 200u);
+  const auto [u, v] = to_range.seen(beside);
+  EXPECT_EQ(pixels.countNear(scan_color, u, v, 2, 70), 0u) << "has the colour of its distance";
+}
+
+TEST_F(Picture, NothingOfTheFirstCloudIsDrawnBeyondTheCut)
+{
+  Options whole = options();
+  OffscreenStage all(whole);
+  whole.cut = Cut{{0, 0, 0}, {1, 0, 0}};
+  OffscreenStage half(whole);
+  const Pixels without = all.draw(), with = half.draw();
+  const double kept[3] = {-1, -1, 0}, gone[3] = {1, -1, 0}, model[3] = {-0.5, 0.5, 0.45};
+  const auto count = [&](const Pixels& pixels, const double* at) {
+    const auto [x, y] = all.seen(at);
+    return pixels.countNear(ground, x, y, 8);
+  };
+  EXPECT_EQ(count(with, kept), count(without, kept));
+  EXPECT_LT(count(without, gone), 17u * 17u);
+  EXPECT_EQ(count(with, gone), 17u * 17u);
+  whole.cut = Cut{{0, 0, 0}, {-1, 0, 0}};
+  OffscreenStage other(whole);
+  EXPECT_EQ(count(other.draw(), kept), 17u * 17u);
+  EXPECT_LT(count(other.draw(), model), 17u * 17u) << "the model is not cut";
+}
+
 TEST_F(Picture, TheProgramDrawsTheSameWithAndWithoutADisplay)
 {
   const std::string arguments =
@@ -274,6 +315,9 @@ TEST_F(Picture, RefusesWhatItCannotShow)
   fails(one + " --camera 0,0,inf,0,0,1" + png, 2, "has a number that is not finite");
   fails(one + " --camera 0,0,9,0,0,1,0,0,0" + png, 2, "up is 0 or along the view");
   fails(one + " --camera 0,0,9,0,0,1,0,0,-3" + png, 2, "up is 0 or along the view");
+  fails(one + " --cut 1,2,3" + png, 2, "--cut: '1,2,3' is no plane");
+  fails(one + " --cut 0,0,0,0,0,0" + png, 2, "--cut: '0,0,0,0,0,0' is no plane");
+  fails(one + " --range 1" + png, 2, "--range: is for distances at a clearance");
   fails(one + " --size 10" + png, 2, "--size");
   fails(one + " --trajectory " + path.string() + png, 2, "--model");
   fails(one + " --model " + ball.string() + " --trajectory " + path.string() + " --step 99" + png, 2, "--step");
