@@ -10,7 +10,7 @@ set(without_pcl "^pcl_bsh/(simd|geometry|hierarchy|query|traversal|collision|nei
 set(never_without_pcl "^(pcl/|pcl_bsh/files/|iostream$|fstream$)")
 set(with_vtk "^(pcl_bsh/vtk|examples/viewer)$")
 set(gpl "^(CGAL/|pcl_bsh/certify/)") # only in pcl_bsh/certify, and in its program what that offers
-set(gpl_program "^examples/(programs/pcl_bsh_certify\\.cpp|cli/certify_[a-z]+\\.(h|cpp))$")
+set(gpl_program "^examples/(programs/pcl_bsh_certify\\.cpp|programs/certify/[a-z]+\\.(h|cpp))$")
 
 # The table's rows from the bottom room up: | `folder` | target | what | never | includes |
 set(rooms "")

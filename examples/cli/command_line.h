@@ -1,37 +1,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How every program reads its command line.
+// How every program reads its command line: CLI11 with checks that say what is wrong and what to give instead.
 #pragma once
 
 #include "program.h"
 
 #include <CLI/CLI.hpp>
 
-#include <iostream>
+#include <functional>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace pcl_bsh::cli {
 
-/// Runs `parse`; false where it asked for help, which is printed then. Throws UsageError.
-template <typename Parse>
-bool understood(CLI::App& app, const std::string& program, Parse&& parse)
-{
-  try {
-    parse();
-    return true;
-  }
-  catch (const CLI::CallForHelp&) {
-    std::cout << app.help();
-    return false;
-  }
-  catch (const CLI::ParseError& error) {
-    throw UsageError("command line: " + std::string(error.what()) + ": see " + program + " --help");
-  }
-}
+/// Parses all of main()'s arguments; false when they ask for help, which is printed then. Throws UsageError.
+bool understood(CLI::App& app, const std::string& program, int argc, const char* const* argv);
 
-/// The same for all of main()'s arguments.
-inline bool understood(CLI::App& app, const std::string& program, int argc, const char* const* argv)
+/// The same for arguments that some were taken out of. @param arguments from last to first, as CLI11 wants them
+bool understood(CLI::App& app, const std::string& program, std::vector<std::string> arguments,
+                const std::function<void()>& check);
+
+/// For transform(): refuses a value that is no Number (double, int, unsigned or std::uint64_t), or not an accepted one,
+/// and writes whole numbers without leading zeros, which CLI11 would take for octal ones.
+/// @param remedy what to give instead
+template <typename Number>
+CLI::Validator number(std::string remedy, std::function<bool(Number)> accepted = {});
+
+extern template CLI::Validator number(std::string, std::function<bool(double)>);
+extern template CLI::Validator number(std::string, std::function<bool(int)>);
+extern template CLI::Validator number(std::string, std::function<bool(unsigned)>);
+extern template CLI::Validator number(std::string, std::function<bool(std::uint64_t)>);
+
+inline constexpr auto give_length = "give a length in the clouds' unit";
+inline constexpr auto give_threads = "give a number of threads, 0 for all";
+
+/// For transform(): replaces a name by its number, from which CLI11 makes an enumerator; refuses other names.
+CLI::Validator numberOfName(std::vector<std::pair<std::string, int>> names);
+
+/// For transform(), of an option whose variable is an enumeration.
+template <typename Enum>
+CLI::Validator choice(const std::vector<std::pair<std::string, Enum>>& names)
 {
-  return understood(app, program, [&] { app.parse(argc, argv); });
+  std::vector<std::pair<std::string, int>> numbers;
+  for (const auto& [name, value] : names) numbers.emplace_back(name, static_cast<int>(value));
+  return numberOfName(std::move(numbers));
 }
 
 } // namespace pcl_bsh::cli

@@ -2,42 +2,17 @@
 // Poses as users write them.
 #pragma once
 
-#include "program.h"
-
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
-#include <pcl_bsh/filters/pose_files/pose_text.h>
-#include <pcl_bsh/filters/pose_files/rigid_pose.h>
-
 #include <Eigen/Geometry>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace pcl_bsh::cli {
 
-/// What stands behind an option for a pose: six numbers x,y,z,roll,pitch,yaw or the name of a file for io::readPose().
-/// A matrix that few printed digits have left with |R'R - I| from 1e-6 to 1e-4 stands for its nearest rotation, of
-/// which `warnings` gets a line.
+/// The pose that the value of an option stands for: six numbers x,y,z,roll,pitch,yaw or the name of a file for
+/// io::readPose(). A matrix with |R'R - I| from 1e-6 to 1e-4, as few printed digits leave it, stands for its nearest
+/// rotation; `warnings` gets a line then.
 /// @throws UsageError when it is neither, io::CloudFileError as readPose() does
-inline Eigen::Isometry3d parsePose(const std::string& option, const std::string& text,
-                                   std::vector<std::string>& warnings)
-{
-  if (std::filesystem::exists(text)) {
-    const io::RigidPose rigid = io::nearestRigid(io::readPose(text));
-    if (rigid.deviation > 0)
-      warnings.push_back(option + ": " + text + ": " + io::nearestRotationWarning(rigid.deviation));
-    return rigid.pose;
-  }
-  try {
-    const std::vector<double> n = io::numbersOf(text);
-    if (n.size() == 6) return io::poseFrom(n);
-  }
-  catch (const io::FormatError&) {
-    // Not numbers, and no file either.
-  }
-  throw UsageError(option + ": '" + text +
-                   "' is neither six numbers nor a file: give x,y,z,roll,pitch,yaw or a file name");
-}
+Eigen::Isometry3d parsePose(const std::string& option, const std::string& text, std::vector<std::string>& warnings);
 
 } // namespace pcl_bsh::cli

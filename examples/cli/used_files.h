@@ -1,65 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The files of a command, and what it says of them.
+// The files of a command, by the options that name them.
 #pragma once
-
-#include "program.h"
 
 #include <pcl_bsh/files/used_files.h>
 
 #include <filesystem>
-#include <iostream>
+#include <iosfwd>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace pcl_bsh::cli {
 
-/// All files that a command reads and writes, by the options that name them.
+/// All files that a command reads and writes. Empty names are left out.
 class CommandFiles {
 public:
-  CommandFiles& reads(std::string option, const std::filesystem::path& file)
-  {
-    if (!file.empty()) files_.push_back({std::move(option), file, files::Use::read});
-    return *this;
-  }
+  CommandFiles& reads(std::string option, const std::filesystem::path& file);
 
   /// @param replaces the option whose file this one may replace
-  CommandFiles& writes(std::string option, const std::filesystem::path& file, std::string replaces = {})
-  {
-    if (!file.empty()) files_.push_back({std::move(option), file, files::Use::written, std::move(replaces)});
-    return *this;
-  }
+  CommandFiles& writes(std::string option, const std::filesystem::path& file, std::string replaces = {});
 
-  /// The same in a program whose standard output is taken by what it tells.
-  CommandFiles& writesFile(std::string option, const std::filesystem::path& file)
-  {
-    if (file == files::standard_stream)
-      throw UsageError(option + ": -: this program needs standard output: name a file");
-    return writes(std::move(option), file);
-  }
+  /// The same in a program that prints its results to standard output. @throws UsageError for `-`
+  CommandFiles& writesFile(std::string option, const std::filesystem::path& file);
 
-  /// The text behind an option for a pose, which may name a file.
-  CommandFiles& readsPose(std::string option, const std::string& text)
-  {
-    return !text.empty() && std::filesystem::exists(text) ? reads(std::move(option), text) : *this;
-  }
+  /// The value of an option for a pose, where it names a file.
+  CommandFiles& readsPose(std::string option, const std::string& text);
 
-  /// @throws UsageError naming two options whose files are one, and one is written
-  void requireApart() const
-  {
-    const auto clash = files::findClash(files_);
-    if (!clash) return;
-    const files::UsedFile& file = files_[clash->file];
-    throw UsageError(file.name + ": " + file.path.string() + ": " + clash->wrong);
-  }
+  /// @throws UsageError naming two options that name the same file, where one of them writes it
+  void requireApart() const;
 
-  /// Where to tell what was done: stderr when standard output is one of the files.
-  std::ostream& summary() const
-  {
-    for (const files::UsedFile& file : files_)
-      if (file.use == files::Use::written && file.path == files::standard_stream) return std::cerr;
-    return std::cout;
-  }
+  /// Where the program prints its summary: stderr when standard output is one of the files.
+  std::ostream& summary() const;
 
 private:
   std::vector<files::UsedFile> files_;

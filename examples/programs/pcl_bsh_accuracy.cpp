@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What does accuracy cost in time, on these two clouds? A table, a plot, and which setting to choose.
-#include "cli/collide_options.h"
 #include "cli/command_line.h"
 #include "cli/pose.h"
 #include "cli/step.h"
 #include "cli/used_files.h"
+#include "collide/options.h"
 #include "programs/accuracy/peers.h"
 #include "programs/accuracy/report.h"
 
@@ -50,48 +50,47 @@ struct Options {
 
 std::optional<Options> parse(int argc, char** argv)
 {
-  std::string a, b, out, clearance, pose, poses, trajectory, unit, repetitions = "5", threads = "1";
+  std::string pose;
+  std::optional<unsigned> poses;
   Options options;
   CLI::App app("Measures what accuracy costs in time, on two clouds of yours.", program);
   app.footer(footer);
-  app.add_option("A", a, "cloud whose points are asked about")->type_name("")->required();
-  app.add_option("B", b, "cloud to collide with")->type_name("")->required();
-  app.add_option("--clearance", clearance, "greatest distance that counts as collision, in the clouds' unit")
+  app.add_option("A", options.a, "the cloud whose points are tested")->type_name("")->required();
+  app.add_option("B", options.b, "cloud to collide with")->type_name("")->required();
+  app.add_option("--clearance", options.clearance, "greatest distance that counts as collision, in the clouds' unit")
       ->type_name("D")
+      ->transform(cli::number<double>(cli::give_length))
       ->required();
-  app.add_option("--out", out, "folder for the results; made if it is not there")->type_name("DIR")->required();
+  app.add_option("--out", options.out, "folder for the results; made if it is not there")->type_name("DIR")->required();
   app.add_option("--pose", pose, "of B in A's frame, as for pcl_bsh_collide (default: no motion)")->type_name("POSE");
+  const auto at_least_one = [](unsigned n) { return n >= 1; };
   app.add_option("--poses", poses,
                  "that pose, and N - 1 about it: up to 5 % of A's diameter and 10 degrees off (default 1)")
-      ->type_name("N");
-  app.add_option("--trajectory", trajectory,
+      ->type_name("N")
+      ->transform(cli::number<unsigned>("give a number of poses, 1 or more", at_least_one));
+  app.add_option("--trajectory", options.trajectory,
                  "instead: a file of B's poses, as for pcl_bsh_collide; of more than 20,\n"
                  "20 in even steps")
       ->type_name("FILE");
-  app.add_option("--repeat", repetitions, "repetitions of every measurement (default 5)")->type_name("N");
-  app.add_option("--threads", threads, "0: all of the machine's (default 1)")->type_name("N");
-  app.add_option("--unit", unit, "name of the clouds' unit, for the picture")->type_name("NAME");
+  app.add_option("--repeat", options.repetitions, "repetitions of every measurement (default 5)")
+      ->type_name("N")
+      ->transform(cli::number<unsigned>("give a number, 1 or more", at_least_one));
+  app.add_option("--threads", options.threads, "0: all of the machine's (default 1)")
+      ->type_name("N")
+      ->transform(cli::number<unsigned>(cli::give_threads));
+  app.add_option("--unit", options.unit, "name of the clouds' unit, for the picture")->type_name("NAME");
   app.add_flag("--peers", options.peers, "measure PCL's kd-tree, octree and VoxelGrid on the same clouds, too");
   if (!cli::understood(app, program, argc, argv)) return std::nullopt;
-  options.a = a;
-  options.b = b;
-  options.out = out;
-  options.unit = unit;
-  options.clearance = cli::parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
-  if (!trajectory.empty() && !(pose.empty() && poses.empty()))
+  if (!options.trajectory.empty() && (!pose.empty() || poses))
     throw cli::UsageError(std::string(pose.empty() ? "--poses" : "--pose") + ": --trajectory is given too: give one");
-  options.trajectory = trajectory;
-  if (!poses.empty()) options.poses = cli::parseOption<unsigned>("--poses", poses, "give a number of poses, 1 or more");
-  options.repetitions = cli::parseOption<unsigned>("--repeat", repetitions, "give a number, 1 or more");
-  options.threads = cli::parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
-  if (options.poses == 0) throw cli::UsageError("--poses: 0: give a number of poses, 1 or more");
-  if (options.repetitions == 0) throw cli::UsageError("--repeat: 0: give a number, 1 or more");
+  options.poses = poses.value_or(1);
   if (!pose.empty()) {
     std::vector<std::string> warnings;
     options.pose = cli::parsePose("--pose", pose, warnings);
     cli::warn(program, warnings);
   }
-  options.files.reads("A", a).reads("B", b).reads("--trajectory", trajectory).readsPose("--pose", pose);
+  options.files.reads("A", options.a).reads("B", options.b).reads("--trajectory", options.trajectory);
+  options.files.readsPose("--pose", pose);
   for (const char* name : results) options.files.writes("--out", options.out / name);
   return options;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Does every bounding sphere of a cloud's hierarchy hold its points, and how much larger is it than it need be?
 // The program is under GPL-3.0-or-later once compiled: see pcl_bsh/certify/LICENSE.
-#include "cli/certify_options.h"
-#include "cli/certify_report.h"
+#include "certify/options.h"
+#include "certify/report.h"
 #include "cli/step.h"
 
 #include <pcl_bsh/files/replace_file.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which points of a cloud collide with an obstacle, at a pose or along a path? From two files to a third, with reports.
-#include "cli/collide_options.h"
 #include "cli/program.h"
-#include "cli/report.h"
 #include "cli/step.h"
+#include "collide/options.h"
+#include "collide/report.h"
 
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>

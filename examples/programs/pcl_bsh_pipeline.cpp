@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs a pipeline of point cloud filters, read from a JSON file.
-#include "cli/pipeline_options.h"
-#include "cli/pipeline_run.h"
+#include "pipeline/options.h"
+#include "pipeline/run.h"
 
 #include <iostream>
 #include <optional>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs a scene file: many objects in motion, and only the effects it lists.
-#include "cli/cloud_names.h"
 #include "cli/command_line.h"
-#include "cli/scene_explain.h"
-#include "cli/scene_report.h"
 #include "cli/step.h"
 #include "cli/used_files.h"
+#include "scene/cloud_names.h"
+#include "scene/explain.h"
+#include "scene/report.h"
 
 #include <pcl_bsh/files/output_folder.h>
 #include <pcl_bsh/files/replace_file.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
 
-#include "cli/collide_options.h"
 #include "cli/command_line.h"
 #include "cli/pose.h"
 
@@ -30,18 +29,6 @@ Examples:
   pcl_bsh_view hall.ply --model robot.pcd --clearance 0.05 --level 2 --export hall.vtm)";
 
 using cli::UsageError;
-
-Coloring parseColoring(const std::string& text)
-{
-  static const std::map<std::string, Coloring> known = {
-      {"collision", Coloring::collision}, {"distance", Coloring::distance}, {"first_pose", Coloring::first_pose},
-      {"height", Coloring::height},       {"rgb", Coloring::rgb},           {"intensity", Coloring::intensity}};
-  const auto found = known.find(text);
-  if (found == known.end())
-    throw UsageError("--color: '" + text +
-                     "' is unknown: give collision, distance, first_pose, height, rgb or intensity");
-  return found->second;
-}
 
 Camera parseCamera(const std::string& text)
 {
@@ -106,14 +93,19 @@ Cut parseCut(const std::string& text)
 
 void parseSize(const std::string& text, Options& options)
 {
-  const std::size_t x = text.find('x');
-  const auto number = [&](const std::string& part) {
-    const int value = cli::parseOption<int>("--size", part, "give WIDTHxHEIGHT in pixels, as 1280x960");
-    if (value < 64 || value > 16384) throw UsageError("--size: " + part + " pixels: give 64 to 16384");
-    return value;
+  const auto pixels = [&](const std::string& part) {
+    try {
+      const int value = io::parseNumber<int>(part);
+      if (value < 64 || value > 16384) throw UsageError("--size: " + part + " pixels: give 64 to 16384");
+      return value;
+    }
+    catch (const io::FormatError& error) {
+      throw UsageError(std::string("--size: ") + error.what() + ": give WIDTHxHEIGHT in pixels, as 1280x960");
+    }
   };
-  options.width = number(text.substr(0, x));
-  options.height = number(x == std::string::npos ? "" : text.substr(x + 1));
+  const std::size_t x = text.find('x');
+  options.width = pixels(text.substr(0, x));
+  options.height = pixels(x == std::string::npos ? "" : text.substr(x + 1));
 }
 
 void checkScene(const Options& options)
@@ -176,78 +168,78 @@ void checkFiles(const Options& options)
 std::optional<Options> parseOptions(int argc, char** argv)
 {
   Options options;
-  std::vector<std::string> clouds;
-  std::string scene, model, trajectory, pose, clearance, color, range, cut, level,
-      step = "0", screenshot, size = "1280x960", camera = "slanted", export_to, threads = "0";
+  std::string pose, cut, size = "1280x960", camera = "slanted";
   CLI::App app("Shows clouds, where they collide, and the spheres that find it.", program);
   app.footer(footer);
-  app.add_option("CLOUD", clouds, "the cloud asked about, then obstacles in the same frame")->type_name("");
-  app.add_option("--scene", scene, "a scene file in place of clouds: objects, their motions and responses")
+  app.add_option("CLOUD", options.clouds, "the cloud whose points are tested, then obstacles in the same frame")
+      ->type_name("");
+  app.add_option("--scene", options.scene, "a scene file in place of clouds: objects, their motions and responses")
       ->type_name("SCENE.json");
-  app.add_option("--model", model, "an obstacle that has poses")->type_name("CLOUD");
+  app.add_option("--model", options.model, "an obstacle that has poses")->type_name("CLOUD");
   app.add_option("--pose", pose, "of the model: x,y,z,roll,pitch,yaw (radians), or a file of a\nmatrix (default: none)")
       ->type_name("POSE");
-  app.add_option("--trajectory", trajectory,
+  app.add_option("--trajectory", options.trajectory,
                  "poses of the model, one a line: 12 or 16 numbers of its matrix, or\ntime tx ty tz qx qy qz qw")
       ->type_name("FILE");
-  app.add_option("--step", step,
+  app.add_option("--step", options.step,
                  "the pose of the trajectory, or the step of the scene, to begin\nwith, from 0 (default: 0)")
-      ->type_name("N");
-  app.add_option("--clearance", clearance,
+      ->type_name("N")
+      ->transform(cli::number<unsigned>("give the number of a pose or step, from 0"));
+  app.add_option("--clearance", options.clearance,
                  "greatest distance that counts as collision, in the clouds' unit\n(default for a scene: its own)")
-      ->type_name("D");
-  app.add_option("--color", color, "collision (default where known), distance, first_pose, height,\nrgb or intensity")
-      ->type_name("BY");
-  app.add_option("--range", range,
+      ->type_name("D")
+      ->transform(cli::number<double>(cli::give_length));
+  app.add_option("--color", options.color,
+                 "collision (default where known), distance, first_pose, height,\nrgb or intensity")
+      ->type_name("BY")
+      ->transform(cli::choice<Coloring>({{"collision", Coloring::collision},
+                                         {"distance", Coloring::distance},
+                                         {"first_pose", Coloring::first_pose},
+                                         {"height", Coloring::height},
+                                         {"rgb", Coloring::rgb},
+                                         {"intensity", Coloring::intensity}}));
+  app.add_option("--range", options.range,
                  "with --color distance: colour points up to this distance, and\nthose that collide in orange "
                  "(default: the clearance)")
-      ->type_name("D");
+      ->type_name("D")
+      ->transform(cli::number<double>(cli::give_length));
   app.add_option("--cut", cut,
                  "a plane x,y,z,nx,ny,nz: the first cloud is not drawn on the side\nthat nx,ny,nz points to")
       ->type_name("PLANE");
-  app.add_option("--level", level, "draw the hierarchies' spheres: 0 the voxels', 1, 2 ... finer")->type_name("L");
+  app.add_option("--level", options.level, "draw the hierarchies' spheres: 0 the voxels', 1, 2 ... finer")
+      ->type_name("L")
+      ->transform(cli::number<unsigned>("give 0 or more"));
   app.add_flag("--voxels", options.voxels, "draw the voxels");
   app.add_flag("--cells", options.cells, "draw boxes around the octree cells of the level");
   app.add_flag("--trace", options.trace, "draw what the query for any collision tested and pruned");
   app.add_flag("--closest", options.closest, "draw the closest pair and its distance");
   app.add_option("--unit", options.unit, "name of the clouds' unit, for titles")->type_name("NAME");
-  app.add_option("--screenshot", screenshot, "write a picture instead of opening a window; needs no display")
+  app.add_option("--screenshot", options.screenshot, "write a picture instead of opening a window; needs no display")
       ->type_name("FILE.png");
   app.add_option("--size", size, "of the picture or window (default: 1280x960)")->type_name("WxH");
   app.add_option("--camera", camera,
                  "slanted (default), top, front, side, colliding (close to what\ncollides), or eye x,y,z, focus x,y,z"
                  "[, up x,y,z]")
       ->type_name("HOW");
-  app.add_option("--export", export_to, "write the cloud (.vtp) or everything (.vtm) for ParaView")->type_name("FILE");
-  app.add_option("--threads", threads, "0: all of the machine's (default)")->type_name("N");
+  app.add_option("--export", options.export_to, "write the cloud (.vtp) or everything (.vtm) for ParaView")
+      ->type_name("FILE");
+  app.add_option("--threads", options.threads, "0: all of the machine's (default)")
+      ->type_name("N")
+      ->transform(cli::number<unsigned>(cli::give_threads));
   if (!cli::understood(app, program, argc, argv)) return std::nullopt;
 
-  options.clouds.assign(clouds.begin(), clouds.end());
-  const auto set = [](const std::string& text, std::optional<std::filesystem::path>& path) {
-    if (!text.empty()) path = text;
-  };
-  set(scene, options.scene);
-  set(model, options.model);
-  set(trajectory, options.trajectory);
-  set(screenshot, options.screenshot);
-  set(export_to, options.export_to);
   if (!pose.empty()) {
     if (options.trajectory) throw UsageError("--pose: a model has one pose or a --trajectory: give one of the two");
     std::vector<std::string> warnings;
     options.pose = cli::parsePose("--pose", pose, warnings);
     cli::warn(program, warnings);
   }
-  if (!clearance.empty())
-    options.clearance = cli::parseOption<double>("--clearance", clearance, "give a length in the clouds' unit");
-  if (!color.empty()) options.color = parseColoring(color);
-  if (!range.empty()) options.range = cli::parseOption<double>("--range", range, "give a length in the clouds' unit");
   if (!cut.empty()) options.cut = parseCut(cut);
-  if (!level.empty()) options.level = cli::parseOption<unsigned>("--level", level, "give 0 or more");
-  options.step = cli::parseOption<unsigned>("--step", step, "give the number of a pose or step, from 0");
-  options.threads = cli::parseOption<unsigned>("--threads", threads, "give a number of threads, 0 for all");
-  for (const std::string& cloud : clouds) options.files.reads("CLOUD", cloud);
-  options.files.reads("--scene", scene).reads("--model", model).reads("--trajectory", trajectory);
-  options.files.readsPose("--pose", pose).writes("--screenshot", screenshot).writes("--export", export_to);
+  const auto path = [](const std::optional<std::filesystem::path>& file) { return file.value_or(""); };
+  for (const std::filesystem::path& cloud : options.clouds) options.files.reads("CLOUD", cloud);
+  options.files.reads("--scene", path(options.scene)).reads("--model", path(options.model));
+  options.files.reads("--trajectory", path(options.trajectory)).readsPose("--pose", pose);
+  options.files.writes("--screenshot", path(options.screenshot)).writes("--export", path(options.export_to));
   parseSize(size, options);
   options.camera = parseCamera(camera);
   options.scene ? checkScene(options) : checkClouds(options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ctrl-C, and what a system says when it shuts down.
-#include "../../examples/cli/interruption.h"
+#include "cli/interruption.h"
 #include "jobs.h"
 
 #include <pcl_bsh/files/output_folder.h>
@@ -85,7 +85,7 @@ TEST(StopsCleanlyWhenTold, WhileItWrites)
     const pid_t child = fork();
     if (child == 0) {
       dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
-      cli::stopCleanlyWhenTold("test");
+      cli::stopCleanlyOnSignals("test");
       const files::OutputFolder made(folder / "new/folder");
       files::FileReplacement first(folder / "old"), second(folder / "new/folder/file");
       first.stream() << "new" << std::flush;

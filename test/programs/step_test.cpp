@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../../examples/cli/step.h"
+#include "cli/step.h"
 
 #include <gmock/gmock.h>
 

@@ -1,91 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a comparison of two clouds found and cost, for people and for programs.
-#pragma once
+#include "report.h"
 
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/neighbors/spacing.h>
-#include <pcl_bsh/trajectory/trajectory.h>
-
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace pcl_bsh::cli {
-
-struct CloudReport {
-  std::string file;
-  std::size_t points = 0;
-  std::size_t finite = 0;
-};
-
-/// How wide the holes are that a collision may hide in.
-struct Density {
-  Spacing input, obstacle;
-
-  /// Half a hole each: where two surfaces touch, a point of one may be this far from the nearest of the other.
-  double blind() const { return (input.median + obstacle.median) / std::sqrt(2.0); }
-
-  /// Clouds of less than a hundred points are no scans, and have no density.
-  bool couldHide(double clearance) const
-  {
-    return std::min(input.samples, obstacle.samples) >= 100 && blind() > clearance;
-  }
-};
-
-/// What is known only along a path.
-struct PathReport {
-  std::size_t poses = 0;
-  std::optional<double> swept;
-  std::vector<PoseSummary> table;            ///< one per pose; none when swept
-  std::optional<FirstContact> first_contact; ///< swept only
-};
-
-struct Seconds {
-  double load = 0;
-  double build = 0; ///< sorting into voxels; their trees are built by the query that visits them
-  double query = 0;
-  double clashes = 0;
-  double write = 0;
-};
-
-struct CollisionReport {
-  CloudReport input;
-  CloudReport obstacle;
-  double clearance = 0;
-  Accuracy accuracy;
-  std::size_t colliding = 0; ///< points of the input
-  std::size_t undecided = 0; ///< likewise
-  DistanceResult closest;    ///< a: the input, b: the obstacle; along a path within the clearance only
-  Density density;
-  std::optional<PathReport> path;
-  Work work; ///< of all queries
-  std::size_t voxels_total = 0;
-  Seconds seconds;
-  std::vector<std::string> warnings;
-};
-
-inline nlohmann::ordered_json toJson(const CloudReport& cloud)
-{
-  return {{"file", cloud.file}, {"points", cloud.points}, {"finite", cloud.finite}};
-}
-
-inline nlohmann::ordered_json toJson(const Spacing& spacing)
-{
-  return {{"median", spacing.median}, {"nine_of_ten", spacing.wide}, {"sampled_points", spacing.samples}};
-}
+namespace {
 
 /// A finite number, or null.
-inline nlohmann::ordered_json orNull(double number)
+nlohmann::ordered_json orNull(double number)
 {
   return std::isfinite(number) ? nlohmann::ordered_json(number) : nlohmann::ordered_json();
 }
 
-inline nlohmann::ordered_json toJson(const PathReport& path)
+nlohmann::ordered_json toJson(const CloudReport& cloud)
+{
+  return {{"file", cloud.file}, {"points", cloud.points}, {"finite", cloud.finite}};
+}
+
+nlohmann::ordered_json toJson(const Spacing& spacing)
+{
+  return {{"median", spacing.median}, {"nine_of_ten", spacing.wide}, {"sampled_points", spacing.samples}};
+}
+
+nlohmann::ordered_json toJson(const PathReport& path)
 {
   nlohmann::ordered_json json;
   json["poses"] = path.poses;
@@ -102,9 +39,9 @@ inline nlohmann::ordered_json toJson(const PathReport& path)
   return json;
 }
 
-/// `distance` and `closest_pair` are null when a cloud has no finite point, or nothing collides along a path;
-/// `distance_interval` along a path, and each of its ends where it is not known.
-inline nlohmann::ordered_json toJson(const CollisionReport& report)
+} // namespace
+
+nlohmann::ordered_json toJson(const CollisionReport& report)
 {
   nlohmann::ordered_json json;
   json["input"] = toJson(report.input);
@@ -145,8 +82,7 @@ inline nlohmann::ordered_json toJson(const CollisionReport& report)
   return json;
 }
 
-/// @throws io::CloudFileError
-inline void writeReport(const std::filesystem::path& path, const CollisionReport& report)
+void writeReport(const std::filesystem::path& path, const CollisionReport& report)
 {
   using Json = nlohmann::ordered_json;
   // A file name need not be UTF-8, JSON must.

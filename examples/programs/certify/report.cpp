@@ -1,33 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Certificates as a table for people and as JSON for programs.
-#pragma once
-
-#include <pcl_bsh/certify/certify.h>
-
-#include <nlohmann/json.hpp>
+#include "report.h"
 
 #include <cstddef>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
-#include <string>
 
 namespace pcl_bsh::cli {
+namespace {
 
-inline std::string nameOf(const SphereLevel& level)
-{
-  switch (level.kind) {
-  case SphereLevel::above_voxels:
-    return "cloud " + std::to_string(level.depth);
-  case SphereLevel::voxel:
-    return "voxel";
-  case SphereLevel::in_voxel:
-    break;
-  }
-  return "node " + std::to_string(level.depth);
-}
-
-inline nlohmann::ordered_json toJson(const RadiusRatios& ratios)
+nlohmann::ordered_json toJson(const RadiusRatios& ratios)
 {
   nlohmann::ordered_json json = {{"measured", ratios.measured}, {"one_place", ratios.one_place}};
   json["mean"] = nullptr;
@@ -40,14 +22,43 @@ inline nlohmann::ordered_json toJson(const RadiusRatios& ratios)
   return json;
 }
 
-inline nlohmann::ordered_json toJson(const LevelCertificate& level, const std::string& name)
+nlohmann::ordered_json toJson(const LevelCertificate& level, const std::string& name)
 {
   return {{"level", name},          {"spheres", level.spheres},
           {"checks", level.checks}, {"exact_checks", level.exact_checks},
           {"leaks", level.leaks},   {"radius_ratio", toJson(level.ratio)}};
 }
 
-inline nlohmann::ordered_json toJson(const Certificate& certificate)
+void printRow(std::ostream& out, const std::string& fit, const std::string& name, const LevelCertificate& level)
+{
+  std::ostringstream row;
+  row << std::fixed << std::setprecision(4) << std::left << std::setw(9) << fit << std::setw(9) << name << std::right
+      << std::setw(9) << level.spheres << std::setw(11) << level.checks << std::setw(7) << level.leaks << std::setw(9)
+      << level.ratio.measured;
+  if (level.ratio.measured > 0)
+    row << std::setw(9) << level.ratio.mean() << std::setw(9) << level.ratio.worst;
+  else
+    row << std::setw(9) << '-' << std::setw(9) << '-';
+  for (const std::size_t count : level.ratio.histogram) row << std::setw(8) << count;
+  out << row.str() << '\n';
+}
+
+} // namespace
+
+std::string nameOf(const SphereLevel& level)
+{
+  switch (level.kind) {
+  case SphereLevel::above_voxels:
+    return "cloud " + std::to_string(level.depth);
+  case SphereLevel::voxel:
+    return "voxel";
+  case SphereLevel::in_voxel:
+    break;
+  }
+  return "node " + std::to_string(level.depth);
+}
+
+nlohmann::ordered_json toJson(const Certificate& certificate)
 {
   nlohmann::ordered_json json;
   json["holds"] = certificate.holds();
@@ -67,7 +78,7 @@ inline nlohmann::ordered_json toJson(const Certificate& certificate)
   return json;
 }
 
-inline void printTableHead(std::ostream& out)
+void printTableHead(std::ostream& out)
 {
   std::ostringstream head;
   head << "Ratio: stored radius / smallest radius. Checks: points looked at, all exact. Other columns: spheres.\n";
@@ -83,21 +94,7 @@ inline void printTableHead(std::ostream& out)
   out << head.str();
 }
 
-inline void printRow(std::ostream& out, const std::string& fit, const std::string& name, const LevelCertificate& level)
-{
-  std::ostringstream row;
-  row << std::fixed << std::setprecision(4) << std::left << std::setw(9) << fit << std::setw(9) << name << std::right
-      << std::setw(9) << level.spheres << std::setw(11) << level.checks << std::setw(7) << level.leaks << std::setw(9)
-      << level.ratio.measured;
-  if (level.ratio.measured > 0)
-    row << std::setw(9) << level.ratio.mean() << std::setw(9) << level.ratio.worst;
-  else
-    row << std::setw(9) << '-' << std::setw(9) << '-';
-  for (const std::size_t count : level.ratio.histogram) row << std::setw(8) << count;
-  out << row.str() << '\n';
-}
-
-inline void printRows(std::ostream& out, const std::string& fit, const Certificate& certificate)
+void printRows(std::ostream& out, const std::string& fit, const Certificate& certificate)
 {
   for (const LevelCertificate& level : certificate.levels) printRow(out, fit, nameOf(level.level), level);
   printRow(out, fit, "all", certificate.total);

@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs a pipeline and tells how it goes.
-#pragma once
+#include "run.h"
 
-#include "pipeline_options.h"
-#include "program.h"
-#include "step.h"
+#include "cli/program.h"
+#include "cli/step.h"
 
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/filters/pipeline/pipeline.h>
 
 #include <iostream>
+#include <optional>
 #include <string>
 
 namespace pcl_bsh::cli {
+namespace {
 
 /// A line per stage on stderr, as PCL's tools write them.
-inline void tellProgress(const StageProgress& stage)
+void printProgress(const StageProgress& stage)
 {
   if (!stage.done) return;
   std::cerr << "> [" << stage.finished << "/" << stage.stages << "] " << stage.tag << ": " << stage.type << " [done, "
             << static_cast<long>(stage.seconds * 1000) << " ms : " << stage.points << " points]\n";
 }
 
-inline void runPipeline(const char* program, Pipeline& pipeline, const PipelineOptions& options)
+} // namespace
+
+void runPipeline(const char* program, Pipeline& pipeline, const PipelineOptions& options)
 {
   if (!options.metadata.empty()) {
     pipeline.reserve("--metadata", options.metadata);
@@ -31,10 +32,10 @@ inline void runPipeline(const char* program, Pipeline& pipeline, const PipelineO
   std::size_t stages = 0;
   pipeline.setProgress([&](const StageProgress& stage) {
     stages = stage.stages;
-    if (options.progress) tellProgress(stage);
+    if (options.progress) printProgress(stage);
   });
 
-  std::optional<Step> step; // with a line per stage, it would tell the same twice
+  std::optional<Step> step; // with a line per stage, it would be printed twice
   if (!options.progress) step.emplace("Running " + options.name());
   const PipelineResult result = pipeline.run();
   if (step) step->done(std::to_string(stages) + " stages");

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scene file makes the program compute and build, and why; said without doing any of it.
-#pragma once
-
-#include <pcl_bsh/filters/scene_files/scene_file.h>
+#include "explain.h"
 
 #include <ostream>
-#include <string>
 
 namespace pcl_bsh::cli {
+namespace {
 
 /// What an effect is and what it needs.
-inline const char* explanationOf(Effect effect)
+const char* explanationOf(Effect effect)
 {
   switch (effect) {
   case Effect::any:
-    return "which pairs collide; grid over the scene, then spheres down to the first witness: builds only the voxels "
-           "it "
-           "visits";
+    return "which pairs collide; grid over the scene, then spheres down to the first witness: builds only the "
+           "voxels that it visits";
   case Effect::flags:
     return "which points collide; as any, then every voxel of a colliding pair that the other comes near";
   case Effect::distance:
@@ -24,25 +20,27 @@ inline const char* explanationOf(Effect effect)
   case Effect::contacts:
     return "the nearest colliding pairs of points with their normals; of colliding pairs only";
   case Effect::first_contact:
-    return "when a pair first meets within a step; the grid holds whole ways instead of places";
+    return "when a pair first touches within a step; the grid holds the volumes swept in the step";
   case Effect::swept:
-    return "which points meet anything between the poses of a step; the grid holds whole ways instead of places";
+    return "which points touch anything between the poses of a step; the grid holds the volumes swept in the step";
   case Effect::self:
     return "parts of one object against each other; no grid";
   case Effect::stop:
-    return "objects halt at their first contact; collects the points that can meet on the way of each moving object";
+    return "objects halt at their first contact; collects the points within reach of each moving object";
   case Effect::slide:
-    return "objects glide along what they meet; collects the points that can meet on the way of each moving object";
+    return "objects slide along what they touch; collects the points within reach of each moving object";
   case Effect::gravity:
     return "objects follow the ground; collects points below each moving object, and above and ahead where it is "
            "blocked";
   case Effect::deform:
-    return "points of objects move; their spheres are measured anew in each step, and built anew when they grow loose";
+    return "points of objects move; their spheres are refitted in each step, and rebuilt when they grow loose";
   }
   return "";
 }
 
-inline void explain(const io::SceneFile& file, std::ostream& out)
+} // namespace
+
+void explain(const io::SceneFile& file, std::ostream& out)
 {
   const Effects& effects = file.options.effects;
   out << file.path.string() << ": " << file.objects.size() << " objects, " << file.clouds.size() << " clouds, "
@@ -53,7 +51,7 @@ inline void explain(const io::SceneFile& file, std::ostream& out)
   }
   if (!file.options.accuracy.isExact())
     out << "  accuracy of any, flags, distance and self: " << file.options.accuracy.text() << '\n';
-  if (effects.none()) out << "  none: objects move, nothing is tested, no voxel is built\n";
+  if (effects.none()) out << "  none: objects move, nothing is tested and no voxel is built\n";
   out << "\nEffects that are off (no code runs for them, nothing is allocated or built):\n ";
   for (std::size_t e = 0; e < kEffects; ++e)
     if (!effects.has(static_cast<Effect>(e))) out << ' ' << nameOf(static_cast<Effect>(e));

@@ -1,35 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command line of pcl_bsh_pipeline.
-#pragma once
+#include "options.h"
 
-#include "command_line.h"
-
-#include <pcl_bsh/filters/pipeline/pipeline.h>
-
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
+#include "cli/command_line.h"
 
 namespace pcl_bsh::cli {
+namespace {
 
-inline constexpr auto pipeline_program = "pcl_bsh_pipeline";
-
-enum class PipelineTask { run, validate, print_schema, print_stages };
-
-struct PipelineOptions {
-  std::filesystem::path document;
-  PipelineTask task = PipelineTask::run;
-  std::vector<OptionOverride> overrides;
-  std::filesystem::path metadata; ///< empty: none
-  unsigned threads = 0;
-  bool progress = false;
-
-  /// What messages call the document.
-  std::string name() const { return document == "-" ? "standard input" : document.string(); }
-};
-
-inline constexpr auto pipeline_footer =
+constexpr auto pipeline_footer =
     R"(PIPELINE.json is written in PDAL's grammar: {"pipeline": ["in.pcd", {"type": ...}, "out.pcd"]}.
 --print-stages lists the stages and their options; --print-schema lets editors complete and check them.
 Exit code: 0 done; 1 failed; 2 command line not understood.
@@ -39,7 +16,7 @@ Example: thin a scan, flag what is within 5 cm of a robot; then the same with ot
   pcl_bsh_pipeline flag.json --stage.thin.leaf_size=0.1 --stage.robot.filename=other.pcd)";
 
 /// --stage.TAG.OPTION=VALUE, or nothing when the argument is another one.
-inline std::optional<OptionOverride> parseOverride(const std::string& argument)
+std::optional<OptionOverride> parseOverride(const std::string& argument)
 {
   const std::string begin = "--stage.";
   if (argument.rfind(begin, 0) != 0) return std::nullopt;
@@ -53,8 +30,9 @@ inline std::optional<OptionOverride> parseOverride(const std::string& argument)
                         argument.substr(equals + 1)};
 }
 
-/// None when only help was asked for.
-inline std::optional<PipelineOptions> parsePipelineOptions(int argc, char** argv)
+} // namespace
+
+std::optional<PipelineOptions> parsePipelineOptions(int argc, char** argv)
 {
   PipelineOptions options;
   std::vector<std::string> others; // CLI11 wants them from last to first
@@ -67,25 +45,24 @@ inline std::optional<PipelineOptions> parsePipelineOptions(int argc, char** argv
     }
   }
 
-  std::string document, metadata;
   bool validate = false, schema = false, stages = false;
   CLI::App app("Runs a pipeline of point cloud filters, read from a file.", pipeline_program);
   app.footer(pipeline_footer);
-  app.add_option("PIPELINE.json", document, "the pipeline; - is standard input")->type_name("");
+  app.add_option("PIPELINE.json", options.document, "the pipeline; - is standard input")->type_name("");
   app.add_flag("--validate", validate, "only check it: options, files, and the fields their headers name");
   app.add_option("--stage.TAG.OPTION", "VALUE instead of what the pipeline says; write it with =, as often as needed")
       ->type_name("VALUE");
-  app.add_option("--metadata", metadata,
+  app.add_option("--metadata", options.metadata,
                  "JSON file for what ran and what it took; itself a pipeline, to run it again;\n- is standard output")
       ->type_name("FILE");
   app.add_option("--threads", options.threads, "stages at a time; 0: as many as the machine has threads (default)")
-      ->type_name("N");
+      ->type_name("N")
+      ->transform(number<unsigned>(give_threads));
   app.add_flag("--progress", options.progress, "a line for each stage that is done");
   app.add_flag("--print-schema", schema, "write the JSON schema of pipelines, and end");
   app.add_flag("--print-stages", stages, "write the table of stages and their options, and end");
-  const bool wanted = understood(app, pipeline_program, [&] {
-    app.parse(others);
-    if (document.empty() && !schema && !stages) throw CLI::RequiredError("PIPELINE.json");
+  const bool wanted = understood(app, pipeline_program, std::move(others), [&] {
+    if (options.document.empty() && !schema && !stages) throw CLI::RequiredError("PIPELINE.json");
   });
   if (!wanted) return std::nullopt;
   if (schema || stages) {
@@ -93,8 +70,6 @@ inline std::optional<PipelineOptions> parsePipelineOptions(int argc, char** argv
     return options;
   }
   if (validate) options.task = PipelineTask::validate;
-  options.document = document;
-  options.metadata = metadata;
   return options;
 }
 

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "command_line.h"
+
+#include <pcl_bsh/filters/cloud_files/field_type.h>
+
+#include <cstdint>
+#include <iostream>
+
+namespace pcl_bsh::cli {
+namespace {
+
+bool understood(CLI::App& app, const std::string& program, const std::function<void()>& parse)
+{
+  try {
+    parse();
+    return true;
+  }
+  catch (const CLI::CallForHelp&) {
+    std::cout << app.help();
+    return false;
+  }
+  catch (const CLI::ValidationError& error) { // of the checks below: says all
+    throw UsageError(error.what());
+  }
+  catch (const CLI::ParseError& error) {
+    throw UsageError("command line: " + std::string(error.what()) + ": see " + program + " --help");
+  }
+}
+
+} // namespace
+
+bool understood(CLI::App& app, const std::string& program, int argc, const char* const* argv)
+{
+  return understood(app, program, [&] { app.parse(argc, argv); });
+}
+
+bool understood(CLI::App& app, const std::string& program, std::vector<std::string> arguments,
+                const std::function<void()>& check)
+{
+  return understood(app, program, [&] {
+    app.parse(std::move(arguments));
+    check();
+  });
+}
+
+template <typename Number>
+CLI::Validator number(std::string remedy, std::function<bool(Number)> accepted)
+{
+  return {[remedy = std::move(remedy), accepted = std::move(accepted)](std::string& text) -> std::string {
+            try {
+              const auto value = io::parseNumber<Number>(text);
+              if (accepted && !accepted(value)) return text + ": " + remedy;
+              if constexpr (std::is_integral_v<Number>) text = std::to_string(value);
+              return "";
+            }
+            catch (const io::FormatError& error) {
+              return std::string(error.what()) + ": " + remedy;
+            }
+          },
+          ""};
+}
+
+template CLI::Validator number(std::string, std::function<bool(double)>);
+template CLI::Validator number(std::string, std::function<bool(int)>);
+template CLI::Validator number(std::string, std::function<bool(unsigned)>);
+template CLI::Validator number(std::string, std::function<bool(std::uint64_t)>);
+
+CLI::Validator numberOfName(std::vector<std::pair<std::string, int>> names)
+{
+  return {[names = std::move(names)](std::string& text) -> std::string {
+            std::string known;
+            for (std::size_t i = 0; i < names.size(); ++i) {
+              if (names[i].first == text) {
+                text = std::to_string(names[i].second);
+                return "";
+              }
+              known += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i].first;
+            }
+            return "'" + text + "' is unknown: give " + known;
+          },
+          ""};
+}
+
+} // namespace pcl_bsh::cli

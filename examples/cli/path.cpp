@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "path.h"
+
+#include "command_line.h"
+#include "pose.h"
+
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <stdexcept>
+
+namespace pcl_bsh::cli {
+
+void PathOptions::addTo(CLI::App& app)
+{
+  app.add_option("--trajectory", file,
+                 "poses of OBSTACLE, one a line: 12 or 16 numbers of a matrix, row by\n"
+                 "row, or time tx ty tz qx qy qz qw; instead of --pose. OUTPUT gets the\n"
+                 "fields distance, first_pose and closest_pose beside collision")
+      ->type_name("FILE");
+  app.add_option("--from", from, "a straight run instead: its first pose, as for --pose")->type_name("POSE");
+  app.add_option("--to", to, "its last pose")->type_name("POSE");
+  app.add_option("--steps", steps, "number of steps from the first to the last")
+      ->type_name("N")
+      ->transform(number<unsigned>("give 1 to 10000000", [](unsigned n) { return n >= 1 && n <= 10'000'000; }));
+  app.add_option("--swept", swept,
+                 "the motion between poses counts too: points within D of it collide,\n"
+                 "points beyond D + TOL do not; TOL > 0, in the clouds' unit")
+      ->type_name("TOL")
+      ->transform(number<double>("give a length > 0"));
+}
+
+void PathOptions::requireConsistent(bool has_pose) const
+{
+  const bool moves = !file.empty() || isStraight();
+  if (!file.empty() && isStraight()) throw UsageError("--from: --trajectory is given too: give one of them");
+  if (has_pose && moves) throw UsageError("--pose: a path is given too: give one of them");
+  if (isStraight() && (from.empty() || to.empty() || !steps))
+    throw UsageError("--from: a straight run is not complete: give --from, --to and --steps");
+  if (swept && !moves) throw UsageError("--swept: nothing moves: give --trajectory, or --from, --to, --steps");
+}
+
+std::vector<Eigen::Isometry3d> PathOptions::straightRun(std::vector<std::string>& warnings) const
+{
+  const Eigen::Isometry3d first = parsePose("--from", from, warnings), last = parsePose("--to", to, warnings);
+  std::vector<Eigen::Isometry3d> poses = {first};
+  try {
+    for (unsigned i = 1; i < *steps; ++i)
+      poses.push_back(poseBetween(first, last, static_cast<double>(i) / static_cast<double>(*steps)));
+  }
+  catch (const std::invalid_argument& error) {
+    throw UsageError(std::string("--to: ") + error.what());
+  }
+  poses.push_back(last);
+  return poses;
+}
+
+} // namespace pcl_bsh::cli

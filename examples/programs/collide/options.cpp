@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "options.h"
+
+#include "cli/command_line.h"
+#include "cli/path.h"
+#include "cli/pose.h"
+
+#include <pcl_bsh/geometry/invalid_input.h>
+
+#include <cmath>
+
+namespace pcl_bsh::cli {
+namespace {
+
+constexpr auto collide_footer =
+    R"(Point p of INPUT and q of OBSTACLE collide iff |p - POSE q| <= D, decided exactly, or as --accuracy says.
+Reads .pcd .ply .obj .off .xyz .txt, writes all of these but .off. Files may be pipes; - is standard input (PCD, PLY,
+OFF or columns), or standard output for OUTPUT (PCD) and --report.
+Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
+
+Example: which points of a hall are within 5 cm of a robot at (1.5, 2, 0), turned by 90 degrees?
+  pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708
+Example: does a wagon keep 5 cm from a tunnel on its way, and where does it not?
+  pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html)";
+
+Accuracy parseAccuracy(const std::string& text)
+{
+  try {
+    return Accuracy::parse(text);
+  }
+  catch (const InvalidInput& error) {
+    throw UsageError("--accuracy: " + error.advice());
+  }
+}
+
+/// What no single option can know.
+void requireConsistent(const CollideOptions& options)
+{
+  if (options.clashes.empty() && (options.cluster_distance > 0 || options.previous))
+    throw UsageError(std::string(options.previous ? "--previous" : "--cluster-distance") +
+                     ": no clash report is written: give --clashes FILE");
+  const Accuracy& accuracy = options.accuracy;
+  if (accuracy.stopsEarly() && !options.clashes.empty())
+    throw UsageError("--accuracy: " + accuracy.text() +
+                     ": clashes need distances: give exact, float or tolerance=LENGTH");
+  if (!accuracy.isExact() && options.swept)
+    throw UsageError("--accuracy: " + accuracy.text() + ": swept motion has a tolerance of its own: give exact");
+}
+
+} // namespace
+
+std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
+{
+  CollideOptions options;
+  std::string pose, accuracy = "exact";
+  bool in_place = false;
+  PathOptions path;
+  CLI::App app("Flags, keeps or removes the points of a cloud that collide with an obstacle.", collide_program);
+  app.footer(collide_footer);
+  app.add_option("INPUT", options.input, "the cloud whose points are tested")->type_name("")->required();
+  app.add_option("OBSTACLE", options.obstacle, "cloud to collide with")->type_name("")->required();
+  app.add_option("OUTPUT", options.output, "INPUT's points with all their fields")->type_name("")->required();
+  app.add_option("--clearance", options.clearance, "greatest distance that counts as collision, in the clouds' unit")
+      ->type_name("D")
+      ->transform(number<double>(give_length))
+      ->required();
+  app.add_option("--pose", pose,
+                 "of OBSTACLE in INPUT's frame: x,y,z,roll,pitch,yaw, the angles in\n"
+                 "radians (R = Rz(yaw) Ry(pitch) Rx(roll)); or a file of 12 or 16\n"
+                 "numbers, the rows of its matrix (default: no motion)")
+      ->type_name("POSE");
+  path.addTo(app);
+  app.add_option("--keep", options.keep,
+                 "flagged: all points, with a field 'collision' of 0 or 1 (default)\n"
+                 "colliding: only these, and those that are undecided\n"
+                 "free: only finite points that do not collide")
+      ->type_name("WHICH")
+      ->transform(choice<Keep>({{"flagged", Keep::flagged}, {"colliding", Keep::colliding}, {"free", Keep::free}}));
+  app.add_option("--accuracy", accuracy,
+                 "what may be given up for time: exact (default); float: without proof;\n"
+                 "tolerance=LENGTH: pairs up to that much beyond D may count; level=N:\n"
+                 "spheres are opened down to this level; pairs=N or time=SECONDS: each\n"
+                 "query stops there. Points that are undecided then get 2 in the field\n"
+                 "'collision'; along a path, level, pairs and time give no distances and\n"
+                 "no poses")
+      ->type_name("HOW");
+  app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
+  app.add_option("--threads", options.threads, "0: all of the machine's (default); any number gives the same result")
+      ->type_name("N")
+      ->transform(number<unsigned>(give_threads));
+  app.add_option("--report", options.report, "JSON file for the results and what they cost")->type_name("FILE");
+  app.add_option("--clashes", options.clashes,
+                 "list of the places that collide, to .json, .csv or .html; may be given\n"
+                 "more than once")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  app.add_option("--cluster-distance", options.cluster_distance,
+                 "colliding points no farther apart belong to one clash (default: the\n"
+                 "greater of D and four spacings of INPUT, rounded up to a power of two)")
+      ->type_name("L")
+      ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
+  app.add_option("--previous", options.previous, "earlier .json list: clashes are new, persisting or resolved")
+      ->type_name("FILE");
+  if (!understood(app, collide_program, argc, argv)) return std::nullopt;
+
+  options.accuracy = parseAccuracy(accuracy);
+  path.requireConsistent(!pose.empty());
+  if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
+  options.trajectory = path.file;
+  if (path.isStraight()) options.path = path.straightRun(options.warnings);
+  options.swept = path.swept;
+  requireConsistent(options);
+
+  CommandFiles& files = options.files;
+  files.reads("INPUT", options.input).reads("OBSTACLE", options.obstacle).readsPose("--pose", pose);
+  files.reads("--trajectory", path.file).readsPose("--from", path.from).readsPose("--to", path.to);
+  files.reads("--previous", options.previous.value_or("")).writes("OUTPUT", options.output, in_place ? "INPUT" : "");
+  files.writes("--report", options.report.value_or(""));
+  for (const std::filesystem::path& list : options.clashes) files.writes("--clashes", list, "--previous"); // updated
+  return options;
+}
+
+} // namespace pcl_bsh::cli

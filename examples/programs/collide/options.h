@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line of pcl_bsh_collide.
+#pragma once
+
+#include "cli/used_files.h"
+
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+inline constexpr auto collide_program = "pcl_bsh_collide";
+
+enum class Keep { flagged, colliding, free };
+
+struct CollideOptions {
+  std::filesystem::path input;
+  std::filesystem::path obstacle;
+  std::filesystem::path output;
+  std::optional<std::filesystem::path> report;
+  Keep keep = Keep::flagged;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_input_obstacle
+  std::filesystem::path trajectory;                       ///< a file of such poses, or empty
+  std::vector<Eigen::Isometry3d> path;                    ///< a straight run of them, or empty
+  std::optional<double> swept;
+  std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
+  double cluster_distance = 0;                ///< 0: from clearance and spacing
+  std::optional<std::filesystem::path> previous;
+  double clearance = 0.0;
+  unsigned threads = 0; ///< all of the machine's
+  Accuracy accuracy;
+  std::vector<std::string> warnings; ///< of the options themselves
+  CommandFiles files;                ///< all that are read or written
+
+  bool moves() const { return !trajectory.empty() || !path.empty(); }
+};
+
+/// The options, checked; none when only help was asked for. @throws UsageError, io::CloudFileError of pose files
+std::optional<CollideOptions> parseCollideOptions(int argc, char** argv);
+
+} // namespace pcl_bsh::cli

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The results of a comparison of two clouds, and what they cost, for people and for programs.
+#pragma once
+
+#include <pcl_bsh/neighbors/spacing.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+struct CloudReport {
+  std::string file;
+  std::size_t points = 0;
+  std::size_t finite = 0;
+};
+
+/// How wide the holes are that a collision may hide in.
+struct Density {
+  Spacing input, obstacle;
+
+  /// Half a hole each: where two surfaces touch, a point of one may be this far from the nearest of the other.
+  double blind() const { return (input.median + obstacle.median) / std::sqrt(2.0); }
+
+  /// Clouds of less than a hundred points are no scans, and have no density.
+  bool couldHide(double clearance) const
+  {
+    return std::min(input.samples, obstacle.samples) >= 100 && blind() > clearance;
+  }
+};
+
+/// What is known only along a path.
+struct PathReport {
+  std::size_t poses = 0;
+  std::optional<double> swept;
+  std::vector<PoseSummary> table;            ///< one per pose; none when swept
+  std::optional<FirstContact> first_contact; ///< swept only
+};
+
+struct Seconds {
+  double load = 0;
+  double build = 0; ///< sorting into voxels; their trees are built by the query that visits them
+  double query = 0;
+  double clashes = 0;
+  double write = 0;
+};
+
+struct CollisionReport {
+  CloudReport input;
+  CloudReport obstacle;
+  double clearance = 0;
+  Accuracy accuracy;
+  std::size_t colliding = 0; ///< points of the input
+  std::size_t undecided = 0; ///< likewise
+  DistanceResult closest;    ///< a: the input, b: the obstacle; along a path within the clearance only
+  Density density;
+  std::optional<PathReport> path;
+  Work work; ///< of all queries
+  std::size_t voxels_total = 0;
+  Seconds seconds;
+  std::vector<std::string> warnings;
+};
+
+/// `distance` and `closest_pair` are null when a cloud has no finite point, or nothing collides along a path;
+/// `distance_interval` along a path, and each of its ends where it is not known.
+nlohmann::ordered_json toJson(const CollisionReport& report);
+
+/// As JSON. @throws io::CloudFileError
+void writeReport(const std::filesystem::path& path, const CollisionReport& report);
+
+} // namespace pcl_bsh::cli

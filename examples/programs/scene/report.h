@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The results of a scene's step, line by line: CSV for tables, JSON lines for programs.
+#pragma once
+
+#include <pcl_bsh/scene/scene.h>
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstddef>
+#include <iosfwd>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+/// Sums over the steps of a run.
+struct SceneTotals {
+  std::array<EffectCost, kEffects> costs;
+  BroadPhaseCost broad_phase;
+  std::vector<double> step_seconds;
+  std::size_t colliding_steps = 0; ///< in which `any` found a pair
+  std::size_t undecided_steps = 0; ///< in which it left one undecided
+  std::size_t touched_moves = 0;
+  double travelled = 0.0, wanted = 0.0;
+
+  void add(const SceneResult& result, double seconds);
+};
+
+/// Counts of a step: a row of the CSV. Columns of effects that are not listed are left out.
+class SceneTable {
+public:
+  explicit SceneTable(const Effects& effects) : effects_(effects) {}
+
+  void writeHeader(std::ostream& out) const;
+
+  /// Numbers are written to the last digit: times must not repeat, and distances are exact.
+  void writeRow(std::ostream& out, std::size_t step, const SceneResult& result) const;
+
+private:
+  bool moves() const { return effects_.response != Response::none || effects_.gravity.has_value(); }
+
+  const Effects& effects_;
+};
+
+nlohmann::ordered_json toJson(const EffectCost& cost);
+
+/// One line: all results of the step, objects by name; and the positions of those that moved under a response.
+nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const Scene& scene);
+
+} // namespace pcl_bsh::cli
