@@ -44,7 +44,15 @@ function(pcl_bsh_precompile target set)
   endif()
 endfunction()
 
+# Which symbols of a library are seen: of the visible ones, ours.
+configure_file("${CMAKE_CURRENT_LIST_DIR}/exports.map.in" "${PROJECT_BINARY_DIR}/exports.map" @ONLY)
+function(pcl_bsh_limit_exports target)
+  target_link_options(${target} PRIVATE "LINKER:--version-script=${PROJECT_BINARY_DIR}/exports.map")
+  set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS "${PROJECT_BINARY_DIR}/exports.map")
+endfunction()
+
 # A library named pcl_bsh_<name>, known inside and outside of the project as pcl_bsh::<name>. Its headers are C++17.
+# Hidden is what no public header declares (pcl_bsh/export.h).
 function(pcl_bsh_add_library name)
   add_library(pcl_bsh_${name} ${ARGN})
   add_library(pcl_bsh::${name} ALIAS pcl_bsh_${name})
@@ -55,9 +63,14 @@ function(pcl_bsh_add_library name)
     PROPERTIES EXPORT_NAME ${name}
                INSTALL_RPATH "$ORIGIN" # wherever they are installed, they lie side by side
                VERIFY_INTERFACE_HEADER_SETS ON
+               CXX_VISIBILITY_PRESET hidden
+               VISIBILITY_INLINES_HIDDEN ON
                DEFINE_SYMBOL "" # unused, and another one for each library would forbid them a common precompiled header
                VERSION ${PROJECT_VERSION}
                SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  if(BUILD_SHARED_LIBS)
+    pcl_bsh_limit_exports(pcl_bsh_${name})
+  endif()
 endfunction()
 
 if(PROJECT_IS_TOP_LEVEL)

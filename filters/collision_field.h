@@ -2,6 +2,8 @@
 // What a query says of each point, as fields of the cloud beside all it had.
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <pcl/PCLPointCloud2.h>
 
 #include <cstdint>
@@ -9,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 struct TrajectoryResult;
@@ -44,3 +47,4 @@ inline pcl::PCLPointCloud2 withField(const pcl::PCLPointCloud2& cloud, const std
 std::vector<NewField> fieldsOf(const TrajectoryResult& result);
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -11,6 +11,7 @@
 // Free is never the answer to a failure: where PCL's filters would print a line and return, this one throws.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/obstacle_query.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -24,6 +25,7 @@
 #include <type_traits>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// What the typed filter and the one of pcl::PCLPointCloud2 share. Use CollisionFilter.
@@ -124,6 +126,7 @@ private:
 };
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END
 
 #ifdef PCL_NO_PRECOMPILE
 #include <pcl_bsh/filters/impl/collision_filter.hpp>

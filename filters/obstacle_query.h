@@ -2,6 +2,7 @@
 // The obstacle, where it stands and how close is too close: all of CollisionFilter that knows no point type.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/search/cloud_view.h>
@@ -19,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 class SphereHierarchy;
@@ -143,3 +145,4 @@ void ObstacleQuery::setObstacleCloud(const std::shared_ptr<Cloud>& cloud)
 }
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -2,9 +2,12 @@
 // What becomes of removed points where a cloud keeps its rows and columns.
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/types.h>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// Sets x, y and z of these records to the value, in the type the cloud has; a value that is not finite makes the cloud
@@ -12,3 +15,4 @@ namespace pcl_bsh {
 void overwritePoints(pcl::PCLPointCloud2& cloud, const pcl::Indices& records, float value);
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -125,5 +125,5 @@ void CollisionFilter<PointT>::setIndices(std::size_t row_start, std::size_t col_
 } // namespace pcl_bsh
 
 #define PCL_INSTANTIATE_CollisionFilter(T)                                                                             \
-  template class pcl_bsh::CollisionFilterBase<T>;                                                                      \
-  template class pcl_bsh::CollisionFilter<T>;
+  template class PCL_BSH_EXPORT pcl_bsh::CollisionFilterBase<T>;                                                       \
+  template class PCL_BSH_EXPORT pcl_bsh::CollisionFilter<T>;

@@ -11,6 +11,7 @@
 //   std::optional of any                                 the same; nothing unless the document says something
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/pipeline/stage_cloud.h>
 
 #include <Eigen/Geometry>
@@ -25,6 +26,7 @@
 #include <variant>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::pipeline {
 
 /// A finite number as the document writes it: a whole one keeps all of its 64 bits. std::monostate: null, no limit.
@@ -207,3 +209,4 @@ struct OptionType<std::optional<T>> {
 };
 
 } // namespace pcl_bsh::pipeline
+PCL_BSH_EXPORT_END

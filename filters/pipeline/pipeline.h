@@ -14,6 +14,7 @@
 // before it. STAGES.md lists the stages and their options.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/pipeline/stage_cloud.h>
 
 #include <cstddef>
@@ -26,6 +27,7 @@
 #include <string_view>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 namespace pipeline {
@@ -122,3 +124,4 @@ std::string stageDocumentation();
 } // namespace pipeline
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

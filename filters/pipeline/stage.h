@@ -7,6 +7,7 @@
 //   };
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/pipeline/stage_cloud.h>
 
 #include <atomic>
@@ -15,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::pipeline {
 
 /// Something is wrong with one option of a stage. what() reads `what is wrong: what to do`.
@@ -65,3 +67,4 @@ private:
 };
 
 } // namespace pcl_bsh::pipeline
+PCL_BSH_EXPORT_END

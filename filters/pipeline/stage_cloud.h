@@ -2,12 +2,15 @@
 // What flows from stage to stage.
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <pcl/PCLPointCloud2.h>
 
 #include <array>
 #include <memory>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::pipeline {
 
 /// A cloud with all its fields, and where its sensor stood: tx ty tz qw qx qy qz, as a PCD file has it.
@@ -30,3 +33,4 @@ std::shared_ptr<StageCloud> ownCloud(StageCloudPtr&& cloud);
 std::shared_ptr<StageCloud> emptyLike(const StageCloud& cloud);
 
 } // namespace pcl_bsh::pipeline
+PCL_BSH_EXPORT_END

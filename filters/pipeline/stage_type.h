@@ -8,6 +8,7 @@
 // With that line in a program, its pipelines know {"type": "filters.every_nth", "step": 10}.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/pipeline/option_type.h>
 #include <pcl_bsh/filters/pipeline/stage.h>
 
@@ -20,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::pipeline {
 
 /// A row of a stage's options.
@@ -179,3 +181,4 @@ const std::deque<StageType>& stageTypes();
 const StageType* findStageType(const std::string& name);
 
 } // namespace pcl_bsh::pipeline
+PCL_BSH_EXPORT_END

@@ -8,6 +8,7 @@
 // Compiled, this links CGAL's Bounding_volumes: GPL-3.0-or-later. See LICENSE in this folder.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
 #include <array>
@@ -16,6 +17,7 @@
 #include <functional>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 struct CertifyOptions {
@@ -91,3 +93,4 @@ struct Certificate {
 Certificate certify(const SphereHierarchy& hierarchy, const CertifyOptions& options = {});
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

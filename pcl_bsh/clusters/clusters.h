@@ -2,12 +2,14 @@
 // Which points belong together? Euclidean clusters of one cloud, through its hierarchy.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/query/result.h>
 
 #include <cstdint>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 struct Clusters {
@@ -30,3 +32,4 @@ Clusters euclideanClusters(const SphereHierarchy& cloud, double distance);
 
 } // namespace brute_force
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -2,12 +2,14 @@
 // Does any pair of points of two posed clouds collide?
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 
 #include <optional>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// What anyCollision() reads.
@@ -28,3 +30,4 @@ struct AnyResult {
 AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request = {});
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

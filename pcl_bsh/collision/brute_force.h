@@ -3,7 +3,9 @@
 #pragma once
 
 #include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/export.h>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::brute_force {
 
 /// Same contracts as their namesakes in collide.h. Work counts one exact decision per pair looked at; the witness of
@@ -13,3 +15,4 @@ FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest&
 DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceRequest& request = {});
 
 } // namespace pcl_bsh::brute_force
+PCL_BSH_EXPORT_END

@@ -2,6 +2,7 @@
 // The smallest distance of two posed clouds, and the pair of points that realises it.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
@@ -9,6 +10,7 @@
 #include <limits>
 #include <optional>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// What closestPair() reads.
@@ -32,3 +34,4 @@ struct DistanceResult {
 DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceRequest& request = {});
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

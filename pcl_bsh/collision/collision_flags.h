@@ -2,6 +2,7 @@
 // Which points of two posed clouds collide with something of the other cloud?
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 enum class Side : std::uint8_t { a = 1, b = 2, both = 3 };
@@ -42,3 +44,4 @@ FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest&
 void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request, FlagsResult& result);
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

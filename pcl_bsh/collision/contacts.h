@@ -2,6 +2,7 @@
 // The pairs of points themselves: where two posed clouds collide, how deep, and which way is out.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 
@@ -9,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// What nearestContacts() and pairsWithin() read. Both are exact.
@@ -46,3 +48,4 @@ struct PairsWithin {
 PairsWithin pairsWithin(const Placed& a, const Placed& b, const ContactsRequest& request);
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/export.h>
 
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// What became of a sphere during a walk; of several meetings, the furthest.
@@ -35,3 +37,4 @@ struct CollisionTrace {
 CollisionTrace traceCollision(const Placed& a, const Placed& b, const AnyRequest& request);
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

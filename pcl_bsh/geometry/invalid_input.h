@@ -6,6 +6,8 @@
 //   }
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -13,6 +15,7 @@
 #include <string>
 #include <utility>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// The part of the input that is wrong.
@@ -82,3 +85,4 @@ private:
 };
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

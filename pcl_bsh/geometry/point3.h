@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <array>
 #include <cmath>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// Three coordinates in double: exact for float32 and float64 input alike.
@@ -15,3 +18,4 @@ inline bool isFinite(const Point3& p) noexcept
 }
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

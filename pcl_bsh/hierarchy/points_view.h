@@ -2,6 +2,7 @@
 // The caller's points, seen in place: any array of records that holds x, y, z as float32 or float64.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/geometry/point3.h>
 
 #include <array>
@@ -10,6 +11,7 @@
 #include <cstring>
 #include <memory>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 enum class Scalar : std::uint8_t { float32, float64 };
@@ -68,3 +70,4 @@ inline PointsView viewOf(const double* xyz, std::size_t count, std::size_t strid
 }
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

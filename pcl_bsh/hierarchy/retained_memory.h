@@ -5,8 +5,11 @@
 //   releaseRetainedMemory();    // once, after the largest cloud
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <cstddef>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// Bytes kept: large buffers of hierarchies and searches that have ended, and each thread's scratch memory (of threads
@@ -26,3 +29,4 @@ void setRetainedMemoryLimit(std::size_t bytes) noexcept;
 void releaseRetainedMemory() noexcept;
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -4,6 +4,7 @@
 // Hierarchies, IJVR 11(2), 2012.)
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 
 #include <cstddef>
@@ -12,6 +13,7 @@
 #include <string>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// How the centre of an enclosing sphere is chosen. Changes times, never answers.
@@ -110,3 +112,4 @@ private:
 };
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

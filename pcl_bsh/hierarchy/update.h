@@ -6,6 +6,7 @@
 //   UpdateReport done = update.commit(view);                            // the records may have moved in memory
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
 #include <cstddef>
@@ -13,6 +14,7 @@
 #include <map>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// What an update did. Counts are free of noise.
@@ -50,3 +52,4 @@ private:
 };
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -13,6 +13,7 @@
 // may query one hierarchy at once.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/query/result.h>
 
@@ -20,6 +21,7 @@
 #include <cstdint>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// The answer to one query. Vectors that come with memory are filled without allocating.
@@ -74,3 +76,4 @@ std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const Po
 std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, unsigned threads = 1);
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

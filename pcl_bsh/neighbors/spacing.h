@@ -2,10 +2,12 @@
 // How densely is a surface sampled? A collision can hide in a hole wider than the clearance.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
 #include <cstddef>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// Distances from points to the nearest other place that has one, in the cloud's unit, of the coordinates as given: in
@@ -21,3 +23,4 @@ struct Spacing {
 Spacing spacingOf(const SphereHierarchy& cloud);
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

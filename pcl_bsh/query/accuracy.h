@@ -7,9 +7,12 @@
 // that holds the truth.
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <cstdint>
 #include <string>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// How sure an answer has to be. Lengths in the clouds' unit.
@@ -58,3 +61,4 @@ struct Accuracy {
 };
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <stdexcept>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// What ends work that its caller has asked to stop. Every object is as it was before, or asked again gives the right
@@ -13,3 +16,4 @@ public:
 };
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
 #include <Eigen/Geometry>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// A cloud's hierarchy and where it stands. The hierarchy is borrowed, and builds its voxels as queries visit them.
@@ -25,3 +27,4 @@ private:
 };
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -2,6 +2,7 @@
 // What every query asks of the parts of its request. Each throws InvalidInput naming the value.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/query/accuracy.h>
 
 #include <Eigen/Geometry>
@@ -17,16 +18,16 @@ namespace pcl_bsh {
 inline constexpr double rigidity_tolerance = 1e-6;
 
 /// Refuses a clearance that is negative or not finite.
-void checkClearance(double clearance);
+PCL_BSH_EXPORT_INTERNAL void checkClearance(double clearance);
 
 /// Refuses a value of the accuracy that is negative or not finite.
-void checkAccuracy(const Accuracy& accuracy);
+PCL_BSH_EXPORT_INTERNAL void checkAccuracy(const Accuracy& accuracy);
 
 /// Whether a pose is finite, has the last row 0 0 0 1, does not mirror, and has |R'R - I| <= rigidity_tolerance.
-bool isRigid(const Eigen::Isometry3d& pose);
+PCL_BSH_EXPORT_INTERNAL bool isRigid(const Eigen::Isometry3d& pose);
 
 /// Refuses a pose that is not rigid, called `name` in the message. @param index which of several it is
-void checkPose(const std::string& name, const Eigen::Isometry3d& pose,
-               const std::optional<std::size_t>& index = std::nullopt);
+PCL_BSH_EXPORT_INTERNAL void checkPose(const std::string& name, const Eigen::Isometry3d& pose,
+                                       const std::optional<std::size_t>& index = std::nullopt);
 
 } // namespace pcl_bsh

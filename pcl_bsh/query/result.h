@@ -2,11 +2,13 @@
 // The words that the results of all queries share.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/query/work.h>
 
 #include <cstdint>
 #include <limits>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 enum class Verdict : std::uint8_t { free, colliding, undecided };
@@ -32,3 +34,4 @@ struct Interval {
 };
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

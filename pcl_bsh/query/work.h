@@ -2,10 +2,12 @@
 // What a query cost, counted.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/build_work.h>
 
 #include <cstdint>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// Noise-free cost of a query: tests and updates of bounding volumes, as in the paper, and what was done to points. The
@@ -37,3 +39,4 @@ struct Work : BuildWork {
 };
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -2,6 +2,7 @@
 // What collides along a path, place by place: clusters of colliding points, with names that last from run to run.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -9,6 +10,7 @@
 #include <string>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// Against an earlier list of clashes; without one, all are fresh.
@@ -47,3 +49,4 @@ std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& f
 void compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness);
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

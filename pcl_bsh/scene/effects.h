@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/scene/motion.h>
 
@@ -13,6 +14,7 @@
 #include <optional>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 using ObjectId = std::uint32_t; ///< counted from 0 in the order of Scene::add()
@@ -171,3 +173,4 @@ struct SceneResult {
 };
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

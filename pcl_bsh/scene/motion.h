@@ -2,11 +2,14 @@
 // How an object of a scene moves by itself. Times in seconds, angles in radians, lengths in the clouds' unit.
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <Eigen/Geometry>
 
 #include <variant>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// At rest, until somebody sets its pose.
@@ -61,3 +64,4 @@ struct Leg {
 void check(const Motion& motion);
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -17,6 +17,7 @@
 // never answers.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/scene/effects.h>
@@ -29,6 +30,7 @@
 #include <utility>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// One cloud of an object. Objects and scenes may share a hierarchy.
@@ -153,3 +155,4 @@ private:
 };
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -8,6 +8,7 @@
 // Answers are those of exact arithmetic on the given coordinates; PCL's own classes round: see below.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -21,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::search {
 
 /// What setInputCloud() of a search class returns: PCL changed it.
@@ -112,6 +114,7 @@ private:
 };
 
 } // namespace pcl_bsh::search
+PCL_BSH_EXPORT_END
 
 #ifdef PCL_NO_PRECOMPILE
 #include <pcl_bsh/search/impl/bounding_sphere_search.hpp>

@@ -7,6 +7,7 @@
 // A view borrows: cloud and indices must outlive it, unchanged.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/search/pcl_abi.h>
 
@@ -17,6 +18,7 @@
 #include <cstdint>
 #include <type_traits>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 static_assert(std::is_same_v<pcl::index_t, std::int32_t>, "pcl_bsh needs a PCL built with its default 32-bit indices");
@@ -65,3 +67,4 @@ PointsView viewOf(const Cloud& cloud, const pcl::Indices& indices)
 }
 
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -20,6 +20,7 @@
 // float alone, pairs that may count or not may do so for one question and not for another.)
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/query/placed.h>
@@ -32,6 +33,7 @@
 #include <optional>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 struct TrajectoryRequest {
@@ -112,3 +114,4 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
 
 } // namespace brute_force
 } // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -2,6 +2,7 @@
 // The files of a .vtm's blocks: which are ours to write, and which to remove. Not installed.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/files/output_folder.h>
 #include <pcl_bsh/files/replace_file.h>
 
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::vtk {
 
 /// A generation of blocks of NAME.vtm: NAME/NAME_<generation>_<number>.vtp, of which there was none before. Removed at
@@ -51,3 +53,4 @@ private:
 };
 
 } // namespace pcl_bsh::vtk
+PCL_BSH_EXPORT_END

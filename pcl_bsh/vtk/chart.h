@@ -3,11 +3,14 @@
 // file.
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::vtk {
 
 struct Tick {
@@ -59,3 +62,4 @@ std::array<unsigned char, 3> distinctColor(std::size_t i);
 void writeChartsPng(const std::vector<Chart>& charts, int width, int height, const std::filesystem::path& path);
 
 } // namespace pcl_bsh::vtk
+PCL_BSH_EXPORT_END

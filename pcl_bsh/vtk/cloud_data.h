@@ -2,6 +2,7 @@
 // Clouds, and what is known of their points, as VTK's data.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 
 #include <vtkPolyData.h>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::vtk {
 
 /// The finite points of a view as one poly-vertex cell, in the view's scalar type. Point array `index`: the point's
@@ -30,3 +32,4 @@ vtkSmartPointer<vtkPolyData> subset(vtkPolyData& cloud, const std::vector<std::u
 vtkSmartPointer<vtkPolyData> thinned(vtkPolyData& cloud, vtkIdType most);
 
 } // namespace pcl_bsh::vtk
+PCL_BSH_EXPORT_END

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <pcl_bsh/export.h>
+
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::vtk {
 
 /// Whether the X server that DISPLAY names answers. Where it does not, VTK's ordinary windows end the program.
 bool haveDisplay();
 
 } // namespace pcl_bsh::vtk
+PCL_BSH_EXPORT_END

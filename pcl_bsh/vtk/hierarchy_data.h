@@ -6,6 +6,7 @@
 #pragma once
 
 #include <pcl_bsh/collision/trace.h>
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
 #include <vtkPolyData.h>
@@ -13,6 +14,7 @@
 
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::vtk {
 
 /// The deepest level: all its spheres are those of leaves. Builds every voxel.
@@ -38,3 +40,4 @@ vtkSmartPointer<vtkPolyData> voxelBoxes(const SphereHierarchy& hierarchy);
 vtkSmartPointer<vtkPolyData> cellBoxes(const SphereHierarchy& hierarchy, unsigned level);
 
 } // namespace pcl_bsh::vtk
+PCL_BSH_EXPORT_END

@@ -2,11 +2,14 @@
 // A window to draw into which is not shown, with or without a display.
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <vtkRenderWindow.h>
 #include <vtkSmartPointer.h>
 
 #include <filesystem>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::vtk {
 
 /// A window of width x height pixels for vtkRenderers. Needs no display: without one it draws through EGL, where an
@@ -19,3 +22,4 @@ vtkSmartPointer<vtkRenderWindow> makeOffscreenWindow(int width, int height);
 void writePng(vtkRenderWindow& window, const std::filesystem::path& path);
 
 } // namespace pcl_bsh::vtk
+PCL_BSH_EXPORT_END

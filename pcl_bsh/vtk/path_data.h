@@ -2,6 +2,7 @@
 // The path of a moving cloud as VTK's data.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 
 #include <Eigen/Geometry>
@@ -10,6 +11,7 @@
 
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::vtk {
 
 /// The poses' images of one point of the model, joined by a line. Point arrays: `pose` (its number), `time` (seconds
@@ -19,3 +21,4 @@ vtkSmartPointer<vtkPolyData> pathData(const std::vector<Eigen::Isometry3d>& pose
                                       const std::vector<double>& times = {}, const Point3& point = {0, 0, 0});
 
 } // namespace pcl_bsh::vtk
+PCL_BSH_EXPORT_END

@@ -2,6 +2,8 @@
 // VTK's data as files that ParaView opens; each appears complete or not at all.
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
@@ -10,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::vtk {
 
 /// Writes a .vtp file. @throws std::runtime_error naming the file
@@ -28,3 +31,4 @@ void writeVtm(const std::vector<NamedData>& blocks, const std::filesystem::path&
 void requireWritableData(const std::filesystem::path& path);
 
 } // namespace pcl_bsh::vtk
+PCL_BSH_EXPORT_END

@@ -141,4 +141,4 @@ int BoundingSphereSearch<PointT>::boxSearch(const Eigen::Vector3f& min_pt, const
 
 } // namespace pcl_bsh::search
 
-#define PCL_INSTANTIATE_BoundingSphereSearch(T) template class pcl_bsh::search::BoundingSphereSearch<T>;
+#define PCL_INSTANTIATE_BoundingSphereSearch(T) template class PCL_BSH_EXPORT pcl_bsh::search::BoundingSphereSearch<T>;

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Fails when a library exports a symbol that is not this project's.
+#   cmake -D NM=nm -D "LIBRARIES=a.so;b.so" -P exported_symbols.cmake
+cmake_minimum_required(VERSION 3.25)
+set(defects "")
+foreach(library IN LISTS LIBRARIES)
+  execute_process(COMMAND "${NM}" --dynamic --defined-only --demangle "${library}" OUTPUT_VARIABLE symbols
+                          COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX REPLACE ";" "," symbols "${symbols}") # a list's separator
+  string(REGEX MATCHALL "[^\n]+" symbols "${symbols}")
+  cmake_path(GET library FILENAME name)
+  set(ours 0)
+  foreach(symbol IN LISTS symbols)
+    string(REGEX REPLACE "^[0-9a-f]+ [A-Za-z] " "" symbol "${symbol}")
+    string(REGEX REPLACE "@@?PCL_BSH_.*$" "" plain "${symbol}")
+    if(plain MATCHES "^(([a-z-]+ )+(for|to) )?(.* )?pcl_bsh::" OR plain MATCHES "^PCL_BSH_[0-9.]+$")
+      math(EXPR ours "${ours} + 1")
+    else()
+      list(APPEND defects "${name}: ${symbol}")
+    endif()
+  endforeach()
+  if(ours LESS 2)
+    list(APPEND defects "${name}: exports nothing")
+  endif()
+  message(STATUS "${name}: ${ours} symbols")
+endforeach()
+if(defects)
+  list(JOIN defects "\n  " text)
+  message(FATAL_ERROR "exported, but not ours: hide them (pcl_bsh/export.h, cmake/exports.map.in):\n  ${text}")
+endif()
