@@ -8,8 +8,7 @@
 #define PCL_BSH_HIERARCHY_CELL_CODES_INL_H_
 #endif
 
-#include <pcl_bsh/hierarchy/storage.h>
-#include <pcl_bsh/simd/quad-inl.h>
+#include <pcl_bsh/hierarchy/point_bounds-inl.h>
 #include <pcl_bsh/simd/sphere_lanes-inl.h>
 
 #include <algorithm>
@@ -21,15 +20,6 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Bounds of some points. The fourth lane holds nothing.
-struct Box {
-  alignas(16) float low[4] = {kNone, kNone, kNone, kNone};
-  alignas(16) float high[4] = {-kNone, -kNone, -kNone, -kNone};
-  static constexpr float kNone = std::numeric_limits<float>::infinity();
-
-  float extent(int axis) const { return high[axis] - low[axis]; }
-};
-
 /// Numbers the cells of a box along a space-filling order: each bit of a code halves the axis along which cells are
 /// longest, the most significant bit first. A cube gives the Morton order; a flat box is not split through its
 /// thickness.
@@ -39,9 +29,9 @@ public:
   static constexpr unsigned kMostAxisBits = 12; // of these, for one axis
   static constexpr std::size_t kBlock = 64;     // points coded at a time, at most
 
-  CellCodes(const Box& box, unsigned bits)
+  CellCodes(const PointBounds& bounds, unsigned bits)
   {
-    std::array<float, 3> edge = {box.extent(0), box.extent(1), box.extent(2)};
+    std::array<float, 3> edge = {bounds.extent(0), bounds.extent(1), bounds.extent(2)};
     std::array<unsigned, 3> axis_bits = {0, 0, 0};
     std::array<std::uint8_t, kMostBits> axis_of; // of each bit of the code, most significant first
     for (unsigned b = 0; b < bits; ++b) {
@@ -53,8 +43,8 @@ public:
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const auto cells = static_cast<float>(1u << axis_bits[k]);
-      const float extent = box.extent(static_cast<int>(k));
-      low_[k] = box.low[k];
+      const float extent = bounds.extent(static_cast<int>(k));
+      low_[k] = bounds.low[k];
       scale_[k] = extent > 0.0f ? std::min(cells / extent, std::numeric_limits<float>::max()) : 0.0f;
       last_[k] = cells - 1.0f;
       spread(static_cast<std::uint8_t>(k), axis_of);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points into voxels: a counting sort that reads the cloud twice and keeps 4 bytes per point on the way.
 #include <pcl_bsh/geometry/rounding.h>
-#include <pcl_bsh/hierarchy/morton.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/voxel_edge.h>
@@ -16,255 +15,14 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <pcl_bsh/simd/quad-inl.h>
+#include <pcl_bsh/hierarchy/voxel_bins-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr std::uint32_t kNoVoxel = 0x7fffffffu;
 constexpr std::size_t kChunkPoints = 1 << 16; // points a thread takes at least: below that, one thread is faster
-
-/// A point of a float64 cloud, with the operations that Quad has for float32.
-struct Triple {
-  double v[3];
-
-  static Triple load(const double* from) { return {{from[0], from[1], from[2]}}; }
-  static Triple of(double value) { return {{value, value, value}}; }
-  void store(double* to) const { std::copy_n(v, 3, to); }
-  /// As Quad does on x86: what no int32 can hold, NaN included, becomes the lowest.
-  void storeTruncated(std::int32_t* to) const
-  {
-    for (int k = 0; k < 3; ++k)
-      to[k] = std::abs(v[k]) < 0x1p31 ? static_cast<std::int32_t>(v[k]) : std::numeric_limits<std::int32_t>::min();
-  }
-  Triple truncated() const
-  {
-    return apply(*this, *this, [](double value, double) { return std::trunc(value); });
-  }
-  friend bool sameXyz(const Triple& a, const Triple& b) { return std::equal(a.v, a.v + 3, b.v); }
-  bool finite() const { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
-
-  template <class Operation>
-  static Triple apply(const Triple& a, const Triple& b, const Operation& operation)
-  {
-    return {{operation(a.v[0], b.v[0]), operation(a.v[1], b.v[1]), operation(a.v[2], b.v[2])}};
-  }
-  friend Triple operator-(const Triple& a, const Triple& b) { return apply(a, b, std::minus<double>()); }
-  friend Triple operator*(const Triple& a, const Triple& b) { return apply(a, b, std::multiplies<double>()); }
-  friend Triple min(const Triple& a, const Triple& b)
-  {
-    return apply(a, b, [](double l, double r) { return r < l ? r : l; });
-  }
-  friend Triple max(const Triple& a, const Triple& b)
-  {
-    return apply(a, b, [](double l, double r) { return r > l ? r : l; });
-  }
-};
-
-/// How a scalar type's points are held and computed with.
-template <class T>
-struct PointOf;
-template <>
-struct PointOf<float> {
-  using Type = Quad;
-};
-template <>
-struct PointOf<double> {
-  using Type = Triple;
-};
-template <class T>
-using Point = typename PointOf<T>::Type;
-
-/// Reads points of a view as they are stored.
-template <class T>
-class Reader {
-public:
-  explicit Reader(const PointsView& view)
-  : data_(static_cast<const unsigned char*>(view.data)),
-    stride_(view.stride),
-    offset_(view.offset)
-  {
-    const bool in_a_row = offset_[1] == offset_[0] + sizeof(T) && offset_[2] == offset_[0] + 2 * sizeof(T);
-    const bool aligned = reinterpret_cast<std::uintptr_t>(data_) % alignof(T) == 0 && stride_ % alignof(T) == 0 &&
-                         offset_[0] % alignof(T) == 0;
-    // The spare lane of a Quad is read with the point; the last one must not be read beyond.
-    if (in_a_row && aligned && stride_ >= 3 * sizeof(T) && view.count > 0)
-      whole_ = static_cast<std::uint32_t>(view.count - 1);
-  }
-
-  Point<T> operator()(std::uint32_t record) const
-  {
-    const unsigned char* base = data_ + stride_ * record;
-    if (record < whole_) return Point<T>::load(reinterpret_cast<const T*>(base + offset_[0]));
-    T copy[4] = {};
-    for (std::size_t k = 0; k < 3; ++k) std::memcpy(copy + k, base + offset_[k], sizeof(T));
-    return Point<T>::load(copy);
-  }
-
-private:
-  const unsigned char* data_;
-  std::size_t stride_;
-  std::array<std::size_t, 3> offset_;
-  std::uint32_t whole_ = 0; ///< records below it may be read at once, with what follows
-};
-
-/// Points that follow each other in the cloud, all in the same bin.
-struct Run {
-  std::uint32_t bin; ///< kNoVoxel: not finite
-  std::uint32_t points;
-};
-
-/// Runs on paper: twice the bin's number for a single point, one more than that and the number of points for others.
-/// Takes at most one number a point.
-class RunWriter {
-public:
-  explicit RunWriter(std::uint32_t* next) : next_(next) {}
-
-  void operator()(const Run& run)
-  {
-    *next_++ = run.bin << 1 | (run.points == 1 ? 0u : 1u);
-    if (run.points != 1) *next_++ = run.points;
-  }
-
-private:
-  std::uint32_t* next_;
-};
-
-class RunReader {
-public:
-  explicit RunReader(const std::uint32_t* next) : next_(next) {}
-
-  Run operator()()
-  {
-    const std::uint32_t head = *next_++;
-    return {head >> 1, (head & 1) == 0 ? 1u : *next_++};
-  }
-
-private:
-  const std::uint32_t* next_;
-};
-
-/// Points of the same voxel, as one chunk of the cloud has them.
-template <class T>
-struct Bin {
-  std::uint64_t cell = 0;
-  std::uint32_t count = 0;
-  std::uint32_t voxel = 0; ///< its number, known after merging
-  std::uint32_t first = 0; ///< place in the voxel of this chunk's first point, likewise
-  alignas(16) T low[4];
-  alignas(16) T high[4];
-
-  Bin()
-  {
-    std::fill(low, low + 4, std::numeric_limits<T>::infinity());
-    std::fill(high, high + 4, -std::numeric_limits<T>::infinity());
-  }
-
-  void add(const Point<T>& p) { add(p, p, 1); }
-
-  /// `more` points between two corners.
-  void add(const Point<T>& lowest, const Point<T>& highest, std::uint32_t more)
-  {
-    count += more;
-    min(Point<T>::load(low), lowest).store(low);
-    max(Point<T>::load(high), highest).store(high);
-  }
-};
-
-/// Which cell of the grid a point is in, as one number: 21 bits per axis, counted from the lowest cell. Deterministic
-/// is all it needs to be: a point that rounding puts into the neighbouring voxel is at home there, for frames follow
-/// points.
-template <class T>
-class CellNumbers {
-public:
-  CellNumbers(double edge, const Bounds& bounds)
-  : inverse_(Point<T>::of(static_cast<T>(1.0 / edge))),
-    base_(Point<T>::of(0))
-  {
-    T base[4] = {};
-    for (std::size_t k = 0; k < 3; ++k)
-      base[k] = std::floor(static_cast<T>(bounds.low[k]) * static_cast<T>(1.0 / edge)) - kMargin;
-    base_ = Point<T>::load(base);
-  }
-
-  /// The cell's numbers along the axes, in the point's type.
-  Point<T> numbers(const Point<T>& p) const { return (p * inverse_ - base_).truncated(); }
-
-  /// The same as one number; kOutside when the point is not finite or too far from the bounds to be counted.
-  static std::uint64_t together(const Point<T>& numbers)
-  {
-    std::int32_t number[4];
-    numbers.storeTruncated(number);
-    const auto bits = [&](std::size_t k) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(number[k])); };
-    if ((bits(0) | bits(1) | bits(2)) >> kMortonBits != 0) return kOutside;
-    return bits(0) << 42 | bits(1) << 21 | bits(2);
-  }
-
-  static constexpr std::uint64_t kOutside = ~std::uint64_t{0};
-
-  /// Number 0 on each axis, in cells from the origin.
-  std::array<double, 3> base() const
-  {
-    T base[4];
-    base_.store(base);
-    return {static_cast<double>(base[0]), static_cast<double>(base[1]), static_cast<double>(base[2])};
-  }
-
-  static std::uint64_t morton(std::uint64_t cell)
-  {
-    return mortonCode(cell >> 42, cell >> 21 & 0x1fffff, cell & 0x1fffff);
-  }
-
-private:
-  static constexpr T kMargin = 1024; // cells below the bounds: those of a sample leave some points out
-
-  Point<T> inverse_, base_;
-};
-
-/// Finds or adds the bin of a cell: open addressing, doubled when half full.
-template <class T>
-class BinTable {
-public:
-  BinTable() : slots_(1024, kNoVoxel) {}
-
-  std::uint32_t find(std::uint64_t cell)
-  {
-    for (std::size_t i = hash(cell);; i = (i + 1) & (slots_.size() - 1)) {
-      if (slots_[i] == kNoVoxel) return add(cell, i);
-      if (bins[slots_[i]].cell == cell) return slots_[i];
-    }
-  }
-
-  std::vector<Bin<T>> bins;
-
-private:
-  /// Of 32 bits, for there are fewer slots than 2^32.
-  std::size_t hash(std::uint64_t cell) const { return (cell * 0x9e3779b97f4a7c15u >> 32) & (slots_.size() - 1); }
-
-  std::uint32_t add(std::uint64_t cell, std::size_t slot)
-  {
-    const auto bin = static_cast<std::uint32_t>(bins.size());
-    bins.emplace_back();
-    bins.back().cell = cell;
-    slots_[slot] = bin;
-    if (2 * bins.size() > slots_.size()) grow();
-    return bin;
-  }
-
-  void grow()
-  {
-    slots_.assign(2 * slots_.size(), kNoVoxel);
-    for (std::uint32_t bin = 0; bin < bins.size(); ++bin) {
-      std::size_t i = hash(bins[bin].cell);
-      while (slots_[i] != kNoVoxel) i = (i + 1) & (slots_.size() - 1);
-      slots_[i] = bin;
-    }
-  }
-
-  std::vector<std::uint32_t> slots_;
-};
 
 /// Stores points of the cloud as a frame has them.
 template <class T>
@@ -433,12 +191,12 @@ private:
       RunWriter write(runs_.get() + chunkBegin(chunk));
       const Point<T> nowhere = Point<T>::of(std::numeric_limits<T>::quiet_NaN());
       Point<T> cell_of_run = nowhere, low = nowhere, high = nowhere;
-      std::uint32_t bin = kNoVoxel;
+      std::uint32_t bin = kNoBin;
       std::size_t first = chunkBegin(chunk);
       const auto endRun = [&](std::size_t end) {
         if (end == first) return;
         const auto points = static_cast<std::uint32_t>(end - first);
-        if (bin != kNoVoxel) table.bins[bin].add(low, high, points);
+        if (bin != kNoBin) table.bins[bin].add(low, high, points);
         write({bin, points});
         first = end;
       };
@@ -459,7 +217,7 @@ private:
             gave_up[chunk] = 1;
             return;
           }
-          bin = kNoVoxel;
+          bin = kNoBin;
           cell_of_run = nowhere;
           continue;
         }
@@ -545,7 +303,7 @@ private:
       RunReader read_run(runs_.get() + chunkBegin(chunk));
       for (std::size_t i = chunkBegin(chunk); i < chunkEnd(chunk);) {
         const Run run = read_run();
-        if (run.bin != kNoVoxel) targets[run.bin].store(read_, view_, i, i + run.points);
+        if (run.bin != kNoBin) targets[run.bin].store(read_, view_, i, i + run.points);
         i += run.points;
       }
     });
