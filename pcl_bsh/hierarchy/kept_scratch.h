@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scratch memory that a thread keeps from use to use, within the limit of retained_memory.h.
+// Scratch memory of queries and of building, which each thread keeps from one use to the next. retained_memory.h has
+// the limit for it and for the buffers of large_buffer.h, and gives both back.
 #pragma once
 
 #include <atomic>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/large_buffer.h>
 
-#include <pcl_bsh/hierarchy/kept_buffers.h>
-
 #include <algorithm>
 #include <limits>
 #include <new>

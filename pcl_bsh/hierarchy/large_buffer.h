@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Memory for points: large buffers, which are kept for the next hierarchy when one ends. kept_scratch.h keeps the
+// scratch memory of threads; retained_memory.h has the limit for both, and gives both back.
 #pragma once
 
 #include <cstddef>
@@ -26,8 +28,16 @@ struct AllocatedBuffer {
 /// A kept one, or one of operator new. @throws std::bad_alloc
 AllocatedBuffer allocateBuffer(std::size_t bytes);
 
-/// Gives it back for good.
+/// Gives it back to the system.
 void freeBuffer(const AllocatedBuffer& buffer) noexcept;
+
+/// Of the buffers that are kept: the smallest that holds `size` bytes and is not twice as large, the youngest of these;
+/// null when there is none.
+AllocatedBuffer takeKeptBuffer(std::size_t size) noexcept;
+
+/// Keeps a buffer within the limit of retained_memory.h: frees the oldest ones for it, or the buffer itself where it
+/// exceeds the limit alone.
+void keepBuffer(const AllocatedBuffer& buffer) noexcept;
 
 /// @throws std::bad_alloc
 template <class T>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/retained_memory.h>
 
-#include <pcl_bsh/hierarchy/kept_buffers.h>
 #include <pcl_bsh/hierarchy/kept_scratch.h>
+#include <pcl_bsh/hierarchy/large_buffer.h>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Memory that the library keeps for its next use, in the whole process: one limit, and one call that gives it back.
+// Memory that the library keeps for its next use, in the whole process: the buffers of hierarchies that have ended
+// (large_buffer.h) and the scratch memory of threads (kept_scratch.h). One limit, and one call that gives it back.
 //
 //   setRetainedMemoryLimit(0);  // keep nothing from now on
 //   releaseRetainedMemory();    // once, after the largest cloud
