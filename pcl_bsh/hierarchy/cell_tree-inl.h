@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tree of a voxel, without its spheres: points are sorted by cell, in one counting sort, and the cells' tree is cut
-// into wide nodes with leaves of sixteen points at most.
+// The tree of a voxel, without its spheres. Either points are sorted by cell, in one counting sort, and the cells' tree
+// is cut into wide nodes with leaves of sixteen points at most; or the voxel is an octree, and the points of each small
+// enough cube are split at medians.
 
 #if defined(PCL_BSH_HIERARCHY_CELL_TREE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_HIERARCHY_CELL_TREE_INL_H_
@@ -63,12 +64,19 @@ public:
     scratch_.codes.resize(voxel.count);
   }
 
-  void build()
+  /// @param cube of the voxel in the grid, in the cloud's unit
+  void build(CellSplit split, const Cube& cube)
   {
     if (voxel_.count <= kMaxLeafPoints) {
       std::copy_n(given_, voxel_.count, sorted_.data());
       moved_ = true;
       nodes_[newNode()].addChild(0, voxel_.count, Node::kLeaf);
+      return;
+    }
+    if (split == CellSplit::octants) {
+      std::copy_n(given_, voxel_.count, sorted_.data());
+      moved_ = true;
+      divide(0, voxel_.count, localCube(cube), 0);
       return;
     }
     PointBounds bounds;
@@ -86,6 +94,65 @@ public:
   bool hasMoved() const { return moved_; }
 
 private:
+  /// The voxel's cube in the voxel's frame; where points have strayed from it since they were sorted, one around them.
+  Cube localCube(const Cube& cube) const
+  {
+    const LocalFrame& frame = voxel_.frame;
+    const PointBounds bounds = boundsOf(sorted_.data(), sorted_.size());
+    Cube local{{}, cube.edge / frame.unit};
+    bool holds = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      local.low[k] = (cube.low[k] - frame.origin[k]) / frame.unit;
+      holds = holds && static_cast<double>(bounds.low[k]) >= local.low[k] - crowded_extent_ &&
+              static_cast<double>(bounds.high[k]) <= local.low[k] + local.edge + crowded_extent_;
+    }
+    if (holds) return local;
+    const double reach = *std::max_element(frame.reach.begin(), frame.reach.end());
+    return {{-reach, -reach, -reach}, 2 * reach};
+  }
+
+  /// The octree of a cube, of points [begin, end) in sorted_, more than a leaf's. @return the node above them.
+  std::uint32_t divide(std::uint32_t begin, std::uint32_t end, Cube cube, unsigned depth)
+  {
+    if (end - begin <= kNodeChildren * kMaxLeafPoints) return halveCell(begin, end);
+    // Cubes that have all points in one octant make no node.
+    const PointBounds bounds = boundsOf(sorted_.data() + begin, end - begin);
+    std::array<float, 3> middle;
+    for (;;) {
+      if (cube.edge <= crowded_extent_ || depth == kMostRecursions) return growCrowded(begin, end);
+      std::uint32_t octant = 0;
+      bool alone = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        middle[k] = static_cast<float>(cube.low[k] + 0.5 * cube.edge);
+        if (bounds.low[k] >= middle[k])
+          octant |= 1u << k;
+        else
+          alone = alone && bounds.high[k] < middle[k];
+      }
+      if (!alone) break;
+      cube = cube.octant(octant);
+    }
+    const auto octantOf = [&](const PointRecord& p) {
+      return (p.x >= middle[0] ? 1u : 0u) | (p.y >= middle[1] ? 2u : 0u) | (p.z >= middle[2] ? 4u : 0u);
+    };
+    std::array<std::uint32_t, kNodeChildren + 1> starts = {begin};
+    for (std::uint32_t i = begin; i < end; ++i) ++starts[octantOf(sorted_[i]) + 1];
+    std::partial_sum(starts.begin(), starts.end(), starts.begin());
+    std::copy(sorted_.begin() + begin, sorted_.begin() + end, given_ + begin);
+    std::array<std::uint32_t, kNodeChildren + 1> next = starts;
+    for (std::uint32_t i = begin; i < end; ++i) sorted_[next[octantOf(given_[i])]++] = given_[i];
+
+    const std::uint32_t node = newNode();
+    for (std::uint32_t octant = 0; octant < kNodeChildren; ++octant) {
+      const std::uint32_t from = starts[octant], to = starts[octant + 1];
+      if (from == to) continue;
+      const std::uint32_t below =
+          to - from <= kMaxLeafPoints ? Node::kLeaf : divide(from, to, cube.octant(octant), depth + 1);
+      nodes_[node].addChild(from, to, below);
+    }
+    return node;
+  }
+
   /// Moves points [begin, end), more than a leaf's, from given_ to sorted_ in the order of their cells.
   /// @return the node above the cells.
   std::uint32_t sortRange(std::uint32_t begin, std::uint32_t end, const PointBounds& bounds, unsigned recursion)

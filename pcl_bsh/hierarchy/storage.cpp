@@ -140,13 +140,20 @@ void SphereHierarchy::Storage::release(Voxel& voxel, Voxel::State state)
   voxel.state.notify_all();
 }
 
+Cube SphereHierarchy::Storage::cubeOf(std::uint64_t key) const noexcept
+{
+  Cube cube{{}, voxel_edge};
+  for (std::size_t k = 0; k < 3; ++k) cube.low[k] = (base[k] + static_cast<double>(gatherBits(key >> k))) * voxel_edge;
+  return cube;
+}
+
 void SphereHierarchy::Storage::build(std::size_t index, BuildWork& work) const
 {
   Voxel& voxel = voxels[index];
   if (!claim(voxel)) return;
   const DefaultFloatEnvironment environment; // whoever asks, and in whatever environment
   try {
-    buildVoxel(voxel, view, options.fit);
+    buildVoxel(voxel, view, options, cubeOf(voxel.key));
   }
   catch (...) {
     release(voxel, Voxel::sorted);

@@ -25,6 +25,20 @@ struct PointRecord {
 };
 static_assert(sizeof(PointRecord) == 4 * sizeof(float));
 
+/// Of the voxel grid, or of an octree: [low, low + edge] on each axis.
+struct Cube {
+  Point3 low;
+  double edge;
+
+  /// @param o its bits choose the upper half of x, y and z, the lowest for x
+  Cube octant(std::uint32_t o) const noexcept
+  {
+    Cube half{low, 0.5 * edge};
+    for (std::size_t k = 0; k < 3; ++k) half.low[k] += (o >> k & 1) != 0 ? half.edge : 0.0;
+    return half;
+  }
+};
+
 /// The unit of lazy building and of local precision.
 struct Voxel {
   enum State : std::uint8_t { sorted, building, built };
@@ -188,6 +202,7 @@ public:
 
 private:
   void build(std::size_t voxel, BuildWork& work) const;
+  Cube cubeOf(std::uint64_t key) const noexcept;
 
   static std::size_t slotOf(std::uint64_t key, std::size_t slots) noexcept
   {
@@ -242,9 +257,10 @@ inline PointRecord storedIn(const LocalFrame& frame, const Point3& p, std::uint3
   return {local[0], local[1], local[2], record};
 }
 
-/// Turns the voxel's sorted points into octree cells and bounding spheres. When it throws, the voxel is sorted still,
-/// its points perhaps in another order.
-void buildVoxel(Voxel& voxel, const PointsView& view, SphereFit fit);
+/// Turns the voxel's sorted points into cells and bounding spheres. When it throws, the voxel is sorted still, its
+/// points perhaps in another order.
+/// @param cube of the voxel in the grid
+void buildVoxel(Voxel& voxel, const PointsView& view, const HierarchyOptions& options, const Cube& cube);
 
 /// Gives the points of a built voxel other coordinates, in the order they are in, and fits its spheres to them. When it
 /// throws, its block and its nodes are of no use any more.

@@ -51,13 +51,13 @@ public:
   {
   }
 
-  void build()
+  void build(CellSplit split, const Cube& cube)
   {
     scratch_.sorted.resize(voxel_.count);
     nodes_.clear();
     CellTree cells(voxel_, view_, scratch_.cells, scratch_.sorted, nodes_);
     try {
-      cells.build();
+      cells.build(split, cube);
       fitBounds();
       storeAsArrays();
       fitSpheres();
@@ -201,10 +201,10 @@ private:
 
 } // namespace
 
-void buildVoxelOnTarget(Voxel& voxel, const PointsView& view, SphereFit fit)
+void buildVoxelOnTarget(Voxel& voxel, const PointsView& view, const HierarchyOptions& options, const Cube& cube)
 {
   const ScratchLease<BuildScratch> scratch;
-  VoxelBuilder(voxel, view, fit, *scratch).build();
+  VoxelBuilder(voxel, view, options.fit, *scratch).build(options.cells, cube);
 }
 
 void refitVoxelOnTarget(Voxel& voxel, const PointRecord* points, const PointsView& view, SphereFit fit)
@@ -223,9 +223,9 @@ namespace pcl_bsh {
 HWY_EXPORT(buildVoxelOnTarget);
 HWY_EXPORT(refitVoxelOnTarget);
 
-void buildVoxel(Voxel& voxel, const PointsView& view, SphereFit fit)
+void buildVoxel(Voxel& voxel, const PointsView& view, const HierarchyOptions& options, const Cube& cube)
 {
-  HWY_DYNAMIC_DISPATCH(buildVoxelOnTarget)(voxel, view, fit);
+  HWY_DYNAMIC_DISPATCH(buildVoxelOnTarget)(voxel, view, options, cube);
 }
 
 void refitVoxel(Voxel& voxel, const PointRecord* points, const PointsView& view, SphereFit fit)
