@@ -81,22 +81,22 @@ SphereHierarchy::Storage::Above SphereHierarchy::Storage::raise(const std::vecto
   return above;
 }
 
-SphereHierarchy::Storage::Home SphereHierarchy::Storage::homeOf(const Point3& place) const noexcept
+SphereHierarchy::Storage::GridPlace SphereHierarchy::Storage::find(const Point3& place) const noexcept
 {
   const double inverse = 1.0 / voxel_edge;
   std::array<std::uint64_t, 3> cell;
-  double room = 1.0;
+  double margin = 1.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double cells = place[k] * inverse - base[k];
     if (!(cells >= 0.0 && cells < 0x1p21)) return {kNoVoxel, -1.0};
     cell[k] = static_cast<std::uint64_t>(cells);
     const double past = cells - static_cast<double>(cell[k]);
-    room = std::min(room, std::min(past, 1.0 - past) - kCellRounding * (cells + 2.0));
+    margin = std::min(margin, std::min(past, 1.0 - past) - kCellRounding * (cells + 2.0));
   }
   const std::uint64_t key = mortonCode(cell[0], cell[1], cell[2]);
   std::size_t slot = slotOf(key, slots_.size());
   while (slots_[slot] != kNoVoxel && voxels[slots_[slot]].key != key) slot = (slot + 1) & (slots_.size() - 1);
-  return {slots_[slot], (room - strayed) * voxel_edge * (1.0 - kDoubleMargin)};
+  return {slots_[slot], (margin - strayed) * voxel_edge * (1.0 - kDoubleMargin)};
 }
 
 double SphereHierarchy::Storage::strayOf(std::uint64_t key, const std::array<double, 3>& low,
@@ -106,7 +106,7 @@ double SphereHierarchy::Storage::strayOf(std::uint64_t key, const std::array<dou
   double stray = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto cell = static_cast<double>(gatherBits(key >> k));
-    // Cell 0 reaches down without end: no other voxel is below it, and homeOf() knows nothing there.
+    // Cell 0 reaches down without end: no other voxel is below it, and find() knows nothing there.
     const double below = cell > 0.0 ? cell - (low[k] * inverse - base[k]) : 0.0;
     const double above = high[k] * inverse - base[k] - (cell + 1.0);
     stray = std::max({stray, below, above});

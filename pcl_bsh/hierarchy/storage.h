@@ -58,7 +58,7 @@ struct Voxel {
   LazySlabs slabs;                ///< of the nodes, once built and asked for
   std::atomic<std::uint8_t> state{sorted};
 
-  /// Takes over what another voxel is. Nobody may visit either meanwhile.
+  /// Becomes what the other voxel is. Neither may be visited meanwhile.
   void adopt(Voxel& other) noexcept
   {
     frame = other.frame;
@@ -117,15 +117,15 @@ public:
     return voxels[voxel].state.load(std::memory_order_relaxed) == Voxel::built ? 0 : voxels[voxel].count;
   }
 
-  /// The voxel around a place, or kNoVoxel, and how far the place is from the points of all other voxels: at least
-  /// `room`, in the cloud's unit; negative where nothing is known. Keys tell where points were when they were sorted:
-  /// after a refit() points are elsewhere, and an update leaves them so in the voxels that it does not touch. `strayed`
-  /// pays for that.
-  struct Home {
-    std::uint32_t voxel;
-    double room;
+  /// Where a place lies in the voxel grid.
+  struct GridPlace {
+    std::uint32_t voxel; ///< whose cell the place is in, or kNoVoxel
+    double margin;       ///< no point of another voxel is nearer than this, in the cloud's unit; negative: not known
   };
-  Home homeOf(const Point3& place) const noexcept;
+
+  /// Keys tell in which cell points were when they were sorted. After a refit() they may be elsewhere, and an update
+  /// leaves them there in the voxels that it does not touch: the margin is less by `strayed`.
+  GridPlace find(const Point3& place) const noexcept;
   static constexpr std::uint32_t kNoVoxel = 0xffffffffu;
 
   /// Calls visit(record) for each point of a voxel, built or not.
@@ -155,14 +155,14 @@ public:
   std::vector<Node> top; ///< the octree above the voxels: leaves are voxels; top[0] is the root; empty iff size == 0
 
   /// How far points lie outside the cells of their voxels, at most, on any axis, in cells; 0 as long as only rounding
-  /// has put them there (kCellRounding). A refit() leaves moved points in their voxels, and finds out how far that is.
+  /// has put them there (kCellRounding). A refit() leaves moved points in their voxels and measures it.
   double strayed = 0.0;
 
-  /// How far the range [low, high] reaches out of the cell that `key` names, on any axis, in cells; at least.
+  /// At least how far the range [low, high] reaches out of the cell of that key, on any axis, in cells.
   double strayOf(std::uint64_t key, const std::array<double, 3>& low, const std::array<double, 3>& high) const noexcept;
 
-  /// Another number after every change of the points, by whatever call; no two hierarchies of a process share one. For
-  /// those that remember answers.
+  /// Another number after every change of the points; no two hierarchies of a process share one. For callers that
+  /// remember answers.
   std::uint64_t revision = nextRevision();
   static std::uint64_t nextRevision() noexcept;
 
@@ -211,13 +211,13 @@ private:
 
   std::vector<std::uint32_t> slots_; ///< voxels by the hashes of their keys, or kNoVoxel: open addressing, half full
 
-  /// Gives a claimed voxel back as it was, whatever happens.
+  /// Gives a claimed voxel back as it was when it goes out of scope.
   struct Claim {
     Voxel& voxel;
     ~Claim() { release(voxel, Voxel::sorted); }
   };
 
-  /// Waits for whoever has the voxel. @return false when it is built, and nobody's to change
+  /// Waits while another thread has the voxel. @return false when it is built: then no thread may change it
   static bool claim(Voxel& voxel);
   static void release(Voxel& voxel, Voxel::State state);
 };

@@ -48,7 +48,7 @@ private:
     if (defects_.lines.size() < kMostLines) defects_.lines.push_back(name_ + ": " + what);
   }
 
-  /// Stored coordinates are within the frame's bounds of the given ones, and given ones where homeOf() expects them.
+  /// Stored coordinates are within the frame's bounds of the given ones, and given ones where find() expects them.
   void checkPoints(const Voxel& voxel)
   {
     const double cells =

@@ -91,9 +91,9 @@ public:
       const double reach = radius_ / cloud_.frame.unit;
       lower(roundUp(reach * reach * (1.0 + kFewDoubleRoundings) + static_cast<double>(NearFrame::kVanishing)));
     }
-    home_ = cloud_.homeOf(query_);
-    if (home_.voxel != SphereHierarchy::Storage::kNoVoxel) visitVoxel(home_.voxel);
-    if (!(static_cast<double>(distance_) * cloud_.frame.unit < home_.room)) visitTop();
+    place_ = cloud_.find(query_);
+    if (place_.voxel != SphereHierarchy::Storage::kNoVoxel) visitVoxel(place_.voxel);
+    if (!(static_cast<double>(distance_) * cloud_.frame.unit < place_.margin)) visitTop();
     collect();
   }
 
@@ -131,7 +131,7 @@ private:
     eachChild(frame, node, [&](std::uint32_t i) {
       if (!node.isLeaf(i))
         visitAbove(frame, node.child[i]);
-      else if (node.begin[i] != home_.voxel)
+      else if (node.begin[i] != place_.voxel)
         visitVoxel(node.begin[i]);
     });
   }
@@ -370,7 +370,7 @@ private:
   float bound_ = kInfinity;    ///< squared; points that are farther do not count
   float distance_ = kInfinity; ///< at least its root
   float most_slack_ = 0.0f;    ///< of the frames visited
-  SphereHierarchy::Storage::Home home_ = {};
+  SphereHierarchy::Storage::GridPlace place_ = {};
 };
 
 } // namespace

@@ -102,13 +102,13 @@ public:
   bool run()
   {
     if (cloud_.size == 0) return false;
-    const SphereHierarchy::Storage::Home home = cloud_.homeOf(query_);
-    const bool at_home = home.voxel != SphereHierarchy::Storage::kNoVoxel, alone = radius_ < home.room;
-    if (alone) return at_home && visitVoxel(home.voxel);
-    // Where one point is enough, the nearest voxel is the first to ask.
-    if (!Sink::kNeedsRecords && at_home) {
-      if (visitVoxel(home.voxel)) return true;
-      done_ = home.voxel;
+    const SphereHierarchy::Storage::GridPlace place = cloud_.find(query_);
+    const bool in_voxel = place.voxel != SphereHierarchy::Storage::kNoVoxel;
+    if (radius_ < place.margin) return in_voxel && visitVoxel(place.voxel);
+    // Where one point is enough, the voxel around the query is the first to ask.
+    if (!Sink::kNeedsRecords && in_voxel) {
+      if (visitVoxel(place.voxel)) return true;
+      done_ = place.voxel;
     }
     const PointFrame frame(cloud_.frame, query_);
     const double length = radius_ / frame.unit;
