@@ -25,7 +25,7 @@ using namespace pcl_bsh;
 
 constexpr auto program = "pcl_bsh_accuracy";
 constexpr auto footer =
-    R"(Asks whether, where and how near the clouds are, at every setting of the dial: exact, float only, tolerance, level of
+    R"(Queries whether the clouds collide, where, and their distance, at every setting: exact, float only, tolerance, level of
 detail, budgets. Writes accuracy.csv, accuracy.md and accuracy.png. A or B may be a pipe, or - for standard input.
 Exit code: 0 done; 1 failed; 2 command line not understood.
 
@@ -53,7 +53,7 @@ std::optional<Options> parse(int argc, char** argv)
   std::string pose;
   std::optional<unsigned> poses;
   Options options;
-  CLI::App app("Measures what accuracy costs in time, on two clouds of yours.", program);
+  CLI::App app("Measures what accuracy costs in time, on two clouds.", program);
   app.footer(footer);
   app.add_option("A", options.a, "the cloud whose points are tested")->type_name("")->required();
   app.add_option("B", options.b, "cloud to collide with")->type_name("")->required();

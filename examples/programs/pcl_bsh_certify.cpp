@@ -3,6 +3,7 @@
 // The program is under GPL-3.0-or-later once compiled: see pcl_bsh/certify/LICENSE.
 #include "certify/options.h"
 #include "certify/report.h"
+#include "cli/program.h"
 #include "cli/step.h"
 
 #include <pcl_bsh/files/replace_file.h>

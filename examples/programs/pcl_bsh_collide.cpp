@@ -5,10 +5,12 @@
 #include "collide/options.h"
 #include "collide/report.h"
 
+#include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs a pipeline of point cloud filters, read from a JSON file.
+#include "cli/program.h"
 #include "pipeline/options.h"
 #include "pipeline/run.h"
 

@@ -28,8 +28,8 @@ using Clock = std::chrono::steady_clock;
 constexpr auto program = "pcl_bsh_scene";
 constexpr auto footer =
     R"(A scene file names clouds, objects with poses and motions, pairs, and effects; see scene.schema.json and the samples
-in examples/scenes. An effect that is not listed costs nothing.
-With --out, DIR gets steps.csv (a row a step), steps.jsonl (all that was found, a line a step), summary.json, and the
+in examples/scenes. An effect that is not listed is not computed.
+With --out, DIR gets steps.csv (a row a step), steps.jsonl (all results, a line a step), summary.json, and the
 flagged clouds if the scene asks for them.
 Exit code: 0 done; 1 failed, the scene file is wrong included; 2 command line not understood.
 
@@ -177,7 +177,7 @@ int runScene(const Options& options)
   const io::SceneFile file = io::readSceneFile(options.scene);
   cli::warn(program, file.warnings);
   if (options.explain) cli::explain(file, std::cout);
-  if (options.validate) std::cout << options.scene.string() << ": is sound: " << file.objects.size() << " objects\n";
+  if (options.validate) std::cout << options.scene.string() << ": is valid: " << file.objects.size() << " objects\n";
   if (options.explain || options.validate) return 0;
 
   const cli::CloudNames names(file);
@@ -223,13 +223,13 @@ int main(int argc, char** argv)
   return cli::runProgram(program, [&] {
     Options options;
     std::string scene, out;
-    CLI::App app("Moves the objects of a scene and computes the effects it lists.", program);
+    CLI::App app("Moves the objects of a scene and computes the effects that it lists.", program);
     app.footer(footer);
     app.add_option("SCENE", scene, "scene file (JSON, comments allowed)")->type_name("")->required();
     app.add_option("--out", out, "folder for the results")->type_name("DIR");
     app.add_flag("--validate", options.validate, "only check the scene file");
     app.add_flag("--explain", options.explain,
-                 "only say which effects are on, what each makes the program build, and why");
+                 "only print which effects are on, what each makes the program build, and why");
     if (!cli::understood(app, program, argc, argv)) return 0;
     options.scene = scene;
     options.out = out;

@@ -4,6 +4,7 @@
 #include "cli/command_line.h"
 #include "cli/pose.h"
 
+#include <pcl_bsh/filters/cloud_files/field_type.h>
 #include <pcl_bsh/filters/pose_files/pose_text.h>
 
 #include <algorithm>
@@ -16,8 +17,8 @@ namespace {
 constexpr auto footer = R"(Points of the first CLOUD within D of another CLOUD or of the MODEL collide, decided exactly;
 they are drawn larger and in orange, all others dimmed. A cloud that holds the fields collision,
 distance or first_pose shows these as they are.
-A scene's objects are drawn where they are at a step, responses included: what is fixed in grey, what moves in
-blue, and what is within the scene's clearance, or D, in orange and yellow.
+A scene's objects are drawn at their poses of one step, responses included: fixed ones in grey, moving ones in blue,
+and points within the scene's clearance, or D, in orange and yellow.
 Reads .pcd .ply .obj .off .xyz .txt, pipes, and standard input as -. Without --screenshot and --export a window opens: h shows its keys.
 Exit code: 0 done; 1 failed; 2 command line not understood.
 
@@ -60,7 +61,7 @@ Camera parseCamera(const std::string& text)
     throw UsageError("--camera: '" + text + "': has a number that is not finite: give numbers");
   const Eigen::Vector3d gaze = Eigen::Vector3d(camera.focus.data()) - Eigen::Vector3d(camera.eye.data());
   const Eigen::Vector3d up(camera.up.data());
-  if (camera.eye == camera.focus) throw UsageError("--camera: '" + text + "': eye and focus are one: part them");
+  if (camera.eye == camera.focus) throw UsageError("--camera: '" + text + "': eye and focus are the same: give two places");
   const auto isAlong = [&gaze](const Eigen::Vector3d& v) {
     return !(v.stableNormalized().cross(gaze.stableNormalized()).norm() > 1e-6);
   };
@@ -139,7 +140,7 @@ void checkClouds(const Options& options)
     throw UsageError("--clearance: is missing: this --color asks what collides");
   if (options.trace && !options.clearance) throw UsageError("--clearance: is missing: --trace shows a query");
   if (options.closest && !obstacles)
-    throw UsageError("--closest: there is nothing to be close to: give a second cloud or --model");
+    throw UsageError("--closest: there is no second cloud: give a second cloud or --model");
 }
 
 void checkRange(const Options& options)

@@ -2,10 +2,13 @@
 // Where labels of marks in a chart go so that none covers another, a mark or a line.
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <array>
 #include <optional>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::vtk {
 
 /// Pixels, from the lower left corner of the picture.
@@ -35,3 +38,4 @@ struct LabelSpace {
 std::vector<std::optional<PixelBox>> placeLabels(const std::vector<Label>& labels, const LabelSpace& space);
 
 } // namespace pcl_bsh::vtk
+PCL_BSH_EXPORT_END

@@ -165,7 +165,7 @@ TEST(SceneProgram, ExplainsAndValidatesWithoutRunning)
   EXPECT_THAT(explained.out, HasSubstr("flags distance contacts first_contact swept self stop slide gravity deform"));
   const Outcome valid = run("pcl_bsh_scene", scene + " --validate");
   EXPECT_EQ(valid.exit_code, 0);
-  EXPECT_THAT(valid.out, HasSubstr("is sound: 2 objects"));
+  EXPECT_THAT(valid.out, HasSubstr("is valid: 2 objects"));
 }
 
 TEST(SceneProgram, FailsInOneLine)

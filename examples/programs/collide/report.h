@@ -2,6 +2,7 @@
 // The results of a comparison of two clouds, and what they cost, for people and for programs.
 #pragma once
 
+#include <pcl_bsh/collision/closest_pair.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
