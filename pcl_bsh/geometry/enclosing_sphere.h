@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Centres for enclosing spheres. Only centres: whoever stores a sphere measures its radius over the points and rounds
-// it outward, so that no fit can leak.
+// Centres for enclosing spheres. Only centres: the code that stores a sphere measures its radius over the points and
+// rounds it outward, so that no point is outside, whichever fit is used.
 #pragma once
 
 #include <array>

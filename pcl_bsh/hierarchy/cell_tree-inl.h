@@ -30,8 +30,9 @@ constexpr unsigned kCoarseBits = 9;      // of the cells by which to judge how m
 constexpr unsigned kWorthJudging = 6;    // bits from which on that is done
 constexpr unsigned kMostRecursions = 40; // cells within cells: each of them tells at least two places apart
 constexpr std::uint32_t kCellPoints = 3; // cells hold this many on average: fine enough to cut leaves at good places
-constexpr std::uint32_t kFewPoints = 2 * kMaxLeafPoints; // that are quicker sorted by counting who comes before whom
+constexpr std::uint32_t kFewPoints = 2 * kMaxLeafPoints; // at most, which rankSort() sorts faster than nth_element()
 constexpr std::uint32_t kFullNode = 96;                  // points that eight leaves hold, cut between cells
+constexpr double kRoundedOutside = 0x1p-8; // of a cube's edge: points so near outside were put there by rounding
 
 /// What sorting a voxel's points into cells needs room for; a thread keeps it from voxel to voxel.
 struct CellScratch {
@@ -100,11 +101,12 @@ private:
     const LocalFrame& frame = voxel_.frame;
     const PointBounds bounds = boundsOf(sorted_.data(), sorted_.size());
     Cube local{{}, cube.edge / frame.unit};
+    const double outside = kRoundedOutside * local.edge;
     bool holds = true;
     for (std::size_t k = 0; k < 3; ++k) {
       local.low[k] = (cube.low[k] - frame.origin[k]) / frame.unit;
-      holds = holds && static_cast<double>(bounds.low[k]) >= local.low[k] - crowded_extent_ &&
-              static_cast<double>(bounds.high[k]) <= local.low[k] + local.edge + crowded_extent_;
+      holds = holds && static_cast<double>(bounds.low[k]) >= local.low[k] - outside &&
+              static_cast<double>(bounds.high[k]) <= local.low[k] + local.edge + outside;
     }
     if (holds) return local;
     const double reach = *std::max_element(frame.reach.begin(), frame.reach.end());

@@ -19,7 +19,7 @@ inline std::uint64_t spreadBits(std::uint64_t v) noexcept
   return v;
 }
 
-/// The inverse of spreadBits(), whatever the bits in between.
+/// The inverse of spreadBits(); bits in between are ignored.
 inline std::uint64_t gatherBits(std::uint64_t v) noexcept
 {
   v &= 0x1249249249249249;

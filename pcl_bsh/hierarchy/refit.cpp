@@ -148,7 +148,7 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
   Storage& s = *storage_;
   if (s.size < now.size() && countFinite(now) != s.size) return sortAnew();
 
-  // Whatever may throw comes first, and changes nothing.
+  // What may throw comes first, and changes nothing.
   std::vector<LocalFrame> frames(s.voxel_count);
   std::uint32_t most_points = 0;
   double sum = 0.0, strayed = 0.0;

@@ -21,8 +21,8 @@
 namespace pcl_bsh {
 namespace {
 
-/// The points below child i of a node, how they spread. In eight sums side by side, whatever the instruction set: the
-/// same points give the same bits.
+/// How the points below child i of a node spread. In eight sums side by side on every instruction set: the same points
+/// give the same bits.
 Eigen::Matrix3d covarianceOf(const Voxel& voxel, const Node& node, std::uint32_t i)
 {
   constexpr std::uint32_t kSums = 8;

@@ -36,7 +36,7 @@ public:
 
   bool isFitted() const noexcept { return slabs_.load(std::memory_order_relaxed) != nullptr; }
 
-  // Nobody may ask meanwhile.
+  // Not while another thread asks.
   void reset() noexcept { delete[] slabs_.exchange(nullptr); }
   void adopt(LazySlabs& other) noexcept
   {

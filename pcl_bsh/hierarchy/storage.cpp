@@ -151,7 +151,7 @@ void SphereHierarchy::Storage::build(std::size_t index, BuildWork& work) const
 {
   Voxel& voxel = voxels[index];
   if (!claim(voxel)) return;
-  const DefaultFloatEnvironment environment; // whoever asks, and in whatever environment
+  const DefaultFloatEnvironment environment; // the caller's may be another
   try {
     buildVoxel(voxel, view, options, cubeOf(voxel.key));
   }

@@ -93,7 +93,7 @@ public:
   VoxelSorting run()
   {
     // A sample's bounds will do, unless some point lies far outside, or voxels get too many. From there on, bounds and
-    // edges depend on the points alone, whatever the chunks found before they gave up.
+    // edges depend on the points alone, not on what the chunks found before they gave up.
     if (!fillBins(sampleBounds(), 0.0)) {
       const Bounds bounds = findBounds();
       if (bounds.finite == 0) return std::move(result_);
