@@ -19,7 +19,7 @@ namespace HWY_NAMESPACE {
 namespace {
 
 /// Stops the search where the rule's time is over, or is too short for a voxel that would have to be built.
-class Hurried : public Unwatched {
+class Hurried : public NoObserver {
 public:
   explicit Hurried(const StopRule& rule) : rule_(rule) {}
 
@@ -43,7 +43,7 @@ private:
 
 AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const AnyRequest& request)
 {
-  return AnySearch(a, b, request, Unwatched{}).run();
+  return AnySearch(a, b, request, NoObserver{}).run();
 }
 
 AnyResult anyCollisionInTimeOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, const StopRule& rule)

@@ -20,26 +20,25 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// What a search is watched by when nobody looks: calls that compile to nothing.
-struct Unwatched {
+/// The observer of a search that nobody follows: calls that compile to nothing.
+struct NoObserver {
   void seeded(const LanePair&) {}
   void stepped(const LanePair&, Opened, const PairWalk::Step&) {}
   void compared(const LanePair&) {}
   static bool stops(const PairWalk&, const LanePair&, Opened) { return false; }
 };
 
-/// @tparam Watch told of the pairs of the roots' children that may meet, of each pair whose larger side was opened,
-/// with
-///   what became of the children, and of each pair of leaves whose points were compared; asked before each pair whether
-///   to stop there
-template <class Watch>
+/// @tparam Observer told of the pairs of the roots' children that may meet, of each pair whose larger side was opened,
+///   with what became of the children, and of each pair of leaves whose points were compared; asked before each pair
+///   whether to stop there
+template <class Observer>
 class AnySearch {
 public:
-  AnySearch(const Placed& a, const Placed& b, const AnyRequest& request, Watch watch)
+  AnySearch(const Placed& a, const Placed& b, const AnyRequest& request, Observer observer)
   : walk_(a, b),
     pairs_(a, b, request.clearance),
     acceptance_(request.clearance, request.accuracy),
-    watch_(std::move(watch))
+    observer_(std::move(observer))
   {
     walk_.accepted_beyond = acceptance_.accepted - acceptance_.clearance;
   }
@@ -59,8 +58,9 @@ public:
 private:
   std::optional<PointPair> search()
   {
+    stack_.clear();
     walk_.seed(pairs_.clearance, [this](const LanePair& pair, const PairWalk::Step&, std::uint32_t) {
-      watch_.seeded(pair);
+      observer_.seeded(pair);
       stack_.push_back(pair);
     });
     nearestLast(stack_, 0);
@@ -69,7 +69,7 @@ private:
       const LanePair pair = stack_.back();
       stack_.pop_back();
       const Opened opened = walk_.choose(pair);
-      if (watch_.stops(walk_, pair, opened)) {
+      if (observer_.stops(walk_, pair, opened)) {
         stopped_ = true;
         return std::nullopt;
       }
@@ -78,7 +78,7 @@ private:
         continue;
       }
       walk_.step(pair, opened, pairs_.clearance, step);
-      watch_.stepped(pair, opened, step);
+      observer_.stepped(pair, opened, step);
       if (step.inside != 0) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(step.inside));
         const LanePair inside = PairWalk::childOf(pair, opened, step, lane);
@@ -95,7 +95,7 @@ private:
   std::optional<PointPair> compareLeaves(const LanePair& pair)
   {
     ++walk_.work.leaf_pairs;
-    watch_.compared(pair);
+    observer_.compared(pair);
     const LeafRange a = walk_.leaf(walk_.a, pair.a), b = walk_.leaf(walk_.b, pair.b);
     const RelativeFrame& frame = walk_.frames.find(pair.a.space, pair.b.space);
     LeafPoints points;
@@ -136,9 +136,10 @@ private:
   PairWalk walk_;
   PointPairs pairs_;
   Acceptance acceptance_;
-  Watch watch_;
+  Observer observer_;
   bool stopped_ = false;
-  std::vector<LanePair> stack_;
+  const ScratchLease<PairStack> kept_stack_;
+  std::vector<LanePair>& stack_ = (*kept_stack_).pairs;
 };
 
 } // namespace HWY_NAMESPACE

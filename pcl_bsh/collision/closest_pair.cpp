@@ -4,7 +4,6 @@
 #include <pcl_bsh/collision/check_request.h>
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/collision/interval_search.h>
-#include <pcl_bsh/geometry/sphere_radius.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +35,7 @@ public:
 
   DistanceResult run()
   {
+    stack_.clear();
     walk_.seed(kInfinity, [this](const LanePair& pair, const PairWalk::Step& step, std::uint32_t lane) {
       push(pair, step, lane);
     });
@@ -131,16 +131,7 @@ private:
       eachBallPairNear(frame, points, firstBits(a.count), a, b, to_beat_, found);
       return;
     }
-    // The nearest pair in float bounds what is worth an exact look.
-    alignas(64) float nearest[kLeafPoints];
-    std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
-    nearestSquared(points, b.x(), b.y(), b.z(), firstBits(b.count), nearest);
-    const float least = *std::min_element(nearest, nearest + a.count);
-    const double within = (lengthOver(least) + frame.error) * (1.0 + frame.skew()) * (1.0 + kDoubleMargin) * unit;
-    const double to_beat = std::isnan(within) ? clearanceToBeat() : std::min(within, clearanceToBeat());
-    const float miss = frame.band(to_beat).miss;
-    const std::uint32_t lanes = firstBits(a.count) & ~above(nearest, miss);
-    if (lanes != 0) eachPairNotBeyond(points, lanes, b, miss, found);
+    eachPairMaybeNearest(frame, points, a, b, unit, clearanceToBeat(), found);
   }
 
   void consider(PointPair candidate)
@@ -171,7 +162,8 @@ private:
 
   PairWalk walk_;
   PointPairs pairs_;
-  std::vector<LanePair> stack_;
+  const ScratchLease<PairStack> kept_stack_;
+  std::vector<LanePair>& stack_ = (*kept_stack_).pairs;
   std::optional<PointPair> best_;
   double best_gap_ = kInfinity;  // of best_, rounded
   double best_high_ = kInfinity; // at least the gap of best_

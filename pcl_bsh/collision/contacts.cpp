@@ -39,6 +39,7 @@ public:
 
   Work run()
   {
+    stack_.clear();
     walk_.seed(sink_.reach(), [this](const LanePair& pair, const PairWalk::Step& step, std::uint32_t lane) {
       push(pair, step, lane);
     });
@@ -126,7 +127,8 @@ private:
   PairWalk walk_;
   PointPairs pairs_;
   Sink& sink_;
-  std::vector<LanePair> stack_;
+  const ScratchLease<PairStack> kept_stack_;
+  std::vector<LanePair>& stack_ = (*kept_stack_).pairs;
 };
 
 /// All of them, until there are too many.
@@ -155,15 +157,21 @@ private:
   PairsWithin& result_;
 };
 
+struct PairGap {
+  double gap; ///< rounded
+  PointPair pair;
+};
+
+/// Memory of one NearestPairs after another, to be had by a ScratchLease.
+struct PairHeap {
+  std::vector<PairGap> pairs;
+  std::size_t bytes() const noexcept { return pairs.capacity() * sizeof(PairGap); }
+};
+
 /// The nearest: a heap whose first is the farthest, once it is full.
 class NearestPairs {
-  struct Entry {
-    double gap;
-    PointPair pair;
-  };
-
   /// Rounding keeps the order of gaps, but may make some equal that are not.
-  bool before(const Entry& l, const Entry& r) const
+  bool before(const PairGap& l, const PairGap& r) const
   {
     if (l.gap != r.gap) return l.gap < r.gap;
     const int sign = pairs_.distance.compareGaps(pairs_.posed(l.pair), pairs_.posed(r.pair));
@@ -171,7 +179,7 @@ class NearestPairs {
   }
   auto order() const
   {
-    return [this](const Entry& l, const Entry& r) { return before(l, r); };
+    return [this](const PairGap& l, const PairGap& r) { return before(l, r); };
   }
 
 public:
@@ -180,6 +188,7 @@ public:
     most_(std::min(most, std::numeric_limits<std::size_t>::max() - 1) + 1), // one more tells whether that was all
     reach_(clearance)
   {
+    kept_.clear();
   }
 
   double reach() const { return reach_; }
@@ -187,7 +196,7 @@ public:
   Added add(PointPair pair, Work& work)
   {
     ++work.exact_decisions;
-    const Entry entry{pairs_.distance.gap(pairs_.posed(pair)), pair};
+    const PairGap entry{pairs_.distance.gap(pairs_.posed(pair)), pair};
     if (kept_.size() == most_) {
       if (!before(entry, kept_.front())) return Added::dropped;
       std::pop_heap(kept_.begin(), kept_.end(), order());
@@ -204,20 +213,19 @@ public:
     return Added::kept;
   }
 
-  ContactsResult result(const Placed& a, const Placed& b)
+  /// @param result without contacts
+  void collect(const Placed& a, const Placed& b, ContactsResult& result)
   {
     std::sort(kept_.begin(), kept_.end(), order());
-    ContactsResult result;
     result.complete = kept_.size() < most_;
     if (!result.complete) kept_.pop_back();
     result.contacts.reserve(kept_.size());
-    for (const Entry& entry : kept_) {
+    for (const PairGap& entry : kept_) {
       const Point3 p = a.hierarchy().view().point(entry.pair.a), q = b.hierarchy().view().point(entry.pair.b);
       const Eigen::Vector3d apart =
           a.pose * Eigen::Vector3d(p[0], p[1], p[2]) - b.pose * Eigen::Vector3d(q[0], q[1], q[2]);
       result.contacts.push_back({entry.pair, entry.gap, apart.stableNormalized()});
     }
-    return result;
   }
 
 private:
@@ -225,18 +233,17 @@ private:
   std::size_t most_;
   double reach_;
   bool heaped_ = false;
-  std::vector<Entry> kept_;
+  const ScratchLease<PairHeap> scratch_;
+  std::vector<PairGap>& kept_ = (*scratch_).pairs;
 };
 
 } // namespace
 
-ContactsResult nearestContactsOnTarget(const Placed& a, const Placed& b, double clearance, std::size_t most)
+void nearestContactsOnTarget(const Placed& a, const Placed& b, const ContactsRequest& request, ContactsResult& result)
 {
-  NearestPairs sink(a, b, clearance, most);
-  const Work work = ReachWalk(a, b, clearance, sink).run();
-  ContactsResult result = sink.result(a, b);
-  result.work = work;
-  return result;
+  NearestPairs sink(a, b, request.clearance, request.most);
+  result.work = ReachWalk(a, b, request.clearance, sink).run();
+  sink.collect(a, b, result);
 }
 
 PairsWithin pairsWithinOnTarget(const Placed& a, const Placed& b, double clearance, std::size_t most)
@@ -257,11 +264,20 @@ namespace pcl_bsh {
 HWY_EXPORT(nearestContactsOnTarget);
 HWY_EXPORT(pairsWithinOnTarget);
 
-ContactsResult nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& request)
+void nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& request, ContactsResult& result)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
-  return HWY_DYNAMIC_DISPATCH(nearestContactsOnTarget)(a, b, request.clearance, request.most);
+  result.contacts.clear();
+  result.complete = false; // whatever throws, it does not tell that nothing collides
+  HWY_DYNAMIC_DISPATCH(nearestContactsOnTarget)(a, b, request, result);
+}
+
+ContactsResult nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& request)
+{
+  ContactsResult result;
+  nearestContacts(a, b, request, result);
+  return result;
 }
 
 PairsWithin pairsWithin(const Placed& a, const Placed& b, const ContactsRequest& request)

@@ -38,6 +38,9 @@ struct ContactsResult {
 /// @throws std::invalid_argument when the clearance or a pose is not what its declaration asks for.
 ContactsResult nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& request);
 
+/// The same into a result whose memory is used again.
+void nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& request, ContactsResult& result);
+
 /// Pairs of points within the clearance, in no useful order, for those who go through them all.
 struct PairsWithin {
   std::vector<PointPair> pairs;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/collision/interval_search.h>
-#include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/query/stop_rule.h>
 
 #include <algorithm>
@@ -220,17 +219,7 @@ private:
       eachBallPairNear(frame, points, firstBits(a.count), a, b, asked, found);
       return;
     }
-    // Only pairs that float arithmetic may call nearest are worth an exact look.
-    alignas(64) float nearest[kLeafPoints];
-    std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
-    nearestSquared(points, b.x(), b.y(), b.z(), firstBits(b.count), nearest);
-    const float least = *std::min_element(nearest, nearest + a.count);
-    const double within = (lengthOver(least) + frame.error) * (1.0 + frame.skew()) * (1.0 + kDoubleMargin) *
-                          walk_.b.frame(open.pair.b.space).unit;
-    const float miss =
-        frame.band(std::isnan(within) ? std::max(asked, 0.0) : std::min(within, std::max(asked, 0.0))).miss;
-    const std::uint32_t lanes = firstBits(a.count) & ~above(nearest, miss);
-    if (lanes != 0) eachPairNotBeyond(points, lanes, b, miss, found);
+    eachPairMaybeNearest(frame, points, a, b, walk_.b.frame(open.pair.b.space).unit, std::max(asked, 0.0), found);
   }
 
   IntervalFinding conclude()

@@ -76,7 +76,7 @@ private:
   std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, Entry> met_;
 };
 
-struct Watch {
+struct TraceObserver {
   Met* a;
   Met* b;
 
@@ -110,7 +110,7 @@ CollisionTrace traceOnTarget(const Placed& a, const Placed& b, const AnyRequest&
 {
   Met met_a(a), met_b(b);
   CollisionTrace trace;
-  trace.result = AnySearch(a, b, request, Watch{&met_a, &met_b}).run();
+  trace.result = AnySearch(a, b, request, TraceObserver{&met_a, &met_b}).run();
   trace.a = met_a.spheres();
   trace.b = met_b.spheres();
   if (trace.result.verdict == Verdict::free) { // nothing waits any more: what met it was opened, and is out of reach

@@ -4,7 +4,6 @@
 // model a tree of boxes. How thick follows from the node's sphere and from how far the interval strays from a line;
 // whichever is larger is divided.
 #include <pcl_bsh/trajectory/trajectory_walk.h>
-#include <pcl_bsh/traversal/kept_visits.h>
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,13 @@
 #define PCL_BSH_QUERY_LEAF_PAIR_INL_H_
 #endif
 
+#include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/simd/point_lanes-inl.h>
 #include <pcl_bsh/traversal/point_pairs.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -74,7 +79,24 @@ bool eachPairNotBeyond(const LeafPoints& points, std::uint32_t lanes, const Leaf
   return false;
 }
 
-/// The same where points have radii: pairs of balls that the clearance may join.
+/// Calls found(i, j, squared) for those pairs of two leaves that may be the nearest of all and no farther apart than
+/// `to_beat`: the smallest float distance bounds which are worth an exact look. Points without radii.
+/// @param unit of the frame's lengths, in the clouds' unit. @param to_beat in the clouds' unit, >= 0
+template <class Found>
+void eachPairMaybeNearest(const RelativeFrame& frame, const LeafPoints& points, const LeafRange& a, const LeafRange& b,
+                          double unit, double to_beat, const Found& found)
+{
+  alignas(64) float nearest[kLeafPoints];
+  std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
+  nearestSquared(points, b.x(), b.y(), b.z(), firstBits(b.count), nearest);
+  const float least = *std::min_element(nearest, nearest + a.count);
+  const double within = (lengthOver(least) + frame.error) * (1.0 + frame.skew()) * (1.0 + kDoubleMargin) * unit;
+  const float miss = frame.band(std::isnan(within) ? to_beat : std::min(within, to_beat)).miss;
+  const std::uint32_t lanes = firstBits(a.count) & ~above(nearest, miss);
+  if (lanes != 0) eachPairNotBeyond(points, lanes, b, miss, found);
+}
+
+/// The same as eachPairNotBeyond() where points have radii: pairs of balls that the clearance may join.
 template <class Found>
 bool eachBallPairNear(const RelativeFrame& frame, const LeafPoints& points, std::uint32_t lanes, const LeafRange& a,
                       const LeafRange& b, double clearance, const Found& found)

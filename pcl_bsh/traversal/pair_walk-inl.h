@@ -13,6 +13,8 @@
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 #include <pcl_bsh/traversal/space.h>
 
+#include <vector>
+
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
@@ -28,6 +30,12 @@ struct Lane {
 struct LanePair {
   float key = 0.0f;
   Lane a, b;
+};
+
+/// Memory of one search's stack after another, to be had by a ScratchLease.
+struct PairStack {
+  std::vector<LanePair> pairs;
+  std::size_t bytes() const noexcept { return pairs.capacity() * sizeof(LanePair); }
 };
 
 /// Whose children to look at next.

@@ -9,8 +9,8 @@ namespace pcl_bsh {
 /// The last word on two points: the coordinates as given, in exact arithmetic.
 class PointPairs {
 public:
-  PointPairs(const Placed& a, const Placed& b, double clearance)
-  : clearance(clearance),
+  PointPairs(const Placed& a, const Placed& b, double greatest_distance)
+  : clearance(greatest_distance),
     distance(a.pose, b.pose),
     a_(a.hierarchy().view()),
     b_(b.hierarchy().view())

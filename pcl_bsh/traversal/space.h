@@ -4,12 +4,15 @@
 
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/relative_frame.h>
+#include <pcl_bsh/hierarchy/kept_scratch.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 
+#include <algorithm>
 #include <bit>
 #include <deque>
+#include <vector>
 
 namespace pcl_bsh {
 
@@ -38,58 +41,80 @@ public:
   const Eigen::Isometry3d& pose;
 };
 
+/// Memory of one FrameTable after another, to be had by a ScratchLease.
+struct FrameScratch {
+  struct Entry {
+    std::uint32_t space_a = 0, space_b = 0;
+    RelativeFrame frame;
+  };
+
+  std::deque<Entry> entries; ///< a deque, for slots and walks refer to them
+  std::vector<const Entry*> slots;
+
+  std::size_t bytes() const noexcept
+  {
+    return entries.size() * sizeof(Entry) + slots.capacity() * sizeof(const Entry*);
+  }
+};
+
 /// The relative frames that one walk has needed so far, of a space of a and a space of b each.
 class FrameTable {
 public:
-  FrameTable(const Spaces& a, const Spaces& b) : a_(a), b_(b), rotation_(a.pose, b.pose), slots_(64) {}
+  FrameTable(const Spaces& a, const Spaces& b) : a_(a), b_(b), rotation_(a.pose, b.pose) { resize(64); }
 
   const RelativeFrame& find(std::uint32_t space_a, std::uint32_t space_b)
   {
-    for (std::size_t i = hash(space_a, space_b);; i = (i + 1) & (slots_.size() - 1)) {
-      Slot& slot = slots_[i];
-      if (!slot.frame) return add(space_a, space_b);
-      if (slot.space_a == space_a && slot.space_b == space_b) return *slot.frame;
+    for (std::size_t i = hash(space_a, space_b);; i = (i + 1) & mask_) {
+      const Entry* const entry = slots_[i];
+      if (!entry) return add(space_a, space_b);
+      if (entry->space_a == space_a && entry->space_b == space_b) return entry->frame;
     }
   }
 
 private:
-  struct Slot {
-    std::uint32_t space_a = 0, space_b = 0;
-    const RelativeFrame* frame = nullptr;
-  };
+  using Entry = FrameScratch::Entry;
 
   std::size_t hash(std::uint32_t space_a, std::uint32_t space_b) const
   {
     const std::uint64_t key = std::uint64_t{space_a} << 32 | space_b;
-    return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 32) & (slots_.size() - 1);
+    return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 32) & mask_;
   }
 
   const RelativeFrame& add(std::uint32_t space_a, std::uint32_t space_b)
   {
-    const RelativeFrame& frame =
-        frames_.emplace_back(a_.frame(space_a), a_.pose, b_.frame(space_b), b_.pose, rotation_);
-    if (2 * frames_.size() > slots_.size()) {
-      std::vector<Slot> old(2 * slots_.size());
-      old.swap(slots_);
-      for (const Slot& slot : old)
-        if (slot.frame) place(slot);
-    }
-    place({space_a, space_b, &frame});
-    return frame;
+    if (2 * (used_ + 1) > mask_ + 1) resize(2 * (mask_ + 1));
+    if (used_ == entries_.size()) entries_.emplace_back();
+    Entry& entry = entries_[used_];
+    entry = {space_a, space_b, RelativeFrame(a_.frame(space_a), a_.pose, b_.frame(space_b), b_.pose, rotation_)};
+    ++used_;
+    place(entry);
+    return entry.frame;
   }
 
-  void place(const Slot& slot)
+  /// Uses the first `slots` of the slots. @param slots a power of two
+  void resize(std::size_t slots)
   {
-    std::size_t i = hash(slot.space_a, slot.space_b);
-    while (slots_[i].frame) i = (i + 1) & (slots_.size() - 1);
-    slots_[i] = slot;
+    if (slots_.size() < slots) slots_.resize(slots);
+    mask_ = slots - 1;
+    std::fill_n(slots_.begin(), slots, nullptr);
+    for (std::size_t i = 0; i < used_; ++i) place(entries_[i]);
+  }
+
+  void place(const Entry& entry)
+  {
+    std::size_t i = hash(entry.space_a, entry.space_b);
+    while (slots_[i]) i = (i + 1) & mask_;
+    slots_[i] = &entry;
   }
 
   const Spaces& a_;
   const Spaces& b_;
   const RelativeRotation rotation_;
-  std::deque<RelativeFrame> frames_;
-  std::vector<Slot> slots_;
+  const ScratchLease<FrameScratch> scratch_;
+  std::deque<Entry>& entries_ = (*scratch_).entries;
+  std::vector<const Entry*>& slots_ = (*scratch_).slots; ///< open addressing, half full
+  std::size_t used_ = 0;                                 ///< of the entries
+  std::size_t mask_ = 0;                                 ///< the slots in use, less one
 };
 
 } // namespace pcl_bsh

@@ -5,6 +5,7 @@
 #include "workload/nearest.h"
 #include "workload/path_scene.h"
 
+#include <pcl_bsh/collision/colliding_indices.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>
@@ -204,8 +205,9 @@ void showOnePose(const Options& options, const std::string& scene_name, Table& t
   const auto poseAt = [&](std::size_t i) { return scene.poses[i * scene.poses.size() / options.warm_poses]; };
   for (std::size_t i = 0; i < options.warm_poses; ++i)
     anyCollision({scan}, {model, poseAt(i)}, {scene.clearance, {}}); // fits slabs
-  std::vector<double> flags, any;
+  std::vector<double> flags, indices, any;
   pcl_bsh::FlagsResult result;
+  pcl_bsh::CollidingIndices list;
   for (std::size_t i = 0; i < options.warm_poses; ++i) {
     const auto pose = poseAt(i);
     const Stopwatch for_any;
@@ -214,8 +216,13 @@ void showOnePose(const Options& options, const std::string& scene_name, Table& t
     const Stopwatch for_flags;
     collisionFlags({scan}, {model, pose}, request, result);
     flags.push_back(for_flags.seconds());
+    const Stopwatch for_indices;
+    collidingIndices({scan}, {model, pose}, request, list);
+    indices.push_back(for_indices.seconds());
   }
   addOurs(scene_name, scene, "pcl_bsh warm", 0.0, median(flags), "-", "flags at one pose, median", table);
+  addOurs(scene_name, scene, "pcl_bsh warm", 0.0, median(indices), text(median(indices) / median(flags)),
+          "indices at one pose, median; ratio: to the flags", table);
   addOurs(scene_name, scene, "pcl_bsh warm", 0.0, median(any), "-", "any at one pose, median", table);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/collision/colliding_indices.h>
 #include <pcl_bsh/collision/contacts.h>
 #include <pcl_bsh/collision/trace.h>
 #include <pcl_bsh/neighbors/spacing.h>
@@ -111,6 +112,43 @@ TEST(AllocationFailure, OfFlagsLeavesAUsableResult)
                          throw;
                        }
                        return answerOf(subject.result) == answerOf(right);
+                     });
+}
+
+TEST(AllocationFailure, OfCollidingIndices)
+{
+  struct Subject {
+    std::unique_ptr<FreshPair> pair = freshPair();
+    CollidingIndices result;
+  };
+  const auto ask = [](Subject& subject, const FlagsRequest& asked) {
+    collidingIndices(subject.pair->placedA(), subject.pair->placedB(), asked, subject.result);
+    return std::tuple(subject.result.a, subject.result.b, subject.result.undecided_a, subject.result.undecided_b);
+  };
+  for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::level(1), Accuracy::nodePairs(2000)}) {
+    test::Question asked = request();
+    asked.accuracy = accuracy;
+    failEachAllocation([] { return Subject(); }, [&](Subject& subject) { return ask(subject, asked); });
+  }
+  failEachAllocation([] { return Subject(); }, [&](Subject& subject) { return ask(subject, request(2, Side::a)); });
+}
+
+TEST(AllocationFailure, OfContactsLeavesAUsableResult)
+{
+  struct Subject {
+    std::unique_ptr<FreshPair> pair = freshPair();
+    ContactsResult result;
+  };
+  failEachAllocation([] { return Subject(); },
+                     [&](Subject& subject) {
+                       try {
+                         nearestContacts(subject.pair->placedA(), subject.pair->placedB(), {0.05, 20}, subject.result);
+                       }
+                       catch (const std::bad_alloc&) {
+                         EXPECT_FALSE(subject.result.complete);
+                         throw;
+                       }
+                       return std::tuple(subject.result.contacts.size(), subject.result.complete);
                      });
 }
 

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The walk that flags the points of one voxel of a. Every node of a carries the list of what can still matter of b, so
+// that a's points share one descent. A point is settled at its first neighbour, a node as soon as its farthest point
+// must be within the clearance of something.
+
+#if defined(PCL_BSH_COLLISION_FLAG_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_COLLISION_FLAG_WALK_INL_H_
+#undef PCL_BSH_COLLISION_FLAG_WALK_INL_H_
+#else
+#define PCL_BSH_COLLISION_FLAG_WALK_INL_H_
+#endif
+
+#include <pcl_bsh/collision/flag_leaf-inl.h>
+#include <pcl_bsh/collision/flag_query.h>
+#include <pcl_bsh/hierarchy/crowded_cell.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// @tparam Sink what becomes of points, each once in a walk, but for few that collide:
+///   collide(record); free(record) where takesFree() says so; leave(record), undecided, where takesUndecided() does;
+///   leaveAll(), where nothing of the voxel was looked at
+template <class Sink>
+class FlagWalk {
+public:
+  FlagWalk(const FlagQuery& query, const StopRule& rule, Sink& sink, FlagScratch& scratch)
+  : a_(query.a),
+    b_(query.b),
+    pairs_(query.pairs),
+    rotation_(query.rotation),
+    acceptance_(query.acceptance),
+    rule_(rule),
+    sink_(sink),
+    visits_(scratch.visits),
+    obstacles_(scratch.obstacles),
+    spheres_(scratch.spheres),
+    reached_(scratch.reached)
+  {
+    obstacles_.clear();
+    spheres_.clear();
+    reached_.clear();
+  }
+
+  /// Flags the points of one voxel of a.
+  void run(std::uint32_t voxel)
+  {
+    const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose, rotation_);
+    if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs)) return leaveAll();
+    const bool apart = above.separates(pairs_.clearance + a_.storage.largest_radius + b_.storage.largest_radius);
+    if (!apart) ++found.work.volumes_carried; // the voxel's own sphere
+    const bool all = !apart && !reach(voxel, above, b_.storage.top[0]);
+    if (all) return a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { sink_.collide(record); });
+    if (apart || reached_.empty()) {
+      if (sink_.takesFree()) a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { sink_.free(record); });
+      return;
+    }
+    if (!mayEnter(voxel)) return leaveAll();
+    a_voxel_ = &a_.voxel(voxel, found.work);
+
+    for (const std::uint32_t other : reached_) {
+      const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, rotation_);
+      const Node& root = b_.voxel(other, found.work).nodes[0];
+      for (std::uint32_t lane = 0; lane < root.count; ++lane)
+        spheres_.push_back({&root, static_cast<std::uint16_t>(lane), 1, static_cast<std::uint32_t>(obstacles_.size())});
+      obstacles_.push_back({&b_.storage.voxels[other], frame, frame.pruneReach(pairs_.clearance),
+                            frame.acceptReach(pairs_.clearance), frame.acceptReach(acceptance_.accepted),
+                            frame.bluntRadius(), acceptance_.band(frame)});
+    }
+    descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, spheres_, 0);
+  }
+
+  FlaggedVoxel found;
+
+private:
+  /// Whether the walk may go below voxels, and has the time to build those that it needs.
+  bool mayEnter(std::uint32_t voxel) const
+  {
+    if (rule_.deepest == 0 || rule_.isSpent(found.work.node_pairs)) return false;
+    if (!rule_.isTimed()) return true;
+    std::size_t points = a_.storage.pointsToBuild(voxel);
+    for (const std::uint32_t other : reached_) points += b_.storage.pointsToBuild(other);
+    return rule_.leavesTimeToBuild(points);
+  }
+
+  /// Collects the voxels of b that the voxel of a can reach. @return false when all of its points collide.
+  bool reach(std::uint32_t voxel, const RelativeFrame& frame, const Node& node)
+  {
+    const float radius = a_.storage.voxels[voxel].radius * frame.stretch_a;
+    const Ball ball{frame.g[0], frame.g[1], frame.g[2], radius + frame.pruneReach(pairs_.clearance),
+                    frame.acceptReach(acceptance_.accepted) - radius * (1.0f + kSphereMargin)};
+    const SphereLanes spheres{node.x, node.y, node.z, node.r, frame.stretch_b};
+    found.work.node_pairs += node.count;
+    if ((spheresInside(spheres, ball) & firstBits(node.count)) != 0) return false;
+    for (std::uint32_t near = spheresNear(spheres, ball, nullptr) & firstBits(node.count); near != 0;
+         near &= near - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      if (node.isLeaf(lane))
+        reached_.push_back(node.begin[lane]);
+      else if (!reach(voxel, frame, b_.storage.top[node.child[lane]]))
+        return false;
+    }
+    return true;
+  }
+
+  /// Takes a node of a, all its children at once, through its candidates; then its inner children through theirs.
+  void descend(const Node& node, const BoundingSphere& around, const std::vector<ObstacleSphere>& candidates,
+               std::size_t depth)
+  {
+    if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs)) return leave(node.begin[0], node.begin[node.count]);
+    if (visits_.size() == depth) visits_.emplace_back();
+    FlagVisit& visit = visits_[depth];
+    begin(visit, node, around);
+    for (auto from = candidates.begin(); from != candidates.end() && visit.open != 0;) {
+      const auto to =
+          std::find_if(from, candidates.end(), [&](const ObstacleSphere& c) { return c.obstacle != from->obstacle; });
+      enter(visit, from->obstacle);
+      for (auto c = from; c != to && visit.open != 0; ++c) settleByPoints(visit, *c);
+      for (auto c = from; c != to && visit.open != 0; ++c) take(visit, *c, visit.open);
+      compareLeaves(visit);
+      from = to;
+    }
+    if (rule_.mayStop()) clear(visit);
+    for (std::uint32_t bits = visit.open & ~visit.leaves; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (visit.near[lane].empty()) continue;
+      if (depth + 1 >= rule_.deepest) {
+        leave(node.begin[lane], node.begin[lane + 1]);
+        continue;
+      }
+      const BoundingSphere child{{node.x[lane], node.y[lane], node.z[lane]}, node.r[lane]};
+      descend(a_voxel_->nodes[node.child[lane]], child, visit.near[lane], depth + 1);
+    }
+  }
+
+  /// Where the walk may stop early: tells of what has met nothing of b, and of what it leaves undecided.
+  void clear(const FlagVisit& visit)
+  {
+    for (std::uint32_t bits = visit.open; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const std::uint32_t begin = visit.node->begin[lane], end = visit.node->begin[lane + 1];
+      const bool unsure = (visit.unsure >> lane & 1) != 0;
+      if ((visit.leaves >> lane & 1) == 0) {
+        if (visit.near[lane].empty()) free(begin, end);
+      }
+      else if (visit.node->isCoincident(lane)) {
+        unsure ? leave(begin, end) : free(begin, end);
+      }
+      else {
+        for (std::uint32_t points = visit.open_points[lane]; points != 0; points &= points - 1) {
+          const std::uint32_t i = begin + static_cast<std::uint32_t>(std::countr_zero(points));
+          unsure ? leave(i, i + 1) : free(i, i + 1);
+        }
+      }
+    }
+  }
+
+  static void begin(FlagVisit& visit, const Node& node, const BoundingSphere& around)
+  {
+    visit.unsure = 0;
+    visit.around = around;
+    visit.node = &node;
+    visit.open = firstBits(node.count);
+    visit.leaves = 0;
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+      visit.near[lane].clear();
+      if (!node.isLeaf(lane)) continue;
+      visit.leaves |= 1u << lane;
+      visit.open_points[lane] = firstBits(node.comparedPoints(lane));
+    }
+  }
+
+  /// Turns to a voxel of b: spheres go to its frame now, points when they are needed.
+  void enter(FlagVisit& visit, std::uint32_t obstacle)
+  {
+    visit.obstacle = obstacle;
+    const RelativeFrame& frame = obstacles_[obstacle].frame;
+    carry(frame.m.data(), frame.g.data(), visit.node->x, visit.node->y, visit.node->z, kLanes, visit.x, visit.y,
+          visit.z);
+    const Point center = carryPoint(frame.m.data(), frame.g.data(), visit.around.center);
+    found.work.volumes_carried +=
+        visit.node->count + std::uint64_t{1}; // the children's spheres and the one around them
+    visit.ball = {center.x, center.y, center.z,
+                  visit.around.radius * frame.stretch_a + obstacles_[obstacle].prune_reach, 0.0f};
+    visit.smallest = std::numeric_limits<float>::infinity();
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) visit.r[lane] = visit.node->r[lane] * frame.stretch_a;
+    for (std::uint32_t lane = 0; lane < visit.node->count; ++lane) {
+      visit.smallest = std::min(visit.smallest, visit.r[lane]);
+      if ((visit.leaves >> lane & 1) != 0) visit.near[lane].clear();
+    }
+  }
+
+  /// Compares a sphere of b with those children of the visit that are in `lanes`: settles them, drops it, keeps it for
+  /// their own descent, or opens it.
+  void take(FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t lanes)
+  {
+    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    const Node& node = *candidate.node;
+    const std::uint32_t k = candidate.lane;
+    const float radius = node.r[k] * obstacle.frame.stretch_b;
+    const Ball ball{node.x[k], node.y[k], node.z[k], radius + obstacle.prune_reach,
+                    obstacle.accept_reach - radius * (1.0f + kSphereMargin)};
+    const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
+    found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes & visit.open));
+    std::uint32_t near = spheresNear(spheres, ball, nullptr) & lanes & visit.open;
+    if (near == 0) return;
+    if (radius <= obstacle.blunt_radius && (near &= ~apartAsGiven(visit, candidate, ball, near)) == 0) return;
+    if (ball.inside_reach > visit.smallest) {
+      for (std::uint32_t bits = spheresInside(spheres, ball) & near; bits != 0; bits &= bits - 1)
+        settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
+      near &= visit.open;
+    }
+    const bool opens = !candidate.isLeaf() && candidate.level < rule_.deepest;
+    std::uint32_t opening = candidate.isLeaf() ? 0 : near & visit.leaves;
+    if (opening != 0 && !opens) {
+      visit.unsure |= opening;
+      near &= ~opening;
+      opening = 0;
+    }
+    for (std::uint32_t bits = near & ~opening; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (opens && radius > visit.r[lane])
+        opening |= 1u << lane;
+      else
+        visit.near[lane].push_back(candidate);
+    }
+    if (opening == 0) return;
+    const Node& below = obstacle.voxel->nodes[node.child[k]];
+    const SphereLanes children{below.x, below.y, below.z, below.r, obstacle.frame.stretch_b};
+    found.work.node_pairs += below.count;
+    for (std::uint32_t bits = spheresNear(children, visit.ball, nullptr) & firstBits(below.count); bits != 0;
+         bits &= bits - 1) {
+      if ((opening & visit.open) == 0) return;
+      take(visit, candidate.below(below, static_cast<std::uint32_t>(std::countr_zero(bits))), opening);
+    }
+  }
+
+  /// Of the children in `near`, those too small for float arithmetic to decide about, whose points as given are apart
+  /// from the candidate's.
+  std::uint32_t apartAsGiven(const FlagVisit& visit, const ObstacleSphere& candidate, const Ball& ball,
+                             std::uint32_t near)
+  {
+    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    std::uint32_t apart = 0;
+    GivenSphere other;
+    for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const float dx = visit.x[lane] - ball.x, dy = visit.y[lane] - ball.y, dz = visit.z[lane] - ball.z;
+      if (visit.r[lane] > obstacle.blunt_radius ||
+          !obstacle.frame.isUndecided(dx * dx + dy * dy + dz * dz, visit.r[lane] + ball.near_reach))
+        continue;
+      ++found.work.exact_decisions;
+      if (!other.isKnown()) other = givenSphereOf(b_.storage.view, *obstacle.voxel, *candidate.node, candidate.lane);
+      const GivenSphere own = givenSphereOf(a_.storage.view, *a_voxel_, *visit.node, lane);
+      if (areApart(pairs_.distance, own, other, pairs_.clearance)) apart |= 1u << lane;
+    }
+    return apart;
+  }
+
+  /// Where the clearance exceeds the radius of a child, a single point of b near its centre settles all of it.
+  void settleByPoints(FlagVisit& visit, const ObstacleSphere& candidate)
+  {
+    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    if (!(obstacle.sure_reach > visit.smallest)) return;
+    const Node& node = *candidate.node;
+    const std::uint32_t k = candidate.lane;
+    // A point of the candidate can be that near only if its sphere comes within the clearance less the child's radius.
+    const SphereLanes less_radius{visit.x, visit.y, visit.z, visit.r, -1.0f};
+    const Ball ball{node.x[k], node.y[k], node.z[k], node.r[k] * obstacle.frame.stretch_b + obstacle.sure_reach, 0.0f};
+    found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(visit.open));
+    for (std::uint32_t bits = spheresNear(less_radius, ball, nullptr) & visit.open; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const float reach = obstacle.sure_reach - visit.r[lane] * (1.0f + kSphereMargin);
+      const Ball center{visit.x[lane], visit.y[lane], visit.z[lane], reach, 0.0f};
+      if (reach > 0.0f && hasPointWithin(obstacle, candidate, center)) settleChild(visit, lane);
+    }
+  }
+
+  /// Whether the candidate has a point in the ball; the nearest spheres are asked first.
+  bool hasPointWithin(const ObstacleVoxel& obstacle, const ObstacleSphere& candidate, const Ball& ball)
+  {
+    if (candidate.isLeaf()) {
+      const LeafRange leaf = candidate.leaf(obstacle);
+      return anyPointWithin(leaf.x(), leaf.y(), leaf.z(), leaf.count, ball.x, ball.y, ball.z, ball.near_reach);
+    }
+    const Node& below = obstacle.voxel->nodes[candidate.node->child[candidate.lane]];
+    float gap[kLanes];
+    found.work.node_pairs += below.count;
+    std::uint32_t near =
+        spheresNear({below.x, below.y, below.z, below.r, obstacle.frame.stretch_b}, ball, gap) & firstBits(below.count);
+    while (near != 0) {
+      auto nearest = static_cast<std::uint32_t>(std::countr_zero(near));
+      for (std::uint32_t bits = near & (near - 1); bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+        if (gap[lane] < gap[nearest]) nearest = lane;
+      }
+      if (hasPointWithin(obstacle, candidate.below(below, nearest), ball)) return true;
+      near &= ~(1u << nearest);
+    }
+    return false;
+  }
+
+  /// Compares the points of the children that are leaves with the leaves they are near to, in this obstacle.
+  void compareLeaves(FlagVisit& visit)
+  {
+    for (std::uint32_t bits = visit.leaves & visit.open; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (visit.near[lane].empty()) continue;
+      const LeafRange leaf{a_voxel_, visit.node->begin[lane], visit.node->comparedPoints(lane)};
+      LeafPoints points;
+      carryLeaf(obstacles_[visit.obstacle].frame, leaf, points);
+      const std::uint32_t hit =
+          collidingPoints(obstacles_[visit.obstacle], visit, lane, leaf, points, pairs_, found.work);
+      for (std::uint32_t set = hit; set != 0; set &= set - 1)
+        sink_.collide(leaf.record(static_cast<std::uint32_t>(std::countr_zero(set))));
+      visit.open_points[lane] &= ~hit;
+      if (visit.open_points[lane] != 0) continue;
+      visit.open &= ~(1u << lane);
+      settle(leaf.begin + leaf.count, visit.node->begin[lane + 1]); // those at the place of the one that was compared
+    }
+  }
+
+  void settleChild(FlagVisit& visit, std::uint32_t lane)
+  {
+    visit.open &= ~(1u << lane);
+    settle(visit.node->begin[lane], visit.node->begin[lane + 1]);
+  }
+
+  // Of the points at these places of a's voxel.
+  void settle(std::uint32_t begin, std::uint32_t end)
+  {
+    for (std::uint32_t i = begin; i < end; ++i) sink_.collide(a_voxel_->records()[i]);
+  }
+
+  void free(std::uint32_t begin, std::uint32_t end)
+  {
+    if (!sink_.takesFree()) return;
+    for (std::uint32_t i = begin; i < end; ++i) sink_.free(a_voxel_->records()[i]);
+  }
+
+  void leave(std::uint32_t begin, std::uint32_t end)
+  {
+    found.undecided = true;
+    if (!sink_.takesUndecided()) return;
+    for (std::uint32_t i = begin; i < end; ++i) sink_.leave(a_voxel_->records()[i]);
+  }
+
+  void leaveAll()
+  {
+    found.undecided = true;
+    sink_.leaveAll();
+  }
+
+  const Spaces a_, b_;
+  const PointPairs& pairs_;
+  const RelativeRotation& rotation_;
+  const Acceptance& acceptance_;
+  const StopRule& rule_;
+  Sink& sink_;
+  const Voxel* a_voxel_ = nullptr;
+  std::deque<FlagVisit>& visits_;
+  std::vector<ObstacleVoxel>& obstacles_;
+  std::vector<ObstacleSphere>& spheres_; ///< of the obstacles' roots
+  std::vector<std::uint32_t>& reached_;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle
