@@ -74,6 +74,16 @@ TEST(Spacing, BuildsFewVoxels)
   EXPECT_LT(hierarchy.statistics().voxels_built, hierarchy.statistics().voxels / 5);
 }
 
+TEST(Spacing, CrowdsAtOnePlaceDoNotHideTheNextPlace)
+{
+  std::vector<float> points;
+  for (const float x : {0.0f, 5.0f, 7.0f})
+    for (int i = 0; i < 3000; ++i) points.insert(points.end(), {x, 0.0f, 0.0f});
+  const Spacing spacing = spacingOf(SphereHierarchy(viewOf(points.data(), points.size() / 3)));
+  EXPECT_EQ(spacing.median, 2.0);
+  EXPECT_EQ(spacing.wide, 5.0);
+}
+
 TEST(Spacing, DoubledPointsAreOnePlace)
 {
   const std::vector<float> points = {0, 0, 0, 0, 0, 0, 3, 0, 0, 3, 0, 0};
