@@ -2,6 +2,8 @@
 #include <pcl_bsh/scene/motion.h>
 
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/plain_text.h>
+#include <pcl_bsh/geometry/polar_decomposition.h>
 #include <pcl_bsh/geometry/rigid_motion.h>
 #include <pcl_bsh/query/request_check.h>
 
@@ -11,6 +13,12 @@
 
 namespace pcl_bsh {
 namespace {
+
+Eigen::Isometry3d nearestRigid(Eigen::Isometry3d pose)
+{
+  pose.linear() = PolarDecomposition(pose.linear()).rotation;
+  return pose;
+}
 
 struct At {
   const Eigen::Isometry3d& start;
@@ -41,8 +49,10 @@ struct At {
     if (after == 0) return motion.poses.front();
     const auto i = static_cast<std::size_t>(after);
     if (i == motion.times.size() || motion.times[i - 1] == time) return motion.poses[i - 1];
-    const Eigen::Isometry3d &from = motion.poses[i - 1], &to = motion.poses[i];
-    const Eigen::Vector3d turn = shorterTurn(from.linear(), to.linear());
+    // With rotations to rounding: waypoints that are just rigid enough may have poses between that are not, with a
+    // part.
+    const Eigen::Isometry3d from = nearestRigid(motion.poses[i - 1]), to = nearestRigid(motion.poses[i]);
+    const Eigen::Vector3d turn = shorterTurnOfRotations(from.linear(), to.linear());
     const double s = (time - motion.times[i - 1]) / (motion.times[i] - motion.times[i - 1]);
     return RigidMotion(from, to, Eigen::Vector3d::Zero(), turn).at(s);
   }
@@ -92,11 +102,11 @@ struct Check {
   {
     if (motion.poses.empty()) fail("waypoints without a pose");
     if (motion.poses.size() != motion.times.size())
-      fail(std::to_string(motion.poses.size()) + " waypoints for " + std::to_string(motion.times.size()) + " times");
+      fail(plainText(motion.poses.size()) + " waypoints for " + plainText(motion.times.size()) + " times");
     for (std::size_t i = 0; i < motion.times.size(); ++i)
       if (!std::isfinite(motion.times[i]) || (i > 0 && motion.times[i] <= motion.times[i - 1]))
-        fail("time " + std::to_string(motion.times[i]) + " of waypoint " + std::to_string(i) + " does not ascend");
-    for (std::size_t i = 0; i < motion.poses.size(); ++i) checkPose("waypoint " + std::to_string(i), motion.poses[i]);
+        fail("time " + plainText(motion.times[i]) + " of waypoint " + plainText(i) + " does not ascend");
+    for (std::size_t i = 0; i < motion.poses.size(); ++i) checkPose("waypoint " + plainText(i), motion.poses[i]);
   }
 
   [[noreturn]] static void fail(const std::string& what) { throw InvalidInput(Input::motion, "motion", what); }

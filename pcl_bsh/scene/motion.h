@@ -12,7 +12,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// At rest, until somebody sets its pose.
+/// At rest, until its pose is set.
 struct NoMotion {};
 
 /// Straight on, turning about its own origin; both as the world sees them.
@@ -29,8 +29,9 @@ struct CircularMotion {
   bool turning = true;                             ///< false: keeps its rotation, as a gondola does
 };
 
-/// From pose to pose: the object's origin moves in a straight line at constant speed, and the object turns the shorter
-/// way at constant speed. At rest before the first and after the last.
+/// From pose to pose: the object's origin moves in a straight line at constant speed, and the object turns in the
+/// shorter direction at constant speed; poses between waypoints have the nearest rotations. At rest before the first
+/// and after the last.
 struct WaypointMotion {
   std::vector<double> times; ///< strictly ascending, as many as poses
   std::vector<Eigen::Isometry3d> poses;
