@@ -4,6 +4,7 @@
 #include <pcl_bsh/clusters/clusters.h>
 
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/plain_text.h>
 
 #include <algorithm>
 #include <cmath>
@@ -193,7 +194,7 @@ namespace {
 void requireDistance(double distance)
 {
   if (std::isfinite(distance) && distance >= 0.0) return;
-  throw InvalidInput(Input::cluster_distance, "distance", std::to_string(distance), "give a finite length >= 0")
+  throw InvalidInput(Input::cluster_distance, "distance", plainText(distance), "give a finite length >= 0")
       .withValue(distance);
 }
 

@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/plain_text.h>
 
 #include <algorithm>
 #include <string>
@@ -44,7 +45,7 @@ void settleTies(const PointsView& view, const Point3& query, NeighborScratch& sc
 void checkRadius(double radius)
 {
   if (!(radius >= 0.0))
-    throw InvalidInput(Input::radius, "radius", std::to_string(radius), "give a length >= 0").withValue(radius);
+    throw InvalidInput(Input::radius, "radius", plainText(radius), "give a length >= 0").withValue(radius);
 }
 
 bool isWithin(const Point3& p, const Point3& q, double radius, Work& work)
@@ -53,8 +54,8 @@ bool isWithin(const Point3& p, const Point3& q, double radius, Work& work)
   return unposed().compare(p, q, radius) <= 0;
 }
 
-void deliver(const PointsView& view, const Point3& query, const RadiusOptions& options, NeighborScratch& scratch,
-             const Delivery& found, Work& work)
+void writeNearestFirst(const PointsView& view, const Point3& query, const RadiusOptions& options,
+                       NeighborScratch& scratch, const NeighborOutput& found, Work& work)
 {
   const std::size_t count = scratch.records.size();
   const std::size_t kept = options.most == 0 ? count : std::min(count, options.most);

@@ -66,7 +66,7 @@ void add(Clash& clash, std::uint32_t record, const Point3& point, const Trajecto
 void check(const PointsView& scan, const TrajectoryResult& found, double cluster_distance)
 {
   if (!(std::isfinite(cluster_distance) && cluster_distance > 0.0)) {
-    throw InvalidInput(Input::cluster_distance, "cluster distance", std::to_string(cluster_distance),
+    throw InvalidInput(Input::cluster_distance, "cluster distance", plainText(cluster_distance),
                        "give a finite length > 0")
         .withValue(cluster_distance);
   }
