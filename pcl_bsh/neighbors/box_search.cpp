@@ -12,7 +12,7 @@
 namespace pcl_bsh {
 namespace {
 
-struct Box {
+struct QueryBox {
   Point3 low, high;
 
   bool contains(const Point3& p) const
@@ -25,7 +25,7 @@ struct Box {
 
 /// The box in a frame's units, grown and shrunk by all that rounding may amount to.
 struct LocalBox {
-  LocalBox(const LocalFrame& frame, const Box& box)
+  LocalBox(const LocalFrame& frame, const QueryBox& box)
   {
     const double inverse = 1.0 / frame.unit;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -65,7 +65,7 @@ struct LocalBox {
 
 class BoxWalk {
 public:
-  BoxWalk(const SphereHierarchy::Storage& cloud, const Box& box, std::vector<std::int32_t>& indices, Work& work)
+  BoxWalk(const SphereHierarchy::Storage& cloud, const QueryBox& box, std::vector<std::int32_t>& indices, Work& work)
   : cloud_(cloud),
     box_(box),
     indices_(indices),
@@ -139,7 +139,7 @@ private:
   }
 
   const SphereHierarchy::Storage& cloud_;
-  const Box& box_;
+  const QueryBox& box_;
   std::vector<std::int32_t>& indices_;
   Work& work_;
 };

@@ -41,8 +41,8 @@ std::vector<std::uint32_t> nearestFirst(const PointsView& view, const Point3& qu
   return records;
 }
 
-std::size_t deliver(const PointsView& view, const Point3& query, const std::vector<std::uint32_t>& records,
-                    std::size_t most, Neighbors& found)
+std::size_t writeNearestFirst(const PointsView& view, const Point3& query, const std::vector<std::uint32_t>& records,
+                              std::size_t most, Neighbors& found)
 {
   found.indices.assign(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(std::min(most, records.size())));
   found.squared_distances.clear();
@@ -58,14 +58,14 @@ std::size_t radiusSearch(const SphereHierarchy& cloud, const Point3& query, doub
 {
   const DefaultFloatEnvironment environment;
   const std::size_t most = options.most == 0 ? cloud.size() : options.most;
-  return deliver(cloud.view(), query, nearestFirst(cloud.view(), query, radius), most, found);
+  return writeNearestFirst(cloud.view(), query, nearestFirst(cloud.view(), query, radius), most, found);
 }
 
 std::size_t nearestKSearch(const SphereHierarchy& cloud, const Point3& query, std::size_t k, Neighbors& found)
 {
   const DefaultFloatEnvironment environment;
   constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
-  return deliver(cloud.view(), query, nearestFirst(cloud.view(), query, kAnyDistance), k, found);
+  return writeNearestFirst(cloud.view(), query, nearestFirst(cloud.view(), query, kAnyDistance), k, found);
 }
 
 bool anyInRadius(const SphereHierarchy& cloud, const Point3& query, double radius)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The k nearest points: a guess bounds their distance, then a descent shrinks the bound as it finds points within.
-// Float arithmetic keeps whatever may be among them; who is, the original coordinates say at the end.
-#include <pcl_bsh/geometry/point_frame.h>
+// Float arithmetic keeps all points that may be among them; the given coordinates decide at the end.
 #include <pcl_bsh/geometry/squared_distance.h>
 #include <pcl_bsh/neighbors/neighbor_scratch.h>
 
@@ -16,6 +15,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <pcl_bsh/neighbors/nearest_frame-inl.h>
 #include <pcl_bsh/simd/compress-inl.h>
 #include <pcl_bsh/simd/point_lanes-inl.h>
 
@@ -23,47 +23,6 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// The query in one frame, and what a squared float distance s there says of the squared distance in the cloud's frame:
-/// it is within [s / inverse_below - slack, s * above + slack].
-///
-/// With rho the frame's error and any e > 0, (sqrt(s) + rho)^2 <= s (1 + e) + rho^2 (1 + 1/e), and likewise below.
-/// Here e = kNeighborShare; as much again pays for float arithmetic, and twice as much below. Where floats know
-/// nothing, the query is at 0, every upper bound is infinite and nothing is left out; none of these numbers is NaN, nor
-/// is what the walk makes of them.
-struct NearFrame {
-  NearFrame(const PointFrame& point, double cloud_unit)
-  {
-    const double unit = point.unit == cloud_unit ? 1.0 : point.unit / cloud_unit;
-    const double scale = unit * unit;
-    if (!(point.inRange() && scale >= kSmallestScale && scale <= 1.0)) return;
-    at = {point.at[0], point.at[1], point.at[2]};
-    error = static_cast<float>(point.error);
-    slack = static_cast<float>(scale * point.error * point.error / kNeighborShare) * (1.0f + 32 * kNeighborShare) +
-            kVanishing;
-    if (unit == 1.0) return;
-    inverse_unit = static_cast<float>(1.0 / unit);
-    inverse_below *= static_cast<float>(1.0 / scale);
-    above *= static_cast<float>(scale);
-  }
-
-  /// Squared float distances above this are beyond `bound`.
-  float miss(float bound) const { return (bound + slack) * inverse_below; }
-
-  /// Spheres farther than this and their radius are beyond `distance`.
-  float reach(float distance) const { return (distance * inverse_unit + error) * (1.0f + kNeighborMargin); }
-
-  static constexpr float kVanishing = 0x1p-100f; ///< above what underflows, as a squared distance
-  static constexpr double kSmallestScale = 0x1p-60;
-
-  Point at = {0.0f, 0.0f, 0.0f};
-  float error = kInfinity, slack = kInfinity;
-  float inverse_unit = 1.0f, inverse_below = 1.0f + 4 * kNeighborShare, above = 1.0f + 2 * kNeighborShare;
-};
-
-static_assert(kSquaredDistanceError + 3 * kFloatUnit < kNeighborShare); // of a distance, a product and a sum
 
 class NearestWalk {
 public:
@@ -89,7 +48,7 @@ public:
     if (k_ == 0) return;
     if (radius_ < std::numeric_limits<double>::infinity()) {
       const double reach = radius_ / cloud_.frame.unit;
-      lower(roundUp(reach * reach * (1.0 + kFewDoubleRoundings) + static_cast<double>(NearFrame::kVanishing)));
+      lower(roundUp(reach * reach * (1.0 + kFewDoubleRoundings) + static_cast<double>(NearestFrame::kVanishing)));
     }
     place_ = cloud_.find(query_);
     if (place_.voxel != SphereHierarchy::Storage::kNoVoxel) visitVoxel(place_.voxel);
@@ -105,12 +64,12 @@ private:
     const PointFrame point(cloud_.frame, query_);
     if (point.separates(cloud_.frame, static_cast<double>(distance_))) return;
     ++work_.volumes_carried;
-    visitAbove(NearFrame(point, cloud_.frame.unit), 0);
+    visitAbove(NearestFrame(point, cloud_.frame.unit), 0);
   }
 
   /// Calls visit(i) for the children that may hold points within the bound, the nearest first.
   template <class Visit>
-  void eachChild(const NearFrame& frame, const Node& node, const Visit& visit)
+  void eachChild(const NearestFrame& frame, const Node& node, const Visit& visit)
   {
     work_.node_pairs += node.count;
     alignas(32) float squared[kLanes];
@@ -125,7 +84,7 @@ private:
     }
   }
 
-  void visitAbove(const NearFrame& frame, std::uint32_t index)
+  void visitAbove(const NearestFrame& frame, std::uint32_t index)
   {
     const Node& node = cloud_.top[index];
     eachChild(frame, node, [&](std::uint32_t i) {
@@ -140,19 +99,19 @@ private:
   {
     const LocalFrame& local = cloud_.voxels[index].frame;
     const PointFrame point(local, query_);
-    const NearFrame frame(point, cloud_.frame.unit);
+    const NearestFrame frame(point, cloud_.frame.unit);
     if (frame.slack < kInfinity &&
         point.separates(local, static_cast<double>(distance_) * static_cast<double>(frame.inverse_unit)))
       return;
     most_slack_ = std::max(most_slack_, frame.slack);
     ++work_.volumes_carried;
     const Voxel& voxel = cloud_.built(index, work_);
-    voxels_.room(1);
+    voxels_.reserveMore(1);
     voxels_.push(&voxel);
     visit(frame, voxel, 0);
   }
 
-  void visit(const NearFrame& frame, const Voxel& voxel, std::uint32_t index)
+  void visit(const NearestFrame& frame, const Voxel& voxel, std::uint32_t index)
   {
     const Node& node = voxel.nodes[index];
     eachChild(frame, node, [&](std::uint32_t i) {
@@ -170,7 +129,7 @@ private:
   }
 
   /// A crowded place, where one point answers for all; the smallest record numbers count, and come first.
-  void compareOne(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t count)
+  void compareOne(const NearestFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t count)
   {
     ++work_.leaf_pairs;
     alignas(64) float squared[kLeafPoints];
@@ -178,8 +137,8 @@ private:
                          squared);
     if (squared[0] > frame.miss(bound_)) return;
     const std::size_t same = std::min<std::size_t>(count, k_);
-    places_.room(same);
-    highs_.room(same);
+    places_.reserveMore(same);
+    highs_.reserveMore(same);
     for (std::uint32_t i = 0; i < same; ++i) {
       places_.push(voxel.begin + begin + i);
       highs_.push(squared[0] * frame.above + frame.slack);
@@ -191,7 +150,7 @@ private:
   void noteCompared(std::uint32_t points) { work_.leaf_pairs += (points + kMaxLeafPoints - 1) / kMaxLeafPoints; }
 
   /// compare() for k = 1, at most kScanned points.
-  void compareForOne(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
+  void compareForOne(const NearestFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
   {
     noteCompared(end - begin);
     const LaneTag d;
@@ -220,8 +179,8 @@ private:
     if (nearest > frame.miss(bound_)) return;
     const float high = nearest * frame.above + frame.slack;
     if (high < bound_) lower(high);
-    places_.room(count);
-    highs_.room(count);
+    places_.reserveMore(count);
+    highs_.reserveMore(count);
     const LaneVector miss = hn::Set(d, frame.miss(bound_));
     for (i = 0; i < count; i += 64) {
       std::uint64_t near = 0;
@@ -237,11 +196,11 @@ private:
     }
   }
 
-  void compare(const NearFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
+  void compare(const NearestFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
   {
     noteCompared(end - begin);
-    places_.room(end - begin + kLanes);
-    highs_.room(end - begin + kLanes);
+    places_.reserveMore(end - begin + kLanes);
+    highs_.reserveMore(end - begin + kLanes);
     const LaneTag d;
     const LaneVector x = hn::Set(d, frame.at.x), y = hn::Set(d, frame.at.y), z = hn::Set(d, frame.at.z);
     const LaneVector scale = hn::Set(d, frame.above), slack = hn::Set(d, frame.slack);
@@ -316,8 +275,8 @@ private:
     const LaneTag d;
     std::size_t kept = 0;
     const std::size_t count = places_.size();
-    places_.room(kLanes);
-    highs_.room(kLanes);
+    places_.reserveMore(kLanes);
+    highs_.reserveMore(kLanes);
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
       const LaneVector highs = hn::LoadU(d, highs_.data() + i);
       const std::uint32_t near =
@@ -338,15 +297,15 @@ private:
     const double reach = radius_ / cloud_.frame.unit;
     const float surely = roundDown(std::min(reach * reach * (1.0 - kFewDoubleRoundings), kLargestSurely));
     std::size_t kept = 0;
-    const Voxel* const* home = voxels_.data();
+    const Voxel* const* voxel = voxels_.data();
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      while (places_[i] - (*home)->begin >= (*home)->count) ++home;
-      const std::uint32_t at = places_[i] - (*home)->begin;
-      const Point3 p = (*home)->point(cloud_.view, at);
+      while (places_[i] - (*voxel)->begin >= (*voxel)->count) ++voxel;
+      const std::uint32_t at = places_[i] - (*voxel)->begin;
+      const Point3 p = (*voxel)->point(cloud_.view, at);
       if (!(highs_[i] < surely || radius_ == std::numeric_limits<double>::infinity() ||
             isWithin(p, query_, radius_, work_)))
         continue;
-      places_[kept] = (*home)->records()[at];
+      places_[kept] = (*voxel)->records()[at];
       highs_[kept++] = squaredDistanceAsFloat(p, query_);
     }
     places_.resize(kept);
@@ -363,9 +322,9 @@ private:
   const std::size_t k_;
   std::size_t wanted_; ///< candidates at which the bound is looked at again
   const double radius_;
-  Pile<std::uint32_t>& places_; ///< points that may be among the nearest, counted over all voxels
-  Pile<float>& highs_;          ///< upper bounds of their squared distances, in the cloud's frame
-  Pile<const Voxel*>& voxels_;  ///< visited
+  ScratchArray<std::uint32_t>& places_; ///< points that may be among the nearest, counted over all voxels
+  ScratchArray<float>& highs_;          ///< upper bounds of their squared distances, in the cloud's frame
+  ScratchArray<const Voxel*>& voxels_;  ///< visited
   Work& work_;
   float bound_ = kInfinity;    ///< squared; points that are farther do not count
   float distance_ = kInfinity; ///< at least its root

@@ -15,12 +15,12 @@ namespace pcl_bsh {
 /// A list that grows but never shrinks, and is not written before it is used. Large ones are kept for other uses when
 /// they end (LargeBuffer).
 template <class T>
-class Pile {
+class ScratchArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
 public:
   std::size_t size() const noexcept { return size_; }
-  void resize(std::size_t size) noexcept { size_ = size; } ///< @pre room() was made
+  void resize(std::size_t size) noexcept { size_ = size; } ///< @pre reserveMore() was called
   void clear() noexcept { size_ = 0; }
   T* data() noexcept { return items_.get(); }
   T* end() noexcept { return items_.get() + size_; }
@@ -28,12 +28,12 @@ public:
   std::size_t bytes() const noexcept { return capacity_ * sizeof(T); }
 
   /// Makes sure that `more` items fit behind the last one.
-  void room(std::size_t more)
+  void reserveMore(std::size_t more)
   {
     if (size_ + more > capacity_) grow(size_ + more);
   }
 
-  /// @pre room() was made
+  /// @pre reserveMore() was called
   void push(const T& item) noexcept { items_[size_++] = item; }
 
 private:
@@ -52,15 +52,15 @@ private:
 
 /// To be had by a ScratchLease.
 struct NeighborScratch {
-  Pile<std::uint32_t> records; ///< what was found
-  Pile<float> squared;         ///< how far it is: perhaps an upper bound while searching, then the value to deliver
-  Pile<const Voxel*> voxels;   ///< where the candidates for the nearest are, in the order of those
+  ScratchArray<std::uint32_t> records; ///< what was found
+  ScratchArray<float> squared; ///< how far it is: perhaps an upper bound while searching, then the value of the answer
+  ScratchArray<const Voxel*> voxels; ///< where the candidates for the nearest are, in the order of those
 
   // of sorting
-  Pile<std::uint32_t> sorted_records;
-  Pile<float> sorted_squared;
-  Pile<std::uint64_t> keys, sorted_keys;
-  Pile<std::uint32_t> steps;
+  ScratchArray<std::uint32_t> sorted_records;
+  ScratchArray<float> sorted_squared;
+  ScratchArray<std::uint64_t> keys, sorted_keys;
+  ScratchArray<std::uint32_t> steps;
 
   hwy::Sorter sorter;
 
@@ -79,15 +79,15 @@ bool isWithin(const Point3& p, const Point3& q, double radius, Work& work);
 /// Sorts scratch.records by scratch.squared, its equals in any order.
 void sortBySquared(NeighborScratch& scratch);
 
-/// Where an answer goes.
-struct Delivery {
+/// The vectors that an answer is written to.
+struct NeighborOutput {
   std::vector<std::int32_t>& indices;
   std::vector<float>& squared_distances;
 };
 
 /// Sorts what was found and keeps the first `most` (0: all). Expects the DefaultFloatEnvironment.
-void deliver(const PointsView& view, const Point3& query, const RadiusOptions& options, NeighborScratch& scratch,
-             const Delivery& found, Work& work);
+void writeNearestFirst(const PointsView& view, const Point3& query, const RadiusOptions& options,
+                       NeighborScratch& scratch, const NeighborOutput& found, Work& work);
 
 /// One query each, arguments checked, environment set: found and measured, in any order. The radius search ignores
 /// options.most.

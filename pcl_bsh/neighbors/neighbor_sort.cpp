@@ -20,11 +20,11 @@ namespace HWY_NAMESPACE {
 void sortFewOnTarget(NeighborScratch& scratch)
 {
   const std::size_t count = scratch.records.size();
-  scratch.squared.room(kLanes);
+  scratch.squared.reserveMore(kLanes);
   scratch.sorted_squared.clear();
   scratch.sorted_records.clear();
-  scratch.sorted_squared.room(count);
-  scratch.sorted_records.room(count);
+  scratch.sorted_squared.reserveMore(count);
+  scratch.sorted_records.reserveMore(count);
   rankSort(scratch.squared.data(), scratch.records.data(), count, scratch.sorted_squared.data(),
            scratch.sorted_records.data());
   scratch.sorted_squared.resize(count);
@@ -57,7 +57,7 @@ bool sortBySteps(NeighborScratch& scratch, std::size_t count)
   if (!(scale * largest < static_cast<float>(steps)) || count > std::size_t{1} << 20) return false;
 
   scratch.steps.clear();
-  scratch.steps.room(count + steps + 1);
+  scratch.steps.reserveMore(count + steps + 1);
   std::uint32_t* const step = scratch.steps.data();
   std::uint32_t* const starts = step + count; // of the step before, while counting
   std::fill_n(starts, steps + 1, 0u);
@@ -71,7 +71,7 @@ bool sortBySteps(NeighborScratch& scratch, std::size_t count)
   if (fullest > kFull) return false;
 
   scratch.sorted_keys.clear();
-  scratch.sorted_keys.room(count);
+  scratch.sorted_keys.reserveMore(count);
   std::uint64_t* const keys = scratch.sorted_keys.data();
   for (std::size_t i = 0; i < count; ++i) keys[starts[step[i]]++] = scratch.keys[i];
   for (std::size_t i = 1; i < count; ++i) {
@@ -95,7 +95,7 @@ void sortBySquared(NeighborScratch& scratch)
 
   // A squared distance and its record as one number: floats >= 0 are in the order of their bits.
   scratch.keys.clear();
-  scratch.keys.room(count);
+  scratch.keys.reserveMore(count);
   for (std::size_t i = 0; i < count; ++i)
     scratch.keys[i] = std::uint64_t{std::bit_cast<std::uint32_t>(scratch.squared[i])} << 32 | scratch.records[i];
   if (!sortBySteps(scratch, count)) {

@@ -16,7 +16,7 @@ constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
 
 /// One query of a kind, wherever it comes from: alone or in a batch.
 void answer(const SphereHierarchy& cloud, const Point3& query, double radius, const RadiusOptions& options,
-            const Delivery& found, Work& work)
+            const NeighborOutput& found, Work& work)
 {
   const ScratchLease<NeighborScratch> lease;
   NeighborScratch& scratch = *lease;
@@ -27,16 +27,16 @@ void answer(const SphereHierarchy& cloud, const Point3& query, double radius, co
     else
       findWithin(cloud.storage(), query, radius, scratch, work);
   }
-  deliver(cloud.view(), query, options, scratch, found, work);
+  writeNearestFirst(cloud.view(), query, options, scratch, found, work);
 }
 
-void answer(const SphereHierarchy& cloud, const Point3& query, std::size_t k, const Delivery& found, Work& work)
+void answer(const SphereHierarchy& cloud, const Point3& query, std::size_t k, const NeighborOutput& found, Work& work)
 {
   const ScratchLease<NeighborScratch> lease;
   NeighborScratch& scratch = *lease;
   scratch.records.clear();
   if (isFinite(query) && k > 0) findNearest(cloud.storage(), query, k, kAnyDistance, scratch, work);
-  deliver(cloud.view(), query, {k, true}, scratch, found, work);
+  writeNearestFirst(cloud.view(), query, {k, true}, scratch, found, work);
 }
 
 void makeRoom(NeighborLists& found, std::size_t queries)

@@ -7,7 +7,7 @@
 //   radiusSearch(scan, {x, y, z}, 0.1, found);      // |p - q| <= 0.1
 //   bool near = anyInRadius(scan, {x, y, z}, 0.1);
 //
-// Who is a neighbour, and in which order, is what exact arithmetic on the given numbers says: by ascending distance,
+// Neighbours and their order are those of exact arithmetic on the given numbers: by ascending distance,
 // equal distances by ascending record number. Radii that the cloud's points may have play no part. A query that is not
 // finite has no neighbour; nor has anything in an empty cloud. Voxels are built as queries visit them. Several threads
 // may query one hierarchy at once.

@@ -62,8 +62,8 @@ private:
   /// For `count` more points, and whole vectors.
   void makeRoom(std::size_t count)
   {
-    records_.room(count + kLanes);
-    squared_.room(count + kLanes);
+    records_.reserveMore(count + kLanes);
+    squared_.reserveMore(count + kLanes);
   }
   void add(std::size_t count)
   {
@@ -73,8 +73,8 @@ private:
 
   const PointsView& view_;
   const Point3& query_;
-  Pile<std::uint32_t>& records_;
-  Pile<float>& squared_;
+  ScratchArray<std::uint32_t>& records_;
+  ScratchArray<float>& squared_;
 };
 
 /// Is content with the first.

@@ -50,7 +50,7 @@ void Scene::State::decideAny(BroadPair& pair) const
     return;
   }
 
-  /// Whether any parts collide at the clearance; if so, notes the witness; if not, who may.
+  /// Whether any parts collide at the clearance; if so, notes the witness; if not, parts that may.
   const auto ask = [&](double clearance) {
     memory.undecided.reset();
     for (std::uint32_t i = 0; i < a.world.size(); ++i)

@@ -62,7 +62,7 @@ public:
   /// Those of one object, in no order.
   const std::vector<BroadPair*>& pairsOf(ObjectId object) const { return places_[object].pairs; }
 
-  /// Pairs that share no voxel any more are kept, with shared == 0, until nobody can look at them.
+  /// Pairs that share no voxel any more are kept, with shared == 0, until no list refers to them.
   bool hasParted() const { return !parted_.empty(); }
   void dropParted();
 

@@ -82,7 +82,7 @@ void Scene::State::findFirstContacts()
   std::vector<std::optional<PartFirstContact>> found(grid.pairs().size());
   eachSweptPair(spent,
                 [&](std::size_t k, BroadPair& pair, const PartPair& parts, const SweptPart& a, const SweptPart& b) {
-                  const auto met = firstMeeting(a, b, pair.clearance, options.tolerance, pair.memory.work);
+                  const auto met = firstContactOf(a, b, pair.clearance, options.tolerance, pair.memory.work);
                   if (met && (!found[k] || met->s < found[k]->fraction))
                     found[k] = PartFirstContact{parts, met->s, met->pair};
                 });

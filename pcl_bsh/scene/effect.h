@@ -45,7 +45,7 @@ void Scene::State::eachPair(const std::vector<BroadPair*>& pairs, EffectCost& co
   }
 }
 
-/// Calls ask(k, pair, parts, a, b) for each two parts of pair k of the grid, if the ways of its objects come near
+/// Calls ask(k, pair, parts, a, b) for each two parts of pair k of the grid, if the motions of its objects come near
 /// enough to meet.
 template <class Ask>
 void Scene::State::eachSweptPair(EffectCost& cost, const Ask& ask)

@@ -1,66 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a query computes: the pairs worth asking about, then each listed effect by itself, with its own cost.
-#include <pcl_bsh/scene/effect.h>
-
-#include <algorithm>
+#include <pcl_bsh/scene/effects.h>
 
 namespace pcl_bsh {
 
-Leg Scene::State::legOf(ObjectId object) const
+const char* nameOf(Effect effect) noexcept
 {
-  const Body& body = bodies[object];
-  const Eigen::Isometry3d& to = body.object.pose;
-  if (body.last_version == 0) return {to, to, body.center(), Eigen::Vector3d::Zero()};
-  return {body.last_pose, to, body.center(), turnNearestTo(body.turned, body.last_pose.linear(), to.linear())};
+  static constexpr const char* names[kEffects] = {"any",  "flags", "distance", "contacts", "first_contact", "swept",
+                                                  "self", "stop",  "slide",    "gravity",  "deform"};
+  return names[static_cast<std::size_t>(effect)];
 }
 
-ObjectMotion Scene::State::motionOf(ObjectId object) const
+bool Effects::has(Effect effect) const noexcept
 {
-  return {legOf(object), bodies[object].box};
+  switch (effect) {
+  case Effect::any:
+    return any;
+  case Effect::flags:
+    return flags;
+  case Effect::distance:
+    return distance.has_value();
+  case Effect::contacts:
+    return contacts.has_value();
+  case Effect::first_contact:
+    return first_contact;
+  case Effect::swept:
+    return swept;
+  case Effect::self:
+    return self;
+  case Effect::stop:
+    return response == Response::stop;
+  case Effect::slide:
+    return response == Response::slide;
+  case Effect::gravity:
+    return gravity.has_value();
+  case Effect::deform:
+    return deform.has_value();
+  }
+  return false;
 }
 
-SceneResult Scene::State::query()
+bool Effects::none() const noexcept
 {
-  const Effects& effects = options.effects;
-  followPoints();
-  if (looksBack(effects)) {
-    std::vector<ObjectWay> ways;
-    for (const ObjectId object : moved) {
-      const Leg leg = legOf(object);
-      checkWay(bodies[object], leg.from, leg.to, leg.turn, options.tolerance / 16);
-      if (bodies[object].last_version > 0) ways.push_back({object, leg});
-    }
-    const auto before = [](const ObjectWay& l, const ObjectWay& r) { return l.object < r.object; };
-    std::sort(ways.begin(), ways.end(), before);
-    result.ways = std::move(ways);
-  }
-  result.time = time;
-  const bool of_near = effects.any || effects.flags || effects.contacts;
-  if (of_near || effects.distance || looksBack(effects)) prepareGrid();
-  if (of_near) findNear();
-  if (effects.any) findAny();
-  if (effects.flags) findFlags();
-  if (effects.distance) findDistances();
-  if (effects.contacts) findContacts();
-  if (effects.first_contact) findFirstContacts();
-  if (effects.swept) findSwept();
-  if (effects.self) findSelf();
-  if (!of_near) grid.dropParted(); // nobody keeps them
-  for (const ObjectId object : moved_before) bodies[object].last_motion = 0.0;
-  for (const ObjectId object : moved) {
-    Body& body = bodies[object];
-    body.last_motion =
-        options.remember && body.last_version > 0 ? motionBound(body.box, body.last_pose, body.object.pose) : 0.0;
-    body.last_pose = body.object.pose;
-    body.last_version = body.version;
-    body.turned.setZero();
-    body.listed = false;
-  }
-  moved_before.swap(moved);
-  moved.clear();
-  SceneResult finished = std::move(result);
-  result = SceneResult();
-  return finished;
+  for (std::size_t i = 0; i < kEffects; ++i)
+    if (has(static_cast<Effect>(i))) return false;
+  return true;
 }
 
 } // namespace pcl_bsh

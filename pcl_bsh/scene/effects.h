@@ -136,19 +136,19 @@ struct SelfCollision {
 struct Outcome {
   ObjectId object = 0;
   bool touched = false;   ///< it met something
-  ObjectId against = 0;   ///< whom it met last, if so
+  ObjectId against = 0;   ///< the object that it met last, if so
   bool stuck = false;     ///< it collided before it moved, and so stays where it is
   bool grounded = false;  ///< gravity found ground below it
   double wanted = 0.0;    ///< length of the motion asked for, of the object's centre
   double travelled = 0.0; ///< how far the centre is from where it was
-  /// The way it took, leg by leg from where it stood to where it stands; empty if it stayed. With a response no instant
-  /// of it collides. Gravity without a response looks only at the last legs, the drop: the motion itself, and the lift
-  /// after it, go through whatever is there.
+  /// The motion it made, leg by leg from its first pose to its last; empty if it did not move. With a response no
+  /// instant of it collides. Gravity without a response looks only at the last legs, the drop: the motion itself, and
+  /// the lift after it, go through whatever is there.
   std::vector<Leg> legs;
 };
 
 /// Of an object that has moved, from its pose at the last query: what first_contact and swept look at.
-struct ObjectWay {
+struct SweptMotion {
   ObjectId object = 0;
   Leg leg;
 };
@@ -156,14 +156,14 @@ struct ObjectWay {
 struct SceneResult {
   double time = 0.0; ///< of the scene, seconds
   std::vector<CollidingPair> any;
-  /// Of `any`, or where a == b of `self`: who may collide or not, as far as the scene's accuracy goes.
+  /// Of `any`, or where a == b of `self`: parts that may collide or not, as far as the scene's accuracy goes.
   std::vector<PartPair> undecided;
   std::vector<FlaggedPart> flags;
   std::vector<DistantPair> distance;
   std::vector<ContactPair> contacts;
   std::vector<PartFirstContact> first_contact;
   std::vector<FlaggedPart> swept;
-  std::vector<ObjectWay> ways; ///< by object; with first_contact or swept
+  std::vector<SweptMotion> swept_motions; ///< by object; with first_contact or swept
   std::vector<SelfCollision> self;
   std::vector<Outcome> outcomes; ///< of moved objects, with a response or gravity
   BroadPhaseCost broad_phase;

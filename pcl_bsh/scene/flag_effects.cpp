@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which points collide, where things are and on their way there.
+// Which points collide at the present poses, and during the motion to them.
 #include <pcl_bsh/scene/effect.h>
 
 #include <algorithm>
@@ -104,7 +104,7 @@ void Scene::State::findSwept()
                 [&](std::size_t k, BroadPair& pair, const PartPair& parts, const SweptPart& a, const SweptPart& b) {
                   PairFlags flags{parts, std::vector<std::uint8_t>(a.hierarchy.view().count, 0),
                                   std::vector<std::uint8_t>(b.hierarchy.view().count, 0)};
-                  flagMeetings(a, b, pair.clearance, options.tolerance, flags.a, flags.b, pair.memory.work);
+                  flagContacts(a, b, pair.clearance, options.tolerance, flags.a, flags.b, pair.memory.work);
                   if (std::find(flags.a.begin(), flags.a.end(), 1) != flags.a.end())
                     found[k].push_back(std::move(flags));
                 });

@@ -38,7 +38,8 @@ bool Mover::follow(const Eigen::Isometry3d& target, const Eigen::Vector3d& turn)
   return whole;
 }
 
-/// On one path from s = begin to end, in halves where too many points can meet. @param done s of the last pose taken
+/// Along one motion from s = begin to end, in halves where too many points can meet. @param done s of the last pose
+/// taken
 bool Mover::follow(const ObjectMotion& motion, double begin, double end, double& done)
 {
   const double length = end - begin;
@@ -63,7 +64,7 @@ bool Mover::follow(const ObjectMotion& motion, double begin, double end, double&
     const Point3 q = hierarchyOf(e).view().point(e.pair.b);
     const Eigen::Vector3d local = part.pose * Eigen::Vector3d(p[0], p[1], p[2]);
     const Eigen::Vector3d other = worldOf(e) * Eigen::Vector3d(q[0], q[1], q[2]);
-    const auto s = meeting(motion, local, still, other, {e.reach, tolerance_}, begin, last);
+    const auto s = timeOfContact(motion, local, still, other, {e.reach, tolerance_}, begin, last);
     if (!s) continue;
     last = *s;
     met = &e;
@@ -79,31 +80,31 @@ bool Mover::follow(const ObjectMotion& motion, double begin, double end, double&
 
 bool Mover::translate(const Eigen::Isometry3d& target, bool slide)
 {
-  // At once where few points can meet on the way, else in portions, each twice as long as the one before while nothing
+  // At once where few points can meet, else in portions, each twice as long as the one before while nothing
   // is met.
   const double first = 0.5 * state_.rules.largestClearance() + 32 * tolerance_;
   constexpr double unlimited = std::numeric_limits<double>::infinity();
   Eigen::Vector3d left = target.translation() - pose().translation();
-  const double negligible = 1e-6 * left.norm(); // of a way that has been bent
+  const double negligible = 1e-6 * left.norm(); // of a path that has been bent
   double portion = unlimited;
   bool straight = true; // nothing met so far
-  Planes planes;
+  ContactPlanes planes;
   for (int contacts = 0; contacts < kMostContacts;) {
     const double length = left.norm();
     if (length <= (straight ? 0.0 : negligible)) return straight;
     const bool last = length <= portion;
-    const double room = last ? length : portion;
-    const Eigen::Vector3d part = left * (room / length);
-    Box3 swept = body_.world_box; // what stands beside a bent way is collected where it bends
+    const double most_travel = last ? length : portion;
+    const Eigen::Vector3d part = left * (most_travel / length);
+    Box3 swept = body_.world_box; // what is beside a bent path is collected where it bends
     swept.merge({swept.low + part, swept.high + part});
     const std::size_t most = portion == unlimited ? kFewPairs : kMostPairs;
-    if (!collect(swept, room, most)) {
-      if (portion != unlimited && room <= 0.25 * tolerance_) return halt();
-      portion = portion == unlimited ? first : 0.5 * room;
+    if (!collect(swept, most_travel, most)) {
+      if (portion != unlimited && most_travel <= 0.25 * tolerance_) return halt();
+      portion = portion == unlimited ? first : 0.5 * most_travel;
       continue;
     }
     if (outcome.stuck) return false;
-    const Walked walked = walk(left, room, straight && last ? &target : nullptr, slide, most, planes);
+    const Walked walked = walk(left, most_travel, straight && last ? &target : nullptr, slide, most, planes);
     if (walked == Walked::blocked || (walked == Walked::met && !slide)) return false;
     if (walked == Walked::free) {
       portion *= 2;
@@ -117,23 +118,23 @@ bool Mover::translate(const Eigen::Isometry3d& target, bool slide)
   return false;
 }
 
-/// On from where points were collected, by `room` at most. @param left what is left of the way, shortened and bent by
-/// what is met @param target the pose at the end of the way
-Mover::Walked Mover::walk(Eigen::Vector3d& left, double room, const Eigen::Isometry3d* target, bool slide,
-                          std::size_t most, Planes& planes)
+/// On from where points were collected, by `most_travel` at most. @param left what is left of the motion, shortened and
+/// bent by what is met @param target the pose at its end
+Mover::Walked Mover::walk(Eigen::Vector3d& left, double most_travel, const Eigen::Isometry3d* target, bool slide,
+                          std::size_t most, ContactPlanes& planes)
 {
   const Eigen::Isometry3d start = pose();
-  const double negligible = 1e-6 * room;
+  const double negligible = 1e-6 * most_travel;
   Eigen::Vector3d gone = Eigen::Vector3d::Zero();
   for (int bounce = 0; bounce < kMostBounces; ++bounce) {
     const double length = left.norm();
-    if (bounce > 0 && (length <= negligible || room <= negligible)) return Walked::met;
-    const bool last = length <= room;
-    const Eigen::Vector3d part = last ? left : Eigen::Vector3d(left * (room / length));
+    if (bounce > 0 && (length <= negligible || most_travel <= negligible)) return Walked::met;
+    const bool last = length <= most_travel;
+    const Eigen::Vector3d part = last ? left : Eigen::Vector3d(left * (most_travel / length));
     const Encounter* met = nullptr;
     double end = 1.0;
     for (const Encounter& e : encounters_) {
-      const auto s = meeting(e.apart + gone, part, {e.reach, tolerance_});
+      const auto s = timeOfContact(e.apart + gone, part, {e.reach, tolerance_});
       if (!s || (met && *s >= end)) continue;
       end = *s;
       met = &e;
@@ -147,7 +148,7 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, double room, const Eigen::Isome
       if (!go(arrives ? *target : next)) return Walked::blocked;
     }
     gone += moved;
-    room -= distance;
+    most_travel -= distance;
     left = !met && last ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : Eigen::Vector3d(left - moved);
     if (!met) return bounce == 0 ? Walked::free : Walked::met;
     touch(*met);
@@ -155,12 +156,12 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, double room, const Eigen::Isome
     left = planes.add((met->apart + gone).stableNormalized(), left);
     if (!slide) return Walked::met;
     if (bounce > 0) continue;
-    // Only what is beside the straight way has been collected. From here on the way may lead anywhere within what is
-    // left of the room. Pairs collected hold for that already; those of other objects are added.
+    // Only what is beside the straight path has been collected. From here on it may lead anywhere within what is
+    // left of it. Pairs collected hold for that already; those of other objects are added.
     const std::size_t known = encounters_.size();
     Box3 swept = body_.world_box;
-    swept.grow(std::max(room, 0.0));
-    if (!collectMore(swept, std::max(room, 0.0), most)) return Walked::crowded;
+    swept.grow(std::max(most_travel, 0.0));
+    if (!collectMore(swept, std::max(most_travel, 0.0), most)) return Walked::crowded;
     if (outcome.stuck) return Walked::blocked;
     for (std::size_t i = known; i < encounters_.size(); ++i) encounters_[i].apart -= gone;
   }

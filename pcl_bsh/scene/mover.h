@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One object on its way among all the others, which stand still meanwhile.
+// Moves one object among all the others, which stand still meanwhile.
 #pragma once
 
-#include <pcl_bsh/scene/approach.h>
-#include <pcl_bsh/scene/planes.h>
+#include <pcl_bsh/scene/conservative_advancement.h>
+#include <pcl_bsh/scene/contact_planes.h>
 #include <pcl_bsh/scene/state.h>
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace pcl_bsh {
 
 /// Moves an object leg by leg. Before each leg, all pairs of points that can meet on it are collected, whatever object
 /// they are of; a leg ends where the first of them meets, and its end is taken only if none of them collides there, in
-/// exact arithmetic. A way that bends is collected for as far as it may go in any direction.
+/// exact arithmetic. Along a bent path, pairs are collected as far as the object may get in any direction.
 class Mover {
 public:
   Mover(Scene::State& state, ObjectId object, EffectCost& cost);
@@ -45,8 +45,8 @@ private:
   enum class Walked { free, met, crowded, blocked };
 
   bool follow(const ObjectMotion& motion, double begin, double end, double& done);
-  Walked walk(Eigen::Vector3d& left, double room, const Eigen::Isometry3d* target, bool slide, std::size_t most,
-              Planes& planes);
+  Walked walk(Eigen::Vector3d& left, double most_travel, const Eigen::Isometry3d* target, bool slide, std::size_t most,
+              ContactPlanes& planes);
   bool collect(Box3 swept, double length, std::size_t most);
   bool collectMore(Box3 swept, double length, std::size_t most);
   bool collectFrom(ObjectId other, double clearance, double length, std::size_t most);

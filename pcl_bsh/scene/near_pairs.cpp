@@ -46,20 +46,20 @@ void Scene::State::prepareGrid()
     return;
   }
   for (const ObjectId i : moved) place(i);
-  for (const ObjectId i : moved_before) place(i); // whose boxes held their ways
+  for (const ObjectId i : moved_before) place(i); // whose boxes held their motions
 }
 
 void Scene::State::place(ObjectId object)
 {
   Body& body = bodies[object];
-  const bool way = looksBack(options.effects) && body.last_version > 0 && body.version != body.last_version;
-  if (body.placed_version == body.version && !body.placed_swept && !way) return;
+  const bool swept = usesSweptMotion(options.effects) && body.last_version > 0 && body.version != body.last_version;
+  if (body.placed_version == body.version && !body.placed_swept && !swept) return;
   body.placed_version = body.version;
-  body.placed_swept = way;
+  body.placed_swept = swept;
   ++result.broad_phase.moved;
-  boxes_.assign(1, way ? motionOf(object).swept() : body.world_box);
+  boxes_.assign(1, swept ? motionOf(object).swept() : body.world_box);
   boxes_.front().grow(0.5 * reach);
-  if (!way && grid.voxelsOf(boxes_.front()) > kCoarse) {
+  if (!swept && grid.voxelsOf(boxes_.front()) > kCoarse) {
     boxes_.clear();
     for (std::size_t p = 0; p < body.world.size(); ++p) {
       const SphereHierarchy::Storage& storage = body.object.parts[p].hierarchy->storage();

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a moving object gives way: it stops, it slides, it follows the ground.
+// Responses to collisions: a moving object stops, slides, or follows the ground.
 #include <pcl_bsh/scene/mover.h>
 
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/plain_text.h>
 
 #include <chrono>
-#include <cstdio>
 #include <numbers>
 #include <string>
 
 namespace pcl_bsh {
 namespace {
 
-constexpr double kMostTurns = 1000; // of an object within a step, where its way matters
+constexpr double kMostTurns = 1000; // of an object within a step, where its motion matters
 
 /// Where an object is to go.
 struct Goal {
   Eigen::Isometry3d pose;
-  Eigen::Vector3d turn; ///< on the way there
+  Eigen::Vector3d turn; ///< of the motion there
 };
 
 /// Turned as the goal, about the centre of its box, but still where it is.
@@ -51,7 +51,7 @@ bool moveTo(Mover& mover, const Body& body, const Goal& goal, Response response)
   return mover.translate(goal.pose, response == Response::slide);
 }
 
-/// The goal of a body's own motion. @param turning whether anybody looks at the turn
+/// The goal of a body's own motion. @param turning whether the turn is needed
 Goal goalOf(const Body& body, double before, double after, bool turning)
 {
   const Motion& motion = body.object.motion;
@@ -59,7 +59,7 @@ Goal goalOf(const Body& body, double before, double after, bool turning)
   const Eigen::Isometry3d to = poseAt(motion, body.start, end);
   Goal goal{to, Eigen::Vector3d::Zero()};
   const Eigen::Isometry3d& now = body.object.pose;
-  if (!body.on_course) { // the same motion from where it stands
+  if (!body.follows_motion) { // the same motion from where it stands
     const Eigen::Isometry3d from = poseAt(motion, body.start, begin);
     goal.pose.translation() = now.translation() + (to.translation() - from.translation());
     goal.pose.linear() = from.linear() == to.linear()
@@ -176,39 +176,34 @@ void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, con
   place(object);
 }
 
-/// Refuses a way on which promises cannot be kept. @param rounding that positions may have
-void Scene::State::checkWay(const Body& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
-                            const Eigen::Vector3d& turn, double rounding) const
+/// Refuses a motion for which the bounds do not hold. @param rounding that positions may have
+void Scene::State::checkMotion(const Body& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
+                               const Eigen::Vector3d& turn, double rounding) const
 {
   const auto refuse = [&body](const std::string& what) {
     throw InvalidInput(Input::scene, "Scene", "object '" + body.object.name + "' " + what);
   };
   const double turns = turn.norm() / (2.0 * std::numbers::pi);
   if (!(turns <= kMostTurns))
-    refuse("turns " + std::to_string(turns) + " times within a step: make steps so short that it turns at most " +
-           std::to_string(kMostTurns) + " times");
+    refuse(plainText("turns ", turns, " times within a step: make steps so short that it turns at most ", kMostTurns,
+                     " times"));
   const double found = ObjectMotion({from, to, body.center(), turn}, body.box).rounding();
   if (found <= rounding) return;
-  const auto text = [](double value) {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "%.3g", value);
-    return std::string(digits);
-  };
-  refuse("goes where coordinates round by up to " + text(found) + ": give a tolerance of at least " +
-         text(options.tolerance * found / rounding) + " instead of " + text(options.tolerance) +
-         ", or move the scene nearer to its origin");
+  refuse(plainText("goes where coordinates round by up to ", found, ": give a tolerance of at least ",
+                   options.tolerance * found / rounding, " instead of ", options.tolerance,
+                   ", or move the scene nearer to its origin"));
 }
 
 /// Of all that is about to move, before anything has. A response may lead elsewhere, to coordinates that round by twice
 /// as much at most: a query allows for that.
-void Scene::State::checkWays(double before, double after) const
+void Scene::State::checkMotions(double before, double after) const
 {
   const auto check = [this](const Body& body, const Goal& goal) {
     const double rounding = options.tolerance / 32;
     checkWorld(body.object, goal.pose);
-    checkWay(body, body.object.pose, goal.pose, goal.turn, rounding);
-    if (looksBack(options.effects) && body.last_version > 0)
-      checkWay(body, body.last_pose, goal.pose, body.turned + goal.turn, rounding);
+    checkMotion(body, body.object.pose, goal.pose, goal.turn, rounding);
+    if (usesSweptMotion(options.effects) && body.last_version > 0)
+      checkMotion(body, body.last_pose, goal.pose, body.turned + goal.turn, rounding);
   };
   // What has not moved was checked when it came where it is.
   for (const ObjectId object : moved) check(bodies[object], {bodies[object].object.pose, Eigen::Vector3d::Zero()});
@@ -219,9 +214,9 @@ void Scene::State::checkWays(double before, double after) const
 void Scene::State::move(double dt)
 {
   const bool responding = isResponding(options.effects);
-  const bool turning = responding || looksBack(options.effects); // ways matter, not only where they end
+  const bool turning = responding || usesSweptMotion(options.effects); // the motion matters, not only its end
   const double before = time, after = time + dt;
-  if (turning) checkWays(before, after);
+  if (turning) checkMotions(before, after);
   if (responding) prepareGrid();
   for (ObjectId i = 0; i < bodies.size(); ++i) {
     Body& body = bodies[i];
@@ -231,7 +226,7 @@ void Scene::State::move(double dt)
     if (rests && !options.effects.gravity) continue;
     if (responding) {
       respond(i, goal.pose, goal.turn);
-      if (body.object.pose.matrix() != goal.pose.matrix()) body.on_course = false;
+      if (body.object.pose.matrix() != goal.pose.matrix()) body.follows_motion = false;
     }
     else {
       body.turned += goal.turn;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Objects, poses, rules: what a scene is. What it computes is in effects.cpp and response.cpp.
+// Objects, poses and rules of a scene. What it computes is in scene_query.cpp and response.cpp.
 #include <pcl_bsh/scene/scene.h>
 
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/request_check.h>
+#include <pcl_bsh/scene/check_scene.h>
 #include <pcl_bsh/scene/state.h>
 
 #include <algorithm>
@@ -15,105 +17,12 @@
 namespace pcl_bsh {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what)
-{
-  throw InvalidInput(Input::scene, "Scene", what);
-}
-
-bool isLength(double value)
-{
-  return std::isfinite(value) && value >= 0.0;
-}
-
-void check(const SceneOptions& options)
-{
-  const Effects& effects = options.effects;
-  if (!isLength(options.clearance))
-    refuse("clearance " + std::to_string(options.clearance) + " is not finite and >= 0");
-  if (!(std::isfinite(options.tolerance) && options.tolerance > 0.0))
-    refuse("tolerance " + std::to_string(options.tolerance) + " is not finite and > 0");
-  if (!isLength(options.accuracy.value))
-    refuse("accuracy " + options.accuracy.text() + " has a number that is not finite and >= 0");
-  if (!isLength(options.voxel_edge))
-    refuse("voxel edge " + std::to_string(options.voxel_edge) + " is not finite and >= 0");
-  if (effects.distance && !(*effects.distance >= 0.0))
-    refuse("distances within " + std::to_string(*effects.distance) + " were asked for, which is not >= 0");
-  if (effects.gravity) {
-    if (!(std::isfinite(effects.gravity->step_height) && effects.gravity->step_height > 0.0))
-      refuse("step height " + std::to_string(effects.gravity->step_height) + " is not finite and > 0");
-    if (!(effects.gravity->down.allFinite() && effects.gravity->down.norm() > 0.0))
-      refuse("gravity's direction is not finite or of length 0");
-  }
-  if (effects.deform && !(std::isfinite(*effects.deform) && *effects.deform >= 1.0))
-    refuse("deform's threshold " + std::to_string(*effects.deform) + " is not finite and >= 1");
-}
-
-void check(const SceneObject& object, const std::unordered_map<std::string, ObjectId>& names)
-{
-  if (object.name.empty()) refuse("an object has no name");
-  if (names.count(object.name) > 0) refuse("object '" + object.name + "': the name is taken");
-  if (object.parts.empty()) refuse("object '" + object.name + "' has no parts");
-  checkPose("pose of object '" + object.name + "'", object.pose);
-  for (const ScenePart& part : object.parts) {
-    if (!part.hierarchy) refuse("object '" + object.name + "', part '" + part.name + "' has no hierarchy");
-    checkPose("pose of part '" + part.name + "' of object '" + object.name + "'", part.pose);
-  }
-  for (const auto& [a, b] : object.adjacent)
-    if (a >= object.parts.size() || b >= object.parts.size())
-      refuse("object '" + object.name + "': part " + std::to_string(std::max(a, b)) + " is adjacent, but there are " +
-             std::to_string(object.parts.size()) + " parts");
-  check(object.motion);
-}
-
 bool isWhole(const Eigen::Isometry3d& pose)
 {
   return pose.matrix() == Eigen::Matrix4d::Identity();
 }
 
 } // namespace
-
-const char* nameOf(Effect effect) noexcept
-{
-  static constexpr const char* names[kEffects] = {"any",  "flags", "distance", "contacts", "first_contact", "swept",
-                                                  "self", "stop",  "slide",    "gravity",  "deform"};
-  return names[static_cast<std::size_t>(effect)];
-}
-
-bool Effects::has(Effect effect) const noexcept
-{
-  switch (effect) {
-  case Effect::any:
-    return any;
-  case Effect::flags:
-    return flags;
-  case Effect::distance:
-    return distance.has_value();
-  case Effect::contacts:
-    return contacts.has_value();
-  case Effect::first_contact:
-    return first_contact;
-  case Effect::swept:
-    return swept;
-  case Effect::self:
-    return self;
-  case Effect::stop:
-    return response == Response::stop;
-  case Effect::slide:
-    return response == Response::slide;
-  case Effect::gravity:
-    return gravity.has_value();
-  case Effect::deform:
-    return deform.has_value();
-  }
-  return false;
-}
-
-bool Effects::none() const noexcept
-{
-  for (std::size_t i = 0; i < kEffects; ++i)
-    if (has(static_cast<Effect>(i))) return false;
-  return true;
-}
 
 Scene::State::State(SceneOptions scene_options)
 : options(std::move(scene_options)),
@@ -131,8 +40,7 @@ void Scene::State::checkWorld(const SceneObject& object, const Eigen::Isometry3d
 
 Body& Scene::State::body(ObjectId object)
 {
-  if (object >= bodies.size())
-    refuse("there is no object " + std::to_string(object) + " among " + std::to_string(bodies.size()));
+  if (object >= bodies.size()) refuse("there is no object " + plainText(object) + " among " + plainText(bodies.size()));
   return bodies[object];
 }
 
@@ -157,7 +65,7 @@ void Scene::State::setPose(ObjectId object, const Eigen::Isometry3d& pose)
 }
 
 /// Hierarchies are shared with other scenes and with callers that update them. What was remembered of points that have
-/// changed since is not believed, whoever changed them.
+/// changed since is dropped, also where another scene changed them.
 void Scene::State::followPoints()
 {
   if (options.effects.none()) return;
@@ -179,7 +87,7 @@ void Scene::State::pointsChanged(ObjectId object)
   Body& changed = bodies[object];
   changed.box = boxOf(changed.object);
   updateWorld(changed);
-  changed.last_version = 0; // there is no way from the points that were
+  changed.last_version = 0; // there is no motion from the former points
   if (!grid_stale) grid.forget(object);
 }
 
@@ -196,7 +104,7 @@ SceneResult Scene::State::step(double dt)
   const double before = time;
   for (Body& body : bodies) {
     body.step_pose = body.object.pose;
-    body.step_on_course = body.on_course;
+    body.step_follows_motion = body.follows_motion;
     body.step_turned = body.turned;
   }
   try {
@@ -207,7 +115,7 @@ SceneResult Scene::State::step(double dt)
   catch (...) {
     time = before;
     for (Body& body : bodies) {
-      body.on_course = body.step_on_course;
+      body.follows_motion = body.step_follows_motion;
       body.turned = body.step_turned;
       if (body.object.pose.matrix() != body.step_pose.matrix()) setPose(body.id, body.step_pose);
     }
@@ -299,9 +207,9 @@ void Scene::setPose(ObjectId object, const Eigen::Isometry3d& pose)
   Body& body = state_->body(object);
   checkPose("pose of object '" + body.object.name + "'", pose);
   State::checkWorld(body.object, pose);
-  body.on_course = false;
+  body.follows_motion = false;
   state_->setPose(object, pose);
-  if (looksBack(state_->options.effects)) // straight there, the shorter way round
+  if (usesSweptMotion(state_->options.effects)) // one leg there, in the shorter direction
     body.turned = shorterTurn(body.last_pose.linear(), pose.linear());
 }
 
@@ -321,16 +229,16 @@ void Scene::setMotion(ObjectId object, const Motion& motion)
   body.object.motion = Motion(motion); // copied as a whole, or not at all
   body.start = body.object.pose;
   body.start_time = state_->time;
-  body.on_course = true;
+  body.follows_motion = true;
 }
 
 void Scene::setRule(ObjectId a, ObjectId b, const PairRule& rule)
 {
   state_->body(a);
   state_->body(b);
-  if (a == b) refuse("a rule needs two objects, not object " + std::to_string(a) + " twice");
+  if (a == b) refuse("a rule needs two objects, not object " + plainText(a) + " twice");
   if (rule.clearance && !isLength(*rule.clearance))
-    refuse("clearance " + std::to_string(*rule.clearance) + " of a rule is not finite and >= 0");
+    refuse("clearance " + plainText(*rule.clearance) + " of a rule is not finite and >= 0");
   state_->rules.set(a, b, rule);
   state_->grid_stale = true;
 }
@@ -338,7 +246,7 @@ void Scene::setRule(ObjectId a, ObjectId b, const PairRule& rule)
 void Scene::setGroupRule(const std::string& group_a, const std::string& group_b, const PairRule& rule)
 {
   if (rule.clearance && !isLength(*rule.clearance))
-    refuse("clearance " + std::to_string(*rule.clearance) + " of a rule is not finite and >= 0");
+    refuse("clearance " + plainText(*rule.clearance) + " of a rule is not finite and >= 0");
   state_->rules.setGroups(group_a, group_b, rule);
   state_->grid_stale = true;
 }
@@ -363,7 +271,7 @@ SceneResult Scene::query()
 
 SceneResult Scene::step(double dt)
 {
-  if (!isLength(dt)) refuse("a step of " + std::to_string(dt) + " seconds is not finite and >= 0");
+  if (!isLength(dt)) refuse("a step of " + plainText(dt) + " seconds is not finite and >= 0");
   const DefaultFloatEnvironment environment;
   return state_->step(dt);
 }

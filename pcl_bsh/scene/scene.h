@@ -92,15 +92,15 @@ struct SceneOptions {
 /// Not to be used from several threads at once. All poses are T_world_object in double, rigid within 1e-6.
 ///
 /// Within a step an object's centre (of its bounding box) moves on a straight line while its rotation turns at constant
-/// speed, by any angle that its motion asks for, full turns included (motion.h: Leg). A response bends that way: a
+/// speed, by any angle that its motion asks for, full turns included (motion.h: Leg). A response changes that motion: a
 /// slide turns the object in place before it moves on, and goes along what it meets. With a response, objects move one
 /// after the other in the order of their ids, each among the others as they stand at that moment. A response never lets
-/// an object collide at any instant of its way (Outcome::legs): it halts at a distance in (clearance, clearance +
+/// an object collide at any instant of its motion (Outcome::legs): it halts at a distance in (clearance, clearance +
 /// tolerance] of what it meets, and each pose where it halts or turns off is checked exactly.
 ///
-/// Where ways matter (first_contact, swept, a response or gravity), a step or query throws std::invalid_argument before
-/// anything has moved when an object turns more than 1000 times within a step, or when coordinates are so large that
-/// they round by more than 1/32 of the tolerance: with the default tolerance, beyond some 100,000 km.
+/// Where the motion matters (first_contact, swept, a response or gravity), a step or query throws std::invalid_argument
+/// before anything has moved when an object turns more than 1000 times within a step, or when coordinates are so large
+/// that they round by more than 1/32 of the tolerance: with the default tolerance, beyond some 100,000 km.
 class Scene {
 public:
   /// @throws std::invalid_argument naming what is wrong with the options
@@ -141,8 +141,8 @@ public:
 
   // A query or step that throws (std::bad_alloc) has changed nothing, and may be asked for again.
 
-  /// The effects at the present poses. `first_contact` and `swept` look at the way from the poses of the last query
-  /// (SceneResult::ways): straight on, whatever way a response or a user took; after setPose() the shorter way round.
+  /// The effects at the present poses. `first_contact` and `swept` look at the motion from the poses of the last query
+  /// (SceneResult::swept_motions): one leg, whatever legs a response took; after setPose() in the shorter direction.
   SceneResult query();
 
   /// Moves every object along its motion, as response and gravity allow, and queries. @param dt seconds, finite, >= 0

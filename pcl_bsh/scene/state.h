@@ -18,7 +18,7 @@ struct Body {
   SceneObject object;
   Eigen::Isometry3d start;              ///< pose at time 0 of its motion
   double start_time = 0.0;              ///< of the scene, when the motion was given
-  bool on_course = true;                ///< stands where its motion has it
+  bool follows_motion = true;           ///< stands where its motion has it
   std::vector<Eigen::Isometry3d> world; ///< T_world_cloud of each part
   Box3 box;                             ///< of its points, in the object's frame
   Box3 world_box;
@@ -26,19 +26,19 @@ struct Body {
   Eigen::Isometry3d last_pose;                      ///< at the last query
   std::uint64_t last_version = 0;                   ///< at the last query; 0: there was none
   std::uint64_t placed_version = 0;                 ///< in the grid
-  bool placed_swept = false;                        ///< with the way to its place
+  bool placed_swept = false;                        ///< with the motion to its place
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(); ///< since the last query, full turns included
   double last_motion = 0.0;                         ///< how far its points went between the last two queries, at most
   Eigen::Isometry3d step_pose;                      ///< before the step in progress
-  bool step_on_course = true;                       ///< likewise
+  bool step_follows_motion = true;                  ///< likewise
   Eigen::Vector3d step_turned = Eigen::Vector3d::Zero(); ///< likewise
 
   /// Of its box, in the object's frame: the point that goes straight.
   Eigen::Vector3d center() const { return box.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : box.center(); }
 };
 
-/// Whether an effect asks for the way of the last step.
-inline bool looksBack(const Effects& effects)
+/// Whether an effect looks at the motion since the last query.
+inline bool usesSweptMotion(const Effects& effects)
 {
   return effects.first_contact || effects.swept;
 }
@@ -64,7 +64,7 @@ public:
   void setPose(ObjectId object, const Eigen::Isometry3d& pose);
   void updateWorld(Body& body);
   void pointsChanged(ObjectId object);
-  void followPoints(); ///< looks whether points have changed since it last looked, whoever changed them
+  void followPoints(); ///< forgets what is known of points that were changed since the last call, also by another scene
 
   SceneResult step(double dt);
   void move(double dt);
@@ -112,9 +112,9 @@ private:
   void eachSweptPair(EffectCost& cost, const Ask& ask);
   Leg legOf(ObjectId object) const; ///< since the last query
   ObjectMotion motionOf(ObjectId object) const;
-  void checkWay(const Body& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
-                const Eigen::Vector3d& turn, double rounding) const;
-  void checkWays(double before, double after) const;
+  void checkMotion(const Body& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
+                   const Eigen::Vector3d& turn, double rounding) const;
+  void checkMotions(double before, double after) const;
 
   std::vector<Box3> boxes_;            // scratch
   std::vector<BroadPair*> newly_near_; // scratch

@@ -22,11 +22,11 @@ public:
   {
   }
 
-  std::optional<Meeting> first()
+  std::optional<PairContact> first()
   {
     const AnyResult start = anyCollision(a_.at(0), b_.at(0), {clearance_, {}});
     work_ += start.work;
-    if (start.witness) return Meeting{0.0, *start.witness};
+    if (start.witness) return PairContact{0.0, *start.witness};
     return first(0.0, 1.0);
   }
 
@@ -61,7 +61,7 @@ private:
     return {clearance_ + a_.hierarchy.view().radius(pair.a) + b_.hierarchy.view().radius(pair.b), tolerance_};
   }
 
-  std::optional<Meeting> first(double begin, double end)
+  std::optional<PairContact> first(double begin, double end)
   {
     const PairsWithin found = pairs(begin, end);
     if ((!found.complete || isWide(end - begin, found)) && !isShort(end - begin)) {
@@ -69,13 +69,13 @@ private:
       const auto early = first(begin, middle);
       return early ? early : first(middle, end);
     }
-    if (!found.complete) return Meeting{begin, found.pairs.front()};
-    std::optional<Meeting> earliest;
+    if (!found.complete) return PairContact{begin, found.pairs.front()};
+    std::optional<PairContact> earliest;
     for (const PointPair pair : found.pairs) {
-      const auto s = meeting(a_.motion, a_.point(pair.a), b_.motion, b_.point(pair.b), zone(pair), begin,
-                             earliest ? earliest->s : end);
+      const auto s = timeOfContact(a_.motion, a_.point(pair.a), b_.motion, b_.point(pair.b), zone(pair), begin,
+                                   earliest ? earliest->s : end);
       if (s && (!earliest || *s < earliest->s || (*s == earliest->s && pair < earliest->pair)))
-        earliest = Meeting{*s, pair};
+        earliest = PairContact{*s, pair};
     }
     return earliest;
   }
@@ -105,7 +105,7 @@ private:
       const ContactZone near = zone(pair);
       const Eigen::Vector3d p = a_.point(pair.a), q = b_.point(pair.b);
       const double now = (a_.motion.at(begin) * p - b_.motion.at(begin) * q).norm();
-      if (now <= near.inner() || meeting(a_.motion, p, b_.motion, q, near, begin, end)) flag_a = flag_b = 1;
+      if (now <= near.inner() || timeOfContact(a_.motion, p, b_.motion, q, near, begin, end)) flag_a = flag_b = 1;
     }
   }
 
@@ -123,13 +123,13 @@ double closingReach(const ObjectMotion& a, const ObjectMotion& b, double length)
   return (straight + a.turningReach(length) + b.turningReach(length)) * (1.0 + kDoubleMargin);
 }
 
-std::optional<Meeting> firstMeeting(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
-                                    Work& work)
+std::optional<PairContact> firstContactOf(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
+                                          Work& work)
 {
   return Sweep(a, b, clearance, tolerance, work).first();
 }
 
-void flagMeetings(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
+void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
                   std::vector<std::uint8_t>& flags_a, std::vector<std::uint8_t>& flags_b, Work& work)
 {
   Sweep(a, b, clearance, tolerance, work).flag(flags_a, flags_b);

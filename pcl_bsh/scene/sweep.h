@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two parts on their ways: when they first meet, and which points meet at all.
+// Two moving parts: when they first collide, and which of their points collide at all.
 #pragma once
 
 #include <pcl_bsh/collision/contacts.h>
-#include <pcl_bsh/scene/approach.h>
+#include <pcl_bsh/scene/conservative_advancement.h>
 
 #include <optional>
 
 namespace pcl_bsh {
 
-/// A part of an object on the object's way.
+/// A part of a moving object.
 struct SweptPart {
   const SphereHierarchy& hierarchy;
   const Eigen::Isometry3d& pose; ///< T_object_cloud
@@ -25,7 +25,7 @@ struct SweptPart {
   }
 };
 
-struct Meeting {
+struct PairContact {
   double s = 0.0;
   PointPair pair;
 };
@@ -41,14 +41,14 @@ inline constexpr std::size_t kFewToTurn = 64;
 /// No distance of a point of one to a point of the other shrinks by more than this within an interval of s.
 double closingReach(const ObjectMotion& a, const ObjectMotion& b, double length);
 
-/// The first s in [0, 1] at which two points are within clearance + tolerance on their way to collide; at no smaller s
+/// The first s in [0, 1] at which two points are within clearance + tolerance and come nearer; at no smaller s
 /// do any collide.
-std::optional<Meeting> firstMeeting(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
-                                    Work& work);
+std::optional<PairContact> firstContactOf(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
+                                          Work& work);
 
 /// Flags, one per record, the points that collide with one of the other part at some s in [0, 1], and none that is
 /// farther than clearance + tolerance at all of them.
-void flagMeetings(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
+void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
                   std::vector<std::uint8_t>& flags_a, std::vector<std::uint8_t>& flags_b, Work& work);
 
 } // namespace pcl_bsh

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points that move in straight lines, against boxes: when are they inside?
+// Points that move along segments, against boxes and points: when they are inside, or near.
 
 #if defined(PCL_BSH_SIMD_SEGMENT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_SIMD_SEGMENT_LANES_INL_H_
@@ -15,8 +15,8 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Ways from start to end, each to be held against boxes that are widened by a reach of its own. Rounding here is the
-/// caller's to make good, in the reach; so is taking a motion for one of `smallest` that is smaller (kSegmentRounding).
+/// Segments from start to end, each to be tested against boxes that are widened by a reach of its own. The caller pays
+/// for rounding in the reach, also for taking a motion for one of `smallest` that is smaller (kSegmentRounding).
 /// @tparam Reaches 3: along each axis another, 1: the same along all.
 template <std::size_t Count, std::size_t Reaches = 1>
 struct Segments {
@@ -42,7 +42,7 @@ static_assert(2 * kCarriedProductError + (2 + 2 + 2 * 6) * kFloatUnit < kSegment
 
 /// When a segment is in a box: a part of [0, 1].
 template <std::size_t Count>
-struct Stays {
+struct ClippedSegments {
   alignas(64) float from[Count];
   alignas(64) float to[Count];
 };
@@ -52,39 +52,39 @@ struct ClippedLanes {
 };
 
 HWY_INLINE void clipAxis(LaneVector start, LaneVector inverse, LaneVector reach, LaneVector low, LaneVector high,
-                         ClippedLanes& stay)
+                         ClippedLanes& clip)
 {
   const LaneVector at_low = hn::Mul(hn::Sub(low, hn::Add(start, reach)), inverse);
   const LaneVector at_high = hn::Mul(hn::Sub(high, hn::Sub(start, reach)), inverse);
-  stay.from = hn::Max(stay.from, hn::Min(at_low, at_high));
-  stay.to = hn::Min(stay.to, hn::Max(at_low, at_high));
+  clip.from = hn::Max(clip.from, hn::Min(at_low, at_high));
+  clip.to = hn::Min(clip.to, hn::Max(at_low, at_high));
 }
 
-/// Whether a stay contains one of the instants i / steps; always where steps are too many for floats to tell.
-HWY_INLINE std::uint32_t staysAtStep(LaneTag d, const ClippedLanes& stay, float steps)
+/// Whether a clipped part contains one of the instants i / steps; always where steps are too many for floats to tell.
+HWY_INLINE std::uint32_t isInsideAtStep(LaneTag d, const ClippedLanes& clip, float steps)
 {
   const LaneVector scale = hn::Set(d, steps), slack = hn::Set(d, steps * kStepRounding);
-  const LaneVector first = hn::Ceil(hn::Sub(hn::Mul(stay.from, scale), slack));
-  const LaneVector last = hn::Floor(hn::Add(hn::Mul(stay.to, scale), slack));
-  return bitsOf(d, hn::And(hn::Le(stay.from, stay.to), hn::Le(first, last)));
+  const LaneVector first = hn::Ceil(hn::Sub(hn::Mul(clip.from, scale), slack));
+  const LaneVector last = hn::Floor(hn::Add(hn::Mul(clip.to, scale), slack));
+  return bitsOf(d, hn::And(hn::Le(clip.from, clip.to), hn::Le(first, last)));
 }
 
 /// Bit i: segment i may be in the box at an instant j / steps; at any instant when steps is 0.
 template <std::size_t Count, std::size_t Reaches>
 HWY_INLINE std::uint32_t segmentsInBox(const Segments<Count, Reaches>& segments, const float* low, const float* high,
-                                       float steps, Stays<Count>* stays)
+                                       float steps, ClippedSegments<Count>* clipped)
 {
   const LaneTag d;
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < Count; i += hn::Lanes(d)) {
-    ClippedLanes stay{hn::Zero(d), hn::Set(d, 1.0f)};
+    ClippedLanes clip{hn::Zero(d), hn::Set(d, 1.0f)};
     for (std::size_t axis = 0; axis < 3; ++axis)
       clipAxis(hn::Load(d, segments.start[axis] + i), hn::Load(d, segments.inverse[axis] + i),
-               hn::Load(d, segments.reach[axis % Reaches] + i), hn::Set(d, low[axis]), hn::Set(d, high[axis]), stay);
-    bits |= staysAtStep(d, stay, steps) << i;
-    if (stays) {
-      hn::Store(stay.from, d, stays->from + i);
-      hn::Store(stay.to, d, stays->to + i);
+               hn::Load(d, segments.reach[axis % Reaches] + i), hn::Set(d, low[axis]), hn::Set(d, high[axis]), clip);
+    bits |= isInsideAtStep(d, clip, steps) << i;
+    if (clipped) {
+      hn::Store(clip.from, d, clipped->from + i);
+      hn::Store(clip.to, d, clipped->to + i);
     }
   }
   return bits;
@@ -102,11 +102,11 @@ HWY_INLINE std::uint32_t boxesOnSegment(const Segment& segment, const float (*lo
   const LaneTag d;
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
-    ClippedLanes stay{hn::Zero(d), hn::Set(d, 1.0f)};
+    ClippedLanes clip{hn::Zero(d), hn::Set(d, 1.0f)};
     for (std::size_t axis = 0; axis < 3; ++axis)
       clipAxis(hn::Set(d, segment.start[axis]), hn::Set(d, segment.inverse[axis]), hn::Set(d, segment.reach[axis]),
-               hn::Load(d, low[axis] + i), hn::Load(d, high[axis] + i), stay);
-    bits |= staysAtStep(d, stay, steps) << i;
+               hn::Load(d, low[axis] + i), hn::Load(d, high[axis] + i), clip);
+    bits |= isInsideAtStep(d, clip, steps) << i;
   }
   return bits;
 }
@@ -129,9 +129,9 @@ HWY_INLINE std::uint32_t pointsNearBox(const float* x, const float* y, const flo
   return bits;
 }
 
-/// The same ways, to be held against points.
+/// The motions of the same segments, for tests against points.
 template <std::size_t Count>
-struct Ways {
+struct SegmentMotions {
   alignas(64) float motion[3][Count];
   alignas(64) float inverse_length[Count]; ///< of the motion, or of `smallest` where that is longer
   float rounding; ///< in lengths: what it may amount to, at least 64 u of the largest coordinate
@@ -155,24 +155,24 @@ struct Ways {
 };
 
 /// Bit i: segment i may come within its reach of one of `count` points, at (x, y, z) + shift.
-/// @param stays when that is: from the first instant for any of the points to the last; of lanes whose bit is set.
+/// @param clipped when that is: from the first instant for any of the points to the last; of lanes whose bit is set.
 template <std::size_t Count>
-HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, const Ways<Count>& ways, const float* x,
-                                            const float* y, const float* z, std::size_t count, const float* shift,
-                                            Stays<Count>& stays)
+HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, const SegmentMotions<Count>& motions,
+                                            const float* x, const float* y, const float* z, std::size_t count,
+                                            const float* shift, ClippedSegments<Count>& clipped)
 {
   const LaneTag d;
   const LaneVector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < Count; i += hn::Lanes(d)) {
-    const LaneVector mx = hn::Load(d, ways.motion[0] + i), my = hn::Load(d, ways.motion[1] + i),
-                     mz = hn::Load(d, ways.motion[2] + i), inverse = hn::Load(d, ways.inverse_length + i);
+    const LaneVector mx = hn::Load(d, motions.motion[0] + i), my = hn::Load(d, motions.motion[1] + i),
+                     mz = hn::Load(d, motions.motion[2] + i), inverse = hn::Load(d, motions.inverse_length + i);
     const LaneVector sx = hn::Sub(hn::Load(d, segments.start[0] + i), hn::Set(d, shift[0]));
     const LaneVector sy = hn::Sub(hn::Load(d, segments.start[1] + i), hn::Set(d, shift[1]));
     const LaneVector sz = hn::Sub(hn::Load(d, segments.start[2] + i), hn::Set(d, shift[2]));
-    const LaneVector reach = hn::Add(hn::Load(d, segments.reach[0] + i), hn::Set(d, ways.rounding));
+    const LaneVector reach = hn::Add(hn::Load(d, segments.reach[0] + i), hn::Set(d, motions.rounding));
     const LaneVector limit = hn::Mul(reach, reach);
-    const LaneVector slack = hn::Mul(hn::Set(d, ways.rounding), inverse);
+    const LaneVector slack = hn::Mul(hn::Set(d, motions.rounding), inverse);
     LaneVector from = one, to = zero;
     for (std::size_t j = 0; j < count; ++j) {
       const LaneVector wx = hn::Sub(hn::Set(d, x[j]), sx), wy = hn::Sub(hn::Set(d, y[j]), sy),
@@ -188,8 +188,8 @@ HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, con
     }
     from = hn::Max(from, zero);
     to = hn::Min(to, one);
-    hn::Store(from, d, stays.from + i);
-    hn::Store(to, d, stays.to + i);
+    hn::Store(from, d, clipped.from + i);
+    hn::Store(to, d, clipped.to + i);
     bits |= bitsOf(d, hn::Le(from, to)) << i;
   }
   return bits;

@@ -12,12 +12,12 @@ namespace {
 constexpr double kVanishing = 0x1p-140; ///< above what underflows
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
-/// Sets a child's box to [low, high] on an axis, moved by offset, with room for the rounding of both.
+/// Sets a child's box to [low, high] on an axis, moved by offset, widened for the rounding of both.
 void place(BoxNode& node, std::uint32_t lane, std::size_t axis, double low, double high, double offset, double slack)
 {
-  const double room = slack + kFewDoubleRoundings * (std::abs(offset) + std::abs(low) + std::abs(high)) + kVanishing;
-  node.low[axis][lane] = roundDown(offset + low - room);
-  node.high[axis][lane] = roundUp(offset + high + room);
+  const double margin = slack + kFewDoubleRoundings * (std::abs(offset) + std::abs(low) + std::abs(high)) + kVanishing;
+  node.low[axis][lane] = roundDown(offset + low - margin);
+  node.high[axis][lane] = roundUp(offset + high + margin);
 }
 
 /// The box of a child is the one around the boxes of the node below it.

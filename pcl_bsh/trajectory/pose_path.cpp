@@ -38,7 +38,7 @@ std::vector<PolarDecomposition> partsOf(const std::vector<Eigen::Isometry3d>& po
   return parts;
 }
 
-bool isRigid(const PolarDecomposition& parts)
+bool isUnstretched(const PolarDecomposition& parts)
 {
   return (parts.stretch - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kRigid;
 }
@@ -50,7 +50,7 @@ Eigen::Isometry3d poseBetween(const Eigen::Isometry3d& from, const Eigen::Isomet
 {
   const Eigen::Vector3d turn = shorterTurn(from.linear(), to.linear());
   if (fraction > 0.0 && fraction < 1.0 && isHalfTurn(turn))
-    throw InvalidInput(Input::pose, "motion between two poses", "half a turn, and either way round is as short",
+    throw InvalidInput(Input::pose, "motion between two poses", "half a turn, both directions are as short",
                        "give a pose between them");
   return RigidMotion(from, to, {pivot[0], pivot[1], pivot[2]}, turn).at(fraction);
 }
@@ -87,7 +87,7 @@ PosePath::PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::
 {
   const std::vector<PolarDecomposition> parts = partsOf(model_poses);
   poses.reserve(static_cast<std::size_t>(plan(model_poses, parts, sweep, progress)));
-  const bool rigid = std::all_of(parts.begin(), parts.end(), isRigid);
+  const bool rigid = std::all_of(parts.begin(), parts.end(), isUnstretched);
   if (!rigid) stretches_.reserve(poses.capacity());
   const Eigen::Vector3d pivot(sweep.pivot[0], sweep.pivot[1], sweep.pivot[2]);
   for (std::size_t k = 0; k < model_poses.size(); ++k) {
@@ -130,7 +130,7 @@ double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const s
       std::ostringstream message;
       message.imbue(std::locale::classic());
       message << "from pose " << k << " to the next the model turns by half a turn (" << angle
-              << " rad), and either way round is as short";
+              << " rad), both directions are as short";
       throw InvalidInput(Input::swept, "swept motion", message.str(), "give a pose between them").withIndex(k);
     }
     const double reach = sweep.radius + sweep.reach + way;
@@ -154,7 +154,7 @@ double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const s
     const double instants = 0x1p-52 * total * longest;
     if (instants <= sweep.rounding) return total;
     message << "too small: a double tells an instant among " << total << " parts of the motion, each as long as "
-            << longest << ", within a way of " << instants << ", and " << sweep.rounding << " is needed";
+            << longest << ", within a length of " << instants << ", and " << sweep.rounding << " is needed";
     throw InvalidInput(Input::swept, "tolerance of the swept motion", message.str(),
                        "give a larger tolerance, or fewer poses");
   }
@@ -198,7 +198,7 @@ std::uint32_t PosePath::divide(std::uint32_t first, std::uint32_t last, Progress
   intervals[index].first = first;
   intervals[index].last = last;
   bound(intervals[index]);
-  // Between two poses the way is straight by definition; when swept, its bow is as small as it needs to be.
+  // Between two poses points move in straight lines by definition; when swept, the bow is as small as it needs to be.
   if (last - first < 2) return index;
   const std::uint32_t middle = first + (last - first) / 2;
   const std::uint32_t left = divide(first, middle, progress);

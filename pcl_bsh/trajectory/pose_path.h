@@ -67,7 +67,7 @@ public:
 
   /// The motion from each of the given poses to the next, each of them exactly as it was given.
   /// @throws std::invalid_argument naming the poses, before any memory is taken: where that takes too many poses, or
-  ///   where the model turns by half a turn, and either way round is as short
+  ///   where the model turns by half a turn, and both directions are as short
   PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::Isometry3d>& model_poses, const Point3& center,
            const Sweep& sweep, Progress& progress);
 
@@ -76,7 +76,8 @@ public:
   double skew = 0.0; ///< how far the rotations are from rigid: bounds |R'R - I|, of pose and scan summed
   double far = 0.0;  ///< the largest coordinate of a centre, in the world
   bool is_swept = false;
-  double stray = 0.0; ///< swept: what a way between two poses in a row bows out by at most, near the model
+  double stray = 0.0; ///< swept: how far a point's motion between two consecutive poses strays from straight at most,
+                      ///< near the model
 
   /// Where the model has a point at pose k of a swept path, seen by itself, from its centre: a pose that is not quite
   /// rigid stretches the model.
@@ -94,7 +95,7 @@ private:
     double cuts = 0.0;                              ///< parts that it is cut into
     Bow bow = {0.0, 0.0};                           ///< of each of them
     Eigen::Vector3d turn = Eigen::Vector3d::Zero(); ///< of the whole: axis times angle
-    Point3 begin = {0, 0, 0}, end = {0, 0, 0};      ///< of the pivot's way
+    Point3 begin = {0, 0, 0}, end = {0, 0, 0};      ///< of the pivot's motion
 
     Point3 pivotAt(double fraction) const
     {

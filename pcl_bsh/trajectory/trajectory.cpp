@@ -26,17 +26,17 @@ void allocate(TrajectoryResult& result, const TrajectoryRequest& request, std::s
 }
 
 /// Equal poses in a row were looked at once.
-void summarize(const Course& course, TrajectoryResult& result)
+void summarize(const TrajectoryQuery& query, TrajectoryResult& result)
 {
-  const std::vector<PathPose>& poses = course.path.poses;
+  const std::vector<PathPose>& poses = query.path.poses;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     PoseSummary summary;
-    summary.colliding_points = course.pose_counts[k];
+    summary.colliding_points = query.pose_counts[k];
     summary.colliding = summary.colliding_points > 0;
     if (summary.colliding) {
-      const PointPair pair = course.pose_best[k].pair;
-      const PointsView &a = course.scan.hierarchy().view(), &b = course.model.view();
-      summary.distance = ExactDistance(course.scan.pose, course.given[poses[k].given])
+      const PointPair pair = query.nearest_at_pose[k].pair;
+      const PointsView &a = query.scan.hierarchy().view(), &b = query.model.view();
+      summary.distance = ExactDistance(query.scan.pose, query.given[poses[k].given])
                              .gap({a.point(pair.a), b.point(pair.b), a.radius(pair.a), b.radius(pair.b)});
     }
     const std::size_t next = k + 1 < poses.size() ? poses[k + 1].given : result.poses.size();
@@ -57,18 +57,18 @@ FirstContact instantOf(const PosePath& path, double time)
 }
 
 /// Takes the given voxels along the trajectory.
-std::vector<VoxelAnswer> followAll(const Course& course, const StopRule& rule,
-                                   const std::vector<std::vector<std::uint32_t>>& meetings,
+std::vector<VoxelResult> followAll(const TrajectoryQuery& query, const StopRule& rule,
+                                   const std::vector<std::vector<std::uint32_t>>& near_intervals,
                                    const std::vector<std::uint32_t>& voxels, Progress& progress)
 {
-  std::vector<VoxelAnswer> answers(voxels.size());
+  std::vector<VoxelResult> answers(voxels.size());
   const auto walk = [&](std::size_t i, const StopRule& own) {
     if (progress.stopped()) return;
-    answers[i] = walkVoxel(course, own, voxels[i], meetings[voxels[i]], progress);
+    answers[i] = walkVoxel(query, own, voxels[i], near_intervals[voxels[i]], progress);
     progress.step();
   };
   if (rule.node_pairs == StopRule::kNever) {
-    parallelFor(voxels.size(), threadCount(course.request.threads), [&](std::size_t i) { walk(i, rule); });
+    parallelFor(voxels.size(), threadCount(query.request.threads), [&](std::size_t i) { walk(i, rule); });
   }
   else { // one after another: what one leaves is the next one's
     StopRule own = rule;
@@ -96,10 +96,11 @@ void countFlags(TrajectoryResult& result)
 }
 
 /// The same in passes, each for the voxels that the one before left with undecided points.
-void followUntilStopped(const Course& course, StopRule rule, const std::vector<std::vector<std::uint32_t>>& meetings,
+void followUntilStopped(const TrajectoryQuery& query, StopRule rule,
+                        const std::vector<std::vector<std::uint32_t>>& near_intervals,
                         std::vector<std::uint32_t> voxels, Progress& progress)
 {
-  for (const std::uint32_t voxel : voxels) markUndecided(course.scan.hierarchy(), voxel, course.result.flags);
+  for (const std::uint32_t voxel : voxels) markUndecided(query.scan.hierarchy(), voxel, query.result.flags);
   const std::size_t all = voxels.size();
   const std::uint64_t budget = rule.node_pairs;
   std::uint64_t spent = 0;
@@ -107,9 +108,9 @@ void followUntilStopped(const Course& course, StopRule rule, const std::vector<s
   for (const std::uint64_t deepest : rule.passes()) {
     rule.deepest = deepest;
     std::vector<std::uint32_t> left;
-    const std::vector<VoxelAnswer> answers = followAll(course, rule, meetings, voxels, progress);
+    const std::vector<VoxelResult> answers = followAll(query, rule, near_intervals, voxels, progress);
     for (std::size_t i = 0; i < voxels.size(); ++i) {
-      course.result.work += answers[i].work;
+      query.result.work += answers[i].work;
       spent += answers[i].work.node_pairs;
       if (answers[i].undecided) left.push_back(voxels[i]);
     }
@@ -117,36 +118,36 @@ void followUntilStopped(const Course& course, StopRule rule, const std::vector<s
     voxels = std::move(left);
     progress.skipTo(++passed * all);
   }
-  countFlags(course.result);
+  countFlags(query.result);
 }
 
-void follow(const Course& course, const StopRule& rule, Progress& progress)
+void follow(const TrajectoryQuery& query, const StopRule& rule, Progress& progress)
 {
-  const TrajectoryRequest& request = course.request;
-  TrajectoryResult& result = course.result;
+  const TrajectoryRequest& request = query.request;
+  TrajectoryResult& result = query.result;
   if (request.pose_summaries) {
-    course.pose_best.resize(course.path.poses.size());
-    course.pose_counts.resize(course.path.poses.size());
+    query.nearest_at_pose.resize(query.path.poses.size());
+    query.pose_counts.resize(query.path.poses.size());
   }
-  const std::vector<std::vector<std::uint32_t>> meetings = course.meetings(rule, progress);
+  const std::vector<std::vector<std::uint32_t>> near_intervals = query.nearIntervals(rule, progress);
   std::vector<std::uint32_t> voxels;
-  for (std::uint32_t v = 0; v < meetings.size(); ++v)
-    if (!meetings[v].empty()) voxels.push_back(v);
+  for (std::uint32_t v = 0; v < near_intervals.size(); ++v)
+    if (!near_intervals[v].empty()) voxels.push_back(v);
 
   progress.begin(1.0, voxels.size() * (rule.mayStop() ? rule.passes().size() : 1));
   double first_contact = std::numeric_limits<double>::infinity();
   if (rule.mayStop()) {
-    followUntilStopped(course, rule, meetings, std::move(voxels), progress);
+    followUntilStopped(query, rule, near_intervals, std::move(voxels), progress);
   }
   else {
-    for (const VoxelAnswer& answer : followAll(course, rule, meetings, voxels, progress)) {
+    for (const VoxelResult& answer : followAll(query, rule, near_intervals, voxels, progress)) {
       result.work += answer.work;
       result.colliding += answer.colliding;
       first_contact = std::min(first_contact, answer.first_contact);
     }
   }
-  if (request.swept && std::isfinite(first_contact)) result.first_contact = instantOf(course.path, first_contact);
-  if (request.pose_summaries) summarize(course, result);
+  if (request.swept && std::isfinite(first_contact)) result.first_contact = instantOf(query.path, first_contact);
+  if (request.pose_summaries) summarize(query, result);
 }
 
 } // namespace
@@ -163,10 +164,10 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   Progress progress(request.progress);
   try {
     progress.limit(&rule);
-    const Course course(scan, model, model_poses, request, result, progress);
+    const TrajectoryQuery query(scan, model, model_poses, request, result, progress);
     progress.limit(nullptr);
-    if (!course.inFloatRange()) return brute_force::collideAlong(scan, model, model_poses, request);
-    follow(course, rule, progress);
+    if (!query.inFloatRange()) return brute_force::collideAlong(scan, model, model_poses, request);
+    follow(query, rule, progress);
   }
   catch (const OutOfTime&) { // before the path was made: nothing is known
     for (std::uint32_t v = 0; v < scan.hierarchy().storage().voxel_count; ++v)

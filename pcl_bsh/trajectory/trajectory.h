@@ -10,13 +10,13 @@
 // decided as exact arithmetic on the given numbers decides it. The same input gives the same answer, bit for bit, for
 // any number of threads and any processor.
 //
-// Swept: so does the motion between consecutive poses, to a tolerance. The model's pivot moves in a straight line, its
-// rotation is interpolated spherically: poseBetween(). A point reported free stays farther than the clearance during
-// the whole motion, at the given poses exactly as they are; one reported colliding comes within clearance + tolerance.
-// From one pose to the next the model turns the shorter way round, by less than half a turn. Half a turn is refused,
-// for either way would be as short; more than half a turn takes poses on the way.
+// Swept: the motion between consecutive poses counts, too, to a tolerance. The model's pivot moves in a straight line
+// while the model turns at constant speed about a fixed axis: poseBetween(). A point reported free stays farther than
+// the clearance during the whole motion, at the given poses exactly as they are; one reported colliding comes within
+// clearance + tolerance. From one pose to the next the model turns in the shorter direction, by less than half a turn.
+// Half a turn is refused: both directions are as short. More than half a turn needs poses between.
 //
-// What is answered to one question does not depend on what else is asked for. (Where the accuracy is a tolerance, or
+// An answer does not depend on what else is asked for. (Where the accuracy is a tolerance, or
 // float alone, pairs that may count or not may do so for one question and not for another.)
 #pragma once
 
@@ -65,7 +65,7 @@ struct PoseSummary {
   double distance = std::numeric_limits<double>::infinity();
 };
 
-/// An instant of the motion: `fraction` in [0, 1) of the way from `pose` to the next; 0 at the last pose.
+/// An instant of the motion: `fraction` in [0, 1) of the motion from `pose` to the next; 0 at the last pose.
 struct FirstContact {
   std::size_t pose = 0;
   double fraction = 0.0;
@@ -99,10 +99,11 @@ struct TrajectoryResult {
 TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
 
-/// The pose at `fraction` in [0, 1] of the motion from one pose to the next: straight for the pivot, a point in the
-/// frame that the poses place, and spherically linear for the rotation, the shorter way round. At 0 and 1 exactly the
-/// poses given; what they lack to rigid ones (1e-6 at most) changes linearly between them.
-/// @throws std::invalid_argument between poses that are half a turn apart: either way round is as short.
+/// The pose at `fraction` in [0, 1] of the motion from one pose to the next: the pivot, a point in the frame that the
+/// poses place, moves in a straight line at constant speed, and the rotation turns at constant speed about a fixed
+/// axis, in the shorter direction. At 0 and 1 exactly the poses given; what they lack to rigid ones (1e-6 at most)
+/// changes linearly between them.
+/// @throws std::invalid_argument between poses that are half a turn apart: both directions are as short.
 Eigen::Isometry3d poseBetween(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double fraction,
                               const Point3& pivot = {0, 0, 0});
 

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A leaf of the scan on its way past leaves of the model: at which poses, or instants, do their points meet?
+// A leaf of the scan against leaves of the model: at which poses, or instants, their points collide.
 
-#if defined(PCL_BSH_QUERY_TRAJECTORY_LEAF_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PCL_BSH_QUERY_TRAJECTORY_LEAF_INL_H_
-#undef PCL_BSH_QUERY_TRAJECTORY_LEAF_INL_H_
+#if defined(PCL_BSH_TRAJECTORY_TRAJECTORY_LEAF_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAJECTORY_TRAJECTORY_LEAF_INL_H_
+#undef PCL_BSH_TRAJECTORY_TRAJECTORY_LEAF_INL_H_
 #else
-#define PCL_BSH_QUERY_TRAJECTORY_LEAF_INL_H_
+#define PCL_BSH_TRAJECTORY_TRAJECTORY_LEAF_INL_H_
 #endif
 
-#include <pcl_bsh/trajectory/straight_way.h>
-#include <pcl_bsh/trajectory/trajectory_findings.h>
-#include <pcl_bsh/trajectory/trajectory_model-inl.h>
+#include <pcl_bsh/trajectory/closest_approach.h>
+#include <pcl_bsh/trajectory/model_boxes-inl.h>
+#include <pcl_bsh/trajectory/pose_ranges-inl.h>
+#include <pcl_bsh/trajectory/voxel_results.h>
 
 #include <tuple>
 
@@ -28,8 +29,8 @@ struct LeafVisit {
   LeafRange points;
   std::size_t slot;   ///< of its flags
   std::uint32_t open; ///< bits of the points that are not settled
-  Segments<kLeafPoints> ways;
-  Ways<kLeafPoints> motions;
+  Segments<kLeafPoints> segments;
+  SegmentMotions<kLeafPoints> motions;
   Segment around;
   float low[3], high[3]; ///< of the model's box that it is held against
 };
@@ -37,33 +38,34 @@ struct LeafVisit {
 /// Compares leaves of the scan with what they may meet of the model.
 class LeafWalk {
 public:
-  LeafWalk(const Course& course, const VoxelSight& sight, ModelWalk& model, Watch& watch, Findings& findings)
-  : course_(course),
-    path_(course.path),
-    tree_(course.boxes),
-    sight_(sight),
+  LeafWalk(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, ModelBoxes& model, Watch& watch,
+           VoxelResults& results)
+  : query_(query),
+    path_(query.path),
+    tree_(query.boxes),
+    voxel_frame_(voxel_frame),
     model_(model),
     watch_(watch),
-    findings_(findings)
+    results_(results)
   {
   }
 
   /// @return whether any of the leaf's points is not settled.
   bool compare(std::size_t slot, const LeafRange& points, const Node& node, std::uint32_t lane, const Span& span,
-               const std::vector<Candidate>& candidates)
+               const std::vector<ModelBox>& candidates)
   {
     const std::uint32_t all = firstBits(points.count);
-    if ((all & ~findings_.settled[slot]) == 0) return false;
+    if ((all & ~results_.settled[slot]) == 0) return false;
     const double share = span.steps > kManyPoses ? kManyPosesStray : kLeafStray;
-    const double limit = path_.is_swept ? path_.stray : share * node.r[lane] * sight_.frame.unit;
+    const double limit = path_.is_swept ? path_.stray : share * node.r[lane] * voxel_frame_.frame.unit;
     if (span.divides(limit)) {
-      return compare(slot, points, node, lane, sight_.spanOf(span.interval->left), candidates) &&
-             compare(slot, points, node, lane, sight_.spanOf(span.interval->right), candidates);
+      return compare(slot, points, node, lane, voxel_frame_.spanOf(span.interval->left), candidates) &&
+             compare(slot, points, node, lane, voxel_frame_.spanOf(span.interval->right), candidates);
     }
     LeafVisit leaf;
     leaf.points = points;
     leaf.slot = slot;
-    leaf.open = all & ~findings_.settled[slot];
+    leaf.open = all & ~results_.settled[slot];
     alignas(64) float from[3][kLeafPoints], to[3][kLeafPoints];
     carry(span.from.m, span.from.g, points.x(), points.y(), points.z(), points.count, from[0], from[1], from[2]);
     carry(span.to.m, span.to.g, points.x(), points.y(), points.z(), points.count, to[0], to[1], to[2]);
@@ -71,54 +73,55 @@ public:
       std::fill(from[axis] + points.count, from[axis] + kLeafPoints, 0.0f);
       std::fill(to[axis] + points.count, to[axis] + kLeafPoints, 0.0f);
     }
-    leaf.ways.set(from, to, span.smallest);
+    leaf.segments.set(from, to, span.smallest);
     if (path_.is_swept || span.steps >= kFewPoses) leaf.motions.set(from, to, span.smallest, span.rounding);
-    std::fill(leaf.ways.reach[0], leaf.ways.reach[0] + kLeafPoints, span.reach);
-    for (std::uint32_t i = 0; course_.closest && i < points.count; ++i)
+    std::fill(leaf.segments.reach[0], leaf.segments.reach[0] + kLeafPoints, span.reach);
+    for (std::uint32_t i = 0; query_.closest && i < points.count; ++i)
       if (bestBounds(points.begin + i, span))
-        leaf.ways.reach[0][i] = std::min(span.reach, sight_.reachOf(span, findings_.best[points.begin + i].reach));
-    const float no_room[3][kLeafPoints] = {};
-    leaf.around = sight_.aroundWays(span, from, to, no_room, points.count);
-    ++findings_.work.volumes_carried;
-    if (course_.request.pose_summaries) pose_hits_.assign(span.interval->last - span.interval->first + 1, 0);
+        leaf.segments.reach[0][i] =
+            std::min(span.reach, voxel_frame_.reachOf(span, results_.best[points.begin + i].reach));
+    const float no_extent[3][kLeafPoints] = {};
+    leaf.around = voxel_frame_.aroundSegments(span, from, to, no_extent, points.count);
+    ++results_.work.volumes_carried;
+    if (query_.request.pose_summaries) pose_hits_.assign(span.interval->last - span.interval->first + 1, 0);
 
     ++visit_;
-    for (const Candidate& candidate : candidates) {
+    for (const ModelBox& candidate : candidates) {
       stack_.push_back(candidate);
       while (!stack_.empty() && leaf.open != 0 && !watch_.isOver()) {
-        const Candidate next = stack_.back();
+        const ModelBox next = stack_.back();
         stack_.pop_back();
         compareBox(leaf, next, span);
       }
       if (leaf.open == 0) break;
     }
     stack_.clear();
-    if (course_.request.pose_summaries) countPoses(leaf, span, node.points(lane));
-    if (!course_.everything()) findings_.settled[slot] = findings_.hit[slot];
-    return (all & ~findings_.settled[slot]) != 0;
+    if (query_.request.pose_summaries) countPoses(leaf, span, node.points(lane));
+    if (!query_.everything()) results_.settled[slot] = results_.hit[slot];
+    return (all & ~results_.settled[slot]) != 0;
   }
 
 private:
   /// Opens a box of the model that the leaf may meet, or compares its points.
-  void compareBox(LeafVisit& leaf, const Candidate& candidate, const Span& span)
+  void compareBox(LeafVisit& leaf, const ModelBox& candidate, const Span& span)
   {
     const std::uint32_t k = candidate.lane;
     const BoxNode& box = candidate.box();
     const float low[3] = {box.low[0][k], box.low[1][k], box.low[2][k]};
     const float high[3] = {box.high[0][k], box.high[1][k], box.high[2][k]};
-    Stays<kLeafPoints> stays;
-    findings_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(leaf.open));
+    ClippedSegments<kLeafPoints> clipped;
+    results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(leaf.open));
     std::copy(low, low + 3, leaf.low);
     std::copy(high, high + 3, leaf.high);
-    const std::uint32_t lanes = leaf.open & segmentsInBox(leaf.ways, low, high, span.steps, &stays);
+    const std::uint32_t lanes = leaf.open & segmentsInBox(leaf.segments, low, high, span.steps, &clipped);
     if (lanes == 0) return;
     if (!candidate.isLeaf()) {
       if (!model_.mayOpen(candidate)) {
-        std::uint16_t& undecided = findings_.undecided[leaf.slot];
+        std::uint16_t& undecided = results_.undecided[leaf.slot];
         undecided = static_cast<std::uint16_t>(undecided | lanes);
         return;
       }
-      Candidate child = model_.below(candidate);
+      ModelBox child = model_.below(candidate);
       for (std::uint32_t bits = model_.near(leaf.around, child, span.steps); bits != 0; bits &= bits - 1) {
         child.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
         stack_.push_back(child);
@@ -128,22 +131,22 @@ private:
     const Node& node = candidate.nodes[candidate.node];
     const LeafRange other{&tree_.storage.voxels[candidate.voxel], node.begin[k], node.comparedPoints(k)};
     if (path_.is_swept)
-      compareWays(leaf, lanes, stays, other, candidate.voxel, span);
+      compareSegments(leaf, lanes, clipped, other, candidate.voxel, span);
     else
-      comparePoses(leaf, lanes, stays, other, candidate.voxel, span);
+      comparePoses(leaf, lanes, clipped, other, candidate.voxel, span);
   }
 
   /// Two leaves, at each pose that brings them near.
-  void comparePoses(LeafVisit& leaf, std::uint32_t lanes, Stays<kLeafPoints>& stays, const LeafRange& other,
+  void comparePoses(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped, const LeafRange& other,
                     std::uint32_t voxel, const Span& span)
   {
-    PoseRanges ranges = rangesOf(lanes, stays, span);
+    PoseRanges ranges = rangesOf(lanes, clipped, span);
     if (ranges.lanes == 0) return;
     if (static_cast<float>(ranges.end - ranges.begin) > kFewPoses && span.squares && other.voxel->frame.unit == 1.0) {
-      lanes &= nearPoints(leaf, other, voxel, stays);
-      ranges = rangesOf(lanes, stays, span);
+      lanes &= nearPoints(leaf, other, voxel, clipped);
+      ranges = rangesOf(lanes, clipped, span);
       lanes = ranges.lanes;
-      if (!course_.everything() && !course_.first) {
+      if (!query_.everything() && !query_.first) {
         // Any pose will do: the one in the middle is nearest.
         for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
           const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
@@ -155,56 +158,23 @@ private:
     }
     for (std::uint32_t k = ranges.begin; k < ranges.end && (lanes & leaf.open) != 0 && !watch_.isOver(); ++k) {
       std::uint32_t here = ranges.at(k, lanes & leaf.open);
-      if (course_.first && !course_.everything())
+      if (query_.first && !query_.everything())
         for (std::uint32_t bits = here; bits != 0; bits &= bits - 1) {
           const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-          if (findings_.first[leaf.points.begin + i] <= k) here &= ~(1u << i);
+          if (results_.first[leaf.points.begin + i] <= k) here &= ~(1u << i);
         }
       if (here != 0) compareAt(leaf, here, other, voxel, k, span);
     }
   }
 
-  /// Bits of the leaf's points whose ways come near to points of the model's leaf, and when.
+  /// Bits of the leaf's points whose segments come near to points of the model's leaf, and when.
   std::uint32_t nearPoints(const LeafVisit& leaf, const LeafRange& other, std::uint32_t voxel,
-                           Stays<kLeafPoints>& stays) const
+                           ClippedSegments<kLeafPoints>& clipped) const
   {
     const Point3 at = tree_.offset(voxel);
     const float shift[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
-    return segmentsNearPoints(leaf.ways, leaf.motions, other.x(), other.y(), other.z(), other.count, shift, stays);
-  }
-
-  /// The poses at which each of a leaf's points has to be looked at: first..last, of all of them [begin, end).
-  struct PoseRanges {
-    std::uint32_t lanes = 0; ///< points that have such a pose
-    std::uint32_t first[kLeafPoints], last[kLeafPoints];
-    std::uint32_t begin = 0xffffffffu, end = 0;
-
-    std::uint32_t at(std::uint32_t k, std::uint32_t among) const
-    {
-      std::uint32_t here = 0;
-      for (std::uint32_t bits = among & lanes; bits != 0; bits &= bits - 1) {
-        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-        if (first[i] <= k && k <= last[i]) here |= 1u << i;
-      }
-      return here;
-    }
-  };
-
-  /// Of points in `lanes`.
-  static PoseRanges rangesOf(std::uint32_t lanes, const Stays<kLeafPoints>& stays, const Span& span)
-  {
-    PoseRanges ranges;
-    const double steps = span.interval->last - span.interval->first;
-    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      ranges.first[i] = span.interval->first + static_cast<std::uint32_t>(std::ceil(steps * stays.from[i]));
-      ranges.last[i] = span.interval->first + static_cast<std::uint32_t>(std::floor(steps * stays.to[i]));
-      if (ranges.first[i] > ranges.last[i]) continue;
-      ranges.lanes |= 1u << i;
-      ranges.begin = std::min(ranges.begin, ranges.first[i]);
-      ranges.end = std::max(ranges.end, ranges.last[i] + 1);
-    }
-    return ranges;
+    return segmentsNearPoints(leaf.segments, leaf.motions, other.x(), other.y(), other.z(), other.count, shift,
+                              clipped);
   }
 
   /// Two leaves at pose k: by float bands, and exactly within the bands.
@@ -214,32 +184,34 @@ private:
     const LeafPoints& at = placesAt(leaf, k, span);
     lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, leaf.low, leaf.high, span.near_squared);
     if (lanes == 0) return;
-    ++findings_.work.leaf_pairs;
+    ++results_.work.leaf_pairs;
     const double unit = other.voxel->frame.unit;
-    const Sight sight = sight_.sightOf(path_.poses[k], tree_.offset(voxel), unit);
-    bool certain = course_.radii == 0.0 && unit == 1.0 && sight_.frame.unit == 1.0;
-    for (const float g : sight.g) certain = certain && std::abs(g) <= sight_.far;
+    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], tree_.offset(voxel), unit);
+    bool certain = query_.radii == 0.0 && unit == 1.0 && voxel_frame_.frame.unit == 1.0;
+    for (const float g : map.g) certain = certain && std::abs(g) <= voxel_frame_.far;
     LeafPoints points;
-    carry(sight.m, sight.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, points.x, points.y,
+    carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, points.x, points.y,
           points.z);
     alignas(64) float nearest[kLeafPoints];
     std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
     std::uint32_t hit = 0;
     if (certain) {
       nearestSquared(points, other.x(), other.y(), other.z(), firstBits(other.count), nearest);
-      hit = lanes & atMost(nearest, sight_.band.hit);
-      const std::uint32_t undecided = lanes & ~hit & ~above(nearest, sight_.band.miss);
+      hit = lanes & atMost(nearest, voxel_frame_.band.hit);
+      const std::uint32_t undecided = lanes & ~hit & ~above(nearest, voxel_frame_.band.miss);
       if (undecided != 0)
-        eachPairNotBeyond(points, undecided, other, sight_.band.miss, [&](std::uint32_t i, std::uint32_t j, float) {
-          if ((hit >> i & 1) == 0 && findings_.collide({leaf.points.record(i), other.record(j)}, k)) hit |= 1u << i;
-          return (undecided & ~hit) == 0;
-        });
+        eachPairNotBeyond(points, undecided, other, voxel_frame_.band.miss,
+                          [&](std::uint32_t i, std::uint32_t j, float) {
+                            if ((hit >> i & 1) == 0 && results_.collide({leaf.points.record(i), other.record(j)}, k))
+                              hit |= 1u << i;
+                            return (undecided & ~hit) == 0;
+                          });
     }
     else {
       for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
         const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
         for (std::uint32_t j = 0; j < other.count && (hit >> i & 1) == 0; ++j)
-          if (findings_.collide({leaf.points.record(i), other.record(j)}, k)) hit |= 1u << i;
+          if (results_.collide({leaf.points.record(i), other.record(j)}, k)) hit |= 1u << i;
       }
     }
     if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, span);
@@ -252,8 +224,8 @@ private:
     if (places.visit == visit_ && places.pose == k) return places.points;
     places.visit = visit_;
     places.pose = k;
-    const Sight sight = sight_.sightOf(path_.poses[k], {0, 0, 0}, 1.0);
-    carry(sight.m, sight.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, places.points.x,
+    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], {0, 0, 0}, 1.0);
+    carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, places.points.x,
           places.points.y, places.points.z);
     return places.points;
   }
@@ -262,73 +234,73 @@ private:
   void note(LeafVisit& leaf, std::uint32_t hit, const LeafPoints& points, const float* nearest, bool certain,
             const LeafRange& other, std::uint32_t k, const Span& span)
   {
-    findings_.hit[leaf.slot] = static_cast<std::uint16_t>(findings_.hit[leaf.slot] | hit);
-    if (!course_.everything() && !course_.first) leaf.open &= ~hit;
-    if (course_.request.pose_summaries) {
+    results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | hit);
+    if (!query_.everything() && !query_.first) leaf.open &= ~hit;
+    if (query_.request.pose_summaries) {
       std::uint16_t& at = pose_hits_[k - span.interval->first];
       at = static_cast<std::uint16_t>(at | hit);
     }
     for (std::uint32_t bits = hit; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (course_.first) {
-        double& first = findings_.first[leaf.points.begin + i];
+      if (query_.first) {
+        double& first = results_.first[leaf.points.begin + i];
         first = std::min(first, static_cast<double>(k));
       }
-      if (!course_.everything()) continue;
+      if (!query_.everything()) continue;
       // Only what may be as near as the nearest in floats is worth an exact look.
-      const float within = certain ? sight_.notBeyond(nearest[i]) : std::numeric_limits<float>::infinity();
-      Best* best = course_.closest ? &findings_.best[leaf.points.begin + i] : nullptr;
+      const float within = certain ? voxel_frame_.notBeyond(nearest[i]) : std::numeric_limits<float>::infinity();
+      NearestPoint* best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
       const bool for_point = best && !(certain && nearest[i] > best->limit);
-      const bool for_pose = course_.request.pose_summaries && !(certain && nearest[i] > findings_.poseLimit(k));
+      const bool for_pose = query_.request.pose_summaries && !(certain && nearest[i] > results_.poseLimit(k));
       if (!for_point && !for_pose) continue;
       for (std::uint32_t j = 0; j < other.count; ++j) {
         const float dx = points.x[i] - other.x()[j], dy = points.y[i] - other.y()[j], dz = points.z[i] - other.z()[j];
         const float squared = (dx * dx + dy * dy) + dz * dz;
         if (certain && squared > within) continue;
-        if (for_point) findings_.consider(*best, {leaf.points.record(i), other.record(j)}, k);
-        if (for_pose) findings_.considerPose({leaf.points.record(i), other.record(j)}, k);
+        if (for_point) results_.consider(*best, {leaf.points.record(i), other.record(j)}, k);
+        if (for_pose) results_.considerPose({leaf.points.record(i), other.record(j)}, k);
       }
       if (for_point && certain) {
-        const double high = sight_.highOf(nearest[i]);
-        best->limit = std::min(best->limit, sight_.notBeyond(nearest[i]));
+        const double high = voxel_frame_.highOf(nearest[i]);
+        best->limit = std::min(best->limit, voxel_frame_.notBeyond(nearest[i]));
         best->reach = std::min(best->reach, roundUp(high));
         if (bestBounds(leaf.points.begin + i, span))
-          leaf.ways.reach[0][i] = std::min(leaf.ways.reach[0][i], sight_.reachOf(span, best->reach));
+          leaf.segments.reach[0][i] = std::min(leaf.segments.reach[0][i], voxel_frame_.reachOf(span, best->reach));
       }
-      if (for_pose && certain) findings_.lowerPoseLimit(k, sight_.notBeyond(nearest[i]));
+      if (for_pose && certain) results_.lowerPoseLimit(k, voxel_frame_.notBeyond(nearest[i]));
     }
   }
 
   /// Points that move in straight lines against points at rest: all instants at once. In double; what that gets wrong
   /// is small against the tolerance (checkTolerance()).
-  void compareWays(LeafVisit& leaf, std::uint32_t lanes, Stays<kLeafPoints>& stays, const LeafRange& other,
-                   std::uint32_t voxel, const Span& span)
+  void compareSegments(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
+                       const LeafRange& other, std::uint32_t voxel, const Span& span)
   {
-    if (span.squares && other.voxel->frame.unit == 1.0) lanes &= nearPoints(leaf, other, voxel, stays);
-    ++findings_.work.leaf_pairs;
+    if (span.squares && other.voxel->frame.unit == 1.0) lanes &= nearPoints(leaf, other, voxel, clipped);
+    ++results_.work.leaf_pairs;
     const double begin = span.interval->first, steps = span.interval->last - span.interval->first;
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      double& first = findings_.first[leaf.points.begin + i];
-      if (!course_.closest && first <= begin + steps * stays.from[i]) continue;
+      double& first = results_.first[leaf.points.begin + i];
+      if (!query_.closest && first <= begin + steps * clipped.from[i]) continue;
       const std::uint32_t record = leaf.points.record(i);
-      const Way way = wayOf(record, span);
+      const PointSegment segment = segmentOf(record, span);
       for (std::uint32_t j = 0; j < other.count; ++j) {
-        ++findings_.work.exact_decisions;
+        ++results_.work.exact_decisions;
         const std::uint32_t q = other.record(j);
-        const double radii = course_.scan.hierarchy().view().radius(record) + course_.model.view().radius(q);
-        const Approach approach = approachTo(way, q, course_.reach - course_.radii + radii);
+        const double radii = query_.scan.hierarchy().view().radius(record) + query_.model.view().radius(q);
+        const ClosestApproach approach = approachTo(segment, q, query_.reach - query_.radii + radii);
         if (!approach.contact) continue;
-        findings_.hit[leaf.slot] = static_cast<std::uint16_t>(findings_.hit[leaf.slot] | 1u << i);
+        results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | 1u << i);
         first = std::min(first, begin + steps * approach.enter);
-        if (course_.closest)
-          consider(findings_.best[leaf.points.begin + i], approach.distance - radii, begin + steps * approach.at, q);
+        if (query_.closest)
+          consider(results_.best[leaf.points.begin + i], approach.distance - radii, begin + steps * approach.at, q);
       }
-      if (course_.closest && course_.radii == 0.0) {
-        Best& best = findings_.best[leaf.points.begin + i];
+      if (query_.closest && query_.radii == 0.0) {
+        NearestPoint& best = results_.best[leaf.points.begin + i];
         best.reach = std::min(best.reach, roundUp(best.gap));
         if (bestBounds(leaf.points.begin + i, span))
-          leaf.ways.reach[0][i] = std::min(leaf.ways.reach[0][i], sight_.reachOf(span, best.reach));
+          leaf.segments.reach[0][i] = std::min(leaf.segments.reach[0][i], voxel_frame_.reachOf(span, best.reach));
       }
     }
   }
@@ -336,38 +308,38 @@ private:
   /// Whether the best so far bounds the search for a point of the voxel from this span on.
   bool bestBounds(std::uint32_t point, const Span& span) const
   {
-    return course_.bestBounds(course_.first ? findings_.first[point] : 0.0, span.interval->first);
+    return query_.bestBounds(query_.first ? results_.first[point] : 0.0, span.interval->first);
   }
 
   /// Where a point of the scan is seen at a span's ends.
-  struct Way {
+  struct PointSegment {
     std::uint32_t first, last; ///< poses of the path
     Point3 start, end;
   };
 
-  Way wayOf(std::uint32_t record, const Span& span) const
+  PointSegment segmentOf(std::uint32_t record, const Span& span) const
   {
-    const Point3 world = carried(course_.scan.pose, course_.scan.hierarchy().view().point(record));
+    const Point3 world = carried(query_.scan.pose, query_.scan.hierarchy().view().point(record));
     const std::uint32_t first = span.interval->first, last = span.interval->last;
     return {first, last, path_.poses[first].see(world), path_.poses[last].see(world)};
   }
 
-  /// Of a point on its way to one of the model.
-  Approach approachTo(const Way& way, std::uint32_t record, double near_enough) const
+  /// Of a point that moves along a segment to one of the model.
+  ClosestApproach approachTo(const PointSegment& segment, std::uint32_t record, double near_enough) const
   {
-    Point3 at = course_.model.view().point(record);
+    Point3 at = query_.model.view().point(record);
     for (std::size_t axis = 0; axis < 3; ++axis) at[axis] -= tree_.origin[axis];
-    const Point3 from = path_.stretched(way.first, at), to = path_.stretched(way.last, at);
+    const Point3 from = path_.stretched(segment.first, at), to = path_.stretched(segment.last, at);
     Point3 away, motion;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      away[axis] = way.start[axis] - from[axis];
-      motion[axis] = (way.end[axis] - way.start[axis]) - (to[axis] - from[axis]);
+      away[axis] = segment.start[axis] - from[axis];
+      motion[axis] = (segment.end[axis] - segment.start[axis]) - (to[axis] - from[axis]);
     }
-    return approachOf(away, motion, near_enough);
+    return closestApproach(away, motion, near_enough);
   }
 
   /// Keeps the nearest; of several the first instant, and there the smallest record.
-  static void consider(Best& best, double gap, double time, std::uint32_t record)
+  static void consider(NearestPoint& best, double gap, double time, std::uint32_t record)
   {
     if (std::tie(gap, time, record) >= std::tie(best.gap, best.time, best.record)) return;
     best.gap = gap;
@@ -380,18 +352,18 @@ private:
     for (std::size_t i = 0; i < pose_hits_.size(); ++i) {
       const auto hits = static_cast<std::size_t>(std::popcount(pose_hits_[i]));
       if (hits != 0)
-        findings_.countPose(span.interval->first + static_cast<std::uint32_t>(i),
-                            points > leaf.points.count ? points : hits);
+        results_.countPose(span.interval->first + static_cast<std::uint32_t>(i),
+                           points > leaf.points.count ? points : hits);
     }
   }
 
-  const Course& course_;
+  const TrajectoryQuery& query_;
   const PosePath& path_;
   const BoxTree& tree_;
-  const VoxelSight& sight_;
-  ModelWalk& model_;
+  const VoxelInModelFrame& voxel_frame_;
+  ModelBoxes& model_;
   Watch& watch_;
-  Findings& findings_;
+  VoxelResults& results_;
   struct Places {
     std::uint64_t visit = 0;
     std::uint32_t pose = 0;
@@ -399,7 +371,7 @@ private:
   };
   static constexpr std::uint32_t kKeptPlaces = 16;
 
-  std::vector<Candidate> stack_;
+  std::vector<ModelBox> stack_;
   std::uint64_t visit_ = 0; // how many leaves were compared
   Places places_[kKeptPlaces];
   std::vector<std::uint16_t> pose_hits_; // per pose of a span: points of a leaf

@@ -21,7 +21,8 @@ public:
   /// @param report see TrajectoryRequest::progress; called in the thread that made this object
   explicit Progress(const std::function<bool(double)>& report) : report_(report) {}
 
-  static constexpr double kPath = 0.05, kMeetings = 0.1; ///< what these parts take the whole to; the walks do the rest
+  static constexpr double kPath = 0.05,
+                          kBroadPhase = 0.1; ///< what these parts take the whole to; the walks do the rest
 
   /// Begins the next part of the work: all of its steps together take the whole to this fraction.
   void begin(double end, std::size_t steps)

@@ -15,8 +15,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <pcl_bsh/trajectory/oriented_boxes-inl.h>
 #include <pcl_bsh/trajectory/trajectory_leaf-inl.h>
-#include <pcl_bsh/trajectory/trajectory_patches-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -27,50 +27,49 @@ constexpr double kNodeStray = 0.5; // of a node's radius: an interval that stray
 constexpr float kSeedSize = 0.5f;  // of the voxel's radius: larger boxes of the model are opened before its descent
 constexpr float kBoxSize = 1.0f;   // of a node's radius: a larger box of the model is opened
 
-/// One node of the scan on its way through the model, its children tested all at once.
-struct Visit {
+/// A node of the scan that is tested against the model, all of its children at once.
+struct NodeVisit {
   Segments<kLanes, 3> children;
   Segment around;
   float radius[kLanes];
-  std::vector<Candidate> near[kLanes];
+  std::vector<ModelBox> near[kLanes];
 };
 
 /// Takes one voxel of the scan along the trajectory.
 class TrajectoryWalk {
 public:
-  TrajectoryWalk(const Course& course, const StopRule& rule, std::uint32_t voxel, Progress& progress,
-                 std::deque<Visit>& visits)
-  : course_(course),
+  TrajectoryWalk(const TrajectoryQuery& query, const StopRule& rule, std::uint32_t voxel, Progress& progress,
+                 std::deque<NodeVisit>& visits)
+  : query_(query),
     rule_(rule),
     index_(voxel),
-    sight_(course, voxel),
-    patches_(sight_),
-    findings_(course),
+    voxel_frame_(query, voxel),
+    oriented_boxes_(voxel_frame_),
+    results_(query),
     progress_(progress),
-    watch_(rule, findings_.work.node_pairs),
-    model_(course.boxes, rule, findings_.work),
-    leaves_(course, sight_, model_, watch_, findings_),
-    settling_(!course.everything() && !course.first && course.radii == 0.0 && sight_.frame.unit == 1.0 &&
-              sight_.band.hit > 0.0f),
-    settled_reach_(settling_ ? std::sqrt(sight_.band.hit) * (1.0f - kRadiusMargin) : 0.0f),
+    watch_(rule, results_.work.node_pairs),
+    model_(query.boxes, rule, results_.work),
+    leaves_(query, voxel_frame_, model_, watch_, results_),
+    settling_(!query.everything() && !query.first && query.radii == 0.0 && voxel_frame_.frame.unit == 1.0 &&
+              voxel_frame_.band.hit > 0.0f),
+    settled_reach_(settling_ ? std::sqrt(voxel_frame_.band.hit) * (1.0f - kRadiusMargin) : 0.0f),
     visits_(visits)
   {
   }
 
   /// @param intervals of the path, at least one, in their order.
-  VoxelAnswer run(const std::vector<std::uint32_t>& intervals)
+  VoxelResult run(const std::vector<std::uint32_t>& intervals)
   {
-    if (course_.request.pose_summaries)
-      findings_.beginPoses(course_.path.intervals[intervals.front()].first,
-                           course_.path.intervals[intervals.back()].last);
-    std::vector<Candidate> candidates;
+    if (query_.request.pose_summaries)
+      results_.beginPoses(query_.path.intervals[intervals.front()].first, query_.path.intervals[intervals.back()].last);
+    std::vector<ModelBox> candidates;
     for (const std::uint32_t interval : intervals) {
       if (watch_.isOver() || stopped_) return leave(true);
-      const Span span = sight_.spanOf(interval);
+      const Span span = voxel_frame_.spanOf(interval);
       candidates.clear();
-      ++findings_.work.volumes_carried;
-      model_.collect(span, sight_.aroundVoxel(span), kSeedSize * static_cast<float>(sight_.radius), model_.root(),
-                     candidates);
+      ++results_.work.volumes_carried;
+      model_.collect(span, voxel_frame_.aroundVoxel(span), kSeedSize * static_cast<float>(voxel_frame_.radius),
+                     model_.root(), candidates);
       if (candidates.empty()) continue;
       if (!voxel_ && !mayEnter()) return leave(true);
       if (!voxel_) enter(span);
@@ -84,29 +83,29 @@ private:
   bool mayEnter() const
   {
     return !rule_.mayStop() ||
-           (rule_.deepest > 0 && rule_.leavesTimeToBuild(course_.scan.hierarchy().storage().pointsToBuild(index_)));
+           (rule_.deepest > 0 && rule_.leavesTimeToBuild(query_.scan.hierarchy().storage().pointsToBuild(index_)));
   }
 
   /// @param unsure not all was looked at.
-  VoxelAnswer leave(bool unsure)
+  VoxelResult leave(bool unsure)
   {
-    VoxelAnswer answer;
-    if (voxel_ && !rule_.mayStop()) answer = findings_.finish(*voxel_);
-    if (rule_.mayStop()) answer.undecided = voxel_ ? findings_.decide(*voxel_, unsure) : unsure;
+    VoxelResult answer;
+    if (voxel_ && !rule_.mayStop()) answer = results_.finish(*voxel_);
+    if (rule_.mayStop()) answer.undecided = voxel_ ? results_.decide(*voxel_, unsure) : unsure;
     if (rule_.mayStop() && !voxel_ && !unsure)
-      course_.scan.hierarchy().storage().forEachRecord(
-          index_, [this](std::uint32_t i) { course_.result.flags[i] = flagOf(Verdict::free); });
-    answer.work = findings_.work;
+      query_.scan.hierarchy().storage().forEachRecord(
+          index_, [this](std::uint32_t i) { query_.result.flags[i] = flagOf(Verdict::free); });
+    answer.work = results_.work;
     return answer;
   }
 
   void enter(const Span& span)
   {
-    voxel_ = &course_.scan.hierarchy().storage().built(index_, findings_.work);
+    voxel_ = &query_.scan.hierarchy().storage().built(index_, results_.work);
     for (const Node& node : voxel_->nodes) open_lanes_.push_back(static_cast<std::uint8_t>(firstBits(node.count)));
-    findings_.begin(*voxel_);
-    patches_.fit(*voxel_, span.from);
-    findings_.work.volumes_built += countChildren(voxel_->nodes);
+    results_.begin(*voxel_);
+    oriented_boxes_.fit(*voxel_, span.from);
+    results_.work.volumes_built += countChildren(voxel_->nodes);
   }
 
   /// Now and then tells the caller that the walk goes on.
@@ -118,24 +117,24 @@ private:
   }
 
   /// Takes a node, all its children at once, through its candidates; then each child through its own.
-  void descend(std::uint32_t index, const Span& span, const std::vector<Candidate>& candidates, std::size_t depth)
+  void descend(std::uint32_t index, const Span& span, const std::vector<ModelBox>& candidates, std::size_t depth)
   {
     if (watch_.isOver() || isStopped()) return;
     const Node& node = voxel_->nodes[index];
     float largest = 0.0f;
     for (std::uint32_t lane = 0; lane < node.count; ++lane) largest = std::max(largest, node.r[lane]);
-    if (span.divides(kNodeStray * largest * sight_.frame.unit)) {
+    if (span.divides(kNodeStray * largest * voxel_frame_.frame.unit)) {
       for (const std::uint32_t half : {span.interval->left, span.interval->right}) {
         if (open_lanes_[index] == 0) return;
-        descend(index, sight_.spanOf(half), candidates, depth);
+        descend(index, voxel_frame_.spanOf(half), candidates, depth);
       }
       return;
     }
     if (visits_.size() <= depth) visits_.resize(depth + 1);
-    Visit& visit = visits_[depth];
+    NodeVisit& visit = visits_[depth];
     begin(visit, index, span);
     if (settling_) settleByPoints(visit, index, span, candidates);
-    for (const Candidate& candidate : candidates) take(visit, candidate, span, open_lanes_[index]);
+    for (const ModelBox& candidate : candidates) take(visit, candidate, span, open_lanes_[index]);
     for (std::uint32_t bits = open_lanes_[index]; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
@@ -145,7 +144,7 @@ private:
         open = leaves_.compare(index * kLanes + lane, points, node, lane, span, visit.near[lane]);
       }
       else if (depth + 1 >= rule_.deepest) {
-        findings_.undecided[index * kLanes + lane] = 0xffff;
+        results_.undecided[index * kLanes + lane] = 0xffff;
       }
       else {
         descend(node.child[lane], span, visit.near[lane], depth + 1);
@@ -155,7 +154,7 @@ private:
     }
   }
 
-  void begin(Visit& visit, std::uint32_t index, const Span& span)
+  void begin(NodeVisit& visit, std::uint32_t index, const Span& span)
   {
     const Node& node = voxel_->nodes[index];
     alignas(64) float from[3][kLanes], to[3][kLanes];
@@ -164,41 +163,41 @@ private:
     visit.children.set(from, to, span.smallest);
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
       visit.near[lane].clear();
-      visit.radius[lane] = sight_.seenRadius(node.r[lane]);
+      visit.radius[lane] = voxel_frame_.seenRadius(node.r[lane]);
     }
-    float room[3][kLanes];
-    patches_.see(index, span, visit.radius, room);
+    float extent[3][kLanes];
+    oriented_boxes_.see(index, span, visit.radius, extent);
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::uint32_t lane = 0; lane < kLanes; ++lane)
-        visit.children.reach[axis][lane] = (span.reach + room[axis][lane]) * (1.0f + kReachMargin);
-    visit.around = sight_.aroundWays(span, from, to, room, node.count);
-    findings_.work.volumes_carried += node.count + std::uint64_t{1}; // the children and what is around them
+        visit.children.reach[axis][lane] = (span.reach + extent[axis][lane]) * (1.0f + kReachMargin);
+    visit.around = voxel_frame_.aroundSegments(span, from, to, extent, node.count);
+    results_.work.volumes_carried += node.count + std::uint64_t{1}; // the children and what is around them
   }
 
   /// Settles children that a single point of the model is near enough to, at one pose, for all that they hold.
-  void settleByPoints(Visit& visit, std::uint32_t index, const Span& span, const std::vector<Candidate>& candidates)
+  void settleByPoints(NodeVisit& visit, std::uint32_t index, const Span& span, const std::vector<ModelBox>& candidates)
   {
     const Node& node = voxel_->nodes[index];
     float smallest = std::numeric_limits<float>::infinity();
     for (std::uint32_t lane = 0; lane < node.count; ++lane) smallest = std::min(smallest, visit.radius[lane]);
     if (!(settled_reach_ > smallest)) return;
-    Stays<kLanes> stays;
-    for (const Candidate& candidate : candidates) {
+    ClippedSegments<kLanes> clipped;
+    for (const ModelBox& candidate : candidates) {
       const BoxEnds box(candidate);
-      findings_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(open_lanes_[index]));
-      std::uint32_t near = open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, span.steps, &stays);
+      results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(open_lanes_[index]));
+      std::uint32_t near = open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, span.steps, &clipped);
       for (; near != 0; near &= near - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
         const float reach = settled_reach_ - visit.radius[lane] * (1.0f + 4 * kRadiusMargin);
         if (!(reach > 0.0f)) continue;
-        const double middle = 0.5 * (std::max(stays.from[lane], 0.0f) + std::min(stays.to[lane], 1.0f));
+        const double middle = 0.5 * (std::max(clipped.from[lane], 0.0f) + std::min(clipped.to[lane], 1.0f));
         const double steps = span.interval->last - span.interval->first; // beyond 2^24, span.steps may be more
         const auto pose = span.interval->first + static_cast<std::uint32_t>(std::lround(middle * steps));
-        const Ball ball{{node.x[lane], node.y[lane], node.z[lane]}, reach, pose};
-        const Sight sight = sight_.sightOf(poseAt(pose), {0, 0, 0}, 1.0);
-        const Point center = carryPoint(sight.m, sight.g, ball.center);
-        ++findings_.work.volumes_carried;
-        if (box.squaredDistance(center) > reach * reach || !hasPointWithin(candidate, ball, center)) continue;
+        const ProbeSphere probe{{node.x[lane], node.y[lane], node.z[lane]}, reach, pose};
+        const AffineMap map = voxel_frame_.mapAt(poseAt(pose), {0, 0, 0}, 1.0);
+        const Point center = carryPoint(map.m, map.g, probe.center);
+        ++results_.work.volumes_carried;
+        if (box.squaredDistance(center) > reach * reach || !hasPointWithin(candidate, probe, center)) continue;
         settle(index, lane);
         open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
       }
@@ -206,8 +205,8 @@ private:
     }
   }
 
-  /// A ball of the scan's voxel, at a pose; its reach in the clouds' unit.
-  struct Ball {
+  /// A probe of the scan's voxel, at a pose; its reach in the clouds' unit.
+  struct ProbeSphere {
     Point center;
     float reach;
     std::uint32_t pose;
@@ -216,7 +215,7 @@ private:
   struct BoxEnds {
     float low[3], high[3];
 
-    explicit BoxEnds(const Candidate& candidate)
+    explicit BoxEnds(const ModelBox& candidate)
     {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         low[axis] = candidate.box().low[axis][candidate.lane];
@@ -236,33 +235,33 @@ private:
     }
   };
 
-  const PathPose& poseAt(std::uint32_t k) const { return course_.path.poses[k]; }
+  const PathPose& poseAt(std::uint32_t k) const { return query_.path.poses[k]; }
 
-  /// Whether the candidate has a point in the ball; the nearest boxes are asked first.
-  /// @param center of the ball, about where the model sees it.
-  bool hasPointWithin(const Candidate& candidate, const Ball& ball, const Point& center)
+  /// Whether the candidate has a point in the probe; the nearest boxes are asked first.
+  /// @param center of the probe, about where the model sees it.
+  bool hasPointWithin(const ModelBox& candidate, const ProbeSphere& probe, const Point& center)
   {
     if (candidate.isLeaf()) {
-      const Voxel& voxel = course_.boxes.storage.voxels[candidate.voxel];
+      const Voxel& voxel = query_.boxes.storage.voxels[candidate.voxel];
       if (voxel.frame.unit != 1.0) return false;
       const Node& node = candidate.nodes[candidate.node];
-      const Sight sight = sight_.sightOf(poseAt(ball.pose), course_.boxes.offset(candidate.voxel), 1.0);
-      for (const float g : sight.g)
-        if (!(std::abs(g) <= sight_.far)) return false;
-      const Point at = carryPoint(sight.m, sight.g, ball.center);
+      const AffineMap map = voxel_frame_.mapAt(poseAt(probe.pose), query_.boxes.offset(candidate.voxel), 1.0);
+      for (const float g : map.g)
+        if (!(std::abs(g) <= voxel_frame_.far)) return false;
+      const Point at = carryPoint(map.m, map.g, probe.center);
       const std::uint32_t begin = node.begin[candidate.lane];
       return anyPointWithin(voxel.x() + begin, voxel.y() + begin, voxel.z() + begin,
-                            node.comparedPoints(candidate.lane), at.x, at.y, at.z, ball.reach);
+                            node.comparedPoints(candidate.lane), at.x, at.y, at.z, probe.reach);
     }
     if (!model_.mayOpen(candidate)) return false;
-    Candidate child = model_.below(candidate);
+    ModelBox child = model_.below(candidate);
     const std::uint32_t count = child.nodes[child.node].count;
-    findings_.work.node_pairs += count;
+    results_.work.node_pairs += count;
     float distance[kLanes];
     std::uint32_t near = 0;
     for (child.lane = 0; child.lane < count; ++child.lane) {
       distance[child.lane] = BoxEnds(child).squaredDistance(center);
-      if (distance[child.lane] <= ball.reach * ball.reach) near |= 1u << child.lane;
+      if (distance[child.lane] <= probe.reach * probe.reach) near |= 1u << child.lane;
     }
     while (near != 0) {
       child.lane = static_cast<std::uint32_t>(std::countr_zero(near));
@@ -270,7 +269,7 @@ private:
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
         if (distance[lane] < distance[child.lane]) child.lane = lane;
       }
-      if (hasPointWithin(child, ball, center)) return true;
+      if (hasPointWithin(child, probe, center)) return true;
       near &= ~(1u << child.lane);
     }
     return false;
@@ -282,7 +281,7 @@ private:
     const Node& node = voxel_->nodes[index];
     if (node.isLeaf(lane)) {
       const auto all = static_cast<std::uint16_t>(firstBits(node.comparedPoints(lane)));
-      findings_.hit[index * kLanes + lane] = findings_.settled[index * kLanes + lane] = all;
+      results_.hit[index * kLanes + lane] = results_.settled[index * kLanes + lane] = all;
       return;
     }
     const std::uint32_t below = node.child[lane];
@@ -291,15 +290,15 @@ private:
 
   /// Compares a box of the model with those children of the visit that are in `lanes`: drops it, keeps it for their own
   /// descent, or opens it.
-  void take(Visit& visit, const Candidate& candidate, const Span& span, std::uint32_t lanes)
+  void take(NodeVisit& visit, const ModelBox& candidate, const Span& span, std::uint32_t lanes)
   {
     const std::uint32_t k = candidate.lane;
     const BoxNode& box = candidate.box();
     const float low[3] = {box.low[0][k], box.low[1][k], box.low[2][k]};
     const float high[3] = {box.high[0][k], box.high[1][k], box.high[2][k]};
-    findings_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
+    results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
     const std::uint32_t near_lanes =
-        lanes & segmentsInBox(visit.children, low, high, span.steps, static_cast<Stays<kLanes>*>(nullptr));
+        lanes & segmentsInBox(visit.children, low, high, span.steps, static_cast<ClippedSegments<kLanes>*>(nullptr));
     if (near_lanes == 0) return;
     const bool opens = !candidate.isLeaf() && model_.mayOpen(candidate);
     const float size = candidate.size();
@@ -312,39 +311,39 @@ private:
         visit.near[lane].push_back(candidate);
     }
     if (opening == 0) return;
-    Candidate child = model_.below(candidate);
+    ModelBox child = model_.below(candidate);
     for (std::uint32_t bits = model_.near(visit.around, child, span.steps); bits != 0; bits &= bits - 1) {
       child.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       take(visit, child, span, opening);
     }
   }
 
-  const Course& course_;
+  const TrajectoryQuery& query_;
   const StopRule& rule_;
   const std::uint32_t index_;
-  const VoxelSight sight_;
-  Patches patches_;
-  Findings findings_;
+  const VoxelInModelFrame voxel_frame_;
+  OrientedBoxes oriented_boxes_;
+  VoxelResults results_;
   Progress& progress_;
   Watch watch_;
   std::uint32_t descents_ = 0;
   bool stopped_ = false; // by the caller
-  ModelWalk model_;
+  ModelBoxes model_;
   LeafWalk leaves_;
   const bool settling_;                  // whether any pose, and any point of the model, says all that is asked
   const float settled_reach_;            // a pair nearer than this, in floats, collides
   const Voxel* voxel_ = nullptr;         // once it was entered
   std::vector<std::uint8_t> open_lanes_; // per node: children that are not settled
-  std::deque<Visit>& visits_;            // by depth; a deque, for references to shallower visits stay in use
+  std::deque<NodeVisit>& visits_;        // by depth; a deque, for references to shallower visits clip in use
 };
 
 } // namespace
 
-VoxelAnswer walkVoxelOnTarget(const Course& course, const StopRule& rule, std::uint32_t voxel,
+VoxelResult walkVoxelOnTarget(const TrajectoryQuery& query, const StopRule& rule, std::uint32_t voxel,
                               const std::vector<std::uint32_t>& intervals, Progress& progress)
 {
-  thread_local std::deque<Visit> visits; // kept from voxel to voxel for their storage only
-  return TrajectoryWalk(course, rule, voxel, progress, visits).run(intervals);
+  thread_local std::deque<NodeVisit> visits; // kept from voxel to voxel for their storage only
+  return TrajectoryWalk(query, rule, voxel, progress, visits).run(intervals);
 }
 
 } // namespace HWY_NAMESPACE
@@ -356,10 +355,10 @@ namespace pcl_bsh {
 
 HWY_EXPORT(walkVoxelOnTarget);
 
-VoxelAnswer walkVoxel(const Course& course, const StopRule& rule, std::uint32_t voxel,
+VoxelResult walkVoxel(const TrajectoryQuery& query, const StopRule& rule, std::uint32_t voxel,
                       const std::vector<std::uint32_t>& intervals, Progress& progress)
 {
-  return HWY_DYNAMIC_DISPATCH(walkVoxelOnTarget)(course, rule, voxel, intervals, progress);
+  return HWY_DYNAMIC_DISPATCH(walkVoxelOnTarget)(query, rule, voxel, intervals, progress);
 }
 
 } // namespace pcl_bsh

@@ -66,9 +66,9 @@ test::Stay segmentInBoxOnTarget(const float* start, const float* end, float smal
   Segments<8> segments;
   segments.set(from, to, smallest);
   std::fill(segments.reach[0], segments.reach[0] + 8, reach);
-  Stays<8> stays;
-  const bool in_box = (segmentsInBox(segments, low, high, 0.0f, &stays) & 1) != 0;
-  return {in_box, stays.from[0], stays.to[0]};
+  ClippedSegments<8> clipped;
+  const bool in_box = (segmentsInBox(segments, low, high, 0.0f, &clipped) & 1) != 0;
+  return {in_box, clipped.from[0], clipped.to[0]};
 }
 
 } // namespace HWY_NAMESPACE

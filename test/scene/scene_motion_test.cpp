@@ -32,7 +32,7 @@ SceneOptions responding(Response response, double clearance, double tolerance = 
   return options;
 }
 
-SceneOptions meeting(double clearance, double tolerance)
+SceneOptions timeOfContact(double clearance, double tolerance)
 {
   SceneOptions options;
   options.effects.first_contact = options.effects.swept = true;
@@ -99,7 +99,7 @@ TEST(SceneMotion, TurnsByAnyAngleWithinAStep)
     SCOPED_TRACE(speed);
     for (const bool circle : {false, true}) {
       Shelf shelf;
-      Scene scene(meeting(0.2, 1e-6));
+      Scene scene(timeOfContact(0.2, 1e-6));
       scene.add(bar(shelf, circle ? Motion(CircularMotion{{0, 0, 0}, {0, 0, 1}, speed, true})
                                   : Motion(VelocityMotion{{0, 0, 0}, {0, 0, speed}})));
       scene.add(fixedObject("pole", shelf.add({{0, 0.9, 0}})));
@@ -132,7 +132,7 @@ TEST(SceneMotion, AnArmStopsAndSlidesAtWhatItMeetsInAFullTurn)
 TEST(SceneMotion, WaypointsWithinAStepAddUpTheirTurns)
 {
   Shelf shelf;
-  Scene scene(meeting(0.2, 1e-6));
+  Scene scene(timeOfContact(0.2, 1e-6));
   const auto turned = [](double angle) {
     return Eigen::Isometry3d(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
   };
@@ -157,29 +157,29 @@ TEST(SceneMotion, WaypointsWithinAStepAddUpTheirTurns)
 TEST(SceneMotion, AUsersPoseTurnsTheShorterWayAndAMotionGoesOnFromThere)
 {
   Shelf shelf;
-  Scene scene(meeting(0.2, 1e-6));
+  Scene scene(timeOfContact(0.2, 1e-6));
   const ObjectId arm = scene.add(bar(shelf, VelocityMotion{{0, 0, 0}, {0, 0, 2 * pi}}));
   scene.query();
   scene.setPose(arm, Eigen::Isometry3d(Eigen::AngleAxisd(-2.0, Eigen::Vector3d::UnitZ())));
   SceneResult result = scene.query();
-  ASSERT_EQ(result.ways.size(), 1u);
-  EXPECT_NEAR(result.ways[0].leg.turn.z(), -2.0, 1e-12);
+  ASSERT_EQ(result.swept_motions.size(), 1u);
+  EXPECT_NEAR(result.swept_motions[0].leg.turn.z(), -2.0, 1e-12);
   scene.setPose(arm, Eigen::Isometry3d::Identity());
   result = scene.step(1); // 2 radians to the pose set, then once around
-  ASSERT_EQ(result.ways.size(), 1u);
-  EXPECT_NEAR(result.ways[0].leg.turn.z(), 2 * pi + 2.0, 1e-9);
+  ASSERT_EQ(result.swept_motions.size(), 1u);
+  EXPECT_NEAR(result.swept_motions[0].leg.turn.z(), 2 * pi + 2.0, 1e-9);
   scene.setMotion(arm, VelocityMotion{{0, 0, 0}, {0, 0, -1}});
   result = scene.step(1);
-  ASSERT_EQ(result.ways.size(), 1u);
-  EXPECT_NEAR(result.ways[0].leg.turn.z(), -1.0, 1e-12);
-  EXPECT_TRUE(scene.query().ways.empty());
+  ASSERT_EQ(result.swept_motions.size(), 1u);
+  EXPECT_NEAR(result.swept_motions[0].leg.turn.z(), -1.0, 1e-12);
+  EXPECT_TRUE(scene.query().swept_motions.empty());
 }
 
 TEST(SceneMotion, RefusesWaysOnWhichItsPromisesCannotBeKept)
 {
   Shelf shelf;
   for (const bool respond : {false, true}) {
-    Scene scene(respond ? responding(Response::stop, 0.2) : meeting(0.2, 1e-4));
+    Scene scene(respond ? responding(Response::stop, 0.2) : timeOfContact(0.2, 1e-4));
     const ObjectId arm = scene.add(bar(shelf, VelocityMotion{{1, 0, 0}, {0, 0, 2e6 * pi}}));
     const Eigen::Isometry3d before = scene[arm].pose;
     EXPECT_THROW(scene.step(1), std::invalid_argument); // a million turns
@@ -238,7 +238,7 @@ TEST(SceneMotion, ARingTurnsAboutAShaftInFewSteps)
     for (int i = 0; i < 24; ++i) ring.push_back({std::cos(i * pi / 12), std::sin(i * pi / 12), 0.0});
     const auto shaft = shelf.add({{0, 0, 0}});
     for (const bool respond : {false, true}) {
-      SceneOptions options = respond ? responding(Response::stop, 1 - gap, 1e-9) : meeting(1 - gap, 1e-9);
+      SceneOptions options = respond ? responding(Response::stop, 1 - gap, 1e-9) : timeOfContact(1 - gap, 1e-9);
       Scene scene(options);
       SceneObject turning = object("ring", shelf.add(ring));
       turning.motion = VelocityMotion{{0, 0, 0}, {0, 0, 6 * pi}};
@@ -252,9 +252,9 @@ TEST(SceneMotion, ARingTurnsAboutAShaftInFewSteps)
 // --- random worlds ---
 
 /// Movers of a few points among fixed plates, rods and rocks, some in corners, some next to touching.
-class Course {
+class Walk {
 public:
-  Course(std::uint64_t seed, double away) : random(seed), shift(away, -away, 0.5 * away) {}
+  Walk(std::uint64_t seed, double away) : random(seed), shift(away, -away, 0.5 * away) {}
 
   Scene scene(const SceneOptions& options, bool turning)
   {
@@ -331,7 +331,7 @@ TEST(SceneMotion, ResponsesCollideAtNoInstant)
   int touched = 0, legs = 0, bent = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Course course(seed, far_away[seed % 4]);
+    Walk course(seed, far_away[seed % 4]);
     SceneOptions options =
         responding(seed % 3 == 0 ? Response::stop : Response::slide,
                    course.random.chance(0.2) ? 0.0 : course.random.uniform(0.01, 0.2), course.random.pick(tolerances));
@@ -358,9 +358,9 @@ TEST(SceneMotion, NothingCollidesBeforeItsFirstContact)
   std::size_t contacts = 0;
   for (std::uint64_t seed = 100; seed < 130; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Course course(seed, far_away[seed % 4]);
-    SceneOptions options =
-        meeting(course.random.chance(0.2) ? 0.0 : course.random.uniform(0.01, 0.2), course.random.pick(tolerances));
+    Walk course(seed, far_away[seed % 4]);
+    SceneOptions options = timeOfContact(course.random.chance(0.2) ? 0.0 : course.random.uniform(0.01, 0.2),
+                                         course.random.pick(tolerances));
     options.effects.swept = false;
     Scene scene = course.scene(options, seed % 3 != 0);
     scene.query();

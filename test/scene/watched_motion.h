@@ -158,11 +158,11 @@ public:
   {
     const auto count = static_cast<ObjectId>(before_.size());
     const auto poseAt = [&](ObjectId id, double s) {
-      for (const ObjectWay& way : result.ways)
+      for (const SweptMotion& way : result.swept_motions)
         if (way.object == id) return s >= 1.0 ? way.leg.to : s <= 0.0 ? way.leg.from : poseOn(way.leg, s);
       return after(id);
     };
-    for (const ObjectWay& way : result.ways)
+    for (const SweptMotion& way : result.swept_motions)
       if (!poseOn(way.leg, 1.0).isApprox(way.leg.to, 1e-9) || way.leg.to.matrix() != after(way.object).matrix())
         return "the way of object " + std::to_string(way.object) + " does not lead to where it is";
     for (int i = 0; i < instants; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/scene/approach.h>
+#include <pcl_bsh/scene/conservative_advancement.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +22,9 @@ double firstRoot(double gap, double slope, double bend)
 }
 
 /// Two points on their courses, seen from each other.
-class Couple {
+class MovingPointPair {
 public:
-  Couple(const PointMotion& a, const PointMotion& b, double end)
+  MovingPointPair(const PointMotion& a, const PointMotion& b, double end)
   : a_(a),
     b_(b),
     end_(end),
@@ -70,7 +70,7 @@ public:
   {
     const double gap = distance - limit;
     if (!(gap > 0.0)) {
-      // They move off, or not at all. The way back to this distance is as safe as standing still.
+      // They move off, or not at all. The motion back to this distance is as safe as standing still.
       const double leaving = -(closing + drift_);
       return leaving > 0.0 ? 2.0 * leaving / bend_ : 0.0;
     }
@@ -79,7 +79,7 @@ public:
     // The distance of two points in straight motion is convex; turning bends it by no more than this.
     step = std::max(step, firstRoot(gap, -(closing + drift_), bend_));
     // The squared distance by its own second derivative, which is small where both turn about one axis: a ring about a
-    // shaft stays as near as it is. Invalid for the drift, which is put on top of the limit for all of the way.
+    // shaft stays as near as it is. Invalid for the drift, which is added to the limit for the whole motion.
     const double least = limit + drift_ * (end_ - s_);
     const double square_gap = (distance - least) * (distance + least);
     if (square_gap > 0.0) {
@@ -109,7 +109,7 @@ private:
 
 } // namespace
 
-std::optional<double> meeting(const Eigen::Vector3d& apart, const Eigen::Vector3d& shift, const ContactZone& zone)
+std::optional<double> timeOfContact(const Eigen::Vector3d& apart, const Eigen::Vector3d& shift, const ContactZone& zone)
 {
   const double along = apart.dot(shift), length2 = shift.squaredNorm();
   if (!(along < 0.0) || length2 == 0.0) return std::nullopt; // no nearer than now
@@ -119,45 +119,45 @@ std::optional<double> meeting(const Eigen::Vector3d& apart, const Eigen::Vector3
   const double closest = -along / length2;
   if ((apart + std::min(1.0, closest) * shift).squaredNorm() >= pass * pass) return std::nullopt;
   // Back from the closest approach by half a chord. The usual root of |apart + s shift| = halt takes a difference of
-  // squares of the whole way, which is all rounding when that is long and the zone thin.
+  // squares of the whole length, which is mostly rounding where that is long and the zone thin.
   const double across = (apart + closest * shift).norm();
   const double half = std::sqrt(std::max(0.0, (halt - across) * (halt + across) / length2));
   return std::clamp(closest - half, 0.0, 1.0);
 }
 
-std::optional<double> meeting(const RigidMotion& motion_a, const Eigen::Vector3d& p, const RigidMotion& motion_b,
-                              const Eigen::Vector3d& q, const ContactZone& zone, double begin, double end)
+std::optional<double> timeOfContact(const RigidMotion& motion_a, const Eigen::Vector3d& p, const RigidMotion& motion_b,
+                                    const Eigen::Vector3d& q, const ContactZone& zone, double begin, double end)
 {
   if (!motion_a.turns() && !motion_b.turns()) {
     const Eigen::Vector3d apart = motion_a.at(begin) * p - motion_b.at(begin) * q;
-    const auto s = meeting(apart, (end - begin) * (motion_a.shift() - motion_b.shift()), zone);
+    const auto s = timeOfContact(apart, (end - begin) * (motion_a.shift() - motion_b.shift()), zone);
     if (!s) return std::nullopt;
     return begin + *s * (end - begin);
   }
   const PointMotion a = motion_a.motionOf(p), b = motion_b.motionOf(q);
-  Couple couple(a, b, end);
-  couple.look(begin);
-  bool inside = couple.distance <= zone.outer(); // from the start
-  // Steps lead to between this and outer, so that what is halted has room left to inner.
+  MovingPointPair moving(a, b, end);
+  moving.look(begin);
+  bool inside = moving.distance <= zone.outer(); // from the start
+  // Steps lead to between this and outer, so that a halted pair still has some distance to inner.
   const double halt = zone.reach + 0.4375 * zone.tolerance;
-  double limit = inside ? zone.floor(couple.distance) : halt;
-  if (couple.distance < zone.reach - 0.0625 * zone.tolerance) return begin;
+  double limit = inside ? zone.floor(moving.distance) : halt;
+  if (moving.distance < zone.reach - 0.0625 * zone.tolerance) return begin;
   int steps_inside = 0;
   for (double s = begin;;) {
     if (inside) {
-      const bool at_limit = couple.distance - limit <= zone.tolerance / 64;
-      if (at_limit && couple.closing > 0x1p-40 * couple.speed()) return s;
+      const bool at_limit = moving.distance - limit <= zone.tolerance / 64;
+      if (at_limit && moving.closing > 0x1p-40 * moving.speed()) return s;
       if (++steps_inside > kMostInside) return s; // a halt too early, at a distance that a halt may have
     }
-    const double step = couple.safeStep(limit);
+    const double step = moving.safeStep(limit);
     s = std::max(s + step, std::nextafter(s, infinity));
     if (!(s < end)) return std::nullopt;
-    couple.look(s);
-    if (inside && couple.distance > zone.outer()) {
+    moving.look(s);
+    if (inside && moving.distance > zone.outer()) {
       inside = false;
       limit = halt;
     }
-    if (!inside && couple.distance <= zone.outer()) return s;
+    if (!inside && moving.distance <= zone.outer()) return s;
   }
 }
 

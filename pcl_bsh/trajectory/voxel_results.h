@@ -2,15 +2,15 @@
 // What is known so far of the points of one of the scan's voxels, and of the poses it was looked at.
 #pragma once
 
-#include <pcl_bsh/trajectory/trajectory_course.h>
+#include <pcl_bsh/trajectory/trajectory_query.h>
 
 #include <vector>
 
 namespace pcl_bsh {
 
 /// The nearest point of the model, so far.
-struct Best {
-  double time = 0.0; ///< pose of the path; swept: and fraction of the way to the next
+struct NearestPoint {
+  double time = 0.0; ///< pose of the path; swept: plus the fraction of the motion to the next
   double gap = std::numeric_limits<double>::infinity(); ///< swept: the distance
   std::uint32_t record = 0xffffffffu;
   float limit = std::numeric_limits<float>::infinity(); ///< a larger squared distance is none better
@@ -19,18 +19,18 @@ struct Best {
 
 /// Leaves of the voxel are named by slots: 8 * the node + the child. Points by their place in the voxel, poses by their
 /// place on the path.
-class Findings {
+class VoxelResults {
 public:
-  explicit Findings(const Course& course) : course_(course) {}
+  explicit VoxelResults(const TrajectoryQuery& query) : query_(query) {}
 
-  /// Makes room for the points of a voxel that is built.
+  /// Allocates the results of the points of a voxel that is built.
   void begin(const Voxel& voxel);
 
-  /// Makes room for poses first..last of the path.
+  /// Allocates the results of poses first..last of the path.
   void beginPoses(std::uint32_t first, std::uint32_t last);
 
-  /// Writes to the course's result. @return colliding points, and the first contact.
-  VoxelAnswer finish(const Voxel& voxel);
+  /// Writes to the query's result. @return colliding points, and the first contact.
+  VoxelResult finish(const Voxel& voxel);
 
   /// Where flags start as undecided: writes those of the voxel that are decided now.
   /// @param unsure nothing but a hit is. @return whether points were left undecided.
@@ -39,14 +39,14 @@ public:
   std::vector<std::uint16_t> hit, settled; ///< per slot: bits of the leaf's points
   std::vector<std::uint16_t> undecided;    ///< per slot: likewise, of a child that is no leaf any bit stands for all
   std::vector<double> first;               ///< per point: when it collides first, if that is asked for
-  std::vector<Best> best;                  ///< per point, if that is asked for
+  std::vector<NearestPoint> best;          ///< per point, if that is asked for
   Work work;
 
   /// As exact arithmetic says.
   bool collide(PointPair pair, std::uint32_t k);
 
   /// Keeps the nearest for a point; of several the first pose, and there the smallest record.
-  void consider(Best& nearest, PointPair pair, std::uint32_t k);
+  void consider(NearestPoint& nearest, PointPair pair, std::uint32_t k);
 
   /// Keeps the nearest for a pose.
   void considerPose(PointPair pair, std::uint32_t k);
@@ -61,12 +61,12 @@ private:
   ExactDistance exactAt(std::uint32_t k) const;
   ExactDistance::Pair posed(PointPair pair) const;
   std::int32_t givenPose(double time) const;
-  float distanceOf(std::uint32_t record, const Best& nearest) const;
+  float distanceOf(std::uint32_t record, const NearestPoint& nearest) const;
   void mergePoses() const;
 
-  const Course& course_;
+  const TrajectoryQuery& query_;
   std::uint32_t first_pose_ = 0;
-  std::vector<PoseBest> pose_best_;
+  std::vector<NearestAtPose> nearest_at_pose_;
   std::vector<float> pose_limit_;
   std::vector<std::size_t> pose_counts_;
   std::vector<Verdict> verdicts_; // per point

@@ -22,9 +22,9 @@ using test::Random;
 
 /// Points of two voxels along each axis, with their hierarchy.
 template <class T>
-class HomeVoxelCloud {
+class EnclosingVoxelCloud {
 public:
-  explicit HomeVoxelCloud(double edge = 1.0, double middle = 0.0, std::size_t count = 400) : edge_(edge)
+  explicit EnclosingVoxelCloud(double edge = 1.0, double middle = 0.0, std::size_t count = 400) : edge_(edge)
   {
     Random random(7);
     for (std::size_t i = 0; i < 3 * count; ++i) xyz.push_back(static_cast<T>(middle + edge * random.uniform(0, 2)));
@@ -91,17 +91,17 @@ private:
   double edge_;
 };
 
-TEST(HomeVoxel, AsSorted)
+TEST(EnclosingVoxel, AsSorted)
 {
-  HomeVoxelCloud<float> cloud;
+  EnclosingVoxelCloud<float> cloud;
   cloud.expectRight("as sorted");
   EXPECT_EQ(cloud.strayed(), 0.0);
 }
 
-TEST(HomeVoxel, AfterARefit)
+TEST(EnclosingVoxel, AfterARefit)
 {
   for (const double by : {1.0, -1.0, 0.5, 17.0}) {
-    HomeVoxelCloud<float> cloud;
+    EnclosingVoxelCloud<float> cloud;
     cloud.shift(by);
     ASSERT_FALSE(cloud.hierarchy->refit(cloud.view()).sorted_anew);
     cloud.expectRight("refitted");
@@ -109,9 +109,9 @@ TEST(HomeVoxel, AfterARefit)
   }
 }
 
-TEST(HomeVoxel, AfterARefitBackToWhereTheyWere)
+TEST(EnclosingVoxel, AfterARefitBackToWhereTheyWere)
 {
-  HomeVoxelCloud<float> cloud;
+  EnclosingVoxelCloud<float> cloud;
   const std::vector<float> before = cloud.xyz;
   cloud.shift(1.0, 2);
   ASSERT_FALSE(cloud.hierarchy->refit(cloud.view()).sorted_anew);
@@ -121,9 +121,9 @@ TEST(HomeVoxel, AfterARefitBackToWhereTheyWere)
   EXPECT_LT(cloud.strayed(), 1e-3); // cells are counted in float
 }
 
-TEST(HomeVoxel, AfterSmallMotionsTheOwnVoxelIsStillEnough)
+TEST(EnclosingVoxel, AfterSmallMotionsTheOwnVoxelIsStillEnough)
 {
-  HomeVoxelCloud<float> cloud;
+  EnclosingVoxelCloud<float> cloud;
   const auto above = [&] { // spheres above the voxels that are tested for a ball in the middle of one
     Work work;
     Neighbors found;
@@ -137,9 +137,9 @@ TEST(HomeVoxel, AfterSmallMotionsTheOwnVoxelIsStillEnough)
   EXPECT_LT(above(), before + 8);
 }
 
-TEST(HomeVoxel, AfterVoxelsWereDroppedAndBuiltAgain)
+TEST(EnclosingVoxel, AfterVoxelsWereDroppedAndBuiltAgain)
 {
-  HomeVoxelCloud<float> cloud;
+  EnclosingVoxelCloud<float> cloud;
   Random random(9);
   const int last = static_cast<int>(cloud.view().count) - 1;
   for (int i = 0; i < 20000; ++i) { // points of one voxel change places: its leaves grow, it does not
@@ -158,17 +158,17 @@ TEST(HomeVoxel, AfterVoxelsWereDroppedAndBuiltAgain)
   cloud.expectRight("built again, and kept");
 }
 
-TEST(HomeVoxel, AfterAnUpdate)
+TEST(EnclosingVoxel, AfterAnUpdate)
 {
-  HomeVoxelCloud<float> cloud;
+  EnclosingVoxelCloud<float> cloud;
   cloud.update(0.25, true);
   cloud.expectRight("updated");
   EXPECT_EQ(cloud.strayed(), 0.0);
 }
 
-TEST(HomeVoxel, AfterAnUpdateOfRefittedPoints)
+TEST(EnclosingVoxel, AfterAnUpdateOfRefittedPoints)
 {
-  HomeVoxelCloud<float> cloud;
+  EnclosingVoxelCloud<float> cloud;
   cloud.shift(0.05);
   ASSERT_FALSE(cloud.hierarchy->refit(cloud.view()).sorted_anew);
   // Points that changed voxels by the refit: the update sees that, and sorts anew.
@@ -177,10 +177,10 @@ TEST(HomeVoxel, AfterAnUpdateOfRefittedPoints)
   EXPECT_EQ(cloud.strayed(), 0.0);
 }
 
-TEST(HomeVoxel, AfterAnUpdateOfPointsThatDidNotStray)
+TEST(EnclosingVoxel, AfterAnUpdateOfPointsThatDidNotStray)
 {
   // A refit moves the upper half over a face; the update is of some in the lower half, and leaves the others be.
-  HomeVoxelCloud<float> cloud;
+  EnclosingVoxelCloud<float> cloud;
   for (std::size_t i = 0; i < cloud.xyz.size(); i += 3)
     if (cloud.xyz[i + 1] > 1.0f) cloud.xyz[i] += 1.0f;
   ASSERT_FALSE(cloud.hierarchy->refit(cloud.view()).sorted_anew);
@@ -189,18 +189,18 @@ TEST(HomeVoxel, AfterAnUpdateOfPointsThatDidNotStray)
   cloud.expectRight("a half refitted, some of the other updated");
 }
 
-TEST(HomeVoxel, AfterARefitOfUpdatedPoints)
+TEST(EnclosingVoxel, AfterARefitOfUpdatedPoints)
 {
-  HomeVoxelCloud<float> cloud;
+  EnclosingVoxelCloud<float> cloud;
   cloud.update(0.25, true);
   cloud.shift(1.0);
   ASSERT_FALSE(cloud.hierarchy->refit(cloud.view()).sorted_anew);
   cloud.expectRight("updated, refitted");
 }
 
-TEST(HomeVoxel, AfterASceneDeformedThem)
+TEST(EnclosingVoxel, AfterASceneDeformedThem)
 {
-  HomeVoxelCloud<float> cloud;
+  EnclosingVoxelCloud<float> cloud;
   SceneOptions options;
   options.effects.deform = 1.5;
   Scene scene(options);
@@ -210,23 +210,23 @@ TEST(HomeVoxel, AfterASceneDeformedThem)
   cloud.expectRight("deformed");
 }
 
-TEST(HomeVoxel, AtNegativeAndGreatCoordinates)
+TEST(EnclosingVoxel, AtNegativeAndGreatCoordinates)
 {
   for (const double middle : {-5.0, -1e4, 1e4}) {
-    HomeVoxelCloud<float> cloud(1.0, middle);
+    EnclosingVoxelCloud<float> cloud(1.0, middle);
     cloud.expectRight("sorted");
     cloud.shift(-1.0);
     ASSERT_FALSE(cloud.hierarchy->refit(cloud.view()).sorted_anew);
     cloud.expectRight("refitted");
   }
   for (const double unit : {0x1p100, 0x1p-100, 0x1p900, 0x1p-900}) {
-    HomeVoxelCloud<double> cloud(unit, -unit, 200);
+    EnclosingVoxelCloud<double> cloud(unit, -unit, 200);
     cloud.expectRight("sorted");
     cloud.shift(unit);
     ASSERT_FALSE(cloud.hierarchy->refit(cloud.view()).sorted_anew);
     cloud.expectRight("refitted");
   }
-  HomeVoxelCloud<double> far(0.25, 5400000.003);
+  EnclosingVoxelCloud<double> far(0.25, 5400000.003);
   far.expectRight("georeferenced");
   far.shift(0.25);
   ASSERT_FALSE(far.hierarchy->refit(far.view()).sorted_anew);
@@ -234,7 +234,7 @@ TEST(HomeVoxel, AtNegativeAndGreatCoordinates)
 }
 
 /// Numbers of cells are rounded to the cloud's float32: at 2^19 cells from the base to a sixteenth of a cell.
-TEST(HomeVoxel, WherePointsLieOnFacesAndCellNumbersAreRounded)
+TEST(EnclosingVoxel, WherePointsLieOnFacesAndCellNumbersAreRounded)
 {
   std::vector<float> xyz;
   for (int i = 0; i < 400; ++i) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The model's side of a walk along a trajectory: its boxes, opened as they are needed.
 
-#if defined(PCL_BSH_QUERY_TRAJECTORY_MODEL_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PCL_BSH_QUERY_TRAJECTORY_MODEL_INL_H_
-#undef PCL_BSH_QUERY_TRAJECTORY_MODEL_INL_H_
+#if defined(PCL_BSH_TRAJECTORY_MODEL_BOXES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAJECTORY_MODEL_BOXES_INL_H_
+#undef PCL_BSH_TRAJECTORY_MODEL_BOXES_INL_H_
 #else
-#define PCL_BSH_QUERY_TRAJECTORY_MODEL_INL_H_
+#define PCL_BSH_TRAJECTORY_MODEL_BOXES_INL_H_
 #endif
 
 #include <pcl_bsh/query/stop_rule.h>
-#include <pcl_bsh/trajectory/trajectory_sight-inl.h>
+#include <pcl_bsh/trajectory/voxel_in_model_frame-inl.h>
 
 #include <vector>
 
@@ -18,7 +18,7 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
 /// A box of the model: a child of one of a voxel's nodes, or of the nodes above the voxels.
-struct Candidate {
+struct ModelBox {
   const BoxNode* boxes;
   const Node* nodes;
   std::uint32_t voxel;
@@ -38,16 +38,16 @@ struct Candidate {
 };
 
 /// Opens the model's boxes.
-class ModelWalk {
+class ModelBoxes {
 public:
-  ModelWalk(const BoxTree& tree, const StopRule& rule, Work& work) : tree_(tree), rule_(rule), work_(work) {}
+  ModelBoxes(const BoxTree& tree, const StopRule& rule, Work& work) : tree_(tree), rule_(rule), work_(work) {}
 
   /// The node above all boxes, as its first child.
-  Candidate root() const { return {tree_.top().data(), tree_.storage.top.data(), kAboveVoxels, 0, 0, 0}; }
+  ModelBox root() const { return {tree_.top().data(), tree_.storage.top.data(), kAboveVoxels, 0, 0, 0}; }
 
   /// Whether a candidate that is not a leaf may be opened: not below the level where to stop, nor without the time to
   /// build a voxel.
-  bool mayOpen(const Candidate& c) const
+  bool mayOpen(const ModelBox& c) const
   {
     if (!rule_.mayStop()) return true;
     if (c.voxel != kAboveVoxels) return c.level < rule_.deepest;
@@ -56,7 +56,7 @@ public:
   }
 
   /// The node below a candidate that is not a leaf, as its first child.
-  Candidate below(const Candidate& c)
+  ModelBox below(const ModelBox& c)
   {
     if (c.voxel != kAboveVoxels || !c.nodes[c.node].isLeaf(c.lane))
       return {c.boxes, c.nodes, c.voxel, c.nodes[c.node].child[c.lane], 0, c.voxel == kAboveVoxels ? 0 : c.level + 1};
@@ -66,7 +66,7 @@ public:
   }
 
   /// Bits of the children of a node that a thick segment may meet.
-  std::uint32_t near(const Segment& segment, const Candidate& node, float steps)
+  std::uint32_t near(const Segment& segment, const ModelBox& node, float steps)
   {
     const std::uint32_t count = node.nodes[node.node].count;
     work_.node_pairs += count;
@@ -74,7 +74,7 @@ public:
   }
 
   /// What a thick segment may meet of the model below a node, in boxes no larger than `size`.
-  void collect(const Span& span, const Segment& segment, float size, Candidate node, std::vector<Candidate>& into)
+  void collect(const Span& span, const Segment& segment, float size, ModelBox node, std::vector<ModelBox>& into)
   {
     for (std::uint32_t bits = near(segment, node, span.steps); bits != 0; bits &= bits - 1) {
       node.lane = static_cast<std::uint32_t>(std::countr_zero(bits));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/trajectory/trajectory_findings.h>
+#include <pcl_bsh/trajectory/voxel_results.h>
 
 #include <algorithm>
 #include <bit>
@@ -8,8 +8,8 @@ namespace pcl_bsh {
 namespace {
 
 /// Visits the leaves' points whose bits are set: each by its place, and where the places end for which it answers.
-template <class Visit>
-void eachPoint(const Voxel& voxel, const std::vector<std::uint16_t>& bits_of, const Visit& visit)
+template <class NodeVisit>
+void eachPoint(const Voxel& voxel, const std::vector<std::uint16_t>& bits_of, const NodeVisit& visit)
 {
   for (std::uint32_t n = 0; n < voxel.nodes.size(); ++n) {
     const Node& node = voxel.nodes[n];
@@ -25,31 +25,31 @@ void eachPoint(const Voxel& voxel, const std::vector<std::uint16_t>& bits_of, co
 
 } // namespace
 
-void Findings::begin(const Voxel& voxel)
+void VoxelResults::begin(const Voxel& voxel)
 {
   hit.assign(voxel.nodes.size() * kNodeChildren, 0);
   settled.assign(voxel.nodes.size() * kNodeChildren, 0);
   undecided.assign(voxel.nodes.size() * kNodeChildren, 0);
-  if (course_.first) first.assign(voxel.count, std::numeric_limits<double>::infinity());
-  if (course_.closest) best.assign(voxel.count, Best{});
+  if (query_.first) first.assign(voxel.count, std::numeric_limits<double>::infinity());
+  if (query_.closest) best.assign(voxel.count, NearestPoint{});
 }
 
-void Findings::beginPoses(std::uint32_t first_pose, std::uint32_t last_pose)
+void VoxelResults::beginPoses(std::uint32_t first_pose, std::uint32_t last_pose)
 {
   first_pose_ = first_pose;
-  pose_best_.resize(last_pose + 1 - first_pose);
-  pose_limit_.assign(pose_best_.size(), std::numeric_limits<float>::infinity());
-  pose_counts_.assign(pose_best_.size(), 0);
+  nearest_at_pose_.resize(last_pose + 1 - first_pose);
+  pose_limit_.assign(nearest_at_pose_.size(), std::numeric_limits<float>::infinity());
+  pose_counts_.assign(nearest_at_pose_.size(), 0);
 }
 
-VoxelAnswer Findings::finish(const Voxel& voxel)
+VoxelResult VoxelResults::finish(const Voxel& voxel)
 {
-  const TrajectoryRequest& request = course_.request;
-  TrajectoryResult& result = course_.result;
-  VoxelAnswer answer;
+  const TrajectoryRequest& request = query_.request;
+  TrajectoryResult& result = query_.result;
+  VoxelResult answer;
   eachPoint(voxel, hit, [&](std::uint32_t i, std::uint32_t end) {
     float distance = 0.0f;
-    if (course_.first) answer.first_contact = std::min(answer.first_contact, first[i]);
+    if (query_.first) answer.first_contact = std::min(answer.first_contact, first[i]);
     if (request.distances) distance = distanceOf(voxel.records()[i], best[i]);
     for (std::uint32_t p = i; p < end; ++p) {
       const std::uint32_t record = voxel.records()[p];
@@ -58,14 +58,14 @@ VoxelAnswer Findings::finish(const Voxel& voxel)
       if (request.first_poses) result.first_pose[record] = givenPose(first[i]);
       if (request.distances) result.distance[record] = distance;
       if (request.closest_poses) result.closest_pose[record] = givenPose(best[i].time);
-      if (course_.closest) result.closest_point[record] = best[i].record;
+      if (query_.closest) result.closest_point[record] = best[i].record;
     }
   });
   if (request.pose_summaries) mergePoses();
   return answer;
 }
 
-bool Findings::decide(const Voxel& voxel, bool unsure)
+bool VoxelResults::decide(const Voxel& voxel, bool unsure)
 {
   const auto mark = [this](std::uint32_t begin, std::uint32_t end, Verdict verdict) {
     std::fill(verdicts_.begin() + begin, verdicts_.begin() + end, verdict);
@@ -82,7 +82,7 @@ bool Findings::decide(const Voxel& voxel, bool unsure)
 
   bool left = false;
   for (std::uint32_t p = 0; p < voxel.count; ++p) {
-    std::uint8_t& flag = course_.result.flags[voxel.records()[p]];
+    std::uint8_t& flag = query_.result.flags[voxel.records()[p]];
     if (flag != flagOf(Verdict::undecided)) continue; // as an earlier pass found
     flag = flagOf(verdicts_[p]);
     left = left || verdicts_[p] == Verdict::undecided;
@@ -90,38 +90,38 @@ bool Findings::decide(const Voxel& voxel, bool unsure)
   return left;
 }
 
-void Findings::mergePoses() const
+void VoxelResults::mergePoses() const
 {
-  const std::lock_guard<std::mutex> lock(course_.mutex);
+  const std::lock_guard<std::mutex> lock(query_.mutex);
   for (std::size_t i = 0; i < pose_counts_.size(); ++i) {
     const auto k = first_pose_ + static_cast<std::uint32_t>(i);
-    course_.pose_counts[k] += pose_counts_[i];
-    PoseBest& nearest = course_.pose_best[k];
-    if (pose_best_[i].found &&
-        (!nearest.found || exactAt(k).compareGaps(posed(pose_best_[i].pair), posed(nearest.pair)) < 0))
-      nearest = pose_best_[i];
+    query_.pose_counts[k] += pose_counts_[i];
+    NearestAtPose& nearest = query_.nearest_at_pose[k];
+    if (nearest_at_pose_[i].found &&
+        (!nearest.found || exactAt(k).compareGaps(posed(nearest_at_pose_[i].pair), posed(nearest.pair)) < 0))
+      nearest = nearest_at_pose_[i];
   }
 }
 
-ExactDistance Findings::exactAt(std::uint32_t k) const
+ExactDistance VoxelResults::exactAt(std::uint32_t k) const
 {
-  return ExactDistance(course_.scan.pose, course_.given[course_.path.poses[k].given]);
+  return ExactDistance(query_.scan.pose, query_.given[query_.path.poses[k].given]);
 }
 
-ExactDistance::Pair Findings::posed(PointPair pair) const
+ExactDistance::Pair VoxelResults::posed(PointPair pair) const
 {
-  const PointsView &a = course_.scan.hierarchy().view(), &b = course_.model.view();
+  const PointsView &a = query_.scan.hierarchy().view(), &b = query_.model.view();
   return {a.point(pair.a), b.point(pair.b), a.radius(pair.a), b.radius(pair.b)};
 }
 
-bool Findings::collide(PointPair at, std::uint32_t k)
+bool VoxelResults::collide(PointPair at, std::uint32_t k)
 {
   ++work.exact_decisions;
   const ExactDistance::Pair pair = posed(at);
-  return exactAt(k).compare(pair.p, pair.q, course_.request.clearance, pair.radius_p, pair.radius_q) <= 0;
+  return exactAt(k).compare(pair.p, pair.q, query_.request.clearance, pair.radius_p, pair.radius_q) <= 0;
 }
 
-void Findings::consider(Best& nearest, PointPair pair, std::uint32_t k)
+void VoxelResults::consider(NearestPoint& nearest, PointPair pair, std::uint32_t k)
 {
   ++work.exact_decisions;
   if (nearest.record != 0xffffffffu) {
@@ -133,27 +133,27 @@ void Findings::consider(Best& nearest, PointPair pair, std::uint32_t k)
   nearest.record = pair.b;
 }
 
-void Findings::considerPose(PointPair pair, std::uint32_t k)
+void VoxelResults::considerPose(PointPair pair, std::uint32_t k)
 {
-  PoseBest& nearest = pose_best_[k - first_pose_];
+  NearestAtPose& nearest = nearest_at_pose_[k - first_pose_];
   ++work.exact_decisions;
   if (nearest.found && exactAt(k).compareGaps(posed(pair), posed(nearest.pair)) >= 0) return;
   nearest = {pair, true};
 }
 
-void Findings::lowerPoseLimit(std::uint32_t k, float limit)
+void VoxelResults::lowerPoseLimit(std::uint32_t k, float limit)
 {
   pose_limit_[k - first_pose_] = std::min(pose_limit_[k - first_pose_], limit);
 }
 
-std::int32_t Findings::givenPose(double time) const
+std::int32_t VoxelResults::givenPose(double time) const
 {
-  return static_cast<std::int32_t>(course_.path.poses[static_cast<std::size_t>(time)].given);
+  return static_cast<std::int32_t>(query_.path.poses[static_cast<std::size_t>(time)].given);
 }
 
-float Findings::distanceOf(std::uint32_t record, const Best& nearest) const
+float VoxelResults::distanceOf(std::uint32_t record, const NearestPoint& nearest) const
 {
-  return roundToFloat(course_.path.is_swept
+  return roundToFloat(query_.path.is_swept
                           ? nearest.gap
                           : exactAt(static_cast<std::uint32_t>(nearest.time)).gap(posed({record, nearest.record})));
 }

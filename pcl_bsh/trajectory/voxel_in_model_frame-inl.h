@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the model sees a voxel of the scan that it passes: its points move in nearly straight lines.
 
-#if defined(PCL_BSH_QUERY_TRAJECTORY_SIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PCL_BSH_QUERY_TRAJECTORY_SIGHT_INL_H_
-#undef PCL_BSH_QUERY_TRAJECTORY_SIGHT_INL_H_
+#if defined(PCL_BSH_TRAJECTORY_VOXEL_IN_MODEL_FRAME_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAJECTORY_VOXEL_IN_MODEL_FRAME_INL_H_
+#undef PCL_BSH_TRAJECTORY_VOXEL_IN_MODEL_FRAME_INL_H_
 #else
-#define PCL_BSH_QUERY_TRAJECTORY_SIGHT_INL_H_
+#define PCL_BSH_TRAJECTORY_VOXEL_IN_MODEL_FRAME_INL_H_
 #endif
 
 #include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/query/acceptance.h>
 #include <pcl_bsh/simd/segment_lanes-inl.h>
-#include <pcl_bsh/trajectory/trajectory_course.h>
+#include <pcl_bsh/trajectory/trajectory_query.h>
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -19,14 +19,14 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
 /// How points of the scan's voxel are seen by the model: y = m x + g.
-struct Sight {
+struct AffineMap {
   float m[9], g[3];
 };
 
 /// An interval of poses, as the scan's voxel moves during it.
 struct Span {
   const PathInterval* interval;
-  Sight from, to;
+  AffineMap from, to;
   double stray;       ///< of any point of the voxel from its straight line
   float steps;        ///< poses after the first; 0 where all instants count
   float reach;        ///< of points: within this of a straight line, in floats, is all that collides
@@ -40,27 +40,27 @@ struct Span {
 };
 
 /// A voxel of the scan as the model sees it.
-class VoxelSight {
+class VoxelInModelFrame {
 public:
-  VoxelSight(const Course& course, std::uint32_t index)
-  : voxel(course.scan.hierarchy().storage().voxels[index]),
+  VoxelInModelFrame(const TrajectoryQuery& query, std::uint32_t index)
+  : voxel(query.scan.hierarchy().storage().voxels[index]),
     frame(voxel.frame),
-    path(course.path),
-    tree(course.boxes),
-    origin(carried(course.scan.pose, frame.origin)),
+    path(query.path),
+    tree(query.boxes),
+    origin(carried(query.scan.pose, frame.origin)),
     radius(voxel.radius * frame.unit),
-    course_(course)
+    query_(query)
   {
     double slack = 0.0;
     for (int k = 0; k < 3; ++k) slack += frame.slack(k) * frame.slack(k);
     slack = std::sqrt(slack) * (1.0 + kDoubleMargin) * frame.unit;
     const double skew = path.skew;
-    placing_ = course.error(origin) + (1.0 + skew) * (slack + tree.voxel_slack);
-    far = (radius + course.reach) * (1.0 + skew) + placing_ + tree.voxel_reach;
+    placing_ = query.error(origin) + (1.0 + skew) * (slack + tree.voxel_slack);
+    far = (radius + query.reach) * (1.0 + skew) + placing_ + tree.voxel_reach;
     // Per axis, of a shift up to `far` and of products that add up to the radius at most: rows are of length 1.
     const double carried = kCarriedShiftError * far + kCarriedProductError * (1.0 + skew) * radius;
     error = placing_ + kAxes * carried * (1.0 + kDoubleMargin) + kSmallestLength;
-    const Acceptance acceptance(course.request.clearance, course.request.accuracy);
+    const Acceptance acceptance(query.request.clearance, query.request.accuracy);
     const auto squared = static_cast<float>(acceptance.clearance * acceptance.clearance);
     band = acceptance.proven ? acceptance.provenBand([&](double distance) { return skewedBand(distance, error, skew); })
                              : DistanceBand{squared, squared};
@@ -77,22 +77,22 @@ public:
   DistanceBand band;   ///< of the clearance, for them
 
   /// @param from in the model, relative to the tree's origin. @param unit of the places seen.
-  Sight sightOf(const PathPose& pose, const Point3& from, double unit) const
+  AffineMap mapAt(const PathPose& pose, const Point3& from, double unit) const
   {
-    Sight sight;
+    AffineMap map;
     const Point3 seen = pose.see(origin);
     const auto scale = static_cast<float>(frame.unit / unit);
-    for (std::size_t i = 0; i < 9; ++i) sight.m[i] = pose.turn[i] * scale;
-    for (std::size_t i = 0; i < 3; ++i) sight.g[i] = roundToFloat((seen[i] - from[i]) / unit);
-    return sight;
+    for (std::size_t i = 0; i < 9; ++i) map.m[i] = pose.turn[i] * scale;
+    for (std::size_t i = 0; i < 3; ++i) map.g[i] = roundToFloat((seen[i] - from[i]) / unit);
+    return map;
   }
 
   Span spanOf(std::uint32_t index) const
   {
     Span span;
     const PathInterval& interval = *(span.interval = &path.intervals[index]);
-    span.from = sightOf(path.poses[interval.first], {0, 0, 0}, 1.0);
-    span.to = sightOf(path.poses[interval.last], {0, 0, 0}, 1.0);
+    span.from = mapAt(path.poses[interval.first], {0, 0, 0}, 1.0);
+    span.to = mapAt(path.poses[interval.last], {0, 0, 0}, 1.0);
     double squared = 0.0, coordinate = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       squared += (origin[axis] - interval.pivot[axis]) * (origin[axis] - interval.pivot[axis]);
@@ -102,7 +102,7 @@ public:
     span.stray = interval.drift + interval.turn * ((std::sqrt(squared) + radius) * (1.0 + kDoubleMargin));
     if (path.is_swept && !interval.divided()) span.stray = std::min(span.stray, path.stray);
     span.steps = path.is_swept ? 0.0f : static_cast<float>(interval.last - interval.first);
-    const double reach = course_.reach * (1.0 + path.skew) + placing_ + span.stray;
+    const double reach = query_.reach * (1.0 + path.skew) + placing_ + span.stray;
     const double rounding =
         static_cast<double>(kSegmentRounding) * (coordinate + 2.01 * radius + tree.radius + reach) + kSmallestRounding;
     span.reach = roundUp(reach + rounding);
@@ -122,10 +122,10 @@ public:
     return segment;
   }
 
-  /// Around `count` straight ways, each with room of its own along the axes.
+  /// Around `count` segments, each with an extent of its own along the axes.
   template <std::size_t Count>
-  static Segment aroundWays(const Span& span, const float (&from)[3][Count], const float (&to)[3][Count],
-                            const float (&room)[3][Count], std::size_t count)
+  static Segment aroundSegments(const Span& span, const float (&from)[3][Count], const float (&to)[3][Count],
+                                const float(\& extent)[3][Count], std::size_t count)
   {
     float start[3], end[3], reach[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -135,8 +135,8 @@ public:
         low[k] = std::numeric_limits<float>::infinity();
         high[k] = -low[k];
         for (std::size_t i = 0; i < count; ++i) {
-          low[k] = std::min(low[k], ends[k][i] - room[axis][i]);
-          high[k] = std::max(high[k], ends[k][i] + room[axis][i]);
+          low[k] = std::min(low[k], ends[k][i] - extent[axis][i]);
+          high[k] = std::max(high[k], ends[k][i] + extent[axis][i]);
         }
       }
       start[axis] = 0.5f * (low[0] + high[0]);
@@ -185,7 +185,7 @@ public:
   /// How far from a line a point may be that is as near as the best one.
   float reachOf(const Span& span, float best) const
   {
-    return best < span.reach ? (span.reach + (best - static_cast<float>(course_.reach))) * (1.0f + kReachRounding)
+    return best < span.reach ? (span.reach + (best - static_cast<float>(query_.reach))) * (1.0f + kReachRounding)
                              : span.reach;
   }
 
@@ -208,7 +208,7 @@ private:
     return segment;
   }
 
-  const Course& course_;
+  const TrajectoryQuery& query_;
   double placing_ = 0.0; // what places of points err by, stored as floats and carried in double
 };
 

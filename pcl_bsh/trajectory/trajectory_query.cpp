@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/trajectory/trajectory_course.h>
+#include <pcl_bsh/trajectory/trajectory_query.h>
 
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
@@ -15,11 +15,10 @@ namespace {
 // Of places seen by the model, relative to all coordinates that go into one: `carried` rounds a place by 2 v per axis,
 // `see` sums three products of differences, 5 v; on three axes, of two clouds: less than 64 v.
 constexpr double kPlacing = 64 * kDoubleUnit;
-constexpr double kSmallestMotion = 0x1p-45; ///< of the room: what moves less is at rest
-constexpr double kLargest = 0x1p100;        ///< floats beyond may overflow when they are divided by a motion
+constexpr double kLargest = 0x1p100; ///< floats beyond may overflow when they are divided by a motion
 
-/// Of the tolerance: three eighths for the bow of a way taken as straight, an eighth for rounding, half as room that
-/// the reported clearance has.
+/// Of the tolerance: three eighths for the bow of a motion taken as straight, an eighth for rounding, half as margin
+/// that the reported clearance has.
 constexpr double kStrayShare = 0.375;
 
 double farthest(const BoxTree& boxes, const Point3& from)
@@ -86,9 +85,9 @@ double largestRadii(const Placed& scan, const SphereHierarchy& model)
 
 } // namespace
 
-Course::Course(const Placed& scan_at, const SphereHierarchy& model_of,
-               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
-               TrajectoryResult& into, Progress& progress)
+TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of,
+                                 const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
+                                 TrajectoryResult& into, Progress& progress)
 : scan(scan_at),
   model(model_of),
   given(model_poses),
@@ -104,13 +103,13 @@ Course::Course(const Placed& scan_at, const SphereHierarchy& model_of,
   result.work.volumes_built += countChildren(boxes.storage.top);
 }
 
-double Course::error(const Point3& origin) const
+double TrajectoryQuery::error(const Point3& origin) const
 {
   const double size = std::abs(origin[0]) + std::abs(origin[1]) + std::abs(origin[2]) + 3 * path.far + boxes.radius;
   return kPlacing * size + path.skew * (boxes.radius + reach);
 }
 
-bool Course::inFloatRange() const
+bool TrajectoryQuery::inFloatRange() const
 {
   const LocalFrame& frame = scan.hierarchy().storage().frame;
   double largest = std::max({path.far, boxes.radius, reach});
@@ -118,78 +117,6 @@ bool Course::inFloatRange() const
   for (std::size_t axis = 0; axis < 3; ++axis)
     largest = std::max({largest, std::abs(center[axis]), frame.reach[axis] * frame.unit});
   return largest < kLargest;
-}
-
-bool Course::near(const Ball& ball, const PathInterval& interval, double& stray) const
-{
-  double squared = 0.0;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    squared += (ball.center[axis] - interval.pivot[axis]) * (ball.center[axis] - interval.pivot[axis]);
-  stray = interval.drift + interval.turn * (std::sqrt(squared) * (1.0 + kDoubleMargin) + ball.radius);
-  const double room = (reach + ball.radius) * (1.0 + path.skew) + stray + error(ball.center);
-  const Point3 from = path.poses[interval.first].see(ball.center), to = path.poses[interval.last].see(ball.center);
-  double enter = 0.0, leave = 1.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double slack = room + kDoubleMargin * (std::abs(from[axis]) + std::abs(to[axis]) + boxes.radius);
-    const double low = boxes.low[axis] - slack - from[axis], high = boxes.high[axis] + slack - from[axis];
-    const double motion = to[axis] - from[axis];
-    if (std::abs(motion) <= kSmallestMotion * slack) {
-      if (low > 0.0 || high < 0.0) return false;
-      continue;
-    }
-    enter = std::max(enter, std::min(low / motion, high / motion));
-    leave = std::min(leave, std::max(low / motion, high / motion));
-  }
-  return !(enter > leave);
-}
-
-void Course::meet(std::uint32_t node, std::uint32_t lane, std::uint32_t index, const StopRule& rule, Progress& progress,
-                  std::vector<std::vector<std::uint32_t>>& meetings) const
-{
-  progress.tick(4);
-  const SphereHierarchy::Storage& storage = scan.hierarchy().storage();
-  const Node& of = storage.top[node];
-  const bool is_voxel = of.isLeaf(lane);
-  const LocalFrame& frame = is_voxel ? storage.voxels[of.begin[lane]].frame : storage.frame;
-  Point3 center = frame.origin;
-  if (!is_voxel) {
-    const float at[3] = {of.x[lane], of.y[lane], of.z[lane]};
-    for (std::size_t axis = 0; axis < 3; ++axis) center[axis] += at[axis] * frame.unit;
-  }
-  const double radius = (is_voxel ? storage.voxels[of.begin[lane]].radius : of.r[lane]) * frame.unit;
-  const Ball ball{carried(scan.pose, center), radius * (1.0 + path.skew + kDoubleMargin)};
-  const PathInterval& interval = path.intervals[index];
-  double stray = 0.0;
-  if (!rule.isOver()) {
-    ++result.work.node_pairs;
-    ++result.work.volumes_carried;
-    if (!near(ball, interval, stray)) return;
-  }
-  if (interval.divided() && stray > (is_voxel ? 0.5 : 1.0) * ball.radius) {
-    meet(node, lane, interval.left, rule, progress, meetings);
-    meet(node, lane, interval.right, rule, progress, meetings);
-  }
-  else if (is_voxel) {
-    meetings[of.begin[lane]].push_back(index);
-  }
-  else {
-    const std::uint32_t below = of.child[lane];
-    for (std::uint32_t i = 0; i < storage.top[below].count; ++i) meet(below, i, index, rule, progress, meetings);
-  }
-}
-
-std::vector<std::vector<std::uint32_t>> Course::meetings(const StopRule& rule, Progress& progress) const
-{
-  const SphereHierarchy::Storage& storage = scan.hierarchy().storage();
-  std::vector<std::vector<std::uint32_t>> meetings(storage.voxel_count);
-  if (storage.size == 0 || boxes.storage.size == 0 || path.poses.empty()) return meetings;
-  progress.begin(Progress::kMeetings, storage.top[0].count);
-  for (std::uint32_t lane = 0; lane < storage.top[0].count; ++lane) {
-    meet(0, lane, 0, rule, progress, meetings);
-    progress.skipTo(lane + 1);
-  }
-  progress.end();
-  return meetings;
 }
 
 } // namespace pcl_bsh

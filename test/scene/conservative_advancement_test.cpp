@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // When two moving points meet, judged in exact integers where they go straight, and in extended precision at many
 // instants where they turn.
-#include <pcl_bsh/scene/approach.h>
+#include <pcl_bsh/scene/conservative_advancement.h>
 #include <pcl_bsh/scene/object_motion.h>
 
 #include "../geometry/random.h"
@@ -112,7 +112,7 @@ struct Passing {
   }
 };
 
-TEST(Approach, StraightWaysAreJudgedExactly)
+TEST(ConservativeAdvancement, StraightWaysAreJudgedExactly)
 {
   struct Setting {
     double away, length, clearance, tolerance;
@@ -129,8 +129,8 @@ TEST(Approach, StraightWaysAreJudgedExactly)
       const StraightPair exact = passing.exact();
       const double reach = setting.clearance;
       if (!exact.staysBeyond(reach, 0.0)) continue;
-      const auto s = meeting(ObjectMotion(passing.a, Box3()), passing.p, ObjectMotion(passing.b, Box3()), passing.q,
-                             passing.zone, 0, 1);
+      const auto s = timeOfContact(ObjectMotion(passing.a, Box3()), passing.p, ObjectMotion(passing.b, Box3()),
+                                   passing.q, passing.zone, 0, 1);
       ASSERT_TRUE(exact.staysBeyond(reach, s.value_or(1.0))) << i << " at " << setting.length;
       if (s) {
         ++met;
@@ -177,7 +177,7 @@ Leg turningLeg(Random& random, double size, double angle)
   return leg;
 }
 
-TEST(Approach, TurningWaysAreWatchedDensely)
+TEST(ConservativeAdvancement, TurningWaysAreWatchedDensely)
 {
   int met = 0, passed = 0;
   for (std::uint64_t seed = 0; seed < 1500; ++seed) {
@@ -198,7 +198,7 @@ TEST(Approach, TurningWaysAreWatchedDensely)
     a.to.translation() += moved;
     const auto distance = [&](Real s) { return (placeOn(a, p, s) - placeOn(b, q, s)).norm(); };
     if (distance(0) <= reach + tolerance) continue;
-    const auto s = meeting(ObjectMotion(a, Box3()), p, ObjectMotion(b, Box3()), q, zone, 0, 1);
+    const auto s = timeOfContact(ObjectMotion(a, Box3()), p, ObjectMotion(b, Box3()), q, zone, 0, 1);
     const double last = s.value_or(1.0);
     for (int i = 0; i < 300; ++i) ASSERT_GT(distance(last * i / Real(300)), reach) << i;
     for (int i = -300; i <= 300; ++i) { // around the nearest instant
@@ -218,7 +218,7 @@ TEST(Approach, TurningWaysAreWatchedDensely)
   EXPECT_GT(passed, 50);
 }
 
-TEST(Approach, PathsHaveNoJumpsAndPassThroughBothPoses)
+TEST(ConservativeAdvancement, PathsHaveNoJumpsAndPassThroughBothPoses)
 {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Random random(seed);

@@ -34,12 +34,13 @@ struct ContactZone {
 
 /// Points `apart` (from the other to the moving one), the moving one going by `shift` while s runs from 0 to 1.
 /// @return s of the contact, in [0, 1]
-std::optional<double> meeting(const Eigen::Vector3d& apart, const Eigen::Vector3d& shift, const ContactZone& zone);
+std::optional<double> timeOfContact(const Eigen::Vector3d& apart, const Eigen::Vector3d& shift,
+                                    const ContactZone& zone);
 
-/// Points p and q, given in their objects' frames, on their paths, for s from `begin` to `end`. Conservative
+/// Points p and q, given in their objects' frames, on their motions, for s from `begin` to `end`. Conservative
 /// advancement (Mirtich and Canny, Impulse-based Simulation of Rigid Bodies, 1995) with a bound of second order: where
 /// two points hardly come nearer, steps grow with the square root of what is left.
-std::optional<double> meeting(const RigidMotion& motion_a, const Eigen::Vector3d& p, const RigidMotion& motion_b,
-                              const Eigen::Vector3d& q, const ContactZone& zone, double begin, double end);
+std::optional<double> timeOfContact(const RigidMotion& motion_a, const Eigen::Vector3d& p, const RigidMotion& motion_b,
+                                    const Eigen::Vector3d& q, const ContactZone& zone, double begin, double end);
 
 } // namespace pcl_bsh

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nodes of a scan's voxel as flat as the model finds them: boxes along its axes where it first comes near. What a
-// vehicle passes runs along its way, so that these boxes are thin where spheres reach across the gap to its side.
+// vehicle passes runs along its path, so that these boxes are thin where spheres reach across the gap to its side.
 
-#if defined(PCL_BSH_QUERY_TRAJECTORY_PATCHES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PCL_BSH_QUERY_TRAJECTORY_PATCHES_INL_H_
-#undef PCL_BSH_QUERY_TRAJECTORY_PATCHES_INL_H_
+#if defined(PCL_BSH_TRAJECTORY_ORIENTED_BOXES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAJECTORY_ORIENTED_BOXES_INL_H_
+#undef PCL_BSH_TRAJECTORY_ORIENTED_BOXES_INL_H_
 #else
-#define PCL_BSH_QUERY_TRAJECTORY_PATCHES_INL_H_
+#define PCL_BSH_TRAJECTORY_ORIENTED_BOXES_INL_H_
 #endif
 
-#include <pcl_bsh/trajectory/trajectory_sight-inl.h>
+#include <pcl_bsh/trajectory/voxel_in_model_frame-inl.h>
 
 #include <algorithm>
 #include <array>
@@ -20,15 +20,15 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-class Patches {
+class OrientedBoxes {
 public:
-  explicit Patches(const VoxelSight& sight) : sight_(sight) {}
+  explicit OrientedBoxes(const VoxelInModelFrame& voxel_frame) : voxel_frame_(voxel_frame) {}
 
-  /// Fits a box around each child of each node. @param sight whose axes they are parallel to.
-  void fit(const Voxel& voxel, const Sight& sight)
+  /// Fits a box around each child of each node. @param map whose axes they are parallel to.
+  void fit(const Voxel& voxel, const AffineMap& map)
   {
-    const auto unit = static_cast<float>(sight_.frame.unit);
-    for (std::size_t i = 0; i < 9; ++i) axes_[i] = sight.m[i] / unit;
+    const auto unit = static_cast<float>(voxel_frame_.frame.unit);
+    for (std::size_t i = 0; i < 9; ++i) axes_[i] = map.m[i] / unit;
     slack_ = kRounding * voxel.radius * unit;
     halves_.resize(voxel.nodes.size());
     for (std::size_t n = halves_.size(); n-- > 0;) { // children come after their parents
@@ -53,10 +53,10 @@ public:
 
   /// How far each child of a node reaches from its centre, along the model's axes, at any instant of a span.
   /// @param radius of its sphere, which it does not reach beyond.
-  void see(std::uint32_t node, const Span& span, const float (&radius)[kLanes], float (&room)[3][kLanes]) const
+  void see(std::uint32_t node, const Span& span, const float (&radius)[kLanes], float (&extent)[3][kLanes]) const
   {
     const Half& half = halves_[node];
-    const float share = kRounding + 4.0f * static_cast<float>(sight_.path.skew);
+    const float share = kRounding + 4.0f * static_cast<float>(voxel_frame_.path.skew);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       float turn[2][3];
       const float* ends[2] = {span.from.m + 3 * axis, span.to.m + 3 * axis};
@@ -68,7 +68,7 @@ public:
       for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
         const float first = turn[0][0] * half[0][lane] + turn[0][1] * half[1][lane] + turn[0][2] * half[2][lane];
         const float last = turn[1][0] * half[0][lane] + turn[1][1] * half[1][lane] + turn[1][2] * half[2][lane];
-        room[axis][lane] = std::min(radius[lane], std::max(first, last) + share * radius[lane] + slack_);
+        extent[axis][lane] = std::min(radius[lane], std::max(first, last) + share * radius[lane] + slack_);
       }
     }
   }
@@ -90,7 +90,7 @@ private:
     }
   }
 
-  const VoxelSight& sight_;
+  const VoxelInModelFrame& voxel_frame_;
   float axes_[9] = {}; ///< of the boxes, seen by the voxel
   float slack_ = 0.0f;
   std::vector<Half> halves_;

@@ -15,15 +15,16 @@
 namespace pcl_bsh {
 
 /// The smallest distance at a pose, so far.
-struct PoseBest {
+struct NearestAtPose {
   PointPair pair;
   bool found = false;
 };
 
 /// The question, and what its answer takes that no voxel changes.
-struct Course {
-  Course(const Placed& scan_at, const SphereHierarchy& model_of, const std::vector<Eigen::Isometry3d>& model_poses,
-         const TrajectoryRequest& asked, TrajectoryResult& into, Progress& progress);
+struct TrajectoryQuery {
+  TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of,
+                  const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
+                  TrajectoryResult& into, Progress& progress);
 
   const Placed& scan;
   const SphereHierarchy& model;
@@ -53,29 +54,30 @@ struct Course {
 
   /// The intervals of the path during which each voxel may be near the model, in their order. Once the rule's time is
   /// over, whatever was not looked at may be.
-  std::vector<std::vector<std::uint32_t>> meetings(const StopRule& rule, Progress& progress) const;
+  std::vector<std::vector<std::uint32_t>> nearIntervals(const StopRule& rule, Progress& progress) const;
 
   mutable std::mutex mutex; ///< of the two below
-  mutable std::vector<PoseBest> pose_best;
+  mutable std::vector<NearestAtPose> nearest_at_pose;
   mutable std::vector<std::size_t> pose_counts;
 
 private:
-  struct Ball {
+  struct WorldSphere {
     Point3 center; ///< in the world
     double radius;
   };
 
-  bool near(const Ball& ball, const PathInterval& interval, double& stray) const;
-  void meet(std::uint32_t node, std::uint32_t lane, std::uint32_t interval, const StopRule& rule, Progress& progress,
-            std::vector<std::vector<std::uint32_t>>& meetings) const;
+  bool near(const WorldSphere& sphere, const PathInterval& interval, double& stray) const;
+  void collectNear(std::uint32_t node, std::uint32_t lane, std::uint32_t interval, const StopRule& rule,
+                   Progress& progress, std::vector<std::vector<std::uint32_t>>& near_intervals) const;
 };
 
 /// What a voxel's walk returns.
-struct VoxelAnswer {
+struct VoxelResult {
   Work work;
   std::size_t colliding = 0;
-  bool undecided = false;                                         ///< whether points were left so
-  double first_contact = std::numeric_limits<double>::infinity(); ///< swept: pose of the path, and fraction of the way
+  bool undecided = false; ///< whether points were left so
+  double first_contact =
+      std::numeric_limits<double>::infinity(); ///< swept: pose of the path plus fraction of the motion to the next
 };
 
 } // namespace pcl_bsh

@@ -9,8 +9,8 @@
 
 namespace pcl_bsh {
 
-/// Planes that a sliding object may not cross: it has met them and has not moved off since.
-class Planes {
+/// ContactPlanes that a sliding object may not cross: it has met them and has not moved off since.
+class ContactPlanes {
 public:
   void forget() { count_ = 0; }
 
