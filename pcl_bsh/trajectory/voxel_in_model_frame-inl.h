@@ -125,7 +125,7 @@ public:
   /// Around `count` segments, each with an extent of its own along the axes.
   template <std::size_t Count>
   static Segment aroundSegments(const Span& span, const float (&from)[3][Count], const float (&to)[3][Count],
-                                const float(\& extent)[3][Count], std::size_t count)
+                                const float (&extent)[3][Count], std::size_t count)
   {
     float start[3], end[3], reach[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
