@@ -60,7 +60,7 @@ Spacing spacingOf(const SphereHierarchy& cloud)
   const std::size_t wanted = kGroups * kGroupPoints;
   const std::size_t groups = storage.size <= wanted ? storage.voxel_count : kGroups;
   NearestElsewhere nearest(cloud);
-  std::uint64_t built = 0;
+  BuildWork built;
   Spacing spacing;
   std::vector<double> gaps;
   for (std::size_t group = 0; group < groups; ++group) {
