@@ -40,5 +40,5 @@ void CollisionFilter<pcl::PCLPointCloud2>::applyFilter(pcl::PCLPointCloud2& outp
 
 } // namespace pcl_bsh
 
-template class PCL_BSH_EXPORT pcl_bsh::CollisionFilterBase<pcl::PCLPointCloud2>;
+template class pcl_bsh::CollisionFilterBase<pcl::PCLPointCloud2>;
 PCL_INSTANTIATE(CollisionFilter, PCL_XYZ_POINT_TYPES)

@@ -97,6 +97,8 @@ public:
   void setIndices(std::size_t row_start, std::size_t col_start, std::size_t nb_rows, std::size_t nb_cols) override;
 };
 
+extern template class PCL_BSH_EXPORT CollisionFilterBase<pcl::PCLPointCloud2>; // which PCL's hidden type would hide
+
 /// The same for clouds whose fields are known at run time only. Keeps every field; reads float64 coordinates at full
 /// precision; can flag the points instead of removing any.
 template <>
