@@ -9,6 +9,7 @@
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/search/cloud_view.h>
