@@ -9,5 +9,5 @@
 /// For one declaration alone: explicit instantiations for types of others, whose headers are compiled hidden too.
 #define PCL_BSH_EXPORT __attribute__((visibility("default")))
 
-/// For what no public header declares, but another library of this project calls. Not part of the interface.
+/// For what no public header declares, but another library or a test of this project calls. Not part of the interface.
 #define PCL_BSH_EXPORT_INTERNAL __attribute__((visibility("default")))

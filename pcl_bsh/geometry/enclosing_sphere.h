@@ -3,6 +3,8 @@
 // rounds it outward, so that no point is outside, whichever fit is used.
 #pragma once
 
+#include <pcl_bsh/export.h>
+
 #include <array>
 #include <cstddef>
 
@@ -21,6 +23,6 @@ std::array<float, 3> ritterCenter(const PointArrays& points);
 
 /// The centre of the smallest enclosing sphere, to double rounding: Welzl, Smallest Enclosing Disks (Balls and
 /// Ellipsoids) (1991), with the move-to-front of Gaertner (1999), in linear expected time.
-std::array<float, 3> minimalCenter(const PointArrays& points);
+PCL_BSH_EXPORT_INTERNAL std::array<float, 3> minimalCenter(const PointArrays& points);
 
 } // namespace pcl_bsh

@@ -9,6 +9,7 @@
 // DefaultFloatEnvironment.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/geometry/point3.h>
 
 #include <Eigen/Geometry>
@@ -19,7 +20,7 @@ class Dyadic;
 
 /// |T_a p - T_b q| under two fixed poses. Const methods may run in several threads at once. Cost: some 20 ns when
 /// double arithmetic can vouch for the answer, up to a microsecond when it cannot.
-class ExactDistance {
+class PCL_BSH_EXPORT_INTERNAL ExactDistance {
 public:
   /// A point of each cloud, and how far each reaches.
   struct Pair {
