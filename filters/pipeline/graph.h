@@ -2,6 +2,7 @@
 // A document, understood: which stages there are, with which options, and who reads whom.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/files/used_files.h>
 #include <pcl_bsh/filters/json/json_document.h>
 #include <pcl_bsh/filters/pipeline/pipeline.h>
@@ -43,10 +44,11 @@ struct Graph {
 };
 
 /// @throws PipelineError
-Graph parseGraph(std::string_view text, const std::vector<OptionOverride>& overrides, const std::string& name);
+PCL_BSH_EXPORT_INTERNAL Graph parseGraph(std::string_view text, const std::vector<OptionOverride>& overrides,
+                                         const std::string& name);
 
 /// For each node, how many inputs and options of others read it.
-std::vector<std::size_t> countReaders(const Graph& graph);
+PCL_BSH_EXPORT_INTERNAL std::vector<std::size_t> countReaders(const Graph& graph);
 
 /// An error about one stage or, when an option is given, about that. @param wrong `what is wrong: what to do`
 PipelineError stageError(const Graph& graph, const Node& node, const std::string& option, const std::string& wrong);
@@ -57,9 +59,9 @@ PipelineError stageError(const Graph& graph, const Node& node, const std::string
 std::vector<std::unique_ptr<Stage>> planStages(const Graph& graph);
 
 /// @throws PipelineError, Cancelled, what the progress callback throws
-PipelineResult runGraph(const Graph& graph);
+PCL_BSH_EXPORT_INTERNAL PipelineResult runGraph(const Graph& graph);
 
 /// The document again, with every tag and option written out.
-Json documentOf(const Graph& graph);
+PCL_BSH_EXPORT_INTERNAL Json documentOf(const Graph& graph);
 
 } // namespace pcl_bsh::pipeline

@@ -2,6 +2,7 @@
 // Options between JSON and their values.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/json/json_document.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 
@@ -15,11 +16,11 @@ using io::Json;
 std::string expectation(const Option& option);
 
 /// @throws std::invalid_argument `is X: give EXPECTATION`
-Value valueOf(const Json& json, const Option& option);
+PCL_BSH_EXPORT_INTERNAL Value valueOf(const Json& json, const Option& option);
 
-Json jsonOf(const Value& value);
+PCL_BSH_EXPORT_INTERNAL Json jsonOf(const Value& value);
 
 /// What a command line gives as text, as a document would give it: texts need no quotes, lists no brackets.
-Json jsonOfText(const std::string& text, const Option& option);
+PCL_BSH_EXPORT_INTERNAL Json jsonOfText(const std::string& text, const Option& option);
 
 } // namespace pcl_bsh::pipeline
