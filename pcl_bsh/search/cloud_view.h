@@ -4,7 +4,9 @@
 //   SphereHierarchy hall(viewOf(*cloud));           // cloud: pcl::PointCloud<PointT> or pcl::PCLPointCloud2
 //   SphereHierarchy part(viewOf(*cloud, indices));  // only these points; numbers stay those of the whole cloud
 //
-// A view borrows: cloud and indices must outlive it, unchanged.
+//   SphereHierarchy kept(viewOf(cloud));            // a shared pointer: the hierarchy keeps the cloud alive
+//
+// A view of a reference borrows: cloud and indices must outlive it. The points must not change in either case.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -16,6 +18,8 @@
 #include <pcl/types.h>
 
 #include <cstdint>
+#include <memory>
+#include <stdexcept>
 #include <type_traits>
 
 PCL_BSH_EXPORT_BEGIN
@@ -54,6 +58,17 @@ PointsView viewOf(const pcl::PointCloud<PointT>& cloud)
 /// @throws std::invalid_argument naming the field or the number that is wrong: a field missing or of another type, a
 ///   byte order not this machine's, padding between rows, fewer bytes than width * height records need.
 PointsView viewOf(const pcl::PCLPointCloud2& cloud);
+
+/// View of a shared cloud, which the view, and what is built on it, keeps alive.
+/// @throws std::invalid_argument when the pointer is null, or as viewOf() of the cloud does.
+template <typename Cloud>
+PointsView viewOf(const std::shared_ptr<Cloud>& cloud)
+{
+  if (!cloud) throw std::invalid_argument("cloud is null: give an empty cloud if there are no points");
+  PointsView view = viewOf(*cloud);
+  view.owner = cloud;
+  return view;
+}
 
 /// The same, of a subset. An empty list names no point.
 template <typename Cloud>

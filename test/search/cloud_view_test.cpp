@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstring>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -233,6 +234,24 @@ TEST(CloudView, EmptyCloudAsFiltersLeaveIt)
     cloud.height = height;
     EXPECT_EQ(viewOf(cloud).size(), 0u);
   }
+}
+
+TEST(CloudView, OfASharedCloudKeepsItAlive)
+{
+  auto typed = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>(threePoints<pcl::PointXYZ>());
+  auto blob = std::make_shared<pcl::PCLPointCloud2>(packedFloats());
+  const std::weak_ptr<const void> typed_alive = typed, blob_alive = blob;
+  {
+    const PointsView of_typed = viewOf(typed);
+    const PointsView of_blob = viewOf(std::shared_ptr<const pcl::PCLPointCloud2>(blob));
+    EXPECT_EQ(of_blob.count, viewOf(*blob).count);
+    typed.reset();
+    blob.reset();
+    EXPECT_FALSE(typed_alive.expired() || blob_alive.expired());
+    expectThreePoints(of_typed);
+  }
+  EXPECT_TRUE(typed_alive.expired() && blob_alive.expired());
+  EXPECT_THROW(viewOf(typed), std::invalid_argument);
 }
 
 } // namespace
