@@ -21,13 +21,6 @@ std::string printable(std::string line)
   return line;
 }
 
-std::string listed(const std::vector<std::string>& names)
-{
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
 } // namespace
 
 JsonError::JsonError(const std::string& file, const std::string& place, const std::string& wrong,
@@ -157,6 +150,31 @@ Eigen::Isometry3d JsonReader::pose(std::vector<std::string>& warnings) const
   }
   if (rigid.deviation > 0) warnings.push_back(place_ + ": " + nearestRotationWarning(rigid.deviation));
   return rigid.pose;
+}
+
+void read(const JsonReader& object, const char* key, double& value)
+{
+  if (object.has(key)) value = object.at(key).number();
+}
+
+void read(const JsonReader& object, const char* key, bool& value)
+{
+  if (object.has(key)) value = object.at(key).boolean();
+}
+
+void read(const JsonReader& object, const char* key, std::string& value)
+{
+  if (object.has(key)) value = object.at(key).text();
+}
+
+void read(const JsonReader& object, const char* key, Eigen::Vector3d& value)
+{
+  if (object.has(key)) value = object.at(key).vector();
+}
+
+std::vector<JsonReader> elementsOf(const JsonReader& object, const char* key)
+{
+  return object.has(key) ? object.at(key).elements() : std::vector<JsonReader>();
 }
 
 } // namespace pcl_bsh::io

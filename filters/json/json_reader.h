@@ -62,4 +62,20 @@ private:
   std::string place_;
 };
 
+// The member `key` of an object, where it has one; else the value stays as it is.
+void read(const JsonReader& object, const char* key, double& value);
+void read(const JsonReader& object, const char* key, bool& value);
+void read(const JsonReader& object, const char* key, std::string& value);
+void read(const JsonReader& object, const char* key, Eigen::Vector3d& value);
+
+/// The same, of a whole number within the range of its type, as a schema has checked.
+template <typename Count>
+void readCount(const JsonReader& object, const char* key, Count& value)
+{
+  if (object.has(key)) value = static_cast<Count>(object.at(key).number());
+}
+
+/// The elements of the list `key` of an object; none where it has no such member.
+std::vector<JsonReader> elementsOf(const JsonReader& object, const char* key);
+
 } // namespace pcl_bsh::io

@@ -69,4 +69,11 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& va
   return "did you mean '" + nearestName(name, valid) + "'?";
 }
 
+std::string listed(const std::vector<std::string>& names)
+{
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
 } // namespace pcl_bsh::io

@@ -18,4 +18,7 @@ std::string nearestName(std::string_view name, const std::vector<std::string>& v
 /// "did you mean 'x'?", or what to do where nothing is valid.
 std::string suggestion(std::string_view name, const std::vector<std::string>& valid);
 
+/// "a, b, c"
+std::string listed(const std::vector<std::string>& names);
+
 } // namespace pcl_bsh::io

@@ -121,10 +121,30 @@ TEST(SceneFile, NamesThePlaceOfWhatIsWrong)
   expect("\"cloud\": \"pipe\"", "\"cloud\": \"pip\"",
          "objects[1].cloud: no cloud is called 'pip': did you mean 'pipe'?");
   expect("\"slide\"", "\"slyde\"", "effects.response: 'slyde' is unknown: did you mean 'slide'?");
-  expect("\"clearance\": 0.1", "\"clearance\": -1", "clearance: -1 is too small: give at least 0.0");
+  expect("\"clearance\": 0.1", "\"clearance\": -1", "clearance: -1 is too small: give at least 0");
   expect("\"clearance\": 0.1", "\"clearance\": \"x\"", "clearance: \"x\" is no number: give one");
   expect("\"speed\": 2, \"turning\"", "\"speed\": null, \"turning\"",
          "objects[3].motion.circular.speed: null is no number: give one");
+  expect("[1, 2, 3]", "[1, 2]", "clouds.crate.box.size: [1,2] is no list of 3 numbers: give [x, y, z]");
+  expect("\"radius\": 0.5 }", "\"radius\": 0 }", "clouds.ball.sphere.radius: 0 is too small: give more than 0");
+  expect("\"spacing\": 0.2 }", "\"spacing\": 1e-310 }",
+         "clouds.ball.spacing: 1e-310 is too small: give at least 1e-300");
+  expect("\"threads\": 1", "\"threads\": 1025", "threads: 1025 is too large: give at most 1024");
+  expect("\"any\": true", "\"any\": 1", "effects.any: 1 is no boolean: give true or false");
+  expect("\"distance\": \"all\"", "\"distance\": \"al\"", "effects.distance: 'al' is unknown: did you mean 'all'?");
+  expect("\"distance\": \"all\"", "\"distance\": null",
+         "effects.distance: null is no distance: give \"all\", or a length: pairs farther apart are left out");
+  expect("[1, 0, 0], \"angular\"", "[1, 0, \"0\"], \"angular\"",
+         "objects[2].motion.velocity.linear[2]: \"0\" is no number: give one");
+  expect("{ \"velocity\": {", "{ \"velocty\": {",
+         "objects[2].motion: key 'velocty' is unknown: did you mean 'velocity'?");
+  expect("{ \"velocity\": { \"linear\": [1, 0, 0], \"angular\": [0, 0, 0.5] } }", "{}",
+         "objects[2].motion: {} is no motion: give one of { \"velocity\": ... }, { \"circular\": ... }, "
+         "{ \"waypoints\": ... } and { \"trajectory\": ... }");
+  expect("\"name\": \"moon\", \"cloud\": \"ball\"", "\"name\": \"moon\"",
+         "objects[3]: has none or several of 'cloud', 'parts': give one");
+  expect("[ [\"base\", \"arm\"]", "[ [\"base\"]", "objects[2].adjacent[0]: [\"base\"] is no pair: give two names");
+  expect("\"center\": [0, 0, 0], ", "", "objects[3].motion.circular: 'center' is missing: add it");
   expect("[3, 0, 0, 0, 0, 1.5]", "[3, 0]",
          "objects[3].pose: [3,0] is no pose: give [x, y, z], [x, y, z, roll, pitch, yaw] with radians, or the 12 or 16 "
          "numbers of a matrix, row by row");
