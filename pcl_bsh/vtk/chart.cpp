@@ -125,7 +125,7 @@ public:
   Panel(const Chart& chart, const PixelBox& part)
   : chart_(chart),
     part_left_(part.left),
-    frame_{part.left, part.bottom + 100, part.right - 40, part.top - 70},
+    frame_{part.left, part.bottom + 100, part.right - 52, part.top - 70},
     lowest_top_(frame_.bottom + 66)
   {
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "peers.h"
 
+#include "stopwatch.h"
+
 #include <pcl/filters/voxel_grid.h>
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/octree/octree_search.h>
@@ -9,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -20,7 +21,6 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Tree = pcl::KdTreeFLANN<pcl::PointXYZ>;
 using Octree = pcl::octree::OctreePointCloudSearch<pcl::PointXYZ>;
-using Clock = std::chrono::steady_clock;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The finite points about `origin`, and which records they were.
@@ -182,9 +182,9 @@ private:
     std::vector<std::vector<double>> seconds(m.poses);
     for (unsigned repetition = 0; repetition < repetitions_; ++repetition) {
       for (std::size_t i = 0; i < subject_.poses.size(); ++i) {
-        const auto start = Clock::now();
+        const Stopwatch watch(1);
         const Answer answer = ask(fromAToB(i));
-        seconds[i].push_back(std::chrono::duration<double>(Clock::now() - start).count());
+        seconds[i].push_back(watch.seconds());
         if (repetition == 0) judge(answer, i, m);
       }
     }

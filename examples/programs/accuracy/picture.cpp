@@ -175,8 +175,9 @@ std::vector<vtk::Chart> chartsOf(const Subject& subject, const Study& study)
   distance.lowest = "exact";
   flags.title = "Which points collide?";
   flags.x = {"time per pose", times};
-  flags.y = {"wrong or undecided / colliding",
-             decades(errorsOf(flags), [](double share) { return shortText(100.0 * share) + " %"; })};
+  flags.y = {"wrong or undecided / colliding", decades(errorsOf(flags), [](double share) {
+               return share > 1.0 ? shortText(share) + " x" : shortText(100.0 * share) + " %";
+             })};
   flags.lowest = "exact";
   return {distance, flags};
 }

@@ -105,7 +105,8 @@ void writeMarkdown(std::ostream& out, const std::string& heading, const Subject&
       << heading << "\n\n"
       << format("Clearance %g, %zu poses, diameter of the first cloud %.4g (the clouds' unit). ", subject.clearance,
                 subject.poses.size(), subject.diameter)
-      << "Trees are built before; times are of one query, averaged over the poses: the median of the repetitions, and "
+      << "Trees are built before. Times are of one query, on one thread its processor time, averaged over the poses: "
+         "the median of the repetitions, and "
          "from their tenth to their nine tenths.\n\n"
       << advice(subject, study)
       << "\n![error against time](accuracy.png)\n\n"

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "study.h"
 
+#include "stopwatch.h"
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 
 namespace pcl_bsh::accuracy {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 enum class Query { any, flags, distance };
 
@@ -83,11 +82,11 @@ public:
     seconds.resize(subject_.poses.size());
     for (std::size_t i = 0; i < seconds.size(); ++i) {
       const Eigen::Isometry3d& pose = subject_.poses[i];
-      const auto start = Clock::now();
+      const Stopwatch watch(threads_);
       if (query == Query::any) anyCollision({a_}, {b_, pose}, anyRequest(accuracy));
       if (query == Query::flags) collisionFlags({a_}, {b_, pose}, flagsRequest(accuracy));
       if (query == Query::distance) closestPair({a_}, {b_, pose}, {accuracy});
-      seconds[i].push_back(std::chrono::duration<double>(Clock::now() - start).count());
+      seconds[i].push_back(watch.seconds());
     }
   }
 
@@ -190,18 +189,18 @@ FitMeasurement measureFit(const Subject& subject, SphereFit fit, const char* nam
     HierarchyOptions options;
     options.fit = fit;
     options.threads = threads;
-    const auto start = Clock::now();
+    const Stopwatch watch(threads);
     const SphereHierarchy a(subject.a, options), b(subject.b, options);
     a.buildAll(threads);
     b.buildAll(threads);
-    build.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    build.push_back(watch.seconds());
     FlagsRequest request;
     request.clearance = subject.clearance;
     request.threads = threads;
     const auto timed = [&](const auto& ask) {
-      const auto begin = Clock::now();
+      const Stopwatch query(threads);
       for (const Eigen::Isometry3d& pose : subject.poses) ask(Placed{b, pose});
-      return std::chrono::duration<double>(Clock::now() - begin).count() / static_cast<double>(subject.poses.size());
+      return query.seconds() / static_cast<double>(subject.poses.size());
     };
     flags.push_back(timed([&](const Placed& placed) { collisionFlags({a}, placed, request); }));
     distance.push_back(timed([&](const Placed& placed) { closestPair({a}, placed); }));
