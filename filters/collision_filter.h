@@ -102,7 +102,7 @@ extern template class PCL_BSH_EXPORT CollisionFilterBase<pcl::PCLPointCloud2>; /
 /// The same for clouds whose fields are known at run time only. Keeps every field; reads float64 coordinates at full
 /// precision; can flag the points instead of removing any.
 template <>
-class CollisionFilter<pcl::PCLPointCloud2> : public CollisionFilterBase<pcl::PCLPointCloud2> {
+class PCL_BSH_EXPORT CollisionFilter<pcl::PCLPointCloud2> : public CollisionFilterBase<pcl::PCLPointCloud2> {
 public:
   using Ptr = std::shared_ptr<CollisionFilter<pcl::PCLPointCloud2>>;
   using ConstPtr = std::shared_ptr<const CollisionFilter<pcl::PCLPointCloud2>>;
