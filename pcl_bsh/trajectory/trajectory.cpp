@@ -103,7 +103,8 @@ void followUntilStopped(const TrajectoryQuery& query, StopRule rule,
   for (const std::uint32_t voxel : voxels) markUndecided(query.scan.hierarchy(), voxel, query.result.flags);
   const std::size_t all = voxels.size();
   const std::uint64_t budget = rule.node_pairs;
-  std::uint64_t spent = 0;
+  std::uint64_t spent = query.result.work.node_pairs; // above the voxels
+  if (budget != StopRule::kNever) rule.node_pairs = budget - std::min(budget, spent);
   std::size_t passed = 0;
   for (const std::uint64_t deepest : rule.passes()) {
     rule.deepest = deepest;
