@@ -61,7 +61,8 @@ Camera parseCamera(const std::string& text)
     throw UsageError("--camera: '" + text + "': has a number that is not finite: give numbers");
   const Eigen::Vector3d gaze = Eigen::Vector3d(camera.focus.data()) - Eigen::Vector3d(camera.eye.data());
   const Eigen::Vector3d up(camera.up.data());
-  if (camera.eye == camera.focus) throw UsageError("--camera: '" + text + "': eye and focus are the same: give two places");
+  if (camera.eye == camera.focus)
+    throw UsageError("--camera: '" + text + "': eye and focus are the same: give two places");
   const auto isAlong = [&gaze](const Eigen::Vector3d& v) {
     return !(v.stableNormalized().cross(gaze.stableNormalized()).norm() > 1e-6);
   };

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace pcl_bsh {
 
@@ -54,5 +55,13 @@ struct alignas(32) Node {
   }
 };
 static_assert(sizeof(Node) == 256, "a node fills four cache lines");
+
+/// Children of all these nodes: so many spheres they hold.
+inline std::uint64_t countChildren(const std::vector<Node>& nodes) noexcept
+{
+  std::uint64_t count = 0;
+  for (const Node& node : nodes) count += node.count;
+  return count;
+}
 
 } // namespace pcl_bsh

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/hierarchy/build_work.h>
+#include <pcl_bsh/hierarchy/node.h>
 
 #include <atomic>
 

@@ -59,8 +59,7 @@ std::vector<std::string> blocksOf(const fs::path& document)
     std::string block;
     while (std::getline(lines, line) && line != "```") block += line + '\n';
     const auto begins = [&](const char* text) { return block.rfind(text, 0) == 0; };
-    if (!begins("# needs root") && !begins("# opens windows") && !begins("# builds"))
-      blocks.push_back(block);
+    if (!begins("# needs root") && !begins("# opens windows") && !begins("# builds")) blocks.push_back(block);
   }
   return blocks;
 }
