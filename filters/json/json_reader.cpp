@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/one_line.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
 #include <pcl_bsh/filters/json/json_reader.h>
 #include <pcl_bsh/filters/json/nearest_name.h>
@@ -12,20 +13,10 @@
 #include <cmath>
 
 namespace pcl_bsh::io {
-namespace {
-
-std::string printable(std::string line)
-{
-  const auto steers = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  std::replace_if(line.begin(), line.end(), steers, '?');
-  return line;
-}
-
-} // namespace
 
 JsonError::JsonError(const std::string& file, const std::string& place, const std::string& wrong,
                      const std::string& remedy)
-: std::runtime_error(printable(file + ": " + (place.empty() ? "" : place + ": ") + wrong + ": " + remedy))
+: std::runtime_error(files::oneLine(file + ": " + (place.empty() ? "" : place + ": ") + wrong + ": " + remedy))
 {
 }
 

@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/one_line.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
 #include <pcl_bsh/filters/cloud_files/file_bytes.h>
 #include <pcl_bsh/filters/json/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace pcl_bsh {
-namespace {
 
-/// Names of the user's may hold anything; a message is one line that does not steer the terminal.
-std::string printable(std::string line)
-{
-  const auto steers = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  std::replace_if(line.begin(), line.end(), steers, '?');
-  return line;
-}
-
-} // namespace
-
-PipelineError::PipelineError(std::string line) : std::runtime_error(printable(std::move(line)))
+PipelineError::PipelineError(std::string line) : std::runtime_error(files::oneLine(std::move(line)))
 {
 }
 
