@@ -6,24 +6,15 @@
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/cloud_files/ply.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
+#include <pcl_bsh/filters/cloud_files/small_letters.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <algorithm>
-#include <cctype>
 #include <sstream>
 
 namespace pcl_bsh::io {
-
 namespace {
-
-std::string extensionOf(const std::filesystem::path& path)
-{
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 /// Standard output gets PCL's own format.
 std::string writtenExtension(const std::filesystem::path& path)
@@ -81,7 +72,7 @@ void requireCoordinates(const pcl::PCLPointCloud2& cloud)
 }
 
 /// The format of what comes through a pipe, whose name says nothing, by how it begins.
-std::string extensionOf(std::string_view file)
+std::string extensionByContent(std::string_view file)
 {
   const auto begins = [&](std::string_view text) { return file.substr(0, text.size()) == text; };
   if (begins("ply")) return ".ply";
@@ -100,7 +91,7 @@ pcl::PCLPointCloud2 parsed(const std::filesystem::path& path, const FileBytes& f
     if (!isPipe(path)) {
       throw CloudFileError(path, unknown(extension), "give a .pcd, .ply, .obj, .off, .xyz or .txt file");
     }
-    extension = extensionOf(file.view());
+    extension = extensionByContent(file.view());
   }
   try {
     return parse(extension, file.view());

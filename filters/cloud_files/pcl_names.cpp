@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/cloud_files/pcl_names.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
+#include <pcl_bsh/filters/cloud_files/small_letters.h>
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <optional>
 #include <string_view>
 
@@ -19,13 +19,6 @@ constexpr std::array<ChannelNames, 3> channel_names = {
 constexpr std::array<std::array<const char*, 2>, 3> normal_names = {
     {{"nx", "normal_x"}, {"ny", "normal_y"}, {"nz", "normal_z"}}};
 constexpr std::array plain_names = {"x", "y", "z", "normal_x", "normal_y", "normal_z", "intensity", "curvature"};
-
-std::string inSmallLetters(std::string name)
-{
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return name;
-}
 
 bool isReal(const PointField& field)
 {
@@ -156,7 +149,7 @@ std::string remarkOnColours(const pcl::PCLPointCloud2& cloud)
     const auto channel = std::find_if(cloud.fields.begin(), cloud.fields.end(), is_channel);
     if (std::count_if(cloud.fields.begin(), cloud.fields.end(), is_channel) != 3) continue;
     return "field '" + channel->name +
-           "' and its likes are no bytes: they stay three fields, which PCL's tools do not " + "take for a colour";
+           "' and its likes are no bytes: they stay three fields, which PCL's tools do not take for a colour";
   }
   return {};
 }

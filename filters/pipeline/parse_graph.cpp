@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
+#include <pcl_bsh/filters/cloud_files/small_letters.h>
 #include <pcl_bsh/filters/json/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
 #include <pcl_bsh/filters/pipeline/option_json.h>
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 #include <map>
 #include <set>
 
@@ -14,14 +14,6 @@ namespace pcl_bsh::pipeline {
 namespace {
 
 const std::vector<std::string> common_keys = {"type", "tag", "inputs", "user_data"};
-
-std::string extensionOf(const std::string& file)
-{
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 std::vector<std::string> typeNames()
 {
@@ -36,7 +28,7 @@ std::vector<std::string> typeNames()
 /// The reader or writer that files of this name stand for; null when there is none.
 const StageType* typeOfFile(const std::string& file, bool written)
 {
-  const std::string extension = extensionOf(file);
+  const std::string extension = io::extensionOf(file);
   for (const StageType& type : stageTypes()) {
     const bool can = written ? type.isWriter() : type.isReader();
     if (can && std::find(type.extensions.begin(), type.extensions.end(), extension) != type.extensions.end()) {

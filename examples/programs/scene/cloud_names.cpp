@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cloud_names.h"
 
+#include <pcl_bsh/filters/cloud_files/small_letters.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -18,13 +20,6 @@ std::string allowed(std::string text)
   return text;
 }
 
-std::string lower(std::string text)
-{
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 } // namespace
 
 CloudNames::CloudNames(const io::SceneFile& file)
@@ -35,7 +30,8 @@ CloudNames::CloudNames(const io::SceneFile& file)
       const std::string wanted =
           allowed(object.name) + (object.parts.size() > 1 ? "_" + allowed(part.name) : std::string());
       std::string name = wanted;
-      for (int number = 2; !taken_.insert(lower(name)).second; ++number) name = wanted + "-" + std::to_string(number);
+      for (int number = 2; !taken_.insert(io::inSmallLetters(name)).second; ++number)
+        name = wanted + "-" + std::to_string(number);
       names_.back().push_back(name);
     }
   }
@@ -51,7 +47,7 @@ std::string CloudNames::of(std::size_t object, std::size_t part, std::size_t ste
 bool CloudNames::mayBe(const std::string& file) const
 {
   const std::size_t line = file.rfind('_');
-  return line != std::string::npos && taken_.count(lower(file.substr(0, line))) != 0;
+  return line != std::string::npos && taken_.count(io::inSmallLetters(file.substr(0, line))) != 0;
 }
 
 } // namespace pcl_bsh::cli

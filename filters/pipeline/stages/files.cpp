@@ -2,11 +2,11 @@
 // Readers and writers, of all formats that filters/io knows.
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/cloud_files/pcl_names.h>
+#include <pcl_bsh/filters/cloud_files/small_letters.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 
 #include <algorithm>
-#include <cctype>
 
 namespace pcl_bsh::pipeline {
 namespace {
@@ -14,10 +14,7 @@ namespace {
 /// The format is told by the extension, so a stage refuses the extensions of others.
 void requireExtension(const std::string& file, const std::vector<std::string>& extensions)
 {
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) return;
+  if (std::find(extensions.begin(), extensions.end(), io::extensionOf(file)) != extensions.end()) return;
   std::string known;
   for (const std::string& valid : extensions) known += (known.empty() ? "" : " or ") + valid;
   throw OptionError("filename", "is \"" + file + "\": give a " + known + " file, or leave out the type");
