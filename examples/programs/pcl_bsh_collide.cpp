@@ -11,12 +11,12 @@
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
+#include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -129,19 +129,6 @@ void warnOf(const cli::CloudReport& cloud, const SphereHierarchy& hierarchy, dou
   }
 }
 
-/// The cloud without its records.
-pcl::PCLPointCloud2 emptyLike(const pcl::PCLPointCloud2& cloud)
-{
-  pcl::PCLPointCloud2 empty;
-  empty.header = cloud.header;
-  empty.height = 1;
-  empty.fields = cloud.fields;
-  empty.is_bigendian = cloud.is_bigendian;
-  empty.point_step = cloud.point_step;
-  empty.is_dense = cloud.is_dense;
-  return empty;
-}
-
 pcl::PCLPointCloud2 marked(const fs::path& path, const pcl::PCLPointCloud2& cloud, const std::vector<NewField>& fields)
 {
   try {
@@ -163,17 +150,13 @@ std::vector<NewField> newFields(const Options& options, const TrajectoryResult& 
 pcl::PCLPointCloud2 select(const pcl::PCLPointCloud2& cloud, const PointsView& view,
                            const std::vector<std::uint8_t>& collides, Keep keep)
 {
-  pcl::PCLPointCloud2 kept = emptyLike(cloud);
+  pcl::Indices kept;
   for (std::size_t i = 0; i < view.count; ++i) {
-    const Point3 p = view.point(static_cast<std::uint32_t>(i));
-    const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+    const bool finite = isFinite(view.point(static_cast<std::uint32_t>(i)));
     if (keep == Keep::colliding ? collides[i] == 0 : (collides[i] != 0 || !finite)) continue;
-    const auto record = cloud.data.begin() + static_cast<std::ptrdiff_t>(i * cloud.point_step);
-    kept.data.insert(kept.data.end(), record, record + cloud.point_step);
+    kept.push_back(static_cast<pcl::index_t>(i));
   }
-  kept.width = static_cast<std::uint32_t>(kept.data.size() / std::max(kept.point_step, 1U));
-  kept.row_step = kept.width * kept.point_step;
-  return kept;
+  return selectedRecords(cloud, kept);
 }
 
 void write(const Options& options, const Scan& input, const TrajectoryResult& found, double& seconds)
@@ -348,7 +331,8 @@ int collide(const Options& options)
   report.accuracy = options.accuracy;
 
   const Scan input = load(options.input, report.seconds.load);
-  if (options.keep == Keep::flagged) marked(options.input, emptyLike(input.cloud), newFields(options, {})); // fails now
+  if (options.keep == Keep::flagged)
+    marked(options.input, withoutRecords(input.cloud), newFields(options, {})); // fails now
   const Scan obstacle = load(options.obstacle, report.seconds.load);
   const auto a = build(input, options.input, options.threads, report.seconds.build);
   const auto b = build(obstacle, options.obstacle, options.threads, report.seconds.build);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stage_cloud.h>
+#include <pcl_bsh/filters/selected_records.h>
 
 #include <atomic>
 
@@ -15,15 +16,7 @@ std::shared_ptr<StageCloud> ownCloud(StageCloudPtr&& cloud)
 
 std::shared_ptr<StageCloud> emptyLike(const StageCloud& cloud)
 {
-  auto empty = std::make_shared<StageCloud>();
-  empty->viewpoint = cloud.viewpoint;
-  empty->cloud.header = cloud.cloud.header;
-  empty->cloud.fields = cloud.cloud.fields;
-  empty->cloud.is_bigendian = cloud.cloud.is_bigendian;
-  empty->cloud.is_dense = cloud.cloud.is_dense;
-  empty->cloud.point_step = cloud.cloud.point_step;
-  empty->cloud.height = 1;
-  return empty;
+  return std::make_shared<StageCloud>(StageCloud{withoutRecords(cloud.cloud), cloud.viewpoint});
 }
 
 } // namespace pcl_bsh::pipeline
