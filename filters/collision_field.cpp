@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/selected_records.h>
 
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/search/find_field.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <pcl/common/io.h>
 #include <pcl/type_traits.h>
 
-#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -39,29 +40,16 @@ void requireSame(const Field& field, std::uint8_t datatype, const pcl::PCLPointC
   }
 }
 
-/// The field of that name, if the cloud has one.
-const Field* find(const pcl::PCLPointCloud2& cloud, const std::string& name)
-{
-  const auto field =
-      std::find_if(cloud.fields.begin(), cloud.fields.end(), [&](const Field& f) { return f.name == name; });
-  return field == cloud.fields.end() ? nullptr : &*field;
-}
-
 /// The cloud's header, its fields and the new ones, without a record. New fields lie packed, not aligned: padding would
 /// show as fields named "_" in every file PCL writes.
 pcl::PCLPointCloud2 layout(const pcl::PCLPointCloud2& cloud, const std::vector<NewField>& fields)
 {
-  pcl::PCLPointCloud2 result;
-  result.header = cloud.header;
+  pcl::PCLPointCloud2 result = withoutRecords(cloud);
   result.height = cloud.height;
   result.width = cloud.width;
-  result.fields = cloud.fields;
-  result.is_bigendian = cloud.is_bigendian;
-  result.is_dense = cloud.is_dense;
-  result.point_step = cloud.point_step;
   for (const NewField& field : fields) {
     const std::uint8_t datatype = withValues(field, [](const auto& values) { return datatypeOf(values); });
-    if (const Field* present = find(result, field.name)) {
+    if (const Field* present = findField(result, field.name)) {
       requireSame(*present, datatype, result);
       continue;
     }
@@ -96,7 +84,7 @@ pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vect
     std::memcpy(&result.data[i * result.point_step], &cloud.data[i * cloud.point_step], cloud.point_step);
   }
   for (const NewField& field : fields) {
-    const std::size_t offset = find(result, field.name)->offset;
+    const std::size_t offset = findField(result, field.name)->offset;
     withValues(field, [&](const auto& values) {
       for (std::size_t i = 0; i < points; ++i) {
         std::memcpy(&result.data[i * result.point_step + offset], &values[i], sizeof values[i]);

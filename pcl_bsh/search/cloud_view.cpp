@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/search/find_field.h>
 
 #include <boost/predef/other/endian.h>
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -24,15 +24,11 @@ std::string quoted(const std::string& name)
   return "field '" + name + "' ";
 }
 
-const Field& findField(const pcl::PCLPointCloud2& cloud, const std::string& name)
+const Field& requiredField(const pcl::PCLPointCloud2& cloud, const std::string& name)
 {
-  const auto found = std::find_if(cloud.fields.begin(), cloud.fields.end(),
-                                  [&name](const Field& field) { return field.name == name; });
-  if (found == cloud.fields.end()) {
-    throw std::invalid_argument(quoted(name) + "is missing: the cloud has " + fieldNames(cloud) +
-                                ", but x, y and z are needed");
-  }
-  return *found;
+  if (const Field* field = findField(cloud, name)) return *field;
+  throw std::invalid_argument(quoted(name) + "is missing: the cloud has " + fieldNames(cloud) +
+                              ", but x, y and z are needed");
 }
 
 Scalar scalarOf(const Field& field)
@@ -75,12 +71,12 @@ PointsView viewOf(const pcl::PCLPointCloud2& cloud)
   view.data = cloud.data.data();
   view.count = std::size_t{cloud.width} * cloud.height;
   view.stride = cloud.point_step;
-  view.scalar = scalarOf(findField(cloud, "x"));
+  view.scalar = scalarOf(requiredField(cloud, "x"));
   const std::size_t bytes = view.scalar == Scalar::float32 ? sizeof(float) : sizeof(double);
 
   std::size_t axis = 0;
   for (const char* const name : {"x", "y", "z"}) {
-    const Field& field = findField(cloud, name);
+    const Field& field = requiredField(cloud, name);
     if (scalarOf(field) != view.scalar) {
       throw std::invalid_argument(quoted(name) + "is not of the type of field 'x': x, y and z must be of one type");
     }

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/pipeline/stages/added_fields.h>
+#include <pcl_bsh/search/find_field.h>
 
-#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
 namespace pcl_bsh::pipeline {
 namespace {
-
-const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, const std::string& name)
-{
-  const auto found = std::find_if(cloud.fields.begin(), cloud.fields.end(),
-                                  [&](const pcl::PCLPointField& field) { return field.name == name; });
-  return found == cloud.fields.end() ? nullptr : &*found;
-}
 
 /// Makes each record longer, in place: from the last to the first, none is overwritten before it has moved.
 void widenRecords(pcl::PCLPointCloud2& cloud, std::size_t old_step)

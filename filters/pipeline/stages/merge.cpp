@@ -10,7 +10,8 @@
 namespace pcl_bsh::pipeline {
 namespace {
 
-const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& like)
+/// The field with the name, type and size of this one; null when the cloud has none.
+const pcl::PCLPointField* fieldLike(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& like)
 {
   for (const pcl::PCLPointField& field : cloud.fields) {
     if (field.name == like.name && field.datatype == like.datatype && io::sizeOf(field) == io::sizeOf(like)) {
@@ -52,7 +53,7 @@ private:
   static void requireFields(const CloudHeader& needed, const CloudHeader& cloud, std::size_t input)
   {
     for (const pcl::PCLPointField& field : needed.fields) {
-      if (findField(cloud, field) != nullptr) continue;
+      if (fieldLike(cloud, field) != nullptr) continue;
       throw OptionError("inputs/" + std::to_string(input),
                         "has no field '" + field.name + "' of the type that another has: give clouds alike");
     }
@@ -62,7 +63,7 @@ private:
   {
     const std::size_t points = std::size_t{cloud.width} * cloud.height;
     std::vector<std::size_t> from;
-    for (const pcl::PCLPointField& field : merged.fields) from.push_back(findField(cloud, field)->offset);
+    for (const pcl::PCLPointField& field : merged.fields) from.push_back(fieldLike(cloud, field)->offset);
     for (std::size_t i = 0; i < points; ++i, next += merged.point_step) {
       for (std::size_t k = 0; k < merged.fields.size(); ++k) {
         const pcl::PCLPointField& field = merged.fields[k];

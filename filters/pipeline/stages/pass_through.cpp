@@ -23,7 +23,7 @@ struct PassThrough : SelectingStage {
     if (areCrossed(filter_limits)) {
       throw OptionError("filter_limits", "has a least above its most: exchange them");
     }
-    findField(inputs[0]);
+    filteredField(inputs[0]);
     return inputs[0];
   }
 
@@ -32,7 +32,7 @@ protected:
   {
     const pcl::PCLPointCloud2& points = cloud->cloud;
     std::vector<std::uint8_t> passes(std::size_t{points.width} * points.height, 1);
-    const pcl::PCLPointField* field = findField(points);
+    const pcl::PCLPointField* field = filteredField(points);
     if (field == nullptr) return passes;
     io::withFieldType(field->datatype, [&](auto value) {
       using Number = decltype(value);
@@ -52,7 +52,7 @@ protected:
 
 private:
   /// Null when no field is asked for.
-  const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud) const
+  const pcl::PCLPointField* filteredField(const pcl::PCLPointCloud2& cloud) const
   {
     if (filter_field_name.empty()) return nullptr;
     std::vector<std::string> names;
@@ -76,8 +76,7 @@ StageType passThrough()
                   "the field, of any type; empty: only points that are not finite are removed")
           .option(&PassThrough::filter_limits, "filter_limits",
                   "[least, most], both inclusive, in the field's unit; null in place of one: no limit; whole numbers "
-                  "keep all "
-                  "of their 64 bits");
+                  "keep all of their 64 bits");
   return withSelectionOptions(description);
 }
 
