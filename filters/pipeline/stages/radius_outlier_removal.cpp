@@ -1,37 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
-#include <pcl_bsh/filters/pipeline/stages/float_cloud.h>
-#include <pcl_bsh/filters/pipeline/stages/selecting_stage.h>
-#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/filters/pipeline/stages/outlier_removal.h>
 
 #include <pcl/filters/radius_outlier_removal.h>
 
 namespace pcl_bsh::pipeline {
 namespace {
 
-struct RadiusOutlierRemoval : SelectingStage {
+struct RadiusOutlierRemoval : OutlierRemoval {
   double radius_search = 0;
   unsigned min_neighbors_in_radius = 1;
 
 protected:
-  std::vector<std::uint8_t> passing(const StageCloudPtr& cloud) override
+  std::unique_ptr<Filter> filterFor(const FloatCloud&) const override
   {
-    const PointsView view = viewOf(cloud->cloud);
-    std::vector<std::uint8_t> passes(view.count, 0);
-    const FloatCloud points = floatCloud(view);
-    if (points.points->empty()) return passes;
-    const std::string warning = roundingWarning(points, radius_search);
-    if (!warning.empty()) warn(warning);
-
-    pcl::RadiusOutlierRemoval<pcl::PointXYZ> filter;
-    filter.setInputCloud(points.points);
-    filter.setRadiusSearch(radius_search);
-    filter.setMinNeighborsInRadius(static_cast<int>(min_neighbors_in_radius));
-    pcl::Indices kept;
-    filter.filter(kept);
-    for (const pcl::index_t i : kept) passes[points.records[static_cast<std::size_t>(i)]] = 1;
-    return passes;
+    auto filter = std::make_unique<pcl::RadiusOutlierRemoval<pcl::PointXYZ>>();
+    filter->setRadiusSearch(radius_search);
+    filter->setMinNeighborsInRadius(static_cast<int>(min_neighbors_in_radius));
+    return filter;
   }
+
+  double comparedLength(const PointsView&, const FloatCloud&) const override { return radius_search; }
 };
 
 } // namespace

@@ -1,42 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
-#include <pcl_bsh/filters/pipeline/stages/float_cloud.h>
-#include <pcl_bsh/filters/pipeline/stages/selecting_stage.h>
-#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/filters/pipeline/stages/outlier_removal.h>
 
 #include <pcl/filters/statistical_outlier_removal.h>
-
-#include <cmath>
 
 namespace pcl_bsh::pipeline {
 namespace {
 
-struct StatisticalOutlierRemoval : SelectingStage {
+struct StatisticalOutlierRemoval : OutlierRemoval {
   unsigned mean_k = 1;
   double stddev_mul_thresh = 0;
 
 protected:
-  std::vector<std::uint8_t> passing(const StageCloudPtr& cloud) override
+  std::unique_ptr<Filter> filterFor(const FloatCloud& points) const override
   {
-    const PointsView view = viewOf(cloud->cloud);
-    std::vector<std::uint8_t> passes(view.count, 0);
-    const FloatCloud points = floatCloud(view);
-    if (points.points->empty()) return passes;
     if (points.points->size() <= mean_k) { // PCL's would read beyond the neighbours it has
       throw OptionError("mean_k", "is " + std::to_string(mean_k) + ", but there are only " +
                                       std::to_string(points.points->size()) + " finite points: give less");
     }
-    const std::string warning = roundingWarning(points, neighbourSpacing(view, points));
-    if (!warning.empty()) warn(warning);
+    auto filter = std::make_unique<pcl::StatisticalOutlierRemoval<pcl::PointXYZ>>();
+    filter->setMeanK(static_cast<int>(mean_k));
+    filter->setStddevMulThresh(stddev_mul_thresh);
+    return filter;
+  }
 
-    pcl::StatisticalOutlierRemoval<pcl::PointXYZ> filter;
-    filter.setInputCloud(points.points);
-    filter.setMeanK(static_cast<int>(mean_k));
-    filter.setStddevMulThresh(stddev_mul_thresh);
-    pcl::Indices kept;
-    filter.filter(kept);
-    for (const pcl::index_t i : kept) passes[points.records[static_cast<std::size_t>(i)]] = 1;
-    return passes;
+  double comparedLength(const PointsView& view, const FloatCloud& points) const override
+  {
+    return neighbourSpacing(view, points);
   }
 };
 
