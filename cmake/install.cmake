@@ -4,10 +4,7 @@
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pcl_bsh")
-set(libraries pcl_bsh_core pcl_bsh_files pcl_bsh_search pcl_bsh_filters pcl_bsh_pipeline)
-if(NOT BUILD_SHARED_LIBS)
-  list(APPEND libraries pcl_bsh_io) # a static library leaves what it is linked to, to whoever links it
-endif()
+set(libraries pcl_bsh_core pcl_bsh_files pcl_bsh_search pcl_bsh_filters pcl_bsh_io pcl_bsh_pipeline)
 install(
   TARGETS ${libraries}
   EXPORT pcl_bsh
