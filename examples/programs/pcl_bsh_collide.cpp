@@ -60,7 +60,7 @@ void requireClashFormat(const fs::path& list)
   }
 }
 
-/// Everything that can be known to fail is known before the first cloud is loaded.
+/// Checks all that can be checked before the first cloud is loaded.
 void check(const Options& options)
 {
   options.files.requireApart();

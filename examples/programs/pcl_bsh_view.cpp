@@ -15,7 +15,7 @@ namespace {
 
 using namespace pcl_bsh;
 
-/// What can be known to fail is known before the first cloud is loaded.
+/// Checks all that can be checked before the first cloud is loaded.
 void check(const view::Options& options)
 {
   cli::CommandFiles files = options.files;

@@ -24,7 +24,7 @@ void addWires(PropGroup& group, vtkPolyData& boxes, const Eigen::Isometry3d& pos
   group.add(actor);
 }
 
-/// Opened spheres are seen as their children; what is left shows each place once.
+/// Opened spheres are drawn as their children, so each place is drawn once.
 void addTraced(PropGroup& group, const std::vector<TracedSphere>& all, const Eigen::Isometry3d& pose)
 {
   for (const SphereFate fate : {SphereFate::pruned, SphereFate::kept, SphereFate::compared}) {

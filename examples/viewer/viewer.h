@@ -39,7 +39,7 @@ public:
   vtkSliderWidget* slider() { return slider_; } ///< null where there is one pose
   Stage& stage() { return *stage_; }
 
-  // What events end in.
+  // Called by events.
   bool press(const std::string& key); ///< @return false for a key that means nothing here
   void pick(int x, int y);
   void showStep(std::size_t step);

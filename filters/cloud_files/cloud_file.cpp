@@ -71,7 +71,7 @@ void requireCoordinates(const pcl::PCLPointCloud2& cloud)
   }
 }
 
-/// The format of what comes through a pipe, whose name says nothing, by how it begins.
+/// The format of the bytes of a pipe, by their beginning: the name of a pipe says nothing.
 std::string extensionByContent(std::string_view file)
 {
   const auto begins = [&](std::string_view text) { return file.substr(0, text.size()) == text; };

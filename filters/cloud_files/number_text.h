@@ -7,7 +7,7 @@
 
 namespace pcl_bsh::io {
 
-/// The fewest digits that read back to the same bits; "nan" and "inf" for what is none.
+/// The fewest digits that read back to the same bits; "nan" and "inf" for values that are not finite.
 std::string numberText(double value);
 
 /// In that format, with so many digits (general: that count, fixed: behind the point).

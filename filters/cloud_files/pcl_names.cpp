@@ -39,7 +39,7 @@ std::optional<std::size_t> placeOf(const Fields& fields, std::string_view name)
   return static_cast<std::size_t>(found - fields.begin());
 }
 
-/// In any case of letters, for so a reader would see it.
+/// Case does not matter, because it does not matter to a reader.
 bool has(const Fields& fields, std::string_view name)
 {
   return std::any_of(fields.begin(), fields.end(),
@@ -149,7 +149,8 @@ std::string remarkOnColours(const pcl::PCLPointCloud2& cloud)
     const auto channel = std::find_if(cloud.fields.begin(), cloud.fields.end(), is_channel);
     if (std::count_if(cloud.fields.begin(), cloud.fields.end(), is_channel) != 3) continue;
     return "field '" + channel->name +
-           "' and its likes are no bytes: they stay three fields, which PCL's tools do not take for a colour";
+           "' and the other two channels of its colour are not of type UINT8: they stay three fields, and PCL's tools "
+           "do not see a colour";
   }
   return {};
 }

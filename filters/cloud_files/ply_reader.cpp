@@ -14,7 +14,7 @@ namespace pcl_bsh::io {
 
 namespace {
 
-/// What of a file is wanted.
+/// How much of a file is read.
 enum class Part : std::uint8_t { all, header };
 
 struct Property {

@@ -89,7 +89,7 @@ void findBytes(TextCursor text, bool at_row, Fields& values)
     }
   }
   for (std::size_t i = 0; i < values.size(); ++i) values[i].datatype = bytes[i] ? Field::UINT8 : Field::FLOAT64;
-  // Only what is packed: any other column of small numbers is float64 as all columns are.
+  // Only packed columns are bytes: other columns of small numbers are float64, as all columns are.
   laid_out = {};
   const std::vector<std::uint32_t> offsets = layOutForPcl(values, laid_out);
   for (std::size_t i = 0; i < values.size(); ++i) {

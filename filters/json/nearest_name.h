@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What somebody may have meant.
+// The valid name that is most like a mistyped one.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A document, understood: which stages there are, with which options, and who reads whom.
+// A parsed document: its stages, their options, and which stage reads which.
 #pragma once
 
 #include <pcl_bsh/export.h>

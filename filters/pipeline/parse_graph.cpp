@@ -344,7 +344,7 @@ private:
     }
   }
 
-  /// A cloud that nobody reads is a slip of the pen, but for what comes last.
+  /// Refuses a cloud that no stage reads, unless its stage is the last: it is most likely a mistake.
   void requireEachRead() const
   {
     const std::vector<std::size_t> readers = countReaders(graph_);

@@ -195,7 +195,7 @@ private:
     }
   }
 
-  /// Whatever thread this is, what the callback throws is for the one that called run().
+  /// run() rethrows in its own thread what the callback throws in any thread.
   void report(const Node& node, const Cost& cost, bool done)
   {
     if (!graph_.progress || callback_error_) return;

@@ -10,7 +10,7 @@ std::shared_ptr<StageCloud> ownCloud(StageCloudPtr&& cloud)
 {
   const StageCloudPtr held = std::move(cloud);
   if (held.use_count() > 1) return std::make_shared<StageCloud>(*held);
-  std::atomic_thread_fence(std::memory_order_acquire); // what another thread read, it read before it let go
+  std::atomic_thread_fence(std::memory_order_acquire); // the reads of another thread came before its release
   return std::const_pointer_cast<StageCloud>(held);
 }
 

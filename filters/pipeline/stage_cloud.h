@@ -19,14 +19,14 @@ struct StageCloud {
   std::array<float, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};
 };
 
-/// Several stages may read one cloud, so nobody changes it.
+/// Several stages may read one cloud, so it does not change.
 using StageCloudPtr = std::shared_ptr<const StageCloud>;
 using StageClouds = std::vector<StageCloudPtr>;
 
 /// The fields of a cloud, without its points.
 using CloudHeader = pcl::PCLPointCloud2;
 
-/// The cloud itself when nobody else holds it, to be changed in place; otherwise a copy.
+/// The cloud itself, to be changed in place, when this is the only pointer to it; otherwise a copy.
 std::shared_ptr<StageCloud> ownCloud(StageCloudPtr&& cloud);
 
 /// A cloud with the fields, the frame and the viewpoint of this one, and no points.

@@ -12,7 +12,7 @@ namespace {
 
 std::deque<StageType>& table()
 {
-  static std::deque<StageType> types = builtInStages(); // a deque: who holds a row keeps it when more are added
+  static std::deque<StageType> types = builtInStages(); // a deque: pointers to its rows stay valid when more are added
   return types;
 }
 

@@ -43,7 +43,7 @@ Eigen::Isometry3d fromQuaternion(const std::vector<double>& n, const TextCursor&
   return pose;
 }
 
-/// What a query would say to the pose.
+/// Refuses a pose that a query would refuse.
 void requireRigid(const Eigen::Isometry3d& pose, const TextCursor& cursor)
 {
   try {

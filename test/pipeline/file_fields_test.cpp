@@ -72,7 +72,8 @@ TEST_F(FileFields, ColoursThatAreNoBytesAreWarnedOf)
                         "0 0 0 0.5 0 1\n");
   const PipelineResult result = run("a.ply", turn, "b.ply");
   ASSERT_EQ(result.warnings.size(), 1U);
-  EXPECT_THAT(result.warnings[0], HasSubstr("a.ply: field 'red' and its likes are no bytes"));
+  EXPECT_THAT(result.warnings[0],
+              HasSubstr("a.ply: field 'red' and the other two channels of its colour are not of type UINT8"));
   EXPECT_THAT(contentOf(folder / "b.ply"), HasSubstr("property float red\n"));
 }
 

@@ -243,7 +243,7 @@ private:
     return answer;
   }
 
-  /// What lies in one voxel of the octree collides.
+  /// Points in one voxel of the octree count as colliding.
   Answer sharedVoxels(const Cloud& asking, Octree& tree, const Eigen::Affine3f& to_b) const
   {
     const Eigen::Affine3f motion = toTree(to_b);

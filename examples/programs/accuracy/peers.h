@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What users of PCL do today to be faster, on the same clouds.
+// The ways to a faster answer that PCL itself offers, on the same clouds.
 #pragma once
 
 #include "study.h"

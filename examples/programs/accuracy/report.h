@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A study for programs (CSV), for readers (Markdown) and for those who would rather look (PNG).
+// A study for programs (CSV), as text (Markdown) and as a picture (PNG).
 #pragma once
 
 #include "study.h"

@@ -36,7 +36,7 @@ const char* knobOf(const Accuracy& accuracy)
   return "exact";
 }
 
-/// What is true at a pose, to judge the others by.
+/// The true results at a pose, to judge the others by.
 struct Truth {
   Verdict any;
   std::vector<std::uint8_t> flags;

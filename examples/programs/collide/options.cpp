@@ -33,7 +33,7 @@ Accuracy parseAccuracy(const std::string& text)
   }
 }
 
-/// What no single option can know.
+/// Checks that involve several options.
 void requireConsistent(const CollideOptions& options)
 {
   if (options.clashes.empty() && (options.cluster_distance > 0 || options.previous))

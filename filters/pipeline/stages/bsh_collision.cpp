@@ -47,7 +47,7 @@ protected:
     filter.computeFlags(flags);
     if (const std::string warning = undecidedWarning(filter); !warning.empty()) warn(warning);
     const bool colliding = keep == "colliding";
-    for (std::uint8_t& flag : flags) flag = (flag != 0) == colliding; // what is undecided is not free
+    for (std::uint8_t& flag : flags) flag = (flag != 0) == colliding; // undecided points are not free
     return flags;
   }
 };
@@ -60,7 +60,7 @@ StageType bshCollision()
                                             "Keeps the points that do not collide with an obstacle, or those that do. "
                                             "Exact unless `accuracy` says otherwise, for float64 coordinates too.");
   withCollisionOptions(description.alias("pcl_bsh::CollisionFilter"))
-      .option(&BshCollision::keep, "keep", "which points")
+      .option(&BshCollision::keep, "keep", "the points to keep")
       .choices({"free", "colliding"});
   return withSelectionOptions(description);
 }

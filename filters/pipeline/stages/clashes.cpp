@@ -104,21 +104,21 @@ StageType clashWriter()
   auto description = describe<ClashWriter>(
       "writers.clashes",
       "Lists where the input's points collide with an obstacle, place by place, the nearest first: as JSON or CSV for "
-      "programs, or as a page for browsers. Asks what `filters.bsh_flag` asks with these options; the cloud passes "
-      "unchanged.");
+      "programs, or as a page for browsers. The query is that of `filters.bsh_flag` with these options; the cloud "
+      "passes unchanged.");
   return withCollisionOptions(description
                                   .option(&ClashWriter::filename, "filename",
                                           "the .json, .csv or .html file to write; it appears complete or not at all")
                                   .required()
                                   .option(&ClashWriter::also, "also", "another such file, of the same clashes"))
       .option(&ClashWriter::cluster_distance, "cluster_distance",
-              "colliding points farther apart are two clashes; null: from clearance and spacing")
+              "colliding points farther apart are two clashes; null: computed from clearance and spacing")
       .unit("m")
       .above(0)
       .option(&ClashWriter::previous, "previous",
               "the .json of an earlier run: tells new, persisting and resolved clashes; may be `filename`")
       .replaceable()
-      .option(&ClashWriter::input_name, "input_name", "what the list calls the input");
+      .option(&ClashWriter::input_name, "input_name", "name of the input in the list");
 }
 
 } // namespace pcl_bsh::pipeline

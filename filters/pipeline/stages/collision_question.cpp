@@ -30,7 +30,7 @@ std::vector<Eigen::Isometry3d> posesOf(const std::optional<Pose>& pose, const st
   }
 }
 
-/// Which option says what the core calls by its own name.
+/// The option that sets the member of a request which an error of the core names.
 std::string optionOf(Input input, bool moves)
 {
   switch (input) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the stages of this project's own filter ask: an obstacle, where it is, and how near is too near.
+// The question of the stages that collide clouds: an obstacle, its pose, and a clearance.
 #pragma once
 
 #include <pcl_bsh/filters/collision_filter.h>
@@ -65,10 +65,11 @@ StageDescription<S>& withCollisionOptions(StageDescription<S>& description)
       .unit("m")
       .atLeast(0)
       .option(&S::accuracy, "accuracy",
-              "how sure the answer has to be, less is faster: `exact`; `tolerance=LENGTH`: distances in (clearance, "
+              "how sure the answer is; less sure is faster: `exact`; `tolerance=LENGTH`: distances in (clearance, "
               "clearance + LENGTH] may count, too; `level=N`, `pairs=N`, `time=SECONDS`: stops early, and what stays "
               "undecided is not free; `float`: without proof. With `swept` `exact`")
-      .option(&S::number_of_threads, "number_of_threads", "0: all of the machine's; the result is the same")
+      .option(&S::number_of_threads, "number_of_threads",
+              "0: one per hardware thread; the result is the same for any number")
       .atMost(1024);
 }
 

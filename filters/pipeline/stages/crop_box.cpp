@@ -47,7 +47,7 @@ protected:
   }
 
 private:
-  /// T_box_cloud: what PCL does one after the other. Near a georeferenced cloud, the large numbers cancel in here.
+  /// T_box_cloud, all of PCL's steps in one matrix: the large numbers of a georeferenced cloud cancel in it.
   Eigen::Affine3d boxFromCloud() const
   {
     using Eigen::AngleAxisd, Eigen::Vector3d;
@@ -83,7 +83,7 @@ StageType cropBox()
           .option(&CropBox::max, "max", "the corner with the greatest coordinates, in the box's frame")
           .unit("m")
           .required()
-          .option(&CropBox::translation, "translation", "where the box's origin lies")
+          .option(&CropBox::translation, "translation", "position of the box's origin")
           .unit("m")
           .option(&CropBox::rotation, "rotation", "of the box: [roll, pitch, yaw], R = Rz(yaw) Ry(pitch) Rx(roll)")
           .unit("rad")

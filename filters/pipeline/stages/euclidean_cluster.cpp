@@ -86,15 +86,16 @@ StageType euclideanCluster()
 {
   return describe<EuclideanCluster>(
              "filters.euclidean_cluster",
-             "Adds a field `cluster` (int32): 0 for the largest group of points that hang together, 1 for the next, -1 "
-             "for none. Computed in float32 about the cloud's middle; coordinates stay as they are.")
+             "Adds a field `cluster` (int32): 0 for points of the largest cluster, 1 for the next, -1 for points of "
+             "no cluster. Computed in float32 about the cloud's middle; coordinates stay as they are.")
       .alias("pcl::EuclideanClusterExtraction")
-      .option(&EuclideanCluster::cluster_tolerance, "cluster_tolerance", "how far apart neighbours in a cluster may be")
+      .option(&EuclideanCluster::cluster_tolerance, "cluster_tolerance",
+              "greatest distance between neighbours in a cluster")
       .unit("m")
       .above(0)
       .required()
-      .option(&EuclideanCluster::min_cluster_size, "min_cluster_size", "points of a cluster, at least")
-      .option(&EuclideanCluster::max_cluster_size, "max_cluster_size", "points of a cluster, at most");
+      .option(&EuclideanCluster::min_cluster_size, "min_cluster_size", "least number of points of a cluster")
+      .option(&EuclideanCluster::max_cluster_size, "max_cluster_size", "greatest number of points of a cluster");
 }
 
 } // namespace pcl_bsh::pipeline

@@ -97,16 +97,17 @@ StageType normalEstimation()
              "where there is none. Computed in float32 about the cloud's middle; coordinates stay as they are.")
       .alias("pcl::NormalEstimation")
       .alias("pcl::NormalEstimationOMP")
-      .option(&NormalEstimation::k_search, "k_search", "how many neighbours, the point itself among them")
+      .option(&NormalEstimation::k_search, "k_search", "number of neighbours, the point itself among them")
       .atLeast(3)
       .atMost(1e6)
-      .option(&NormalEstimation::radius_search, "radius_search", "or, within which distance")
+      .option(&NormalEstimation::radius_search, "radius_search",
+              "instead of `k_search`: all neighbours within this distance")
       .unit("m")
       .above(0)
       .option(&NormalEstimation::view_point, "view_point",
-              "[x, y, z] that normals point to; null: where the file says the sensor stood")
+              "[x, y, z] that normals point to; null: the sensor's position in the file")
       .unit("m")
-      .option(&NormalEstimation::number_of_threads, "number_of_threads", "0: all of the machine's")
+      .option(&NormalEstimation::number_of_threads, "number_of_threads", "0: one per hardware thread")
       .atMost(1024);
 }
 

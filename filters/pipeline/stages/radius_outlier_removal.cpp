@@ -38,7 +38,7 @@ StageType radiusOutlierRemoval()
           .above(0)
           .required()
           .option(&RadiusOutlierRemoval::min_neighbors_in_radius, "min_neighbors_in_radius",
-                  "how many other points there must be at least")
+                  "least number of other points in the radius")
           .atMost(1e9);
   return withSelectionOptions(description);
 }

@@ -37,14 +37,15 @@ StageType statisticalOutlierRemoval()
   auto description =
       describe<StatisticalOutlierRemoval>(
           "filters.statistical_outlier_removal",
-          "Removes points whose mean distance to their neighbours exceeds that of most. Neighbours are searched in "
+          "Removes points whose mean distance to their neighbours is far above the average. Neighbours are searched in "
           "float32 about the cloud's middle; coordinates stay as they are.")
           .alias("pcl::StatisticalOutlierRemoval")
-          .option(&StatisticalOutlierRemoval::mean_k, "mean_k", "how many neighbours")
+          .option(&StatisticalOutlierRemoval::mean_k, "mean_k", "number of neighbours")
           .atLeast(1)
           .atMost(1e6)
-          .option(&StatisticalOutlierRemoval::stddev_mul_thresh, "stddev_mul_thresh",
-                  "a mean distance above the average plus so many standard deviations makes an outlier");
+          .option(
+              &StatisticalOutlierRemoval::stddev_mul_thresh, "stddev_mul_thresh",
+              "points whose mean distance exceeds the average by more than this many standard deviations are outliers");
   return withSelectionOptions(description);
 }
 

@@ -93,8 +93,8 @@ private:
   {
     const PointsView view = viewOf(cloud);
     const Triple coordinates(view);
-    double lost = 0;    // by rounding what came out
-    double spacing = 0; // of what came in: how far its own coordinates may be off
+    double lost = 0;    // by rounding the result
+    double spacing = 0; // of the input: how far its own coordinates may be off
     for (std::uint32_t i = 0; i < view.count; ++i) {
       const Eigen::Vector3d before = coordinates.read(i);
       const Eigen::Vector3d exact = map * before;
@@ -147,7 +147,7 @@ StageType transform()
              "Moves points, normals and the viewpoint. Computed in double; a warning tells when float32 "
              "coordinates become too coarse.")
       .alias("pcl::transformPointCloud")
-      .option(&Transform::transform, "transform", "what is applied to each point")
+      .option(&Transform::transform, "transform", "the motion that is applied to each point")
       .required();
 }
 

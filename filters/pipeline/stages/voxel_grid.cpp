@@ -53,7 +53,7 @@ StageType voxelGrid()
               "true: all fields are averaged (integers: the most frequent value); false: only x y z, the other fields "
               "are one point's")
       .option(&VoxelGrid::minimum_points_number_per_voxel, "minimum_points_number_per_voxel",
-              "cubes with fewer points give none");
+              "least number of points in a cube; cubes with fewer give no point");
 }
 
 } // namespace pcl_bsh::pipeline
