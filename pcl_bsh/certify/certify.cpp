@@ -21,16 +21,14 @@ namespace {
 
 using Storage = SphereHierarchy::Storage;
 
-/// The tree above the voxels; any other number is a voxel's.
-constexpr std::uint32_t kTop = 0xffffffffu;
-
 struct SphereId {
-  std::uint32_t tree, node, child;
+  std::uint32_t tree; ///< number of a voxel, or kAboveVoxels
+  std::uint32_t node, child;
 };
 
 const Node& nodeOf(const Storage& storage, const SphereId& id)
 {
-  return id.tree == kTop ? storage.top[id.node] : storage.voxels[id.tree].nodes[id.node];
+  return id.tree == kAboveVoxels ? storage.top[id.node] : storage.voxels[id.tree].nodes[id.node];
 }
 
 StoredSphere sphereOf(const Storage& storage, const SphereId& id)
@@ -91,7 +89,7 @@ public:
       const Node& above = storage_.top[node];
       const auto past = std::upper_bound(above.begin, above.begin + above.count, index_);
       const auto child = static_cast<std::uint32_t>(past - above.begin) - 1;
-      check({SphereLevel::above_voxels, depth}, {kTop, node, child}, storage_.frame, in_cloud, 0, voxel_.count);
+      check({SphereLevel::above_voxels, depth}, {kAboveVoxels, node, child}, storage_.frame, in_cloud, 0, voxel_.count);
       node = above.child[child];
     }
     const StoredSphere ball{0.0f, 0.0f, 0.0f, voxel_.radius};
@@ -241,7 +239,7 @@ private:
     const Node& node = storage_.top[index];
     for (std::uint32_t i = 0; i < node.count; ++i) {
       ++above[depth].sums.spheres;
-      above[depth].spheres.push_back({kTop, index, i});
+      above[depth].spheres.push_back({kAboveVoxels, index, i});
       if (!node.isLeaf(i)) listTop(above, node.child[i], depth + 1);
     }
   }
@@ -288,7 +286,7 @@ private:
   {
     const SphereId& id = measurement.id;
     const Node& node = nodeOf(storage_, id);
-    const LocalFrame& frame = id.tree == kTop ? storage_.frame : storage_.voxels[id.tree].frame;
+    const LocalFrame& frame = id.tree == kAboveVoxels ? storage_.frame : storage_.voxels[id.tree].frame;
     std::vector<CertifiedPoint> points;
     const auto add = [&](const Voxel& voxel, std::uint32_t begin, std::uint32_t end) {
       for (std::uint32_t i = begin; i < end; ++i) {
@@ -297,7 +295,7 @@ private:
       }
     };
     const std::uint32_t begin = node.begin[id.child], end = node.begin[id.child + 1];
-    if (id.tree != kTop)
+    if (id.tree != kAboveVoxels)
       add(storage_.voxels[id.tree], begin, end);
     else
       for (std::uint32_t v = begin; v < end; ++v) add(storage_.voxels[v], 0, storage_.voxels[v].count);

@@ -39,6 +39,12 @@ struct Cube {
   }
 };
 
+/// In place of a voxel's number: there is no such voxel.
+inline constexpr std::uint32_t kNoVoxel = 0xffffffffu;
+
+/// In place of a voxel's number, where nodes or frames are meant: the tree above the voxels.
+inline constexpr std::uint32_t kAboveVoxels = kNoVoxel;
+
 /// The unit of lazy building and of local precision.
 struct Voxel {
   enum State : std::uint8_t { sorted, building, built };
@@ -126,7 +132,6 @@ public:
   /// Keys tell in which cell points were when they were sorted. After a refit() they may be elsewhere, and an update
   /// leaves them there in the voxels that it does not touch: the margin is less by `strayed`.
   GridPlace find(const Point3& place) const noexcept;
-  static constexpr std::uint32_t kNoVoxel = 0xffffffffu;
 
   /// Calls visit(record) for each point of a voxel, built or not.
   template <class Visit>

@@ -20,7 +20,7 @@ public:
   {
     BuildWork unasked;
     std::size_t points = 0;
-    for (std::size_t v = 0; v < s_.voxel_count; ++v) {
+    for (std::uint32_t v = 0; v < s_.voxel_count; ++v) {
       const Voxel& voxel = s_.built(v, unasked);
       name_ = "voxel " + std::to_string(v);
       if (v > 0 && !(s_.voxels[v - 1].key < voxel.key)) defect("key out of order");
@@ -41,8 +41,6 @@ public:
   }
 
 private:
-  static constexpr std::size_t kAboveVoxels = ~std::size_t{0};
-
   void defect(const std::string& what)
   {
     if (defects_.lines.size() < kMostLines) defects_.lines.push_back(name_ + ": " + what);
@@ -80,7 +78,7 @@ private:
   }
 
   void checkNode(const std::vector<Node>& nodes, std::uint32_t index, std::uint32_t begin, std::uint32_t end,
-                 const LocalFrame& frame, std::size_t voxel)
+                 const LocalFrame& frame, std::uint32_t voxel)
   {
     const std::string here = "node " + std::to_string(index) + ": ";
     if (index >= nodes.size()) return defect(here + "no such node");
@@ -119,7 +117,7 @@ private:
   }
 
   /// Every point below child i is within its sphere, as given and in exact arithmetic.
-  void checkSphere(const Node& node, std::uint32_t i, const LocalFrame& frame, std::size_t voxel,
+  void checkSphere(const Node& node, std::uint32_t i, const LocalFrame& frame, std::uint32_t voxel,
                    const std::string& here)
   {
     std::uint32_t lowest = 0xffffffffu;

@@ -51,7 +51,7 @@ public:
       lower(roundUp(reach * reach * (1.0 + kFewDoubleRoundings) + static_cast<double>(NearestFrame::kVanishing)));
     }
     place_ = cloud_.find(query_);
-    if (place_.voxel != SphereHierarchy::Storage::kNoVoxel) visitVoxel(place_.voxel);
+    if (place_.voxel != kNoVoxel) visitVoxel(place_.voxel);
     if (!(static_cast<double>(distance_) * cloud_.frame.unit < place_.margin)) visitTop();
     collect();
   }

@@ -103,7 +103,7 @@ public:
   {
     if (cloud_.size == 0) return false;
     const SphereHierarchy::Storage::GridPlace place = cloud_.find(query_);
-    const bool in_voxel = place.voxel != SphereHierarchy::Storage::kNoVoxel;
+    const bool in_voxel = place.voxel != kNoVoxel;
     if (radius_ < place.margin) return in_voxel && visitVoxel(place.voxel);
     // Where one point is enough, the voxel around the query is the first to ask.
     if (!Sink::kNeedsRecords && in_voxel) {
@@ -234,7 +234,7 @@ private:
   const double radius_;
   Sink& sink_;
   Work& work_;
-  std::uint32_t done_ = SphereHierarchy::Storage::kNoVoxel; ///< a voxel known to hold nothing within the radius
+  std::uint32_t done_ = kNoVoxel; ///< a voxel known to hold nothing within the radius
 };
 
 } // namespace

@@ -16,9 +16,6 @@
 
 namespace pcl_bsh {
 
-inline constexpr std::uint32_t kAboveVoxels =
-    0xffffffffu; ///< the space above the voxels; any other number is a voxel's
-
 /// A cloud's spaces. Voxels are built as a walk enters them.
 class Spaces {
 public:
