@@ -7,6 +7,9 @@ namespace pcl_bsh {
 
 inline constexpr unsigned kMortonBits = 21; ///< per axis
 
+/// In place of a cell's number or code: outside of the grid.
+inline constexpr std::uint64_t kOutsideGrid = ~std::uint64_t{0};
+
 /// Spreads 21 bits so that two zeros follow each.
 inline std::uint64_t spreadBits(std::uint64_t v) noexcept
 {

@@ -2,13 +2,13 @@
 // Spheres follow points that move: every voxel keeps its points and its tree, its frame and spheres are measured anew.
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/hierarchy/bounds.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/view_check.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <new>
 
 namespace pcl_bsh {
@@ -60,33 +60,14 @@ void eachRecord(const Voxel& voxel, const Visit& visit)
   for (std::uint32_t i = 0; i < voxel.count; ++i) visit(i, built ? voxel.records()[i] : sorted[i].record);
 }
 
-/// Bounds of points, as given.
-struct Range {
-  std::array<double, 3> low, high;
-
-  Range()
-  {
-    low.fill(std::numeric_limits<double>::infinity());
-    high.fill(-std::numeric_limits<double>::infinity());
-  }
-
-  void widen(const std::array<double, 3>& lowest, const std::array<double, 3>& highest)
-  {
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], lowest[k]);
-      high[k] = std::max(high[k], highest[k]);
-    }
-  }
-};
-
 /// Where the voxel's points are now, and their largest radius. @return false when one is not finite any more
-bool readRange(const Voxel& voxel, const PointsView& view, Range& range, float& largest_radius)
+bool readBounds(const Voxel& voxel, const PointsView& view, Bounds& bounds, float& largest_radius)
 {
   bool finite = true;
   eachRecord(voxel, [&](std::uint32_t, std::uint32_t record) {
     const Point3 p = view.point(record);
     finite = finite && isFinite(p);
-    range.widen(p, p);
+    bounds.add(p);
     if (view.radii) largest_radius = std::max(largest_radius, view.radii[record]);
   });
   return finite;
@@ -152,15 +133,15 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
   std::vector<LocalFrame> frames(s.voxel_count);
   std::uint32_t most_points = 0;
   double sum = 0.0, strayed = 0.0;
-  Range all;
+  Bounds all;
   for (std::size_t v = 0; v < s.voxel_count; ++v) {
-    Range range;
+    Bounds bounds;
     float largest_radius = 0.0f;
-    if (!readRange(s.voxels[v], now, range, largest_radius)) return sortAnew();
-    frames[v] = frameBetween(range.low, range.high, now.scalar == Scalar::float32);
+    if (!readBounds(s.voxels[v], now, bounds, largest_radius)) return sortAnew();
+    frames[v] = frameBetween(bounds.low, bounds.high, now.scalar == Scalar::float32);
     sum += static_cast<double>(radiusOf(frames[v], largest_radius)) * frames[v].unit;
-    all.widen(range.low, range.high);
-    strayed = std::max(strayed, s.strayOf(s.voxels[v].key, range.low, range.high));
+    all.add(bounds.low, bounds.high);
+    strayed = std::max(strayed, s.strayOf(s.voxels[v].key, bounds.low, bounds.high));
     most_points = std::max(most_points, s.voxels[v].count);
   }
   report.looseness = s.extent > 0.0 ? sum / s.extent : 1.0;

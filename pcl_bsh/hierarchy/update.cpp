@@ -4,7 +4,8 @@
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
-#include <pcl_bsh/hierarchy/morton.h>
+#include <pcl_bsh/hierarchy/bounds.h>
+#include <pcl_bsh/hierarchy/cell_numbers-inl.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/view_check.h>
 
@@ -16,28 +17,33 @@
 #include <string>
 #include <unordered_map>
 
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE { // one point at a time: there is no choice of instructions to make
+namespace {
+
+/// The Morton code of the cell that a point is in, in the arithmetic of the cloud's scalar type; or kOutsideGrid.
+template <class T>
+std::uint64_t cellCode(const Point3& point, double edge, const std::array<double, 3>& base)
+{
+  using Numbers = CellNumbers<T>;
+  const std::uint64_t cell = Numbers::together(Numbers(edge, base).numbers(Numbers::pointOf(point)));
+  return cell == kOutsideGrid ? cell : Numbers::morton(cell);
+}
+
+} // namespace
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
 namespace pcl_bsh {
 namespace {
 
-constexpr std::uint64_t kOutside = ~std::uint64_t{0};
 constexpr double kMostUnused = 0.5; // of the floats in use, before blocks are moved together
 
 [[noreturn]] void refuse(const std::string& what)
 {
   throw InvalidInput(Input::points, "HierarchyUpdate", what);
-}
-
-/// The grid's cell as VoxelSorter numbers it, in the arithmetic of the cloud's scalar type.
-template <class T>
-std::uint64_t cellKey(const Point3& point, double edge, const std::array<double, 3>& base)
-{
-  std::array<std::uint64_t, 3> number;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const T cells = static_cast<T>(point[k]) * static_cast<T>(1.0 / edge) - static_cast<T>(base[k]);
-    if (!(cells >= 0 && cells < static_cast<T>(1u << kMortonBits))) return kOutside;
-    number[k] = static_cast<std::uint64_t>(cells);
-  }
-  return mortonCode(number[0], number[1], number[2]);
 }
 
 std::uint32_t recordOf(const Voxel& voxel, std::uint32_t i)
@@ -82,16 +88,9 @@ void fill(Voxel& voxel, const Touched& from, const PointsView& view, float* bloc
   voxel.lowest = *std::min_element(from.records.begin(), from.records.end());
   voxel.block = block;
   voxel.radii = radii;
-  std::array<double, 3> low, high;
-  low.fill(std::numeric_limits<double>::infinity());
-  high.fill(-std::numeric_limits<double>::infinity());
-  for (const Point3& p : from.points) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[k]);
-      high[k] = std::max(high[k], p[k]);
-    }
-  }
-  voxel.frame = frameBetween(low, high, view.scalar == Scalar::float32);
+  Bounds bounds;
+  for (const Point3& p : from.points) bounds.add(p);
+  voxel.frame = frameBetween(bounds.low, bounds.high, view.scalar == Scalar::float32);
   auto* stored = reinterpret_cast<PointRecord*>(block);
   for (std::size_t i = 0; i < from.points.size(); ++i)
     *stored++ = storedIn(voxel.frame, from.points[i], from.records[i]);
@@ -124,19 +123,19 @@ void compact(SphereHierarchy::Storage& storage)
 /// Around all voxels' points.
 LocalFrame frameOfAll(const std::vector<Voxel*>& voxels, Scalar scalar)
 {
-  std::array<double, 3> low, high;
-  low.fill(std::numeric_limits<double>::infinity());
-  high.fill(-std::numeric_limits<double>::infinity());
+  Bounds bounds;
   for (const Voxel* voxel : voxels) {
     const LocalFrame& f = voxel->frame;
+    Point3 low, high;
     for (std::size_t k = 0; k < 3; ++k) { // rounding outward must not leave the numbers
       constexpr double largest = std::numeric_limits<double>::max();
       const double half = (f.reach[k] + f.slack(static_cast<int>(k))) * f.unit * (1.0 + kDoubleMargin);
-      low[k] = std::min(low[k], std::max(f.origin[k] - half, -largest));
-      high[k] = std::max(high[k], std::min(f.origin[k] + half, largest));
+      low[k] = std::max(f.origin[k] - half, -largest);
+      high[k] = std::min(f.origin[k] + half, largest);
     }
+    bounds.add(low, high);
   }
-  return frameBetween(low, high, scalar == Scalar::float32);
+  return frameBetween(bounds.low, bounds.high, scalar == Scalar::float32);
 }
 
 } // namespace
@@ -156,7 +155,7 @@ HierarchyUpdate::HierarchyUpdate(SphereHierarchy& hierarchy, const std::int32_t*
   if (hierarchy.empty()) return;
   const DefaultFloatEnvironment environment;
   const auto end = std::lower_bound(records_.begin(), records_.end(), static_cast<std::uint32_t>(view.count));
-  std::uint64_t last_key = kOutside;
+  std::uint64_t last_key = kOutsideGrid;
   std::size_t* leaving = nullptr;
   eachPoint(view, std::vector<std::uint32_t>(records_.begin(), end), [&](std::uint32_t, const Point3& p) {
     if (!isFinite(p)) return;
@@ -169,8 +168,9 @@ HierarchyUpdate::HierarchyUpdate(SphereHierarchy& hierarchy, const std::int32_t*
 std::uint64_t HierarchyUpdate::voxelOf(const Point3& point) const
 {
   const SphereHierarchy::Storage& storage = hierarchy_.storage();
-  return storage.view.scalar == Scalar::float32 ? cellKey<float>(point, storage.voxel_edge, storage.base)
-                                                : cellKey<double>(point, storage.voxel_edge, storage.base);
+  return storage.view.scalar == Scalar::float32
+             ? HWY_NAMESPACE::cellCode<float>(point, storage.voxel_edge, storage.base)
+             : HWY_NAMESPACE::cellCode<double>(point, storage.voxel_edge, storage.base);
 }
 
 UpdateReport HierarchyUpdate::sortAnew(const PointsView& now)
@@ -216,17 +216,17 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
     return touched[entry->second];
   };
   for (const auto& [key, count] : leaving_) touch(key).leaving = count;
-  bool outside = leaving_.count(kOutside) > 0;
+  bool outside = leaving_.count(kOutsideGrid) > 0;
   for (Touched& voxel : touched) { // about as many come as go
     voxel.records.reserve(voxel.leaving + voxel.leaving / 8);
     voxel.points.reserve(voxel.leaving + voxel.leaving / 8);
   }
-  std::uint64_t last_key = kOutside;
+  std::uint64_t last_key = kOutsideGrid;
   Touched* last = nullptr;
   eachPoint(now, records_, [&](std::uint32_t record, const Point3& p) {
     if (!isFinite(p)) return;
     const std::uint64_t key = voxelOf(p);
-    outside = outside || key == kOutside;
+    outside = outside || key == kOutsideGrid;
     if (outside) return;
     if (key != last_key) last = &touch(last_key = key);
     last->add(record, p);

@@ -8,10 +8,8 @@
 #define PCL_BSH_HIERARCHY_VOXEL_BINS_INL_H_
 #endif
 
-#include <pcl_bsh/hierarchy/morton.h>
 #include <pcl_bsh/hierarchy/point_reader-inl.h>
 #include <pcl_bsh/hierarchy/point_runs.h>
-#include <pcl_bsh/hierarchy/voxel_edge.h>
 
 #include <vector>
 
@@ -44,56 +42,6 @@ struct Bin {
     min(Point<T>::load(low), lowest).store(low);
     max(Point<T>::load(high), highest).store(high);
   }
-};
-
-/// Which cell of the grid a point is in, as one number: 21 bits per axis, counted from the lowest cell. Deterministic
-/// is all it needs to be: a point that rounding puts into the neighbouring voxel belongs to that, for frames follow
-/// points.
-template <class T>
-class CellNumbers {
-public:
-  CellNumbers(double edge, const Bounds& bounds)
-  : inverse_(Point<T>::of(static_cast<T>(1.0 / edge))),
-    base_(Point<T>::of(0))
-  {
-    T base[4] = {};
-    for (std::size_t k = 0; k < 3; ++k)
-      base[k] = std::floor(static_cast<T>(bounds.low[k]) * static_cast<T>(1.0 / edge)) - kMargin;
-    base_ = Point<T>::load(base);
-  }
-
-  /// The cell's numbers along the axes, in the point's type.
-  Point<T> numbers(const Point<T>& p) const { return (p * inverse_ - base_).truncated(); }
-
-  /// The same as one number; kOutside when the point is not finite or too far from the bounds to be counted.
-  static std::uint64_t together(const Point<T>& numbers)
-  {
-    std::int32_t number[4];
-    numbers.storeTruncated(number);
-    const auto bits = [&](std::size_t k) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(number[k])); };
-    if ((bits(0) | bits(1) | bits(2)) >> kMortonBits != 0) return kOutside;
-    return bits(0) << 42 | bits(1) << 21 | bits(2);
-  }
-
-  static constexpr std::uint64_t kOutside = ~std::uint64_t{0};
-
-  /// Number 0 on each axis, in cells from the origin.
-  std::array<double, 3> base() const
-  {
-    T base[4];
-    base_.store(base);
-    return {static_cast<double>(base[0]), static_cast<double>(base[1]), static_cast<double>(base[2])};
-  }
-
-  static std::uint64_t morton(std::uint64_t cell)
-  {
-    return mortonCode(cell >> 42, cell >> 21 & 0x1fffff, cell & 0x1fffff);
-  }
-
-private:
-  static constexpr T kMargin = 1024; // cells below the bounds: those of a sample leave some points out
-
-  Point<T> inverse_, base_;
 };
 
 /// Finds or adds the bin of a cell: open addressing, doubled when half full.

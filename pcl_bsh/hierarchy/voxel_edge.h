@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <pcl_bsh/hierarchy/bounds.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 
 #include <algorithm>
-#include <array>
 
 namespace pcl_bsh {
-
-/// Bounds of some finite points, per axis; low > high when there are none.
-struct Bounds {
-  std::array<double, 3> low, high;
-  std::size_t finite = 0;
-};
 
 /// How many evenly spread points of a view tell enough about its density.
 inline std::size_t sampleSize(const PointsView& view) noexcept

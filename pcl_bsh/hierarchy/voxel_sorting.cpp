@@ -15,6 +15,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <pcl_bsh/hierarchy/cell_numbers-inl.h>
 #include <pcl_bsh/hierarchy/voxel_bins-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -133,7 +134,7 @@ private:
       low.store(parts[chunk].low);
       high.store(parts[chunk].high);
     });
-    Bounds bounds = none();
+    Bounds bounds;
     for (const Bin<T>& part : parts) {
       bounds.finite += part.count;
       widen(bounds, part);
@@ -141,20 +142,12 @@ private:
     return bounds;
   }
 
-  static Bounds none()
-  {
-    Bounds bounds;
-    bounds.low.fill(std::numeric_limits<double>::infinity());
-    bounds.high.fill(-std::numeric_limits<double>::infinity());
-    return bounds;
-  }
-
   static void widen(Bounds& bounds, const Bin<T>& bin)
   {
-    for (std::size_t k = 0; k < 3; ++k) {
-      bounds.low[k] = std::min(bounds.low[k], static_cast<double>(bin.low[k]));
-      bounds.high[k] = std::max(bounds.high[k], static_cast<double>(bin.high[k]));
-    }
+    const auto corner = [](const T* c) {
+      return Point3{static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])};
+    };
+    bounds.add(corner(bin.low), corner(bin.high));
   }
 
   Bounds sampleBounds() const
@@ -165,7 +158,7 @@ private:
       const Point<T> p = read_(sampleRecord(view_, i));
       if (p.finite()) bin.add(p);
     }
-    Bounds bounds = none();
+    Bounds bounds;
     if (sample > 0) bounds.finite = bin.count * (view_.size() / sample);
     widen(bounds, bin);
     return bounds;
@@ -181,8 +174,8 @@ private:
                                              : voxelEdgeFromDensity(view_, bounds);
     // Cell numbers are computed in T: its inverse must not overflow.
     result_.edge = std::max({result_.edge, static_cast<double>(std::numeric_limits<T>::min()) * 0x1p20, least_edge});
-    const CellNumbers<T> cell_of(result_.edge, bounds);
-    result_.base = cell_of.base();
+    result_.base = CellNumbers<T>::baseOf(result_.edge, bounds);
+    const CellNumbers<T> cell_of(result_.edge, result_.base);
     if (!runs_) runs_ = makeBuffer<std::uint32_t>(view_.size());
     chunks_.assign(chunk_count_, BinTable<T>());
     std::vector<std::uint8_t> gave_up(chunk_count_, 0);
@@ -212,7 +205,7 @@ private:
         }
         endRun(i);
         const std::uint64_t cell = CellNumbers<T>::together(numbers);
-        if (cell == CellNumbers<T>::kOutside) {
+        if (cell == kOutsideGrid) {
           if (p.finite()) {
             gave_up[chunk] = 1;
             return;
@@ -270,14 +263,14 @@ private:
     result_.buffer = makeBuffer<float>(4 * result_.size + kBlockPadding * result_.voxel_count);
 
     std::size_t point = 0;
-    Bounds all = none();
+    Bounds all;
     auto entry = entries.begin();
     for (std::size_t v = 0; v < result_.voxel_count; ++v) {
       Voxel& voxel = result_.voxels[v];
       voxel.key = entry->key;
       voxel.begin = static_cast<std::uint32_t>(point);
       voxel.block = result_.buffer.get() + 4 * point + kBlockPadding * v;
-      Bounds bounds = none();
+      Bounds bounds;
       for (; entry != entries.end() && entry->key == voxel.key; ++entry) {
         entry->bin->voxel = static_cast<std::uint32_t>(v);
         entry->bin->first = voxel.count;

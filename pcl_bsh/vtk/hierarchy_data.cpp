@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/hierarchy/bounds.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/vtk/hierarchy_data.h>
 
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace pcl_bsh::vtk {
 namespace {
@@ -74,24 +74,10 @@ void eachCell(const SphereHierarchy& hierarchy, unsigned level, const Visit& vis
       if (node.isLeaf(i)) visit(Cell{node, i, storage.frame, static_cast<int>(node.begin[i]), 0});
 }
 
-struct Box {
-  Point3 low = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-                std::numeric_limits<double>::infinity()};
-  Point3 high = {-low[0], -low[1], -low[2]};
-
-  void hold(const Point3& p)
-  {
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[k]);
-      high[k] = std::max(high[k], p[k]);
-    }
-  }
-};
-
 /// Boxes as lines: eight corners, twelve edges.
 class Wires {
 public:
-  void add(const Box& box)
+  void add(const Bounds& box)
   {
     const vtkIdType first = points_->GetNumberOfPoints();
     for (unsigned corner = 0; corner < 8; ++corner)
@@ -204,7 +190,7 @@ vtkSmartPointer<vtkPolyData> voxelBoxes(const SphereHierarchy& hierarchy)
   const auto voxel = intArray("voxel");
   for (std::size_t v = 0; v < storage.voxel_count; ++v) {
     const Point3& middle = storage.voxels[v].frame.origin; // rounding may put single points next door
-    Box cube;
+    Bounds cube;
     for (std::size_t k = 0; k < 3; ++k) {
       cube.low[k] = std::floor(middle[k] / storage.voxel_edge) * storage.voxel_edge;
       cube.high[k] = cube.low[k] + storage.voxel_edge;
@@ -223,15 +209,15 @@ vtkSmartPointer<vtkPolyData> cellBoxes(const SphereHierarchy& hierarchy, unsigne
   Wires wires;
   const auto voxel = intArray("voxel"), levels = intArray("level");
   eachCell(hierarchy, level, [&](const Cell& cell) {
-    Box box;
+    Bounds box;
     if (cell.level == 0) {
       storage.forEachRecord(static_cast<std::size_t>(cell.voxel),
-                            [&](std::uint32_t record) { box.hold(storage.view.point(record)); });
+                            [&](std::uint32_t record) { box.add(storage.view.point(record)); });
     }
     else {
       const Voxel& of = storage.voxels[static_cast<std::size_t>(cell.voxel)];
       for (std::uint32_t i = cell.node.begin[cell.lane]; i < cell.node.begin[cell.lane + 1]; ++i)
-        box.hold(storage.view.point(of.records()[i]));
+        box.add(storage.view.point(of.records()[i]));
     }
     wires.add(box);
     addForBox(*voxel, cell.voxel);
