@@ -76,10 +76,11 @@ Exact exactRadius(const LocalFrame& frame, const CertifiedPoint& point)
   return Exact(point.given_radius) / Exact(frame.unit);
 }
 
-/// The candidates that stick out farthest, eight at most: what a smallest sphere most likely rests on.
-using Candidate = std::pair<double, std::size_t>; // by how much, which point
+/// By how much a point sticks out of a sphere, and the point's number.
+using Excess = std::pair<double, std::size_t>;
 
-std::vector<std::size_t> farthest(std::vector<Candidate>& candidates)
+/// The points that stick out farthest, eight at most: a smallest sphere most likely touches some of them.
+std::vector<std::size_t> farthest(std::vector<Excess>& candidates)
 {
   constexpr std::size_t most = 8;
   const std::size_t count = std::min(most, candidates.size());
@@ -100,7 +101,7 @@ std::vector<std::size_t> firstGuess(const std::vector<CertifiedPoint>& points)
     for (const CertifiedPoint& point : points) arrays[k].push_back(roundToFloat(point.local[k]));
   }
   const auto center = minimalCenter({arrays[0].data(), arrays[1].data(), arrays[2].data(), points.size()});
-  std::vector<Candidate> candidates;
+  std::vector<Excess> candidates;
   candidates.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double value = reach({center[0], center[1], center[2]}, points[i]).value;
@@ -127,7 +128,7 @@ Exact minimalSquaredRadius(const LocalFrame& frame, const std::vector<CertifiedP
     const ExactPoint center = {sphere.center().x(), sphere.center().y(), sphere.center().z()};
     const Point3 near_center = {CGAL::to_double(center[0]), CGAL::to_double(center[1]), CGAL::to_double(center[2])};
     const double near_radius = std::sqrt(CGAL::to_double(squared_radius)) * (1.0 - 0x1p-50);
-    std::vector<Candidate> outside;
+    std::vector<Excess> outside;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (surelyWithin(near_center, near_radius, points[i])) continue;
       const Exact beyond = squaredDistance(exactLocal(frame, points[i].given), center) - squared_radius;
@@ -165,7 +166,7 @@ Exact minimalRadiusOfBalls(const LocalFrame& frame, const std::vector<CertifiedP
     auto coordinate = sphere.center_cartesian_begin();
     for (double& c : center) c = CGAL::to_double(value(*coordinate++));
     const double enough = CGAL::to_double(radius) * (1.0 + 1e-10);
-    std::vector<Candidate> outside;
+    std::vector<Excess> outside;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double beyond = reach(center, points[i]).value - enough;
       const bool joined = std::find(few.begin(), few.end(), i) != few.end();

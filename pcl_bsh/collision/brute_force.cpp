@@ -16,9 +16,9 @@ template <class Visit>
 void forEachPair(const Placed& a, const Placed& b, double clearance, const Visit& visit)
 {
   const ExactDistance distance(a.pose, b.pose);
-  const std::vector<Candidate> obstacles = candidatesOf(b.hierarchy().view());
-  for (const Candidate& p : candidatesOf(a.hierarchy().view())) {
-    for (const Candidate& q : obstacles) {
+  const std::vector<FinitePoint> obstacles = finitePoints(b.hierarchy().view());
+  for (const FinitePoint& p : finitePoints(a.hierarchy().view())) {
+    for (const FinitePoint& q : obstacles) {
       const bool collide = distance.compare(p.point, q.point, clearance, p.radius, q.radius) <= 0;
       if (!visit(p, q, collide)) return;
     }
@@ -32,7 +32,7 @@ AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& reque
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   AnyResult result;
-  forEachPair(a, b, request.clearance, [&](const Candidate& p, const Candidate& q, bool collide) {
+  forEachPair(a, b, request.clearance, [&](const FinitePoint& p, const FinitePoint& q, bool collide) {
     ++result.work.exact_decisions;
     if (!collide) return true;
     result.verdict = Verdict::colliding;
@@ -49,7 +49,7 @@ FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest&
   FlagsResult result;
   std::vector<std::uint8_t> flags_a(a.hierarchy().view().count);
   std::vector<std::uint8_t> flags_b(b.hierarchy().view().count);
-  forEachPair(a, b, request.clearance, [&](const Candidate& p, const Candidate& q, bool collide) {
+  forEachPair(a, b, request.clearance, [&](const FinitePoint& p, const FinitePoint& q, bool collide) {
     ++result.work.exact_decisions;
     if (collide) flags_a[p.record] = flags_b[q.record] = 1;
     return true;
@@ -76,11 +76,11 @@ DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceReque
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   const ExactDistance distance(a.pose, b.pose);
-  const std::vector<Candidate> obstacles = candidatesOf(b.hierarchy().view());
+  const std::vector<FinitePoint> obstacles = finitePoints(b.hierarchy().view());
   DistanceResult result;
   ExactDistance::Pair closest;
-  for (const Candidate& p : candidatesOf(a.hierarchy().view())) {
-    for (const Candidate& q : obstacles) {
+  for (const FinitePoint& p : finitePoints(a.hierarchy().view())) {
+    for (const FinitePoint& q : obstacles) {
       ++result.work.exact_decisions;
       const ExactDistance::Pair pair{p.point, q.point, p.radius, q.radius};
       if (result.pair && distance.compareGaps(pair, closest) >= 0) continue;

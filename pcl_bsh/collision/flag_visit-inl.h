@@ -60,7 +60,7 @@ struct FlagVisit {
   alignas(32) float x[kLanes], y[kLanes], z[kLanes], r[kLanes]; ///< their spheres in the obstacle voxel's frame
   float smallest = 0.0f;                                        ///< of r
   BoundingSphere around;                                        ///< holds them all; in the frame of a's voxel
-  Ball ball;                                                    ///< likewise, in the obstacle voxel's frame
+  QueryBall ball;                                               ///< likewise, in the obstacle voxel's frame
   std::vector<ObstacleSphere> near[kLanes]; ///< what each child has to be compared with; of leaves, in this obstacle
 
   std::uint32_t open_points[kLanes] = {}; ///< of leaves: bits of the points not flagged yet

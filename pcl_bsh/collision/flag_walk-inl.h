@@ -87,8 +87,8 @@ private:
   bool reach(std::uint32_t voxel, const RelativeFrame& frame, const Node& node)
   {
     const float radius = a_.storage.voxels[voxel].radius * frame.stretch_a;
-    const Ball ball{frame.g[0], frame.g[1], frame.g[2], radius + frame.pruneReach(pairs_.clearance),
-                    frame.acceptReach(acceptance_.accepted) - radius * (1.0f + kSphereMargin)};
+    const QueryBall ball{frame.g[0], frame.g[1], frame.g[2], radius + frame.pruneReach(pairs_.clearance),
+                         frame.acceptReach(acceptance_.accepted) - radius * (1.0f + kSphereMargin)};
     const SphereLanes spheres{node.x, node.y, node.z, node.r, frame.stretch_b};
     found.work.node_pairs += node.count;
     if ((spheresInside(spheres, ball) & firstBits(node.count)) != 0) return false;
@@ -198,8 +198,8 @@ private:
     const Node& node = *candidate.node;
     const std::uint32_t k = candidate.lane;
     const float radius = node.r[k] * obstacle.frame.stretch_b;
-    const Ball ball{node.x[k], node.y[k], node.z[k], radius + obstacle.prune_reach,
-                    obstacle.accept_reach - radius * (1.0f + kSphereMargin)};
+    const QueryBall ball{node.x[k], node.y[k], node.z[k], radius + obstacle.prune_reach,
+                         obstacle.accept_reach - radius * (1.0f + kSphereMargin)};
     const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
     found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes & visit.open));
     std::uint32_t near = spheresNear(spheres, ball, nullptr) & lanes & visit.open;
@@ -235,9 +235,9 @@ private:
     }
   }
 
-  /// Of the children in `near`, those too small for float arithmetic to decide about, whose points as given are apart
-  /// from the candidate's.
-  std::uint32_t apartAsGiven(const FlagVisit& visit, const ObstacleSphere& candidate, const Ball& ball,
+  /// The children in `near` which float arithmetic cannot tell from the candidate's sphere, but whose points as given
+  /// are apart from the candidate's.
+  std::uint32_t apartAsGiven(const FlagVisit& visit, const ObstacleSphere& candidate, const QueryBall& ball,
                              std::uint32_t near)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
@@ -266,18 +266,19 @@ private:
     const std::uint32_t k = candidate.lane;
     // A point of the candidate can be that near only if its sphere comes within the clearance less the child's radius.
     const SphereLanes less_radius{visit.x, visit.y, visit.z, visit.r, -1.0f};
-    const Ball ball{node.x[k], node.y[k], node.z[k], node.r[k] * obstacle.frame.stretch_b + obstacle.sure_reach, 0.0f};
+    const QueryBall ball{node.x[k], node.y[k], node.z[k], node.r[k] * obstacle.frame.stretch_b + obstacle.sure_reach,
+                         0.0f};
     found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(visit.open));
     for (std::uint32_t bits = spheresNear(less_radius, ball, nullptr) & visit.open; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       const float reach = obstacle.sure_reach - visit.r[lane] * (1.0f + kSphereMargin);
-      const Ball center{visit.x[lane], visit.y[lane], visit.z[lane], reach, 0.0f};
+      const QueryBall center{visit.x[lane], visit.y[lane], visit.z[lane], reach, 0.0f};
       if (reach > 0.0f && hasPointWithin(obstacle, candidate, center)) settleChild(visit, lane);
     }
   }
 
   /// Whether the candidate has a point in the ball; the nearest spheres are asked first.
-  bool hasPointWithin(const ObstacleVoxel& obstacle, const ObstacleSphere& candidate, const Ball& ball)
+  bool hasPointWithin(const ObstacleVoxel& obstacle, const ObstacleSphere& candidate, const QueryBall& ball)
   {
     if (candidate.isLeaf()) {
       const LeafRange leaf = candidate.leaf(obstacle);

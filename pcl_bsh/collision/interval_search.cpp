@@ -38,7 +38,7 @@ public:
   : rule_(rule),
     clearance_(clearance),
     walk_(a, b),
-    watch_(rule_, walk_.work.node_pairs),
+    stop_check_(rule_, walk_.work.node_pairs),
     pairs_(a, b, clearance.value_or(0.0))
   {
   }
@@ -82,7 +82,7 @@ private:
   {
     if (!open_.empty()) dive();
     std::make_heap(open_.begin(), open_.end(), laterThan);
-    while (!open_.empty() && matters(open_.front().lower) && !isSettled() && !watch_.isOver()) {
+    while (!open_.empty() && matters(open_.front().lower) && !isSettled() && !stop_check_.isOver()) {
       std::pop_heap(open_.begin(), open_.end(), laterThan);
       const Open next = open_.back();
       open_.pop_back();
@@ -241,7 +241,7 @@ private:
   const StopRule rule_;
   const std::optional<double> clearance_;
   PairWalk walk_;
-  Watch watch_;
+  StopCheck stop_check_;
   PointPairs pairs_;
   std::vector<Open> open_; // a stack, the nearest last, or a heap, the least lower bound first
   std::optional<PointPair> pair_;

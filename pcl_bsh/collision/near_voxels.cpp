@@ -22,7 +22,7 @@ void findNearVoxels(const Spaces& a, const Node& others, const RelativeFrame& fr
   work.volumes_carried += node.count;
   for (std::uint32_t lane = 0; lane < node.count; ++lane) {
     const Point center = carriedCenter(frame, node, lane);
-    const Ball ball{center.x, center.y, center.z, node.r[lane] * frame.stretch_a + reach, 0.0f};
+    const QueryBall ball{center.x, center.y, center.z, node.r[lane] * frame.stretch_a + reach, 0.0f};
     if ((spheresNear(spheres, ball, nullptr) & firstBits(others.count)) == 0) continue;
     if (node.isLeaf(lane))
       near.push_back({static_cast<std::uint32_t>(near.size()), node.begin[lane]});

@@ -104,7 +104,7 @@ int ExactDistance::compare(const Point3& p, const Point3& q, double clearance, d
   // Two sums, rounded relative to what they add up, which may be of either sign.
   const double reach = clearance + radius_p + radius_q;
   const double rounding = kFewDoubleRoundings * (std::abs(clearance) + std::abs(radius_p) + std::abs(radius_q));
-  const auto side = [reach, rounding](const Interval& distance) {
+  const auto side = [reach, rounding](const Enclosure& distance) {
     return distance.high < reach - rounding ? -1 : distance.low > reach + rounding ? 1 : 0;
   };
   if (const int found = side(enclose(p, q)); found != 0) return found;
@@ -124,8 +124,8 @@ int ExactDistance::compareGaps(const Pair& first, const ExactDistance& other, co
 {
   const double first_radii = first.radius_p + first.radius_q;
   const double second_radii = second.radius_p + second.radius_q;
-  const Interval first_distance = enclose(first.p, first.q);
-  const Interval second_distance = other.enclose(second.p, second.q);
+  const Enclosure first_distance = enclose(first.p, first.q);
+  const Enclosure second_distance = other.enclose(second.p, second.q);
   const double slack = kFewDoubleRoundings * (first_distance.high + second_distance.high + first_radii + second_radii);
   if (first_distance.high - first_radii + slack < second_distance.low - second_radii) return -1;
   if (second_distance.high - second_radii + slack < first_distance.low - first_radii) return 1;
@@ -162,7 +162,7 @@ double ExactDistance::gap(const Pair& pair) const
 /// than 5.01 v of their absolute sum. All terms of all coordinates together are also >= the distance; kTermsError of
 /// them pays for that, for the squares, the root, their own summation and the last subtraction; kUnderflow for
 /// underflow.
-ExactDistance::Interval ExactDistance::enclose(const Point3& p, const Point3& q) const
+ExactDistance::Enclosure ExactDistance::enclose(const Point3& p, const Point3& q) const
 {
   if (translations_only_) return encloseTranslated(p, q);
   double squared = 0.0;
@@ -184,7 +184,7 @@ ExactDistance::Interval ExactDistance::enclose(const Point3& p, const Point3& q)
 /// Without rotations, (p - q) + (t_a - t_b): the errors of these three sums are known, so that points of any scale are
 /// told apart wherever they lie. The norm of the sums is rounded by 2.5 v of itself, the last subtraction by one more;
 /// kUnderflow pays for underflow of the squares. Twice the errors pay for their own summation.
-ExactDistance::Interval ExactDistance::encloseTranslated(const Point3& p, const Point3& q) const
+ExactDistance::Enclosure ExactDistance::encloseTranslated(const Point3& p, const Point3& q) const
 {
   double squared = 0.0;
   double errors = 0.0;
@@ -203,7 +203,7 @@ ExactDistance::Interval ExactDistance::encloseTranslated(const Point3& p, const 
 
 /// Sums with their rounding errors: for places whose points double arithmetic cannot tell apart from afar. A coordinate
 /// errs by v of itself and CompensatedSum::kError of its terms; norm, root and last subtraction by 3.5 v more.
-ExactDistance::Interval ExactDistance::encloseClosely(const Point3& p, const Point3& q) const
+ExactDistance::Enclosure ExactDistance::encloseClosely(const Point3& p, const Point3& q) const
 {
   double squared = 0.0;
   double terms = 0.0;

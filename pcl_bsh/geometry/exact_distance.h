@@ -28,14 +28,14 @@ public:
     double radius_p = 0.0, radius_q = 0.0;
   };
 
-  struct Interval {
+  struct Enclosure {
     double low, high;
   };
 
   ExactDistance(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b);
 
   /// Bounds of |T_a p - T_b q| as far as double arithmetic can tell; low may be negative, or both infinite.
-  Interval enclose(const Point3& p, const Point3& q) const;
+  Enclosure enclose(const Point3& p, const Point3& q) const;
 
   /// Sign of |T_a p - T_b q| - (clearance + radius_p + radius_q): negative, 0 when they are equal, or positive.
   /// The pair collides when the answer is <= 0.
@@ -53,8 +53,8 @@ public:
 private:
   using Row = std::array<double, 4>; // of a pose: rotation, then translation
 
-  Interval encloseTranslated(const Point3& p, const Point3& q) const;
-  Interval encloseClosely(const Point3& p, const Point3& q) const;
+  Enclosure encloseTranslated(const Point3& p, const Point3& q) const;
+  Enclosure encloseClosely(const Point3& p, const Point3& q) const;
   bool exactDifference(const Point3& p, const Point3& q, Point3& difference) const;
   Dyadic squaredDistance(const Point3& p, const Point3& q) const;
 

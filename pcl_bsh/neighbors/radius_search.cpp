@@ -118,7 +118,7 @@ public:
   }
 
 private:
-  static Ball ballOf(const PointFrame& frame, double length)
+  static QueryBall ballOf(const PointFrame& frame, double length)
   {
     return {frame.at[0], frame.at[1], frame.at[2], frame.pruneReach(length), frame.acceptReach(length)};
   }
@@ -127,7 +127,7 @@ private:
     std::uint32_t near, inside;
   };
 
-  Children test(const Node& node, const Ball& ball)
+  Children test(const Node& node, const QueryBall& ball)
   {
     work_.node_pairs += node.count;
     const SphereLanes spheres{node.x, node.y, node.z, node.r, 1.0f};
@@ -135,7 +135,7 @@ private:
     return {near, near == 0 ? 0 : near & spheresInside(spheres, ball)};
   }
 
-  bool visitAbove(const Ball& ball, std::uint32_t index)
+  bool visitAbove(const QueryBall& ball, std::uint32_t index)
   {
     const Node& node = cloud_.top[index];
     const Children children = test(node, ball);
@@ -156,7 +156,7 @@ private:
   /// What a voxel's frame makes of the query.
   struct Local {
     const Voxel& voxel;
-    Ball ball;
+    QueryBall ball;
     DistanceBand band;
   };
 

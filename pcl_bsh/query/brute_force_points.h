@@ -9,26 +9,27 @@
 
 namespace pcl_bsh::brute_force {
 
-struct Candidate {
+/// A point that takes part in collisions.
+struct FinitePoint {
   std::uint32_t record;
   Point3 point;
   double radius;
 };
 
 /// The finite points of a view by ascending record: the first pair found is the smallest.
-inline std::vector<Candidate> candidatesOf(const PointsView& view)
+inline std::vector<FinitePoint> finitePoints(const PointsView& view)
 {
-  std::vector<Candidate> candidates;
-  candidates.reserve(view.size());
+  std::vector<FinitePoint> points;
+  points.reserve(view.size());
   for (std::size_t i = 0; i < view.size(); ++i) {
     const std::uint32_t record = view.record(i);
     const Point3 point = view.point(record);
     const bool finite = std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });
-    if (finite) candidates.push_back({record, point, view.radius(record)});
+    if (finite) points.push_back({record, point, view.radius(record)});
   }
-  std::sort(candidates.begin(), candidates.end(),
-            [](const Candidate& x, const Candidate& y) { return x.record < y.record; });
-  return candidates;
+  std::sort(points.begin(), points.end(),
+            [](const FinitePoint& x, const FinitePoint& y) { return x.record < y.record; });
+  return points;
 }
 
 } // namespace pcl_bsh::brute_force

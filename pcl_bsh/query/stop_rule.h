@@ -72,11 +72,11 @@ private:
   Clock::time_point deadline_ = Clock::time_point::max();
 };
 
-/// Tells a walk whether it has to end now.
-class Watch {
+/// Tells a walk whether its budget is spent, so that it has to end now.
+class StopCheck {
 public:
   /// @param tested counts the walk's sphere tests
-  Watch(const StopRule& rule, const std::uint64_t& tested) : rule_(rule), tested_(tested) {}
+  StopCheck(const StopRule& rule, const std::uint64_t& tested) : rule_(rule), tested_(tested) {}
 
   /// Once over, always over.
   bool isOver()

@@ -122,8 +122,8 @@ struct SphereLanes {
   float stretch;
 };
 
-/// A ball to hold against spheres: its radius goes into the reaches.
-struct Ball {
+/// The ball that spheres are tested against: its radius is part of the reaches.
+struct QueryBall {
   float x, y, z;
   float near_reach;   ///< the clearance and the radius, rounded outward
   float inside_reach; ///< the clearance less the radius, rounded inward
@@ -143,7 +143,7 @@ static_assert(nearLimit(Roundings{1}, Add(Roundings{1}, kNoTerm), Roundings{}) =
 static_assert(relativeError(kSphereLimitRoundings) + kSquaredDistanceError < kSphereMargin);
 
 /// Bit i: sphere i lies within inside_reach altogether.
-HWY_INLINE std::uint32_t spheresInside(const SphereLanes& spheres, const Ball& ball)
+HWY_INLINE std::uint32_t spheresInside(const SphereLanes& spheres, const QueryBall& ball)
 {
   if (!(ball.inside_reach > 0.0f)) return 0;
   const LaneTag d;
@@ -164,7 +164,7 @@ HWY_INLINE std::uint32_t spheresInside(const SphereLanes& spheres, const Ball& b
 
 /// Bit i: sphere i is not proven to be out of near_reach. @param gap receives an order of nearness, smaller is nearer;
 /// or null.
-HWY_INLINE std::uint32_t spheresNear(const SphereLanes& spheres, const Ball& ball, float* gap)
+HWY_INLINE std::uint32_t spheresNear(const SphereLanes& spheres, const QueryBall& ball, float* gap)
 {
   const LaneTag d;
   std::uint32_t apart = 0;

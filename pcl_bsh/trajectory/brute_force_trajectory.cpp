@@ -16,7 +16,7 @@ struct Closest {
   std::size_t pose = 0;
   std::uint32_t record = 0;
 
-  void consider(const ExactDistance& at, std::size_t k, const Candidate& p, const Candidate& q)
+  void consider(const ExactDistance& at, std::size_t k, const FinitePoint& p, const FinitePoint& q)
   {
     const ExactDistance::Pair posed{p.point, q.point, p.radius, q.radius};
     if (distance && at.compareGaps(posed, *distance, pair) >= 0) return;
@@ -33,7 +33,7 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   if (request.swept)
     throw InvalidInput(Input::swept, "brute_force::collideAlong", "knows poses only, not what is between");
   const DefaultFloatEnvironment environment;
-  const std::vector<Candidate> points = candidatesOf(scan.hierarchy().view()), obstacles = candidatesOf(model.view());
+  const std::vector<FinitePoint> points = finitePoints(scan.hierarchy().view()), obstacles = finitePoints(model.view());
   std::vector<ExactDistance> distances;
   distances.reserve(model_poses.size());
   for (const Eigen::Isometry3d& pose : model_poses) distances.emplace_back(scan.pose, pose);
@@ -47,16 +47,16 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   result.distance.assign(sized(request.distances), std::numeric_limits<float>::quiet_NaN());
   result.first_pose.assign(sized(request.first_poses), -1);
   result.closest_pose.assign(sized(request.closest_poses), -1);
-  result.closest_point.assign(sized(closest), 0xffffffffu);
+  result.closest_point.assign(sized(closest), TrajectoryResult::kNoPoint);
   if (request.pose_summaries) result.poses.resize(model_poses.size());
 
   std::vector<Closest> of_poses(model_poses.size());
-  for (const Candidate& p : points) {
+  for (const FinitePoint& p : points) {
     Closest of_point;
     std::int32_t first = -1;
     for (std::size_t k = 0; k < distances.size(); ++k) {
       bool collides = false;
-      for (const Candidate& q : obstacles) {
+      for (const FinitePoint& q : obstacles) {
         ++result.work.exact_decisions;
         if (distances[k].compare(p.point, q.point, request.clearance, p.radius, q.radius) > 0) continue;
         collides = true;

@@ -74,14 +74,15 @@ public:
   }
 
   /// What a thick segment may meet of the model below a node, in boxes no larger than `size`.
-  void collect(const Span& span, const Segment& segment, float size, ModelBox node, std::vector<ModelBox>& into)
+  void collect(const VoxelMotion& motion, const Segment& segment, float size, ModelBox node,
+               std::vector<ModelBox>& into)
   {
-    for (std::uint32_t bits = near(segment, node, span.steps); bits != 0; bits &= bits - 1) {
+    for (std::uint32_t bits = near(segment, node, motion.steps); bits != 0; bits &= bits - 1) {
       node.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (node.isLeaf() || node.size() < size || !mayOpen(node))
         into.push_back(node);
       else
-        collect(span, segment, size, below(node), into);
+        collect(motion, segment, size, below(node), into);
     }
   }
 

@@ -53,13 +53,14 @@ public:
 
   /// How far each child of a node reaches from its centre, along the model's axes, at any instant of a span.
   /// @param radius of its sphere, which it does not reach beyond.
-  void see(std::uint32_t node, const Span& span, const float (&radius)[kLanes], float (&extent)[3][kLanes]) const
+  void see(std::uint32_t node, const VoxelMotion& motion, const float (&radius)[kLanes],
+           float (&extent)[3][kLanes]) const
   {
     const Half& half = halves_[node];
     const float share = kRounding + 4.0f * static_cast<float>(voxel_frame_.path.skew);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       float turn[2][3];
-      const float* ends[2] = {span.from.m + 3 * axis, span.to.m + 3 * axis};
+      const float* ends[2] = {motion.from.m + 3 * axis, motion.to.m + 3 * axis};
       for (std::size_t k = 0; k < 2; ++k)
         for (std::size_t j = 0; j < 3; ++j) {
           const float* along = axes_ + 3 * j;

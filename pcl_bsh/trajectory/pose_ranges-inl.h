@@ -37,14 +37,14 @@ struct PoseRanges {
 };
 
 /// Of points in `lanes`.
-inline PoseRanges rangesOf(std::uint32_t lanes, const ClippedSegments<kLeafPoints>& clipped, const Span& span)
+inline PoseRanges rangesOf(std::uint32_t lanes, const ClippedSegments<kLeafPoints>& clipped, const VoxelMotion& motion)
 {
   PoseRanges ranges;
-  const double steps = span.interval->last - span.interval->first;
+  const double steps = motion.interval->last - motion.interval->first;
   for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-    ranges.first[i] = span.interval->first + static_cast<std::uint32_t>(std::ceil(steps * clipped.from[i]));
-    ranges.last[i] = span.interval->first + static_cast<std::uint32_t>(std::floor(steps * clipped.to[i]));
+    ranges.first[i] = motion.interval->first + static_cast<std::uint32_t>(std::ceil(steps * clipped.from[i]));
+    ranges.last[i] = motion.interval->first + static_cast<std::uint32_t>(std::floor(steps * clipped.to[i]));
     if (ranges.first[i] > ranges.last[i]) continue;
     ranges.lanes |= 1u << i;
     ranges.begin = std::min(ranges.begin, ranges.first[i]);

@@ -21,7 +21,7 @@ void allocate(TrajectoryResult& result, const TrajectoryRequest& request, std::s
   result.distance.assign(sized(request.distances), std::numeric_limits<float>::quiet_NaN());
   result.first_pose.assign(sized(request.first_poses), -1);
   result.closest_pose.assign(sized(request.closest_poses), -1);
-  result.closest_point.assign(sized(request.distances || request.closest_poses), 0xffffffffu);
+  result.closest_point.assign(sized(request.distances || request.closest_poses), TrajectoryResult::kNoPoint);
   if (request.pose_summaries) result.poses.resize(poses);
 }
 

@@ -76,6 +76,8 @@ struct FirstContact {
 /// When swept, a distance is within half the tolerance of the smallest during the motion, and a pose's number k stands
 /// for the motion from pose k to pose k + 1.
 struct TrajectoryResult {
+  static constexpr std::uint32_t kNoPoint = 0xffffffffu; ///< among closest_point: no record
+
   std::vector<std::uint8_t> flags;        ///< 1 = collides, 2 = undecided, where the accuracy lets the walk stop early
   std::size_t colliding = 0;              ///< points that collide; 0 when nothing is asked for
   std::size_t undecided = 0;              ///< points that are

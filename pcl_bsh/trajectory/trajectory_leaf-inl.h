@@ -38,72 +38,72 @@ struct LeafVisit {
 /// Compares leaves of the scan with what they may meet of the model.
 class LeafWalk {
 public:
-  LeafWalk(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, ModelBoxes& model, Watch& watch,
+  LeafWalk(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, ModelBoxes& model, StopCheck& stop_check,
            VoxelResults& results)
   : query_(query),
     path_(query.path),
     tree_(query.boxes),
     voxel_frame_(voxel_frame),
     model_(model),
-    watch_(watch),
+    stop_check_(stop_check),
     results_(results)
   {
   }
 
   /// @return whether any of the leaf's points is not settled.
-  bool compare(std::size_t slot, const LeafRange& points, const Node& node, std::uint32_t lane, const Span& span,
-               const std::vector<ModelBox>& candidates)
+  bool compare(std::size_t slot, const LeafRange& points, const Node& node, std::uint32_t lane,
+               const VoxelMotion& motion, const std::vector<ModelBox>& candidates)
   {
     const std::uint32_t all = firstBits(points.count);
     if ((all & ~results_.settled[slot]) == 0) return false;
-    const double share = span.steps > kManyPoses ? kManyPosesStray : kLeafStray;
+    const double share = motion.steps > kManyPoses ? kManyPosesStray : kLeafStray;
     const double limit = path_.is_swept ? path_.stray : share * node.r[lane] * voxel_frame_.frame.unit;
-    if (span.divides(limit)) {
-      return compare(slot, points, node, lane, voxel_frame_.spanOf(span.interval->left), candidates) &&
-             compare(slot, points, node, lane, voxel_frame_.spanOf(span.interval->right), candidates);
+    if (motion.divides(limit)) {
+      return compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->left), candidates) &&
+             compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->right), candidates);
     }
     LeafVisit leaf;
     leaf.points = points;
     leaf.slot = slot;
     leaf.open = all & ~results_.settled[slot];
     alignas(64) float from[3][kLeafPoints], to[3][kLeafPoints];
-    carry(span.from.m, span.from.g, points.x(), points.y(), points.z(), points.count, from[0], from[1], from[2]);
-    carry(span.to.m, span.to.g, points.x(), points.y(), points.z(), points.count, to[0], to[1], to[2]);
+    carry(motion.from.m, motion.from.g, points.x(), points.y(), points.z(), points.count, from[0], from[1], from[2]);
+    carry(motion.to.m, motion.to.g, points.x(), points.y(), points.z(), points.count, to[0], to[1], to[2]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       std::fill(from[axis] + points.count, from[axis] + kLeafPoints, 0.0f);
       std::fill(to[axis] + points.count, to[axis] + kLeafPoints, 0.0f);
     }
-    leaf.segments.set(from, to, span.smallest);
-    if (path_.is_swept || span.steps >= kFewPoses) leaf.motions.set(from, to, span.smallest, span.rounding);
-    std::fill(leaf.segments.reach[0], leaf.segments.reach[0] + kLeafPoints, span.reach);
+    leaf.segments.set(from, to, motion.smallest);
+    if (path_.is_swept || motion.steps >= kFewPoses) leaf.motions.set(from, to, motion.smallest, motion.rounding);
+    std::fill(leaf.segments.reach[0], leaf.segments.reach[0] + kLeafPoints, motion.reach);
     for (std::uint32_t i = 0; query_.closest && i < points.count; ++i)
-      if (bestBounds(points.begin + i, span))
+      if (bestBounds(points.begin + i, motion))
         leaf.segments.reach[0][i] =
-            std::min(span.reach, voxel_frame_.reachOf(span, results_.best[points.begin + i].reach));
+            std::min(motion.reach, voxel_frame_.reachOf(motion, results_.best[points.begin + i].reach));
     const float no_extent[3][kLeafPoints] = {};
-    leaf.around = voxel_frame_.aroundSegments(span, from, to, no_extent, points.count);
+    leaf.around = voxel_frame_.aroundSegments(motion, from, to, no_extent, points.count);
     ++results_.work.volumes_carried;
-    if (query_.request.pose_summaries) pose_hits_.assign(span.interval->last - span.interval->first + 1, 0);
+    if (query_.request.pose_summaries) pose_hits_.assign(motion.interval->last - motion.interval->first + 1, 0);
 
     ++visit_;
     for (const ModelBox& candidate : candidates) {
       stack_.push_back(candidate);
-      while (!stack_.empty() && leaf.open != 0 && !watch_.isOver()) {
+      while (!stack_.empty() && leaf.open != 0 && !stop_check_.isOver()) {
         const ModelBox next = stack_.back();
         stack_.pop_back();
-        compareBox(leaf, next, span);
+        compareBox(leaf, next, motion);
       }
       if (leaf.open == 0) break;
     }
     stack_.clear();
-    if (query_.request.pose_summaries) countPoses(leaf, span, node.points(lane));
+    if (query_.request.pose_summaries) countPoses(leaf, motion, node.points(lane));
     if (!query_.everything()) results_.settled[slot] = results_.hit[slot];
     return (all & ~results_.settled[slot]) != 0;
   }
 
 private:
   /// Opens a box of the model that the leaf may meet, or compares its points.
-  void compareBox(LeafVisit& leaf, const ModelBox& candidate, const Span& span)
+  void compareBox(LeafVisit& leaf, const ModelBox& candidate, const VoxelMotion& motion)
   {
     const std::uint32_t k = candidate.lane;
     const BoxNode& box = candidate.box();
@@ -113,7 +113,7 @@ private:
     results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(leaf.open));
     std::copy(low, low + 3, leaf.low);
     std::copy(high, high + 3, leaf.high);
-    const std::uint32_t lanes = leaf.open & segmentsInBox(leaf.segments, low, high, span.steps, &clipped);
+    const std::uint32_t lanes = leaf.open & segmentsInBox(leaf.segments, low, high, motion.steps, &clipped);
     if (lanes == 0) return;
     if (!candidate.isLeaf()) {
       if (!model_.mayOpen(candidate)) {
@@ -122,7 +122,7 @@ private:
         return;
       }
       ModelBox child = model_.below(candidate);
-      for (std::uint32_t bits = model_.near(leaf.around, child, span.steps); bits != 0; bits &= bits - 1) {
+      for (std::uint32_t bits = model_.near(leaf.around, child, motion.steps); bits != 0; bits &= bits - 1) {
         child.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
         stack_.push_back(child);
       }
@@ -131,20 +131,20 @@ private:
     const Node& node = candidate.nodes[candidate.node];
     const LeafRange other{&tree_.storage.voxels[candidate.voxel], node.begin[k], node.comparedPoints(k)};
     if (path_.is_swept)
-      compareSegments(leaf, lanes, clipped, other, candidate.voxel, span);
+      compareSegments(leaf, lanes, clipped, other, candidate.voxel, motion);
     else
-      comparePoses(leaf, lanes, clipped, other, candidate.voxel, span);
+      comparePoses(leaf, lanes, clipped, other, candidate.voxel, motion);
   }
 
   /// Two leaves, at each pose that brings them near.
   void comparePoses(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped, const LeafRange& other,
-                    std::uint32_t voxel, const Span& span)
+                    std::uint32_t voxel, const VoxelMotion& motion)
   {
-    PoseRanges ranges = rangesOf(lanes, clipped, span);
+    PoseRanges ranges = rangesOf(lanes, clipped, motion);
     if (ranges.lanes == 0) return;
-    if (static_cast<float>(ranges.end - ranges.begin) > kFewPoses && span.squares && other.voxel->frame.unit == 1.0) {
+    if (static_cast<float>(ranges.end - ranges.begin) > kFewPoses && motion.squares && other.voxel->frame.unit == 1.0) {
       lanes &= nearPoints(leaf, other, voxel, clipped);
-      ranges = rangesOf(lanes, clipped, span);
+      ranges = rangesOf(lanes, clipped, motion);
       lanes = ranges.lanes;
       if (!query_.everything() && !query_.first) {
         // Any pose will do: the one in the middle is nearest.
@@ -152,18 +152,18 @@ private:
           const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
           if ((leaf.open >> i & 1) == 0) continue;
           const std::uint32_t k = ranges.first[i] + (ranges.last[i] - ranges.first[i]) / 2;
-          compareAt(leaf, ranges.at(k, lanes & leaf.open), other, voxel, k, span);
+          compareAt(leaf, ranges.at(k, lanes & leaf.open), other, voxel, k, motion);
         }
       }
     }
-    for (std::uint32_t k = ranges.begin; k < ranges.end && (lanes & leaf.open) != 0 && !watch_.isOver(); ++k) {
+    for (std::uint32_t k = ranges.begin; k < ranges.end && (lanes & leaf.open) != 0 && !stop_check_.isOver(); ++k) {
       std::uint32_t here = ranges.at(k, lanes & leaf.open);
       if (query_.first && !query_.everything())
         for (std::uint32_t bits = here; bits != 0; bits &= bits - 1) {
           const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
           if (results_.first[leaf.points.begin + i] <= k) here &= ~(1u << i);
         }
-      if (here != 0) compareAt(leaf, here, other, voxel, k, span);
+      if (here != 0) compareAt(leaf, here, other, voxel, k, motion);
     }
   }
 
@@ -179,10 +179,10 @@ private:
 
   /// Two leaves at pose k: by float bands, and exactly within the bands.
   void compareAt(LeafVisit& leaf, std::uint32_t lanes, const LeafRange& other, std::uint32_t voxel, std::uint32_t k,
-                 const Span& span)
+                 const VoxelMotion& motion)
   {
-    const LeafPoints& at = placesAt(leaf, k, span);
-    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, leaf.low, leaf.high, span.near_squared);
+    const LeafPoints& at = placesAt(leaf, k, motion);
+    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, leaf.low, leaf.high, motion.near_squared);
     if (lanes == 0) return;
     ++results_.work.leaf_pairs;
     const double unit = other.voxel->frame.unit;
@@ -214,13 +214,13 @@ private:
           if (results_.collide({leaf.points.record(i), other.record(j)}, k)) hit |= 1u << i;
       }
     }
-    if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, span);
+    if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, motion);
   }
 
   /// The leaf's points as seen at pose k; kept, for many boxes ask at the same few poses.
-  const LeafPoints& placesAt(const LeafVisit& leaf, std::uint32_t k, const Span& span)
+  const LeafPoints& placesAt(const LeafVisit& leaf, std::uint32_t k, const VoxelMotion& motion)
   {
-    Places& places = places_[(k - span.interval->first) % kKeptPlaces];
+    Places& places = places_[(k - motion.interval->first) % kKeptPlaces];
     if (places.visit == visit_ && places.pose == k) return places.points;
     places.visit = visit_;
     places.pose = k;
@@ -232,12 +232,12 @@ private:
 
   /// What follows from the points in `hit`, which collide at pose k.
   void note(LeafVisit& leaf, std::uint32_t hit, const LeafPoints& points, const float* nearest, bool certain,
-            const LeafRange& other, std::uint32_t k, const Span& span)
+            const LeafRange& other, std::uint32_t k, const VoxelMotion& motion)
   {
     results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | hit);
     if (!query_.everything() && !query_.first) leaf.open &= ~hit;
     if (query_.request.pose_summaries) {
-      std::uint16_t& at = pose_hits_[k - span.interval->first];
+      std::uint16_t& at = pose_hits_[k - motion.interval->first];
       at = static_cast<std::uint16_t>(at | hit);
     }
     for (std::uint32_t bits = hit; bits != 0; bits &= bits - 1) {
@@ -264,8 +264,8 @@ private:
         const double high = voxel_frame_.highOf(nearest[i]);
         best->limit = std::min(best->limit, voxel_frame_.notBeyond(nearest[i]));
         best->reach = std::min(best->reach, roundUp(high));
-        if (bestBounds(leaf.points.begin + i, span))
-          leaf.segments.reach[0][i] = std::min(leaf.segments.reach[0][i], voxel_frame_.reachOf(span, best->reach));
+        if (bestBounds(leaf.points.begin + i, motion))
+          leaf.segments.reach[0][i] = std::min(leaf.segments.reach[0][i], voxel_frame_.reachOf(motion, best->reach));
       }
       if (for_pose && certain) results_.lowerPoseLimit(k, voxel_frame_.notBeyond(nearest[i]));
     }
@@ -274,17 +274,17 @@ private:
   /// Points that move in straight lines against points at rest: all instants at once. In double; what that gets wrong
   /// is small against the tolerance (checkTolerance()).
   void compareSegments(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
-                       const LeafRange& other, std::uint32_t voxel, const Span& span)
+                       const LeafRange& other, std::uint32_t voxel, const VoxelMotion& motion)
   {
-    if (span.squares && other.voxel->frame.unit == 1.0) lanes &= nearPoints(leaf, other, voxel, clipped);
+    if (motion.squares && other.voxel->frame.unit == 1.0) lanes &= nearPoints(leaf, other, voxel, clipped);
     ++results_.work.leaf_pairs;
-    const double begin = span.interval->first, steps = span.interval->last - span.interval->first;
+    const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
       double& first = results_.first[leaf.points.begin + i];
       if (!query_.closest && first <= begin + steps * clipped.from[i]) continue;
       const std::uint32_t record = leaf.points.record(i);
-      const PointSegment segment = segmentOf(record, span);
+      const PointSegment segment = segmentOf(record, motion);
       for (std::uint32_t j = 0; j < other.count; ++j) {
         ++results_.work.exact_decisions;
         const std::uint32_t q = other.record(j);
@@ -299,16 +299,16 @@ private:
       if (query_.closest && query_.radii == 0.0) {
         NearestPoint& best = results_.best[leaf.points.begin + i];
         best.reach = std::min(best.reach, roundUp(best.gap));
-        if (bestBounds(leaf.points.begin + i, span))
-          leaf.segments.reach[0][i] = std::min(leaf.segments.reach[0][i], voxel_frame_.reachOf(span, best.reach));
+        if (bestBounds(leaf.points.begin + i, motion))
+          leaf.segments.reach[0][i] = std::min(leaf.segments.reach[0][i], voxel_frame_.reachOf(motion, best.reach));
       }
     }
   }
 
-  /// Whether the best so far bounds the search for a point of the voxel from this span on.
-  bool bestBounds(std::uint32_t point, const Span& span) const
+  /// Whether the best so far bounds the search for a point of the voxel from this motion on.
+  bool bestBounds(std::uint32_t point, const VoxelMotion& motion) const
   {
-    return query_.bestBounds(query_.first ? results_.first[point] : 0.0, span.interval->first);
+    return query_.bestBounds(query_.first ? results_.first[point] : 0.0, motion.interval->first);
   }
 
   /// Where a point of the scan is seen at a span's ends.
@@ -317,10 +317,10 @@ private:
     Point3 start, end;
   };
 
-  PointSegment segmentOf(std::uint32_t record, const Span& span) const
+  PointSegment segmentOf(std::uint32_t record, const VoxelMotion& motion) const
   {
     const Point3 world = carried(query_.scan.pose, query_.scan.hierarchy().view().point(record));
-    const std::uint32_t first = span.interval->first, last = span.interval->last;
+    const std::uint32_t first = motion.interval->first, last = motion.interval->last;
     return {first, last, path_.poses[first].see(world), path_.poses[last].see(world)};
   }
 
@@ -347,12 +347,12 @@ private:
     best.record = record;
   }
 
-  void countPoses(const LeafVisit& leaf, const Span& span, std::size_t points)
+  void countPoses(const LeafVisit& leaf, const VoxelMotion& motion, std::size_t points)
   {
     for (std::size_t i = 0; i < pose_hits_.size(); ++i) {
       const auto hits = static_cast<std::size_t>(std::popcount(pose_hits_[i]));
       if (hits != 0)
-        results_.countPose(span.interval->first + static_cast<std::uint32_t>(i),
+        results_.countPose(motion.interval->first + static_cast<std::uint32_t>(i),
                            points > leaf.points.count ? points : hits);
     }
   }
@@ -362,7 +362,7 @@ private:
   const BoxTree& tree_;
   const VoxelInModelFrame& voxel_frame_;
   ModelBoxes& model_;
-  Watch& watch_;
+  StopCheck& stop_check_;
   VoxelResults& results_;
   struct Places {
     std::uint64_t visit = 0;

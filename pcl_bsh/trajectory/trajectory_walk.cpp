@@ -47,9 +47,9 @@ public:
     oriented_boxes_(voxel_frame_),
     results_(query),
     progress_(progress),
-    watch_(rule, results_.work.node_pairs),
+    stop_check_(rule, results_.work.node_pairs),
     model_(query.boxes, rule, results_.work),
-    leaves_(query, voxel_frame_, model_, watch_, results_),
+    leaves_(query, voxel_frame_, model_, stop_check_, results_),
     settling_(!query.everything() && !query.first && query.radii == 0.0 && voxel_frame_.frame.unit == 1.0 &&
               voxel_frame_.band.hit > 0.0f),
     settled_reach_(settling_ ? std::sqrt(voxel_frame_.band.hit) * (1.0f - kRadiusMargin) : 0.0f),
@@ -64,19 +64,19 @@ public:
       results_.beginPoses(query_.path.intervals[intervals.front()].first, query_.path.intervals[intervals.back()].last);
     std::vector<ModelBox> candidates;
     for (const std::uint32_t interval : intervals) {
-      if (watch_.isOver() || stopped_) return leave(true);
-      const Span span = voxel_frame_.spanOf(interval);
+      if (stop_check_.isOver() || stopped_) return leave(true);
+      const VoxelMotion motion = voxel_frame_.motionOf(interval);
       candidates.clear();
       ++results_.work.volumes_carried;
-      model_.collect(span, voxel_frame_.aroundVoxel(span), kSeedSize * static_cast<float>(voxel_frame_.radius),
+      model_.collect(motion, voxel_frame_.aroundVoxel(motion), kSeedSize * static_cast<float>(voxel_frame_.radius),
                      model_.root(), candidates);
       if (candidates.empty()) continue;
       if (!voxel_ && !mayEnter()) return leave(true);
-      if (!voxel_) enter(span);
+      if (!voxel_) enter(motion);
       if (open_lanes_[0] == 0) break;
-      descend(0, span, candidates, 0);
+      descend(0, motion, candidates, 0);
     }
-    return leave(watch_.isOver());
+    return leave(stop_check_.isOver());
   }
 
 private:
@@ -99,12 +99,12 @@ private:
     return answer;
   }
 
-  void enter(const Span& span)
+  void enter(const VoxelMotion& motion)
   {
     voxel_ = &query_.scan.hierarchy().storage().built(index_, results_.work);
     for (const Node& node : voxel_->nodes) open_lanes_.push_back(static_cast<std::uint8_t>(firstBits(node.count)));
     results_.begin(*voxel_);
-    oriented_boxes_.fit(*voxel_, span.from);
+    oriented_boxes_.fit(*voxel_, motion.from);
     results_.work.volumes_built += countChildren(voxel_->nodes);
   }
 
@@ -117,65 +117,67 @@ private:
   }
 
   /// Takes a node, all its children at once, through its candidates; then each child through its own.
-  void descend(std::uint32_t index, const Span& span, const std::vector<ModelBox>& candidates, std::size_t depth)
+  void descend(std::uint32_t index, const VoxelMotion& motion, const std::vector<ModelBox>& candidates,
+               std::size_t depth)
   {
-    if (watch_.isOver() || isStopped()) return;
+    if (stop_check_.isOver() || isStopped()) return;
     const Node& node = voxel_->nodes[index];
     float largest = 0.0f;
     for (std::uint32_t lane = 0; lane < node.count; ++lane) largest = std::max(largest, node.r[lane]);
-    if (span.divides(kNodeStray * largest * voxel_frame_.frame.unit)) {
-      for (const std::uint32_t half : {span.interval->left, span.interval->right}) {
+    if (motion.divides(kNodeStray * largest * voxel_frame_.frame.unit)) {
+      for (const std::uint32_t half : {motion.interval->left, motion.interval->right}) {
         if (open_lanes_[index] == 0) return;
-        descend(index, voxel_frame_.spanOf(half), candidates, depth);
+        descend(index, voxel_frame_.motionOf(half), candidates, depth);
       }
       return;
     }
     if (visits_.size() <= depth) visits_.resize(depth + 1);
     NodeVisit& visit = visits_[depth];
-    begin(visit, index, span);
-    if (settling_) settleByPoints(visit, index, span, candidates);
-    for (const ModelBox& candidate : candidates) take(visit, candidate, span, open_lanes_[index]);
+    begin(visit, index, motion);
+    if (settling_) settleByPoints(visit, index, motion, candidates);
+    for (const ModelBox& candidate : candidates) take(visit, candidate, motion, open_lanes_[index]);
     for (std::uint32_t bits = open_lanes_[index]; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
       bool open = true;
       if (node.isLeaf(lane)) {
         const LeafRange points{voxel_, node.begin[lane], node.comparedPoints(lane)};
-        open = leaves_.compare(index * kLanes + lane, points, node, lane, span, visit.near[lane]);
+        open = leaves_.compare(index * kLanes + lane, points, node, lane, motion, visit.near[lane]);
       }
       else if (depth + 1 >= rule_.deepest) {
         results_.undecided[index * kLanes + lane] = 0xffff;
       }
       else {
-        descend(node.child[lane], span, visit.near[lane], depth + 1);
+        descend(node.child[lane], motion, visit.near[lane], depth + 1);
         open = open_lanes_[node.child[lane]] != 0;
       }
       if (!open) open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
     }
   }
 
-  void begin(NodeVisit& visit, std::uint32_t index, const Span& span)
+  void begin(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
   {
     const Node& node = voxel_->nodes[index];
     alignas(64) float from[3][kLanes], to[3][kLanes];
-    carry(span.from.m, span.from.g, node.x, node.y, node.z, kLanes, from[0], from[1], from[2]);
-    carry(span.to.m, span.to.g, node.x, node.y, node.z, kLanes, to[0], to[1], to[2]);
-    visit.children.set(from, to, span.smallest);
+    carry(motion.from.m, motion.from.g, node.x, node.y, node.z, kLanes, from[0], from[1], from[2]);
+    carry(motion.to.m, motion.to.g, node.x, node.y, node.z, kLanes, to[0], to[1], to[2]);
+    visit.children.set(from, to, motion.smallest);
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
       visit.near[lane].clear();
       visit.radius[lane] = voxel_frame_.seenRadius(node.r[lane]);
     }
     float extent[3][kLanes];
-    oriented_boxes_.see(index, span, visit.radius, extent);
+    oriented_boxes_.see(index, motion, visit.radius, extent);
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::uint32_t lane = 0; lane < kLanes; ++lane)
-        visit.children.reach[axis][lane] = (span.reach + extent[axis][lane]) * (1.0f + kReachMargin);
-    visit.around = voxel_frame_.aroundSegments(span, from, to, extent, node.count);
+        visit.children.reach[axis][lane] = (motion.reach + extent[axis][lane]) * (1.0f + kReachMargin);
+    visit.around = voxel_frame_.aroundSegments(motion, from, to, extent, node.count);
     results_.work.volumes_carried += node.count + std::uint64_t{1}; // the children and what is around them
   }
 
   /// Settles children that a single point of the model is near enough to, at one pose, for all that they hold.
-  void settleByPoints(NodeVisit& visit, std::uint32_t index, const Span& span, const std::vector<ModelBox>& candidates)
+  void settleByPoints(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion,
+                      const std::vector<ModelBox>& candidates)
   {
     const Node& node = voxel_->nodes[index];
     float smallest = std::numeric_limits<float>::infinity();
@@ -185,14 +187,15 @@ private:
     for (const ModelBox& candidate : candidates) {
       const BoxEnds box(candidate);
       results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(open_lanes_[index]));
-      std::uint32_t near = open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, span.steps, &clipped);
+      std::uint32_t near =
+          open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, motion.steps, &clipped);
       for (; near != 0; near &= near - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
         const float reach = settled_reach_ - visit.radius[lane] * (1.0f + 4 * kRadiusMargin);
         if (!(reach > 0.0f)) continue;
         const double middle = 0.5 * (std::max(clipped.from[lane], 0.0f) + std::min(clipped.to[lane], 1.0f));
-        const double steps = span.interval->last - span.interval->first; // beyond 2^24, span.steps may be more
-        const auto pose = span.interval->first + static_cast<std::uint32_t>(std::lround(middle * steps));
+        const double steps = motion.interval->last - motion.interval->first; // beyond 2^24, motion.steps may be more
+        const auto pose = motion.interval->first + static_cast<std::uint32_t>(std::lround(middle * steps));
         const ProbeSphere probe{{node.x[lane], node.y[lane], node.z[lane]}, reach, pose};
         const AffineMap map = voxel_frame_.mapAt(poseAt(pose), {0, 0, 0}, 1.0);
         const Point center = carryPoint(map.m, map.g, probe.center);
@@ -290,7 +293,7 @@ private:
 
   /// Compares a box of the model with those children of the visit that are in `lanes`: drops it, keeps it for their own
   /// descent, or opens it.
-  void take(NodeVisit& visit, const ModelBox& candidate, const Span& span, std::uint32_t lanes)
+  void take(NodeVisit& visit, const ModelBox& candidate, const VoxelMotion& motion, std::uint32_t lanes)
   {
     const std::uint32_t k = candidate.lane;
     const BoxNode& box = candidate.box();
@@ -298,7 +301,7 @@ private:
     const float high[3] = {box.high[0][k], box.high[1][k], box.high[2][k]};
     results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
     const std::uint32_t near_lanes =
-        lanes & segmentsInBox(visit.children, low, high, span.steps, static_cast<ClippedSegments<kLanes>*>(nullptr));
+        lanes & segmentsInBox(visit.children, low, high, motion.steps, static_cast<ClippedSegments<kLanes>*>(nullptr));
     if (near_lanes == 0) return;
     const bool opens = !candidate.isLeaf() && model_.mayOpen(candidate);
     const float size = candidate.size();
@@ -312,9 +315,9 @@ private:
     }
     if (opening == 0) return;
     ModelBox child = model_.below(candidate);
-    for (std::uint32_t bits = model_.near(visit.around, child, span.steps); bits != 0; bits &= bits - 1) {
+    for (std::uint32_t bits = model_.near(visit.around, child, motion.steps); bits != 0; bits &= bits - 1) {
       child.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      take(visit, child, span, opening);
+      take(visit, child, motion, opening);
     }
   }
 
@@ -325,7 +328,7 @@ private:
   OrientedBoxes oriented_boxes_;
   VoxelResults results_;
   Progress& progress_;
-  Watch watch_;
+  StopCheck stop_check_;
   std::uint32_t descents_ = 0;
   bool stopped_ = false; // by the caller
   ModelBoxes model_;

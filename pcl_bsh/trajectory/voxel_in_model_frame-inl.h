@@ -23,8 +23,8 @@ struct AffineMap {
   float m[9], g[3];
 };
 
-/// An interval of poses, as the scan's voxel moves during it.
-struct Span {
+/// How the scan's voxel moves, as the model sees it, during an interval of poses.
+struct VoxelMotion {
   const PathInterval* interval;
   AffineMap from, to;
   double stray;       ///< of any point of the voxel from its straight line
@@ -87,44 +87,45 @@ public:
     return map;
   }
 
-  Span spanOf(std::uint32_t index) const
+  VoxelMotion motionOf(std::uint32_t index) const
   {
-    Span span;
-    const PathInterval& interval = *(span.interval = &path.intervals[index]);
-    span.from = mapAt(path.poses[interval.first], {0, 0, 0}, 1.0);
-    span.to = mapAt(path.poses[interval.last], {0, 0, 0}, 1.0);
+    VoxelMotion motion;
+    const PathInterval& interval = *(motion.interval = &path.intervals[index]);
+    motion.from = mapAt(path.poses[interval.first], {0, 0, 0}, 1.0);
+    motion.to = mapAt(path.poses[interval.last], {0, 0, 0}, 1.0);
     double squared = 0.0, coordinate = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       squared += (origin[axis] - interval.pivot[axis]) * (origin[axis] - interval.pivot[axis]);
-      coordinate = std::max({coordinate, std::abs(static_cast<double>(span.from.g[axis])),
-                             std::abs(static_cast<double>(span.to.g[axis]))});
+      coordinate = std::max({coordinate, std::abs(static_cast<double>(motion.from.g[axis])),
+                             std::abs(static_cast<double>(motion.to.g[axis]))});
     }
-    span.stray = interval.drift + interval.turn * ((std::sqrt(squared) + radius) * (1.0 + kDoubleMargin));
-    if (path.is_swept && !interval.divided()) span.stray = std::min(span.stray, path.stray);
-    span.steps = path.is_swept ? 0.0f : static_cast<float>(interval.last - interval.first);
-    const double reach = query_.reach * (1.0 + path.skew) + placing_ + span.stray;
+    motion.stray = interval.drift + interval.turn * ((std::sqrt(squared) + radius) * (1.0 + kDoubleMargin));
+    if (path.is_swept && !interval.divided()) motion.stray = std::min(motion.stray, path.stray);
+    motion.steps = path.is_swept ? 0.0f : static_cast<float>(interval.last - interval.first);
+    const double reach = query_.reach * (1.0 + path.skew) + placing_ + motion.stray;
     const double rounding =
         static_cast<double>(kSegmentRounding) * (coordinate + 2.01 * radius + tree.radius + reach) + kSmallestRounding;
-    span.reach = roundUp(reach + rounding);
-    span.rounding = roundUp(rounding);
-    const float near = roundUp(reach - span.stray + 2 * rounding);
-    span.near_squared = near * near * (1.0f + kReachRounding) + kVanishingSquare;
-    span.smallest = span.rounding * kSmallestMotion;
-    span.squares = span.smallest >= kSmallestSquared && inFloatRange(coordinate + 2.01 * radius + tree.radius + reach);
-    return span;
+    motion.reach = roundUp(reach + rounding);
+    motion.rounding = roundUp(rounding);
+    const float near = roundUp(reach - motion.stray + 2 * rounding);
+    motion.near_squared = near * near * (1.0f + kReachRounding) + kVanishingSquare;
+    motion.smallest = motion.rounding * kSmallestMotion;
+    motion.squares =
+        motion.smallest >= kSmallestSquared && inFloatRange(coordinate + 2.01 * radius + tree.radius + reach);
+    return motion;
   }
 
-  static Segment ballOn(const Span& span, const Point& center, float ball)
+  static Segment ballOn(const VoxelMotion& motion, const Point& center, float ball)
   {
-    Segment segment = segmentOf(carryPoint(span.from.m, span.from.g, center), carryPoint(span.to.m, span.to.g, center),
-                                span.smallest);
-    std::fill(segment.reach, segment.reach + 3, span.reach + ball);
+    Segment segment = segmentOf(carryPoint(motion.from.m, motion.from.g, center),
+                                carryPoint(motion.to.m, motion.to.g, center), motion.smallest);
+    std::fill(segment.reach, segment.reach + 3, motion.reach + ball);
     return segment;
   }
 
   /// Around `count` segments, each with an extent of its own along the axes.
   template <std::size_t Count>
-  static Segment aroundSegments(const Span& span, const float (&from)[3][Count], const float (&to)[3][Count],
+  static Segment aroundSegments(const VoxelMotion& motion, const float (&from)[3][Count], const float (&to)[3][Count],
                                 const float (&extent)[3][Count], std::size_t count)
   {
     float start[3], end[3], reach[3];
@@ -143,9 +144,9 @@ public:
       end[axis] = 0.5f * (low[1] + high[1]);
       const float half =
           std::max({high[0] - start[axis], start[axis] - low[0], high[1] - end[axis], end[axis] - low[1]});
-      reach[axis] = (span.reach + span.rounding + half) * (1.0f + kRadiusMargin);
+      reach[axis] = (motion.reach + motion.rounding + half) * (1.0f + kRadiusMargin);
     }
-    Segment segment = segmentOf({start[0], start[1], start[2]}, {end[0], end[1], end[2]}, span.smallest);
+    Segment segment = segmentOf({start[0], start[1], start[2]}, {end[0], end[1], end[2]}, motion.smallest);
     std::copy(reach, reach + 3, segment.reach);
     return segment;
   }
@@ -157,18 +158,18 @@ public:
   }
 
   /// The voxel as a box: along each of the model's axes, as far as its own sides reach.
-  Segment aroundVoxel(const Span& span) const
+  Segment aroundVoxel(const VoxelMotion& motion) const
   {
-    Segment segment = ballOn(span, {0.0f, 0.0f, 0.0f}, 0.0f);
+    Segment segment = ballOn(motion, {0.0f, 0.0f, 0.0f}, 0.0f);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double from = 0.0, to = 0.0;
       for (std::size_t k = 0; k < 3; ++k) {
-        from += std::abs(static_cast<double>(span.from.m[3 * axis + k])) * frame.reach[k];
-        to += std::abs(static_cast<double>(span.to.m[3 * axis + k])) * frame.reach[k];
+        from += std::abs(static_cast<double>(motion.from.m[3 * axis + k])) * frame.reach[k];
+        to += std::abs(static_cast<double>(motion.to.m[3 * axis + k])) * frame.reach[k];
       }
-      const double extent = std::max(from, to) * (1.0 + kRadiusMargin) + span.interval->turn * radius;
+      const double extent = std::max(from, to) * (1.0 + kRadiusMargin) + motion.interval->turn * radius;
       const auto sphere = static_cast<double>(seenRadius(voxel.radius));
-      segment.reach[axis] = roundUp((span.reach + std::min(sphere, extent)) * (1.0 + kRadiusMargin));
+      segment.reach[axis] = roundUp((motion.reach + std::min(sphere, extent)) * (1.0 + kRadiusMargin));
     }
     return segment;
   }
@@ -183,10 +184,10 @@ public:
   float notBeyond(float squared) const { return skewedBand(highOf(squared), error, path.skew).miss; }
 
   /// How far from a line a point may be that is as near as the best one.
-  float reachOf(const Span& span, float best) const
+  float reachOf(const VoxelMotion& motion, float best) const
   {
-    return best < span.reach ? (span.reach + (best - static_cast<float>(query_.reach))) * (1.0f + kReachRounding)
-                             : span.reach;
+    return best < motion.reach ? (motion.reach + (best - static_cast<float>(query_.reach))) * (1.0f + kReachRounding)
+                               : motion.reach;
   }
 
 private:

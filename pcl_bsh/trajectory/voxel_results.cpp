@@ -124,7 +124,7 @@ bool VoxelResults::collide(PointPair at, std::uint32_t k)
 void VoxelResults::consider(NearestPoint& nearest, PointPair pair, std::uint32_t k)
 {
   ++work.exact_decisions;
-  if (nearest.record != 0xffffffffu) {
+  if (nearest.record != TrajectoryResult::kNoPoint) {
     const auto best_pose = static_cast<std::uint32_t>(nearest.time);
     const int sign = exactAt(k).compareGaps(posed(pair), exactAt(best_pose), posed({pair.a, nearest.record}));
     if (sign > 0 || (sign == 0 && (k > best_pose || (k == best_pose && pair.b >= nearest.record)))) return;

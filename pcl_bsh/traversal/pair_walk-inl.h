@@ -258,8 +258,8 @@ private:
             float radius, double clearance, Step& out)
   {
     out.reach = frame.pruneReach(clearance);
-    const Ball ball{center.x, center.y, center.z, radius + out.reach,
-                    frame.acceptReach(clearance + accepted_beyond) - radius * (1.0f + kSphereMargin)};
+    const QueryBall ball{center.x, center.y, center.z, radius + out.reach,
+                         frame.acceptReach(clearance + accepted_beyond) - radius * (1.0f + kSphereMargin)};
     out.frame = &frame;
     out.radii = spheres.r;
     out.stretch = spheres.stretch;

@@ -23,8 +23,8 @@
 namespace pcl_bsh::fuzz {
 namespace {
 
-using brute_force::Candidate;
-using brute_force::candidatesOf;
+using brute_force::FinitePoint;
+using brute_force::finitePoints;
 using test::Random;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -141,9 +141,10 @@ std::vector<PointPair> collidingPairs(const Placed& a, const Placed& b, double c
   const DefaultFloatEnvironment environment;
   const ExactDistance distance(a.pose, b.pose);
   std::vector<PointPair> pairs;
-  const std::vector<Candidate> points = candidatesOf(a.hierarchy().view()), others = candidatesOf(b.hierarchy().view());
-  for (const Candidate& p : points)
-    for (const Candidate& q : others)
+  const std::vector<FinitePoint> points = finitePoints(a.hierarchy().view()),
+                                 others = finitePoints(b.hierarchy().view());
+  for (const FinitePoint& p : points)
+    for (const FinitePoint& q : others)
       if (distance.compare(p.point, q.point, clearance, p.radius, q.radius) <= 0) pairs.push_back({p.record, q.record});
   std::sort(pairs.begin(), pairs.end()); // a subset may name a record twice
   return pairs;
@@ -469,12 +470,12 @@ void Questions::askAlong(const Placed& a, const Placed& b, double unit, Random& 
 
 void Questions::askSpacing(const SphereHierarchy& cloud)
 {
-  const std::vector<Candidate> points = candidatesOf(cloud.view());
+  const std::vector<FinitePoint> points = finitePoints(cloud.view());
   if (points.size() > 1024) return;
   std::vector<double> gaps;
-  for (const Candidate& p : points) {
+  for (const FinitePoint& p : points) {
     double nearest = infinity;
-    for (const Candidate& q : points)
+    for (const FinitePoint& q : points)
       if (p.point != q.point)
         nearest =
             std::min(nearest, std::hypot(p.point[0] - q.point[0], p.point[1] - q.point[1], p.point[2] - q.point[2]));

@@ -358,7 +358,7 @@ double enclosureFraction(const Numbers& n)
   if (pose.linear() == Eigen::Matrix3d::Identity()) return 0.0;
   const Point3 p = {n[0], n[1], n[2]}, q = {n[3], n[4], n[5]};
   const ExactDistance distance(pose, identity);
-  const ExactDistance::Interval found = distance.enclose(p, q);
+  const ExactDistance::Enclosure found = distance.enclose(p, q);
   if (distance.compare(p, q, std::max(found.low, 0.0)) < 0 || distance.compare(p, q, found.high) > 0) return 2.0;
   const double middle = 0.5 * (found.low + found.high), half = 0.5 * (found.high - found.low);
   Dyadic squared;

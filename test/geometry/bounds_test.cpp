@@ -77,13 +77,13 @@ Isometry3d nearlyRigid(const Isometry3d& pose, Random& random)
 }
 
 /// Two voxels that face each other: of any size and place, under poses of any kind.
-struct Meeting {
+struct VoxelPair {
   Isometry3d pose_a = identity, pose_b = identity;
   Cluster a, b;
   RelativeFrame frame;
   ExactDistance distance;
 
-  explicit Meeting(Random& random) : Meeting(Setup(random), random) {}
+  explicit VoxelPair(Random& random) : VoxelPair(Setup(random), random) {}
 
 private:
   struct Setup {
@@ -121,12 +121,12 @@ private:
     return points;
   }
 
-  Meeting(const Setup& setup, Random& random)
-  : Meeting(setup, random, Vector3d(setup.far, -0.7 * setup.far, 0.1 * setup.far))
+  VoxelPair(const Setup& setup, Random& random)
+  : VoxelPair(setup, random, Vector3d(setup.far, -0.7 * setup.far, 0.1 * setup.far))
   {
   }
 
-  Meeting(const Setup& setup, Random& random, const Vector3d& center)
+  VoxelPair(const Setup& setup, Random& random, const Vector3d& center)
   : pose_a(setup.pose_a),
     pose_b(setup.pose_b),
     a(pointsAround(center, setup.scale, random), setup.floats),
@@ -166,7 +166,7 @@ TEST(ErrorBounds, PairsNearTheClearance)
   Random random(24);
   long wrong = 0, hits = 0, misses = 0, undecided = 0;
   for (long n = 0; n < attacks();) {
-    const Meeting m(random);
+    const VoxelPair m(random);
     for (int k = 0; k < 64; ++k, ++n) {
       const auto i = static_cast<std::size_t>(random.integer(0, 15)),
                  j = static_cast<std::size_t>(random.integer(0, 15));
@@ -211,7 +211,7 @@ TEST(ErrorBounds, SpheresNearTheClearance)
   constexpr float margin = 0x1p-20f; // as the sphere kernels have it
   long wrong_apart = 0, wrong_inside = 0, apart = 0, inside = 0;
   for (long n = 0; n < attacks();) {
-    const Meeting m(random);
+    const VoxelPair m(random);
     for (int k = 0; k < 16; ++k, ++n) {
       const auto i = static_cast<std::size_t>(random.integer(0, 15)),
                  j = static_cast<std::size_t>(random.integer(0, 15));
@@ -257,7 +257,7 @@ TEST(ErrorBounds, FramesThatSeparate)
   Random random(26);
   long wrong = 0, separate = 0;
   for (long n = 0; n < attacks();) {
-    const Meeting m(random);
+    const VoxelPair m(random);
     double smallest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 16; ++i)
       for (std::size_t j = 0; j < 16; ++j) smallest = std::min(smallest, m.distance.gap({m.a.given[i], m.b.given[j]}));
@@ -278,7 +278,7 @@ TEST(ErrorBounds, StoredSpheresHoldTheGivenPoints)
   Random random(27);
   long wrong = 0;
   for (long n = 0; n < attacks();) {
-    const Meeting m(random);
+    const VoxelPair m(random);
     for (const Cluster* c : {&m.a, &m.b}) {
       const LocalFrame& f = c->frame;
       Isometry3d origin = identity;
@@ -358,9 +358,9 @@ TEST(ErrorBounds, EnclosuresHoldTheDistance)
   Random random(29);
   long wrong = 0;
   for (long n = 0; n < attacks() / 4;) {
-    const Meeting m(random);
+    const VoxelPair m(random);
     for (std::size_t i = 0; i < 16; ++i, ++n) {
-      const ExactDistance::Interval interval = m.distance.enclose(m.a.given[i], m.b.given[i]);
+      const ExactDistance::Enclosure interval = m.distance.enclose(m.a.given[i], m.b.given[i]);
       if (std::isinf(interval.high)) continue;
       if (interval.low > 0.0) wrong += m.distance.compare(m.a.given[i], m.b.given[i], interval.low) < 0;
       wrong += m.distance.compare(m.a.given[i], m.b.given[i], interval.high) > 0;

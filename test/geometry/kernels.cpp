@@ -37,8 +37,8 @@ test::Near testOnTarget(const float* center, const float* radius_stretch, const 
   std::fill(z, z + 8, center[2]);
   std::fill(r, r + 8, radius_stretch[0]);
   const SphereLanes spheres{x, y, z, r, radius_stretch[1]};
-  const Ball held{ball[0], ball[1], ball[2], ball_radius + reaches[0],
-                  reaches[1] - ball_radius * (1.0f + kSphereMargin)};
+  const QueryBall held{ball[0], ball[1], ball[2], ball_radius + reaches[0],
+                       reaches[1] - ball_radius * (1.0f + kSphereMargin)};
   return {(spheresNear(spheres, held, nullptr) & 1) != 0, (spheresInside(spheres, held) & 1) != 0};
 }
 

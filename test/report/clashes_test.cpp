@@ -25,7 +25,7 @@ struct Scan {
       found.distance.push_back(points[i].distance);
       found.first_pose.push_back(collides ? points[i].first : -1);
       found.closest_pose.push_back(collides ? points[i].closest : -1);
-      found.closest_point.push_back(collides ? static_cast<std::uint32_t>(100 + i) : 0xffffffffu);
+      found.closest_point.push_back(collides ? static_cast<std::uint32_t>(100 + i) : TrajectoryResult::kNoPoint);
     }
   }
 
