@@ -3,8 +3,8 @@
 #include "cli/program.h"
 #include "viewer/options.h"
 #include "viewer/picture.h"
+#include "viewer/view_content.h"
 #include "viewer/viewer.h"
-#include "viewer/world.h"
 
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/scene_files/scene_file.h>
@@ -33,11 +33,11 @@ void check(const view::Options& options)
 int show(const view::Options& options)
 {
   check(options);
-  const std::unique_ptr<view::World> world = view::makeWorld(options);
+  const std::unique_ptr<view::ViewContent> content = view::makeViewContent(options);
   if (options.screenshot || options.export_to)
-    view::drawFiles(*world);
+    view::drawFiles(*content);
   else
-    view::Viewer(*world).run();
+    view::Viewer(*content).run();
   return 0;
 }
 

@@ -32,7 +32,7 @@ public:
   void mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors = {});
   void place(const Eigen::Isometry3d& pose);
   void setMoving(bool moving);
-  void cut(const Cut& plane); ///< of the world; nothing is drawn on the side of its normal
+  void cut(const Cut& plane); ///< in the world frame; nothing is drawn on the side of its normal
 
   vtkPolyData& data() const { return points_.data(); } ///< what is drawn
   vtkPolyData& all() const { return *all_; }           ///< with what withoutFarPoints() leaves out

@@ -25,41 +25,41 @@ vtkSmartPointer<vtkPolyData> known(CloudActor& cloud, const std::vector<std::uin
   return data;
 }
 
-vtkSmartPointer<vtkPolyData> knownScan(CloudActor& cloud, const World& world, const Findings& findings,
+vtkSmartPointer<vtkPolyData> knownScan(CloudActor& cloud, const ViewContent& content, const StepCollisions& collisions,
                                        std::size_t step)
 {
-  const auto data = known(cloud, findings.flags[0]);
-  if (const auto values = world.scan().field("intensity")) vtk::addArray(*data, "intensity", *values);
-  if (!findings.known) return data;
-  if (const auto distances = world.distances(step); !distances.empty()) vtk::addArray(*data, "distance", distances);
-  if (const auto poses = world.firstPoses(); !poses.empty()) vtk::addArray(*data, "first_pose", poses);
+  const auto data = known(cloud, collisions.flags[0]);
+  if (const auto values = content.scan().field("intensity")) vtk::addArray(*data, "intensity", *values);
+  if (!collisions.known) return data;
+  if (const auto distances = content.distances(step); !distances.empty()) vtk::addArray(*data, "distance", distances);
+  if (const auto poses = content.firstPoses(); !poses.empty()) vtk::addArray(*data, "first_pose", poses);
   return data;
 }
 
 } // namespace
 
-void exportTo(const std::filesystem::path& path, const World& world, std::vector<CloudActor>& clouds,
-              const Findings& findings, std::size_t at, unsigned level)
+void exportTo(const std::filesystem::path& path, const ViewContent& content, std::vector<CloudActor>& clouds,
+              const StepCollisions& collisions, std::size_t at, unsigned level)
 {
   cli::Step step("Writing " + path.string());
-  const auto scan = knownScan(clouds[0], world, findings, at);
+  const auto scan = knownScan(clouds[0], content, collisions, at);
   if (path.extension() == ".vtp") {
     vtk::writeVtp(*scan, path);
     step.done(grouped(static_cast<std::size_t>(scan->GetNumberOfPoints())) + " points");
     return;
   }
   std::vector<vtk::NamedData> blocks;
-  for (std::size_t i = 0; i < world.things().size(); ++i) {
-    const Thing& thing = world.things()[i];
-    const Eigen::Isometry3d pose = world.poseOf(i, at);
-    const auto spheres = vtk::sphereData(*thing.hierarchy, level);
-    blocks.emplace_back(thing.name, posed(i == 0 ? scan : known(clouds[i], findings.flags[i]), pose));
-    blocks.emplace_back(thing.name + " spheres", posed(spheres, pose));
-    blocks.emplace_back(thing.name + " sphere glyphs", posed(vtk::sphereGlyphs(*spheres), pose));
-    blocks.emplace_back(thing.name + " voxels", posed(vtk::voxelBoxes(*thing.hierarchy), pose));
-    blocks.emplace_back(thing.name + " cells", posed(vtk::cellBoxes(*thing.hierarchy, level), pose));
+  for (std::size_t i = 0; i < content.viewedClouds().size(); ++i) {
+    const ViewedCloud& viewed = content.viewedClouds()[i];
+    const Eigen::Isometry3d pose = content.poseOf(i, at);
+    const auto spheres = vtk::sphereData(*viewed.hierarchy, level);
+    blocks.emplace_back(viewed.name, posed(i == 0 ? scan : known(clouds[i], collisions.flags[i]), pose));
+    blocks.emplace_back(viewed.name + " spheres", posed(spheres, pose));
+    blocks.emplace_back(viewed.name + " sphere glyphs", posed(vtk::sphereGlyphs(*spheres), pose));
+    blocks.emplace_back(viewed.name + " voxels", posed(vtk::voxelBoxes(*viewed.hierarchy), pose));
+    blocks.emplace_back(viewed.name + " cells", posed(vtk::cellBoxes(*viewed.hierarchy, level), pose));
   }
-  for (const auto& way : world.ways(at).poses) blocks.emplace_back("path", vtk::pathData(way));
+  for (const auto& motion : content.paths(at).poses) blocks.emplace_back("path", vtk::pathData(motion));
   vtk::writeVtm(blocks, path);
   step.done(std::to_string(blocks.size()) + " blocks");
 }

@@ -39,11 +39,11 @@ void addTraced(PropGroup& group, const std::vector<TracedSphere>& all, const Eig
 
 } // namespace
 
-void addExtras(PropGroup& group, const World& world, const Extras& extras, std::size_t step)
+void addExtras(PropGroup& group, const ViewContent& content, const Extras& extras, std::size_t step)
 {
-  for (std::size_t i = 0; i < world.things().size(); ++i) {
-    const SphereHierarchy& hierarchy = *world.things()[i].hierarchy;
-    const Eigen::Isometry3d pose = world.poseOf(i, step);
+  for (std::size_t i = 0; i < content.viewedClouds().size(); ++i) {
+    const SphereHierarchy& hierarchy = *content.viewedClouds()[i].hierarchy;
+    const Eigen::Isometry3d pose = content.poseOf(i, step);
     if (extras.level) {
       const auto spheres = vtk::sphereData(hierarchy, *extras.level);
       const std::vector<Color> colors(static_cast<std::size_t>(spheres->GetNumberOfPoints()), sphere_color);
@@ -53,9 +53,9 @@ void addExtras(PropGroup& group, const World& world, const Extras& extras, std::
     if (extras.cells) addWires(group, *vtk::cellBoxes(hierarchy, extras.level.value_or(1)), pose, cell_color);
   }
   if (!extras.trace) return;
-  for (const Trace& query : world.traces(step)) {
-    addTraced(group, query.trace.a, world.poseOf(query.a, step));
-    addTraced(group, query.trace.b, world.poseOf(query.b, step));
+  for (const Trace& query : content.traces(step)) {
+    addTraced(group, query.trace.a, content.poseOf(query.a, step));
+    addTraced(group, query.trace.b, content.poseOf(query.b, step));
   }
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "actors.h"
-#include "world.h"
+#include "view_content.h"
 
 #include <optional>
 
@@ -16,6 +16,6 @@ struct Extras {
 
 /// Adds what shows the algorithm at work: spheres of a level, voxels and octree cells as wire boxes, and what a query
 /// tested and pruned.
-void addExtras(PropGroup& group, const World& world, const Extras& extras, std::size_t step);
+void addExtras(PropGroup& group, const ViewContent& content, const Extras& extras, std::size_t step);
 
 } // namespace pcl_bsh::view

@@ -2,7 +2,7 @@
 #include "picture.h"
 
 #include "cli/step.h"
-#include "stage.h"
+#include "render_view.h"
 
 #include <pcl_bsh/vtk/offscreen_window.h>
 
@@ -13,13 +13,13 @@
 
 namespace pcl_bsh::view {
 
-void drawFiles(const World& world)
+void drawFiles(const ViewContent& content)
 {
-  const Options& options = world.options();
+  const Options& options = content.options();
   const auto window = vtk::makeOffscreenWindow(options.width, options.height);
   vtkNew<vtkRenderer> renderer;
   window->AddRenderer(renderer);
-  Stage stage(world, *renderer);
+  RenderView view(content, *renderer);
   if (options.screenshot) {
     cli::Step step("Drawing " + options.screenshot->string());
     vtk::writePng(*window, *options.screenshot);
@@ -27,7 +27,7 @@ void drawFiles(const World& world)
     std::cout << "wrote " << options.screenshot->string() << '\n';
   }
   if (options.export_to) {
-    stage.exportTo(*options.export_to);
+    view.exportTo(*options.export_to);
     std::cout << "wrote " << options.export_to->string() << '\n';
   }
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "world.h"
+#include "view_content.h"
 
 namespace pcl_bsh::view {
 
 /// Writes what --screenshot and --export ask for; needs no display. @throws std::runtime_error naming the file
-void drawFiles(const World& world);
+void drawFiles(const ViewContent& content);
 
 } // namespace pcl_bsh::view

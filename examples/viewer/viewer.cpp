@@ -90,18 +90,18 @@ void onSliderMoving(vtkObject*, unsigned long event, void* viewer, void*)
 
 } // namespace
 
-Viewer::Viewer(const World& world) : world_(world)
+Viewer::Viewer(const ViewContent& content) : content_(content)
 {
   if (!vtk::haveDisplay())
     throw std::runtime_error("DISPLAY: no X server answers there, so no window can open: set DISPLAY, or give "
                              "--screenshot FILE.png, which needs none");
   window_ = vtkSmartPointer<vtkRenderWindow>::New();
-  window_->SetSize(world.options().width, world.options().height);
-  window_->SetWindowName((std::string(program) + ": " + world.name()).c_str());
+  window_->SetSize(content.options().width, content.options().height);
+  window_->SetWindowName((std::string(program) + ": " + content.name()).c_str());
   window_->SetMultiSamples(0);
   renderer_ = vtkSmartPointer<vtkRenderer>::New();
   window_->AddRenderer(renderer_);
-  stage_ = std::make_unique<Stage>(world, *renderer_);
+  render_view_ = std::make_unique<RenderView>(content, *renderer_);
 
   interactor_ = vtkSmartPointer<vtkRenderWindowInteractor>::New();
   interactor_->SetRenderWindow(window_);
@@ -110,7 +110,7 @@ Viewer::Viewer(const World& world) : world_(world)
   style->SetDefaultRenderer(renderer_);
   interactor_->SetInteractorStyle(style);
   interactor_->Initialize();
-  if (world.steps() > 1) addSlider();
+  if (content.steps() > 1) addSlider();
 }
 
 Viewer::~Viewer()
@@ -122,9 +122,9 @@ void Viewer::addSlider()
 {
   vtkNew<vtkSliderRepresentation2D> look;
   look->SetMinimumValue(0.0);
-  look->SetMaximumValue(static_cast<double>(world_.steps() - 1));
-  look->SetValue(static_cast<double>(stage_->step()));
-  look->SetTitleText(world_.stepName());
+  look->SetMaximumValue(static_cast<double>(content_.steps() - 1));
+  look->SetValue(static_cast<double>(render_view_->step()));
+  look->SetTitleText(content_.stepName());
   look->SetLabelFormat("%.0f");
   look->GetPoint1Coordinate()->SetCoordinateSystemToNormalizedViewport();
   look->GetPoint1Coordinate()->SetValue(0.35, 0.07);
@@ -163,13 +163,14 @@ void Viewer::run()
 
 bool Viewer::press(const std::string& key)
 {
-  Extras extras = stage_->extras();
+  Extras extras = render_view_->extras();
   if (key == "plus" || key == "+" || key == "KP_Add") {
     extras.level = extras.level ? *extras.level + 1 : 0;
-    for (const Thing& thing : world_.things()) // the finest level of any is the last
-      if (*extras.level > 0) thing.hierarchy->buildAll(world_.options().threads);
+    for (const ViewedCloud& viewed : content_.viewedClouds()) // the finest level of any is the last
+      if (*extras.level > 0) viewed.hierarchy->buildAll(content_.options().threads);
     std::size_t deepest = 0;
-    for (const Thing& thing : world_.things()) deepest = std::max(deepest, thing.hierarchy->statistics().depth);
+    for (const ViewedCloud& viewed : content_.viewedClouds())
+      deepest = std::max(deepest, viewed.hierarchy->statistics().depth);
     if (*extras.level > 0) extras.level = std::min(*extras.level, static_cast<unsigned>(deepest));
   }
   else if (key == "minus" || key == "-" || key == "KP_Subtract") {
@@ -183,29 +184,29 @@ bool Viewer::press(const std::string& key)
   else if (key == "o")
     extras.cells = !extras.cells;
   else if (key == "t") {
-    if (!world_.options().clearance)
-      stage_->setNote("t shows a query: give an obstacle and --clearance");
+    if (!content_.options().clearance)
+      render_view_->setNote("t shows a query: give an obstacle and --clearance");
     else
       extras.trace = !extras.trace;
   }
   else if (key == "h") {
     help_ = !help_;
-    stage_->setNote(help_ ? keys : "");
+    render_view_->setNote(help_ ? keys : "");
   }
   else if (key == "r")
-    stage_->look(world_.options().camera);
+    render_view_->look(content_.options().camera);
   else if (key == "s")
     save();
   else if (key == "Left" || key == "Right") {
-    const std::size_t last = world_.steps() - 1, step = stage_->step();
+    const std::size_t last = content_.steps() - 1, step = render_view_->step();
     showStep(key == "Right" ? std::min(step + 1, last) : step - (step > 0 ? 1 : 0));
     if (slider_)
       static_cast<vtkSliderRepresentation*>(slider_->GetRepresentation())
-          ->SetValue(static_cast<double>(stage_->step()));
+          ->SetValue(static_cast<double>(render_view_->step()));
   }
   else
     return false;
-  stage_->setExtras(extras);
+  render_view_->setExtras(extras);
   interactor_->Render();
   return true;
 }
@@ -215,24 +216,25 @@ void Viewer::pick(int x, int y)
   vtkNew<vtkPointPicker> picker;
   picker->SetTolerance(0.005);
   picked_.clear();
-  if (picker->Pick(x, y, 0.0, renderer_) != 0) picked_ = stage_->describe(picker->GetViewProp(), picker->GetPointId());
+  if (picker->Pick(x, y, 0.0, renderer_) != 0)
+    picked_ = render_view_->describe(picker->GetViewProp(), picker->GetPointId());
   if (!picked_.empty()) std::cout << picked_ << std::endl;
   help_ = false;
-  stage_->setNote(picked_);
+  render_view_->setNote(picked_);
   interactor_->Render();
 }
 
 void Viewer::showStep(std::size_t step)
 {
-  step = std::min(step, world_.steps() - 1);
-  if (step == stage_->step()) return;
-  stage_->show(step);
+  step = std::min(step, content_.steps() - 1);
+  if (step == render_view_->step()) return;
+  render_view_->show(step);
   interactor_->Render();
 }
 
 void Viewer::setMoving(bool moving)
 {
-  stage_->setMoving(moving);
+  render_view_->setMoving(moving);
 }
 
 void Viewer::save()
@@ -245,10 +247,10 @@ void Viewer::save()
   try {
     vtk::writePng(*window_, path);
     saved_ = path;
-    stage_->setNote("saved " + path.string());
+    render_view_->setNote("saved " + path.string());
   }
   catch (const std::runtime_error& error) {
-    stage_->setNote(error.what()); // the window stays: another folder may do
+    render_view_->setNote(error.what()); // the window stays: another folder may do
   }
 }
 

@@ -2,7 +2,7 @@
 // The window: mouse, keys, a slider along the steps, picking.
 #pragma once
 
-#include "stage.h"
+#include "render_view.h"
 
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
@@ -26,7 +26,7 @@ h  q    hide this, quit)";
 class Viewer {
 public:
   /// @throws std::runtime_error when there is no display
-  explicit Viewer(const World& world);
+  explicit Viewer(const ViewContent& content);
   ~Viewer();
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
@@ -37,7 +37,7 @@ public:
   vtkRenderWindow& window() { return *window_; }
   vtkRenderWindowInteractor& interactor() { return *interactor_; }
   vtkSliderWidget* slider() { return slider_; } ///< null where there is one pose
-  Stage& stage() { return *stage_; }
+  RenderView& renderView() { return *render_view_; }
 
   // Called by events.
   bool press(const std::string& key); ///< @return false for a key that means nothing here
@@ -51,12 +51,12 @@ private:
   void addSlider();
   void save();
 
-  const World& world_;
+  const ViewContent& content_;
   vtkSmartPointer<vtkRenderWindow> window_;
   vtkSmartPointer<vtkRenderer> renderer_;
   vtkSmartPointer<vtkRenderWindowInteractor> interactor_;
   vtkSmartPointer<vtkSliderWidget> slider_;
-  std::unique_ptr<Stage> stage_;
+  std::unique_ptr<RenderView> render_view_;
   std::string picked_;
   std::filesystem::path saved_;
   bool help_ = false;

@@ -53,9 +53,9 @@ protected:
 TEST_F(Picture, MarksWhatCollidesWhereItIs)
 {
   Options touching = options();
-  OffscreenStage set(touching);
+  OffscreenView set(touching);
   const Pixels pixels = set.draw();
-  ASSERT_GT(set.stage->findings().colliding, 0u);
+  ASSERT_GT(set.view->collisions().colliding, 0u);
   EXPECT_GT(pixels.count(scan_color, 60), 1000u) << "the floor, shaded";
   EXPECT_GT(pixels.count(ground), 1000u);
 
@@ -64,15 +64,15 @@ TEST_F(Picture, MarksWhatCollidesWhereItIs)
   touching.camera.eye = {0, 0, -6};
   touching.camera.focus = {0, 0, 0};
   touching.camera.up = {0, 1, 0};
-  OffscreenStage below(touching);
+  OffscreenView below(touching);
   const Pixels under = below.draw();
   const double contact[3] = {-0.5, 0.5, 0.0};
   const auto [x, y] = below.seen(contact);
   EXPECT_GT(under.countNear(colliding_color, x, y, 30), 200u) << "around the ball's dip";
   EXPECT_GT(under.countNear(colliding_color, x, y, 40), under.count(colliding_color) * 3 / 4) << "legend apart";
   touching.pose.translation().z() = 2.0;
-  OffscreenStage apart(touching);
-  ASSERT_EQ(apart.stage->findings().colliding, 0u);
+  OffscreenView apart(touching);
+  ASSERT_EQ(apart.view->collisions().colliding, 0u);
   EXPECT_EQ(apart.draw().countNear(colliding_color, x, y, 40), 0u);
 }
 
@@ -84,13 +84,13 @@ TEST_F(Picture, DistancesHaveColoursUpToTheRangeAndCollisionsTheirOwn)
   near.camera.eye = {0, 0, -6};
   near.camera.focus = {0, 0, 0};
   near.camera.up = {0, 1, 0};
-  OffscreenStage to_clearance(near);
+  OffscreenView to_clearance(near);
   const double contact[3] = {-0.5, 0.5, 0.0}, beside[3] = {-0.5, 1.1, 0.0};
   const auto [x, y] = to_clearance.seen(contact);
   const Pixels dim = to_clearance.draw();
   EXPECT_EQ(dim.countNear(colliding_color, x, y, 40), 0u);
   near.range = 1.0;
-  OffscreenStage to_range(near);
+  OffscreenView to_range(near);
   const Pixels pixels = to_range.draw();
   EXPECT_GT(pixels.countNear(colliding_color, x, y, 40), 200u);
   const auto [u, v] = to_range.seen(beside);
@@ -100,9 +100,9 @@ TEST_F(Picture, DistancesHaveColoursUpToTheRangeAndCollisionsTheirOwn)
 TEST_F(Picture, NothingOfTheFirstCloudIsDrawnBeyondTheCut)
 {
   Options whole = options();
-  OffscreenStage all(whole);
+  OffscreenView all(whole);
   whole.cut = Cut{{0, 0, 0}, {1, 0, 0}};
-  OffscreenStage half(whole);
+  OffscreenView half(whole);
   const Pixels without = all.draw(), with = half.draw();
   const double kept[3] = {-1, 1, 0}, gone[3] = {1, -1, 0}, model[3] = {-0.5, 0.5, 0.45};
   const auto count = [&](const Pixels& pixels, const double* at) {
@@ -113,7 +113,7 @@ TEST_F(Picture, NothingOfTheFirstCloudIsDrawnBeyondTheCut)
   EXPECT_LT(count(without, gone), 17u * 17u);
   EXPECT_EQ(count(with, gone), 17u * 17u);
   whole.cut = Cut{{0, 0, 0}, {-1, 0, 0}};
-  OffscreenStage other(whole);
+  OffscreenView other(whole);
   EXPECT_EQ(count(other.draw(), kept), 17u * 17u);
   EXPECT_LT(count(other.draw(), model), 17u * 17u) << "the model is not cut";
 }
@@ -144,11 +144,11 @@ TEST_F(Picture, SpheresAreOutlinedWhereTheirCentresSay)
   plain.pose = Eigen::Isometry3d::Identity();
   plain.color = Coloring::height;
   plain.width = 800; // the bar stands beside the ball, not before it
-  OffscreenStage set(plain);
+  OffscreenView set(plain);
   const Pixels none = set.draw();
-  set.stage->setExtras({0, false, false, false});
+  set.view->setExtras({0, false, false, false});
   const Pixels some = set.draw();
-  const auto spheres = vtk::sphereData(*set.world->scan().hierarchy, 0);
+  const auto spheres = vtk::sphereData(*set.content->scan().hierarchy, 0);
   for (vtkIdType i = 0; i < spheres->GetNumberOfPoints(); ++i) {
     double rim[3];
     spheres->GetPoint(i, rim);
@@ -156,24 +156,24 @@ TEST_F(Picture, SpheresAreOutlinedWhereTheirCentresSay)
     const auto [x, y] = set.seen(rim);
     EXPECT_GT(some.differing(none, x, y, 2), 0u) << "sphere " << i;
   }
-  set.stage->setExtras({2, false, false, false});
+  set.view->setExtras({2, false, false, false});
   EXPECT_GT(set.draw().differing(some), 200u) << "a level changes the picture";
-  set.stage->setExtras({});
+  set.view->setExtras({});
   EXPECT_EQ(set.draw().bytes, none.bytes);
 }
 
 TEST_F(Picture, ExtrasChangeThePictureAndTheLegend)
 {
-  OffscreenStage set(options());
+  OffscreenView set(options());
   const Pixels plain = set.draw();
   const auto count = [&](const Extras& extras, const Color& color) {
-    set.stage->setExtras(extras);
+    set.view->setExtras(extras);
     return set.draw().countNear(color, 40, 60, 80); // the legend's corner
   };
   EXPECT_GT(plain.countNear(colliding_color, 40, 60, 80), 10u);
   EXPECT_GT(count({{}, true, false, false}, voxel_color), 10u);
   EXPECT_GT(count({{}, false, true, false}, cell_color), 10u);
-  set.stage->setExtras({{}, false, false, true});
+  set.view->setExtras({{}, false, false, true});
   EXPECT_GT(set.draw().differing(plain), 500u) << "the trace";
 }
 
@@ -198,10 +198,10 @@ TEST_F(Picture, TheClosestPairIsDrawn)
   Options apart = options();
   apart.pose.translation() = Eigen::Vector3d(3.0, 0, 0);
   apart.closest = true;
-  OffscreenStage set(apart);
+  OffscreenView set(apart);
   const Pixels pixels = set.draw();
-  ASSERT_TRUE(set.stage->findings().closest);
-  const Eigen::Vector3d middle = (set.stage->findings().closest->a + set.stage->findings().closest->b) / 2;
+  ASSERT_TRUE(set.view->collisions().closest);
+  const Eigen::Vector3d middle = (set.view->collisions().closest->a + set.view->collisions().closest->b) / 2;
   const auto [x, y] = set.seen(middle.data());
   EXPECT_GT(pixels.countNear(segment_color, x, y, 3), 3u);
 }
@@ -213,8 +213,8 @@ TEST_F(Picture, ExportsReadBack)
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName((folder / "f.vtp").c_str());
   reader->Update();
-  const CloudsWorld world(options());
-  const Findings found = world.findings(0);
+  const CloudsContent content(options());
+  const StepCollisions found = content.collisions(0);
   vtkPointData* const values = reader->GetOutput()->GetPointData();
   ASSERT_EQ(reader->GetOutput()->GetNumberOfPoints(), static_cast<vtkIdType>(found.flags[0].size()));
   for (const char* name : {"index", "collision", "distance", "first_pose", "intensity"})
@@ -252,7 +252,7 @@ TEST_F(Picture, PointsFarOffLeaveTheOthersInSight)
   asked.height = 300;
   asked.camera.kind = Camera::Kind::top;
   asked.threads = 1;
-  OffscreenStage set(asked);
+  OffscreenView set(asked);
   const Pixels pixels = set.draw();
   for (const double x : {1.0, 25.0, 48.0}) {
     const double point[3] = {x, 20, 0};
@@ -278,7 +278,7 @@ TEST_F(Picture, WordsBesideTheBarEndInThePicture)
     asked.width = width;
     asked.height = 300;
     asked.threads = 1;
-    OffscreenStage set(asked);
+    OffscreenView set(asked);
     const Pixels pixels = set.draw();
     const auto column = [&](int x) { // below the title
       std::size_t lit = 0;

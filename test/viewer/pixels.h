@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures as numbers, a display of one's own, and a small world to look at.
+// Pictures as numbers, a display of one's own, and a few clouds to look at.
 #pragma once
 
 #include "../programs/program_run.h"
 
 #include <viewer/options.h>
 #include <viewer/palette.h>
-#include <viewer/stage.h>
-#include <viewer/world.h>
+#include <viewer/render_view.h>
+#include <viewer/view_content.h>
 
 #include <pcl_bsh/vtk/offscreen_window.h>
 
@@ -95,13 +95,13 @@ inline Pixels readPng(const std::filesystem::path& path)
   return pixels;
 }
 
-/// A stage to ask where things are.
-struct OffscreenStage {
-  explicit OffscreenStage(const Options& options) : world(makeWorld(options))
+/// A view without a display that is asked where clouds are drawn.
+struct OffscreenView {
+  explicit OffscreenView(const Options& options) : content(makeViewContent(options))
   {
     window = vtk::makeOffscreenWindow(options.width, options.height);
     window->AddRenderer(renderer);
-    stage = std::make_unique<Stage>(*world, *renderer);
+    view = std::make_unique<RenderView>(*content, *renderer);
   }
 
   Pixels draw() { return pixelsOf(*window); }
@@ -115,10 +115,10 @@ struct OffscreenStage {
     return {static_cast<int>(std::lround(at[0])), static_cast<int>(std::lround(at[1]))};
   }
 
-  std::unique_ptr<World> world;
+  std::unique_ptr<ViewContent> content;
   vtkNew<vtkRenderer> renderer;
   vtkSmartPointer<vtkRenderWindow> window;
-  std::unique_ptr<Stage> stage;
+  std::unique_ptr<RenderView> view;
 };
 
 /// An X server of the test's own, for as long as it lives; DISPLAY names it.

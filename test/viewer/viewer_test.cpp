@@ -51,21 +51,21 @@ protected:
 TEST_F(ViewerTest, KeysChangeWhatIsShown)
 {
   const Xvfb display;
-  const CloudsWorld world(options());
-  Viewer viewer(world);
+  const CloudsContent content(options());
+  Viewer viewer(content);
   const Pixels plain = pixelsOf(viewer.window());
   press(viewer, '+', "plus");
-  ASSERT_EQ(viewer.stage().extras().level, 0u);
+  ASSERT_EQ(viewer.renderView().extras().level, 0u);
   const Pixels level_0 = pixelsOf(viewer.window());
   EXPECT_GT(level_0.differing(plain), 200u);
   press(viewer, '+', "plus");
-  EXPECT_EQ(viewer.stage().extras().level, 1u);
+  EXPECT_EQ(viewer.renderView().extras().level, 1u);
   EXPECT_GT(pixelsOf(viewer.window()).differing(level_0), 200u);
   for (int i = 0; i < 6; ++i) press(viewer, '+', "KP_Add");
-  const std::optional<unsigned> last = viewer.stage().extras().level;
+  const std::optional<unsigned> last = viewer.renderView().extras().level;
   EXPECT_LT(*last, 5u) << "there is an end";
   for (unsigned i = 0; i < *last + 1; ++i) press(viewer, '-', "minus");
-  EXPECT_FALSE(viewer.stage().extras().level);
+  EXPECT_FALSE(viewer.renderView().extras().level);
   EXPECT_EQ(pixelsOf(viewer.window()).bytes, plain.bytes);
   for (const char key : {'v', 'o', 't', 'h'}) {
     const char symbol[] = {key, '\0'};
@@ -79,17 +79,17 @@ TEST_F(ViewerTest, KeysChangeWhatIsShown)
 TEST_F(ViewerTest, TheSliderMovesTheModelAndFlagsFollow)
 {
   const Xvfb display;
-  const CloudsWorld world(options());
-  Viewer viewer(world);
+  const CloudsContent content(options());
+  Viewer viewer(content);
   ASSERT_NE(viewer.slider(), nullptr);
-  EXPECT_EQ(viewer.stage().findings().colliding, 0u);
+  EXPECT_EQ(viewer.renderView().collisions().colliding, 0u);
   const Pixels before = pixelsOf(viewer.window());
   auto* const knob = vtkSliderRepresentation2D::SafeDownCast(viewer.slider()->GetRepresentation());
   knob->SetValue(2.0);
   viewer.slider()->InvokeEvent(vtkCommand::InteractionEvent);
-  EXPECT_EQ(viewer.stage().step(), 2u);
-  EXPECT_EQ(viewer.stage().findings().flags, world.findings(2).flags);
-  EXPECT_GT(viewer.stage().findings().colliding, 0u);
+  EXPECT_EQ(viewer.renderView().step(), 2u);
+  EXPECT_EQ(viewer.renderView().collisions().flags, content.collisions(2).flags);
+  EXPECT_GT(viewer.renderView().collisions().colliding, 0u);
   EXPECT_GT(pixelsOf(viewer.window()).differing(before), 100u);
 
   // The mouse, on the slider's bar: near its right end is the last pose.
@@ -99,13 +99,13 @@ TEST_F(ViewerTest, TheSliderMovesTheModelAndFlagsFollow)
   mouse(viewer, vtkCommand::LeftButtonPressEvent, x, y);
   mouse(viewer, vtkCommand::MouseMoveEvent, x, y);
   mouse(viewer, vtkCommand::LeftButtonReleaseEvent, x, y);
-  EXPECT_EQ(viewer.stage().step(), 3u);
-  EXPECT_EQ(viewer.stage().findings().colliding, 0u);
+  EXPECT_EQ(viewer.renderView().step(), 3u);
+  EXPECT_EQ(viewer.renderView().collisions().colliding, 0u);
   press(viewer, 0, "Left");
-  EXPECT_EQ(viewer.stage().step(), 2u);
+  EXPECT_EQ(viewer.renderView().step(), 2u);
   EXPECT_EQ(knob->GetValue(), 2.0);
   for (int i = 0; i < 9; ++i) press(viewer, 0, "Right");
-  EXPECT_EQ(viewer.stage().step(), 3u) << "there is an end";
+  EXPECT_EQ(viewer.renderView().step(), 3u) << "there is an end";
 }
 
 TEST_F(ViewerTest, AClickTellsOfThePoint)
@@ -113,12 +113,12 @@ TEST_F(ViewerTest, AClickTellsOfThePoint)
   const Xvfb display;
   Options from_above = options();
   from_above.camera.kind = Camera::Kind::top;
-  const CloudsWorld world(from_above);
-  Viewer viewer(world);
+  const CloudsContent content(from_above);
+  Viewer viewer(content);
   pixelsOf(viewer.window());
   vtkRenderer* const renderer = viewer.window().GetRenderers()->GetFirstRenderer();
   const std::uint32_t record = 60 * 81 + 30;
-  const Point3 p = world.scan().points().point(record);
+  const Point3 p = content.scan().points().point(record);
   renderer->SetWorldPoint(p[0], p[1], p[2], 1.0);
   renderer->WorldToDisplay();
   const int x = static_cast<int>(std::lround(renderer->GetDisplayPoint()[0]));
@@ -137,8 +137,8 @@ TEST_F(ViewerTest, AClickTellsOfThePoint)
 TEST_F(ViewerTest, DraggingTurnsTheCameraAndResetBringsItBack)
 {
   const Xvfb display;
-  const CloudsWorld world(options());
-  Viewer viewer(world);
+  const CloudsContent content(options());
+  Viewer viewer(content);
   const Pixels before = pixelsOf(viewer.window());
   mouse(viewer, vtkCommand::LeftButtonPressEvent, 200, 250);
   mouse(viewer, vtkCommand::MouseMoveEvent, 260, 270);
@@ -151,10 +151,10 @@ TEST_F(ViewerTest, DraggingTurnsTheCameraAndResetBringsItBack)
 TEST_F(ViewerTest, SavesPictures)
 {
   const Xvfb display;
-  const CloudsWorld world(options());
+  const CloudsContent content(options());
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(folder / "");
-  Viewer viewer(world);
+  Viewer viewer(content);
   pixelsOf(viewer.window());
   press(viewer, 's', "s");
   press(viewer, 's', "s");
@@ -165,10 +165,10 @@ TEST_F(ViewerTest, SavesPictures)
 
 TEST_F(ViewerTest, NoDisplayIsAnErrorNotAnEnd)
 {
-  const CloudsWorld world(options());
+  const CloudsContent content(options());
   for (const char* display : {"", ":987"}) {
     setenv("DISPLAY", display, 1);
-    EXPECT_THROW(Viewer{world}, std::runtime_error);
+    EXPECT_THROW(Viewer{content}, std::runtime_error);
   }
 }
 

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scan, what stands in its way, and a model that takes poses.
+// A scan, obstacles that do not move, and a model that takes poses.
 #pragma once
 
-#include "world.h"
+#include "view_content.h"
 
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 namespace pcl_bsh::view {
 
-class CloudsWorld final : public World {
+class CloudsContent final : public ViewContent {
 public:
   /// @throws io::CloudFileError, std::invalid_argument naming the file
-  explicit CloudsWorld(const Options& options);
+  explicit CloudsContent(const Options& options);
 
   std::string name() const override { return scan().name; }
   std::size_t steps() const override { return poses_.size(); }
   const char* stepName() const override { return "pose"; }
-  Eigen::Isometry3d poseOf(std::size_t thing, std::size_t step) const override;
-  bool moves(std::size_t thing) const override { return thing == model_; }
+  Eigen::Isometry3d poseOf(std::size_t cloud, std::size_t step) const override;
+  bool moves(std::size_t cloud) const override { return cloud == model_; }
 
   /// Asked of the queries; without a clearance, read from the scan's field `collision`, if any.
-  Findings findings(std::size_t step) const override;
-  std::string heading(const Findings& findings, std::size_t step) const override;
-  Ways ways(std::size_t step) const override;
+  StepCollisions collisions(std::size_t step) const override;
+  std::string heading(const StepCollisions& collisions, std::size_t step) const override;
+  MotionPaths paths(std::size_t step) const override;
 
   /// Or the scan's field `distance`.
   std::vector<float> distances(std::size_t step) const override;
@@ -32,14 +32,17 @@ public:
   std::vector<std::int32_t> firstPoses() const override;
 
   /// Of the scan's points: the distance to the nearest point of any obstacle, and the first pose.
-  std::string details(std::size_t thing, std::uint32_t record, std::size_t step) const override;
+  std::string details(std::size_t cloud, std::uint32_t record, std::size_t step) const override;
   std::vector<Trace> traces(std::size_t step) const override;
 
 private:
-  Placed placed(std::size_t thing, std::size_t step) const { return {*things_[thing].hierarchy, poseOf(thing, step)}; }
+  Placed placed(std::size_t cloud, std::size_t step) const
+  {
+    return {*viewed_clouds_[cloud].hierarchy, poseOf(cloud, step)};
+  }
   FlagsRequest flagsRequest() const;
   TrajectoryRequest along() const;
-  std::optional<Closest> closest(std::size_t step) const;
+  std::optional<ClosestPair> closest(std::size_t step) const;
   std::optional<double> distanceOf(std::uint32_t record, std::size_t step) const;
 
   std::optional<std::size_t> model_;

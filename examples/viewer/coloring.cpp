@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "painting.h"
+#include "coloring.h"
 
 #include "cli/program.h"
 
@@ -43,7 +43,7 @@ std::string lengthTitle(const std::string& name, const Options& options)
   return name + "\n[" + (options.unit.empty() ? "cloud's unit" : options.unit) + "]";
 }
 
-Values heights(const Thing& scan, const Options& options)
+Values heights(const ViewedCloud& scan, const Options& options)
 {
   Values heights{{}, lengthTitle("height z", options)};
   heights.values.reserve(scan.points().count);
@@ -52,10 +52,11 @@ Values heights(const Thing& scan, const Options& options)
   return heights;
 }
 
-Values firstPoses(const World& world)
+Values firstPoses(const ViewContent& content)
 {
   Values first{{}, "first pose\n[number]", false, true};
-  for (const std::int32_t pose : world.firstPoses()) first.values.push_back(pose < 0 ? nan : static_cast<float>(pose));
+  for (const std::int32_t pose : content.firstPoses())
+    first.values.push_back(pose < 0 ? nan : static_cast<float>(pose));
   return first;
 }
 
@@ -97,30 +98,30 @@ void markValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Ran
     bar.hide();
 }
 
-Color plainColor(const Thing& thing)
+Color plainColor(const ViewedCloud& viewed)
 {
-  return thing.role == Thing::Role::scan ? scan_color : obstacle_color;
+  return viewed.role == ViewedCloud::Role::scan ? scan_color : obstacle_color;
 }
 
 template <class Value>
-const Value& required(const std::optional<Value>& value, const World& world, const std::string& what)
+const Value& required(const std::optional<Value>& value, const ViewContent& content, const std::string& what)
 {
   if (!value)
-    throw cli::UsageError("--color: " + world.scan().file.string() + " has no " + what + ": give another colour");
+    throw cli::UsageError("--color: " + content.scan().file.string() + " has no " + what + ": give another colour");
   return *value;
 }
 
-void requireFindings(const Findings& findings, const std::string& option)
+void requireCollisions(const StepCollisions& collisions, const std::string& option)
 {
-  if (!findings.known)
+  if (!collisions.known)
     throw cli::UsageError("--color: it is not known what collides: give an obstacle and --clearance, or a cloud with "
                           "the field 'collision', for " +
                           option);
 }
 
-void paintScan(CloudActor& cloud, ValueBar& bar, const World& world, Coloring coloring)
+void paintScan(CloudActor& cloud, ValueBar& bar, const ViewContent& content, Coloring coloring)
 {
-  const Thing& scan = world.scan();
+  const ViewedCloud& scan = content.scan();
   switch (coloring) {
   case Coloring::collision:
   case Coloring::distance:
@@ -128,53 +129,53 @@ void paintScan(CloudActor& cloud, ValueBar& bar, const World& world, Coloring co
     cloud.paint(plainColor(scan));
     return;
   case Coloring::height:
-    paintValues(cloud, bar, heights(scan, world.options()));
+    paintValues(cloud, bar, heights(scan, content.options()));
     return;
   case Coloring::intensity:
-    paintValues(cloud, bar, {required(scan.field("intensity"), world, "field 'intensity'"), "intensity\n[as given]"});
+    paintValues(cloud, bar, {required(scan.field("intensity"), content, "field 'intensity'"), "intensity\n[as given]"});
     return;
   case Coloring::rgb:
-    cloud.paint(required(scan.colors(), world, "colours (fields rgb, rgba or red, green, blue)"));
+    cloud.paint(required(scan.colors(), content, "colours (fields rgb, rgba or red, green, blue)"));
   }
 }
 
 } // namespace
 
-Coloring coloringOf(const World& world, const Findings& findings)
+Coloring coloringOf(const ViewContent& content, const StepCollisions& collisions)
 {
-  if (world.options().color) return *world.options().color;
-  if (findings.known) return Coloring::collision;
-  return world.scan().colors() ? Coloring::rgb : Coloring::height;
+  if (content.options().color) return *content.options().color;
+  if (collisions.known) return Coloring::collision;
+  return content.scan().colors() ? Coloring::rgb : Coloring::height;
 }
 
-void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, Coloring coloring)
+void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& content, Coloring coloring)
 {
-  paintScan(clouds[0], bar, world, coloring);
-  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].paint(plainColor(world.things()[i]));
+  paintScan(clouds[0], bar, content, coloring);
+  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].paint(plainColor(content.viewedClouds()[i]));
 }
 
-void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, const Findings& findings,
+void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& content, const StepCollisions& collisions,
           Coloring coloring, std::size_t step)
 {
-  const Options& options = world.options();
+  const Options& options = content.options();
   if (coloring == Coloring::distance) {
-    requireFindings(findings, "distance");
-    const Values shown{world.distances(step), lengthTitle("distance", options), true};
+    requireCollisions(collisions, "distance");
+    const Values shown{content.distances(step), lengthTitle("distance", options), true};
     if (options.range)
-      markValues(clouds[0], bar, shown, {0.0, *options.range}, findings.flags[0]);
+      markValues(clouds[0], bar, shown, {0.0, *options.range}, collisions.flags[0]);
     else
       markValues(clouds[0], bar, shown, {0.0, options.clearance.value_or(rangeOf(shown.values, 0.0).high)});
   }
   else if (coloring == Coloring::first_pose) {
-    requireFindings(findings, "first_pose");
-    const Values shown = firstPoses(world);
+    requireCollisions(collisions, "first_pose");
+    const Values shown = firstPoses(content);
     markValues(clouds[0], bar, shown, rangeOf(shown.values, 0.0));
   }
   else {
-    if (coloring == Coloring::collision) requireFindings(findings, "collision");
-    clouds[0].mark(findings.flags[0]);
+    if (coloring == Coloring::collision) requireCollisions(collisions, "collision");
+    clouds[0].mark(collisions.flags[0]);
   }
-  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].mark(findings.flags[i]);
+  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].mark(collisions.flags[i]);
 }
 
 } // namespace pcl_bsh::view

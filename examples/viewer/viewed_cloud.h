@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One cloud of what there is to see, with its index.
+// One cloud that the viewer shows, with its hierarchy.
 #pragma once
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
@@ -15,12 +15,12 @@
 
 namespace pcl_bsh::view {
 
-struct Thing {
+struct ViewedCloud {
   /// A scan is drawn in grey and marked in orange, an obstacle in blue and yellow.
   enum class Role { scan, obstacle };
 
   std::string name;   ///< for titles
-  std::string legend; ///< things of the same role may share an entry
+  std::string legend; ///< clouds of the same role may share an entry
   Role role = Role::scan;
   std::filesystem::path file;
   std::shared_ptr<const pcl::PCLPointCloud2> cloud; ///< as it was read; none where fields are not shown

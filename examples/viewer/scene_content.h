@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "world.h"
+#include "view_content.h"
 
 namespace pcl_bsh::view {
 
 /// A scene file's objects, seen at any of its steps. @throws io::JsonError, io::CloudFileError naming the file,
 /// cli::UsageError for a step that the scene does not have
-std::unique_ptr<World> makeSceneRun(const Options& options);
+std::unique_ptr<ViewContent> makeSceneContent(const Options& options);
 
 } // namespace pcl_bsh::view

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The picture: a world's clouds, marks, spheres and boxes as actors of one renderer.
+// The picture: clouds, marks, spheres and boxes of a ViewContent as actors of one renderer.
 #pragma once
 
 #include "actors.h"
@@ -7,7 +7,7 @@
 #include "cloud_actor.h"
 #include "extra_actors.h"
 #include "value_bar.h"
-#include "world.h"
+#include "view_content.h"
 
 #include <vtkBoundingBox.h>
 #include <vtkRenderer.h>
@@ -17,11 +17,11 @@
 
 namespace pcl_bsh::view {
 
-class Stage {
+class RenderView {
 public:
-  Stage(const World& world, vtkRenderer& renderer);
+  RenderView(const ViewContent& content, vtkRenderer& renderer);
 
-  /// Takes everything to where it is at this step, and lets flags and all that hangs on them follow.
+  /// Places all clouds as at this step, and draws what collides there, the paths and the texts anew.
   void show(std::size_t step);
   std::size_t step() const { return step_; }
 
@@ -38,27 +38,27 @@ public:
   /// @throws std::runtime_error naming the file
   void exportTo(const std::filesystem::path& path);
 
-  const Findings& findings() const { return findings_; }
+  const StepCollisions& collisions() const { return collisions_; }
 
 private:
   void drawClouds();
   void drawExtras();
-  void drawClosest();
-  void drawWays();
+  void drawClosestPair();
+  void drawPaths();
   void writeTexts();
   std::vector<LegendEntry> legend() const;
-  vtkBoundingBox boundsOf(std::size_t thing) const;
+  vtkBoundingBox boundsOf(std::size_t cloud) const;
   vtkBoundingBox collidingBounds() const;
 
-  const World& world_;
+  const ViewContent& content_;
   vtkRenderer& renderer_;
   std::vector<CloudActor> clouds_;
-  PropGroup extra_props_, closest_props_, way_props_;
+  PropGroup extra_props_, closest_props_, path_props_;
   Caption caption_;
   ValueBar bar_;
   Coloring coloring_;
   Extras extras_;
-  Findings findings_;
+  StepCollisions collisions_;
   std::size_t step_ = 0;
 };
 

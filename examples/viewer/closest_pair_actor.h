@@ -2,11 +2,11 @@
 #pragma once
 
 #include "actors.h"
-#include "world.h"
+#include "view_content.h"
 
 namespace pcl_bsh::view {
 
 /// Adds a closest pair as a segment, with its distance.
-void addClosest(PropGroup& group, const Closest& closest, const std::string& unit);
+void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::string& unit);
 
 } // namespace pcl_bsh::view

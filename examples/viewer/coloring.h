@@ -3,22 +3,22 @@
 
 #include "cloud_actor.h"
 #include "value_bar.h"
-#include "world.h"
+#include "view_content.h"
 
 #include <vector>
 
 namespace pcl_bsh::view {
 
 /// As the options say, or what fits best.
-Coloring coloringOf(const World& world, const Findings& findings);
+Coloring coloringOf(const ViewContent& content, const StepCollisions& collisions);
 
 /// Gives all clouds their colours, and shows the bar where these stand for values.
 /// @throws cli::UsageError when the clouds lack what the colours stand for
-void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, Coloring coloring);
+void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& content, Coloring coloring);
 
 /// Marks what collides at this step; where the marks' colours stand for values, the bar says which.
 /// @throws cli::UsageError when it is not known what collides
-void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const World& world, const Findings& findings,
+void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& content, const StepCollisions& collisions,
           Coloring coloring, std::size_t step);
 
 } // namespace pcl_bsh::view

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "clouds_world.h"
+#include "clouds_content.h"
 
 #include "cli/program.h"
 #include "cli/step.h"
@@ -17,25 +17,25 @@
 namespace pcl_bsh::view {
 namespace {
 
-Thing load(const std::filesystem::path& file, Thing::Role role, unsigned threads)
+ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, unsigned threads)
 {
-  Thing thing;
-  thing.name = thing.legend = file.filename().string();
-  thing.role = role;
-  thing.file = file;
+  ViewedCloud viewed;
+  viewed.name = viewed.legend = file.filename().string();
+  viewed.role = role;
+  viewed.file = file;
   cli::Step step("Loading " + file.string());
   const auto cloud = std::make_shared<pcl::PCLPointCloud2>(io::readCloud(file));
   HierarchyOptions how;
   how.threads = threads;
-  thing.hierarchy = std::make_shared<SphereHierarchy>(viewOf(*cloud), how);
-  thing.cloud = cloud;
-  step.done(std::to_string(thing.points().count) + " points");
-  return thing;
+  viewed.hierarchy = std::make_shared<SphereHierarchy>(viewOf(*cloud), how);
+  viewed.cloud = cloud;
+  step.done(std::to_string(viewed.points().count) + " points");
+  return viewed;
 }
 
 } // namespace
 
-CloudsWorld::CloudsWorld(const Options& options) : World(options), poses_{options.pose}
+CloudsContent::CloudsContent(const Options& options) : ViewContent(options), poses_{options.pose}
 {
   if (options.trajectory) {
     std::vector<std::string> warnings;
@@ -46,20 +46,21 @@ CloudsWorld::CloudsWorld(const Options& options) : World(options), poses_{option
     throw cli::UsageError("--step: " + std::to_string(options.step) + ": the trajectory has " +
                           std::to_string(poses_.size()) + " poses, counted from 0");
   for (const std::filesystem::path& file : options.clouds)
-    things_.push_back(load(file, things_.empty() ? Thing::Role::scan : Thing::Role::obstacle, options.threads));
+    viewed_clouds_.push_back(
+        load(file, viewed_clouds_.empty() ? ViewedCloud::Role::scan : ViewedCloud::Role::obstacle, options.threads));
   if (options.model) {
-    model_ = things_.size();
-    things_.push_back(load(*options.model, Thing::Role::obstacle, options.threads));
+    model_ = viewed_clouds_.size();
+    viewed_clouds_.push_back(load(*options.model, ViewedCloud::Role::obstacle, options.threads));
   }
   if (scan().hierarchy->empty()) throw std::invalid_argument(scan().file.string() + ": has no finite point to show");
 }
 
-Eigen::Isometry3d CloudsWorld::poseOf(std::size_t thing, std::size_t step) const
+Eigen::Isometry3d CloudsContent::poseOf(std::size_t cloud, std::size_t step) const
 {
-  return thing == model_ ? poses_[step] : Eigen::Isometry3d::Identity();
+  return cloud == model_ ? poses_[step] : Eigen::Isometry3d::Identity();
 }
 
-FlagsRequest CloudsWorld::flagsRequest() const
+FlagsRequest CloudsContent::flagsRequest() const
 {
   FlagsRequest request;
   request.clearance = options_.clearance.value_or(0.0);
@@ -68,7 +69,7 @@ FlagsRequest CloudsWorld::flagsRequest() const
   return request;
 }
 
-TrajectoryRequest CloudsWorld::along() const
+TrajectoryRequest CloudsContent::along() const
 {
   TrajectoryRequest request;
   request.clearance = options_.clearance.value_or(0.0);
@@ -77,14 +78,14 @@ TrajectoryRequest CloudsWorld::along() const
   return request;
 }
 
-Findings CloudsWorld::findings(std::size_t step) const
+StepCollisions CloudsContent::collisions(std::size_t step) const
 {
-  Findings found;
-  found.flags.resize(things_.size());
+  StepCollisions found;
+  found.flags.resize(viewed_clouds_.size());
   if (options_.clearance) {
     found.known = true;
     found.flags[0].assign(scan().points().count, 0);
-    for (std::size_t other = 1; other < things_.size(); ++other) {
+    for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
       FlagsResult flags = collisionFlags(placed(0, step), placed(other, step), flagsRequest());
       for (std::size_t i = 0; i < flags.a.size(); ++i) found.flags[0][i] |= flags.a[i];
       found.flags[other] = std::move(flags.b);
@@ -99,49 +100,49 @@ Findings CloudsWorld::findings(std::size_t step) const
   return found;
 }
 
-std::optional<Closest> CloudsWorld::closest(std::size_t step) const
+std::optional<ClosestPair> CloudsContent::closest(std::size_t step) const
 {
-  std::optional<Closest> nearest;
-  for (std::size_t other = 1; other < things_.size(); ++other) {
+  std::optional<ClosestPair> nearest;
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
     const DistanceResult found = closestPair(placed(0, step), placed(other, step));
     if (!found.pair || (nearest && nearest->distance <= found.distance)) continue;
-    const Point3 a = scan().points().point(found.pair->a), b = things_[other].points().point(found.pair->b);
+    const Point3 a = scan().points().point(found.pair->a), b = viewed_clouds_[other].points().point(found.pair->b);
     nearest = {Eigen::Vector3d(a[0], a[1], a[2]), poseOf(other, step) * Eigen::Vector3d(b[0], b[1], b[2]),
                found.distance};
   }
   return nearest;
 }
 
-std::string CloudsWorld::heading(const Findings& findings, std::size_t step) const
+std::string CloudsContent::heading(const StepCollisions& collisions, std::size_t step) const
 {
   std::ostringstream text;
   text << scan().name << ": " << grouped(scan().hierarchy->size()) << " points";
-  if (findings.known) {
-    text << ", " << grouped(findings.colliding) << " collide";
+  if (collisions.known) {
+    text << ", " << grouped(collisions.colliding) << " collide";
     if (options_.clearance) text << "  (clearance " << lengthOf(*options_.clearance, options_.unit) << ')';
   }
   if (steps() > 1) text << "\npose " << step << " of 0.." << steps() - 1;
   return text.str();
 }
 
-Ways CloudsWorld::ways(std::size_t /*step*/) const
+MotionPaths CloudsContent::paths(std::size_t /*step*/) const
 {
   if (steps() == 1) return {};
   return {"path of the model", {poses_}};
 }
 
-std::optional<double> CloudsWorld::distanceOf(std::uint32_t record, std::size_t step) const
+std::optional<double> CloudsContent::distanceOf(std::uint32_t record, std::size_t step) const
 {
-  if (things_.size() == 1) return std::nullopt;
+  if (viewed_clouds_.size() == 1) return std::nullopt;
   const Point3 p = scan().points().point(record);
   const SphereHierarchy point(viewOf(p.data(), 1));
   double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t other = 1; other < things_.size(); ++other)
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
     nearest = std::min(nearest, closestPair({point}, placed(other, step)).distance);
   return nearest;
 }
 
-std::vector<float> CloudsWorld::distances(std::size_t step) const
+std::vector<float> CloudsContent::distances(std::size_t step) const
 {
   if (!options_.clearance)
     if (auto field = scan().field("distance")) return *field;
@@ -150,15 +151,15 @@ std::vector<float> CloudsWorld::distances(std::size_t step) const
   TrajectoryRequest asked = along();
   asked.distances = true;
   asked.clearance = options_.range.value_or(*options_.clearance);
-  for (std::size_t other = 1; other < things_.size(); ++other) {
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
     const TrajectoryResult found =
-        collideAlong(placed(0, step), *things_[other].hierarchy, {poseOf(other, step)}, asked);
+        collideAlong(placed(0, step), *viewed_clouds_[other].hierarchy, {poseOf(other, step)}, asked);
     for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = std::fmin(distances[i], found.distance[i]);
   }
   return distances;
 }
 
-std::vector<std::int32_t> CloudsWorld::firstPoses() const
+std::vector<std::int32_t> CloudsContent::firstPoses() const
 {
   if (first_poses_) return *first_poses_;
   std::vector<std::int32_t> first(scan().points().count, -1);
@@ -170,10 +171,10 @@ std::vector<std::int32_t> CloudsWorld::firstPoses() const
     cli::Step step("Following " + std::to_string(steps()) + " poses");
     TrajectoryRequest asked = along();
     asked.first_poses = true;
-    for (std::size_t other = 1; other < things_.size(); ++other) {
+    for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
       const std::vector<Eigen::Isometry3d> still = {poseOf(other, 0)};
       const TrajectoryResult found =
-          collideAlong(placed(0, 0), *things_[other].hierarchy, other == model_ ? poses_ : still, asked);
+          collideAlong(placed(0, 0), *viewed_clouds_[other].hierarchy, other == model_ ? poses_ : still, asked);
       for (std::size_t i = 0; i < first.size(); ++i) {
         const std::int32_t pose = found.first_pose[i];
         if (pose >= 0 && (first[i] < 0 || pose < first[i])) first[i] = pose;
@@ -184,9 +185,9 @@ std::vector<std::int32_t> CloudsWorld::firstPoses() const
   return *(first_poses_ = std::move(first));
 }
 
-std::string CloudsWorld::details(std::size_t thing, std::uint32_t record, std::size_t step) const
+std::string CloudsContent::details(std::size_t cloud, std::uint32_t record, std::size_t step) const
 {
-  if (thing > 0) return {};
+  if (cloud > 0) return {};
   std::string text;
   if (const auto distance = distanceOf(record, step)) text += "; distance " + lengthOf(*distance, options_.unit);
   if (first_poses_ || steps() > 1) {
@@ -196,10 +197,10 @@ std::string CloudsWorld::details(std::size_t thing, std::uint32_t record, std::s
   return text;
 }
 
-std::vector<Trace> CloudsWorld::traces(std::size_t step) const
+std::vector<Trace> CloudsContent::traces(std::size_t step) const
 {
   std::vector<Trace> traces;
-  for (std::size_t other = 1; other < things_.size(); ++other)
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
     traces.push_back(
         {0, other, traceCollision(placed(0, step), placed(other, step), {options_.clearance.value_or(0.0), {}})});
   return traces;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "closest_actor.h"
+#include "closest_pair_actor.h"
 
 #include "caption.h"
 #include "text.h"
@@ -12,7 +12,7 @@
 
 namespace pcl_bsh::view {
 
-void addClosest(PropGroup& group, const Closest& closest, const std::string& unit)
+void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::string& unit)
 {
   vtkNew<vtkLineSource> line;
   line->SetPoint1(closest.a.data());

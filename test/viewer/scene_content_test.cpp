@@ -43,13 +43,13 @@ protected:
   }
 
   /// What collides at a step, by the query for two clouds.
-  static std::size_t collidingAt(const World& world, std::size_t step, double clearance)
+  static std::size_t collidingAt(const ViewContent& content, std::size_t step, double clearance)
   {
     FlagsRequest request;
     request.clearance = clearance;
     request.flagged = Side::both;
-    const FlagsResult flags = collisionFlags({*world.things()[0].hierarchy, world.poseOf(0, step)},
-                                             {*world.things()[1].hierarchy, world.poseOf(1, step)}, request);
+    const FlagsResult flags = collisionFlags({*content.viewedClouds()[0].hierarchy, content.poseOf(0, step)},
+                                             {*content.viewedClouds()[1].hierarchy, content.poseOf(1, step)}, request);
     return static_cast<std::size_t>(std::count(flags.a.begin(), flags.a.end(), 1) +
                                     std::count(flags.b.begin(), flags.b.end(), 1));
   }
@@ -57,10 +57,10 @@ protected:
 
 TEST_F(SceneRunTest, CollidingPointsStandOutAtTheStepsWhereThereAreAny)
 {
-  OffscreenStage set(options());
+  OffscreenView set(options());
   const double contact[3] = {-0.25, 0.0, 0.0};
   for (const std::size_t step : {0u, 3u, 1u}) {
-    set.stage->show(step);
+    set.view->show(step);
     const Pixels pixels = set.draw();
     const auto [x, y] = set.seen(contact);
     const std::size_t marked = pixels.countNear(colliding_color, x, y, 60);
@@ -79,72 +79,72 @@ TEST_F(SceneRunTest, CollidingPointsStandOutAtTheStepsWhereThereAreAny)
 
 TEST_F(SceneRunTest, FlagsAreThoseOfTheTwoCloudsInAnyOrderOfSteps)
 {
-  const std::unique_ptr<World> scene = makeSceneRun(options());
+  const std::unique_ptr<ViewContent> scene = makeSceneContent(options());
   ASSERT_EQ(scene->steps(), 5u);
   for (const std::size_t step : {4u, 1u, 3u, 0u, 2u}) {
     EXPECT_EQ(scene->poseOf(1, step).translation(), Eigen::Vector3d(-2 + 0.5 * static_cast<double>(step), 0, 0));
-    EXPECT_EQ(scene->findings(step).colliding, collidingAt(*scene, step, 0.05)) << step;
+    EXPECT_EQ(scene->collisions(step).colliding, collidingAt(*scene, step, 0.05)) << step;
   }
-  EXPECT_EQ(scene->findings(1).colliding, 0u);
-  EXPECT_GT(scene->findings(3).colliding, 0u);
-  EXPECT_THAT(scene->heading(scene->findings(3), 3), HasSubstr("step 3 of 0..4, 1.5 s"));
-  EXPECT_EQ(scene->ways(3).poses.at(0).size(), 4u);
+  EXPECT_EQ(scene->collisions(1).colliding, 0u);
+  EXPECT_GT(scene->collisions(3).colliding, 0u);
+  EXPECT_THAT(scene->heading(scene->collisions(3), 3), HasSubstr("step 3 of 0..4, 1.5 s"));
+  EXPECT_EQ(scene->paths(3).poses.at(0).size(), 4u);
 }
 
 TEST_F(SceneRunTest, ObjectsHaltAsTheSceneSaysAndAClearanceShowsWhatIsNear)
 {
   Options near = options(R"("response": "stop")");
-  const std::unique_ptr<World> scene = makeSceneRun(near);
-  EXPECT_EQ(scene->findings(4).colliding, 0u);
+  const std::unique_ptr<ViewContent> scene = makeSceneContent(near);
+  EXPECT_EQ(scene->collisions(4).colliding, 0u);
   EXPECT_NEAR(scene->poseOf(1, 4).translation().x(), -1.05, 0.02) << "before the other";
-  EXPECT_THAT(scene->heading(scene->findings(4), 4), HasSubstr("flying meets still"));
+  EXPECT_THAT(scene->heading(scene->collisions(4), 4), HasSubstr("flying meets still"));
   near.clearance = 0.2;
   near.closest = true;
-  const std::unique_ptr<World> wide = makeSceneRun(near);
-  EXPECT_EQ(wide->poseOf(1, 4).matrix(), scene->poseOf(1, 4).matrix()) << "the way is the scene's";
-  EXPECT_EQ(wide->findings(4).colliding, collidingAt(*wide, 4, 0.2));
-  EXPECT_GT(wide->findings(4).colliding, 0u);
-  EXPECT_NEAR(wide->findings(4).closest->distance, 0.05, 0.001);
+  const std::unique_ptr<ViewContent> wide = makeSceneContent(near);
+  EXPECT_EQ(wide->poseOf(1, 4).matrix(), scene->poseOf(1, 4).matrix()) << "the path is the scene's";
+  EXPECT_EQ(wide->collisions(4).colliding, collidingAt(*wide, 4, 0.2));
+  EXPECT_GT(wide->collisions(4).colliding, 0u);
+  EXPECT_NEAR(wide->collisions(4).closest->distance, 0.05, 0.001);
 }
 
 TEST_F(SceneRunTest, WavesRunForwardAndBack)
 {
   const Options waving =
       options(R"("deform": 1.5)", R"(, "wave": { "amplitude": [0, 0, 0.3], "length": 1.3, "period": 1.7 })");
-  const std::unique_ptr<World> scene = makeSceneRun(waving);
+  const std::unique_ptr<ViewContent> scene = makeSceneContent(waving);
   EXPECT_TRUE(scene->deforms(1));
   const auto topAt = [&](std::size_t step) {
-    scene->findings(step);
-    return scene->things()[1].points().point(0)[2];
+    scene->collisions(step);
+    return scene->viewedClouds()[1].points().point(0)[2];
   };
   const double early = topAt(1);
   EXPECT_NE(topAt(3), early);
   EXPECT_EQ(topAt(1), early);
   for (const std::size_t step : {3u, 2u}) {
-    const Findings found = scene->findings(step); // puts the points where they are then
+    const StepCollisions found = scene->collisions(step); // puts the points where they are then
     EXPECT_EQ(found.colliding, collidingAt(*scene, step, 0.05)) << step;
   }
 
-  OffscreenStage set(waving);
-  set.stage->show(3);
+  OffscreenView set(waving);
+  set.view->show(3);
   const Pixels before = set.draw();
-  set.stage->show(0);
+  set.view->show(0);
   EXPECT_GT(set.draw().differing(before), 500u);
-  set.stage->show(3);
+  set.view->show(3);
   EXPECT_EQ(set.draw().bytes, before.bytes);
 }
 
 TEST_F(SceneRunTest, TheSliderMovesObjectsAndFlagsFollow)
 {
   const Xvfb display;
-  const std::unique_ptr<World> scene = makeSceneRun(options());
+  const std::unique_ptr<ViewContent> scene = makeSceneContent(options());
   Viewer viewer(*scene);
   ASSERT_NE(viewer.slider(), nullptr);
   const Pixels before = pixelsOf(viewer.window());
   vtkSliderRepresentation2D::SafeDownCast(viewer.slider()->GetRepresentation())->SetValue(3.0);
   viewer.slider()->InvokeEvent(vtkCommand::InteractionEvent);
-  EXPECT_EQ(viewer.stage().step(), 3u);
-  EXPECT_EQ(viewer.stage().findings().flags, scene->findings(3).flags);
+  EXPECT_EQ(viewer.renderView().step(), 3u);
+  EXPECT_EQ(viewer.renderView().collisions().flags, scene->collisions(3).flags);
   EXPECT_GT(pixelsOf(viewer.window()).count(colliding_color), before.count(colliding_color) + 50);
 }
 
@@ -164,7 +164,7 @@ TEST_F(SceneRunTest, TheProgramDrawsAndExportsAStep)
   blocks->SetFileName((folder / "f.vtm").c_str());
   blocks->Update();
   EXPECT_EQ(vtkMultiBlockDataSet::SafeDownCast(blocks->GetOutput())->GetNumberOfBlocks(), 11u)
-      << "two balls; spheres, glyphs, voxels, cells of both; the way";
+      << "two balls; spheres, glyphs, voxels, cells of both; the path";
 }
 
 TEST_F(SceneRunTest, RefusesWhatIsNoSceneOrNoStepOfIt)

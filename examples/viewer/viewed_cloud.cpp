@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "thing.h"
+#include "viewed_cloud.h"
 
 #include <pcl_bsh/filters/cloud_files/field_type.h>
 
@@ -30,7 +30,7 @@ void eachValue(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field
 
 } // namespace
 
-std::optional<std::vector<float>> Thing::field(const std::string& field_name) const
+std::optional<std::vector<float>> ViewedCloud::field(const std::string& field_name) const
 {
   const pcl::PCLPointField* const found = cloud ? find(*cloud, field_name) : nullptr;
   if (!found) return std::nullopt;
@@ -42,7 +42,7 @@ std::optional<std::vector<float>> Thing::field(const std::string& field_name) co
   return values;
 }
 
-std::optional<std::vector<std::array<unsigned char, 3>>> Thing::colors() const
+std::optional<std::vector<std::array<unsigned char, 3>>> ViewedCloud::colors() const
 {
   std::vector<std::array<unsigned char, 3>> colors(std::size_t{cloud->width} * cloud->height);
   for (const char* packed : {"rgb", "rgba"}) {

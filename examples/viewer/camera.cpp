@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "eye.h"
+#include "camera.h"
 
 #include <Eigen/Geometry>
 #include <vtkCamera.h>

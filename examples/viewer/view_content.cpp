@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "view_content.h"
+
+#include "clouds_content.h"
+#include "scene_content.h"
+
+namespace pcl_bsh::view {
+
+std::unique_ptr<ViewContent> makeViewContent(const Options& options)
+{
+  if (options.scene) return makeSceneContent(options);
+  return std::make_unique<CloudsContent>(options);
+}
+
+} // namespace pcl_bsh::view
