@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The search for any colliding pair: depth first, nearest children first, done at the first witness.
 
-#if defined(PCL_BSH_QUERY_ANY_SEARCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PCL_BSH_QUERY_ANY_SEARCH_INL_H_
-#undef PCL_BSH_QUERY_ANY_SEARCH_INL_H_
+#if defined(PCL_BSH_COLLISION_ANY_SEARCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_COLLISION_ANY_SEARCH_INL_H_
+#undef PCL_BSH_COLLISION_ANY_SEARCH_INL_H_
 #else
-#define PCL_BSH_QUERY_ANY_SEARCH_INL_H_
+#define PCL_BSH_COLLISION_ANY_SEARCH_INL_H_
 #endif
 
 #include <pcl_bsh/query/acceptance.h>
@@ -20,7 +20,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// The observer of a search that nobody follows: calls that compile to nothing.
+/// An observer that does nothing: its calls compile to nothing.
 struct NoObserver {
   void seeded(const LanePair&) {}
   void stepped(const LanePair&, Opened, const PairWalk::Step&) {}
@@ -28,9 +28,9 @@ struct NoObserver {
   static bool stops(const PairWalk&, const LanePair&, Opened) { return false; }
 };
 
-/// @tparam Observer told of the pairs of the roots' children that may meet, of each pair whose larger side was opened,
-///   with what became of the children, and of each pair of leaves whose points were compared; asked before each pair
-///   whether to stop there
+/// @tparam Observer is called with the pairs of the roots' children that may meet (seeded), with each pair whose larger
+///   side was opened and the test of its children (stepped), with each pair of leaves whose points were compared
+///   (compared), and before each pair is opened, whether to stop there (stops)
 template <class Observer>
 class AnySearch {
 public:

@@ -152,7 +152,7 @@ private:
     to_beat_ = tolerance_ > 0.0 ? std::nextafter(best_high_ - tolerance_, -kInfinity) : best_high_;
   }
 
-  /// The same on the word of float arithmetic.
+  /// The same with the gap that float arithmetic computed, for answers without proof.
   void believe(PointPair candidate, double gap)
   {
     if (best_ && !(gap < best_gap_)) return;

@@ -168,7 +168,7 @@ void collidingIndices(const Placed& a, const Placed& b, const FlagsRequest& requ
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   CollidingIndices found;
-  std::swap(found, result); // whatever throws, the result tells of no collision
+  std::swap(found, result); // should something throw, the result has no collision
   for (Indices* const indices : {&found.a, &found.b, &found.undecided_a, &found.undecided_b}) indices->clear();
   ListSheet sheet_a(found.a, found.undecided_a), sheet_b(found.b, found.undecided_b);
   found.work = flagSides(a, b, request, sheet_a, sheet_b);

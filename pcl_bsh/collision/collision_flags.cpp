@@ -131,7 +131,7 @@ void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& reques
   FlagsResult found;
   found.a.swap(result.a);
   found.b.swap(result.b);
-  result = FlagsResult(); // whatever throws, it tells of no collision, and of no free point either
+  result = FlagsResult(); // should something throw, it has neither colliding nor free points
   found.a.clear();
   found.b.clear();
   FlagSheet sheet_a(found.a), sheet_b(found.b);

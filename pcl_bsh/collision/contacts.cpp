@@ -168,7 +168,7 @@ struct PairHeap {
   std::size_t bytes() const noexcept { return pairs.capacity() * sizeof(PairGap); }
 };
 
-/// The nearest: a heap whose first is the farthest, once it is full.
+/// The nearest pairs: once full, a heap whose first pair is the farthest of them.
 class NearestPairs {
   /// Rounding keeps the order of gaps, but may make some equal that are not.
   bool before(const PairGap& l, const PairGap& r) const
@@ -185,7 +185,8 @@ class NearestPairs {
 public:
   NearestPairs(const Placed& a, const Placed& b, double clearance, std::size_t most)
   : pairs_(a, b, clearance),
-    most_(std::min(most, std::numeric_limits<std::size_t>::max() - 1) + 1), // one more tells whether that was all
+    most_(std::min(most, std::numeric_limits<std::size_t>::max() - 1) +
+          1), // one more pair shows that some are left out
     reach_(clearance)
   {
     kept_.clear();
@@ -269,7 +270,7 @@ void nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& re
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   result.contacts.clear();
-  result.complete = false; // whatever throws, it does not tell that nothing collides
+  result.complete = false; // should something throw, the result does not claim that nothing collides
   HWY_DYNAMIC_DISPATCH(nearestContactsOnTarget)(a, b, request, result);
 }
 

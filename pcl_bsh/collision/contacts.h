@@ -41,7 +41,7 @@ ContactsResult nearestContacts(const Placed& a, const Placed& b, const ContactsR
 /// The same into a result whose memory is used again.
 void nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& request, ContactsResult& result);
 
-/// Pairs of points within the clearance, in no useful order, for those who go through them all.
+/// Pairs of points within the clearance, in no particular order, for callers that visit all of them.
 struct PairsWithin {
   std::vector<PointPair> pairs;
   bool complete = true; ///< false: there are more than `request.most`, and `pairs` holds any of them

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The walk that flags the points of one voxel of a. Every node of a carries the list of what can still matter of b, so
-// that a's points share one descent. A point is settled at its first neighbour, a node as soon as its farthest point
-// must be within the clearance of something.
+// The walk that flags the points of one voxel of a. Every node of a carries the list of the nodes of b that can still
+// matter, so that the points of a share one descent. A point is settled at its first neighbour, a node as soon as all
+// of its points are proven to be within the clearance of some point of b.
 
 #if defined(PCL_BSH_COLLISION_FLAG_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_COLLISION_FLAG_WALK_INL_H_
@@ -18,9 +18,9 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// @tparam Sink what becomes of points, each once in a walk, but for few that collide:
-///   collide(record); free(record) where takesFree() says so; leave(record), undecided, where takesUndecided() does;
-///   leaveAll(), where nothing of the voxel was looked at
+/// @tparam Sink is called with the result of each point, once in a walk but for few that collide: collide(record);
+///   free(record) if takesFree(); leave(record) for undecided points if takesUndecided(); leaveAll() if no point of the
+///   voxel was tested
 template <class Sink>
 class FlagWalk {
 public:
@@ -133,7 +133,7 @@ private:
     }
   }
 
-  /// Where the walk may stop early: tells of what has met nothing of b, and of what it leaves undecided.
+  /// Where the walk may stop early: reports to the sink which points met nothing of b, and which stay undecided.
   void clear(const FlagVisit& visit)
   {
     for (std::uint32_t bits = visit.open; bits != 0; bits &= bits - 1) {

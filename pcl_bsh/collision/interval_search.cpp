@@ -63,7 +63,7 @@ private:
 
   bool isSettled() const { return clearance_ && upper_ <= *clearance_; }
 
-  /// To a level there is no way around, and a stack is cheaper than a heap.
+  /// Down to a level all pairs that matter are opened in any order, and a stack is cheaper than a heap.
   void searchDepthFirst()
   {
     nearestLast(0);
@@ -77,7 +77,7 @@ private:
     }
   }
 
-  /// Within a budget, what bounds the distance from below is opened first.
+  /// Within a budget, the pair with the smallest lower bound is opened first: it limits what can be proven.
   void searchBestFirst()
   {
     if (!open_.empty()) dive();
@@ -110,7 +110,8 @@ private:
     }
   }
 
-  /// Compares two leaves, or opens a pair and hands on what matters of it, or leaves it where the rule says so.
+  /// Compares two leaves; or opens a pair and calls take() with those of its children that matter; or leaves the pair
+  /// closed where the rule does not let it be opened.
   template <class Take>
   void expand(const Open& open, const Take& take)
   {

@@ -19,7 +19,7 @@ bool keepsFloats(double low, double high, double origin, double reach)
          reach <= std::exp2(std::ilogb(nearest) + 1);
 }
 
-/// Whether a frame had better have its origin at 0 on an axis, for no other keeps all floats: where it is so near that
+/// Whether a frame's origin should be 0 on an axis: no other origin keeps all floats exact, and 0 is so near that
 /// spheres around the origin stay small.
 bool belongsAtZero(double low, double high, double half)
 {

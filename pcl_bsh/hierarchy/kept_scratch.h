@@ -50,7 +50,8 @@ private:
   ScratchSlot* next_ = nullptr;
 };
 
-/// A thread's T while it lives: what the last use on this thread left, or a new one. T tells its bytes().
+/// Lends a T to one thread for the lifetime of the lease: the T of the last lease on this thread, or a new one.
+/// T::bytes() is the memory that it holds.
 template <class T>
 class ScratchLease {
 public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads are an argument: one is a plain loop, several are oneTBB's, and none of the results can tell.
+// The number of threads is an argument: one runs a plain loop, more run in oneTBB, and the results are the same.
 #pragma once
 
 #include <pcl_bsh/geometry/float_environment.h>

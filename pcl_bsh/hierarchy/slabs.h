@@ -26,8 +26,8 @@ public:
   LazySlabs& operator=(const LazySlabs&) = delete;
   ~LazySlabs() { reset(); }
 
-  /// One per node of a built voxel whose points have no radii. Any number of threads may ask at once: all that are too
-  /// early fit the same, and one of them counts.
+  /// One per node of a built voxel whose points have no radii. Any number of threads may call this at once:
+  /// threads that come before slabs are stored all fit the same ones, and those of one thread are kept.
   /// @param work the slabs that this call added to the voxel are added to it
   const Slabs* of(const Voxel& voxel, BuildWork& work)
   {

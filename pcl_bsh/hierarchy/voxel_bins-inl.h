@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which voxel a point is in, and what is known of a voxel while points are counted.
+// What is known of a voxel while points are counted.
 
 #if defined(PCL_BSH_HIERARCHY_VOXEL_BINS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_HIERARCHY_VOXEL_BINS_INL_H_

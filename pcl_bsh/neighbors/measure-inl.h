@@ -2,11 +2,11 @@
 // Squared distances of a voxel's points from one place, as squaredDistanceAsFloat() gives them. Where points are stored
 // as they were given, they are read where the search has just been, in vectors, and not in the caller's cloud.
 
-#if defined(PCL_BSH_QUERY_MEASURE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PCL_BSH_QUERY_MEASURE_INL_H_
-#undef PCL_BSH_QUERY_MEASURE_INL_H_
+#if defined(PCL_BSH_NEIGHBORS_MEASURE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_NEIGHBORS_MEASURE_INL_H_
+#undef PCL_BSH_NEIGHBORS_MEASURE_INL_H_
 #else
-#define PCL_BSH_QUERY_MEASURE_INL_H_
+#define PCL_BSH_NEIGHBORS_MEASURE_INL_H_
 #endif
 
 #include <pcl_bsh/geometry/squared_distance.h>

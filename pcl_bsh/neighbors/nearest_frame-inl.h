@@ -19,11 +19,11 @@ namespace HWY_NAMESPACE {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// The query in one frame, and what a squared float distance s there says of the squared distance in the cloud's frame:
-/// it is within [s / inverse_below - slack, s * above + slack].
+/// The query in one frame, and how a squared float distance s there bounds the squared distance in the cloud's frame:
+/// that is within [s / inverse_below - slack, s * above + slack].
 ///
 /// With rho the frame's error and any e > 0, (sqrt(s) + rho)^2 <= s (1 + e) + rho^2 (1 + 1/e), and likewise below.
-/// Here e = kNeighborShare; as much again pays for float arithmetic, and twice as much below. Where floats know
+/// Here e = kNeighborShare; as much again pays for float arithmetic, and twice as much below. Where floats bound
 /// nothing, the query is at 0, every upper bound is infinite and nothing is left out; none of these numbers is NaN, nor
 /// is what the walk makes of them.
 struct NearestFrame {

@@ -128,7 +128,8 @@ private:
     });
   }
 
-  /// A crowded place, where one point answers for all; the smallest record numbers count, and come first.
+  /// Points of one place: one comparison decides all. Of equal points the smallest record numbers count; they come
+  /// first.
   void compareOne(const NearestFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t count)
   {
     ++work_.leaf_pairs;

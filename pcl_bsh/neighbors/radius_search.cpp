@@ -34,7 +34,7 @@ public:
     squared_.clear();
   }
 
-  /// Points [begin, end) of a voxel. @return whether that is all one wanted to know.
+  /// Points [begin, end) of a voxel. @return whether the walk may end.
   bool takeAll(const Voxel& voxel, std::uint32_t begin, std::uint32_t end)
   {
     const std::size_t count = end - begin;
@@ -77,7 +77,7 @@ private:
   ScratchArray<float>& squared_;
 };
 
-/// Is content with the first.
+/// A sink that ends the walk at the first point found.
 class FindOne {
 public:
   bool takeAll(const Voxel&, std::uint32_t, std::uint32_t) { return true; }

@@ -27,7 +27,7 @@ struct Acceptance {
   DistanceBand provenBand(const BandOf& bandOf) const
   {
     if (accepted == clearance) return bandOf(clearance);
-    // Whatever lies between is one or the other; pairs that neither bound can tell are still decided exactly.
+    // Whatever lies between is one or the other; pairs that neither bound decides are still decided exactly.
     return {bandOf(accepted).hit, bandOf(clearance).miss};
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When a walk stops before it knows all.
+// When a walk stops before all is decided.
 #pragma once
 
 #include <pcl_bsh/query/accuracy.h>

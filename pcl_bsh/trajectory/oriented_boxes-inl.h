@@ -51,7 +51,8 @@ public:
     }
   }
 
-  /// How far each child of a node reaches from its centre, along the model's axes, at any instant of a span.
+  /// How far each child of a node reaches from its centre, along the model's axes, at any instant of the voxel's
+  /// motion.
   /// @param radius of its sphere, which it does not reach beyond.
   void see(std::uint32_t node, const VoxelMotion& motion, const float (&radius)[kLanes],
            float (&extent)[3][kLanes]) const

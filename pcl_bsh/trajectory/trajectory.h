@@ -86,7 +86,7 @@ struct TrajectoryResult {
   std::vector<std::int32_t> closest_pose; ///< -1 where free
   std::vector<std::uint32_t> closest_point; ///< with distances or closest_poses: the record of the model that realises
                                             ///< the distance at the closest pose, of several the smallest;
-                                            ///< 0xffffffff where free
+                                            ///< kNoPoint where free
   std::vector<PoseSummary> poses;           ///< one per pose
   /// Swept: no pair comes within the clearance before; at it, one is within clearance + tolerance. Empty when free.
   std::optional<FirstContact> first_contact;

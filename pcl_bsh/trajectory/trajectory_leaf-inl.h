@@ -32,7 +32,7 @@ struct LeafVisit {
   Segments<kLeafPoints> segments;
   SegmentMotions<kLeafPoints> motions;
   Segment around;
-  float low[3], high[3]; ///< of the model's box that it is held against
+  float low[3], high[3]; ///< of the model's box that it is compared with
 };
 
 /// Compares leaves of the scan with what they may meet of the model.
@@ -311,7 +311,7 @@ private:
     return query_.bestBounds(query_.first ? results_.first[point] : 0.0, motion.interval->first);
   }
 
-  /// Where a point of the scan is seen at a span's ends.
+  /// Where a point of the scan is seen at the ends of a motion.
   struct PointSegment {
     std::uint32_t first, last; ///< poses of the path
     Point3 start, end;
@@ -374,7 +374,7 @@ private:
   std::vector<ModelBox> stack_;
   std::uint64_t visit_ = 0; // how many leaves were compared
   Places places_[kKeptPlaces];
-  std::vector<std::uint16_t> pose_hits_; // per pose of a span: points of a leaf
+  std::vector<std::uint16_t> pose_hits_; // per pose of a motion: points of a leaf
 };
 
 } // namespace HWY_NAMESPACE

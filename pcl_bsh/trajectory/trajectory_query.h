@@ -49,11 +49,11 @@ struct TrajectoryQuery {
   /// origin is there in the world.
   double error(const Point3& origin) const;
 
-  /// Whether floats can hold the places and lengths that a walk compares. Where not, every pair is looked at.
+  /// Whether floats can hold the places and lengths that a walk compares. Where not, every pair is compared.
   bool inFloatRange() const;
 
   /// The intervals of the path during which each voxel may be near the model, in their order. Once the rule's time is
-  /// over, whatever was not looked at may be.
+  /// over, all intervals not yet tested are included.
   std::vector<std::vector<std::uint32_t>> nearIntervals(const StopRule& rule, Progress& progress) const;
 
   mutable std::mutex mutex; ///< of the two below

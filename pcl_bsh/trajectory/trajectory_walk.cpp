@@ -108,7 +108,7 @@ private:
     results_.work.volumes_built += countChildren(voxel_->nodes);
   }
 
-  /// Now and then tells the caller that the walk goes on.
+  /// Reports progress to the caller from time to time, and whether it asked to stop.
   bool isStopped()
   {
     constexpr std::uint32_t often = 256;
@@ -333,11 +333,11 @@ private:
   bool stopped_ = false; // by the caller
   ModelBoxes model_;
   LeafWalk leaves_;
-  const bool settling_;                  // whether any pose, and any point of the model, says all that is asked
+  const bool settling_;                  // whether one pose and one point of the model answer the request
   const float settled_reach_;            // a pair nearer than this, in floats, collides
   const Voxel* voxel_ = nullptr;         // once it was entered
   std::vector<std::uint8_t> open_lanes_; // per node: children that are not settled
-  std::deque<NodeVisit>& visits_;        // by depth; a deque, for references to shallower visits clip in use
+  std::deque<NodeVisit>& visits_;        // by depth; a deque, for references to shallower visits stay in use
 };
 
 } // namespace

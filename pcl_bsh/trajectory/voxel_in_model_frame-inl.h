@@ -31,9 +31,9 @@ struct VoxelMotion {
   float steps;        ///< poses after the first; 0 where all instants count
   float reach;        ///< of points: within this of a straight line, in floats, is all that collides
   float near_squared; ///< farther from a box than the root of this, in floats at one pose, nothing in it collides
-  float smallest;     ///< motion that floats can tell from none
+  float smallest;     ///< motion that floats distinguish from rest
   float rounding;     ///< of places in floats
-  bool squares;       ///< whether squares of places and of motions that floats can tell from none are floats
+  bool squares;       ///< whether squares of places and of such motions are in the range of floats
 
   /// Whether it has halves, and strays farther than `stray_limit`.
   bool divides(double stray_limit) const { return interval->divided() && stray > stray_limit; }
@@ -72,7 +72,7 @@ public:
   const BoxTree& tree;
   const Point3 origin; ///< of the frame, in the world
   const double radius; ///< of the voxel, in the clouds' unit
-  double far = 0.0;    ///< no farther from each other, along each axis, are the origins of voxels whose points collide
+  double far = 0.0;    ///< origins of voxels whose points collide are at most this far apart along each axis
   double error = 0.0;  ///< of distances between points of such voxels, evaluated in float
   DistanceBand band;   ///< of the clearance, for them
 

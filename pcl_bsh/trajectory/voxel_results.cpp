@@ -7,7 +7,8 @@
 namespace pcl_bsh {
 namespace {
 
-/// Visits the leaves' points whose bits are set: each by its place, and where the places end for which it answers.
+/// Calls visit() for the leaves' points whose bits are set, with the range of places in the voxel that share the
+/// point's result: more than one where points coincide.
 template <class NodeVisit>
 void eachPoint(const Voxel& voxel, const std::vector<std::uint16_t>& bits_of, const NodeVisit& visit)
 {

@@ -42,7 +42,7 @@ public:
   std::vector<NearestPoint> best;          ///< per point, if that is asked for
   Work work;
 
-  /// As exact arithmetic says.
+  /// Whether the pair collides at a pose, in exact arithmetic.
   bool collide(PointPair pair, std::uint32_t k);
 
   /// Keeps the nearest for a point; of several the first pose, and there the smallest record.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two leaves, point by point: float bands decide almost every pair, exact arithmetic the rest.
 
-#if defined(PCL_BSH_QUERY_LEAF_PAIR_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PCL_BSH_QUERY_LEAF_PAIR_INL_H_
-#undef PCL_BSH_QUERY_LEAF_PAIR_INL_H_
+#if defined(PCL_BSH_TRAVERSAL_LEAF_PAIR_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAVERSAL_LEAF_PAIR_INL_H_
+#undef PCL_BSH_TRAVERSAL_LEAF_PAIR_INL_H_
 #else
-#define PCL_BSH_QUERY_LEAF_PAIR_INL_H_
+#define PCL_BSH_TRAVERSAL_LEAF_PAIR_INL_H_
 #endif
 
 #include <pcl_bsh/geometry/sphere_radius.h>

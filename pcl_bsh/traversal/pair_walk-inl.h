@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Walk, test and sink of two hierarchies at once, for queries that look for one pair: opens the larger sphere of a
-// pair, tests its children against the other sphere, and leaves the order to whoever keeps the pairs.
+// One step of the simultaneous descent of two hierarchies, for queries that look for one pair of points: opens the
+// larger sphere of a pair and tests its children against the other sphere. The query keeps the pairs and chooses their
+// order.
 
-#if defined(PCL_BSH_QUERY_PAIR_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PCL_BSH_QUERY_PAIR_WALK_INL_H_
-#undef PCL_BSH_QUERY_PAIR_WALK_INL_H_
+#if defined(PCL_BSH_TRAVERSAL_PAIR_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAVERSAL_PAIR_WALK_INL_H_
+#undef PCL_BSH_TRAVERSAL_PAIR_WALK_INL_H_
 #else
-#define PCL_BSH_QUERY_PAIR_WALK_INL_H_
+#define PCL_BSH_TRAVERSAL_PAIR_WALK_INL_H_
 #endif
 
 #include <pcl_bsh/hierarchy/crowded_cell.h>
@@ -210,7 +211,7 @@ public:
   }
 
 private:
-  /// Whether slabs can be compared: in voxels of one unit, of clouds whose points are points.
+  /// Whether slabs can be compared: in voxels of the same unit, where points have no radii.
   bool haveSlabs(const Lane& lane_a, const Lane& lane_b) const
   {
     return lane_a.space != kAboveVoxels && lane_b.space != kAboveVoxels && !a.storage.view.radii &&
@@ -223,7 +224,7 @@ private:
     return voxel.slabs.of(voxel, work)[lane.node];
   }
 
-  /// Whether float arithmetic says little about a pair of which one is child `lane` of the step.
+  /// Whether both spheres of a pair are as small as the float error; one of them is child `lane` of the step.
   static bool isBlunt(const LanePair& pair, const Step& step, std::uint32_t lane)
   {
     const float blunt = step.frame->bluntRadius();
@@ -237,8 +238,8 @@ private:
                          lane.lane);
   }
 
-  /// Takes children off the step's `near` that float arithmetic cannot decide about, and whose points as given are
-  /// apart from the other side's.
+  /// Removes children from the step's `near` which float arithmetic cannot tell from the other sphere, but whose points
+  /// as given are apart from its points.
   void dropApartAsGiven(const LanePair& pair, Opened opened, double clearance, Step& out)
   {
     for (std::uint32_t bits = out.near; bits != 0; bits &= bits - 1) {

@@ -6,7 +6,7 @@
 
 namespace pcl_bsh {
 
-/// The last word on two points: the coordinates as given, in exact arithmetic.
+/// Decides pairs of points by the coordinates as given, in exact arithmetic.
 class PointPairs {
 public:
   PointPairs(const Placed& a, const Placed& b, double greatest_distance)
