@@ -2,7 +2,7 @@
 // What pictures show, pixel by pixel; without a display.
 #include "pixels.h"
 
-#include <viewer/clouds_world.h>
+#include <viewer/clouds_content.h>
 
 #include <pcl_bsh/vtk/hierarchy_data.h>
 

@@ -2,7 +2,7 @@
 // Scenes: where objects are at each step, what collides there, and that the picture says so.
 #include "pixels.h"
 
-#include <viewer/scene_run.h>
+#include <viewer/scene_content.h>
 #include <viewer/viewer.h>
 
 #include <pcl_bsh/collision/collide.h>

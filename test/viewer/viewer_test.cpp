@@ -2,7 +2,7 @@
 // The window, driven by events as a mouse and a keyboard make them.
 #include "pixels.h"
 
-#include <viewer/clouds_world.h>
+#include <viewer/clouds_content.h>
 #include <viewer/viewer.h>
 
 #include <gmock/gmock.h>
