@@ -69,7 +69,7 @@ StageDescription<S>& withCollisionOptions(StageDescription<S>& description)
               "clearance + LENGTH] may count, too; `level=N`, `pairs=N`, `time=SECONDS`: stops early, and what stays "
               "undecided is not free; `float`: without proof. With `swept` `exact`")
       .option(&S::number_of_threads, "number_of_threads",
-              "0: one per hardware thread; the result is the same for any number")
+              "0: all of the machine's; the result is the same for any number")
       .atMost(1024);
 }
 

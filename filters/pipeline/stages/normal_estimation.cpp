@@ -107,7 +107,7 @@ StageType normalEstimation()
       .option(&NormalEstimation::view_point, "view_point",
               "[x, y, z] that normals point to; null: the sensor's position in the file")
       .unit("m")
-      .option(&NormalEstimation::number_of_threads, "number_of_threads", "0: one per hardware thread")
+      .option(&NormalEstimation::number_of_threads, "number_of_threads", "0: all of the machine's")
       .atMost(1024);
 }
 
