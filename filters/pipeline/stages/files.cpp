@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Readers and writers, of all formats that filters/io knows.
+// Readers and writers of all formats that filters/cloud_files reads and writes.
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/cloud_files/pcl_names.h>
 #include <pcl_bsh/filters/cloud_files/small_letters.h>
