@@ -178,7 +178,7 @@ TEST(TrajectoryFirstContact, RefusesWhatDoublesCannotTell)
   EXPECT_THROW(collideAlong({cloud}, cloud, Poses(2, identity), request), std::invalid_argument);
 }
 
-/// The bounds that straight_way.h states.
+/// The bounds that closest_approach.h states.
 TEST(StraightWay, RightWithinSixteenRoundings)
 {
   Random random(90);

@@ -735,7 +735,8 @@ TEST(TrajectoryAccuracy, LessAccuracyIsLessWork)
   EXPECT_LE(cost(resultAt(Accuracy::level(1))), cost(resultAt(Accuracy::level(2))));
   for (const std::uint64_t budget : {0u, 1000u, 10000u}) {
     const TrajectoryResult spent = resultAt(Accuracy::nodePairs(budget));
-    EXPECT_LE(spent.work.node_pairs, budget + 1000);
+    // Beyond the budget: what a walk begins with in each voxel, and the tests above the voxels (142 here).
+    EXPECT_LE(spent.work.node_pairs, budget + 1150);
     EXPECT_LE(spent.work.leaf_pairs, budget);
   }
   EXPECT_EQ(resultAt(Accuracy::exact()).flags, exact.flags);
