@@ -5,6 +5,7 @@
 #include "workload/nearest.h"
 #include "workload/path_scene.h"
 
+#include <pcl_bsh/collision/any_collision.h>
 #include <pcl_bsh/collision/colliding_indices.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -204,14 +205,14 @@ void showOnePose(const Options& options, const std::string& scene_name, Table& t
   request.clearance = scene.clearance;
   const auto poseAt = [&](std::size_t i) { return scene.poses[i * scene.poses.size() / options.warm_poses]; };
   for (std::size_t i = 0; i < options.warm_poses; ++i)
-    anyCollision({scan}, {model, poseAt(i)}, {scene.clearance, {}}); // fits slabs
+    pcl_bsh::anyCollision({scan}, {model, poseAt(i)}, {scene.clearance, {}}); // fits slabs
   std::vector<double> flags, indices, any;
   pcl_bsh::FlagsResult result;
   pcl_bsh::CollidingIndices list;
   for (std::size_t i = 0; i < options.warm_poses; ++i) {
     const auto pose = poseAt(i);
     const Stopwatch for_any;
-    anyCollision({scan}, {model, pose}, {scene.clearance, {}});
+    pcl_bsh::anyCollision({scan}, {model, pose}, {scene.clearance, {}});
     any.push_back(for_any.seconds());
     const Stopwatch for_flags;
     collisionFlags({scan}, {model, pose}, request, result);
