@@ -9,6 +9,8 @@
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 
+#include <hwy/base.h>
+
 #include <algorithm>
 #include <bit>
 #include <deque>
@@ -77,7 +79,7 @@ private:
     return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 32) & mask_;
   }
 
-  const RelativeFrame& add(std::uint32_t space_a, std::uint32_t space_b)
+  HWY_NOINLINE const RelativeFrame& add(std::uint32_t space_a, std::uint32_t space_b) // so that find() is inlined
   {
     if (2 * (used_ + 1) > mask_ + 1) resize(2 * (mask_ + 1));
     if (used_ == entries_.size()) entries_.emplace_back();
