@@ -80,10 +80,7 @@ namespace HWY_NAMESPACE {
 
 FlaggedVoxel listVoxelOnTarget(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, VoxelLists& lists)
 {
-  const ScratchLease<FlagScratch> scratch;
-  FlagWalk walk(query, rule, lists, *scratch);
-  walk.run(voxel);
-  return walk.found;
+  return walkVoxel(query, rule, voxel, lists);
 }
 
 } // namespace HWY_NAMESPACE

@@ -65,10 +65,7 @@ namespace HWY_NAMESPACE {
 
 FlaggedVoxel flagVoxelOnTarget(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagArray& flags)
 {
-  const ScratchLease<FlagScratch> scratch;
-  FlagWalk walk(query, rule, flags, *scratch);
-  walk.run(voxel);
-  return walk.found;
+  return walkVoxel(query, rule, voxel, flags);
 }
 
 } // namespace HWY_NAMESPACE

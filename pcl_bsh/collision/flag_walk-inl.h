@@ -13,6 +13,7 @@
 #include <pcl_bsh/collision/flag_leaf-inl.h>
 #include <pcl_bsh/collision/flag_query.h>
 #include <pcl_bsh/hierarchy/crowded_cell.h>
+#include <pcl_bsh/hierarchy/kept_scratch.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -364,6 +365,16 @@ private:
   std::vector<ObstacleSphere>& spheres_; ///< of the obstacles' roots
   std::vector<std::uint32_t>& reached_;
 };
+
+/// One walk through a voxel of a, in memory that the thread keeps.
+template <class Sink>
+FlaggedVoxel walkVoxel(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, Sink& sink)
+{
+  const ScratchLease<FlagScratch> scratch;
+  FlagWalk walk(query, rule, sink, *scratch);
+  walk.run(voxel);
+  return walk.found;
+}
 
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh

@@ -3,12 +3,11 @@
 
 #include <pcl_bsh/geometry/compensated_sum.h>
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>
 #include <cmath>
-#include <locale>
-#include <sstream>
 
 namespace pcl_bsh {
 namespace {
@@ -127,11 +126,11 @@ double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const s
     const double angle = turned == 0.0 ? 0.0 : turned * (1.0 + kRounding) + kRounding;
     const double way = distance(step.begin, step.end) * (1.0 + kRounding);
     if (isHalfTurn(step.turn)) {
-      std::ostringstream message;
-      message.imbue(std::locale::classic());
-      message << "from pose " << k << " to the next the model turns by half a turn (" << angle
-              << " rad), both directions are as short";
-      throw InvalidInput(Input::swept, "swept motion", message.str(), "give a pose between them").withIndex(k);
+      throw InvalidInput(Input::swept, "swept motion",
+                         plainText("from pose ", k, " to the next the model turns by half a turn (", angle,
+                                   " rad), both directions are as short"),
+                         "give a pose between them")
+          .withIndex(k);
     }
     const double reach = sweep.radius + sweep.reach + way;
     const Bow whole = bowSeenByBody(angle, way); // of parts, it falls with the square of their number
@@ -148,20 +147,19 @@ double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const s
   }
   if (!steps_.empty()) steps_.back().cuts = 1.0; // itself
   if (!steps_.empty()) total += 1.0;
-  std::ostringstream message;
-  message.imbue(std::locale::classic());
   if (total <= kMostPoses) {
     const double instants = 0x1p-52 * total * longest;
     if (instants <= sweep.rounding) return total;
-    message << "too small: a double tells an instant among " << total << " parts of the motion, each as long as "
-            << longest << ", within a length of " << instants << ", and " << sweep.rounding << " is needed";
-    throw InvalidInput(Input::swept, "tolerance of the swept motion", message.str(),
+    throw InvalidInput(Input::swept, "tolerance of the swept motion",
+                       plainText("too small: a double tells an instant among ", total,
+                                 " parts of the motion, each as long as ", longest, ", within a length of ", instants,
+                                 ", and ", sweep.rounding, " is needed"),
                        "give a larger tolerance, or fewer poses");
   }
-  message << "too small, the motion would be cut into " << total << " parts, " << kMostPoses
-          << " are the most; from pose " << worst << " to the next the model turns by " << worst_angle
-          << " rad and moves by " << worst_way;
-  throw InvalidInput(Input::swept, "tolerance of the swept motion", message.str(),
+  throw InvalidInput(Input::swept, "tolerance of the swept motion",
+                     plainText("too small, the motion would be cut into ", total, " parts, ", kMostPoses,
+                               " are the most; from pose ", worst, " to the next the model turns by ", worst_angle,
+                               " rad and moves by ", worst_way),
                      "give a larger tolerance, fewer poses, or poses that are nearer to each other")
       .withIndex(worst);
 }

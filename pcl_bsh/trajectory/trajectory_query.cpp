@@ -2,12 +2,11 @@
 #include <pcl_bsh/trajectory/trajectory_query.h>
 
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/geometry/rounding.h>
 
 #include <algorithm>
 #include <cmath>
-#include <locale>
-#include <sstream>
 
 namespace pcl_bsh {
 namespace {
@@ -51,18 +50,14 @@ void checkTolerance(const Placed& scan, const std::vector<Eigen::Isometry3d>& po
   constexpr double smallest = 0x1p-400; // its square is far from underflow
   constexpr double rounding = 0x1p-46;  // of places along the motion; a sixteenth of the tolerance is for it
   const double least = std::max(16 * rounding * size, smallest);
-  std::ostringstream wrong, remedy;
-  wrong.imbue(std::locale::classic());
-  remedy.imbue(std::locale::classic());
-  if (!(size < 0x1p100)) {
-    wrong << "coordinates as large as " << size;
-    remedy << "give the clouds in a larger unit, less than " << 0x1p100;
-    throw InvalidInput(Input::swept, "swept motion", wrong.str(), remedy.str()).withValue(size);
-  }
+  if (!(size < 0x1p100))
+    throw InvalidInput(Input::swept, "swept motion", plainText("coordinates as large as ", size),
+                       plainText("give the clouds in a larger unit, less than ", 0x1p100))
+        .withValue(size);
   if (*request.swept >= least) return;
-  wrong << *request.swept << ": too small for coordinates as large as " << size;
-  remedy << "give at least " << least;
-  throw InvalidInput(Input::swept, "tolerance of the swept motion", wrong.str(), remedy.str())
+  throw InvalidInput(Input::swept, "tolerance of the swept motion",
+                     plainText(*request.swept, ": too small for coordinates as large as ", size),
+                     plainText("give at least ", least))
       .withValue(*request.swept);
 }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/cell_grid.h>
 #include <pcl_bsh/filters/pipeline/stages/extent.h>
+#include <pcl_bsh/geometry/plain_text.h>
 
 #include <boost/sort/spreadsort/integer_sort.hpp>
 
 #include <algorithm>
-#include <locale>
-#include <sstream>
 #include <stdexcept>
 
 namespace pcl_bsh::pipeline {
@@ -24,10 +23,7 @@ std::int64_t floorOf(double coordinate, double edge, bool in_float)
 
 std::string sizeOf(const Cell& cells)
 {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << cells[0] << " x " << cells[1] << " x " << cells[2];
-  return text.str();
+  return plainText(cells[0], " x ", cells[1], " x ", cells[2]);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/extent.h>
 #include <pcl_bsh/filters/pipeline/stages/float_cloud.h>
+#include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/neighbors/spacing.h>
@@ -8,8 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <locale>
-#include <sstream>
 #include <stdexcept>
 
 namespace pcl_bsh::pipeline {
@@ -58,11 +57,10 @@ double neighbourSpacing(const PointsView& points, const FloatCloud& cloud)
 std::string roundingWarning(const FloatCloud& cloud, double length)
 {
   if (cloud.moved <= length * 1e-4) return {};
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << "float32, in which neighbours are searched, moves points of this float64 cloud by up to " << cloud.moved;
-  if (cloud.moved > length * 1e-2) throw std::invalid_argument(text.str() + ": crop the cloud first");
-  return text.str();
+  const std::string text =
+      plainText("float32, in which neighbours are searched, moves points of this float64 cloud by up to ", cloud.moved);
+  if (cloud.moved > length * 1e-2) throw std::invalid_argument(text + ": crop the cloud first");
+  return text;
 }
 
 } // namespace pcl_bsh::pipeline

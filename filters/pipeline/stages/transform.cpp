@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -8,9 +9,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <locale>
 #include <optional>
-#include <sstream>
 
 namespace pcl_bsh::pipeline {
 namespace {
@@ -105,10 +104,7 @@ private:
       spacing = std::max(spacing, before.cwiseAbs().maxCoeff() * std::numeric_limits<float>::epsilon());
     }
     if (view.scalar == Scalar::float64 || lost <= 4 * spacing * map.linear().norm()) return;
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text << "float32 coordinates are coarse where the cloud now lies: rounding moved points by up to " << lost;
-    warn(text.str());
+    warn(plainText("float32 coordinates are coarse where the cloud now lies: rounding moved points by up to ", lost));
   }
 
   /// Normals stay perpendicular to their surface, and as long as they were.
