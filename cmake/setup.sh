@@ -40,21 +40,34 @@ install_packages() {
 
 configure() { cmake --preset "$preset" --log-level=WARNING "$@"; }
 
-# Most packages are PCL's and VTK's, which the core does not need: it is compiled while they are installed.
+# The names of what apt-get would install for these packages.
+with_dependencies() {
+  apt_get install --simulate --no-install-recommends "$@" | sed -n 's/^Inst \([^ ]*\) .*/\1/p' | sort
+}
+
+# Most packages are PCL's and VTK's, which the core does not need: they are downloaded while the core's packages are
+# installed, and installed while the core is compiled.
 install_all_and_build_core() {
-  local core rest log="build/apt.log"
+  local core rest others packages="$PWD/build/packages" log="$PWD/build/apt.log"
   mapfile -t core < <(missing_packages core)
-  if ((${#core[@]})); then install_packages "${core[@]}"; fi
   mapfile -t rest < <(missing_packages "$last_section")
-  mkdir -p build
-  say "installing the others while the core is built; what apt-get says is in $log"
-  install_packages "${rest[@]}" >"$log" 2>&1 &
-  local installing=$!
+  mapfile -t others < <(comm -13 <(with_dependencies "${core[@]}") <(with_dependencies "${rest[@]}"))
+  mkdir -p "$packages/partial"
+  say "downloading ${#others[@]} packages in the background; what apt-get says of them is in $log"
+  (cd "$packages" && apt_get download "${others[@]}") >"$log" 2>&1 &
+  local background=$!
   trap 'wait' EXIT # whatever fails: apt-get is not left half done
+  if ((${#core[@]})); then install_packages "${core[@]}"; fi
+  wait "$background" || say "a download failed: apt-get tries again"
+  mapfile -t rest < <(missing_packages "$last_section")
+  say "installing them while the core is built"
+  install_packages -o Dir::Cache::archives="$packages" "${rest[@]}" >>"$log" 2>&1 &
+  background=$!
   configure -D PCL_BSH_CORE_ONLY=ON
   cmake --build --preset "$preset" --target pcl_bsh_core pcl_bsh_files
   trap - EXIT
-  wait "$installing" || { tail -n 20 "$log" >&2; die "apt-get install failed: see the lines above, and $log"; }
+  wait "$background" || { tail -n 20 "$log" >&2; die "apt-get install failed: see the lines above, and $log"; }
+  rm -rf "$packages"
 }
 
 if command -v apt-get >/dev/null; then
