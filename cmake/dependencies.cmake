@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Everything comes from the packages listed in packages.txt; of its sections, the first is enough for the core alone.
+# Everything comes from the packages listed in packages.txt; of its sections, the first is enough for what needs no PCL.
 
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
@@ -7,10 +7,13 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Boost 1.74 REQUIRED) # headers of Multiprecision
 find_package(TBB 2021 REQUIRED CONFIG)
 find_package(hwy 1.0 REQUIRED CONFIG)
-if(PCL_BSH_CORE_ONLY)
+find_package(nlohmann_json 3.11 REQUIRED CONFIG)
+if(PCL_BSH_BUILD_EXAMPLES)
+  find_package(CLI11 2 REQUIRED CONFIG)
+endif()
+if(PCL_BSH_WITHOUT_PCL)
   return()
 endif()
-find_package(nlohmann_json 3.11 REQUIRED CONFIG)
 find_path(KAINJOW_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)
 mark_as_advanced(KAINJOW_INCLUDE_DIR)
 
@@ -49,7 +52,4 @@ endif()
 
 if(PCL_BSH_BUILD_BENCHMARKS)
   find_package(nanoflann 1.4 REQUIRED CONFIG)
-endif()
-if(PCL_BSH_BUILD_EXAMPLES)
-  find_package(CLI11 2 REQUIRED CONFIG)
 endif()

@@ -30,8 +30,13 @@ as_root() {
   if [[ "$(id -u)" == 0 ]]; then "$@"; else sudo "$@"; fi
 }
 
+# In a container nothing has to survive a power failure: dpkg need not wait for the disk after each file (eatmydata).
+in_container() { [[ -e /.dockerenv || -e /run/.containerenv || -n "${CI:-}" ]] || ischroot 2>/dev/null; }
+
 apt_get() {
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 "$@"
+  local unsynced=()
+  if in_container && command -v eatmydata >/dev/null; then unsynced=(eatmydata); fi
+  as_root env DEBIAN_FRONTEND=noninteractive "${unsynced[@]}" apt-get -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 "$@"
 }
 
 install_packages() {
@@ -45,7 +50,7 @@ with_dependencies() {
   apt_get install --simulate --no-install-recommends "$@" | sed -n 's/^Inst \([^ ]*\) .*/\1/p' | sort
 }
 
-# Most packages are PCL's and VTK's, which the core does not need: they are downloaded while the core's packages are
+# Most packages are PCL's and VTK's, which the core and some others do not need: they are downloaded while the core's packages are
 # installed, and installed while the core is compiled.
 install_all_and_build_core() {
   local core rest others packages="$PWD/build/packages" log="$PWD/build/apt.log"
@@ -63,8 +68,8 @@ install_all_and_build_core() {
   say "installing them while the core is built"
   install_packages -o Dir::Cache::archives="$packages" "${rest[@]}" >>"$log" 2>&1 &
   background=$!
-  configure -D PCL_BSH_CORE_ONLY=ON
-  cmake --build --preset "$preset" --target pcl_bsh_core pcl_bsh_files
+  configure -D PCL_BSH_WITHOUT_PCL=ON
+  cmake --build --preset "$preset" --target pcl_bsh_documents pcl_bsh_cli
   trap - EXIT
   wait "$background" || { tail -n 20 "$log" >&2; die "apt-get install failed: see the lines above, and $log"; }
   rm -rf "$packages"
@@ -78,6 +83,7 @@ if command -v apt-get >/dev/null; then
     fi
     say "installing ${#missing[@]} Debian packages and what they need: ${missing[*]}"
     apt_get update || say "apt-get update failed; going on with the package lists at hand"
+    if in_container; then install_packages eatmydata; fi
     if [[ " ${missing[*]} " == *" libpcl-dev "* && "$preset" == release ]]; then
       install_all_and_build_core
     else

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "command_line.h"
 
-#include <pcl_bsh/filters/cloud_files/field_type.h>
+#include <pcl_bsh/filters/text_files/parse_number.h>
 
 #include <cstdint>
 #include <iostream>

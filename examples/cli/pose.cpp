@@ -3,9 +3,9 @@
 
 #include "program.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
 #include <pcl_bsh/filters/pose_files/pose_text.h>
 #include <pcl_bsh/filters/pose_files/rigid_pose.h>
+#include <pcl_bsh/filters/text_files/format_error.h>
 
 #include <filesystem>
 

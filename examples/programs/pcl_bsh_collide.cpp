@@ -55,7 +55,7 @@ void requireClashFormat(const fs::path& list)
   try {
     io::requireClashFormat(list);
   }
-  catch (const io::CloudFileError& error) {
+  catch (const files::FileError& error) {
     throw UsageError(std::string("--clashes: ") + error.what());
   }
 }

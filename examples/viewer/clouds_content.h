@@ -11,7 +11,7 @@ namespace pcl_bsh::view {
 
 class CloudsContent final : public ViewContent {
 public:
-  /// @throws io::CloudFileError, std::invalid_argument naming the file
+  /// @throws files::FileError, std::invalid_argument naming the file
   explicit CloudsContent(const Options& options);
 
   std::string name() const override { return scan().name; }

@@ -4,8 +4,8 @@
 #include "cli/command_line.h"
 #include "cli/pose.h"
 
-#include <pcl_bsh/filters/cloud_files/field_type.h>
 #include <pcl_bsh/filters/pose_files/pose_text.h>
+#include <pcl_bsh/filters/text_files/parse_number.h>
 
 #include <algorithm>
 #include <cmath>

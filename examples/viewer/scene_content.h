@@ -5,7 +5,7 @@
 
 namespace pcl_bsh::view {
 
-/// A scene file's objects, seen at any of its steps. @throws io::JsonError, io::CloudFileError naming the file,
+/// A scene file's objects, seen at any of its steps. @throws io::JsonError, files::FileError naming the file,
 /// cli::UsageError for a step that the scene does not have
 std::unique_ptr<ViewContent> makeSceneContent(const Options& options);
 

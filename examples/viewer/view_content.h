@@ -85,7 +85,7 @@ protected:
   std::vector<ViewedCloud> viewed_clouds_;
 };
 
-/// What the options name, loaded and indexed. @throws io::CloudFileError, io::JsonError, std::invalid_argument naming
+/// What the options name, loaded and indexed. @throws files::FileError, io::JsonError, std::invalid_argument naming
 /// the file
 std::unique_ptr<ViewContent> makeViewContent(const Options& options);
 

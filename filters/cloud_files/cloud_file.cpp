@@ -2,12 +2,12 @@
 #include <pcl_bsh/files/file_identity.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/filters/cloud_files/file_bytes.h>
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/cloud_files/ply.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
-#include <pcl_bsh/filters/cloud_files/small_letters.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
+#include <pcl_bsh/filters/text_files/file_bytes.h>
+#include <pcl_bsh/filters/text_files/small_letters.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <algorithm>
@@ -89,7 +89,7 @@ pcl::PCLPointCloud2 parsed(const std::filesystem::path& path, const FileBytes& f
   std::string extension = extensionOf(path);
   if (std::find(readable.begin(), readable.end(), extension) == readable.end()) {
     if (!isPipe(path)) {
-      throw CloudFileError(path, unknown(extension), "give a .pcd, .ply, .obj, .off, .xyz or .txt file");
+      throw files::FileError(path, unknown(extension), "give a .pcd, .ply, .obj, .off, .xyz or .txt file");
     }
     extension = extensionByContent(file.view());
   }
@@ -97,7 +97,7 @@ pcl::PCLPointCloud2 parsed(const std::filesystem::path& path, const FileBytes& f
     return parse(extension, file.view());
   }
   catch (const FormatError& error) {
-    throw CloudFileError(path, error.what(), error.remedy());
+    throw files::FileError(path, error.what(), error.remedy());
   }
 }
 
@@ -129,15 +129,15 @@ pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* view
 pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path)
 {
   if (isPipe(path)) {
-    throw CloudFileError(path, "is a pipe, whose header and points cannot be read one after the other",
-                         "save the cloud to a file first");
+    throw files::FileError(path, "is a pipe, whose header and points cannot be read one after the other",
+                           "save the cloud to a file first");
   }
   constexpr std::size_t usual = std::size_t{1} << 16;
   const FileBytes beginning(path, usual);
   try {
     return headerOf(path, beginning);
   }
-  catch (const CloudFileError&) {
+  catch (const files::FileError&) {
     if (beginning.isWhole()) throw;
   }
   return headerOf(path, FileBytes(path)); // a long header, or other elements before the vertices
@@ -148,7 +148,7 @@ void requireWritableCloud(const std::filesystem::path& path)
   const std::string extension = writtenExtension(path);
   constexpr std::array writable = {".pcd", ".ply", ".obj", ".xyz", ".txt"};
   if (std::find(writable.begin(), writable.end(), extension) == writable.end()) {
-    throw CloudFileError(path, unknown(extension), "write a .pcd, .ply, .obj, .xyz or .txt file");
+    throw files::FileError(path, unknown(extension), "write a .pcd, .ply, .obj, .xyz or .txt file");
   }
   files::requireWritable(path);
 }
@@ -163,7 +163,7 @@ void requireWritableCloud(const std::filesystem::path& path, pcl::PCLPointCloud2
     print(writtenExtension(path), nowhere, header, no_viewpoint);
   }
   catch (const FormatError& error) {
-    throw CloudFileError(path, error.what(), error.remedy());
+    throw files::FileError(path, error.what(), error.remedy());
   }
 }
 
@@ -174,7 +174,7 @@ void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cl
     files::replaceFile(path, [&](std::ostream& out) { print(writtenExtension(path), out, cloud, viewpoint); });
   }
   catch (const FormatError& error) {
-    throw CloudFileError(path, error.what(), error.remedy());
+    throw files::FileError(path, error.what(), error.remedy());
   }
 }
 

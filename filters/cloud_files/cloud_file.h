@@ -8,7 +8,7 @@
 // row as success. Here a damaged, truncated or lying file is an error, and is noticed before its memory is asked for.
 #pragma once
 
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
+#include <pcl_bsh/files/file_error.h>
 
 #include <pcl/PCLPointCloud2.h>
 
@@ -42,7 +42,7 @@ inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 /// x y z, at most 2^31 - 1 points, and is_dense as PCL defines it. A file that says it holds no points is an empty
 /// cloud.
 /// @param viewpoint if not null, set to the file's (PCD, PLY), or to no_viewpoint
-/// @throws CloudFileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z
+/// @throws files::FileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z
 pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr);
 
 /// The fields of a file's cloud and, where its header says so, the number of its points; the points are not read.
@@ -55,12 +55,12 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path);
 /// file appears complete or not at all; what `path` held before is
 /// replaced only then. PCD and PLY hold a viewpoint. PLY holds no 64-bit integers, text no field with a count, OBJ x y
 /// z, a packed colour and normals.
-/// @throws CloudFileError when the extension is unknown, a field cannot be held, or the disk says no
+/// @throws files::FileError when the extension is unknown, a field cannot be held, or the disk says no
 void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
                 const Viewpoint& viewpoint = no_viewpoint);
 
 /// Fails early, before hours of work, where writeCloud() would for the path's sake.
-/// @throws CloudFileError
+/// @throws files::FileError
 void requireWritableCloud(const std::filesystem::path& path);
 
 /// The same, and that the format can hold a cloud with these fields.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/cloud_files/field_text.h>
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
-#include <pcl_bsh/filters/cloud_files/text_cursor.h>
 
 #include <pcl/common/io.h>
 #include <pcl/io/lzf.h>
@@ -136,7 +136,7 @@ void readAscii(TextCursor& text, pcl::PCLPointCloud2& cloud, const PcdHeader& he
           text.number<double>();
         }
         else {
-          text.number(field->datatype, record + field->offset + i * sizeOf(field->datatype));
+          readNumber(text, field->datatype, record + field->offset + i * sizeOf(field->datatype));
         }
       }
       if (!padding) ++field;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/cloud_files/pcl_names.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
-#include <pcl_bsh/filters/cloud_files/small_letters.h>
+#include <pcl_bsh/filters/text_files/small_letters.h>
 
 #include <algorithm>
 #include <bit>

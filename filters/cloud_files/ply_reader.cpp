@@ -5,7 +5,7 @@
 #include <pcl_bsh/filters/cloud_files/ply_rows.h>
 #include <pcl_bsh/filters/cloud_files/ply_types.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
-#include <pcl_bsh/filters/cloud_files/text_cursor.h>
+#include <pcl_bsh/filters/text_files/text_cursor.h>
 
 #include <bit>
 #include <optional>

@@ -3,7 +3,7 @@
 // Both classes throw FormatError where values are missing, malformed or too many.
 #pragma once
 
-#include <pcl_bsh/filters/cloud_files/text_cursor.h>
+#include <pcl_bsh/filters/cloud_files/field_text.h>
 
 #include <algorithm>
 #include <bit>
@@ -23,7 +23,7 @@ public:
   {
     if (!text_.nextLine()) throw FormatError(truncated_rows);
   }
-  void value(std::uint8_t datatype, std::uint8_t* out) { text_.number(datatype, out); }
+  void value(std::uint8_t datatype, std::uint8_t* out) { readNumber(text_, datatype, out); }
   void skip(std::uint8_t datatype, std::uint64_t count)
   {
     std::uint8_t ignored[sizeof(std::uint64_t)];

@@ -2,9 +2,9 @@
 // A cloud that grows by a record per line of text.
 #pragma once
 
+#include <pcl_bsh/filters/cloud_files/field_text.h>
 #include <pcl_bsh/filters/cloud_files/pcl_names.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
-#include <pcl_bsh/filters/cloud_files/text_cursor.h>
 
 #include <string>
 #include <utility>
@@ -44,7 +44,7 @@ public:
   /// Takes values i from `first` to `last` (exclusive) of that record from the line.
   void take(TextCursor& text, std::size_t record, std::size_t first, std::size_t last)
   {
-    for (std::size_t i = first; i < last; ++i) text.number(values_[i].datatype, at(record, i));
+    for (std::size_t i = first; i < last; ++i) readNumber(text, values_[i].datatype, at(record, i));
   }
 
   /// The cloud, once all records are there. @throws FormatError beyond max_points

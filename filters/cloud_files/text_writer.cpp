@@ -2,7 +2,7 @@
 #include <pcl_bsh/filters/cloud_files/pcl_names.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
-#include <pcl_bsh/filters/cloud_files/text_cursor.h>
+#include <pcl_bsh/filters/text_files/text_cursor.h>
 
 #include <algorithm>
 #include <array>

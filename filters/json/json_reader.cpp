@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/files/one_line.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
 #include <pcl_bsh/filters/json/json_reader.h>
 #include <pcl_bsh/filters/json/nearest_name.h>
 #include <pcl_bsh/filters/pose_files/pose_text.h>
 #include <pcl_bsh/filters/pose_files/rigid_pose.h>
+#include <pcl_bsh/filters/text_files/format_error.h>
 
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/request_check.h>

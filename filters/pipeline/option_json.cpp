@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/pipeline/option_json.h>
 #include <pcl_bsh/filters/pose_files/pose_text.h>
+#include <pcl_bsh/filters/text_files/format_error.h>
 
 #include <algorithm>
 #include <cmath>
@@ -121,7 +122,7 @@ Value poseOf(const Json& json, const Option& option)
     try {
       pose.matrix = io::readPose(nameOf(json, option)).matrix();
     }
-    catch (const io::CloudFileError& error) {
+    catch (const files::FileError& error) {
       throw std::invalid_argument(error.what());
     }
   }

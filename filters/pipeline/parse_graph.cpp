@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
-#include <pcl_bsh/filters/cloud_files/small_letters.h>
 #include <pcl_bsh/filters/json/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
 #include <pcl_bsh/filters/pipeline/option_json.h>
+#include <pcl_bsh/filters/text_files/format_error.h>
+#include <pcl_bsh/filters/text_files/small_letters.h>
 
 #include <algorithm>
 #include <cctype>

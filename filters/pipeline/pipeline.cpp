@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/one_line.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
-#include <pcl_bsh/filters/cloud_files/file_bytes.h>
 #include <pcl_bsh/filters/json/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
+#include <pcl_bsh/filters/text_files/file_bytes.h>
 
 #include <utility>
 
@@ -33,7 +33,7 @@ Pipeline Pipeline::read(const std::filesystem::path& file, const std::vector<Opt
     pipeline.graph_->other_files.push_back({"the document", file, files::Use::read});
     return pipeline;
   }
-  catch (const io::CloudFileError& error) {
+  catch (const files::FileError& error) {
     throw PipelineError(error.what());
   }
 }

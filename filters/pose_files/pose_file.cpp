@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
-#include <pcl_bsh/filters/cloud_files/file_bytes.h>
-#include <pcl_bsh/filters/cloud_files/number_text.h>
-#include <pcl_bsh/filters/cloud_files/text_cursor.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/filters/pose_files/pose_text.h>
 #include <pcl_bsh/filters/pose_files/rigid_pose.h>
+#include <pcl_bsh/filters/text_files/file_bytes.h>
+#include <pcl_bsh/filters/text_files/format_error.h>
+#include <pcl_bsh/filters/text_files/number_text.h>
+#include <pcl_bsh/filters/text_files/text_cursor.h>
 
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/request_check.h>
@@ -97,7 +98,7 @@ std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path, std:
     return poses;
   }
   catch (const FormatError& error) {
-    throw CloudFileError(path, error.what(), forms_of_a_pose);
+    throw files::FileError(path, error.what(), forms_of_a_pose);
   }
 }
 

@@ -22,7 +22,7 @@ namespace pcl_bsh::io {
 /// A matrix that few printed digits have left with |R'R - I| from 1e-6 to 1e-4 stands for its nearest rotation.
 ///
 /// @param warnings if not null, gets a line that counts these
-/// @throws CloudFileError naming the file and the line: another number of numbers, or not that of the lines before; a
+/// @throws files::FileError naming the file and the line: another number of numbers, or not that of the lines before; a
 ///   word that is no number; a matrix that is not rigid (|R'R - I| > 1e-4, a mirror, a last row other than 0 0 0 1); a
 ///   quaternion whose length is off 1 by more than 1e-3; a value that is not finite. Also when the file cannot be read
 ///   or holds no pose.
@@ -33,7 +33,7 @@ std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path,
 std::vector<Eigen::Isometry3d> parsePoses(std::string_view text, std::vector<std::string>* warnings = nullptr);
 
 /// Writes twelve numbers a line, which read back to the same bits. The file appears complete or not at all.
-/// @throws CloudFileError
+/// @throws files::FileError
 void writePoses(const std::filesystem::path& path, const std::vector<Eigen::Isometry3d>& poses);
 
 } // namespace pcl_bsh::io

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
-#include <pcl_bsh/filters/cloud_files/file_bytes.h>
-#include <pcl_bsh/filters/cloud_files/text_cursor.h>
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/pose_files/pose_text.h>
+#include <pcl_bsh/filters/text_files/file_bytes.h>
+#include <pcl_bsh/filters/text_files/format_error.h>
+#include <pcl_bsh/filters/text_files/text_cursor.h>
 
 #include <string>
 
@@ -72,7 +73,7 @@ Eigen::Isometry3d readPose(const std::filesystem::path& path)
     return poseFrom(numbers);
   }
   catch (const FormatError& error) {
-    throw CloudFileError(path, error.what(), "give the 12 or 16 numbers of a pose's matrix, row by row");
+    throw files::FileError(path, error.what(), "give the 12 or 16 numbers of a pose's matrix, row by row");
   }
 }
 

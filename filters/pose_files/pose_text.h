@@ -27,7 +27,7 @@ Eigen::Isometry3d poseFrom(double x, double y, double z, double roll, double pit
 /// query to judge. @throws FormatError for any other number of numbers
 Eigen::Isometry3d poseFrom(const std::vector<double>& numbers);
 
-/// A file of the 12 or 16 numbers of a pose's matrix, row by row. @throws CloudFileError
+/// A file of the 12 or 16 numbers of a pose's matrix, row by row. @throws files::FileError
 Eigen::Isometry3d readPose(const std::filesystem::path& path);
 
 } // namespace pcl_bsh::io

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The numbers of the page; clash_page.html has the page itself.
-#include <pcl_bsh/filters/cloud_files/number_text.h>
 #include <pcl_bsh/filters/json/json_document.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
+#include <pcl_bsh/filters/text_files/number_text.h>
 
 #include "clash_page.html.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
-#include <pcl_bsh/filters/cloud_files/file_bytes.h>
-#include <pcl_bsh/filters/cloud_files/number_text.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/json/json_reader.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
+#include <pcl_bsh/filters/text_files/file_bytes.h>
+#include <pcl_bsh/filters/text_files/number_text.h>
 
 #include <cmath>
 #include <limits>
@@ -71,7 +71,7 @@ Format formatOf(const std::filesystem::path& path)
   if (extension == ".json") return clashJson;
   if (extension == ".csv") return clashCsv;
   if (extension == ".html") return clashPage;
-  throw CloudFileError(path, "unknown extension '" + extension + "'", "give a .json, .csv or .html file");
+  throw files::FileError(path, "unknown extension '" + extension + "'", "give a .json, .csv or .html file");
 }
 
 } // namespace
@@ -153,10 +153,10 @@ std::vector<std::string> requireComparable(const std::filesystem::path& path, co
                                            const ClashList& now)
 {
   if (earlier.clearance != now.clearance) {
-    throw CloudFileError(path,
-                         "lists clashes of a clearance of " + numberText(earlier.clearance) + ", not of " +
-                             numberText(now.clearance) + " as asked now",
-                         "ask for the same clearance, or compare with another list");
+    throw files::FileError(path,
+                           "lists clashes of a clearance of " + numberText(earlier.clearance) + ", not of " +
+                               numberText(now.clearance) + " as asked now",
+                           "ask for the same clearance, or compare with another list");
   }
   std::vector<std::string> warnings;
   const auto warn = [&](const std::string& wrong) { warnings.push_back(path.string() + ": " + wrong); };

@@ -67,10 +67,10 @@ std::string clashCsv(const ClashReport& report);
 std::string clashPage(const ClashReport& report);
 
 /// Writes what the extension says: .json, .csv or .html. The file appears complete or not at all.
-/// @throws CloudFileError
+/// @throws files::FileError
 void writeClashes(const std::filesystem::path& path, const ClashReport& report);
 
-/// @throws CloudFileError when writeClashes() knows no such extension
+/// @throws files::FileError when writeClashes() knows no such extension
 void requireClashFormat(const std::filesystem::path& path);
 
 /// What a run asked, and the clashes that it listed, without points and pairs.
@@ -82,7 +82,8 @@ struct ClashList {
 };
 
 /// What an earlier run listed, for compareWithEarlier().
-/// @throws CloudFileError when the file cannot be read, JsonError naming the place in it that no run would have written
+/// @throws files::FileError when the file cannot be read, JsonError naming the place in it that no run would have
+/// written
 ClashList readClashes(const std::filesystem::path& path);
 
 /// The same, of a text. @throws JsonError whose message begins with `name`
@@ -91,7 +92,7 @@ ClashList parseClashes(std::string_view text, const std::string& name);
 /// Whether the earlier list, read from `path`, can tell what is new now.
 /// @param now what this run asks; its clashes do not matter
 /// @return warnings, a line each: names of other clouds, motion between poses tested in one run only
-/// @throws CloudFileError when the clearances differ, so that clashes between the two would seem new or resolved
+/// @throws files::FileError when the clearances differ, so that clashes between the two would seem new or resolved
 std::vector<std::string> requireComparable(const std::filesystem::path& path, const ClashList& earlier,
                                            const ClashList& now);
 

@@ -2,8 +2,6 @@
 // From a scene's JSON to what it means. Its structure is checked by scene.schema.json.
 #include <pcl_bsh/filters/scene_files/scene_file.h>
 
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
-#include <pcl_bsh/filters/cloud_files/file_bytes.h>
 #include <pcl_bsh/filters/json/json_reader.h>
 #include <pcl_bsh/filters/json/json_schema.h>
 #include <pcl_bsh/filters/json/nearest_name.h>
@@ -11,6 +9,7 @@
 #include <pcl_bsh/filters/pose_files/rigid_pose.h>
 #include <pcl_bsh/filters/scene_files/scattered_motion.h>
 #include <pcl_bsh/filters/scene_files/shape_points.h>
+#include <pcl_bsh/filters/text_files/file_bytes.h>
 
 #include "scene.schema.json.h"
 

@@ -76,7 +76,7 @@ struct SceneFile {
 };
 
 /// Reads and checks a scene, but none of its clouds: those must only be there.
-/// @throws JsonError for what the document has wrong, CloudFileError for a file that cannot be read
+/// @throws JsonError for what the document has wrong, files::FileError for a file that cannot be read
 SceneFile readSceneFile(const std::filesystem::path& path);
 
 /// The same, of a text; relative file names are looked for beside `path`.
@@ -89,7 +89,7 @@ void setRules(Scene& scene, const std::vector<RuleEntry>& rules);
 class SceneWorld {
 public:
   /// @param reading called with the name of each cloud before it is read, if not null
-  /// @throws CloudFileError, JsonError naming the place in the document
+  /// @throws files::FileError, JsonError naming the place in the document
   explicit SceneWorld(const SceneFile& file, const std::function<void(const CloudSource&)>& reading = nullptr);
 
   Scene& scene() { return *scene_; }

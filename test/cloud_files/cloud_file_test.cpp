@@ -6,6 +6,10 @@
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 
+#include <sys/stat.h>
+
+#include <thread>
+
 namespace pcl_bsh::io {
 
 namespace fs = std::filesystem;
@@ -17,7 +21,7 @@ std::string failureOf(const fs::path& path)
   try {
     readCloud(path);
   }
-  catch (const CloudFileError& error) {
+  catch (const files::FileError& error) {
     const std::string message = error.what();
     EXPECT_EQ(message.find(path.string() + ": "), 0U) << message;
     return message.substr(std::min(message.size(), path.string().size() + 2));
@@ -98,8 +102,8 @@ TEST(CloudFile, HeadersHaveTheFieldsButNoPoints)
     EXPECT_TRUE(header.data.empty()) << name;
   }
   EXPECT_EQ(readCloudHeader(folder.write("a.obj", "v 1 2 broken\n")).fields.size(), 3U);
-  EXPECT_THROW(readCloudHeader(folder.write("a.txt", "u v w\n1 2 3\n")), CloudFileError);
-  EXPECT_THROW(readCloudHeader(folder / "none.pcd"), CloudFileError);
+  EXPECT_THROW(readCloudHeader(folder.write("a.txt", "u v w\n1 2 3\n")), files::FileError);
+  EXPECT_THROW(readCloudHeader(folder / "none.pcd"), files::FileError);
 }
 
 TEST(CloudFile, AnEmptyCloudIsReadBackFromEveryFormat)
@@ -178,10 +182,10 @@ TEST(CloudFile, SaysWhatCannotBeWritten)
 {
   const TemporaryFolder folder;
   const pcl::PCLPointCloud2 cloud = randomCloud<float>(3, 1, {Field::INT64});
-  EXPECT_THROW(writeCloud(folder / "a.xyz", cloud), CloudFileError);
-  EXPECT_THROW(writeCloud(folder / "none/a.pcd", cloud), CloudFileError);
+  EXPECT_THROW(writeCloud(folder / "a.xyz", cloud), files::FileError);
+  EXPECT_THROW(writeCloud(folder / "none/a.pcd", cloud), files::FileError);
   folder.write("a.ply", "old");
-  EXPECT_THROW(writeCloud(folder / "a.ply", cloud), CloudFileError) << "PLY has no int64";
+  EXPECT_THROW(writeCloud(folder / "a.ply", cloud), files::FileError) << "PLY has no int64";
   EXPECT_EQ(contentOf(folder / "a.ply"), "old");
   EXPECT_EQ(folder.files(), 1U);
 }
@@ -210,6 +214,33 @@ TEST(CloudFile, RealScansAreReadAsPclReadsThem)
     writeCloud(folder / "copy.ply", cloud);
     expectSame(readCloud(folder / "copy.ply"), withoutOpacity(expected));
   }
+}
+
+TEST(CloudFile, PipesTellTheirFormatByHowTheyBegin)
+{
+  const TemporaryFolder folder;
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                          "property float z\nend_header\n1 2 3\n";
+  for (const std::string& cloud :
+       {ply, std::string("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
+        std::string("OFF 1 0 0\n1 2 3\n"), std::string("1 2 3\n")}) {
+    std::thread writer([&] { std::ofstream(pipe) << cloud; });
+    EXPECT_EQ(valueOf(readCloud(pipe), 0, "z"), 3) << cloud;
+    writer.join();
+  }
+  EXPECT_THROW(readCloudHeader(pipe), files::FileError) << "it would be gone for readCloud()";
+}
+
+TEST(CloudFile, HeadersAreReadAlone)
+{
+  const TemporaryFolder folder;
+  const std::string begin = "ply\nformat ascii 1.0\n";
+  const std::string end = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
+  std::string comments;
+  while (comments.size() < 200000) comments += "comment more than one reads at first\n";
+  EXPECT_EQ(readCloudHeader(folder.write("long.ply", begin + comments + end)).fields.size(), 3U);
 }
 
 } // namespace pcl_bsh::io

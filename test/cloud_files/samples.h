@@ -2,7 +2,7 @@
 // Clouds and folders for the tests of files.
 #pragma once
 
-#include "../files/temporary_folder.h"
+#include "../text_files/defect.h"
 
 #include <pcl_bsh/filters/cloud_files/records.h>
 
@@ -17,9 +17,6 @@
 namespace pcl_bsh::io {
 
 using Field = pcl::PCLPointField;
-
-using files::contentOf;
-using files::TemporaryFolder;
 
 /// x y z and then a field of each of the types; every byte random (NaNs among them) but coordinates finite.
 template <typename Coordinate>
@@ -114,20 +111,6 @@ inline double valueOf(const pcl::PCLPointCloud2& cloud, std::size_t record, cons
     });
   }
   throw std::invalid_argument("no field " + name);
-}
-
-/// What the FormatError that `parse` throws says; fails the test when it throws none.
-template <typename Parse>
-std::string defectOf(Parse&& parse)
-{
-  try {
-    parse();
-  }
-  catch (const FormatError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was found wrong";
-  return {};
 }
 
 } // namespace pcl_bsh::io

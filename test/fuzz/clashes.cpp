@@ -3,7 +3,6 @@
 // written out again is the same list.
 #include "refusal.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
 #include <pcl_bsh/filters/json/json_reader.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
 

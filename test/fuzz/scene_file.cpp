@@ -2,7 +2,7 @@
 // Any text as a scene: refused with a reason, or objects of clouds that the scene has, at finite poses.
 #include "refusal.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/json/json_reader.h>
 #include <pcl_bsh/filters/scene_files/scene_file.h>
 
@@ -19,7 +19,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
   catch (const io::JsonError& error) {
     fuzz::requireReason(error);
   }
-  catch (const io::CloudFileError& error) {
+  catch (const files::FileError& error) {
     fuzz::requireReason(error);
   }
   return 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
 #include <pcl_bsh/filters/json/json_document.h>
+#include <pcl_bsh/filters/text_files/format_error.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../cloud_files/samples.h"
+#include "../text_files/defect.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/filters/pose_files/pose_text.h>
+#include <pcl_bsh/filters/text_files/format_error.h>
 
 #include <gmock/gmock.h>
 
@@ -26,7 +27,7 @@ protected:
       read(text);
       ADD_FAILURE() << text;
     }
-    catch (const CloudFileError& error) {
+    catch (const files::FileError& error) {
       EXPECT_THAT(error.what(), HasSubstr("poses.txt: " + message)) << text;
       EXPECT_THAT(error.what(), HasSubstr(": give 12 or 16 numbers")) << text;
     }
@@ -65,7 +66,7 @@ TEST_F(PoseFile, NumbersAreSeparatedAlike)
       read(text);
       ADD_FAILURE() << text;
     }
-    catch (const CloudFileError& error) {
+    catch (const files::FileError& error) {
       EXPECT_THAT(error.what(), HasSubstr(row)) << text;
     }
   }
@@ -117,7 +118,7 @@ TEST_F(PoseFile, PrintedMatricesStandForTheirNearestRotations)
   std::vector<std::string> warnings;
   readPoses(folder.write("poses.txt", printed(50, 9)), &warnings);
   EXPECT_THAT(warnings, testing::IsEmpty()) << "rigid as they are";
-  EXPECT_THROW(read(printed(50, 3)), CloudFileError);
+  EXPECT_THROW(read(printed(50, 3)), files::FileError);
 }
 
 TEST_F(PoseFile, MayBeginWithTheMarkOfUtf8)
@@ -150,9 +151,9 @@ TEST_F(PoseFile, RefusesLinesByNumber)
 
 TEST_F(PoseFile, RefusesFiles)
 {
-  EXPECT_THROW(readPoses(folder / "none.txt"), CloudFileError);
-  EXPECT_THROW(readPoses(folder / ""), CloudFileError);
-  EXPECT_THROW(read(""), CloudFileError);
+  EXPECT_THROW(readPoses(folder / "none.txt"), files::FileError);
+  EXPECT_THROW(readPoses(folder / ""), files::FileError);
+  EXPECT_THROW(read(""), files::FileError);
 }
 
 TEST_F(PoseFile, WhatIsWrittenReadsBackToTheSameBits)

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "../cloud_files/samples.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
-#include <pcl_bsh/filters/cloud_files/number_text.h>
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/json/json_reader.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
+#include <pcl_bsh/filters/text_files/number_text.h>
+#include <pcl_bsh/filters/text_files/parse_number.h>
 
 #include <gmock/gmock.h>
 
@@ -367,7 +368,7 @@ TEST_F(ClashReports, ListsOfOtherQuestionsAreNotCompared)
     requireComparable("old.json", earlier, now);
     ADD_FAILURE() << "was compared";
   }
-  catch (const CloudFileError& error) {
+  catch (const files::FileError& error) {
     EXPECT_STREQ(error.what(), "old.json: lists clashes of a clearance of 0.3, not of 0.25 as asked now: ask for the "
                                "same clearance, or compare with another list");
   }

@@ -40,7 +40,7 @@ struct CollideOptions {
   bool moves() const { return !trajectory.empty() || !path.empty(); }
 };
 
-/// The options, checked; none when only help was asked for. @throws UsageError, io::CloudFileError of pose files
+/// The options, checked; none when only help was asked for. @throws UsageError, files::FileError of pose files
 std::optional<CollideOptions> parseCollideOptions(int argc, char** argv);
 
 } // namespace pcl_bsh::cli

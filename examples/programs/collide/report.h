@@ -74,7 +74,7 @@ struct CollisionReport {
 /// `distance_interval` along a path, and each of its ends where it is not known.
 nlohmann::ordered_json toJson(const CollisionReport& report);
 
-/// As JSON. @throws io::CloudFileError
+/// As JSON. @throws files::FileError
 void writeReport(const std::filesystem::path& path, const CollisionReport& report);
 
 } // namespace pcl_bsh::cli

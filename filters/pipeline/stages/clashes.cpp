@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What collides, place by place, as a list.
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/collision_question.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
@@ -42,7 +42,7 @@ private:
       io::requireClashFormat(file.path);
       files::requireWritable(file.path);
     }
-    catch (const io::CloudFileError& error) {
+    catch (const files::FileError& error) {
       throw OptionError(option, error.what());
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/pipeline/stages/collision_question.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/filters/pose_files/rigid_pose.h>
@@ -25,7 +25,7 @@ std::vector<Eigen::Isometry3d> posesOf(const std::optional<Pose>& pose, const st
   try {
     return io::readPoses(trajectory->path, &warnings);
   }
-  catch (const io::CloudFileError& error) {
+  catch (const files::FileError& error) {
     throw OptionError("trajectory", error.what());
   }
 }

@@ -2,9 +2,9 @@
 // Readers and writers of all formats that filters/cloud_files reads and writes.
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/cloud_files/pcl_names.h>
-#include <pcl_bsh/filters/cloud_files/small_letters.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/filters/text_files/small_letters.h>
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/cloud_files/field_type.h>
+#include <pcl_bsh/filters/text_files/parse_number.h>
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/cloud_files/small_letters.h>
+#include <pcl_bsh/filters/text_files/small_letters.h>
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@ class FileBytes {
 public:
   /// @param path a file, a pipe, or `-` for standard input
   /// @param most of its bytes are read
-  /// @throws CloudFileError when it cannot be read or there is nothing in it
+  /// @throws files::FileError when it cannot be read or there is nothing in it
   explicit FileBytes(const std::filesystem::path& path, std::size_t most = std::numeric_limits<std::size_t>::max());
 
   std::string_view view() const noexcept { return {bytes_.get(), size_}; }

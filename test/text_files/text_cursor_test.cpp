@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "samples.h"
+#include "defect.h"
 
-#include <pcl_bsh/filters/cloud_files/text_cursor.h>
+#include <pcl_bsh/filters/text_files/text_cursor.h>
 
 namespace pcl_bsh::io {
 

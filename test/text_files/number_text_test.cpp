@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/cloud_files/number_text.h>
+#include <pcl_bsh/filters/text_files/number_text.h>
 
 #include <gtest/gtest.h>
 

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How reading and writing fails.
+// How reading a format fails.
 #pragma once
-
-#include <pcl_bsh/files/file_error.h>
 
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace pcl_bsh::io {
-
-using CloudFileError = files::FileError;
 
 inline constexpr auto remedy_for_damage = "export or copy the file again";
 

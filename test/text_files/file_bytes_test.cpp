@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "samples.h"
+#include "defect.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/filters/cloud_files/file_bytes.h>
+#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/filters/text_files/file_bytes.h>
 
 #include <sys/stat.h>
 
@@ -48,31 +48,9 @@ TEST(FileBytes, ComeThroughPipes)
   std::thread writer = through(content);
   EXPECT_TRUE(FileBytes(pipe).view() == content);
   writer.join();
-
-  // What it holds is told by how it begins.
-  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                          "property float z\nend_header\n1 2 3\n";
-  for (const std::string& cloud :
-       {ply, std::string("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
-        std::string("OFF 1 0 0\n1 2 3\n"), std::string("1 2 3\n")}) {
-    writer = through(cloud);
-    EXPECT_EQ(valueOf(readCloud(pipe), 0, "z"), 3) << cloud;
-    writer.join();
-  }
   writer = through("");
-  EXPECT_THROW(FileBytes{pipe}, CloudFileError);
+  EXPECT_THROW(FileBytes{pipe}, files::FileError);
   writer.join();
-  EXPECT_THROW(readCloudHeader(pipe), CloudFileError) << "it would be gone for readCloud()";
-}
-
-TEST(FileBytes, HeadersAreReadAlone)
-{
-  const TemporaryFolder folder;
-  const std::string begin = "ply\nformat ascii 1.0\n";
-  const std::string end = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
-  std::string comments;
-  while (comments.size() < 200000) comments += "comment more than one reads at first\n";
-  EXPECT_EQ(readCloudHeader(folder.write("long.ply", begin + comments + end)).fields.size(), 3U);
 }
 
 } // namespace pcl_bsh::io

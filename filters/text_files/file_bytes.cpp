@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/file_identity.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file_error.h>
-#include <pcl_bsh/filters/cloud_files/file_bytes.h>
+#include <pcl_bsh/filters/text_files/file_bytes.h>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void failToRead(const fs::path& path, const char* what, int error)
 {
-  throw CloudFileError(path, std::string(what) + " (" + std::generic_category().message(error) + ")",
-                       "check its permissions and its disk");
+  throw files::FileError(path, std::string(what) + " (" + std::generic_category().message(error) + ")",
+                         "check its permissions and its disk");
 }
 
 /// Closed at the end, unless it is standard input.
@@ -31,7 +31,7 @@ public:
   : number_(path == files::standard_stream ? STDIN_FILENO : open(path.c_str(), O_RDONLY | O_CLOEXEC))
   {
     if (number_ >= 0) return;
-    if (errno == ENOENT || errno == ENOTDIR) throw CloudFileError(path, "no such file", "check the name");
+    if (errno == ENOENT || errno == ENOTDIR) throw files::FileError(path, "no such file", "check the name");
     failToRead(path, "cannot be opened", errno);
   }
   ~Descriptor()
@@ -52,10 +52,10 @@ std::size_t expectedSize(const fs::path& path, int descriptor)
 {
   struct stat status = {};
   if (fstat(descriptor, &status) != 0) failToRead(path, "cannot be read", errno);
-  if (S_ISDIR(status.st_mode)) throw CloudFileError(path, "is a folder", "name a file in it");
+  if (S_ISDIR(status.st_mode)) throw files::FileError(path, "is a folder", "name a file in it");
   const bool is_terminal = S_ISCHR(status.st_mode) && isatty(descriptor) != 0;
   if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode) && !S_ISSOCK(status.st_mode) && !is_terminal) {
-    throw CloudFileError(path, "is neither a file nor a pipe", "save the cloud to a file first");
+    throw files::FileError(path, "is neither a file nor a pipe", "save the cloud to a file first");
   }
   return S_ISREG(status.st_mode) ? static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) : 0;
 }
@@ -71,7 +71,7 @@ FileBytes::FileBytes(const fs::path& path, std::size_t most)
   catch (const std::system_error& error) {
     failToRead(path, "cannot be read", error.code().value());
   }
-  if (size_ == 0) throw CloudFileError(path, "is empty", "export or copy the file again");
+  if (size_ == 0) throw files::FileError(path, "is empty", "export or copy the file again");
 }
 
 void FileBytes::reserve(std::size_t size)

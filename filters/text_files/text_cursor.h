@@ -2,7 +2,7 @@
 // Walks a text line by line, and a line word by word.
 #pragma once
 
-#include <pcl_bsh/filters/cloud_files/field_type.h>
+#include <pcl_bsh/filters/text_files/parse_number.h>
 
 #include <cstddef>
 #include <string>
@@ -70,19 +70,20 @@ public:
     return taken;
   }
 
+  /// What `parse` gives for the next word, which is taken off the line.
+  /// @throws FormatError naming the line when there is none, or when `parse` throws one
+  template <typename Parse>
+  std::invoke_result_t<Parse, std::string_view> parseWord(Parse&& parse)
+  {
+    const std::string_view taken = requireWord();
+    return naming([&] { return parse(taken); });
+  }
+
   /// Takes the next word as a number; throws FormatError naming the line.
   template <typename T>
   T number()
   {
-    const std::string_view taken = requireWord();
-    return naming([&] { return parseNumber<T>(taken); });
-  }
-
-  /// Takes the next word as a number of that type of field; throws FormatError naming the line.
-  void number(std::uint8_t datatype, std::uint8_t* out)
-  {
-    const std::string_view taken = requireWord();
-    naming([&] { parseNumber(taken, datatype, out); });
+    return parseWord([](std::string_view word) { return parseNumber<T>(word); });
   }
 
   /// @throws FormatError when words are left on the line

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A field's values in a text.
+#pragma once
+
+#include <pcl_bsh/filters/cloud_files/field_type.h>
+#include <pcl_bsh/filters/text_files/parse_number.h>
+#include <pcl_bsh/filters/text_files/text_cursor.h>
+
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+namespace pcl_bsh::io {
+
+/// Writes the number that the word says to `out`, in the representation of `datatype`. Throws as parseNumber() does.
+inline void parseNumber(std::string_view word, std::uint8_t datatype, std::uint8_t* out)
+{
+  withFieldType(datatype, [&](auto zero) {
+    const auto value = parseNumber<decltype(zero)>(word);
+    std::memcpy(out, &value, sizeof value);
+  });
+}
+
+/// Takes the next word of the line as a number and writes it so.
+/// @throws FormatError naming the line
+inline void readNumber(TextCursor& text, std::uint8_t datatype, std::uint8_t* out)
+{
+  text.parseWord([&](std::string_view word) { parseNumber(word, datatype, out); });
+}
+
+} // namespace pcl_bsh::io
