@@ -50,29 +50,33 @@ with_dependencies() {
   apt_get install --simulate --no-install-recommends "$@" | sed -n 's/^Inst \([^ ]*\) .*/\1/p' | sort
 }
 
-# Most packages are PCL's and VTK's, which the core and some others do not need: they are downloaded while the core's packages are
-# installed, and installed while the core is compiled.
+# Most packages are PCL's and VTK's, which the core and some others do not need: they are downloaded while the core's
+# packages are installed, and installed while the core is compiled.
+download_and_install() { # FOLDER OF DOWNLOADS, PACKAGES TO DOWNLOAD..., --, PACKAGES TO INSTALL...
+  local folder="$1" downloads=()
+  shift
+  while [[ "$1" != -- ]]; do downloads+=("$1"); shift; done
+  shift
+  (cd "$folder" && apt_get download "${downloads[@]}") || say "a download failed: apt-get tries again"
+  install_packages -o Dir::Cache::archives="$folder" "$@" # waits until the core's are installed
+  rm -rf "$folder"
+}
+
 install_all_and_build_core() {
-  local core rest others packages="$PWD/build/packages" log="$PWD/build/apt.log"
+  local core rest others log="$PWD/build/apt.log"
   mapfile -t core < <(missing_packages core)
   mapfile -t rest < <(missing_packages "$last_section")
   mapfile -t others < <(comm -13 <(with_dependencies "${core[@]}") <(with_dependencies "${rest[@]}"))
-  mkdir -p "$packages/partial"
-  say "downloading ${#others[@]} packages in the background; what apt-get says of them is in $log"
-  (cd "$packages" && apt_get download "${others[@]}") >"$log" 2>&1 &
-  local background=$!
+  mkdir -p build/packages/partial
+  say "installing ${#others[@]} packages in the background; what apt-get says of them is in $log"
+  download_and_install "$PWD/build/packages" "${others[@]}" -- "${rest[@]}" >"$log" 2>&1 &
+  local installing=$!
   trap 'wait' EXIT # whatever fails: apt-get is not left half done
   if ((${#core[@]})); then install_packages "${core[@]}"; fi
-  wait "$background" || say "a download failed: apt-get tries again"
-  mapfile -t rest < <(missing_packages "$last_section")
-  say "installing them while the core is built"
-  install_packages -o Dir::Cache::archives="$packages" "${rest[@]}" >>"$log" 2>&1 &
-  background=$!
   configure -D PCL_BSH_WITHOUT_PCL=ON
   cmake --build --preset "$preset" --target pcl_bsh_documents pcl_bsh_cli
   trap - EXIT
-  wait "$background" || { tail -n 20 "$log" >&2; die "apt-get install failed: see the lines above, and $log"; }
-  rm -rf "$packages"
+  wait "$installing" || { tail -n 20 "$log" >&2; die "apt-get install failed: see the lines above, and $log"; }
 }
 
 if command -v apt-get >/dev/null; then
