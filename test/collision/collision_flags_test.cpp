@@ -5,6 +5,7 @@
 #include "../query/kd_tree.h"
 #include "../query/random_clouds.h"
 #include "../query/work_counts.h"
+#include "facing_sheets.h"
 
 #include <gtest/gtest.h>
 
@@ -23,6 +24,7 @@ namespace {
 
 using Flags = std::vector<std::uint8_t>;
 using test::Cloud;
+using test::FacingSheets;
 using test::Random;
 using test::Scene;
 using test::Shape;
@@ -431,6 +433,79 @@ TEST(CollisionFlags, LooksAtFewVoxelsOfALongCloud)
   const FlagsResult lowered = collisionFlags({a}, {b, Eigen::Isometry3d(Eigen::Translation3d(0, 0, -10))}, within(0.2));
   EXPECT_GT(lowered.colliding_a, 10u);
   EXPECT_EQ(lowered.colliding_a, ones(lowered.a));
+}
+
+TEST(CollisionFlags, BySlabsOfFacingSheetsToTheLastBit)
+{
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    const FacingSheets sheets(seed, seed < 50 ? 300 : 1200);
+    HierarchyOptions options;
+    options.voxel_edge = seed % 3 == 0 ? 0.5 : 0.0;
+    const SphereHierarchy a(sheets.a->view(), options), b(sheets.b->view(), options);
+    const Placed placed_a{a, sheets.pose_a}, placed_b{b, sheets.pose_b};
+    const double least = closestPair(placed_a, placed_b).distance; // fits slabs
+    for (const double clearance : {std::nextafter(least, 0.0), least, 1.01 * least, 1.2 * least, 2 * least}) {
+      const FlagsRequest request = within(clearance, Side::both);
+      const FlagsResult found = collisionFlags(placed_a, placed_b, request);
+      const FlagsResult expected = brute_force::collisionFlags(placed_a, placed_b, request);
+      EXPECT_EQ(found.a, expected.a) << clearance;
+      EXPECT_EQ(found.b, expected.b) << clearance;
+    }
+  }
+}
+
+TEST(CollisionFlags, SlabsOfEarlierQueriesSpareHalfTheCostOfFacingSheets)
+{
+  const FacingSheets sheets(6, 60000);
+  const SphereHierarchy a(sheets.a->view()), b(sheets.b->view()), unasked_a(sheets.a->view()),
+      unasked_b(sheets.b->view());
+  const Placed placed_a{a, sheets.pose_a}, placed_b{b, sheets.pose_b};
+  const double gap = closestPair(placed_a, placed_b).distance;
+  a.buildAll();
+  b.buildAll();
+  const auto cost = [](const FlagsResult& result) { return result.work.node_pairs + 16 * result.work.leaf_pairs; };
+  for (const double clearance : {0.9 * gap, 1.01 * gap}) {
+    const FlagsRequest request = within(clearance, Side::both);
+    const FlagsResult by_spheres = collisionFlags({unasked_a, sheets.pose_a}, {unasked_b, sheets.pose_b}, request);
+    Work one_thread;
+    for (const unsigned threads : {1u, 4u}) {
+      const FlagsResult found = collisionFlags(placed_a, placed_b, within(clearance, Side::both, threads));
+      EXPECT_EQ(found.a, by_spheres.a);
+      EXPECT_EQ(found.b, by_spheres.b);
+      EXPECT_LT(2 * cost(found), cost(by_spheres));
+      EXPECT_EQ(found.work.volumes_built, 0u); // flags fit none
+      if (threads == 1) one_thread = found.work;
+      EXPECT_EQ(test::countsOf(found.work), test::countsOf(one_thread));
+    }
+  }
+}
+
+/// Slabs answer what exact arithmetic would. A coarser answer has to be the one that spheres alone give.
+TEST(CollisionFlags, OtherThanExactDoNotDependOnEarlierQueries)
+{
+  const FacingSheets sheets(6, 5000);
+  const SphereHierarchy a(sheets.a->view()), b(sheets.b->view());
+  const Placed placed_a{a, sheets.pose_a}, placed_b{b, sheets.pose_b};
+  a.buildAll();
+  b.buildAll();
+  const std::vector<Accuracy> accuracies = {Accuracy::floatOnly(), Accuracy::tolerance(0.1), Accuracy::level(2),
+                                            Accuracy::nodePairs(3000)};
+  FlagsRequest request = within(0.1, Side::both);
+  std::vector<FlagsResult> before;
+  for (const Accuracy& accuracy : accuracies) {
+    request.accuracy = accuracy;
+    before.push_back(collisionFlags(placed_a, placed_b, request));
+  }
+  closestPair(placed_a, placed_b); // fits slabs
+  for (std::size_t i = 0; i < accuracies.size(); ++i) {
+    SCOPED_TRACE(accuracies[i].text());
+    request.accuracy = accuracies[i];
+    const FlagsResult after = collisionFlags(placed_a, placed_b, request);
+    EXPECT_EQ(after.a, before[i].a);
+    EXPECT_EQ(after.b, before[i].b);
+    EXPECT_EQ(test::countsOf(after.work), test::countsOf(before[i].work));
+  }
 }
 
 TEST(CollisionFlags, RefusesWhatItCannotAnswer)
