@@ -223,12 +223,14 @@ private:
     countAndTighten();
   }
 
-  /// Lowers the bound when enough candidates have come since that was last done, and forgets those beyond it.
+  /// Lowers the bound when enough candidates have come since that was last done, and forgets those beyond it. As many
+  /// as were kept beyond k, where ties keep more than that: so that each candidate is looked at a few times only.
   void countAndTighten()
   {
     if (places_.size() < wanted_) return;
     tighten();
-    wanted_ = places_.size() + std::max<std::size_t>(kMore, k_ / 2);
+    const std::size_t beyond = places_.size() - std::min(places_.size(), k_);
+    wanted_ = places_.size() + std::max({kMore, k_ / 2, beyond});
   }
 
   /// Lowers the bound to where k candidates lie within it: to the k-th smallest, or a little above.
@@ -236,15 +238,20 @@ private:
   {
     const float* const highs = highs_.data();
     const std::size_t count = highs_.size(), enough_said = k_ + k_ / 8;
-    float enough = largestOf(highs, count), few = 0.0f;
-    if (!(enough < kInfinity)) return;
-    if (k_ == 1) enough = smallestOf(highs, count);
-    double within = static_cast<double>(count), beyond = 0.0; // candidates at most `enough`, at most `few`
-    for (int step = 0; step < kSteps && k_ > 1; ++step) {
-      // Interpolation, for squared distances are spread evenly on a surface; every other time halfway.
+    work_.ranked += count;
+    float enough = k_ == 1 ? smallestOf(highs, count) : largestOf(highs, count), few = 0.0f;
+    if (count > std::max<std::size_t>(2 * kScanned, 4 * k_)) few = smallestOf(highs, count); // many of them ties
+    double within = static_cast<double>(count), beyond = 0.0; // candidates at most `enough`, about those at most `few`
+    for (int step = 0; k_ > 1; ++step) {
+      if (step >= kSteps && (within <= 2.0 * static_cast<double>(enough_said) || missOfHighs(few) >= enough)) break;
       const double share = (static_cast<double>(k_ + enough_said) * 0.5 - beyond) / (within - beyond);
-      const float guess = step % 2 == 0 ? few + static_cast<float>(share) * (enough - few) : 0.5f * (few + enough);
+      // Interpolation, for squared distances are spread evenly on a surface; every other time halfway. In the end
+      // halfway between exponents, for distances may be of all sizes.
+      const float guess = step >= kSteps  ? halfwayUp(few, enough)
+                          : step % 2 == 0 ? few + static_cast<float>(share) * (enough - few)
+                                          : 0.5f * (few + enough);
       const float middle = std::min(std::max(guess, few), enough);
+      work_.ranked += count;
       const std::size_t at_most = countAtMost(highs, count, middle);
       if (at_most >= k_) {
         enough = middle;
@@ -260,6 +267,13 @@ private:
     forgetFarther();
   }
 
+  /// The float halfway in the order of floats >= 0, rounded down.
+  static float halfwayUp(float low, float high)
+  {
+    const auto below = std::bit_cast<std::uint32_t>(low), above = std::bit_cast<std::uint32_t>(high);
+    return std::bit_cast<float>(below + (above - below) / 2);
+  }
+
   void lower(float bound)
   {
     bound_ = bound;
@@ -268,11 +282,11 @@ private:
 
   /// No candidate's lower bound is less than its upper one by more than that: above * inverse_below is less than
   /// 1 + 8 kNeighborShare.
-  float missOfHighs() const { return (bound_ + most_slack_) * (1.0f + 8 * kNeighborShare) + most_slack_; }
+  float missOfHighs(float bound) const { return (bound + most_slack_) * (1.0f + 8 * kNeighborShare) + most_slack_; }
 
   void forgetFarther()
   {
-    const float miss = missOfHighs();
+    const float miss = missOfHighs(bound_);
     const LaneTag d;
     std::size_t kept = 0;
     const std::size_t count = places_.size();

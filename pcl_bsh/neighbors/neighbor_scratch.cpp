@@ -17,8 +17,8 @@ const ExactDistance& unposed()
   return distance;
 }
 
-/// Squared distances that are one float need not be one number: puts those runs that begin among the first `most` in
-/// their exact order, and equal distances in the order of their records.
+/// Squared distances that are one float need not be one number: puts the first `most` in their exact order, and equal
+/// distances in the order of their records.
 void settleTies(const PointsView& view, const Point3& query, NeighborScratch& scratch, std::size_t most, Work& work)
 {
   const auto nearer = [&](std::uint32_t x, std::uint32_t y) {
@@ -34,8 +34,11 @@ void settleTies(const PointsView& view, const Point3& query, NeighborScratch& sc
   for (std::size_t begin = 0; begin + 1 < count && begin < most;) {
     std::size_t end = begin + 1;
     while (end < count && squared[end] == squared[begin]) ++end;
-    if (end - begin > 1 && !std::is_sorted(records + begin, records + end, nearer))
-      std::sort(records + begin, records + end, nearer);
+    if (end - begin > 1 && !std::is_sorted(records + begin, records + end, nearer)) {
+      const std::size_t needed = std::min(end, most);
+      if (needed < end) std::nth_element(records + begin, records + needed - 1, records + end, nearer);
+      std::sort(records + begin, records + needed, nearer);
+    }
     begin = end;
   }
 }

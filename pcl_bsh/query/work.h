@@ -22,6 +22,7 @@ struct Work : BuildWork {
   std::uint64_t volumes_carried = 0;
   std::uint64_t leaf_pairs = 0;      ///< pairs of leaves whose points were compared
   std::uint64_t exact_decisions = 0; ///< pairs of points, or of tiny nodes, that float arithmetic could not decide
+  std::uint64_t ranked = 0; ///< of searches for the nearest: candidates counted to bound the k-th distance, each time
 
   /// All updates of bounding volumes, as the paper counts them.
   std::uint64_t updates() const noexcept { return volumes_carried + volumes_built; }
@@ -34,6 +35,7 @@ struct Work : BuildWork {
     volumes_carried += other.volumes_carried;
     leaf_pairs += other.leaf_pairs;
     exact_decisions += other.exact_decisions;
+    ranked += other.ranked;
     return *this;
   }
 };
