@@ -26,7 +26,7 @@ namespace {
 enum class Added { kept, dropped, stop };
 
 /// Walks to every pair of points within a reach and hands it to a sink: `double reach()`, how far pairs are still of
-/// interest, which may shrink; `Added add(PointPair, Work&)`.
+/// interest, which may shrink, to less than 0 where points have radii; `Added add(PointPair, Work&)`.
 template <class Sink>
 class ReachWalk {
 public:
@@ -40,7 +40,7 @@ public:
   Work run()
   {
     stack_.clear();
-    walk_.seed(sink_.reach(), [this](const LanePair& pair, const PairWalk::Step& step, std::uint32_t lane) {
+    walk_.seed(lengthOfReach(), [this](const LanePair& pair, const PairWalk::Step& step, std::uint32_t lane) {
       push(pair, step, lane);
     });
     nearestLast(stack_, 0);
@@ -54,7 +54,7 @@ public:
         if (!compareLeaves(pair)) break;
         continue;
       }
-      walk_.step(pair, opened, sink_.reach(), step);
+      walk_.step(pair, opened, lengthOfReach(), step);
       const std::size_t from = stack_.size();
       for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
@@ -66,6 +66,9 @@ public:
   }
 
 private:
+  /// What spheres are tested with.
+  double lengthOfReach() const { return std::max(sink_.reach(), 0.0); }
+
   void push(LanePair pair, const PairWalk::Step& step, std::uint32_t lane)
   {
     const double bound = walk_.lowerBound(pair, step, lane);
@@ -83,7 +86,7 @@ private:
     LeafPoints points;
     carryLeaf(frame, a, points);
     const std::uint32_t lanes =
-        pointsNearLeaf(frame, points, a, walk_.nodeOf(walk_.b, pair.b), pair.b.lane, pairs_.clearance);
+        pointsNearLeaf(frame, points, a, walk_.nodeOf(walk_.b, pair.b), pair.b.lane, lengthOfReach());
     if (lanes == 0) return true;
 
     bool going = true;
@@ -93,13 +96,20 @@ private:
       return !going;
     };
     if (pairs_.haveRadii()) {
-      eachBallPairNear(frame, points, lanes, a, b, pairs_.clearance,
+      eachBallPairNear(frame, points, lanes, a, b, sink_.reach(),
                        [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, -1.0f); });
       return going;
     }
-    const DistanceBand band = frame.band(pairs_.clearance);
-    eachPairNotBeyond(points, lanes, b, band.miss,
-                      [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, band.hit); });
+    const float hit = frame.band(pairs_.clearance).hit;
+    double reach = sink_.reach();
+    float miss = frame.band(reach).miss;
+    eachPairNotBeyond(points, lanes, b, miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
+      if (sink_.reach() < reach) { // shrunk since the last pair that was near
+        reach = sink_.reach();
+        miss = frame.band(reach).miss;
+      }
+      return !(squared > miss) && found(i, j, squared, hit);
+    });
     return going;
   }
 
@@ -208,8 +218,7 @@ public:
       heaped_ ? std::push_heap(kept_.begin(), kept_.end(), order())
               : std::make_heap(kept_.begin(), kept_.end(), order());
       heaped_ = true;
-      const double worst = std::nextafter(kept_.front().gap, std::numeric_limits<double>::infinity());
-      reach_ = std::min(reach_, std::max(worst, 0.0));
+      reach_ = std::min(reach_, std::nextafter(kept_.front().gap, std::numeric_limits<double>::infinity()));
     }
     return Added::kept;
   }
