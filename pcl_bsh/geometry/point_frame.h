@@ -11,7 +11,8 @@ namespace pcl_bsh {
 /// A point q as the float nearest to (q - origin) / unit, and how far that may lead astray.
 ///
 /// For every given point p of the frame, stored as x: | |p - q| / unit - |x - (stored q)| | <= error. Per axis, x errs
-/// by the frame's slack, and q in the same way; a sum of absolute values is at least the norm.
+/// by the frame's slack, or not at all in a lossless one, and q by kStoringError of itself; a sum of absolute values is
+/// at least the norm.
 class PointFrame {
 public:
   PointFrame(const LocalFrame& frame, const Point3& q) noexcept : unit(frame.unit)
@@ -25,7 +26,7 @@ public:
       reach += frame.reach[k];
     }
     error = inFloatRange(absolute) && inFloatRange(reach) && unit >= 0x1p-900 && unit <= 0x1p900
-                ? kStoringError * (absolute + reach) + 0x1p-140
+                ? kStoringError * (frame.lossless ? absolute : absolute + reach) + 0x1p-140
                 : std::numeric_limits<double>::infinity();
   }
 

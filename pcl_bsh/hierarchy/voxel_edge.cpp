@@ -15,6 +15,9 @@ namespace {
 // Enough points that the work of a voxel outweighs its frame, few enough that building one stays in the cache.
 constexpr double kPointsPerVoxel = 6000.0;
 
+// A voxel with less than a part so small of the points that it should have is one of strays.
+constexpr double kStrayShare = 64.0;
+
 // Keep an edge and its inverse normal numbers; 2^20 of the largest hold any cloud of doubles.
 constexpr double kSmallestEdge = 0x1p-1000, kLargestEdge = 0x1p1006;
 
@@ -64,19 +67,34 @@ double voxelEdgeFromDensity(const PointsView& view, const Bounds& bounds)
     if (finite) codes.push_back(mortonCode(number[0], number[1], number[2]));
   }
   hwy::Sorter()(codes.data(), codes.size(), hwy::SortAscending());
+
   std::array<std::size_t, kMortonBits + 1> split_at{}; // [b]: neighbours whose codes differ first in bit b of some axis
   for (std::size_t i = 1; i < codes.size(); ++i) {
     const std::uint64_t difference = codes[i] ^ codes[i - 1];
     if (difference != 0) ++split_at[static_cast<std::size_t>(63 - __builtin_clzll(difference)) / 3];
   }
+  // Voxels of cell * 2^b, those of strays by the points that they hold.
+  const double enough = std::max(1.0, static_cast<double>(codes.size()) / (kStrayShare * wanted));
+  const auto occupiedByMany = [&](unsigned b) {
+    double occupied = 0.0;
+    for (std::size_t i = 0, end = 0; i < codes.size(); i = end) {
+      while (end < codes.size() && codes[end] >> 3 * b == codes[i] >> 3 * b) ++end;
+      occupied += std::min(1.0, static_cast<double>(end - i) / enough);
+    }
+    return occupied;
+  };
 
   double edge = kLargestEdge;
   std::size_t occupied = 1;
-  for (std::size_t b = kMortonBits; b-- > 0;) {
+  const double most = std::max(2.0, wanted * wanted);
+  for (unsigned b = kMortonBits; b-- > 0;) {
     // Going down to voxels of cell * 2^b: stop where that many would be farther from what is wanted than so few. Two
-    // are never too many: an outlier has one of its own.
+    // are never too many: an outlier has one of its own. But a few strays must not keep all other points in one voxel:
+    // go on where these are too few even two levels farther down.
     const std::size_t finer = occupied + split_at[b];
-    if (static_cast<double>(finer) * static_cast<double>(occupied) > std::max(2.0, wanted * wanted)) break;
+    if (static_cast<double>(finer) * static_cast<double>(occupied) > most &&
+        occupiedByMany(b - std::min(b, 1u)) * occupiedByMany(b - std::min(b, 2u)) > most)
+      break;
     occupied = finer;
     edge = cell * std::exp2(static_cast<double>(b));
   }

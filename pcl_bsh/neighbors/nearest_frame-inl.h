@@ -19,19 +19,19 @@ namespace HWY_NAMESPACE {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// The query in one frame, and how a squared float distance s there bounds the squared distance in the cloud's frame:
+/// The query in one frame, and how a squared float distance s there bounds the squared distance in the search's unit:
 /// that is within [s / inverse_below - slack, s * above + slack].
 ///
 /// With rho the frame's error and any e > 0, (sqrt(s) + rho)^2 <= s (1 + e) + rho^2 (1 + 1/e), and likewise below.
 /// Here e = kNeighborShare; as much again pays for float arithmetic, and twice as much below. Where floats bound
-/// nothing, the query is at 0, every upper bound is infinite and nothing is left out; none of these numbers is NaN, nor
-/// is what the walk makes of them.
+/// nothing, the query is at 0, every upper bound is infinite and nothing is left out. So it is where units are so far
+/// apart that upper bounds overflow; none of these numbers is NaN, nor is what the walk makes of them.
 struct NearestFrame {
-  NearestFrame(const PointFrame& point, double cloud_unit)
+  NearestFrame(const PointFrame& point, double search_unit)
   {
-    const double unit = point.unit == cloud_unit ? 1.0 : point.unit / cloud_unit;
+    const double unit = point.unit == search_unit ? 1.0 : point.unit / search_unit;
     const double scale = unit * unit;
-    if (!(point.inRange() && scale >= kSmallestScale && scale <= 1.0)) return;
+    if (!(point.inRange() && scale >= kSmallestScale && scale <= 1.0 / kSmallestScale)) return;
     at = {point.at[0], point.at[1], point.at[2]};
     error = static_cast<float>(point.error);
     slack = static_cast<float>(scale * point.error * point.error / kNeighborShare) * (1.0f + 32 * kNeighborShare) +
@@ -48,8 +48,8 @@ struct NearestFrame {
   /// Spheres farther than this and their radius are beyond `distance`.
   float reach(float distance) const { return (distance * inverse_unit + error) * (1.0f + kNeighborMargin); }
 
-  static constexpr float kVanishing = 0x1p-100f; ///< above what underflows, as a squared distance
-  static constexpr double kSmallestScale = 0x1p-60;
+  static constexpr float kVanishing = 0x1p-100f;     ///< above what underflows, as a squared distance
+  static constexpr double kSmallestScale = 0x1p-120; ///< its inverse, too, is in range
 
   Point at = {0.0f, 0.0f, 0.0f};
   float error = kInfinity, slack = kInfinity;

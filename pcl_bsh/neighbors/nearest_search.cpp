@@ -46,25 +46,55 @@ public:
   void run()
   {
     if (k_ == 0) return;
+    place_ = cloud_.find(query_);
+    if (cloud_.frame.unit != 1.0)
+      unit_ = cloud_.voxels[place_.voxel != kNoVoxel ? place_.voxel : nearVoxel()].frame.unit;
     if (radius_ < std::numeric_limits<double>::infinity()) {
-      const double reach = radius_ / cloud_.frame.unit;
+      const double reach = radius_ / unit_;
       lower(roundUp(reach * reach * (1.0 + kFewDoubleRoundings) + static_cast<double>(NearestFrame::kVanishing)));
     }
-    place_ = cloud_.find(query_);
     if (place_.voxel != kNoVoxel) visitVoxel(place_.voxel);
-    if (!(static_cast<double>(distance_) * cloud_.frame.unit < place_.margin)) visitTop();
+    if (!(static_cast<double>(distance_) * unit_ < place_.margin)) visitTop();
     collect();
   }
 
 private:
   static SphereLanes spheresOf(const Node& node) { return {node.x, node.y, node.z, node.r, 1.0f}; }
 
+  /// A voxel near the query, by the spheres above it: its unit suits distances there. Strays make that of the cloud too
+  /// large.
+  std::uint32_t nearVoxel() const
+  {
+    const Node* node = cloud_.top.data();
+    for (;;) {
+      std::uint32_t nearest = 0;
+      double least = std::numeric_limits<double>::infinity();
+      const PointFrame point(cloud_.frame, query_);
+      for (std::uint32_t i = 0; i < node->count; ++i) {
+        const double gap = std::hypot(static_cast<double>(node->x[i]) - static_cast<double>(point.at[0]),
+                                      static_cast<double>(node->y[i]) - static_cast<double>(point.at[1]),
+                                      static_cast<double>(node->z[i]) - static_cast<double>(point.at[2])) -
+                           static_cast<double>(node->r[i]);
+        if (gap < least) least = gap, nearest = i;
+      }
+      if (node->isLeaf(nearest)) return node->begin[nearest];
+      node = &cloud_.top[node->child[nearest]];
+    }
+  }
+
   void visitTop()
   {
     const PointFrame point(cloud_.frame, query_);
-    if (point.separates(cloud_.frame, static_cast<double>(distance_))) return;
+    if (point.separates(cloud_.frame, distanceIn(point))) return;
     ++work_.volumes_carried;
-    visitAbove(NearestFrame(point, cloud_.frame.unit), 0);
+    visitAbove(NearestFrame(point, unit_), 0);
+  }
+
+  /// The bound in the units of a frame.
+  double distanceIn(const PointFrame& point) const
+  {
+    const auto distance = static_cast<double>(distance_);
+    return point.unit == unit_ ? distance : distance * (unit_ / point.unit);
   }
 
   /// Calls visit(i) for the children that may hold points within the bound, the nearest first.
@@ -99,10 +129,8 @@ private:
   {
     const LocalFrame& local = cloud_.voxels[index].frame;
     const PointFrame point(local, query_);
-    const NearestFrame frame(point, cloud_.frame.unit);
-    if (frame.slack < kInfinity &&
-        point.separates(local, static_cast<double>(distance_) * static_cast<double>(frame.inverse_unit)))
-      return;
+    if (point.separates(local, distanceIn(point))) return;
+    const NearestFrame frame(point, unit_);
     most_slack_ = std::max(most_slack_, frame.slack);
     ++work_.volumes_carried;
     const Voxel& voxel = cloud_.built(index, work_);
@@ -309,7 +337,7 @@ private:
   void collect()
   {
     if (places_.size() > k_) tighten();
-    const double reach = radius_ / cloud_.frame.unit;
+    const double reach = radius_ / unit_;
     const float surely = roundDown(std::min(reach * reach * (1.0 - kFewDoubleRoundings), kLargestSurely));
     std::size_t kept = 0;
     const Voxel* const* voxel = voxels_.data();
@@ -338,9 +366,10 @@ private:
   std::size_t wanted_; ///< candidates at which the bound is looked at again
   const double radius_;
   ScratchArray<std::uint32_t>& places_; ///< points that may be among the nearest, counted over all voxels
-  ScratchArray<float>& highs_;          ///< upper bounds of their squared distances, in the cloud's frame
+  ScratchArray<float>& highs_;          ///< upper bounds of their squared distances, in units of the search
   ScratchArray<const Voxel*>& voxels_;  ///< visited
   Work& work_;
+  double unit_ = 1.0;          ///< of lengths in the search
   float bound_ = kInfinity;    ///< squared; points that are farther do not count
   float distance_ = kInfinity; ///< at least its root
   float most_slack_ = 0.0f;    ///< of the frames visited

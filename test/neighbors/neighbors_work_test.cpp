@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <vector>
+
 #include <functional>
 
 namespace pcl_bsh {
@@ -39,6 +42,35 @@ TEST(NeighborsWork, GrowsAsTheShellAroundTheQuery)
       const double few = steps(3000), some = steps(12000), many = steps(48000);
       EXPECT_LE(some, 5 * few) << "k = " << k << ", " << off << " from the centre";
       EXPECT_LE(many, 5 * some) << "k = " << k << ", " << off << " from the centre";
+    }
+  }
+}
+
+/// 200 places near points of the cube.
+std::vector<Point3> placesInCube()
+{
+  return test::adversarial::cube(200, 7);
+}
+
+TEST(NeighborsWork, StraysDoNotSpoilTheOthers)
+{
+  // One coordinate that is no measurement, far outside of what a float's squares can hold, and six of 1e20.
+  constexpr double sentinel = std::numeric_limits<float>::max();
+  const std::vector<std::vector<Point3>> strays = {
+      {},
+      {{1e6, 0, 0}},
+      {{1e12, 1e12, 0}},
+      {{sentinel, sentinel, sentinel}},
+      std::vector<Point3>(6, Point3{1e20, 1e20, 1e20}),
+      {{1e20, 0, 0}, {-1e20, 0, 0}, {0, 1e20, 0}, {0, -1e20, 0}, {0, 0, 1e20}, {0, 0, -1e20}}};
+  for (std::size_t n : {3000, 12000, 48000}) {
+    for (const std::size_t k : {1, 2, 10}) {
+      const auto steps = [&](const std::vector<Point3>& far) {
+        return stepsOfNearest({test::adversarial::with(test::adversarial::cube(n, 3), far), placesInCube()}, k);
+      };
+      const double none = steps({});
+      for (const auto& far : strays)
+        EXPECT_LE(steps(far), 2.5 * none) << n << " points, k = " << k << ", strays: " << far.size();
     }
   }
 }
