@@ -10,6 +10,7 @@
 #endif
 
 #include <pcl_bsh/geometry/distance_band.h>
+#include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 
 #include <deque>
@@ -28,6 +29,7 @@ struct ObstacleVoxel {
   float accept_reach; ///< what comes within it may count as colliding; no less
   float blunt_radius;
   DistanceBand band;
+  const Slabs* slabs = nullptr; ///< of its nodes, once asked for
 };
 
 /// A sphere of b that the points of some node of a may collide with: a child of `node`, in one of the obstacle voxels.
@@ -59,13 +61,43 @@ struct FlagVisit {
   std::uint32_t obstacle = 0;
   alignas(32) float x[kLanes], y[kLanes], z[kLanes], r[kLanes]; ///< their spheres in the obstacle voxel's frame
   float smallest = 0.0f;                                        ///< of r
+  bool has_slabs = false;                                       ///< whether the following are set
+  alignas(32) float nx[kLanes], ny[kLanes], nz[kLanes];         ///< normals of the children's slabs, likewise
+  const Slabs* slabs = nullptr;                                 ///< the children's
   BoundingSphere around;                                        ///< holds them all; in the frame of a's voxel
   QueryBall ball;                                               ///< likewise, in the obstacle voxel's frame
   std::vector<ObstacleSphere> near[kLanes]; ///< what each child has to be compared with; of leaves, in this obstacle
 
   std::uint32_t open_points[kLanes] = {}; ///< of leaves: bits of the points not flagged yet
   std::uint32_t unsure = 0;               ///< bits of leaves that met spheres which were not to be opened
+
+  void begin(const Node& entered, const BoundingSphere& holding_all)
+  {
+    unsure = 0;
+    around = holding_all;
+    node = &entered;
+    open = firstBits(entered.count);
+    leaves = 0;
+    for (std::uint32_t lane = 0; lane < entered.count; ++lane) {
+      near[lane].clear();
+      if (!entered.isLeaf(lane)) continue;
+      leaves |= 1u << lane;
+      open_points[lane] = firstBits(entered.comparedPoints(lane));
+    }
+  }
 };
+
+/// The children whose slabs are apart from the candidate's. @param radius the candidate's, stretched
+inline std::uint32_t slabsApartFrom(const FlagVisit& visit, const ObstacleVoxel& obstacle,
+                                    const ObstacleSphere& candidate, float radius)
+{
+  const Node& node = *candidate.node;
+  const std::uint32_t k = candidate.lane;
+  const Slabs& slabs = obstacle.slabs[&node - obstacle.voxel->nodes.data()];
+  const Slab other{{slabs.x[k], slabs.y[k], slabs.z[k]}, slabs.h[k], {node.x[k], node.y[k], node.z[k]}, radius};
+  return slabsApart({visit.x, visit.y, visit.z, visit.r, 1.0f}, {visit.nx, visit.ny, visit.nz, visit.slabs->h}, other,
+                    obstacle.prune_reach);
+}
 
 /// Memory of one walk after another, to be had by a ScratchLease.
 struct FlagScratch {

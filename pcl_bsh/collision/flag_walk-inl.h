@@ -57,6 +57,7 @@ public:
       return;
     }
     if (!mayEnter(voxel)) return leaveAll();
+    voxel_ = voxel;
     a_voxel_ = &a_.voxel(voxel, found.work);
 
     for (const std::uint32_t other : reached_) {
@@ -111,11 +112,12 @@ private:
     if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs)) return leave(node.begin[0], node.begin[node.count]);
     if (visits_.size() == depth) visits_.emplace_back();
     FlagVisit& visit = visits_[depth];
-    begin(visit, node, around);
+    visit.begin(node, around);
     for (auto from = candidates.begin(); from != candidates.end() && visit.open != 0;) {
       const auto to =
           std::find_if(from, candidates.end(), [&](const ObstacleSphere& c) { return c.obstacle != from->obstacle; });
       enter(visit, from->obstacle);
+      visit.has_slabs = candidates.size() > kManyCandidates && takeSlabs(visit);
       for (auto c = from; c != to && visit.open != 0; ++c) settleByPoints(visit, *c);
       for (auto c = from; c != to && visit.open != 0; ++c) take(visit, *c, visit.open);
       compareLeaves(visit);
@@ -156,21 +158,6 @@ private:
     }
   }
 
-  static void begin(FlagVisit& visit, const Node& node, const BoundingSphere& around)
-  {
-    visit.unsure = 0;
-    visit.around = around;
-    visit.node = &node;
-    visit.open = firstBits(node.count);
-    visit.leaves = 0;
-    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
-      visit.near[lane].clear();
-      if (!node.isLeaf(lane)) continue;
-      visit.leaves |= 1u << lane;
-      visit.open_points[lane] = firstBits(node.comparedPoints(lane));
-    }
-  }
-
   /// Turns to a voxel of b: spheres go to its frame now, points when they are needed.
   void enter(FlagVisit& visit, std::uint32_t obstacle)
   {
@@ -191,6 +178,21 @@ private:
     }
   }
 
+  /// Has the visit's children, and the obstacle, compared as slabs too. Where surfaces face each other across the
+  /// clearance, spheres leave most of b as candidates. @return false where slabs cannot be compared
+  bool takeSlabs(FlagVisit& visit)
+  {
+    ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    if (pairs_.haveRadii() || obstacle.voxel->frame.unit != a_voxel_->frame.unit) return false;
+    if (!obstacle.slabs)
+      obstacle.slabs = b_.storage.voxels[reached_[visit.obstacle]].slabs.of(*obstacle.voxel, found.work);
+    visit.slabs = a_.storage.voxels[voxel_].slabs.of(*a_voxel_, found.work) + (visit.node - a_voxel_->nodes.data());
+    constexpr float nowhere[3] = {0.0f, 0.0f, 0.0f};
+    carry(obstacle.frame.m.data(), nowhere, visit.slabs->x, visit.slabs->y, visit.slabs->z, kLanes, visit.nx, visit.ny,
+          visit.nz);
+    return true;
+  }
+
   /// Compares a sphere of b with those children of the visit that are in `lanes`: settles them, drops it, keeps it for
   /// their own descent, or opens it.
   void take(FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t lanes)
@@ -205,6 +207,7 @@ private:
     found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes & visit.open));
     std::uint32_t near = spheresNear(spheres, ball, nullptr) & lanes & visit.open;
     if (near == 0) return;
+    if (visit.has_slabs && (near &= ~slabsApartFrom(visit, obstacle, candidate, radius)) == 0) return;
     if (radius <= obstacle.blunt_radius && (near &= ~apartAsGiven(visit, candidate, ball, near)) == 0) return;
     if (ball.inside_reach > visit.smallest) {
       for (std::uint32_t bits = spheresInside(spheres, ball) & near; bits != 0; bits &= bits - 1)
@@ -359,6 +362,9 @@ private:
   const Acceptance& acceptance_;
   const StopRule& rule_;
   Sink& sink_;
+  static constexpr std::size_t kManyCandidates = 256; ///< as they are where surfaces face each other
+
+  std::uint32_t voxel_ = kNoVoxel; ///< of a
   const Voxel* a_voxel_ = nullptr;
   std::deque<FlagVisit>& visits_;
   std::vector<ObstacleVoxel>& obstacles_;

@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <memory>
+#include <vector>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pcl_bsh/hierarchy/slabs.cpp"
@@ -96,11 +97,12 @@ HWY_INLINE float thickness(const Voxel& voxel, const Node& node, std::uint32_t i
 void fitSlabsOnTarget(const Voxel& voxel, Slabs* slabs)
 {
   const double slack = storedSlack(voxel.frame);
+  std::vector<Eigen::Vector3f> normals(voxel.nodes.size(), Eigen::Vector3f::Zero()); // of all that is below each node
   for (std::size_t n = 0; n < voxel.nodes.size(); ++n) {
     const Node& node = voxel.nodes[n];
     for (std::uint32_t i = 0; i < node.count; ++i) {
-      if (node.isLeaf(i)) continue;
-      const Eigen::Vector3f normal = flattestDirection(covarianceOf(voxel, node, i));
+      if (!node.isLeaf(i)) normals[node.child[i]] = flattestDirection(covarianceOf(voxel, node, i));
+      const Eigen::Vector3f& normal = normals[node.isLeaf(i) ? n : node.child[i]];
       slabs[n].x[i] = normal.x();
       slabs[n].y[i] = normal.y();
       slabs[n].z[i] = normal.z();

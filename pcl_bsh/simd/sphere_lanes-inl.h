@@ -193,7 +193,11 @@ struct SlabLanes {
   const float *x, *y, *z, *h;
 };
 
-/// Bit i: slab i, of sphere i, is proven to be more than reach away from another one, along the normal of either.
+/// Bit i: slab i, of sphere i, is proven to be more than reach away from another one: along the normal of either and
+/// across it. Of sheets that face each other at the reach, the distance across leaves only what is opposite.
+///
+/// Across a normal spheres are as wide as their radii, and d less its part along the normal errs by 2^-17 |d| and
+/// rounding, which kSlabMargin pays for, too. The squares err as those of spheres do.
 ///
 /// Along a normal u, another slab of normal n and sphere of radius r reaches as far as |u . n| h + |u - (u . n) n| r:
 /// u is split into its parts along n and across it. Normals may be off length 1 by 2^-19, and so may what carries them
@@ -207,6 +211,7 @@ HWY_INLINE std::uint32_t slabsApart(const SphereLanes& spheres, const SlabLanes&
   };
   const LaneVector ux = hn::Set(d, other.normal.x), uy = hn::Set(d, other.normal.y), uz = hn::Set(d, other.normal.z);
   const LaneVector other_h = hn::Set(d, other.h), other_r = hn::Set(d, other.radius);
+  const LaneVector limit = hn::Set(d, reach * reach * (1.0f + kSphereMargin) + kVanishingSquare);
   std::uint32_t apart = 0;
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
     const LaneVector dx = hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, other.center.x));
@@ -218,13 +223,23 @@ HWY_INLINE std::uint32_t slabsApart(const SphereLanes& spheres, const SlabLanes&
     const LaneVector cosine = hn::Abs(dot(nx, ny, nz, ux, uy, uz));
     const LaneVector sine = hn::Sqrt(
         hn::Add(hn::Max(hn::Zero(d), hn::Sub(hn::Set(d, 1.0f), hn::Mul(cosine, cosine))), hn::Set(d, kSlabMargin)));
+    const LaneVector on_u = dot(ux, uy, uz, dx, dy, dz), on_n = dot(nx, ny, nz, dx, dy, dz);
     const LaneVector along_other =
-        hn::Sub(hn::Abs(dot(ux, uy, uz, dx, dy, dz)), hn::Add(other_h, hn::Add(hn::Mul(cosine, h), hn::Mul(sine, r))));
-    const LaneVector along_own = hn::Sub(hn::Abs(dot(nx, ny, nz, dx, dy, dz)),
-                                         hn::Add(h, hn::Add(hn::Mul(cosine, other_h), hn::Mul(sine, other_r))));
-    const LaneVector lengths = hn::Add(hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz)), hn::Add(r, other_r));
-    const LaneVector limit = hn::Add(hn::Set(d, reach), hn::Mul(lengths, hn::Set(d, kSlabMargin)));
-    apart |= bitsOf(d, hn::Gt(hn::Max(along_other, along_own), limit)) << i;
+        hn::Sub(hn::Abs(on_u), hn::Add(other_h, hn::Add(hn::Mul(cosine, h), hn::Mul(sine, r))));
+    const LaneVector along_own =
+        hn::Sub(hn::Abs(on_n), hn::Add(h, hn::Add(hn::Mul(cosine, other_h), hn::Mul(sine, other_r))));
+    const auto by_own = hn::Gt(along_own, along_other);
+    const LaneVector on = hn::IfThenElse(by_own, on_n, on_u);
+    const LaneVector tx = hn::Sub(dx, hn::Mul(on, hn::IfThenElse(by_own, nx, ux)));
+    const LaneVector ty = hn::Sub(dy, hn::Mul(on, hn::IfThenElse(by_own, ny, uy)));
+    const LaneVector tz = hn::Sub(dz, hn::Mul(on, hn::IfThenElse(by_own, nz, uz)));
+    const LaneVector radii = hn::Add(r, other_r);
+    const LaneVector lengths = hn::Add(hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz)), radii);
+    const LaneVector margin = hn::Mul(lengths, hn::Set(d, kSlabMargin));
+    const LaneVector along = hn::Max(hn::Sub(hn::Max(along_other, along_own), margin), hn::Zero(d));
+    const LaneVector across = hn::Max(hn::Sub(hn::Sqrt(squaredNorm(tx, ty, tz)), hn::Add(radii, margin)), hn::Zero(d));
+    const LaneVector squared = hn::Add(hn::Mul(along, along), hn::Mul(across, across));
+    apart |= bitsOf(d, hn::Gt(squared, limit)) << i;
   }
   return apart;
 }

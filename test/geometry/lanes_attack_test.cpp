@@ -96,8 +96,15 @@ double slabFraction(const Numbers& n, bool carried_is_other)
   }
   const Vector u = vectorOf(b.normal), v = vectorOf(a.normal), d = set_a.center - set_b.center;
   const Real cosine = std::abs(u.dot(v)), sine = std::sqrt(std::max(Real{0}, 1 - cosine * cosine));
-  const Real bare = std::max(std::abs(u.dot(d)) - (b.h + cosine * a.h + sine * Real{a.radius} * Real{factor}),
-                             std::abs(v.dot(d)) - (a.h + cosine * b.h + sine * b.radius));
+  const Real on_u = std::abs(u.dot(d)) - (b.h + cosine * a.h + sine * Real{a.radius} * Real{factor}),
+             on_v = std::abs(v.dot(d)) - (a.h + cosine * b.h + sine * b.radius);
+  const auto bareAcross = [&](const Vector& normal) {
+    const Real across = (d - normal.dot(d) * normal).norm() - (Real{a.radius} * Real{factor} + b.radius);
+    return std::hypot(std::max({on_u, on_v, Real{0}}), std::max(across, Real{0}));
+  };
+  // Rounding decides between two normals that are as good: of the claims that may be meant, the lower one.
+  const Real least_bare = std::min(bareAcross(u), bareAcross(v)), most_bare = std::max(bareAcross(u), bareAcross(v));
+  const Real bare = least_bare > Real{claimed} ? least_bare : most_bare;
   return static_cast<double>((bare - distance) / (bare - Real{claimed}));
 }
 
@@ -114,6 +121,7 @@ TEST(LanesAttack, MarginOfSlabs)
         if (random.chance(0.2))
           for (std::size_t k = 0; k < 6; ++k) n[k] = random.uniform(-1, 1);
         n.insert(n.end(), {0, 0, 0, 1 + gap * n[3], gap * n[4], gap * n[5], 1, 0x1p-12, 0x1p-30, 0x1p-30, 0});
+        if (random.chance(0.2)) n[18] += random.uniform(0, 2); // apart across the normals, too
         if (random.chance(0.5))
           for (double& x : n) x += 0x1p-12 * random.uniform(-1, 1);
         return n;
