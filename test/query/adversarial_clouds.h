@@ -97,16 +97,7 @@ inline std::vector<Point3> helix(std::size_t n, double turns, double rise, doubl
   return points;
 }
 
-/// About 0, as many of each power of two from 2^-scales to 1.
-inline std::vector<Point3> scales(std::size_t n, int count, std::uint64_t seed)
-{
-  Random random(seed);
-  std::vector<Point3> points(n);
-  for (Point3& p : points) p = scaled(direction(random), std::exp2(-count * random.uniform(0, 1)));
-  return points;
-}
-
-/// Teeth: lines along z, 1 apart, of 1000 points each or n^(1/2).
+/// Teeth: as many lines along z, 1 apart, as points in each.
 inline std::vector<Point3> comb(std::size_t n, double shift)
 {
   const auto teeth = static_cast<std::size_t>(std::sqrt(static_cast<double>(n)));
@@ -118,6 +109,7 @@ inline std::vector<Point3> comb(std::size_t n, double shift)
   return points;
 }
 
+/// Some of them replaced by others, spread evenly.
 inline std::vector<Point3> with(std::vector<Point3> points, const std::vector<Point3>& more)
 {
   for (std::size_t i = 0; i < more.size(); ++i) points[(2 * i + 1) * points.size() / (2 * more.size())] = more[i];
