@@ -99,6 +99,31 @@ inline std::uint32_t slabsApartFrom(const FlagVisit& visit, const ObstacleVoxel&
                     obstacle.prune_reach);
 }
 
+/// Whether the candidate has a point in the ball; the nearest spheres are asked first.
+inline bool hasPointWithin(const ObstacleVoxel& obstacle, const ObstacleSphere& candidate, const QueryBall& ball,
+                           Work& work)
+{
+  if (candidate.isLeaf()) {
+    const LeafRange leaf = candidate.leaf(obstacle);
+    return anyPointWithin(leaf.x(), leaf.y(), leaf.z(), leaf.count, ball.x, ball.y, ball.z, ball.near_reach);
+  }
+  const Node& below = obstacle.voxel->nodes[candidate.node->child[candidate.lane]];
+  float gap[kLanes];
+  work.node_pairs += below.count;
+  std::uint32_t near =
+      spheresNear({below.x, below.y, below.z, below.r, obstacle.frame.stretch_b}, ball, gap) & firstBits(below.count);
+  while (near != 0) {
+    auto nearest = static_cast<std::uint32_t>(std::countr_zero(near));
+    for (std::uint32_t bits = near & (near - 1); bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (gap[lane] < gap[nearest]) nearest = lane;
+    }
+    if (hasPointWithin(obstacle, candidate.below(below, nearest), ball, work)) return true;
+    near &= ~(1u << nearest);
+  }
+  return false;
+}
+
 /// Memory of one walk after another, to be had by a ScratchLease.
 struct FlagScratch {
   std::deque<FlagVisit> visits; ///< by depth; a deque, for references to shallower visits stay in use

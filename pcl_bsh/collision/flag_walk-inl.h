@@ -59,6 +59,7 @@ public:
     if (!mayEnter(voxel)) return leaveAll();
     voxel_ = voxel;
     a_voxel_ = &a_.voxel(voxel, found.work);
+    knows_slabs_ = mayUseKnownSlabs() && a_.storage.voxels[voxel].slabs.isFitted();
 
     for (const std::uint32_t other : reached_) {
       const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, rotation_);
@@ -83,6 +84,19 @@ private:
     std::size_t points = a_.storage.pointsToBuild(voxel);
     for (const std::uint32_t other : reached_) points += b_.storage.pointsToBuild(other);
     return rule_.leavesTimeToBuild(points);
+  }
+
+  /// Slabs that earlier queries have fitted are used at once, if for exact answers: these are the same with slabs and
+  /// without. No other answer may depend on what was asked before. Of fresh voxels, a query that runs at the same time
+  /// may fit them or not; the work then depends on that, the result does not.
+  bool mayUseKnownSlabs() const
+  {
+    return !rule_.mayStop() && acceptance_.proven && acceptance_.accepted == acceptance_.clearance;
+  }
+
+  bool knowsSlabs(std::uint32_t obstacle) const
+  {
+    return knows_slabs_ && b_.storage.voxels[reached_[obstacle]].slabs.isFitted();
   }
 
   /// Collects the voxels of b that the voxel of a can reach. @return false when all of its points collide.
@@ -117,7 +131,7 @@ private:
       const auto to =
           std::find_if(from, candidates.end(), [&](const ObstacleSphere& c) { return c.obstacle != from->obstacle; });
       enter(visit, from->obstacle);
-      visit.has_slabs = candidates.size() > kManyCandidates && takeSlabs(visit);
+      visit.has_slabs = (candidates.size() > kManyCandidates || knowsSlabs(visit.obstacle)) && takeSlabs(visit);
       for (auto c = from; c != to && visit.open != 0; ++c) settleByPoints(visit, *c);
       for (auto c = from; c != to && visit.open != 0; ++c) take(visit, *c, visit.open);
       compareLeaves(visit);
@@ -277,32 +291,8 @@ private:
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       const float reach = obstacle.sure_reach - visit.r[lane] * (1.0f + kSphereMargin);
       const QueryBall center{visit.x[lane], visit.y[lane], visit.z[lane], reach, 0.0f};
-      if (reach > 0.0f && hasPointWithin(obstacle, candidate, center)) settleChild(visit, lane);
+      if (reach > 0.0f && hasPointWithin(obstacle, candidate, center, found.work)) settleChild(visit, lane);
     }
-  }
-
-  /// Whether the candidate has a point in the ball; the nearest spheres are asked first.
-  bool hasPointWithin(const ObstacleVoxel& obstacle, const ObstacleSphere& candidate, const QueryBall& ball)
-  {
-    if (candidate.isLeaf()) {
-      const LeafRange leaf = candidate.leaf(obstacle);
-      return anyPointWithin(leaf.x(), leaf.y(), leaf.z(), leaf.count, ball.x, ball.y, ball.z, ball.near_reach);
-    }
-    const Node& below = obstacle.voxel->nodes[candidate.node->child[candidate.lane]];
-    float gap[kLanes];
-    found.work.node_pairs += below.count;
-    std::uint32_t near =
-        spheresNear({below.x, below.y, below.z, below.r, obstacle.frame.stretch_b}, ball, gap) & firstBits(below.count);
-    while (near != 0) {
-      auto nearest = static_cast<std::uint32_t>(std::countr_zero(near));
-      for (std::uint32_t bits = near & (near - 1); bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-        if (gap[lane] < gap[nearest]) nearest = lane;
-      }
-      if (hasPointWithin(obstacle, candidate.below(below, nearest), ball)) return true;
-      near &= ~(1u << nearest);
-    }
-    return false;
   }
 
   /// Compares the points of the children that are leaves with the leaves they are near to, in this obstacle.
@@ -365,6 +355,7 @@ private:
   static constexpr std::size_t kManyCandidates = 256; ///< as they are where surfaces face each other
 
   std::uint32_t voxel_ = kNoVoxel; ///< of a
+  bool knows_slabs_ = false;       ///< whether those of a's voxel may be used without fitting any
   const Voxel* a_voxel_ = nullptr;
   std::deque<FlagVisit>& visits_;
   std::vector<ObstacleVoxel>& obstacles_;
