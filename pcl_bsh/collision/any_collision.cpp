@@ -3,6 +3,7 @@
 #include <pcl_bsh/collision/check_request.h>
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/collision/interval_search.h>
+#include <pcl_bsh/collision/shared_search.h>
 #include <pcl_bsh/query/stop_rule.h>
 
 #undef HWY_TARGET_INCLUDE
@@ -85,6 +86,8 @@ AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& reque
     const bool colliding = found.verdict == Verdict::colliding;
     return {found.verdict, colliding ? found.pair : std::nullopt, found.distance, found.work += work};
   }
+  const unsigned threads = threadCount(request.threads);
+  if (threads > 1) return anyCollisionShared(a, b, request, threads);
   return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request);
 }
 

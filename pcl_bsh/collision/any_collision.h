@@ -16,16 +16,20 @@ namespace pcl_bsh {
 struct AnyRequest {
   double clearance = 0.0; ///< finite, >= 0; inclusive
   Accuracy accuracy;      ///< exact, unless the caller asks for less
+  unsigned threads = 1;   ///< 0: all of the machine's. Accuracies that stop early take one
 };
 
 struct AnyResult {
-  Verdict verdict = Verdict::free;  ///< undecided only when the request's accuracy lets the walk stop early
-  std::optional<PointPair> witness; ///< a colliding pair, when colliding
-  Interval distance;                ///< of the clouds, as far as the walk had to learn it
+  Verdict verdict = Verdict::free; ///< undecided only when the request's accuracy lets the walk stop early
+  /// A colliding pair, when colliding: the first that the depth-first search meets, for any number of threads.
+  std::optional<PointPair> witness;
+  Interval distance; ///< of the clouds, as far as the walk had to learn it
   Work work;
 };
 
-/// Does any pair of points collide? Stops at the first witness. One thread.
+/// Does any pair of points collide? Stops at the first witness. Several threads share a search that takes longer than
+/// about 0.05 ms. Its work is that of one thread, but for what is built: other threads may have entered, and so built,
+/// voxels behind the witness.
 /// @throws std::invalid_argument when the clearance, the accuracy or a pose is not what its declaration asks for.
 AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request = {});
 

@@ -11,6 +11,7 @@
 #include <pcl_bsh/query/acceptance.h>
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 #include <pcl_bsh/traversal/pair_walk-inl.h>
+#include <pcl_bsh/traversal/shared_stack.h>
 
 #include <algorithm>
 #include <utility>
@@ -27,6 +28,18 @@ struct NoObserver {
   void compared(const LanePair&) {}
   static bool stops(const PairWalk&, const LanePair&, Opened) { return false; }
 };
+
+inline AnyResult resultOf(const Acceptance& acceptance, const std::optional<PointPair>& witness, bool stopped,
+                          const Work& work)
+{
+  AnyResult result;
+  result.witness = witness;
+  result.work = work;
+  result.verdict = witness ? Verdict::colliding : stopped ? Verdict::undecided : Verdict::free;
+  if (acceptance.proven && result.verdict != Verdict::undecided)
+    (witness ? result.distance.upper : result.distance.lower) = witness ? acceptance.accepted : acceptance.clearance;
+  return result;
+}
 
 /// @tparam Observer is called with the pairs of the roots' children that may meet (seeded), with each pair whose larger
 ///   side was opened and the test of its children (stepped), with each pair of leaves whose points were compared
@@ -45,25 +58,32 @@ public:
 
   AnyResult run()
   {
-    AnyResult result;
-    result.witness = search();
-    result.work = walk_.work;
-    result.verdict = result.witness ? Verdict::colliding : stopped_ ? Verdict::undecided : Verdict::free;
-    if (acceptance_.proven && result.verdict != Verdict::undecided)
-      (result.witness ? result.distance.upper : result.distance.lower) =
-          result.witness ? acceptance_.accepted : acceptance_.clearance;
-    return result;
-  }
-
-private:
-  std::optional<PointPair> search()
-  {
     stack_.clear();
     walk_.seed(pairs_.clearance, [this](const LanePair& pair, const PairWalk::Step&, std::uint32_t) {
       observer_.seeded(pair);
       stack_.push_back(pair);
     });
     nearestLast(stack_, 0);
+    const std::optional<PointPair> witness = search();
+    return resultOf(acceptance_, witness, stopped_, walk_.work);
+  }
+
+  /// Visits the pairs of a piece and what is below, until a witness is found or the observer stops.
+  void visit(SharedStack<LanePair>::Piece& piece)
+  {
+    stack_.assign(piece.pairs.begin(), piece.pairs.end());
+    piece.found = search();
+    piece.pairs.assign(stack_.begin(), stack_.end());
+    piece.work = std::exchange(walk_.work, Work());
+  }
+
+  /// What is left to be visited since the observer stopped the search, the next one last.
+  const std::vector<LanePair>& left() const { return stack_; }
+
+private:
+  std::optional<PointPair> search()
+  {
+    stopped_ = false;
     PairWalk::Step step;
     while (!stack_.empty()) {
       const LanePair pair = stack_.back();
@@ -71,6 +91,7 @@ private:
       const Opened opened = walk_.choose(pair);
       if (observer_.stops(walk_, pair, opened)) {
         stopped_ = true;
+        stack_.push_back(pair);
         return std::nullopt;
       }
       if (opened == Opened::neither) {

@@ -174,6 +174,26 @@ TEST(AllocationFailure, OfAnyCollisionAndTraces)
   }
 }
 
+TEST(AllocationFailure, OfSearchesInThreads)
+{
+  std::vector<Point3> below, above; // which face each other, so that the searches are long enough to be shared
+  for (int i = 0; i < 2500; ++i) {
+    const double x = i % 50, y = 1.0 * (i / 50), bump = 0.3 * std::sin(1.0 * i);
+    below.push_back({x, y, bump});
+    above.push_back({x, y, 2 + bump});
+  }
+  const Cloud cloud_a(below), cloud_b(above);
+  const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+  const auto pair = [&] { return std::pair<Placed, Placed>(a, b); };
+  test::Question asked = request(2);
+  asked.clearance = 1.2;
+  EXPECT_GT(closestPair(a, b, asked).work.node_pairs, 5000u);
+  failEachAllocation(pair,
+                     [&](const auto& placed) { return answerOf(anyCollision(placed.first, placed.second, asked)); });
+  failEachAllocation(pair,
+                     [&](const auto& placed) { return answerOf(closestPair(placed.first, placed.second, asked)); });
+}
+
 TEST(AllocationFailure, OfDistancesContactsAndPairs)
 {
   failEachAllocation(freshPair,

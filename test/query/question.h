@@ -12,9 +12,9 @@ struct Question {
   unsigned threads = 1;
   Accuracy accuracy;
 
-  operator AnyRequest() const { return {clearance, accuracy}; }
+  operator AnyRequest() const { return {clearance, accuracy, threads}; }
   operator FlagsRequest() const { return {clearance, flagged, threads, accuracy}; }
-  operator DistanceRequest() const { return {accuracy}; }
+  operator DistanceRequest() const { return {accuracy, threads}; }
 };
 
 } // namespace pcl_bsh::test
