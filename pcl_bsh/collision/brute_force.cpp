@@ -2,6 +2,7 @@
 #include <pcl_bsh/collision/brute_force.h>
 
 #include <pcl_bsh/collision/check_request.h>
+#include <pcl_bsh/collision/collide_at_poses.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/query/brute_force_points.h>
@@ -90,6 +91,40 @@ DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceReque
   }
   if (result.pair) result.distance = distance.gap(closest);
   return result;
+}
+
+AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                               const AnyRequest& request)
+{
+  AnyAtPoses result;
+  for (std::size_t i = 0; i < T_world_b.size(); ++i) {
+    const AnyResult found = brute_force::anyCollision(a, {b, T_world_b[i]}, request);
+    result.verdicts.push_back(flagOf(found.verdict));
+    result.colliding += found.verdict == Verdict::colliding;
+    result.work += found.work;
+  }
+  return result;
+}
+
+DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                                    const DistanceRequest& request)
+{
+  DistancesAtPoses result;
+  for (std::size_t i = 0; i < T_world_b.size(); ++i) {
+    const DistanceResult found = brute_force::closestPair(a, {b, T_world_b[i]}, request);
+    result.distances.push_back(found.distance);
+    if (found.pair) result.pairs.push_back(*found.pair);
+    result.work += found.work;
+  }
+  return result;
+}
+
+void collisionFlagsAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                           const FlagsRequest& request,
+                           const std::function<void(std::size_t pose, const FlagsResult& flags)>& found)
+{
+  for (std::size_t i = 0; i < T_world_b.size(); ++i)
+    found(i, brute_force::collisionFlags(a, {b, T_world_b[i]}, request));
 }
 
 } // namespace pcl_bsh::brute_force

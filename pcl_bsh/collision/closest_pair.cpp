@@ -16,16 +16,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
-namespace {
-
-/// No other thread searches. Its calls compile to nothing.
-struct NoOthers {
-  static bool stops() { return false; }
-  static void hear(Nearest&) {}
-  static void tell(Nearest&, const PointPairs&) {}
-};
-
-} // namespace
 
 DistanceResult closestPairOnTarget(const Placed& a, const Placed& b, const Accuracy& accuracy)
 {

@@ -23,6 +23,13 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
+/// No other thread searches. Its calls compile to nothing.
+struct NoOthers {
+  static bool stops() { return false; }
+  static void hear(Nearest&) {}
+  static void tell(Nearest&, const PointPairs&) {}
+};
+
 /// @tparam Others the searches of other threads: `stops()` before each pair is visited, whether to pause there;
 ///   `hear(nearest)`: takes over what they have found; `tell(nearest, pairs)`: gives it to them, and takes what is
 ///   nearer; `allow(steps, dropped)`: until when not to stop
@@ -50,6 +57,13 @@ public:
     nearestLast(stack_, 0);
     search();
     return result(walk_.work);
+  }
+
+  /// The same with a bound on the distance from the start: that of any pair.
+  DistanceResult runFrom(PointPair pair)
+  {
+    consider(pair);
+    return run();
   }
 
   /// Visits the pairs of a piece and what is below, until it is stopped.

@@ -11,7 +11,7 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// Noise-free cost of a query: tests and updates of bounding volumes, as in the paper, and what was done to points. The
-/// same for any number of threads and any instruction set.
+/// same for any number of threads and any instruction set, but where a query's declaration says otherwise.
 struct Work : BuildWork {
   /// Tests of the bounding volumes of two nodes, or of a node against what is asked for: a ball, a box, a way. One
   /// test, whichever volumes it compares (sphere and slab of the same two nodes: one).

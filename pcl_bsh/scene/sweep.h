@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/collision/contacts.h>
 #include <pcl_bsh/scene/conservative_advancement.h>
+#include <pcl_bsh/scene/object_motion.h>
 
 #include <optional>
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the queries at many poses share: checks, and how the list is divided among threads.
+#pragma once
+
+#include <pcl_bsh/collision/pose_batch.h>
+#include <pcl_bsh/hierarchy/parallel.h>
+#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/pose_list.h>
+#include <pcl_bsh/query/request_check.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// Refuses a pose that is not rigid, by its index, and an accuracy that stops early.
+void checkAtPoses(const Placed& a, const PoseList& poses, const Accuracy& accuracy, unsigned threads);
+
+/// Calls answer(i, pose) for each pose, from several threads. @return the sum of the work that it returns
+template <class Answer>
+Work forEachPose(const PoseList& poses, unsigned threads, const Answer& answer)
+{
+  const std::size_t batches = (poses.size() + kBatchPoses - 1) / kBatchPoses;
+  std::vector<Work> work(batches);
+  parallelFor(batches, threadCount(threads), [&](std::size_t batch) {
+    const std::size_t end = std::min(poses.size(), (batch + 1) * kBatchPoses);
+    for (std::size_t i = batch * kBatchPoses; i < end; ++i) work[batch] += answer(i, poses[i]);
+  });
+  Work all;
+  for (const Work& part : work) all += part;
+  return all;
+}
+
+/// Calls answer(batch, order) for batches of poses that are near each other, from several threads: `order` has the
+/// poses' indices in the list. Neither cloud is empty. @return the sum of the work that it returns
+template <class Answer>
+Work forEachBatch(const Placed& a, const SphereHierarchy& b, const PoseList& poses, unsigned threads,
+                  const Answer& answer)
+{
+  const BodyBall body(b);
+  const std::vector<std::uint32_t> order = orderOf(poses, body, threadCount(threads));
+  const std::size_t batches = (order.size() + kBatchPoses - 1) / kBatchPoses;
+  std::vector<Work> work(batches);
+  parallelFor(batches, threadCount(threads), [&](std::size_t i) {
+    const std::size_t begin = i * kBatchPoses, end = std::min(order.size(), begin + kBatchPoses);
+    PoseBatch batch{a, b, body, {}};
+    batch.poses.reserve(end - begin);
+    for (std::size_t k = begin; k < end; ++k) batch.poses.push_back(poses[order[k]]);
+    work[i] = answer(batch, order.data() + begin);
+  });
+  Work all;
+  for (const Work& part : work) all += part;
+  return all;
+}
+
+} // namespace pcl_bsh
