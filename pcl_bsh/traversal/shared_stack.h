@@ -24,10 +24,10 @@ inline constexpr std::uint32_t kStepsAlone = 512;
 /// Steps between two looks at what the other threads do.
 inline constexpr std::uint32_t kStepsOfPiece = 256;
 
-/// Pairs still to be visited, kept as a list of pieces in the order of the depth-first search. A thread takes pairs from
-/// the first piece that waits, visits them and what is below for some steps, and puts back what is left in their place.
-/// What one piece finds ends the search for all pieces behind it, and for none before it: the first find in depth-first
-/// order wins, whichever thread is the fastest, and the work up to it is that of one thread.
+/// Pairs still to be visited, kept as a list of pieces in the order of the depth-first search. A thread takes pairs
+/// from the first piece that waits, visits them and what is below for some steps, and puts back what is left in their
+/// place. What one piece finds ends the search for all pieces behind it, and for none before it: the first find in
+/// depth-first order wins, whichever thread is the fastest, and the work up to it is that of one thread.
 template <class Pair>
 class SharedStack {
 public:
