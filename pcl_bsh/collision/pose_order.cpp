@@ -15,10 +15,10 @@ namespace pcl_bsh {
 namespace {
 
 constexpr std::size_t kDimensions = 6;
-using Place = std::array<double, kDimensions>;
+using PosePlace = std::array<double, kDimensions>;
 
 /// Six lengths that change about as much as points of the body move: where its middle is, and how it is turned.
-Place placeOf(const Eigen::Isometry3d& pose, const BodyBall& body)
+PosePlace placeOf(const Eigen::Isometry3d& pose, const BodyBall& body)
 {
   const Eigen::Vector3d center = pose * body.center;
   Eigen::Quaterniond turn(pose.linear());
@@ -80,7 +80,7 @@ std::vector<std::uint32_t> orderOf(const PoseList& poses, const BodyBall& body, 
     for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) visit(i);
   };
   struct Range {
-    Place low, high;
+    PosePlace low, high;
   };
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Range none;
@@ -89,7 +89,7 @@ std::vector<std::uint32_t> orderOf(const PoseList& poses, const BodyBall& body, 
   std::vector<Range> ranges(blocks, none);
   parallelFor(blocks, threads, [&](std::size_t block) {
     forEachIn(block, [&](std::size_t i) {
-      const Place place = placeOf(poses[i], body);
+      const PosePlace place = placeOf(poses[i], body);
       for (std::size_t k = 0; k < kDimensions; ++k) {
         ranges[block].low[k] = std::min(ranges[block].low[k], place[k]);
         ranges[block].high[k] = std::max(ranges[block].high[k], place[k]);
@@ -110,7 +110,7 @@ std::vector<std::uint32_t> orderOf(const PoseList& poses, const BodyBall& body, 
   std::vector<Keyed> keyed(count);
   parallelFor(blocks, threads, [&](std::size_t block) {
     forEachIn(block, [&](std::size_t i) {
-      const Place place = placeOf(poses[i], body);
+      const PosePlace place = placeOf(poses[i], body);
       std::uint64_t key = 0;
       for (std::size_t k = 0; k < kDimensions; ++k) {
         const double cell = (place[k] - all.low[k]) * cells;
