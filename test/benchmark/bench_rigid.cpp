@@ -3,9 +3,12 @@
 #include "program.h"
 #include "rigid_racers.h"
 #include "workload/nearest.h"
+#include "workload/random.h"
 #include "workload/rigid_poses.h"
 #include "workload/statue.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 using namespace pcl_bsh::bench;
@@ -17,6 +20,7 @@ struct Options : ProgramOptions {
   std::vector<std::string> racers = availableRigidRacers();
   std::size_t poses = 1000;
   std::size_t slow_poses = 60;
+  std::size_t many_poses = 0;
 };
 
 struct Bodies {
@@ -74,6 +78,65 @@ Score score(const Bodies& bodies, PoseClass kind, std::size_t at_most, unsigned 
   return result;
 }
 
+/// Poses around a near miss: turned by up to `spread` about any axis, moved by up to `spread` along each axis.
+std::vector<RigidPose> posesAround(const PosedCase& middle, std::size_t count, double spread)
+{
+  Random random(5);
+  std::vector<RigidPose> poses(count);
+  for (RigidPose& pose : poses) {
+    const std::array<double, 3> axis = random.direction();
+    const double angle = spread * random.uniform(-1, 1), c = std::cos(angle), s = std::sin(angle), d = 1 - c;
+    const auto [x, y, z] = axis;
+    const std::array<double, 9> turn = {c + x * x * d,     x * y * d - z * s, x * z * d + y * s,
+                                        y * x * d + z * s, c + y * y * d,     y * z * d - x * s,
+                                        z * x * d - y * s, z * y * d + x * s, c + z * z * d};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        pose.rotation[3 * i + j] = 0.0;
+        for (std::size_t k = 0; k < 3; ++k)
+          pose.rotation[3 * i + j] += middle.pose.rotation[3 * i + k] * turn[3 * k + j];
+      }
+      pose.translation[i] = middle.pose.translation[i] + spread * random.uniform(-1, 1);
+    }
+  }
+  return poses;
+}
+
+/// Rates at many poses in one call, beside those of single calls at some of them.
+bool raceMany(const Options& options, const Bodies& bodies, const std::string& racer_name, RigidRacer& racer,
+              Table& table)
+{
+  const auto middle = std::find_if(bodies.cases.begin(), bodies.cases.end(),
+                                   [](const PosedCase& posed) { return posed.kind == PoseClass::near_miss; });
+  bool right = true;
+  for (const double spread : {0.02, 0.03, 0.1, 0.3}) {
+    const std::vector<RigidPose> poses = posesAround(*middle, options.many_poses, spread);
+    const std::vector<RigidPose> some(poses.begin(),
+                                      poses.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(
+                                                          poses.size(), racer.slow() ? options.slow_poses : 20000)));
+    const auto addRow = [&](const std::string& how, std::size_t count, double seconds, std::size_t hits) {
+      table.add({std::to_string(bodies.a.size()), "any, " + how, "within " + text(spread), racer_name,
+                 std::to_string(count), text(1e6 * seconds / static_cast<double>(count)), "", "", "", "",
+                 std::to_string(hits) + " hits; " + racer.remark()});
+    };
+    racer.remark();
+    const Stopwatch watch;
+    std::size_t hits = 0;
+    for (const RigidPose& pose : some) hits += racer.any(pose);
+    addRow("single", some.size(), watch.seconds(), hits);
+    if (!racer.takesMany()) continue;
+    right = racer.anyOfMany(some, 1) == hits && right;
+    racer.remark();
+    for (const unsigned threads : {1u, 2u}) {
+      progress(racer_name + ", " + std::to_string(poses.size()) + " poses within " + text(spread));
+      const Stopwatch batch;
+      hits = racer.anyOfMany(poses, threads);
+      addRow("batch, " + std::to_string(threads) + " threads", poses.size(), batch.seconds(), hits);
+    }
+  }
+  return right;
+}
+
 bool race(const Options& options, std::size_t size, Table& table)
 {
   const Bodies bodies = makeBodies(size, options.poses);
@@ -104,6 +167,7 @@ bool race(const Options& options, std::size_t size, Table& table)
                  bodies, kind, at_most, repeat, [&](const RigidPose& pose) { return racer->any(pose); },
                  [&](bool answer, double truth) { return answer == (truth <= bodies.spacing); }));
     }
+    if (options.many_poses != 0) wrong += !raceMany(options, bodies, racer_name, *racer, table);
     if (!racer->measuresDistance()) continue;
     progress(racer_name + ", " + std::to_string(size) + " points: distance");
     addRow("distance", PoseClass::near_miss,
@@ -133,6 +197,10 @@ int main(int argc, char** argv)
   app.add_option("--poses", options.poses, "poses")->check(CLI::Range(3, 1000000))->capture_default_str();
   app.add_option("--slow-poses", options.slow_poses, "poses for the slow racers")
       ->check(CLI::Range(3, 1000000))
+      ->capture_default_str();
+  app.add_option("--many-poses", options.many_poses,
+                 "poses around a near miss in one call, beside single calls; mean times, in the column of the median")
+      ->check(CLI::Range(0, 10000000))
       ->capture_default_str();
   app.add_option("--racers", options.racers, "who runs")
       ->delimiter(',')

@@ -6,7 +6,7 @@
 #include "peer/fcl_boxes.h"
 #endif
 
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collision/collide_at_poses.h>
 
 #include <optional>
 #include <stdexcept>
@@ -22,6 +22,13 @@ Eigen::Isometry3d toEigen(const RigidPose& pose)
   result.translation() = Eigen::Map<const Eigen::Vector3d>(pose.translation.data());
   return result;
 }
+
+/// Poses as a query reads them, made as they are asked for.
+struct PosesOf {
+  const std::vector<RigidPose>& poses;
+  std::size_t size() const { return poses.size(); }
+  Eigen::Isometry3d operator[](std::size_t i) const { return toEigen(poses[i]); }
+};
 
 class OurRacer : public RigidRacer {
 public:
@@ -45,8 +52,20 @@ public:
     return counted(closestPair({*a_}, {*b_, toEigen(pose)})).distance;
   }
 
+  bool takesMany() const override { return true; }
+  std::size_t anyOfMany(const std::vector<RigidPose>& poses, unsigned threads) const override
+  {
+    AnyRequest request = request_;
+    request.threads = threads;
+    const AnyAtPoses found = anyCollisionAtPoses({*a_}, *b_, PosesOf{poses}, request);
+    work_ += found.work;
+    answers_ += poses.size();
+    return found.colliding;
+  }
+
   std::string remark() override
   {
+    if (answers_ == 0) return "";
     const std::string words = std::to_string(work_.node_pairs / answers_) + " node pairs, " +
                               std::to_string(work_.updates() / answers_) + " updates, " +
                               std::to_string(work_.leaf_pairs / answers_) + " leaf pairs a pose";

@@ -25,6 +25,10 @@ public:
   /// Smallest distance; only when measuresDistance().
   virtual double distance(const RigidPose&) const { return 0.0; }
 
+  /// Whether any() of many poses in one call is a thing of its own; then anyOfMany() answers them.
+  virtual bool takesMany() const { return false; }
+  virtual std::size_t anyOfMany(const std::vector<RigidPose>&, unsigned /*threads*/) const { return 0; }
+
   /// What the answers since the last call took on average, in words.
   virtual std::string remark() { return ""; }
 
