@@ -40,14 +40,14 @@ void write(const fs::path& path, const std::vector<Eigen::Vector3f>& points)
   step.done(std::to_string(points.size()) + " points");
 }
 
-int makeTunnel(const fs::path& folder, double scale)
+int makeTunnel(const fs::path& folder, double scale, bool tight)
 {
   const tunnel::Size size = tunnel::Size::atScale(scale);
   const files::OutputFolder made(folder);
   for (const char* name : {"scan.ply", "wagon.ply", "poses.txt"}) files::requireWritable(folder / name);
 
   cli::Step step("Making tunnel and wagon");
-  const tunnel::Passage run = tunnel::makePassage(size);
+  const tunnel::Passage run = tunnel::makePassage(size, tight ? tunnel::Course::tight : tunnel::Course::winding);
   step.done(std::to_string(run.poses.size()) + " poses");
   write(folder / "scan.ply", run.scan);
   write(folder / "wagon.ply", run.wagon);
@@ -64,13 +64,15 @@ int main(int argc, char** argv)
   return cli::runProgram(program, [&] {
     std::string folder;
     double scale = 0.1;
+    bool tight = false;
     CLI::App app("Makes a scanned railway tunnel, a wagon, and the wagon's way through.", program);
     app.footer(footer);
     app.add_option("FOLDER", folder, "where the three files go; made if it is not there")->type_name("")->required();
     app.add_option("--scale", scale, "share of the full number of points and poses, above 0, 10 at most")
         ->type_name("S")
         ->capture_default_str();
+    app.add_flag("--tight", tight, "one long bend in which the vault grazes the wagon; points in random order");
     if (!cli::understood(app, program, argc, argv)) return 0;
-    return makeTunnel(folder, scale);
+    return makeTunnel(folder, scale, tight);
   });
 }

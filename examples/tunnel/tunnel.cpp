@@ -39,16 +39,31 @@ constexpr std::array<Stretch, 13> stretches = {{{120, 0, 0},
                                                 {40, wide, 0},
                                                 {104, 0, 0}}};
 
-// The tunnel's cross-section: a flat floor, upright walls, an arch.
-constexpr double half_width = 1.76;
-constexpr double floor_level = -0.3;
-constexpr double spring_level = 2.9; // where the arch begins
-constexpr double arch_height = 1.9;
-constexpr double wall_height = spring_level - floor_level;
-const double arch_length = // half an ellipse, by Ramanujan
-    pi / 2 *
-    (3 * (half_width + arch_height) - std::sqrt((3 * half_width + arch_height) * (half_width + 3 * arch_height)));
-const double section_length = 2 * half_width + 2 * wall_height + arch_length;
+constexpr std::array<Stretch, 5> long_bend = {
+    {{120, 0, 0}, {150, 0, 1.0 / 180}, {600, 1.0 / 180, 1.0 / 180}, {150, 1.0 / 180, 0}, {124, 0, 0}}};
+
+/// The tunnel's cross-section: a flat floor, upright walls, an arch; and how rough and noisy the scan of it is.
+struct Section {
+  double half_width;
+  double spring_level; ///< where the arch begins
+  double arch_height;
+  double rough; ///< share of roughness()
+  bool lamps;
+
+  double wallHeight() const { return spring_level - floor_level; }
+  double archLength() const // half an ellipse, by Ramanujan
+  {
+    return pi / 2 *
+           (3 * (half_width + arch_height) - std::sqrt((3 * half_width + arch_height) * (half_width + 3 * arch_height)));
+  }
+  double length() const { return 2 * half_width + 2 * wallHeight() + archLength(); }
+
+  static constexpr double floor_level = -0.3;
+};
+
+constexpr Section winding_section = {1.76, 2.9, 1.9, 1.0, true};
+constexpr Section tight_section = {1.923, 2.0, 2.626, 0.25, false};
+constexpr double tight_noise = 0.004; // standard deviation
 
 // Lamps stand out from the walls, left and right in turn; every fifth reaches in too far.
 constexpr double lamp_distance = 24.0;
@@ -86,20 +101,22 @@ double roughness(double station, double along)
 }
 
 /// A place on the tunnel's inside, by the way round its section, 0 .. section_length.
-Vector2d onSection(double station, double along)
+Vector2d onSection(const Section& section, double station, double along)
 {
-  const double bump = roughness(station, along);
-  if (along < 2 * half_width) return {along - half_width, floor_level};
-  along -= 2 * half_width;
+  const double bump = section.rough * roughness(station, along);
+  if (along < 2 * section.half_width) return {along - section.half_width, Section::floor_level};
+  along -= 2 * section.half_width;
   for (const double side : {1.0, -1.0}) {
-    if (along < wall_height) {
-      const double z = floor_level + along;
-      return {side * (half_width - bump - lampReach(station, side, z)), z};
+    if (along < section.wallHeight()) {
+      const double z = Section::floor_level + along;
+      const double lamp = section.lamps ? lampReach(station, side, z) : 0.0;
+      return {side * (section.half_width - bump - lamp), z};
     }
-    along -= wall_height;
+    along -= section.wallHeight();
   }
-  const double angle = pi * along / arch_length;
-  return {(half_width - bump) * std::cos(angle), spring_level + (arch_height - bump) * std::sin(angle)};
+  const double angle = pi * along / section.archLength();
+  return {(section.half_width - bump) * std::cos(angle),
+          section.spring_level + (section.arch_height - bump) * std::sin(angle)};
 }
 
 /// The whole outline, once round: the left half, then its mirror image from the roof down, then the floor.
@@ -150,21 +167,40 @@ void sweepTube(std::size_t count, double length, double round, Random& random, c
   }
 }
 
-std::vector<Eigen::Vector3f> scanTunnel(const Track& track, std::size_t count)
+/// Evenly distributed, or of a standard deviation and no more than three of it.
+Vector3d noiseOf(Course course, Random& random)
+{
+  Vector3d noise = Vector3d::Zero();
+  for (double& n : noise) {
+    if (course == Course::winding) n = random.uniform(-0.003, 0.003);
+    else
+      for (int i = 0; i < 3; ++i) n += random.uniform(-tight_noise, tight_noise);
+  }
+  return noise;
+}
+
+void shuffle(std::vector<Eigen::Vector3f>& points, Random& random)
+{
+  for (std::size_t i = points.size(); i > 1; --i)
+    std::swap(points[i - 1], points[static_cast<std::size_t>(random.uniform(0, static_cast<double>(i)))]);
+}
+
+std::vector<Eigen::Vector3f> scanTunnel(const Track& track, std::size_t count, Course course)
 {
   Random random(1);
   std::vector<Eigen::Vector3f> points;
   points.reserve(count);
-  sweepTube(count, track_length, section_length, random, [&](double station, double along) {
-    const Vector2d place = onSection(station, along);
-    Vector3d noise;
-    for (double& n : noise) n = random.uniform(-0.003, 0.003);
+  const Section& section = course == Course::winding ? winding_section : tight_section;
+  sweepTube(count, track_length, section.length(), random, [&](double station, double along) {
+    const Vector2d place = onSection(section, station, along);
+    const Vector3d noise = noiseOf(course, random);
     points.emplace_back((track.at(station) * Vector3d(0, place.x(), place.y()) + noise).cast<float>());
   });
+  if (course == Course::tight) shuffle(points, random);
   return points;
 }
 
-std::vector<Eigen::Vector3f> scanWagon(std::size_t count)
+std::vector<Eigen::Vector3f> scanWagon(std::size_t count, Course course)
 {
   Random random(2);
   const std::vector<Vector2d> ring = wholeOutline();
@@ -182,28 +218,31 @@ std::vector<Eigen::Vector3f> scanWagon(std::size_t count)
     const double y = random.uniform(-1.45, 1.45), z = random.uniform(0.35, 4.05);
     if (distanceToWagonOutline(y, z) == 0) points.emplace_back(Vector3d(end, y, z).cast<float>());
   }
+  if (course == Course::winding) return points;
+  for (Eigen::Vector3f& p : points) p += noiseOf(course, random).cast<float>();
+  shuffle(points, random);
   return points;
 }
 
 } // namespace
 
-double Track::curvature(double station)
+double Track::curvature(double station, Course course)
 {
-  for (const Stretch& stretch : stretches) {
-    if (station < stretch.length) return stretch.from + (stretch.to - stretch.from) * station / stretch.length;
-    station -= stretch.length;
-  }
+  const Stretch* stretch = course == Course::winding ? stretches.data() : long_bend.data();
+  const Stretch* end = stretch + (course == Course::winding ? stretches.size() : long_bend.size());
+  for (; stretch != end; station -= stretch->length, ++stretch)
+    if (station < stretch->length) return stretch->from + (stretch->to - stretch->from) * station / stretch->length;
   return 0;
 }
 
-Track::Track()
+Track::Track(Course course)
 {
   Sample sample{0, 0, 0};
   const auto steps = static_cast<std::size_t>(std::lround(track_length / track_step));
   for (std::size_t i = 0; i <= steps; ++i) {
     samples_.push_back(sample);
     const double middle = (static_cast<double>(i) + 0.5) * track_step;
-    const double turn = curvature(middle) * track_step;
+    const double turn = curvature(middle, course) * track_step;
     sample.x += track_step * std::cos(sample.heading + turn / 2);
     sample.y += track_step * std::sin(sample.heading + turn / 2);
     sample.heading += turn;
@@ -246,10 +285,10 @@ Size Size::atScale(double scale)
   return {scaled(18.92e6), scaled(2.5e6), scaled(19392)};
 }
 
-Passage makePassage(const Size& size)
+Passage makePassage(const Size& size, Course course)
 {
-  const Track track;
-  Passage run{scanTunnel(track, size.scan), scanWagon(size.wagon), {}};
+  const Track track(course);
+  Passage run{scanTunnel(track, size.scan, course), scanWagon(size.wagon, course), {}};
   // From the portal, just inside, to the other.
   const double first = wagon_length / 2, last = track_length - wagon_length / 2;
   for (std::size_t i = 0; i < size.poses; ++i) {

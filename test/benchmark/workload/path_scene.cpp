@@ -92,11 +92,11 @@ Points pointsOf(const std::vector<Eigen::Vector3f>& vectors)
   return points;
 }
 
-PathScene tunnelScene(double scale, double denser)
+PathScene tunnelScene(double scale, double denser, tunnel::Course course)
 {
   tunnel::Size size = tunnel::Size::atScale(scale);
   size.poses = static_cast<std::size_t>(std::max(1.0, static_cast<double>(size.poses) * denser));
-  const tunnel::Passage passage = tunnel::makePassage(size);
+  const tunnel::Passage passage = tunnel::makePassage(size, course);
   return {pointsOf(passage.scan), pointsOf(passage.wagon), passage.poses, tunnel::clearance};
 }
 
@@ -104,9 +104,10 @@ PathScene tunnelScene(double scale, double denser)
 
 PathScene pathScene(const std::string& name, double scale, double denser)
 {
-  if (name == "tunnel") return tunnelScene(scale, denser);
+  if (name == "tunnel") return tunnelScene(scale, denser, tunnel::Course::winding);
+  if (name == "tight") return tunnelScene(scale, denser, tunnel::Course::tight);
   if (name == "crane") return craneScene(scale, denser);
-  throw std::invalid_argument("scene '" + name + "' is unknown: use tunnel or crane");
+  throw std::invalid_argument("scene '" + name + "' is unknown: use tunnel, tight or crane");
 }
 
 } // namespace pcl_bsh::bench
