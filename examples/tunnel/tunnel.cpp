@@ -54,7 +54,8 @@ struct Section {
   double archLength() const // half an ellipse, by Ramanujan
   {
     return pi / 2 *
-           (3 * (half_width + arch_height) - std::sqrt((3 * half_width + arch_height) * (half_width + 3 * arch_height)));
+           (3 * (half_width + arch_height) -
+            std::sqrt((3 * half_width + arch_height) * (half_width + 3 * arch_height)));
   }
   double length() const { return 2 * half_width + 2 * wallHeight() + archLength(); }
 
@@ -172,7 +173,8 @@ Vector3d noiseOf(Course course, Random& random)
 {
   Vector3d noise = Vector3d::Zero();
   for (double& n : noise) {
-    if (course == Course::winding) n = random.uniform(-0.003, 0.003);
+    if (course == Course::winding)
+      n = random.uniform(-0.003, 0.003);
     else
       for (int i = 0; i < 3; ++i) n += random.uniform(-tight_noise, tight_noise);
   }

@@ -58,7 +58,8 @@ struct Size {
 
 /// All that a question along a path needs. Points are float x, y, z in a row.
 struct Passage {
-  std::vector<Eigen::Vector3f> scan; ///< in the world, in the order of a scanner that turns as it travels; tight: random
+  std::vector<Eigen::Vector3f>
+      scan; ///< in the world, in the order of a scanner that turns as it travels; tight: random
   std::vector<Eigen::Vector3f> wagon;   ///< in the wagon's frame
   std::vector<Eigen::Isometry3d> poses; ///< of the wagon in the world, evenly spaced over the whole tunnel
 };

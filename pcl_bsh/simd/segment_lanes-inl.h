@@ -111,9 +111,9 @@ HWY_INLINE std::uint32_t boxesOnSegment(const Segment& segment, const float (*lo
   return bits;
 }
 
-/// Bit i: point i of `count`, a multiple of the lanes, is within the limit of the box, in squared distances.
+/// Bit i: point i of `count`, a multiple of the lanes, is within its limit of the box, in squared distances.
 HWY_INLINE std::uint32_t pointsNearBox(const float* x, const float* y, const float* z, std::size_t count,
-                                       const float* low, const float* high, float squared_limit)
+                                       const float* low, const float* high, const float* squared_limits)
 {
   const LaneTag d;
   const auto beside = [&](const float* at, std::size_t axis) {
@@ -123,10 +123,38 @@ HWY_INLINE std::uint32_t pointsNearBox(const float* x, const float* y, const flo
   };
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d))
-    bits |=
-        bitsOf(d, hn::Le(squaredNorm(beside(x + i, 0), beside(y + i, 1), beside(z + i, 2)), hn::Set(d, squared_limit)))
-        << i;
+    bits |= bitsOf(d, hn::Le(squaredNorm(beside(x + i, 0), beside(y + i, 1), beside(z + i, 2)),
+                             hn::Load(d, squared_limits + i)))
+            << i;
   return bits;
+}
+
+/// Bit i: box i of eight comes within its limit of the box [low, high], in squared distances.
+HWY_INLINE std::uint32_t boxesNearBox(const float (*lows)[kLanes], const float (*highs)[kLanes], const float* low,
+                                      const float* high, const float* squared_limits)
+{
+  const LaneTag d;
+  const auto apart = [&](std::size_t axis, std::size_t i) {
+    const LaneVector under = hn::Sub(hn::Set(d, low[axis]), hn::Load(d, highs[axis] + i));
+    const LaneVector over = hn::Sub(hn::Load(d, lows[axis] + i), hn::Set(d, high[axis]));
+    return hn::Max(hn::Max(under, over), hn::Zero(d));
+  };
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
+    bits |= bitsOf(d, hn::Le(squaredNorm(apart(0, i), apart(1, i), apart(2, i)), hn::Load(d, squared_limits + i))) << i;
+  return bits;
+}
+
+/// Of eight points, the squared distance to the farthest corner of a box, where that is less than `least`.
+HWY_INLINE void lowerToFarthestCorner(const float (*places)[kLanes], const float* low, const float* high, float* least)
+{
+  const LaneTag d;
+  const auto away = [&](std::size_t axis, std::size_t i) {
+    const LaneVector at = hn::Load(d, places[axis] + i);
+    return hn::Max(hn::Sub(at, hn::Set(d, low[axis])), hn::Sub(hn::Set(d, high[axis]), at));
+  };
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
+    hn::Store(hn::Min(hn::Load(d, least + i), squaredNorm(away(0, i), away(1, i), away(2, i))), d, least + i);
 }
 
 /// The motions of the same segments, for tests against points.

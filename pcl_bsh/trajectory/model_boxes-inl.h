@@ -37,6 +37,30 @@ struct ModelBox {
   }
 };
 
+/// Where a box ends along each axis.
+struct BoxEnds {
+  float low[3], high[3];
+
+  explicit BoxEnds(const ModelBox& candidate)
+  {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = candidate.box().low[axis][candidate.lane];
+      high[axis] = candidate.box().high[axis][candidate.lane];
+    }
+  }
+
+  float squaredDistance(const Point& p) const
+  {
+    const float at[3] = {p.x, p.y, p.z};
+    float squared = 0.0f;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float away = std::max({low[axis] - at[axis], at[axis] - high[axis], 0.0f});
+      squared += away * away;
+    }
+    return squared;
+  }
+};
+
 /// Opens the model's boxes.
 class ModelBoxes {
 public:

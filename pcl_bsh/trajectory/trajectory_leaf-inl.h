@@ -32,7 +32,8 @@ struct LeafVisit {
   Segments<kLeafPoints> segments;
   SegmentMotions<kLeafPoints> motions;
   Segment around;
-  float low[3], high[3]; ///< of the model's box that it is compared with
+  float low[3], high[3];                       ///< of the model's box that it is compared with
+  alignas(64) float near_squared[kLeafPoints]; ///< farther from a box, squared, nothing in it matters, at one pose
 };
 
 /// Compares leaves of the scan with what they may meet of the model.
@@ -50,17 +51,18 @@ public:
   {
   }
 
+  /// @param bound no less than the smallest distance of any of the points, where `motion` is one pose
   /// @return whether any of the leaf's points is not settled.
   bool compare(std::size_t slot, const LeafRange& points, const Node& node, std::uint32_t lane,
-               const VoxelMotion& motion, const std::vector<ModelBox>& candidates)
+               const VoxelMotion& motion, const std::vector<ModelBox>& candidates, float bound)
   {
     const std::uint32_t all = firstBits(points.count);
     if ((all & ~results_.settled[slot]) == 0) return false;
     const double share = motion.steps > kManyPoses ? kManyPosesStray : kLeafStray;
     const double limit = path_.is_swept ? path_.stray : share * node.r[lane] * voxel_frame_.frame.unit;
     if (motion.divides(limit)) {
-      return compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->left), candidates) &&
-             compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->right), candidates);
+      return compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->left), candidates, bound) &&
+             compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->right), candidates, bound);
     }
     LeafVisit leaf;
     leaf.points = points;
@@ -76,17 +78,18 @@ public:
     leaf.segments.set(from, to, motion.smallest);
     if (path_.is_swept || motion.steps >= kFewPoses) leaf.motions.set(from, to, motion.smallest, motion.rounding);
     std::fill(leaf.segments.reach[0], leaf.segments.reach[0] + kLeafPoints, motion.reach);
+    std::fill(leaf.near_squared, leaf.near_squared + kLeafPoints, voxel_frame_.nearSquared(motion, bound));
     for (std::uint32_t i = 0; query_.closest && i < points.count; ++i)
-      if (bestBounds(points.begin + i, motion))
-        leaf.segments.reach[0][i] =
-            std::min(motion.reach, voxel_frame_.reachOf(motion, results_.best[points.begin + i].reach));
+      if (bestBounds(points.begin + i, motion)) lowerReach(leaf, i, results_.best[points.begin + i].reach, motion);
     const float no_extent[3][kLeafPoints] = {};
     leaf.around = voxel_frame_.aroundSegments(motion, from, to, no_extent, points.count);
     ++results_.work.volumes_carried;
     if (query_.request.pose_summaries) pose_hits_.assign(motion.interval->last - motion.interval->first + 1, 0);
 
     ++visit_;
-    for (const ModelBox& candidate : candidates) {
+    const std::vector<ModelBox>& ordered =
+        motion.at_rest && query_.everything() ? nearestFirst(candidates, points, motion) : candidates;
+    for (const ModelBox& candidate : ordered) {
       stack_.push_back(candidate);
       while (!stack_.empty() && leaf.open != 0 && !stop_check_.isOver()) {
         const ModelBox next = stack_.back();
@@ -102,6 +105,29 @@ public:
   }
 
 private:
+  /// From now on, what is farther from a point of the leaf than the best does not matter, during the motion.
+  void lowerReach(LeafVisit& leaf, std::uint32_t i, float best, const VoxelMotion& motion) const
+  {
+    leaf.segments.reach[0][i] = std::min(leaf.segments.reach[0][i], voxel_frame_.reachOf(motion, best));
+    if (motion.at_rest) leaf.near_squared[i] = std::min(leaf.near_squared[i], voxel_frame_.nearSquared(motion, best));
+  }
+
+  /// The candidates by their distance from the leaf, at one pose: the sooner its points' bounds are small, the fewer
+  /// are opened.
+  const std::vector<ModelBox>& nearestFirst(const std::vector<ModelBox>& candidates, const LeafRange& points,
+                                            const VoxelMotion& motion)
+  {
+    const std::uint32_t i = points.count / 2;
+    const Point at = carryPoint(motion.from.m, motion.from.g, {points.x()[i], points.y()[i], points.z()[i]});
+    order_.clear();
+    for (std::uint32_t c = 0; c < candidates.size(); ++c)
+      order_.emplace_back(BoxEnds(candidates[c]).squaredDistance(at), c);
+    std::sort(order_.begin(), order_.end());
+    ordered_.clear();
+    for (const auto& [distance, c] : order_) ordered_.push_back(candidates[c]);
+    return ordered_;
+  }
+
   /// Opens a box of the model that the leaf may meet, or compares its points.
   void compareBox(LeafVisit& leaf, const ModelBox& candidate, const VoxelMotion& motion)
   {
@@ -113,7 +139,14 @@ private:
     results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(leaf.open));
     std::copy(low, low + 3, leaf.low);
     std::copy(high, high + 3, leaf.high);
-    const std::uint32_t lanes = leaf.open & segmentsInBox(leaf.segments, low, high, motion.steps, &clipped);
+    std::uint32_t lanes = leaf.open;
+    if (motion.at_rest) {
+      const LeafPoints& at = placesAt(leaf, motion.interval->first, motion);
+      lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, low, high, leaf.near_squared);
+    }
+    else {
+      lanes &= segmentsInBox(leaf.segments, low, high, motion.steps, &clipped);
+    }
     if (lanes == 0) return;
     if (!candidate.isLeaf()) {
       if (!model_.mayOpen(candidate)) {
@@ -132,6 +165,8 @@ private:
     const LeafRange other{&tree_.storage.voxels[candidate.voxel], node.begin[k], node.comparedPoints(k)};
     if (path_.is_swept)
       compareSegments(leaf, lanes, clipped, other, candidate.voxel, motion);
+    else if (motion.at_rest)
+      compareAt(leaf, lanes, other, candidate.voxel, motion.interval->first, motion);
     else
       comparePoses(leaf, lanes, clipped, other, candidate.voxel, motion);
   }
@@ -182,7 +217,7 @@ private:
                  const VoxelMotion& motion)
   {
     const LeafPoints& at = placesAt(leaf, k, motion);
-    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, leaf.low, leaf.high, motion.near_squared);
+    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, leaf.low, leaf.high, leaf.near_squared);
     if (lanes == 0) return;
     ++results_.work.leaf_pairs;
     const double unit = other.voxel->frame.unit;
@@ -235,7 +270,7 @@ private:
             const LeafRange& other, std::uint32_t k, const VoxelMotion& motion)
   {
     results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | hit);
-    if (!query_.everything() && !query_.first) leaf.open &= ~hit;
+    if (!query_.everything() && (!query_.first || k == motion.interval->first)) leaf.open &= ~hit;
     if (query_.request.pose_summaries) {
       std::uint16_t& at = pose_hits_[k - motion.interval->first];
       at = static_cast<std::uint16_t>(at | hit);
@@ -247,6 +282,8 @@ private:
         first = std::min(first, static_cast<double>(k));
       }
       if (!query_.everything()) continue;
+      // It collides at this pose: what is farther at this pose changes nothing.
+      if (motion.at_rest && certain) lowerReach(leaf, i, roundUp(voxel_frame_.highOf(nearest[i])), motion);
       // Only what may be as near as the nearest in floats is worth an exact look.
       const float within = certain ? voxel_frame_.notBeyond(nearest[i]) : std::numeric_limits<float>::infinity();
       NearestPoint* best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
@@ -264,8 +301,7 @@ private:
         const double high = voxel_frame_.highOf(nearest[i]);
         best->limit = std::min(best->limit, voxel_frame_.notBeyond(nearest[i]));
         best->reach = std::min(best->reach, roundUp(high));
-        if (bestBounds(leaf.points.begin + i, motion))
-          leaf.segments.reach[0][i] = std::min(leaf.segments.reach[0][i], voxel_frame_.reachOf(motion, best->reach));
+        if (bestBounds(leaf.points.begin + i, motion)) lowerReach(leaf, i, best->reach, motion);
       }
       if (for_pose && certain) results_.lowerPoseLimit(k, voxel_frame_.notBeyond(nearest[i]));
     }
@@ -299,8 +335,7 @@ private:
       if (query_.closest && query_.radii == 0.0) {
         NearestPoint& best = results_.best[leaf.points.begin + i];
         best.reach = std::min(best.reach, roundUp(best.gap));
-        if (bestBounds(leaf.points.begin + i, motion))
-          leaf.segments.reach[0][i] = std::min(leaf.segments.reach[0][i], voxel_frame_.reachOf(motion, best.reach));
+        if (bestBounds(leaf.points.begin + i, motion)) lowerReach(leaf, i, best.reach, motion);
       }
     }
   }
@@ -371,7 +406,8 @@ private:
   };
   static constexpr std::uint32_t kKeptPlaces = 16;
 
-  std::vector<ModelBox> stack_;
+  std::vector<ModelBox> stack_, ordered_;
+  std::vector<std::pair<float, std::uint32_t>> order_;
   std::uint64_t visit_ = 0; // how many leaves were compared
   Places places_[kKeptPlaces];
   std::vector<std::uint16_t> pose_hits_; // per pose of a motion: points of a leaf

@@ -33,6 +33,8 @@ struct NodeVisit {
   Segment around;
   float radius[kLanes];
   std::vector<ModelBox> near[kLanes];
+  // At one pose: the children's boxes, and no less than the smallest distance of any of their points.
+  alignas(64) float low[3][kLanes], high[3][kLanes], near_squared[kLanes], bound[kLanes];
 };
 
 /// Takes one voxel of the scan along the trajectory.
@@ -131,9 +133,17 @@ private:
       }
       return;
     }
+    if (isWorthEachPose(motion, largest)) {
+      for (std::uint32_t k = motion.interval->first; k <= motion.interval->last && open_lanes_[index] != 0; ++k) {
+        PathInterval one;
+        descend(index, voxel_frame_.motionAt(k, one), candidates, depth);
+      }
+      return;
+    }
     if (visits_.size() <= depth) visits_.resize(depth + 1);
     NodeVisit& visit = visits_[depth];
     begin(visit, index, motion);
+    if (motion.at_rest) boundDistances(visit, index, motion, candidates);
     if (settling_) settleByPoints(visit, index, motion, candidates);
     for (const ModelBox& candidate : candidates) take(visit, candidate, motion, open_lanes_[index]);
     for (std::uint32_t bits = open_lanes_[index]; bits != 0; bits &= bits - 1) {
@@ -142,7 +152,7 @@ private:
       bool open = true;
       if (node.isLeaf(lane)) {
         const LeafRange points{voxel_, node.begin[lane], node.comparedPoints(lane)};
-        open = leaves_.compare(index * kLanes + lane, points, node, lane, motion, visit.near[lane]);
+        open = leaves_.compare(index * kLanes + lane, points, node, lane, motion, visit.near[lane], visit.bound[lane]);
       }
       else if (depth + 1 >= rule_.deepest) {
         results_.undecided[index * kLanes + lane] = 0xffff;
@@ -153,6 +163,15 @@ private:
       }
       if (!open) open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
     }
+  }
+
+  /// Whether poses are taken one by one: few of them, and a reach in which a node's points differ by little. A pose by
+  /// itself has distances, which bound those of a whole node.
+  bool isWorthEachPose(const VoxelMotion& motion, float largest) const
+  {
+    const std::uint32_t steps = motion.interval->last - motion.interval->first;
+    return !query_.path.is_swept && steps > 0 && static_cast<float>(steps) <= kFewPoses &&
+           query_.reach > 2 * static_cast<double>(voxel_frame_.seenRadius(largest));
   }
 
   void begin(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
@@ -173,6 +192,35 @@ private:
         visit.children.reach[axis][lane] = (motion.reach + extent[axis][lane]) * (1.0f + kReachMargin);
     visit.around = voxel_frame_.aroundSegments(motion, from, to, extent, node.count);
     results_.work.volumes_carried += node.count + std::uint64_t{1}; // the children and what is around them
+    constexpr float unbounded = std::numeric_limits<float>::infinity();
+    std::fill(visit.bound, visit.bound + kLanes, unbounded);
+    if (!motion.at_rest) return;
+    std::fill(visit.near_squared, visit.near_squared + kLanes, voxel_frame_.nearSquared(motion, unbounded));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        visit.low[axis][lane] = from[axis][lane] - extent[axis][lane] * (1.0f + kReachMargin);
+        visit.high[axis][lane] = from[axis][lane] + extent[axis][lane] * (1.0f + kReachMargin);
+      }
+  }
+
+  /// At one pose: every box holds a point of the model, so that no point of a child is farther from the model than from
+  /// the farthest corner of any box. What is farther than that is none's nearest.
+  void boundDistances(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion,
+                      const std::vector<ModelBox>& candidates)
+  {
+    const std::uint32_t count = voxel_->nodes[index].count;
+    if (query_.radii != 0.0 || !(motion.near > *std::min_element(visit.radius, visit.radius + count))) return;
+    alignas(64) float corner[kLanes];
+    std::fill(corner, corner + kLanes, std::numeric_limits<float>::infinity());
+    for (const ModelBox& candidate : candidates) {
+      const BoxEnds box(candidate);
+      lowerToFarthestCorner(visit.children.start, box.low, box.high, corner);
+    }
+    results_.work.node_pairs += candidates.size() * count;
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      visit.bound[lane] = voxel_frame_.highOfBox(motion, corner[lane], visit.radius[lane]);
+      visit.near_squared[lane] = voxel_frame_.nearSquared(motion, visit.bound[lane]);
+    }
   }
 
   /// Settles children that a single point of the model is near enough to, at one pose, for all that they hold.
@@ -213,29 +261,6 @@ private:
     Point center;
     float reach;
     std::uint32_t pose;
-  };
-
-  struct BoxEnds {
-    float low[3], high[3];
-
-    explicit BoxEnds(const ModelBox& candidate)
-    {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis] = candidate.box().low[axis][candidate.lane];
-        high[axis] = candidate.box().high[axis][candidate.lane];
-      }
-    }
-
-    float squaredDistance(const Point& p) const
-    {
-      const float at[3] = {p.x, p.y, p.z};
-      float squared = 0.0f;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const float away = std::max({low[axis] - at[axis], at[axis] - high[axis], 0.0f});
-        squared += away * away;
-      }
-      return squared;
-    }
   };
 
   const PathPose& poseAt(std::uint32_t k) const { return query_.path.poses[k]; }
@@ -301,7 +326,9 @@ private:
     const float high[3] = {box.high[0][k], box.high[1][k], box.high[2][k]};
     results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
     const std::uint32_t near_lanes =
-        lanes & segmentsInBox(visit.children, low, high, motion.steps, static_cast<ClippedSegments<kLanes>*>(nullptr));
+        lanes & (motion.at_rest ? boxesNearBox(visit.low, visit.high, low, high, visit.near_squared)
+                                : segmentsInBox(visit.children, low, high, motion.steps,
+                                                static_cast<ClippedSegments<kLanes>*>(nullptr)));
     if (near_lanes == 0) return;
     const bool opens = !candidate.isLeaf() && model_.mayOpen(candidate);
     const float size = candidate.size();

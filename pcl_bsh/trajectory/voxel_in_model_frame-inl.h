@@ -27,13 +27,14 @@ struct AffineMap {
 struct VoxelMotion {
   const PathInterval* interval;
   AffineMap from, to;
-  double stray;       ///< of any point of the voxel from its straight line
-  float steps;        ///< poses after the first; 0 where all instants count
-  float reach;        ///< of points: within this of a straight line, in floats, is all that collides
-  float near_squared; ///< farther from a box than the root of this, in floats at one pose, nothing in it collides
-  float smallest;     ///< motion that floats distinguish from rest
-  float rounding;     ///< of places in floats
-  bool squares;       ///< whether squares of places and of such motions are in the range of floats
+  double stray;   ///< of any point of the voxel from its straight line
+  float steps;    ///< poses after the first; 0 where all instants count
+  float reach;    ///< of points: within this of a straight line, in floats, is all that collides
+  float near;     ///< farther from a box than this, in floats at one pose, nothing in it collides
+  float smallest; ///< motion that floats distinguish from rest
+  float rounding; ///< of places in floats
+  bool squares;   ///< whether squares of places and of such motions are in the range of floats
+  bool at_rest;   ///< one pose, and nothing before or after it
 
   /// Whether it has halves, and strays farther than `stray_limit`.
   bool divides(double stray_limit) const { return interval->divided() && stray > stray_limit; }
@@ -87,10 +88,22 @@ public:
     return map;
   }
 
-  VoxelMotion motionOf(std::uint32_t index) const
+  VoxelMotion motionOf(std::uint32_t index) const { return motionOf(path.intervals[index]); }
+
+  /// Of one pose of a path that is not swept. @param interval becomes that pose, and has to outlive the motion.
+  VoxelMotion motionAt(std::uint32_t k, PathInterval& interval) const
+  {
+    interval = PathInterval{};
+    interval.first = interval.last = k;
+    interval.pivot = path.poses[k].center;
+    return motionOf(interval);
+  }
+
+  VoxelMotion motionOf(const PathInterval& interval) const
   {
     VoxelMotion motion;
-    const PathInterval& interval = *(motion.interval = &path.intervals[index]);
+    motion.interval = &interval;
+    motion.at_rest = !path.is_swept && interval.first == interval.last;
     motion.from = mapAt(path.poses[interval.first], {0, 0, 0}, 1.0);
     motion.to = mapAt(path.poses[interval.last], {0, 0, 0}, 1.0);
     double squared = 0.0, coordinate = 0.0;
@@ -107,8 +120,7 @@ public:
         static_cast<double>(kSegmentRounding) * (coordinate + 2.01 * radius + tree.radius + reach) + kSmallestRounding;
     motion.reach = roundUp(reach + rounding);
     motion.rounding = roundUp(rounding);
-    const float near = roundUp(reach - motion.stray + 2 * rounding);
-    motion.near_squared = near * near * (1.0f + kReachRounding) + kVanishingSquare;
+    motion.near = roundUp(reach - motion.stray + 2 * rounding);
     motion.smallest = motion.rounding * kSmallestMotion;
     motion.squares =
         motion.smallest >= kSmallestSquared && inFloatRange(coordinate + 2.01 * radius + tree.radius + reach);
@@ -182,6 +194,25 @@ public:
 
   /// A pair at a larger squared distance in floats is farther than one at this.
   float notBeyond(float squared) const { return skewedBand(highOf(squared), error, path.skew).miss; }
+
+  /// No less than the distance from any point of a ball to the nearest point in a box, in the clouds' unit.
+  /// @param corner squared distance from the ball's centre to the box's farthest corner, in floats at one pose
+  float highOfBox(const VoxelMotion& motion, float corner, float ball) const
+  {
+    const double length = (std::sqrt(static_cast<double>(corner)) + ball) * (1.0 + kReachRounding);
+    return roundUp((length + 2 * static_cast<double>(motion.rounding) + error) * (1.0 + path.skew) *
+                   (1.0 + kDoubleMargin));
+  }
+
+  /// Squared: farther from a box than the root of this, in floats at one pose, nothing in it collides, or is as near as
+  /// the best one. @param best no less than that distance
+  float nearSquared(const VoxelMotion& motion, float best) const
+  {
+    const float near = best < static_cast<float>(query_.reach)
+                           ? (motion.near + (best - static_cast<float>(query_.reach))) * (1.0f + kReachRounding)
+                           : motion.near;
+    return near * near * (1.0f + kReachRounding) + kVanishingSquare;
+  }
 
   /// How far from a line a point may be that is as near as the best one.
   float reachOf(const VoxelMotion& motion, float best) const

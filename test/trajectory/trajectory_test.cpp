@@ -362,6 +362,80 @@ TEST(Trajectory, LargeClearancesFlagTheSamePoints)
   }
 }
 
+/// A room around a small dense model.
+struct Room {
+  std::vector<Eigen::Vector3f> walls, model;
+
+  Room(std::size_t points, std::size_t model_points)
+  {
+    Random random(5);
+    for (std::size_t i = 0; i < points; ++i) {
+      Eigen::Vector3d p(random.uniform(-3, 3), random.uniform(-2, 2), random.uniform(-1, 1));
+      const auto side = static_cast<Eigen::Index>(i % 3);
+      p[side] = std::copysign(3.0 - static_cast<double>(side), p[side]);
+      walls.push_back(p.cast<float>());
+    }
+    for (std::size_t i = 0; i < model_points; ++i)
+      model.push_back(
+          Eigen::Vector3d(0.2 * random.uniform(-1, 1), 0.2 * random.uniform(-1, 1), 0.4 * random.uniform(-1, 1))
+              .cast<float>());
+  }
+
+  static PointsView view(const std::vector<Eigen::Vector3f>& points)
+  {
+    return viewOf(points.front().data(), points.size());
+  }
+
+  static Poses poses(std::size_t count)
+  {
+    Poses result;
+    for (std::size_t k = 0; k < count; ++k) {
+      result.emplace_back(Eigen::AngleAxisd(0.3 * static_cast<double>(k), Eigen::Vector3d(1, 2, 3).normalized()));
+      result.back().translation() = Eigen::Vector3d(0.4 * static_cast<double>(k) - 1, 0.3, -0.2);
+    }
+    return result;
+  }
+};
+
+TEST(Trajectory, DistancesAtLargeClearancesAreTheNearest)
+{
+  const Room room(700, 500);
+  const SphereHierarchy scan(Room::view(room.walls)), model(Room::view(room.model));
+  for (const std::size_t count : {1u, 2u, 5u}) {
+    const Poses poses = Room::poses(count);
+    for (const double clearance : {0.5, 1.5, 2.5, 40.0}) {
+      SCOPED_TRACE(clearance);
+      const TrajectoryResult expected = brute_force::collideAlong({scan}, model, poses, everything(clearance));
+      EXPECT_GT(expected.colliding, 0u);
+      expectSame(collideAlong({scan}, model, poses, everything(clearance)), expected);
+      TrajectoryRequest request = flagsOnly(clearance);
+      EXPECT_EQ(collideAlong({scan}, model, poses, request).flags, expected.flags);
+      request.first_poses = true;
+      EXPECT_EQ(collideAlong({scan}, model, poses, request).first_pose, expected.first_pose);
+      request.closest_poses = true;
+      const TrajectoryResult closest = collideAlong({scan}, model, poses, request);
+      EXPECT_EQ(closest.first_pose, expected.first_pose);
+      EXPECT_EQ(closest.closest_pose, expected.closest_pose);
+      EXPECT_EQ(closest.closest_point, expected.closest_point);
+    }
+  }
+}
+
+/// A nearest neighbour for each point, not all pairs within the clearance.
+TEST(Trajectory, DistancesAtLargeClearancesCostNoMoreThanTheNearest)
+{
+  const Room room(20000, 40000);
+  const SphereHierarchy scan(Room::view(room.walls)), model(Room::view(room.model));
+  for (const std::size_t count : {1u, 5u}) {
+    const Poses poses = Room::poses(count);
+    for (const double clearance : {0.5, 1.0, 3.0, 10.0}) {
+      const TrajectoryResult found = collideAlong({scan}, model, poses, everything(clearance));
+      const std::uint64_t work = found.work.node_pairs + 20 * found.work.leaf_pairs;
+      EXPECT_LT(work, 400 * count * scan.view().count) << clearance << ", poses " << count;
+    }
+  }
+}
+
 TEST(Trajectory, MorePosesHitNoLess)
 {
   const Corridor corridor;
