@@ -63,8 +63,8 @@ struct Section {
 };
 
 constexpr Section winding_section = {1.76, 2.9, 1.9, 1.0, true};
-constexpr Section tight_section = {1.923, 2.0, 2.626, 0.25, false};
-constexpr double tight_noise = 0.004; // standard deviation
+constexpr Section tight_section = {1.923, 2.0, 2.626, 0.25, false}; // in the bend, 3 to 7 cm beside the upper edges
+constexpr double tight_noise = 0.004;                               // standard deviation
 
 // Lamps stand out from the walls, left and right in turn; every fifth reaches in too far.
 constexpr double lamp_distance = 24.0;

@@ -6,8 +6,8 @@
 // wagon stands on two bogies, so in a bend its middle leaves the track to the inside and its ends to the outside: there
 // it touches walls that its cross-section, carried along the track, would clear. Some lamps reach in too far anywhere.
 //
-// The tight tunnel is one long bend in which the vault grazes the wagon's upper edges: the gap falls from 19 cm on the
-// straight to about the clearance, and stays there for 600 m. Its points come in random order, with noise of 4 mm.
+// The tight tunnel is one long bend of 180 m radius in which the vault grazes the wagon's upper edges: their gap falls
+// to about the clearance, and stays there for 600 m. Its points come in random order, with noise of 4 mm.
 //
 // Metres; z up, x forward, the origin of wagon and track at the rails' level in the middle of the track.
 #pragma once

@@ -18,11 +18,12 @@ using pcl_bsh::SphereHierarchy;
 namespace {
 
 struct Options : ProgramOptions {
-  std::vector<std::string> scenes = {"tunnel", "crane"};
+  std::vector<std::string> scenes = {"tunnel", "tight", "crane"};
   double scale = 0.1;
   std::vector<unsigned> threads = {1, 2};
   std::vector<std::string> racers = {"pcl_bsh", "boxes", "model_points"};
   std::vector<double> densities = {0.1, 1, 10};
+  std::vector<double> clearances = {0.0, 0.05, 0.1, 0.2, 0.3, 0.4};
   std::size_t published_poses = 20;
   std::size_t warm_poses = 200;
 };
@@ -193,6 +194,43 @@ void showDensities(const Options& options, const std::string& scene_name, Table&
   }
 }
 
+/// What is asked beside flags, and what a clearance that runs along a wall costs, against the scene's own question.
+void showQuestions(const Options& options, const std::string& scene_name, Table& table)
+{
+  const PathScene scene = pathScene(scene_name, options.scale);
+  pcl_bsh::TrajectoryRequest flags;
+  flags.clearance = scene.clearance;
+  double own = 0.0;
+  const auto show = [&](const pcl_bsh::TrajectoryRequest& request, const std::string& what) {
+    progress(scene_name + ", " + what);
+    std::vector<double> seconds;
+    pcl_bsh::Work work;
+    for (unsigned repetition = 0; repetition < options.repeat; ++repetition) {
+      const SphereHierarchy scan(viewOf(scene.scan)), model(viewOf(scene.model));
+      const Stopwatch query;
+      work = collideAlong({scan}, model, scene.poses, request).work;
+      seconds.push_back(query.seconds());
+    }
+    if (own == 0.0) own = median(seconds);
+    addOurs(scene_name, scene, "pcl_bsh", 0.0, median(seconds), text(median(seconds) / own),
+            what + "; node pairs " + std::to_string(work.node_pairs) + "; ratio: to the flags", table);
+  };
+  show(flags, "flags");
+  pcl_bsh::TrajectoryRequest request = flags;
+  request.distances = true;
+  show(request, "distances");
+  request.first_poses = request.closest_poses = request.pose_summaries = true;
+  show(request, "all that a list of clashes asks");
+  request.pose_summaries = false;
+  request.swept = 0.01;
+  show(request, "swept by 1 cm, with distances");
+  for (const double clearance : options.clearances) {
+    request = flags;
+    request.clearance = clearance;
+    show(request, "flags at a clearance of " + text(clearance) + " m");
+  }
+}
+
 /// One pose at a time, everything built: what a user who drags the model waits for.
 void showOnePose(const Options& options, const std::string& scene_name, Table& table)
 {
@@ -234,14 +272,15 @@ int main(int argc, char** argv)
   Options options;
   CLI::App app(
       "A model along a path through a scan: flags of the scan's points, from the bare clouds, builds included.\n"
-      "tunnel: a wagon that fills its box; crane: an L whose box is full of what it never nears.\n"
+      "tunnel: a wagon that fills its box; tight: one long bend in which the vault grazes it, in random order; crane: "
+      "an L whose box is full of what it never nears.\n"
       "boxes: cells and the model's box, then a tree over the model; model_points: every model point of every\n"
       "pose asks a tree over the scan (extrapolated from some poses).",
       "bench_trajectory");
   app.footer("Example: bench_trajectory --scale 0.1 --csv trajectory.csv");
-  app.add_option("--scenes", options.scenes, "tunnel, crane")
+  app.add_option("--scenes", options.scenes, "tunnel, tight, crane")
       ->delimiter(',')
-      ->check(CLI::IsMember({"tunnel", "crane"}))
+      ->check(CLI::IsMember({"tunnel", "tight", "crane"}))
       ->capture_default_str();
   app.add_option("--scale", options.scale, "1: 18.92 M scan points, 2.5 M model points, 19,392 poses in the tunnel")
       ->check(CLI::Range(1e-4, 10.0))
@@ -256,6 +295,9 @@ int main(int argc, char** argv)
   app.add_option("--densities", options.densities, "multiples of the poses, for the first scene; 0: none")
       ->delimiter(',')
       ->capture_default_str();
+  app.add_option("--clearances", options.clearances, "flags at each, for the tight tunnel")
+      ->delimiter(',')
+      ->capture_default_str();
   app.add_option("--published-poses", options.published_poses, "poses that model_points really asks")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -268,6 +310,8 @@ int main(int argc, char** argv)
     bool right = true;
     for (const auto& scene : options.scenes) right = race(options, scene, rows) && right;
     if (options.densities != std::vector<double>{0}) showDensities(options, options.scenes.front(), rows);
+    if (std::find(options.scenes.begin(), options.scenes.end(), "tight") != options.scenes.end())
+      showQuestions(options, "tight", rows);
     showOnePose(options, options.scenes.front(), rows);
     return right;
   });

@@ -27,6 +27,14 @@ TEST(TunnelProgram, WritesWhatCollideReads)
   EXPECT_THAT(done.err, HasSubstr("warning: points lie ")) << "so sparse a scan hides collisions";
 }
 
+TEST(TunnelProgram, MakesATightTunnel)
+{
+  const io::TemporaryFolder folder;
+  const Outcome made = run("pcl_bsh_tunnel", (folder / "t").string() + " --scale 0.001 --tight");
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(io::readCloud(folder / "t/scan.ply").width, 18920u);
+}
+
 TEST(TunnelProgram, Refuses)
 {
   const io::TemporaryFolder folder;

@@ -2,6 +2,7 @@
 #include <examples/tunnel/tunnel.h>
 
 #include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <gtest/gtest.h>
 
@@ -113,6 +114,47 @@ TEST(TunnelPassage, BendsShowCollisionsThatTheCrossSectionDoesNot)
   EXPECT_GT(only_in_bends, 500u) << "walls that the cross-section clears";
   EXPECT_GT(lamps, 3u) << "lamps that reach in anywhere";
   EXPECT_LT(lamps, 200u);
+}
+
+TEST(TightTunnel, HoldsWhatWasAskedForInAnyOrder)
+{
+  const Size size{20000, 3000, 50};
+  const Passage run = makePassage(size, Course::tight);
+  EXPECT_EQ(run.scan.size(), size.scan);
+  EXPECT_EQ(run.wagon.size(), size.wagon);
+  EXPECT_EQ(run.poses.size(), size.poses);
+  EXPECT_EQ(run.scan, makePassage(size, Course::tight).scan);
+  double apart = 0;
+  for (std::size_t i = 1; i < run.scan.size(); ++i) apart += (run.scan[i] - run.scan[i - 1]).norm();
+  EXPECT_GT(apart / static_cast<double>(run.scan.size()), 100.0)
+      << "neighbours in the cloud are not neighbours in space";
+}
+
+TEST(TightTunnel, GrazesTheWagonAlongTheBend)
+{
+  const Passage run = makePassage(Size::atScale(0.05), Course::tight);
+  const SphereHierarchy scan(viewOf(run.scan)), wagon(viewOf(run.wagon));
+  TrajectoryRequest request;
+  const auto within = [&](double distance) {
+    request.clearance = distance;
+    return collideAlong({scan}, wagon, run.poses, request).colliding;
+  };
+  const std::size_t nearest = within(0.04), near = within(0.07);
+  EXPECT_GT(near - nearest, 3000u) << "points that pass between 4 and 7 cm";
+  EXPECT_LT(near, run.scan.size() / 20);
+}
+
+/// Three times as many points of scan and wagon and three times as many poses: little more than three times the work.
+TEST(TightTunnel, NodePairsGrowLittleMoreThanThePoints)
+{
+  const auto work = [](double scale) {
+    const Passage run = makePassage(Size::atScale(scale), Course::tight);
+    const SphereHierarchy scan(viewOf(run.scan)), wagon(viewOf(run.wagon));
+    TrajectoryRequest request;
+    request.clearance = clearance;
+    return static_cast<double>(collideAlong({scan}, wagon, run.poses, request).work.node_pairs);
+  };
+  EXPECT_LT(work(0.06), 3.6 * work(0.02));
 }
 
 } // namespace
