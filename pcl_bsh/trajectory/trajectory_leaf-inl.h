@@ -129,7 +129,7 @@ private:
   }
 
   /// Opens a box of the model that the leaf may meet, or compares its points.
-  void compareBox(LeafVisit& leaf, const ModelBox& candidate, const VoxelMotion& motion)
+  HWY_INLINE void compareBox(LeafVisit& leaf, const ModelBox& candidate, const VoxelMotion& motion)
   {
     const std::uint32_t k = candidate.lane;
     const BoxNode& box = candidate.box();
@@ -172,8 +172,8 @@ private:
   }
 
   /// Two leaves, at each pose that brings them near.
-  void comparePoses(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped, const LeafRange& other,
-                    std::uint32_t voxel, const VoxelMotion& motion)
+  HWY_INLINE void comparePoses(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
+                               const LeafRange& other, std::uint32_t voxel, const VoxelMotion& motion)
   {
     PoseRanges ranges = rangesOf(lanes, clipped, motion);
     if (ranges.lanes == 0) return;

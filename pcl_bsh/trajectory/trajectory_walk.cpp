@@ -33,7 +33,7 @@ struct NodeVisit {
   Segment around;
   float radius[kLanes];
   std::vector<ModelBox> near[kLanes];
-  // At one pose: the children's boxes, and no less than the smallest distance of any of their points.
+  // Set at one pose only: the children's boxes, and no less than the smallest distance of any of their points.
   alignas(64) float low[3][kLanes], high[3][kLanes], near_squared[kLanes], bound[kLanes];
 };
 
@@ -152,7 +152,8 @@ private:
       bool open = true;
       if (node.isLeaf(lane)) {
         const LeafRange points{voxel_, node.begin[lane], node.comparedPoints(lane)};
-        open = leaves_.compare(index * kLanes + lane, points, node, lane, motion, visit.near[lane], visit.bound[lane]);
+        open = leaves_.compare(index * kLanes + lane, points, node, lane, motion, visit.near[lane],
+                               motion.at_rest ? visit.bound[lane] : std::numeric_limits<float>::infinity());
       }
       else if (depth + 1 >= rule_.deepest) {
         results_.undecided[index * kLanes + lane] = 0xffff;
@@ -192,9 +193,9 @@ private:
         visit.children.reach[axis][lane] = (motion.reach + extent[axis][lane]) * (1.0f + kReachMargin);
     visit.around = voxel_frame_.aroundSegments(motion, from, to, extent, node.count);
     results_.work.volumes_carried += node.count + std::uint64_t{1}; // the children and what is around them
+    if (!motion.at_rest) return;
     constexpr float unbounded = std::numeric_limits<float>::infinity();
     std::fill(visit.bound, visit.bound + kLanes, unbounded);
-    if (!motion.at_rest) return;
     std::fill(visit.near_squared, visit.near_squared + kLanes, voxel_frame_.nearSquared(motion, unbounded));
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
