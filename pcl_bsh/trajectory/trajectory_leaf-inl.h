@@ -94,7 +94,10 @@ public:
       while (!stack_.empty() && leaf.open != 0 && !stop_check_.isOver()) {
         const ModelBox next = stack_.back();
         stack_.pop_back();
-        compareBox(leaf, next, motion);
+        if (motion.at_rest)
+          compareBox<true>(leaf, next, motion);
+        else
+          compareBox<false>(leaf, next, motion);
       }
       if (leaf.open == 0) break;
     }
@@ -129,6 +132,7 @@ private:
   }
 
   /// Opens a box of the model that the leaf may meet, or compares its points.
+  template <bool AtRest>
   HWY_INLINE void compareBox(LeafVisit& leaf, const ModelBox& candidate, const VoxelMotion& motion)
   {
     const std::uint32_t k = candidate.lane;
@@ -140,7 +144,7 @@ private:
     std::copy(low, low + 3, leaf.low);
     std::copy(high, high + 3, leaf.high);
     std::uint32_t lanes = leaf.open;
-    if (motion.at_rest) {
+    if constexpr (AtRest) {
       const LeafPoints& at = placesAt(leaf, motion.interval->first, motion);
       lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, low, high, leaf.near_squared);
     }
@@ -165,7 +169,7 @@ private:
     const LeafRange other{&tree_.storage.voxels[candidate.voxel], node.begin[k], node.comparedPoints(k)};
     if (path_.is_swept)
       compareSegments(leaf, lanes, clipped, other, candidate.voxel, motion);
-    else if (motion.at_rest)
+    else if constexpr (AtRest)
       compareAt(leaf, lanes, other, candidate.voxel, motion.interval->first, motion);
     else
       comparePoses(leaf, lanes, clipped, other, candidate.voxel, motion);

@@ -27,14 +27,15 @@ struct AffineMap {
 struct VoxelMotion {
   const PathInterval* interval;
   AffineMap from, to;
-  double stray;   ///< of any point of the voxel from its straight line
-  float steps;    ///< poses after the first; 0 where all instants count
-  float reach;    ///< of points: within this of a straight line, in floats, is all that collides
-  float near;     ///< farther from a box than this, in floats at one pose, nothing in it collides
-  float smallest; ///< motion that floats distinguish from rest
-  float rounding; ///< of places in floats
-  bool squares;   ///< whether squares of places and of such motions are in the range of floats
-  bool at_rest;   ///< one pose, and nothing before or after it
+  double stray;       ///< of any point of the voxel from its straight line
+  float steps;        ///< poses after the first; 0 where all instants count
+  float reach;        ///< of points: within this of a straight line, in floats, is all that collides
+  float near;         ///< farther from a box than this, in floats at one pose, nothing in it collides
+  float near_squared; ///< of that
+  float smallest;     ///< motion that floats distinguish from rest
+  float rounding;     ///< of places in floats
+  bool squares;       ///< whether squares of places and of such motions are in the range of floats
+  bool at_rest;       ///< one pose, and nothing before or after it
 
   /// Whether it has halves, and strays farther than `stray_limit`.
   bool divides(double stray_limit) const { return interval->divided() && stray > stray_limit; }
@@ -121,6 +122,7 @@ public:
     motion.reach = roundUp(reach + rounding);
     motion.rounding = roundUp(rounding);
     motion.near = roundUp(reach - motion.stray + 2 * rounding);
+    motion.near_squared = motion.near * motion.near * (1.0f + kReachRounding) + kVanishingSquare;
     motion.smallest = motion.rounding * kSmallestMotion;
     motion.squares =
         motion.smallest >= kSmallestSquared && inFloatRange(coordinate + 2.01 * radius + tree.radius + reach);
@@ -208,9 +210,9 @@ public:
   /// the best one. @param best no less than that distance
   float nearSquared(const VoxelMotion& motion, float best) const
   {
-    const float near = best < static_cast<float>(query_.reach)
-                           ? (motion.near + (best - static_cast<float>(query_.reach))) * (1.0f + kReachRounding)
-                           : motion.near;
+    const auto reach = static_cast<float>(query_.reach);
+    if (!(best < reach)) return motion.near_squared;
+    const float near = (motion.near + (best - reach)) * (1.0f + kReachRounding);
     return near * near * (1.0f + kReachRounding) + kVanishingSquare;
   }
 
