@@ -8,8 +8,8 @@
 #define PCL_BSH_TRAJECTORY_TRAJECTORY_LEAF_INL_H_
 #endif
 
-#include <pcl_bsh/trajectory/closest_approach.h>
 #include <pcl_bsh/trajectory/model_boxes-inl.h>
+#include <pcl_bsh/trajectory/point_segment.h>
 #include <pcl_bsh/trajectory/pose_ranges-inl.h>
 #include <pcl_bsh/trajectory/voxel_results.h>
 
@@ -313,8 +313,8 @@ private:
 
   /// Points that move in straight lines against points at rest: all instants at once. In double; what that gets wrong
   /// is small against the tolerance (checkTolerance()).
-  void compareSegments(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
-                       const LeafRange& other, std::uint32_t voxel, const VoxelMotion& motion)
+  HWY_NOINLINE void compareSegments(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
+                                    const LeafRange& other, std::uint32_t voxel, const VoxelMotion& motion)
   {
     if (motion.squares && other.voxel->frame.unit == 1.0) lanes &= nearPoints(leaf, other, voxel, clipped);
     ++results_.work.leaf_pairs;
@@ -324,12 +324,12 @@ private:
       double& first = results_.first[leaf.points.begin + i];
       if (!query_.closest && first <= begin + steps * clipped.from[i]) continue;
       const std::uint32_t record = leaf.points.record(i);
-      const PointSegment segment = segmentOf(record, motion);
+      const PointSegment segment(query_, record, *motion.interval);
       for (std::uint32_t j = 0; j < other.count; ++j) {
         ++results_.work.exact_decisions;
         const std::uint32_t q = other.record(j);
         const double radii = query_.scan.hierarchy().view().radius(record) + query_.model.view().radius(q);
-        const ClosestApproach approach = approachTo(segment, q, query_.reach - query_.radii + radii);
+        const ClosestApproach approach = segment.approachTo(query_, q, query_.reach - query_.radii + radii);
         if (!approach.contact) continue;
         results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | 1u << i);
         first = std::min(first, begin + steps * approach.enter);
@@ -348,33 +348,6 @@ private:
   bool bestBounds(std::uint32_t point, const VoxelMotion& motion) const
   {
     return query_.bestBounds(query_.first ? results_.first[point] : 0.0, motion.interval->first);
-  }
-
-  /// Where a point of the scan is seen at the ends of a motion.
-  struct PointSegment {
-    std::uint32_t first, last; ///< poses of the path
-    Point3 start, end;
-  };
-
-  PointSegment segmentOf(std::uint32_t record, const VoxelMotion& motion) const
-  {
-    const Point3 world = carried(query_.scan.pose, query_.scan.hierarchy().view().point(record));
-    const std::uint32_t first = motion.interval->first, last = motion.interval->last;
-    return {first, last, path_.poses[first].see(world), path_.poses[last].see(world)};
-  }
-
-  /// Of a point that moves along a segment to one of the model.
-  ClosestApproach approachTo(const PointSegment& segment, std::uint32_t record, double near_enough) const
-  {
-    Point3 at = query_.model.view().point(record);
-    for (std::size_t axis = 0; axis < 3; ++axis) at[axis] -= tree_.origin[axis];
-    const Point3 from = path_.stretched(segment.first, at), to = path_.stretched(segment.last, at);
-    Point3 away, motion;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      away[axis] = segment.start[axis] - from[axis];
-      motion[axis] = (segment.end[axis] - segment.start[axis]) - (to[axis] - from[axis]);
-    }
-    return closestApproach(away, motion, near_enough);
   }
 
   /// Keeps the nearest; of several the first instant, and there the smallest record.
