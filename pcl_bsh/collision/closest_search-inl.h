@@ -23,12 +23,16 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
+namespace { // the search is inlined where it is its translation unit's own
+
 /// No other thread searches. Its calls compile to nothing.
 struct NoOthers {
   static bool stops() { return false; }
   static void hear(Nearest&) {}
   static void tell(Nearest&, const PointPairs&) {}
 };
+
+} // namespace
 
 /// @tparam Others the searches of other threads: `stops()` before each pair is visited, whether to pause there;
 ///   `hear(nearest)`: takes over what they have found; `tell(nearest, pairs)`: gives it to them, and takes what is
