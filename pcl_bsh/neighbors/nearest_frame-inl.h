@@ -11,6 +11,8 @@
 #include <pcl_bsh/geometry/point_frame.h>
 #include <pcl_bsh/simd/point_lanes-inl.h>
 
+#include <bit>
+#include <cstdint>
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
@@ -55,6 +57,13 @@ struct NearestFrame {
   float error = kInfinity, slack = kInfinity;
   float inverse_unit = 1.0f, inverse_below = 1.0f + 4 * kNeighborShare, above = 1.0f + 2 * kNeighborShare;
 };
+
+/// The float halfway in the order of floats >= 0, rounded down.
+inline float halfwayUp(float low, float high)
+{
+  const auto below = std::bit_cast<std::uint32_t>(low), above = std::bit_cast<std::uint32_t>(high);
+  return std::bit_cast<float>(below + (above - below) / 2);
+}
 
 static_assert(kSquaredDistanceError + 3 * kFloatUnit < kNeighborShare); // of a distance, a product and a sum
 

@@ -295,13 +295,6 @@ private:
     forgetFarther();
   }
 
-  /// The float halfway in the order of floats >= 0, rounded down.
-  static float halfwayUp(float low, float high)
-  {
-    const auto below = std::bit_cast<std::uint32_t>(low), above = std::bit_cast<std::uint32_t>(high);
-    return std::bit_cast<float>(below + (above - below) / 2);
-  }
-
   void lower(float bound)
   {
     bound_ = bound;
