@@ -5,7 +5,7 @@
 //   AnyRequest request;
 //   request.clearance = 0.05;
 //   request.threads = 0;                                               // all of the machine's
-//   AnyAtPoses free = anyCollisionAtPoses({hall}, robot, samples, request);
+//   AnyAtPoses found = anyCollisionAtPoses({hall}, robot, samples, request);
 //
 // Every answer is the one of the single query at that pose, for any order of the list and any number of threads.
 #pragma once

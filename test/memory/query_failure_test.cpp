@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/collision/collide_at_poses.h>
 #include <pcl_bsh/collision/colliding_indices.h>
 #include <pcl_bsh/collision/contacts.h>
 #include <pcl_bsh/collision/trace.h>
@@ -192,6 +193,29 @@ TEST(AllocationFailure, OfSearchesInThreads)
                      [&](const auto& placed) { return answerOf(anyCollision(placed.first, placed.second, asked)); });
   failEachAllocation(pair,
                      [&](const auto& placed) { return answerOf(closestPair(placed.first, placed.second, asked)); });
+}
+
+TEST(AllocationFailure, OfManyPoses)
+{
+  const FreshPair any(scan(), model());
+  std::vector<Eigen::Isometry3d> poses;
+  for (int i = 0; i < 9; ++i) // near each other, so that they share a search, from colliding to free
+    poses.push_back(Eigen::Isometry3d(Eigen::Translation3d(0.3 * i, 0.01 * (i % 3), 0.0)) * any.T_world_b);
+  for (const unsigned threads : {1u, 2u}) {
+    failEachAllocation(freshPair, [&](const auto& pair) {
+      return anyCollisionAtPoses(pair->placedA(), pair->b, poses, request(threads)).verdicts;
+    });
+    failEachAllocation(freshPair, [&](const auto& pair) {
+      const DistancesAtPoses found = closestPairAtPoses(pair->placedA(), pair->b, poses, request(threads));
+      return std::tuple(found.distances, found.pairs);
+    });
+    failEachAllocation(freshPair, [&](const auto& pair) {
+      std::vector<std::size_t> colliding(poses.size());
+      collisionFlagsAtPoses(pair->placedA(), pair->b, poses, request(threads, Side::a),
+                            [&](std::size_t pose, const FlagsResult& flags) { colliding[pose] = flags.colliding_a; });
+      return colliding;
+    });
+  }
 }
 
 TEST(AllocationFailure, OfDistancesContactsAndPairs)
