@@ -16,6 +16,7 @@ namespace pcl_bsh {
 /// @param requested 0: all of the machine's. More than the machine has would only wait for each other.
 inline unsigned threadCount(unsigned requested) noexcept
 {
+  if (requested == 1) return 1; // the system is not asked: that takes longer than a small query
   const unsigned all = std::max(1u, std::thread::hardware_concurrency());
   return requested == 0 ? all : std::min(requested, all);
 }
