@@ -50,18 +50,19 @@ with_dependencies() {
   apt_get install --simulate --no-install-recommends "$@" | sed -n 's/^Inst \([^ ]*\) .*/\1/p' | sort
 }
 
-# Most packages are PCL's and VTK's, which the core and some others do not need: they are downloaded while the core's
-# packages are installed, and installed while the core is compiled.
+# apt-get downloads without its lock, and installs when those who hold it are done.
 download_and_install() { # FOLDER OF DOWNLOADS, PACKAGES TO DOWNLOAD..., --, PACKAGES TO INSTALL...
   local folder="$1" downloads=()
   shift
   while [[ "$1" != -- ]]; do downloads+=("$1"); shift; done
   shift
   (cd "$folder" && apt_get download "${downloads[@]}") || say "a download failed: apt-get tries again"
-  install_packages -o Dir::Cache::archives="$folder" "$@" # waits until the core's are installed
+  install_packages -o Dir::Cache::archives="$folder" "$@"
   rm -rf "$folder"
 }
 
+# Most packages are PCL's and VTK's, which the core and some others do not need: they are downloaded while the core's
+# packages are installed, and installed while the core is compiled.
 install_all_and_build_core() {
   local core rest others log="$PWD/build/apt.log"
   mapfile -t core < <(missing_packages core)
