@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Runs all tests in a release build, a part of them (hierarchies, queries, memory, fuzz targets) under AddressSanitizer
-# and UndefinedBehaviorSanitizer, and those of the part that use threads under ThreadSanitizer. Installs the packages that
-# are missing.
+# and UndefinedBehaviorSanitizer, and those of the part that use threads under ThreadSanitizer. The tests of the core are
+# compiled once, for the release build. Installs the packages that are missing.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -171,7 +171,7 @@ TEST(AtPoses, TenThousandInAnyOrderByAnyNumberOfThreads)
       EXPECT_GT(one.colliding, 500u);
       EXPECT_LT(one.colliding, 9500u);
     }
-    for (const unsigned threads : {2u, 3u, 5u, 0u}) {
+    for (const unsigned threads : {2u, 5u}) {
       request.threads = threads;
       const AnyAtPoses several = anyCollisionAtPoses({bodies.a}, bodies.b, bodies.poses, request);
       ASSERT_EQ(several.verdicts, one.verdicts);

@@ -44,7 +44,7 @@ TEST(ThreadsOfAnyCollision, GiveTheFirstWitnessAndTheWorkOfOneThread)
 {
   Random random(11);
   std::size_t shared = 0, hits = 0;
-  for (int trial = 0; trial < 24; ++trial) {
+  for (int trial = 0; trial < 12; ++trial) {
     const int side = trial % 2 == 0 ? 45 : 120;
     std::vector<Point3> below = sheet(side, 0, random), above = sheet(side, 3, random);
     for (int touching = trial % 4; touching > 0; --touching) // few, so that the search takes long
@@ -56,7 +56,7 @@ TEST(ThreadsOfAnyCollision, GiveTheFirstWitnessAndTheWorkOfOneThread)
       const AnyResult one = anyCollision({a}, {b}, request);
       shared += one.work.node_pairs > std::uint64_t{8} * kStepsAlone;
       hits += one.verdict == Verdict::colliding;
-      for (const unsigned threads : {2u, 3u, 5u, 0u}) {
+      for (const unsigned threads : {2u, 5u}) {
         const SphereHierarchy fresh_a(cloud_a.view()), fresh_b(cloud_b.view());
         request.threads = threads;
         const AnyResult several = anyCollision({fresh_a}, {fresh_b}, request);
@@ -72,8 +72,8 @@ TEST(ThreadsOfAnyCollision, GiveTheFirstWitnessAndTheWorkOfOneThread)
       }
     }
   }
-  EXPECT_GT(shared, 30u);
-  EXPECT_GT(hits, 12u);
+  EXPECT_GT(shared, 15u);
+  EXPECT_GT(hits, 6u);
 }
 
 TEST(ThreadsOfClosestPair, GiveTheSmallestOfEqualPairs)
@@ -100,7 +100,7 @@ TEST(ThreadsOfClosestPair, GiveTheSmallestOfEqualPairs)
     }
     for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.3), Accuracy::floatOnly()}) {
       const DistanceResult expected = closestPair({a}, {b, pose}, {accuracy});
-      for (const unsigned threads : {2u, 3u, 5u, 0u}) {
+      for (const unsigned threads : {2u, 5u}) {
         const SphereHierarchy fresh_a(cloud_a.view()), fresh_b(cloud_b.view());
         const DistanceResult several = closestPair({fresh_a}, {fresh_b, pose}, {accuracy, threads});
         ASSERT_EQ(several.pair, expected.pair) << trial;
