@@ -3,6 +3,7 @@
 #include <pcl_bsh/collision/collide_at_poses.h>
 #include <pcl_bsh/collision/pose_batch.h>
 #include <pcl_bsh/collision/pose_tasks.h>
+#include <pcl_bsh/collision/uncertain.h>
 
 #include <algorithm>
 
@@ -96,7 +97,7 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
   AnyAtPoses result;
   result.verdicts.assign(T_world_b.size(), flagOf(Verdict::free));
   if (a.hierarchy().empty() || b.empty()) return result;
-  if (!request.accuracy.isExact()) {
+  if (!request.accuracy.isExact() || areUncertain(a, {b})) {
     AnyRequest single = request;
     single.threads = 1;
     result.work = forEachPose(T_world_b, request.threads, [&](std::size_t i, const Eigen::Isometry3d& pose) {

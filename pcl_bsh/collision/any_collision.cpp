@@ -4,6 +4,7 @@
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/collision/interval_search.h>
 #include <pcl_bsh/collision/shared_search.h>
+#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/query/stop_rule.h>
 
 #undef HWY_TARGET_INCLUDE
@@ -42,9 +43,9 @@ private:
 
 } // namespace
 
-AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const AnyRequest& request)
+AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
 {
-  return AnySearch(a, b, request, NoObserver{}).run();
+  return AnySearch(a, b, request, NoObserver{}, places).run();
 }
 
 AnyResult anyCollisionInTimeOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, const StopRule& rule)
@@ -68,27 +69,54 @@ namespace {
 /// the rest for the interval that an undecided answer carries.
 constexpr double kWitnessShare = 15.0 / 16;
 
+AnyResult searchAsFarAsAllowed(const Placed& a, const Placed& b, const AnyRequest& request)
+{
+  const StopRule rule(request.accuracy);
+  Work work;
+  if (rule.isTimed()) {
+    AnyResult decided = HWY_DYNAMIC_DISPATCH(anyCollisionInTimeOnTarget)(a, b, request, rule.part(kWitnessShare));
+    if (decided.verdict != Verdict::undecided) return decided;
+    work = decided.work;
+  }
+  IntervalFinding found = searchInterval(a, b, rule, request.clearance);
+  const bool colliding = found.verdict == Verdict::colliding;
+  return {found.verdict, colliding ? found.pair : std::nullopt, found.distance, found.work += work};
+}
+
+AnyResult search(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
+{
+  const unsigned threads = threadCount(request.threads);
+  if (threads > 1) return anyCollisionShared(a, b, request, places, threads);
+  return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request, places);
+}
+
+/// Of points that may be elsewhere than they were measured.
+AnyResult searchUncertain(const Placed& a, const Placed& b, const AnyRequest& request)
+{
+  if (request.accuracy.stopsEarly()) {
+    IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt);
+    const UncertaintyRange &own = a.hierarchy().storage().uncertainty, &other = b.hierarchy().storage().uncertainty;
+    const bool certain = found.distance.upper <= Reach(request.clearance, own, other, Places::certain).least;
+    const bool possible = !(found.distance.lower > Reach(request.clearance, own, other, Places::possible).most);
+    const Verdict verdict = certain ? Verdict::colliding : possible ? Verdict::undecided : Verdict::free;
+    return {verdict, certain ? found.pair : std::nullopt, found.distance, found.work};
+  }
+  AnyResult possible = search(a, b, request, Places::possible);
+  if (possible.verdict == Verdict::free) return possible;
+  AnyResult certain = search(a, b, request, Places::certain);
+  certain.work += possible.work;
+  if (certain.verdict == Verdict::colliding) return certain;
+  return {Verdict::undecided, std::nullopt, {certain.distance.lower, possible.distance.upper}, certain.work};
+}
+
 } // namespace
 
 AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
-  if (request.accuracy.stopsEarly()) {
-    const StopRule rule(request.accuracy);
-    Work work;
-    if (rule.isTimed()) {
-      AnyResult decided = HWY_DYNAMIC_DISPATCH(anyCollisionInTimeOnTarget)(a, b, request, rule.part(kWitnessShare));
-      if (decided.verdict != Verdict::undecided) return decided;
-      work = decided.work;
-    }
-    IntervalFinding found = searchInterval(a, b, rule, request.clearance);
-    const bool colliding = found.verdict == Verdict::colliding;
-    return {found.verdict, colliding ? found.pair : std::nullopt, found.distance, found.work += work};
-  }
-  const unsigned threads = threadCount(request.threads);
-  if (threads > 1) return anyCollisionShared(a, b, request, threads);
-  return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request);
+  if (areUncertain(a, b)) return searchUncertain(a, b, request);
+  return request.accuracy.stopsEarly() ? searchAsFarAsAllowed(a, b, request) : search(a, b, request, Places::measured);
 }
 
 } // namespace pcl_bsh

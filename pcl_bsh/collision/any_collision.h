@@ -20,16 +20,18 @@ struct AnyRequest {
 };
 
 struct AnyResult {
-  Verdict verdict = Verdict::free; ///< undecided only when the request's accuracy lets the walk stop early
+  Verdict verdict = Verdict::free; ///< undecided only when the request's accuracy lets the walk stop early,
+                                   ///< or where points have uncertainties
   /// A colliding pair, when colliding: the first that the depth-first search meets, for any number of threads.
   std::optional<PointPair> witness;
   Interval distance; ///< of the clouds, as far as the walk had to learn it
   Work work;
 };
 
-/// Does any pair of points collide? Stops at the first witness. Several threads share a search that takes longer than
-/// about 0.05 ms. Its work is that of one thread, but for what is built: other threads may have entered, and so built,
-/// voxels behind the witness.
+/// Does any pair of points collide? Where points have uncertainties (PointsView): is some pair within the clearance
+/// wherever its points truly are, can none be (free), or neither (undecided)? Stops at the first witness. Several
+/// threads share a search that takes longer than about 0.05 ms. Its work is that of one thread, but for what is built:
+/// other threads may have entered, and so built, voxels behind the witness.
 /// @throws std::invalid_argument when the clearance, the accuracy or a pose is not what its declaration asks for.
 AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request = {});
 

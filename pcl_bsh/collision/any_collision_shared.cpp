@@ -41,7 +41,10 @@ private:
 /// What one of several threads does.
 class AnyShare {
 public:
-  AnyShare(const Placed& a, const Placed& b, const AnyRequest& request) : search_(a, b, request, Paused(limit_)) {}
+  AnyShare(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
+  : search_(a, b, request, Paused(limit_), places)
+  {
+  }
 
   void operator()(SharedStack<LanePair>::Piece& piece)
   {
@@ -56,20 +59,23 @@ private:
 
 } // namespace
 
-AnyResult anyCollisionSharedOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, unsigned threads)
+AnyResult anyCollisionSharedOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, Places places,
+                                     unsigned threads)
 {
   std::optional<SharedStack<LanePair>> shared;
   Work alone;
   {
     Paused::Limit limit;
-    AnySearch search(a, b, request, Paused(limit));
+    AnySearch search(a, b, request, Paused(limit), places);
     const AnyResult result = search.run();
     if (result.verdict != Verdict::undecided) return result;
     alone = result.work;
     shared.emplace(search.left());
   } // what it used is there for this thread's share
-  shared->visit(threads, [&] { return AnyShare(a, b, request); });
-  return resultOf({request.clearance, request.accuracy}, shared->found(), false, alone += shared->work());
+  shared->visit(threads, [&] { return AnyShare(a, b, request, places); });
+  const Reach reach(request.clearance, a.hierarchy().storage().uncertainty, b.hierarchy().storage().uncertainty,
+                    places);
+  return resultOf({reach, request.accuracy}, shared->found(), false, alone += shared->work());
 }
 
 } // namespace HWY_NAMESPACE
@@ -81,9 +87,10 @@ namespace pcl_bsh {
 
 HWY_EXPORT(anyCollisionSharedOnTarget);
 
-AnyResult anyCollisionShared(const Placed& a, const Placed& b, const AnyRequest& request, unsigned threads)
+AnyResult anyCollisionShared(const Placed& a, const Placed& b, const AnyRequest& request, Places places,
+                             unsigned threads)
 {
-  return HWY_DYNAMIC_DISPATCH(anyCollisionSharedOnTarget)(a, b, request, threads);
+  return HWY_DYNAMIC_DISPATCH(anyCollisionSharedOnTarget)(a, b, request, places, threads);
 }
 
 } // namespace pcl_bsh

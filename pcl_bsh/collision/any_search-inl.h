@@ -37,7 +37,8 @@ inline AnyResult resultOf(const Acceptance& acceptance, const std::optional<Poin
   result.work = work;
   result.verdict = witness ? Verdict::colliding : stopped ? Verdict::undecided : Verdict::free;
   if (acceptance.proven && result.verdict != Verdict::undecided)
-    (witness ? result.distance.upper : result.distance.lower) = witness ? acceptance.accepted : acceptance.clearance;
+    (witness ? result.distance.upper : result.distance.lower) =
+        witness ? acceptance.surely_within : acceptance.surely_beyond;
   return result;
 }
 
@@ -47,13 +48,15 @@ inline AnyResult resultOf(const Acceptance& acceptance, const std::optional<Poin
 template <class Observer>
 class AnySearch {
 public:
-  AnySearch(const Placed& a, const Placed& b, const AnyRequest& request, Observer observer)
+  AnySearch(const Placed& a, const Placed& b, const AnyRequest& request, Observer observer,
+            Places places = Places::measured)
   : walk_(a, b),
-    pairs_(a, b, request.clearance),
-    acceptance_(request.clearance, request.accuracy),
+    pairs_(a, b, request.clearance, places),
+    acceptance_(pairs_.reach, request.accuracy),
     observer_(std::move(observer))
   {
     walk_.accepted_beyond = acceptance_.accepted - acceptance_.clearance;
+    if (walk_.accepted_beyond < 0.0) walk_.accepted_beyond -= kDoubleMargin * acceptance_.clearance;
   }
 
   AnyResult run()

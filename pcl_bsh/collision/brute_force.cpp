@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/collision/check_request.h>
 #include <pcl_bsh/collision/collide_at_poses.h>
+#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/query/brute_force_points.h>
@@ -12,18 +13,35 @@
 namespace pcl_bsh::brute_force {
 namespace {
 
-/// Calls visit(p, q, collide) for every pair, in ascending order, until it answers false.
+/// Calls visit(p, q, verdict) for every pair, in ascending order, until it answers false. A pair is undecided if it may
+/// collide, but does not wherever its points truly are.
 template <class Visit>
 void forEachPair(const Placed& a, const Placed& b, double clearance, const Visit& visit)
 {
   const ExactDistance distance(a.pose, b.pose);
+  const double of_a = a.hierarchy().view().uncertainty, of_b = b.hierarchy().view().uncertainty;
   const std::vector<FinitePoint> obstacles = finitePoints(b.hierarchy().view());
   for (const FinitePoint& p : finitePoints(a.hierarchy().view())) {
     for (const FinitePoint& q : obstacles) {
-      const bool collide = distance.compare(p.point, q.point, clearance, p.radius, q.radius) <= 0;
-      if (!visit(p, q, collide)) return;
+      const auto collide = [&](double sign) {
+        return distance.compare(p.point, q.point,
+                                {clearance, p.radius, q.radius, sign * of_a, sign * of_b, sign * p.uncertainty,
+                                 sign * q.uncertainty}) <= 0;
+      };
+      Verdict verdict = Verdict::free;
+      if (areUncertain(a, b))
+        verdict = collide(-1.0) ? Verdict::colliding : collide(1.0) ? Verdict::undecided : Verdict::free;
+      else if (distance.compare(p.point, q.point, clearance, p.radius, q.radius) <= 0)
+        verdict = Verdict::colliding;
+      if (!visit(p, q, verdict)) return;
     }
   }
+}
+
+/// Raises what is known of a point by what is known of a pair.
+void raise(std::uint8_t& flag, Verdict verdict)
+{
+  if (verdict == Verdict::colliding || flag == flagOf(Verdict::free)) flag = flagOf(verdict);
 }
 
 } // namespace
@@ -33,10 +51,10 @@ AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& reque
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   AnyResult result;
-  forEachPair(a, b, request.clearance, [&](const FinitePoint& p, const FinitePoint& q, bool collide) {
+  forEachPair(a, b, request.clearance, [&](const FinitePoint& p, const FinitePoint& q, Verdict verdict) {
     ++result.work.exact_decisions;
-    if (!collide) return true;
-    result.verdict = Verdict::colliding;
+    if (verdict != Verdict::free) result.verdict = verdict;
+    if (verdict != Verdict::colliding) return true;
     result.witness = PointPair{p.record, q.record};
     return false;
   });
@@ -50,23 +68,26 @@ FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest&
   FlagsResult result;
   std::vector<std::uint8_t> flags_a(a.hierarchy().view().count);
   std::vector<std::uint8_t> flags_b(b.hierarchy().view().count);
-  forEachPair(a, b, request.clearance, [&](const FinitePoint& p, const FinitePoint& q, bool collide) {
+  forEachPair(a, b, request.clearance, [&](const FinitePoint& p, const FinitePoint& q, Verdict verdict) {
     ++result.work.exact_decisions;
-    if (collide) flags_a[p.record] = flags_b[q.record] = 1;
+    raise(flags_a[p.record], verdict);
+    raise(flags_b[q.record], verdict);
     return true;
   });
   const auto asked = [&](Side side) {
     return (static_cast<unsigned>(request.flagged) & static_cast<unsigned>(side)) != 0;
   };
-  const auto count = [](const std::vector<std::uint8_t>& flags) {
-    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), std::uint8_t{1}));
+  const auto count = [](const std::vector<std::uint8_t>& flags, Verdict verdict) {
+    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flagOf(verdict)));
   };
   if (asked(Side::a)) {
-    result.colliding_a = count(flags_a);
+    result.colliding_a = count(flags_a, Verdict::colliding);
+    result.undecided_a = count(flags_a, Verdict::undecided);
     result.a = std::move(flags_a);
   }
   if (asked(Side::b)) {
-    result.colliding_b = count(flags_b);
+    result.colliding_b = count(flags_b, Verdict::colliding);
+    result.undecided_b = count(flags_b, Verdict::undecided);
     result.b = std::move(flags_b);
   }
   return result;

@@ -3,10 +3,12 @@
 #include <pcl_bsh/collision/check_request.h>
 #include <pcl_bsh/collision/colliding_indices.h>
 #include <pcl_bsh/collision/flag_side.h>
+#include <pcl_bsh/collision/uncertain.h>
 
 #include <hwy/contrib/sort/vqsort.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -158,6 +160,23 @@ private:
   const SphereHierarchy::Storage* cloud_ = nullptr;
 };
 
+/// The lists of points that are where `places` says.
+void listPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, CollidingIndices& found)
+{
+  ListSheet sheet_a(found.a, found.undecided_a), sheet_b(found.b, found.undecided_b);
+  found.work += flagSides(a, b, request, places, sheet_a, sheet_b);
+}
+
+/// Points that may collide are undecided, unless they do for certain.
+/// @param left those of which it was not found out whether they may
+void withhold(const Indices& possible, const Indices& left, const Indices& certain, Indices& undecided)
+{
+  Indices open;
+  std::set_union(possible.begin(), possible.end(), left.begin(), left.end(), std::back_inserter(open));
+  undecided.clear();
+  std::set_difference(open.begin(), open.end(), certain.begin(), certain.end(), std::back_inserter(undecided));
+}
+
 } // namespace
 
 void collidingIndices(const Placed& a, const Placed& b, const FlagsRequest& request, CollidingIndices& result)
@@ -167,8 +186,19 @@ void collidingIndices(const Placed& a, const Placed& b, const FlagsRequest& requ
   CollidingIndices found;
   std::swap(found, result); // should something throw, the result has no collision
   for (Indices* const indices : {&found.a, &found.b, &found.undecided_a, &found.undecided_b}) indices->clear();
-  ListSheet sheet_a(found.a, found.undecided_a), sheet_b(found.b, found.undecided_b);
-  found.work = flagSides(a, b, request, sheet_a, sheet_b);
+  if (!areUncertain(a, b)) {
+    listPlaces(a, b, request, Places::measured, found);
+  }
+  else {
+    FlagsRequest half = request;
+    half.accuracy = halfOf(request.accuracy);
+    CollidingIndices possible;
+    listPlaces(a, b, half, Places::certain, found);
+    listPlaces(a, b, half, Places::possible, possible);
+    withhold(possible.a, possible.undecided_a, found.a, found.undecided_a);
+    withhold(possible.b, possible.undecided_b, found.b, found.undecided_b);
+    found.work += possible.work;
+  }
   result = std::move(found);
 }
 

@@ -2,6 +2,7 @@
 // Flags as an array: one per record.
 #include <pcl_bsh/collision/check_request.h>
 #include <pcl_bsh/collision/flag_side.h>
+#include <pcl_bsh/collision/uncertain.h>
 
 #include <algorithm>
 #include <atomic>
@@ -119,6 +120,31 @@ private:
   bool marked_ = false;
 };
 
+/// The flags of points that are where `places` says.
+void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, FlagsResult& found)
+{
+  FlagSheet sheet_a(found.a), sheet_b(found.b);
+  found.work += flagSides(a, b, request, places, sheet_a, sheet_b);
+  found.colliding_a = sheet_a.colliding();
+  found.colliding_b = sheet_b.colliding();
+  if (!request.accuracy.stopsEarly()) return;
+  found.undecided_a = sheet_a.undecided();
+  found.undecided_b = sheet_b.undecided();
+}
+
+/// Points that may collide are undecided, unless they do for certain.
+void withhold(std::vector<std::uint8_t>& flags, const std::vector<std::uint8_t>& certain, std::size_t& colliding,
+              std::size_t& undecided)
+{
+  colliding = undecided = 0;
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    if (flags[i] == flagOf(Verdict::free)) continue;
+    const bool collides = certain[i] == flagOf(Verdict::colliding);
+    flags[i] = flagOf(collides ? Verdict::colliding : Verdict::undecided);
+    ++(collides ? colliding : undecided);
+  }
+}
+
 } // namespace
 
 void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request, FlagsResult& result)
@@ -131,13 +157,18 @@ void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& reques
   result = FlagsResult(); // should something throw, it has neither colliding nor free points
   found.a.clear();
   found.b.clear();
-  FlagSheet sheet_a(found.a), sheet_b(found.b);
-  found.work = flagSides(a, b, request, sheet_a, sheet_b);
-  found.colliding_a = sheet_a.colliding();
-  found.colliding_b = sheet_b.colliding();
-  if (request.accuracy.stopsEarly()) {
-    found.undecided_a = sheet_a.undecided();
-    found.undecided_b = sheet_b.undecided();
+  if (!areUncertain(a, b)) {
+    flagPlaces(a, b, request, Places::measured, found);
+  }
+  else {
+    FlagsRequest half = request;
+    half.accuracy = halfOf(request.accuracy);
+    flagPlaces(a, b, half, Places::possible, found);
+    FlagsResult certain;
+    flagPlaces(a, b, half, Places::certain, certain);
+    withhold(found.a, certain.a, found.colliding_a, found.undecided_a);
+    withhold(found.b, certain.b, found.colliding_b, found.undecided_b);
+    found.work += certain.work;
   }
   result = std::move(found);
 }

@@ -26,7 +26,7 @@ struct FlagsRequest {
 
 struct FlagsResult {
   /// One per record of a's view, a Verdict as a number: 0 free, 1 collides, 2 undecided, the latter only when the
-  /// request's accuracy lets the walk stop early. Empty when not asked for.
+  /// request's accuracy lets the walk stop early, or where points have uncertainties. Empty when not asked for.
   std::vector<std::uint8_t> a;
   std::vector<std::uint8_t> b; ///< likewise for b
   std::size_t colliding_a = 0;
@@ -36,7 +36,10 @@ struct FlagsResult {
   Work work;
 };
 
-/// Which points collide with something of the other cloud?
+/// Which points collide with something of the other cloud? Where points have uncertainties (PointsView), a point
+/// collides if some point of the other cloud is within the clearance of it wherever both truly are; it is free if none
+/// can be; else it is undecided. Several points of the other cloud of which always one is near, though not always the
+/// same, leave it undecided. That costs about two queries; a budget is divided between them.
 /// @throws std::invalid_argument when the clearance, the accuracy or a pose is not what its declaration asks for.
 FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request);
 

@@ -32,12 +32,12 @@ struct FlagSideScratch {
 template <class Sheet>
 class FlagSide {
 public:
-  FlagSide(const Placed& a, const Placed& b, const FlagsRequest& request, const StopRule& rule, Sheet& sheet,
-           Work& work)
+  FlagSide(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, const StopRule& rule,
+           Sheet& sheet, Work& work)
   : sheet_(sheet),
     work_(work),
-    pairs_(a, b, request.clearance),
-    query_{a, b, pairs_, RelativeRotation(a.pose, b.pose), Acceptance(request.clearance, request.accuracy)},
+    pairs_(a, b, request.clearance, places),
+    query_{a, b, pairs_, RelativeRotation(a.pose, b.pose), Acceptance(pairs_.reach, request.accuracy)},
     threads_(threadCount(request.threads)),
     places_((*scratch_).places),
     parts_((*scratch_).parts)
@@ -122,23 +122,24 @@ void flagBothWithin(FlagSide<Sheet>& a, FlagSide<Sheet>& b, const StopRule& rule
 
 /// Flags the points that the request asks for. @return the work
 template <class Sheet>
-Work flagSides(const Placed& a, const Placed& b, const FlagsRequest& request, Sheet& sheet_a, Sheet& sheet_b)
+Work flagSides(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, Sheet& sheet_a,
+               Sheet& sheet_b)
 {
   Work work;
   const StopRule rule(request.accuracy);
   if (request.flagged == Side::both && rule.mayStop()) {
-    FlagSide side_a(a, b, request, rule, sheet_a, work), side_b(b, a, request, rule, sheet_b, work);
+    FlagSide side_a(a, b, request, places, rule, sheet_a, work), side_b(b, a, request, places, rule, sheet_b, work);
     flagBothWithin(side_a, side_b, rule);
     sheet_a.end();
     sheet_b.end();
     return work;
   }
   if (request.flagged != Side::b) {
-    FlagSide(a, b, request, rule, sheet_a, work).passes(rule, rule.node_pairs);
+    FlagSide(a, b, request, places, rule, sheet_a, work).passes(rule, rule.node_pairs);
     sheet_a.end();
   }
   if (request.flagged != Side::a) {
-    FlagSide(b, a, request, rule, sheet_b, work).passes(rule, rule.node_pairs);
+    FlagSide(b, a, request, places, rule, sheet_b, work).passes(rule, rule.node_pairs);
     sheet_b.end();
   }
   return work;

@@ -67,7 +67,7 @@ public:
       for (std::uint32_t lane = 0; lane < root.count; ++lane)
         spheres_.push_back({&root, static_cast<std::uint16_t>(lane), 1, static_cast<std::uint32_t>(obstacles_.size())});
       obstacles_.push_back({&b_.storage.voxels[other], frame, frame.pruneReach(pairs_.clearance),
-                            frame.acceptReach(pairs_.clearance), frame.acceptReach(acceptance_.accepted),
+                            frame.acceptReach(pairs_.reach.least), frame.acceptReach(acceptance_.accepted),
                             frame.bluntRadius(), acceptance_.band(frame)});
     }
     descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, spheres_, 0);
@@ -89,10 +89,7 @@ private:
   /// Slabs that earlier queries have fitted are used at once, if for exact answers: these are the same with slabs and
   /// without. No other answer may depend on what was asked before. Of fresh voxels, a query that runs at the same time
   /// may fit them or not; the work then depends on that, the result does not.
-  bool mayUseKnownSlabs() const
-  {
-    return !rule_.mayStop() && acceptance_.proven && acceptance_.accepted == acceptance_.clearance;
-  }
+  bool mayUseKnownSlabs() const { return !rule_.mayStop() && acceptance_.exact; }
 
   bool knowsSlabs(std::uint32_t obstacle) const
   {

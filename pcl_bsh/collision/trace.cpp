@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/collision/check_request.h>
+#include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/collision/trace.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 
@@ -133,6 +134,8 @@ HWY_EXPORT(traceOnTarget);
 CollisionTrace traceCollision(const Placed& a, const Placed& b, const AnyRequest& request)
 {
   check(a, b, request);
+  checkNoUncertainty("a", a.hierarchy().view());
+  checkNoUncertainty("b", b.hierarchy().view());
   if (request.accuracy.stopsEarly())
     throw InvalidInput(Input::accuracy, "accuracy", request.accuracy.text() + " stops early, which is not traced",
                        "give exact, float or tolerance");

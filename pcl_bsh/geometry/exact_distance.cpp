@@ -120,6 +120,26 @@ int ExactDistance::compare(const Point3& p, const Point3& q, double clearance, d
   return compareRoot(squaredDistance(p, q), Dyadic(clearance) + Dyadic(radius_p) + Dyadic(radius_q));
 }
 
+int ExactDistance::compare(const Point3& p, const Point3& q, const Sum& reach) const
+{
+  // Seven sums, rounded relative to what they add up, which may be of either sign.
+  double sum = 0.0, magnitude = 0.0;
+  for (const double term : reach) {
+    sum += term;
+    magnitude += std::abs(term);
+  }
+  const double rounding = 2 * kFewDoubleRoundings * magnitude;
+  const auto side = [sum, rounding](const Enclosure& distance) {
+    return distance.high < sum - rounding ? -1 : distance.low > sum + rounding ? 1 : 0;
+  };
+  if (const int found = side(enclose(p, q)); found != 0) return found;
+  if (!translations_only_)
+    if (const int found = side(encloseClosely(p, q)); found != 0) return found;
+  Dyadic exact;
+  for (const double term : reach) exact += Dyadic(term);
+  return compareRoot(squaredDistance(p, q), exact);
+}
+
 int ExactDistance::compareGaps(const Pair& first, const ExactDistance& other, const Pair& second) const
 {
   const double first_radii = first.radius_p + first.radius_q;

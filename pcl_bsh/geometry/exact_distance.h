@@ -14,6 +14,8 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
+
 namespace pcl_bsh {
 
 class Dyadic;
@@ -40,6 +42,12 @@ public:
   /// Sign of |T_a p - T_b q| - (clearance + radius_p + radius_q): negative, 0 when they are equal, or positive.
   /// The pair collides when the answer is <= 0.
   int compare(const Point3& p, const Point3& q, double clearance, double radius_p = 0.0, double radius_q = 0.0) const;
+
+  /// A length that is a sum, before rounding.
+  using Sum = std::array<double, 7>;
+
+  /// Sign of |T_a p - T_b q| - (the sum of the terms of `reach`). @pre finite terms
+  int compare(const Point3& p, const Point3& q, const Sum& reach) const;
 
   /// Sign of gap(first) - gap(second), of the gaps before rounding.
   int compareGaps(const Pair& first, const Pair& second) const { return compareGaps(first, *this, second); }

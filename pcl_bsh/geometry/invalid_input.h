@@ -23,6 +23,7 @@ enum class Input : std::uint8_t {
   points,    ///< a view or a cloud: its data, its number of points, its type, its subset
   index,     ///< of a point, outside its cloud
   radius,    ///< of a point or of a search
+  uncertainty,
   box,       ///< of a search
   neighbors, ///< how many a search is to find
   voxel_edge,

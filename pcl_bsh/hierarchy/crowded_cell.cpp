@@ -13,10 +13,10 @@ namespace {
 /// exactly, so that fewer points than a leaf could hold cost less.
 constexpr std::uint32_t kFewPoints = 4;
 
-/// Points with the same coordinates and radius: [first, first + count) of the points sorted by place.
+/// Points with the same coordinates, radius and uncertainty: [first, first + count) of the points sorted by place.
 struct Place {
   Point3 point;
-  double radius;
+  double radius, uncertainty;
   std::uint32_t first, count;
 };
 
@@ -27,23 +27,27 @@ public:
   {
     struct Given {
       Point3 point;
-      double radius;
+      double radius, uncertainty;
       PointRecord stored;
     };
     std::vector<Given> given;
     given.reserve(count);
-    for (std::uint32_t i = 0; i < count; ++i)
-      given.push_back({view.point(points[i].record), view.radius(points[i].record), points[i]});
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t record = points[i].record;
+      given.push_back({view.point(record), view.radius(record), view.ownUncertainty(record), points[i]});
+    }
     const auto before = [](const Given& l, const Given& r) {
-      return std::tie(l.point, l.radius, l.stored.record) < std::tie(r.point, r.radius, r.stored.record);
+      return std::tie(l.point, l.radius, l.uncertainty, l.stored.record) <
+             std::tie(r.point, r.radius, r.uncertainty, r.stored.record);
     };
     // Often they are of one place, the returns of a scanner that met nothing, and in order.
     if (!std::is_sorted(given.begin(), given.end(), before)) std::sort(given.begin(), given.end(), before);
     for (std::uint32_t i = 0; i < count; ++i) {
-      if (i > 0 && given[i].point == places_.back().point && given[i].radius == places_.back().radius)
+      if (i > 0 && given[i].point == places_.back().point && given[i].radius == places_.back().radius &&
+          given[i].uncertainty == places_.back().uncertainty)
         ++places_.back().count;
       else
-        places_.push_back({given[i].point, given[i].radius, i, 1});
+        places_.push_back({given[i].point, given[i].radius, given[i].uncertainty, i, 1});
     }
     for (std::uint32_t i = 0; i < count; ++i) points[i] = given[i].stored; // once nothing can throw: none may get lost
   }

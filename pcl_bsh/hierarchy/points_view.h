@@ -28,7 +28,12 @@ struct PointsView {
   const std::int32_t* indices = nullptr;       ///< optional subset: only these records are points
   std::size_t index_count = 0;                 ///< length of `indices`; ignored when that is null
   const float* radii = nullptr;                ///< optional, one per record (not per index): finite and >= 0
-  std::shared_ptr<const void> owner = nullptr; ///< optional: keeps alive whatever the pointers above point to
+  std::shared_ptr<const void> owner = nullptr; ///< optional: keeps alive whatever the pointers here point to
+
+  /// How far each point may truly be from where it was measured, in the clouds' unit; finite and >= 0. Queries that
+  /// give verdicts then say what is so wherever the points truly are; distances are those of the measured places.
+  double uncertainty = 0.0;
+  const float* uncertainties = nullptr; ///< optional, one per record, added to `uncertainty`; finite and >= 0
 
   /// How many points the view names (a subset counts its indices).
   std::size_t size() const noexcept { return indices ? index_count : count; }
@@ -55,6 +60,11 @@ struct PointsView {
   }
 
   double radius(std::uint32_t record) const noexcept { return radii ? radii[record] : 0.0; }
+
+  bool isUncertain() const noexcept { return uncertainty > 0.0 || uncertainties; }
+
+  /// What a record adds to `uncertainty`.
+  double ownUncertainty(std::uint32_t record) const noexcept { return uncertainties ? uncertainties[record] : 0.0; }
 };
 
 /// View of `count` float32 points, x y z in a row, `stride` bytes apart.

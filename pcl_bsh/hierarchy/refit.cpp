@@ -32,6 +32,7 @@ void requireFit(const PointsView& before, const PointsView& now, double most_gro
   checkView(name, now);
   if (!now.radii != !before.radii) refuse("the view has radii and the one before none, or the other way round");
   for (std::size_t i = 0; now.radii && i < now.count; ++i) checkRadius(name, now, i);
+  checkUncertainties(name, now);
 }
 
 double sumOfLeafRadii(const Voxel& voxel)
@@ -152,6 +153,7 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
 
   [&]() noexcept { // the same voxels with the same keys: the tree above them needs no more memory than it has
     s.view = now;
+    s.uncertainty = UncertaintyRange(now);
     s.strayed = strayed;
     for (std::size_t v = 0; v < s.voxel_count; ++v)
       follow(s.voxels[v], frames[v], now, most_growth, s.options.fit, points.data(), report);

@@ -12,7 +12,8 @@ namespace pcl_bsh {
 
 SphereHierarchy::Storage::Storage(const PointsView& points, const HierarchyOptions& build_options)
 : view(points),
-  options(build_options)
+  options(build_options),
+  uncertainty(points)
 {
   VoxelSorting sorting = sortIntoVoxels(view, options);
   voxel_edge = sorting.edge;

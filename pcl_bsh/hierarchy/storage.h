@@ -10,6 +10,7 @@
 #include <pcl_bsh/hierarchy/node.h>
 #include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/hierarchy/uncertainty_range.h>
 
 #include <algorithm>
 #include <atomic>
@@ -155,6 +156,7 @@ public:
   std::size_t voxel_count = 0;
   std::unique_ptr<Voxel[]> voxels;        ///< sorted by key
   double largest_radius = 0.0;            ///< of all points
+  UncertaintyRange uncertainty;           ///< of all records
   std::array<double, 3> base = {0, 0, 0}; ///< cell number 0 of the voxel grid, in cells from the origin
   LocalFrame frame;                       ///< of `top`
   std::vector<Node> top; ///< the octree above the voxels: leaves are voxels; top[0] is the root; empty iff size == 0

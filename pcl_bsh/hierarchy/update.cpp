@@ -203,6 +203,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
            std::to_string(announced) + " were announced: announce each of them, and no others");
   if (now.radii)
     for (const std::uint32_t record : records_) checkRadius("HierarchyUpdate", now, record);
+  checkUncertainties("HierarchyUpdate", now);
   if (hierarchy_.empty()) return sortAnew(now);
 
   const DefaultFloatEnvironment environment;
@@ -317,6 +318,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
       begin += voxels[v].count;
     }
     storage.view = now;
+    storage.uncertainty = UncertaintyRange(now);
     storage.voxels = std::move(voxels);
     storage.voxel_count = count;
     storage.size = begin;

@@ -110,7 +110,8 @@ private:
     for (std::uint32_t k = node.begin[i]; k < node.begin[i + 1]; ++k) {
       const std::uint32_t record = voxel.records()[k];
       if (record < first || s_.view.point(record) != s_.view.point(first) ||
-          s_.view.radius(record) != s_.view.radius(first))
+          s_.view.radius(record) != s_.view.radius(first) ||
+          s_.view.ownUncertainty(record) != s_.view.ownUncertainty(first))
         return false;
     }
     return true;

@@ -2,7 +2,9 @@
 #include <pcl_bsh/hierarchy/view_check.h>
 
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/plain_text.h>
 
+#include <cmath>
 #include <limits>
 
 namespace pcl_bsh {
@@ -63,6 +65,19 @@ void checkView(const std::string& name, const PointsView& view)
       fail("index " + std::to_string(view.indices[i]) + " is outside the cloud of " + std::to_string(view.count) +
                " points",
            Input::index);
+}
+
+void checkUncertainties(const std::string& name, const PointsView& view)
+{
+  const auto refuse = [&](double value, const std::string& of) {
+    return InvalidInput(Input::uncertainty, name, plainText("uncertainty ", value, of, " is not finite and >= 0"))
+        .withValue(value);
+  };
+  if (!(std::isfinite(view.uncertainty) && view.uncertainty >= 0.0)) throw refuse(view.uncertainty, "");
+  for (std::size_t i = 0; view.uncertainties && i < view.count; ++i) {
+    const double own = view.uncertainties[i];
+    if (!(std::isfinite(own) && own >= 0.0)) throw refuse(own, " of point " + std::to_string(i)).withIndex(i);
+  }
 }
 
 void checkRadius(const std::string& name, const PointsView& view, std::size_t record)

@@ -14,6 +14,7 @@ struct FinitePoint {
   std::uint32_t record;
   Point3 point;
   double radius;
+  double uncertainty; ///< its own, beside that of all points
 };
 
 /// The finite points of a view by ascending record: the first pair found is the smallest.
@@ -25,7 +26,7 @@ inline std::vector<FinitePoint> finitePoints(const PointsView& view)
     const std::uint32_t record = view.record(i);
     const Point3 point = view.point(record);
     const bool finite = std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });
-    if (finite) points.push_back({record, point, view.radius(record)});
+    if (finite) points.push_back({record, point, view.radius(record), view.ownUncertainty(record)});
   }
   std::sort(points.begin(), points.end(),
             [](const FinitePoint& x, const FinitePoint& y) { return x.record < y.record; });

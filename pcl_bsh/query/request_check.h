@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/query/accuracy.h>
 
 #include <Eigen/Geometry>
@@ -22,6 +23,9 @@ PCL_BSH_EXPORT_INTERNAL void checkClearance(double clearance);
 
 /// Refuses a value of the accuracy that is negative or not finite.
 PCL_BSH_EXPORT_INTERNAL void checkAccuracy(const Accuracy& accuracy);
+
+/// Refuses points with uncertainties, for queries whose verdicts would not know them. @param name of the cloud
+PCL_BSH_EXPORT_INTERNAL void checkNoUncertainty(const std::string& name, const PointsView& points);
 
 /// Whether a pose is finite, has the last row 0 0 0 1, does not mirror, and has |R'R - I| <= rigidity_tolerance.
 PCL_BSH_EXPORT_INTERNAL bool isRigid(const Eigen::Isometry3d& pose);

@@ -3,6 +3,7 @@
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/brute_force_points.h>
+#include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/trajectory/check_trajectory.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -30,6 +31,7 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
 {
   check(scan, model_poses, request);
+  checkNoUncertainty("model", model.view());
   if (request.swept)
     throw InvalidInput(Input::swept, "brute_force::collideAlong", "knows poses only, not what is between");
   const DefaultFloatEnvironment environment;

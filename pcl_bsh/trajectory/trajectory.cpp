@@ -157,6 +157,7 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
 {
   check(scan, model_poses, request);
+  checkNoUncertainty("model", model.view());
   const DefaultFloatEnvironment environment;
   TrajectoryResult result;
   allocate(result, request, scan.hierarchy().view().count, model_poses.size());

@@ -68,7 +68,8 @@ public:
   FrameTable frames;
   ExactDistance distance;
   Work work;
-  double accepted_beyond = 0.0; ///< pairs at this much more than the clearance may count as colliding too
+  double accepted_beyond = 0.0; ///< pairs at this much more than the clearance may count as colliding, too;
+                                ///< below 0 only those that are as much nearer
 
   const Node& nodeOf(const Spaces& side, const Lane& lane) const { return side.node(lane.space, lane.node); }
 

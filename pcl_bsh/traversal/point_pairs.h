@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/query/reach.h>
 #include <pcl_bsh/traversal/space.h>
 
 namespace pcl_bsh {
@@ -9,17 +10,17 @@ namespace pcl_bsh {
 /// Decides pairs of points by the coordinates as given, in exact arithmetic.
 class PointPairs {
 public:
-  PointPairs(const Placed& a, const Placed& b, double greatest_distance)
-  : clearance(greatest_distance),
-    distance(a.pose, b.pose),
-    a_(a.hierarchy().view()),
-    b_(b.hierarchy().view())
+  PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places = Places::measured)
+  : PointPairs(a, b, greatest_distance, places,
+               {greatest_distance, a.hierarchy().storage().uncertainty, b.hierarchy().storage().uncertainty, places})
   {
   }
 
+  /// Whether the pair's gap is at most the clearance, at the places that the constructor was told.
   bool collide(PointPair pair, Work& work) const
   {
     ++work.exact_decisions;
+    if (places_ != Places::measured) return distance.compare(a_.point(pair.a), b_.point(pair.b), reachOf(pair)) <= 0;
     return distance.compare(a_.point(pair.a), b_.point(pair.b), clearance, a_.radius(pair.a), b_.radius(pair.b)) <= 0;
   }
 
@@ -38,12 +39,38 @@ public:
 
   bool haveRadii() const { return a_.radii || b_.radii; }
 
-  const double clearance;
+  const Reach reach;      ///< of all pairs
+  const double clearance; ///< at least any pair's reach, and >= 0
   const ExactDistance distance;
 
 private:
+  PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places, const Reach& of_all)
+  : reach(of_all),
+    clearance(std::max(0.0, of_all.most)),
+    distance(a.pose, b.pose),
+    a_(a.hierarchy().view()),
+    b_(b.hierarchy().view()),
+    asked_(greatest_distance),
+    places_(places)
+  {
+  }
+
+  ExactDistance::Sum reachOf(PointPair pair) const
+  {
+    const double sign = places_ == Places::certain ? -1.0 : 1.0;
+    return {asked_,
+            a_.radius(pair.a),
+            b_.radius(pair.b),
+            sign * a_.uncertainty,
+            sign * b_.uncertainty,
+            sign * a_.ownUncertainty(pair.a),
+            sign * b_.ownUncertainty(pair.b)};
+  }
+
   const PointsView& a_;
   const PointsView& b_;
+  const double asked_;
+  const Places places_;
 };
 
 } // namespace pcl_bsh

@@ -111,12 +111,20 @@ public:
   /// One per record.
   void setRadii(std::vector<float> radii) { radii_ = std::move(radii); }
 
+  /// Of all points, and one per record; these may be empty.
+  void setUncertainties(double of_all, std::vector<float> own)
+  {
+    view_.uncertainty = of_all;
+    uncertainties_ = std::move(own);
+  }
+
   /// Valid until the cloud changes or goes.
   PointsView view() const
   {
     PointsView view = view_;
     view.data = bytes_.data();
     view.radii = radii_.empty() ? nullptr : radii_.data();
+    view.uncertainties = uncertainties_.empty() ? nullptr : uncertainties_.data();
     static constexpr std::int32_t none = 0;
     if (subset_) view.indices = indices_.empty() ? &none : indices_.data();
     view.index_count = indices_.size();
@@ -127,7 +135,7 @@ private:
   PointsView view_;
   std::vector<unsigned char> bytes_;
   std::vector<std::int32_t> indices_;
-  std::vector<float> radii_;
+  std::vector<float> radii_, uncertainties_;
   bool subset_ = false;
 };
 

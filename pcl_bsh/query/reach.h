@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl_bsh/hierarchy/uncertainty_range.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace pcl_bsh {
+
+/// What is asked of a pair of points whose places are uncertain.
+enum class Places : std::uint8_t {
+  measured, ///< are they within the clearance as they were measured?
+  certain,  ///< are they wherever they truly are, within their uncertainties?
+  possible, ///< may they be?
+};
+
+/// How far a pair may be apart, less its radii: the clearance, less the uncertainties of both points for a certain
+/// answer, plus them for a possible one. Between these two, whatever the pair.
+struct Reach {
+  Reach(double clearance, const UncertaintyRange& a, const UncertaintyRange& b, Places places)
+  : least(clearance),
+    most(clearance)
+  {
+    if (places == Places::measured) return;
+    const double low = down(a.least + b.least), high = up(a.most + b.most);
+    least = down(places == Places::certain ? clearance - high : clearance + low);
+    most = up(places == Places::certain ? clearance - low : clearance + high);
+  }
+
+  double least; ///< below 0 where no pair without radii may be near enough
+  double most;
+
+private:
+  static double down(double x) { return std::nextafter(x, -std::numeric_limits<double>::infinity()); }
+  static double up(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
+};
+
+} // namespace pcl_bsh

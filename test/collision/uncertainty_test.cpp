@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Points that may be elsewhere than they were measured: colliding for certain, free for certain, or undecided.
+#include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collision/collide_at_poses.h>
+#include <pcl_bsh/collision/colliding_indices.h>
+#include <pcl_bsh/collision/trace.h>
+#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/hierarchy/update.h>
+
+#include "../query/random_clouds.h"
+#include "../query/work_counts.h"
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using test::Cloud;
+using test::Random;
+using test::Scene;
+using Rational = boost::multiprecision::cpp_rational;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+FlagsRequest within(double clearance, Side flagged, unsigned threads = 1, const Accuracy& accuracy = {})
+{
+  return {clearance, flagged, threads, accuracy};
+}
+
+/// One length of all, one for each record, or both; of the size of the clearance, or so that ties are likely.
+void makeUncertain(Cloud& cloud, double scale, Random& random)
+{
+  const auto length = [&] {
+    return random.chance(0.5) ? scale * random.integer(0, 4) / 16 : scale * random.uniform(0, 0.2);
+  };
+  const bool of_all = random.chance(0.6);
+  std::vector<float> own;
+  if (!of_all || random.chance(0.3))
+    for (std::size_t i = 0; i < cloud.view().count; ++i) own.push_back(static_cast<float>(length()));
+  cloud.setUncertainties(of_all ? length() : 0.0, std::move(own));
+}
+
+Scene uncertainScene(std::uint64_t seed, int most_points)
+{
+  Scene scene = test::anyScene(seed, most_points);
+  Random random(seed + 1000000);
+  const double scale = scene.clearance > 0.0 ? scene.clearance : 0.01;
+  if (random.chance(0.8)) makeUncertain(scene.a, scale, random);
+  if (random.chance(0.8)) makeUncertain(scene.b, scale, random);
+  if (random.chance(0.3)) scene.clearance *= 2;
+  return scene;
+}
+
+/// By rational numbers: -1 certain, 0 possible, 1 neither. Poses are translations.
+int judge(const PointsView& a, const PointsView& b, const Eigen::Vector3d& shift_b, double clearance)
+{
+  int best = 1;
+  for (std::uint32_t i = 0; i < a.count; ++i)
+    for (std::uint32_t j = 0; j < b.count; ++j) {
+      Rational squared = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Rational difference =
+            Rational(a.point(i)[k]) - Rational(b.point(j)[k]) - Rational(shift_b[static_cast<Eigen::Index>(k)]);
+        squared += difference * difference;
+      }
+      const Rational own = Rational(a.uncertainty) + Rational(a.ownUncertainty(i)) + Rational(b.uncertainty) +
+                           Rational(b.ownUncertainty(j));
+      const Rational reach = Rational(clearance) + Rational(a.radius(i)) + Rational(b.radius(j));
+      const auto near = [&](const Rational& length) { return length >= 0 && squared <= length * length; };
+      best = std::min(best, near(reach - own) ? -1 : near(reach + own) ? 0 : 1);
+    }
+  return best;
+}
+
+Verdict verdictOf(int judgement)
+{
+  return judgement < 0 ? Verdict::colliding : judgement == 0 ? Verdict::undecided : Verdict::free;
+}
+
+TEST(Uncertainty, BothEdgesToTheLastBit)
+{
+  // 0.3, 0.1 and 0.2 are none of them what they look like, nor do their sums round alike.
+  std::size_t verdicts[3] = {};
+  for (const double clearance : {0.3, 0.5, 1.0})
+    for (const double of_a : {0.0, 0.1, 0x1p-3, 1e-30})
+      for (const double of_b : {0.2, 0x1p-4, 1e-9})
+        for (const float own : {0.0f, 0.1f, 0x1p-20f})
+          for (const double sign : {-1.0, 1.0})
+            for (int bits = -2; bits <= 2; ++bits) {
+              double distance = clearance + sign * (of_a + of_b + own);
+              for (int i = 0; i < std::abs(bits); ++i) distance = std::nextafter(distance, bits < 0 ? 0.0 : 10.0);
+              Cloud cloud_a({{0, 0, 0}}, {Scalar::float64}), cloud_b({{distance, 0, 0}}, {Scalar::float64});
+              cloud_a.setUncertainties(of_a, {own});
+              cloud_b.setUncertainties(of_b, {});
+              const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+              const Verdict expected =
+                  verdictOf(judge(cloud_a.view(), cloud_b.view(), Eigen::Vector3d::Zero(), clearance));
+              ASSERT_EQ(anyCollision({a}, {b}, {clearance, {}}).verdict, expected) << distance;
+              ASSERT_EQ(collisionFlags({a}, {b}, within(clearance, Side::a)).a[0], flagOf(expected)) << distance;
+              ++verdicts[flagOf(expected)];
+            }
+  for (const std::size_t count : verdicts) EXPECT_GT(count, 100u);
+}
+
+TEST(Uncertainty, SameAsBruteForceForAnyThreads)
+{
+  std::size_t verdicts[3] = {}, flags[3] = {};
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const Scene scene = uncertainScene(seed, seed < 280 ? 100 : 700);
+    SCOPED_TRACE(scene.name);
+    const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+    const Placed placed_a(a, scene.pose_a), placed_b(b, scene.pose_b);
+    const AnyResult brute = brute_force::anyCollision(placed_a, placed_b, {scene.clearance, {}});
+    const FlagsResult all = brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance, Side::both));
+    for (const unsigned threads : {1u, 2u}) {
+      const AnyResult any = anyCollision(placed_a, placed_b, {scene.clearance, {}, threads});
+      ASSERT_EQ(any.verdict, brute.verdict);
+      ASSERT_EQ(any.witness.has_value(), any.verdict == Verdict::colliding);
+      const FlagsResult found = collisionFlags(placed_a, placed_b, within(scene.clearance, Side::both, threads));
+      ASSERT_EQ(found.a, all.a);
+      ASSERT_EQ(found.b, all.b);
+      ASSERT_EQ(found.colliding_a, all.colliding_a);
+      ASSERT_EQ(found.undecided_a, all.undecided_a);
+      ASSERT_EQ(found.undecided_b, all.undecided_b);
+      const CollidingIndices lists = collidingIndices(placed_a, placed_b, within(scene.clearance, Side::both, threads));
+      ASSERT_EQ(lists.a.size(), all.colliding_a);
+      ASSERT_EQ(lists.undecided_b.size(), all.undecided_b);
+      for (const std::int32_t i : lists.undecided_a) ASSERT_EQ(all.a[static_cast<std::size_t>(i)], 2);
+    }
+    ++verdicts[flagOf(brute.verdict)];
+    for (const std::uint8_t flag : all.a) ++flags[flag];
+  }
+  for (const std::size_t count : verdicts) EXPECT_GT(count, 30u);
+  for (const std::size_t count : flags) EXPECT_GT(count, 500u);
+}
+
+TEST(Uncertainty, LessThanExactClaimsNothingFalse)
+{
+  std::size_t decided = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const Scene scene = uncertainScene(seed, 300);
+    const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+    const Placed placed_a(a, scene.pose_a), placed_b(b, scene.pose_b);
+    const FlagsResult all = brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance, Side::a));
+    const Verdict truth = brute_force::anyCollision(placed_a, placed_b, {scene.clearance, {}}).verdict;
+    for (const Accuracy& accuracy : {Accuracy::level(0), Accuracy::level(2), Accuracy::nodePairs(40),
+                                     Accuracy::nodePairs(4000), Accuracy::time(1.0)}) {
+      SCOPED_TRACE(scene.name + " at " + accuracy.text());
+      const AnyResult any = anyCollision(placed_a, placed_b, {scene.clearance, accuracy});
+      if (any.verdict != Verdict::undecided) {
+        ASSERT_EQ(any.verdict, truth);
+      }
+      const FlagsResult found = collisionFlags(placed_a, placed_b, within(scene.clearance, Side::a, 1, accuracy));
+      for (std::size_t i = 0; i < all.a.size(); ++i) {
+        if (found.a[i] == flagOf(Verdict::undecided)) continue;
+        ASSERT_EQ(found.a[i], all.a[i]) << i;
+        ++decided;
+      }
+    }
+    // What is within the tolerance beyond each edge may go either way.
+    const double tolerance = 0.1 * scene.clearance;
+    const FlagsResult wider =
+        brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance + tolerance, Side::a));
+    const FlagsResult loose =
+        collisionFlags(placed_a, placed_b, within(scene.clearance, Side::a, 1, Accuracy::tolerance(tolerance)));
+    for (std::size_t i = 0; i < all.a.size(); ++i) {
+      ASSERT_TRUE(loose.a[i] == all.a[i] || loose.a[i] == wider.a[i] ||
+                  (all.a[i] == flagOf(Verdict::free) && loose.a[i] == flagOf(Verdict::undecided)))
+          << scene.name << i;
+    }
+  }
+  EXPECT_GT(decided, 1000u);
+}
+
+TEST(Uncertainty, OfManyPointsAtOnePlace)
+{
+  // One leaf holds them all, but they are not alike.
+  std::vector<Point3> points(200, Point3{1, 1, 1});
+  Cloud cloud_a(points), cloud_b({{1, 1, 2}});
+  std::vector<float> own(200, 0.25f);
+  own[77] = 1.0f;
+  own[150] = 0.0f;
+  cloud_a.setUncertainties(0.0, own);
+  const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+  EXPECT_TRUE(a.validate().none());
+  for (const double clearance : {0.0, 0.5, 0.75, 0.8, 1.0, 1.25, 2.0}) {
+    const FlagsResult found = collisionFlags({a}, {b}, within(clearance, Side::both));
+    const FlagsResult expected = brute_force::collisionFlags({a}, {b}, within(clearance, Side::both));
+    EXPECT_EQ(found.a, expected.a) << clearance;
+    EXPECT_EQ(found.b, expected.b) << clearance;
+  }
+}
+
+TEST(Uncertainty, NoneIsThePlainQuery)
+{
+  const Scene scene = test::anyScene(5, 500);
+  Cloud zero = scene.a;
+  zero.setUncertainties(0.0, std::vector<float>(scene.a.view().count, 0.0f));
+  const SphereHierarchy a(scene.a.view()), b(scene.b.view()), of_zeros(zero.view());
+  const FlagsResult plain = collisionFlags({a, scene.pose_a}, {b, scene.pose_b}, within(scene.clearance, Side::both));
+  const FlagsResult found =
+      collisionFlags({of_zeros, scene.pose_a}, {b, scene.pose_b}, within(scene.clearance, Side::both));
+  EXPECT_EQ(found.a, plain.a);
+  EXPECT_EQ(found.b, plain.b);
+  EXPECT_EQ(found.undecided_a, 0u);
+}
+
+TEST(Uncertainty, CostsAtMostTwoQueries)
+{
+  Random random(3);
+  const Cloud measured(test::makePoints(test::Shape::plane, 20000, 1.0, random));
+  Cloud cloud_a = measured, cloud_b(test::makePoints(test::Shape::plane, 20000, 1.0, random));
+  const SphereHierarchy plain(measured.view()), b(cloud_b.view());
+  const double clearance = 0.02;
+  const auto tests = [&](const SphereHierarchy& a) {
+    a.buildAll();
+    return collisionFlags({a}, {b}, within(clearance, Side::a)).work.node_pairs;
+  };
+  b.buildAll();
+  cloud_a.setUncertainties(0.002, {});
+  EXPECT_LE(tests(SphereHierarchy(cloud_a.view())), 2.2 * static_cast<double>(tests(plain)));
+}
+
+TEST(Uncertainty, FollowsARefitAndAnUpdate)
+{
+  Cloud cloud(std::vector<Point3>(40, Point3{0, 0, 0})), other({{1, 0, 0}});
+  SphereHierarchy a(cloud.view());
+  const SphereHierarchy b(other.view());
+  const AnyRequest request{0.9, {}};
+  EXPECT_EQ(anyCollision({a}, {b}, request).verdict, Verdict::free);
+  cloud.setUncertainties(0.0, std::vector<float>(40, 0.2f));
+  a.refit(cloud.view());
+  EXPECT_EQ(anyCollision({a}, {b}, request).verdict, Verdict::undecided);
+  cloud.setUncertainties(0.05, {});
+  HierarchyUpdate update(a, nullptr, 0);
+  update.commit(cloud.view());
+  EXPECT_EQ(anyCollision({a}, {b}, request).verdict, Verdict::free);
+  EXPECT_EQ(anyCollision({a}, {b}, {0.97, {}}).verdict, Verdict::undecided);
+  EXPECT_EQ(anyCollision({a}, {b}, {1.04, {}}).verdict, Verdict::undecided);
+  EXPECT_EQ(anyCollision({a}, {b}, {1.06, {}}).verdict, Verdict::colliding);
+}
+
+TEST(Uncertainty, AtManyPoses)
+{
+  const Scene scene = uncertainScene(8, 200);
+  const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+  const std::vector<Eigen::Isometry3d> poses(20, scene.pose_b);
+  const Placed placed(a, scene.pose_a);
+  EXPECT_EQ(anyCollisionAtPoses(placed, b, poses, {scene.clearance, {}}).verdicts,
+            brute_force::anyCollisionAtPoses(placed, b, poses, {scene.clearance, {}}).verdicts);
+}
+
+TEST(Uncertainty, RefusesWhatIsNoLength)
+{
+  Cloud cloud({{0, 0, 0}, {1, 1, 1}});
+  for (const double wrong : {-1.0, kInfinity, std::nan("")}) {
+    cloud.setUncertainties(wrong, {});
+    EXPECT_THROW(SphereHierarchy(cloud.view()), InvalidInput) << wrong;
+    cloud.setUncertainties(0.0, {0.0f, static_cast<float>(wrong)});
+    try {
+      const SphereHierarchy hierarchy(cloud.view());
+      FAIL() << wrong;
+    }
+    catch (const InvalidInput& error) {
+      EXPECT_EQ(error.input(), Input::uncertainty);
+      EXPECT_EQ(error.index(), 1u);
+    }
+  }
+}
+
+TEST(Uncertainty, IsRefusedWhereItIsNotKnown)
+{
+  Cloud cloud({{0, 0, 0}});
+  const SphereHierarchy plain(cloud.view());
+  cloud.setUncertainties(0.1, {});
+  const SphereHierarchy uncertain(cloud.view());
+  EXPECT_THROW(traceCollision({uncertain}, {plain}, {}), InvalidInput);
+  EXPECT_THROW(traceCollision({plain}, {uncertain}, {}), InvalidInput);
+}
+
+} // namespace
+} // namespace pcl_bsh
