@@ -198,6 +198,26 @@ TEST(Uncertainty, OfManyPointsAtOnePlace)
   }
 }
 
+TEST(Uncertainty, WholeNodesAreTakenAtTheLeastReach)
+{
+  // Two heaps, each small against the clearance, and one point far away, which alone is well known.
+  Random random(4);
+  std::vector<Point3> points = test::makePoints(test::Shape::uniform, 500, 0.01, random);
+  const Cloud cloud_b(points);
+  for (Point3& p : points) p[0] += 0.7;
+  points.push_back({100, 0, 0});
+  Cloud cloud_a(points);
+  std::vector<float> own(points.size(), 0.375f);
+  own.back() = 0.0625f;
+  cloud_a.setUncertainties(0.0, own);
+  const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+  for (const unsigned threads : {1u, 2u})
+    EXPECT_EQ(anyCollision({a}, {b}, {0.9, {}, threads}).verdict, Verdict::undecided);
+  const FlagsResult found = collisionFlags({a}, {b}, within(0.9, Side::both));
+  EXPECT_EQ(found.undecided_a, 500u);
+  EXPECT_EQ(found.undecided_b, 500u);
+}
+
 TEST(Uncertainty, NoneIsThePlainQuery)
 {
   const Scene scene = test::anyScene(5, 500);
