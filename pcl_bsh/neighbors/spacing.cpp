@@ -64,8 +64,11 @@ Spacing spacingOf(const SphereHierarchy& cloud)
   Spacing spacing;
   std::vector<double> gaps;
   for (std::size_t group = 0; group < groups; ++group) {
-    std::size_t number = group, first = 0, count = storage.voxels[group].count;
-    if (storage.size > wanted) {
+    std::size_t number = group, first = 0, count = 0;
+    if (storage.size <= wanted) {
+      count = storage.voxels[number].count;
+    }
+    else {
       const std::size_t rank = (2 * group + 1) * storage.size / (2 * kGroups);
       const Voxel* const past =
           std::upper_bound(storage.voxels.get(), storage.voxels.get() + storage.voxel_count, rank,
