@@ -13,7 +13,10 @@
 
 namespace pcl_bsh {
 
-/// Refuses a pose that is not rigid, by its index, and an accuracy that stops early.
+/// Refuses a pose that is not rigid, by its index, and more poses than an index can name. @param whose words for them
+void checkPoses(const PoseList& poses, const char* whose, unsigned threads);
+
+/// Refuses such poses of b, a pose of a that is not rigid, and an accuracy that stops early.
 void checkAtPoses(const Placed& a, const PoseList& poses, const Accuracy& accuracy, unsigned threads);
 
 /// Calls answer(i, pose) for each pose, from several threads. @return the sum of the work that it returns

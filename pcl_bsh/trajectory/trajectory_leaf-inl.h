@@ -57,7 +57,7 @@ public:
                const VoxelMotion& motion, const std::vector<ModelBox>& candidates, float bound)
   {
     const std::uint32_t all = firstBits(points.count);
-    if ((all & ~results_.settled[slot]) == 0) return false;
+    if ((all & ~results_.settled[slot]) == 0 || results_.witness) return false;
     const double share = motion.steps > kManyPoses ? kManyPosesStray : kLeafStray;
     const double limit = path_.is_swept ? path_.stray : share * node.r[lane] * voxel_frame_.frame.unit;
     if (motion.divides(limit)) {
@@ -331,6 +331,7 @@ private:
         const double radii = query_.scan.hierarchy().view().radius(record) + query_.model.view().radius(q);
         const ClosestApproach approach = segment.approachTo(query_, q, query_.reach - query_.radii + radii);
         if (!approach.contact) continue;
+        if (query_.witness) return keepWitness(leaf, {record, q});
         results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | 1u << i);
         first = std::min(first, begin + steps * approach.enter);
         if (query_.closest)
@@ -342,6 +343,12 @@ private:
         if (bestBounds(leaf.points.begin + i, motion)) lowerReach(leaf, i, best.reach, motion);
       }
     }
+  }
+
+  void keepWitness(LeafVisit& leaf, const PointPair& pair)
+  {
+    results_.witness = pair;
+    leaf.open = 0;
   }
 
   /// Whether the best so far bounds the search for a point of the voxel from this motion on.
