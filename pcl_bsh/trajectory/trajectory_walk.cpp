@@ -107,6 +107,7 @@ private:
     voxel_ = &query_.scan.hierarchy().storage().built(index_, results_.work);
     for (const Node& node : voxel_->nodes) open_lanes_.push_back(static_cast<std::uint8_t>(firstBits(node.count)));
     results_.begin(*voxel_);
+    if (query_.witness) return;
     oriented_boxes_.fit(*voxel_, motion.from);
     results_.work.volumes_built += countChildren(voxel_->nodes);
   }
