@@ -122,13 +122,7 @@ private:
   {
     const std::uint32_t i = points.count / 2;
     const Point at = carryPoint(motion.from.m, motion.from.g, {points.x()[i], points.y()[i], points.z()[i]});
-    order_.clear();
-    for (std::uint32_t c = 0; c < candidates.size(); ++c)
-      order_.emplace_back(BoxEnds(candidates[c]).squaredDistance(at), c);
-    std::sort(order_.begin(), order_.end());
-    ordered_.clear();
-    for (const auto& [distance, c] : order_) ordered_.push_back(candidates[c]);
-    return ordered_;
+    return by_distance_.sort(candidates, at);
   }
 
   /// Opens a box of the model that the leaf may meet, or compares its points.
@@ -321,7 +315,8 @@ private:
     const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      double& first = results_.first[leaf.points.begin + i];
+      double at_first = std::numeric_limits<double>::infinity(); // of a witness alone, not kept
+      double& first = query_.witness ? at_first : results_.first[leaf.points.begin + i];
       if (!query_.closest && first <= begin + steps * clipped.from[i]) continue;
       const std::uint32_t record = leaf.points.record(i);
       const PointSegment segment(query_, record, *motion.interval);
@@ -390,8 +385,8 @@ private:
   };
   static constexpr std::uint32_t kKeptPlaces = 16;
 
-  std::vector<ModelBox> stack_, ordered_;
-  std::vector<std::pair<float, std::uint32_t>> order_;
+  std::vector<ModelBox> stack_;
+  BoxesByDistance by_distance_;
   std::uint64_t visit_ = 0; // how many leaves were compared
   Places places_[kKeptPlaces];
   std::vector<std::uint16_t> pose_hits_; // per pose of a motion: points of a leaf

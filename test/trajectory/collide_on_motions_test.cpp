@@ -156,7 +156,7 @@ TEST(OnMotions, EachIsThatOfTheMotionAloneForRandomCloudsAndThreads)
 {
   Random random(31);
   std::size_t free = 0, colliding = 0;
-  for (std::uint64_t seed = 800; seed < 890; ++seed) {
+  for (std::uint64_t seed = 800; seed < 836; ++seed) {
     const Scene scene = test::anyScene(seed, seed % 10 == 0 ? 2000 : 150);
     SCOPED_TRACE(scene.name);
     const SphereHierarchy a(scene.a.view()), b(scene.b.view());
@@ -175,25 +175,25 @@ TEST(OnMotions, EachIsThatOfTheMotionAloneForRandomCloudsAndThreads)
     colliding += count;
     free += asked.motions.size() - count;
   }
-  EXPECT_GT(free, 500u);
-  EXPECT_GT(colliding, 500u);
+  EXPECT_GT(free, 200u);
+  EXPECT_GT(colliding, 200u);
 }
 
 TEST(OnMotions, HoldsAtEachInstantAsBruteForceDoes)
 {
   Random random(32);
-  for (std::uint64_t seed = 900; seed < 960; ++seed) {
+  for (std::uint64_t seed = 900; seed < 924; ++seed) {
     const Scene scene = test::anyScene(seed, 12);
     SCOPED_TRACE(scene.name);
     const SphereHierarchy a(scene.a.view()), b(scene.b.view());
     const Placed scan{a, scene.pose_a};
-    const Asked asked = anyQuestion(scene, 8, 10, random);
+    const Asked asked = anyQuestion(scene, 8, 8, random);
     const AnyOnMotions found = anyCollisionOnMotions(scan, b, asked.poses, asked.motions, asked.request);
     const AnyOnMotions brute = brute_force::anyCollisionOnMotions(scan, b, asked.poses, asked.motions, asked.request);
     for (std::size_t m = 0; m < asked.motions.size(); ++m) {
       const RigidMotion motion =
           motionBetween(asked.poses[asked.motions[m].from], asked.poses[asked.motions[m].to], asked.request.pivot);
-      const Instants truth = lookAt(scan, scene.a, scene.b, motion, asked.request, 60);
+      const Instants truth = lookAt(scan, scene.a, scene.b, motion, asked.request, 40);
       for (const std::uint8_t verdict : {found.verdicts[m], brute.verdicts[m]}) {
         EXPECT_GE(verdict, truth.collides ? 1 : 0) << "motion " << m;
         EXPECT_LE(verdict, truth.nears ? 1 : 0) << "motion " << m;
@@ -376,7 +376,7 @@ TEST(OnMotions, NoPointOfTheBodyLeavesTheExtentAroundTheMiddle)
 {
   Random random(35);
   double most = 0.0;
-  for (int trial = 0; trial < 300; ++trial) {
+  for (int trial = 0; trial < 100; ++trial) {
     const double scale = std::pow(10.0, random.integer(-3, 6)), far = random.chance(0.3) ? 1e6 * scale : 0.0;
     std::vector<Point3> points = test::makePoints(test::Shape::uniform, 20, scale, random);
     for (Point3& p : points) p[0] += far;
