@@ -11,7 +11,8 @@ namespace pcl_bsh {
 void check(const Placed& scan, const PoseList& poses, const std::vector<PoseMotion>& motions,
            const MotionsRequest& request);
 
-/// Refuses motions that cannot be swept, the first one in the list, whatever their verdicts. @pre neither cloud is empty
+/// Refuses motions that cannot be swept, the first one in the list, whatever their verdicts. @pre neither cloud is
+/// empty
 /// @param used the poses that motions name
 void checkSwept(const MotionsQuery& query, const PoseList& poses, const std::vector<std::uint32_t>& used,
                 const std::vector<PoseMotion>& motions);

@@ -3,6 +3,7 @@
 #include <pcl_bsh/trajectory/collide_on_motions.h>
 
 #include <pcl_bsh/collision/collide_at_poses.h>
+#include <pcl_bsh/collision/pose_tasks.h>
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/trajectory/check_motions.h>
@@ -65,8 +66,8 @@ MotionBatch batchOf(const MotionsQuery& query, const PoseList& poses, const std:
   batch.middles.extents.reserve(some.size());
   batch.motions.reserve(some.size());
   for (const std::uint32_t m : some) {
-    const RigidMotion& motion = batch.motions.emplace_back(
-        motionBetween(poses[motions[m].from], poses[motions[m].to], query.request.pivot));
+    const RigidMotion& motion =
+        batch.motions.emplace_back(motionBetween(poses[motions[m].from], poses[motions[m].to], query.request.pivot));
     batch.middles.poses.push_back(motion.at(0.5));
     batch.middles.extents.push_back(extentAround(batch.middles.poses.back(), motion, body));
   }
@@ -75,29 +76,26 @@ MotionBatch batchOf(const MotionsQuery& query, const PoseList& poses, const std:
 
 /// Decides the motions in `open`, which do not collide at their poses.
 Work decideOpen(const MotionsQuery& query, const PoseList& poses, const std::vector<PoseMotion>& motions,
-                const std::vector<std::uint32_t>& open, Progress& progress, std::vector<std::uint8_t>& verdicts)
+                const std::vector<std::uint32_t>& open, std::vector<std::uint8_t>& verdicts)
 {
+  const std::function<bool(double)> report = [&](double done) {
+    return !query.request.progress || query.request.progress(kAtPoses + (1.0 - kAtPoses) * done);
+  };
+  Progress progress(report);
   const BodyBall body(query.model);
   const unsigned threads = threadCount(query.request.threads);
   const std::vector<std::uint32_t> order = orderOf(RoughMiddles{poses, motions, open}, body, threads);
   const std::size_t batches = (order.size() + kBatchPoses - 1) / kBatchPoses;
-  progress.begin(1.0, batches);
-  std::vector<Work> work(batches);
-  parallelFor(batches, threads, [&](std::size_t b) {
-    if (progress.stopped()) return;
+  return forEachPart(batches, threads, progress, [&](std::size_t b) {
     const std::size_t begin = b * kBatchPoses, end = std::min(order.size(), begin + kBatchPoses);
     std::vector<std::uint32_t> some;
     some.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) some.push_back(open[order[i]]);
     std::uint8_t found[kBatchPoses] = {};
-    work[b] = anyOfMotionBatch(batchOf(query, poses, motions, some, body), found, progress);
+    const Work work = anyOfMotionBatch(batchOf(query, poses, motions, some, body), found, progress);
     for (std::size_t i = 0; i < some.size(); ++i) verdicts[some[i]] = found[i];
-    progress.step();
+    return work;
   });
-  progress.end();
-  Work all;
-  for (const Work& part : work) all += part;
-  return all;
 }
 
 } // namespace
@@ -115,14 +113,12 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
   const UsedPoses used(poses, motions);
   checkSwept(query, poses, used.indices, motions);
 
-  Progress progress(request.progress);
   AnyRequest at_poses;
   at_poses.clearance = request.clearance;
   at_poses.threads = request.threads;
-  const AnyAtPoses found = anyCollisionAtPoses(scan, model, used, at_poses);
+  const AnyAtPoses found = anyCollisionAtPoses(
+      scan, model, used, at_poses, [&](double done) { return !request.progress || request.progress(kAtPoses * done); });
   result.work += found.work;
-  progress.begin(kAtPoses, 1);
-  progress.end();
 
   std::vector<std::uint32_t> open;
   for (std::size_t m = 0; m < motions.size(); ++m) {
@@ -130,7 +126,7 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
     result.verdicts[m] = std::max(at(motions[m].from), at(motions[m].to));
     if (result.verdicts[m] == flagOf(Verdict::free)) open.push_back(static_cast<std::uint32_t>(m));
   }
-  if (!open.empty()) result.work += decideOpen(query, poses, motions, open, progress, result.verdicts);
+  if (!open.empty()) result.work += decideOpen(query, poses, motions, open, result.verdicts);
   result.colliding =
       static_cast<std::size_t>(std::count(result.verdicts.begin(), result.verdicts.end(), flagOf(Verdict::colliding)));
   return result;

@@ -70,9 +70,8 @@ bool collidesDuring(const MotionsQuery& query, const RigidMotion& motion, const 
   const Point3 p = query.scan.hierarchy().view().point(pair.a), q = query.model.view().point(pair.b);
   const Eigen::Vector3d world = query.scan.pose * Eigen::Vector3d(p[0], p[1], p[2]);
   const Eigen::Vector3d start = seen(motion.from(), world), way = seen(motion.to(), world) - start;
-  const ClosestApproach approach =
-      closestApproach({start[0] - q[0], start[1] - q[1], start[2] - q[2]}, {way[0], way[1], way[2]},
-                      std::numeric_limits<double>::infinity());
+  const ClosestApproach approach = closestApproach({start[0] - q[0], start[1] - q[1], start[2] - q[2]},
+                                                   {way[0], way[1], way[2]}, std::numeric_limits<double>::infinity());
   const Placed model{query.model, motion.at(approach.at)};
   return PointPairs(query.scan, model, query.request.clearance).collide(pair, work);
 }
@@ -88,7 +87,8 @@ std::optional<PointPair> findOnMotion(const MotionsQuery& query, const RigidMoti
   const StopRule never(Accuracy::exact());
   std::vector<TrajectoryQuery::NearVoxel> near;
   path.collectNear(never, own, near);
-  std::stable_sort(near.begin(), near.end(), [](const auto& one, const auto& other) { return one.voxel < other.voxel; });
+  std::stable_sort(near.begin(), near.end(),
+                   [](const auto& one, const auto& other) { return one.voxel < other.voxel; });
   std::optional<PointPair> witness;
   std::vector<std::uint32_t> intervals;
   for (std::size_t i = 0; i < near.size() && !witness;) {

@@ -20,9 +20,9 @@ struct MotionsQuery {
   const Placed& scan;
   const SphereHierarchy& model;
   const MotionsRequest& request;
-  const BoxTree boxes;      ///< of the model
-  TrajectoryRequest swept;  ///< the same, of one motion
-  const double beyond;      ///< pairs farther apart than this never count as colliding
+  const BoxTree boxes;     ///< of the model
+  TrajectoryRequest swept; ///< the same, of one motion
+  const double beyond;     ///< pairs farther apart than this never count as colliding
 };
 
 /// The motion between two poses, the same in both directions.
@@ -42,7 +42,7 @@ std::optional<PointPair> findOnMotion(const MotionsQuery& query, const RigidMoti
 
 struct MotionBatch {
   const MotionsQuery& query;
-  PoseBatch middles;                ///< of the motions, and how far they get from there
+  PoseBatch middles; ///< of the motions, and how far they get from there
   std::vector<RigidMotion> motions;
 };
 

@@ -88,8 +88,8 @@ double reachOf(const Placed& scan, const SphereHierarchy& model, const Trajector
 PosePath::Sweep sweepOf(const TrajectoryRequest& request, const BoxTree& boxes, double reach)
 {
   const double tolerance = *request.swept;
-  return {request.pivot, farthest(boxes, request.pivot), boxes.radius, reach + tolerance, kStrayShare * tolerance,
-          tolerance / 64};
+  return {request.pivot,     farthest(boxes, request.pivot), boxes.radius,
+          reach + tolerance, kStrayShare * tolerance,        tolerance / 64};
 }
 
 TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of, const BoxTree& model_boxes,

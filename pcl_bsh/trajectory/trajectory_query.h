@@ -107,7 +107,7 @@ PosePath::Sweep sweepOf(const TrajectoryRequest& request, const BoxTree& boxes, 
 struct VoxelResult {
   Work work;
   std::size_t colliding = 0;
-  bool undecided = false; ///< whether points were left so
+  bool undecided = false;           ///< whether points were left so
   std::optional<PointPair> witness; ///< where one is wanted
   double first_contact =
       std::numeric_limits<double>::infinity(); ///< swept: pose of the path plus fraction of the motion to the next

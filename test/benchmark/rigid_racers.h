@@ -37,8 +37,9 @@ public:
   virtual bool takesMany() const { return false; }
   virtual std::size_t anyOfMany(const std::vector<RigidPose>&, unsigned /*threads*/) const { return 0; }
 
-  /// Whether the motion between two poses can be asked about; then on how many of the first `count` motions of a roadmap
-  /// any pair comes within the d of build(), to a tolerance of a tenth of it: one call for each, or one for all.
+  /// Whether the motion between two poses can be asked about; then on how many of the first `count` motions of a
+  /// roadmap any pair comes within the d of build(), to a tolerance of a tenth of it: one call for each, or one for
+  /// all.
   virtual bool takesMotions() const { return false; }
   virtual std::size_t anyOnEachMotion(const Roadmap&, std::size_t /*count*/) const { return 0; }
   virtual std::size_t anyOnMotions(const Roadmap&, std::size_t /*count*/, unsigned /*threads*/) const { return 0; }

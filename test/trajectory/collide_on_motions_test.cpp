@@ -107,7 +107,7 @@ Motions anyMotions(std::size_t poses, std::size_t count, Random& random)
   for (std::size_t i = 0; i < count; ++i) {
     motions.push_back({any(), any()});
     if (i % 5 == 0) motions.push_back({motions.back().to, motions.back().from}); // back
-    if (i % 7 == 0) motions.push_back(motions.back());                          // again
+    if (i % 7 == 0) motions.push_back(motions.back());                           // again
     if (i % 11 == 0) motions.push_back({motions.back().to, motions.back().to});  // on the spot
   }
   return motions;
@@ -213,8 +213,9 @@ struct Roadmap {
   {
     for (std::size_t k = 0; k < vertices; ++k) {
       Eigen::Isometry3d pose = random.pose(3.2);
-      pose.linear() = Eigen::AngleAxisd(random.uniform(-1, 1), Eigen::Vector3d(random.uniform(-1, 1), 1, 0.3).normalized())
-                          .toRotationMatrix();
+      pose.linear() =
+          Eigen::AngleAxisd(random.uniform(-1, 1), Eigen::Vector3d(random.uniform(-1, 1), 1, 0.3).normalized())
+              .toRotationMatrix();
       poses.push_back(pose);
     }
     for (std::uint32_t i = 0; i < vertices; ++i)
@@ -367,8 +368,7 @@ TEST(OnMotions, GrazesAreRightInBatches)
     const AnyOnMotions found = anyCollisionOnMotions({scan}, model, poses, motions, request);
     EXPECT_EQ(found.verdicts[m], 1) << trial;
     for (std::size_t i = 0; i < motions.size(); ++i)
-      ASSERT_EQ(found.verdicts[i],
-                verdictAlone({scan}, model, poses[motions[i].from], poses[motions[i].to], request));
+      ASSERT_EQ(found.verdicts[i], verdictAlone({scan}, model, poses[motions[i].from], poses[motions[i].to], request));
   }
 }
 
@@ -484,8 +484,7 @@ TEST(OnMotions, RefusesATightToleranceByTheMotion)
     const std::string message = messageOf([&] { anyCollisionOnMotions({a}, a, poses, motions, request); });
     TrajectoryRequest alone = flagsOnly(0.0);
     alone.swept = request.tolerance;
-    const std::string expected =
-        messageOf([&] { collideAlong({a}, a, {poses[0], poses[motions[1].to]}, alone); });
+    const std::string expected = messageOf([&] { collideAlong({a}, a, {poses[0], poses[motions[1].to]}, alone); });
     EXPECT_EQ(message.empty(), expected.empty()) << expected;
   }
 }
