@@ -89,31 +89,33 @@ namespace pcl_bsh {
 HWY_EXPORT(anyOfBatchOnTarget);
 
 AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                               const AnyRequest& request)
+                               const AnyRequest& request, const PosesProgress& report)
 {
   checkClearance(request.clearance);
   checkAtPoses(a, T_world_b, request.accuracy, request.threads);
   const DefaultFloatEnvironment environment;
   AnyAtPoses result;
   result.verdicts.assign(T_world_b.size(), flagOf(Verdict::free));
-  if (a.hierarchy().empty() || b.empty()) return result;
+  if (a.hierarchy().empty() || b.empty() || T_world_b.size() == 0) return result;
+  Progress progress(report);
   if (!request.accuracy.isExact() || areUncertain(a, {b})) {
     AnyRequest single = request;
     single.threads = 1;
-    result.work = forEachPose(T_world_b, request.threads, [&](std::size_t i, const Eigen::Isometry3d& pose) {
+    result.work = forEachPose(T_world_b, request.threads, progress, [&](std::size_t i, const Eigen::Isometry3d& pose) {
       const AnyResult found = anyCollision(a, {b, pose}, single);
       result.verdicts[i] = flagOf(found.verdict);
       return found.work;
     });
   }
   else {
-    result.work =
-        forEachBatch(a, b, T_world_b, request.threads, [&](const PoseBatch& batch, const std::uint32_t* order) {
-          std::uint8_t verdicts[kBatchPoses] = {};
-          const Work work = HWY_DYNAMIC_DISPATCH(anyOfBatchOnTarget)(batch, request, verdicts);
-          for (std::size_t i = 0; i < batch.poses.size(); ++i) result.verdicts[order[i]] = verdicts[i];
-          return work;
-        });
+    result.work = forEachBatch(a, b, T_world_b, request.threads, progress,
+                               [&](const PoseBatch& batch, const std::uint32_t* order) {
+                                 std::uint8_t verdicts[kBatchPoses] = {};
+                                 const Work work = HWY_DYNAMIC_DISPATCH(anyOfBatchOnTarget)(batch, request, verdicts);
+                                 for (std::size_t i = 0; i < batch.poses.size(); ++i)
+                                   result.verdicts[order[i]] = verdicts[i];
+                                 return work;
+                               });
   }
   result.colliding =
       static_cast<std::size_t>(std::count(result.verdicts.begin(), result.verdicts.end(), flagOf(Verdict::colliding)));

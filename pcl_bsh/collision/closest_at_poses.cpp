@@ -40,16 +40,17 @@ namespace pcl_bsh {
 HWY_EXPORT(closestOfBatchOnTarget);
 
 DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                                    const DistanceRequest& request)
+                                    const DistanceRequest& request, const PosesProgress& report)
 {
   checkAtPoses(a, T_world_b, request.accuracy, request.threads);
   const DefaultFloatEnvironment environment;
   DistancesAtPoses result;
   result.distances.assign(T_world_b.size(), std::numeric_limits<double>::infinity());
-  if (a.hierarchy().empty() || b.empty()) return result;
+  if (a.hierarchy().empty() || b.empty() || T_world_b.size() == 0) return result;
+  Progress progress(report);
   result.pairs.resize(T_world_b.size());
   if (!request.accuracy.isExact()) {
-    result.work = forEachPose(T_world_b, request.threads, [&](std::size_t i, const Eigen::Isometry3d& pose) {
+    result.work = forEachPose(T_world_b, request.threads, progress, [&](std::size_t i, const Eigen::Isometry3d& pose) {
       const DistanceResult found = closestPair(a, {b, pose}, {request.accuracy});
       result.distances[i] = found.distance;
       result.pairs[i] = *found.pair;
@@ -57,9 +58,10 @@ DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, c
     });
     return result;
   }
-  result.work = forEachBatch(a, b, T_world_b, request.threads, [&](const PoseBatch& batch, const std::uint32_t* order) {
-    return HWY_DYNAMIC_DISPATCH(closestOfBatchOnTarget)(batch, order, result);
-  });
+  result.work =
+      forEachBatch(a, b, T_world_b, request.threads, progress, [&](const PoseBatch& batch, const std::uint32_t* order) {
+        return HWY_DYNAMIC_DISPATCH(closestOfBatchOnTarget)(batch, order, result);
+      });
   return result;
 }
 

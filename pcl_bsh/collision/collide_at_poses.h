@@ -12,6 +12,7 @@
 
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/query/pose_list.h>
 
 #include <cstddef>
@@ -35,17 +36,22 @@ struct DistancesAtPoses {
   Work work;
 };
 
+/// Is called now and then, by the thread that calls the query, with the fraction done in [0, 1], which never falls, and
+/// at least once where there is anything to do. False: stop, the query throws Cancelled. What it throws itself comes
+/// out of the query.
+using PosesProgress = std::function<bool(double)>;
+
 /// Does any pair of points collide, b at each of the poses T_world_b (rigid within 1e-6)? Verdicts alone: witnesses
 /// would depend on what neighbouring poses have in common, which is used again; anyCollision() gives that of a pose.
 /// @throws std::invalid_argument naming the value: a clearance or a pose that is not what its declaration asks for (a
-///   pose by its index), an accuracy that stops early.
+///   pose by its index), an accuracy that stops early. Cancelled.
 AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                               const AnyRequest& request = {});
+                               const AnyRequest& request = {}, const PosesProgress& progress = {});
 
 /// The smallest distance and the pair that realises it, b at each of the poses.
 /// @throws as anyCollisionAtPoses()
 DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                                    const DistanceRequest& request = {});
+                                    const DistanceRequest& request = {}, const PosesProgress& progress = {});
 
 /// Which points collide, b at each of the poses: calls found(pose, flags) once for each, in any order, from several
 /// threads at once for different poses where the request has more than one. What it throws comes out of this call, and

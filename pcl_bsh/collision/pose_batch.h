@@ -18,6 +18,8 @@ struct PoseBatch {
   const SphereHierarchy& b;
   const BodyBall& body;                 ///< of b
   std::vector<Eigen::Isometry3d> poses; ///< of b, neighbours near each other
+  /// How far any point of b gets from where it is at each of the poses, where b moves about them; empty: b rests.
+  std::vector<double> extents = {};
 };
 
 /// As many poses as one task answers: enough that what they have in common pays, few enough for many tasks.

@@ -171,7 +171,8 @@ private:
   {
     double motion = 0.0;
     for (std::size_t i = begin; i < end; ++i)
-      motion = std::max(motion, motionBound(batch_.body, batch_.poses[middle], batch_.poses[i]));
+      motion = std::max(motion, motionBound(batch_.body, batch_.poses[middle], batch_.poses[i]) +
+                                    (batch_.extents.empty() ? 0.0 : batch_.extents[i]));
     return motion;
   }
 

@@ -6,21 +6,15 @@
 
 #include <atomic>
 #include <limits>
-#include <string>
 
 namespace pcl_bsh {
 
-void checkAtPoses(const Placed& a, const PoseList& poses, const Accuracy& accuracy, unsigned threads)
+void checkPoses(const PoseList& poses, const char* whose, unsigned threads)
 {
-  checkAccuracy(accuracy);
-  if (accuracy.stopsEarly())
-    throw InvalidInput(Input::accuracy, "accuracy", accuracy.text() + " stops early, which many poses at once do not",
-                       "give exact, float or tolerance=LENGTH");
   constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
   if (poses.size() > most)
     throw InvalidInput(Input::pose, "poses", plainText(poses.size(), " are more than an index can name (", most, ")"),
                        "ask for fewer at a time");
-  checkPose("pose of a", a.pose);
   const std::size_t batches = (poses.size() + kBatchPoses - 1) / kBatchPoses;
   std::atomic<std::size_t> first_wrong{poses.size()};
   parallelFor(batches, threadCount(threads), [&](std::size_t batch) {
@@ -34,7 +28,17 @@ void checkAtPoses(const Placed& a, const PoseList& poses, const Accuracy& accura
     }
   });
   const std::size_t wrong = first_wrong.load(std::memory_order_relaxed);
-  if (wrong < poses.size()) checkPose("pose " + std::to_string(wrong) + " of b", poses[wrong], wrong);
+  if (wrong < poses.size()) checkPose(plainText("pose ", wrong, " of ", whose), poses[wrong], wrong);
+}
+
+void checkAtPoses(const Placed& a, const PoseList& poses, const Accuracy& accuracy, unsigned threads)
+{
+  checkAccuracy(accuracy);
+  if (accuracy.stopsEarly())
+    throw InvalidInput(Input::accuracy, "accuracy", accuracy.text() + " stops early, which many poses at once do not",
+                       "give exact, float or tolerance=LENGTH");
+  checkPose("pose of a", a.pose);
+  checkPoses(poses, "b", threads);
 }
 
 } // namespace pcl_bsh

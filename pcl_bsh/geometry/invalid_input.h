@@ -37,7 +37,7 @@ enum class Input : std::uint8_t {
   summaries,  ///< of poses, next to swept motion
   cluster_distance,
   result, ///< of another query than is asked for
-  motion, ///< of a scene's object
+  motion, ///< of a scene's object, or one of many
   scene,  ///< its options, objects, parts or rules
 };
 

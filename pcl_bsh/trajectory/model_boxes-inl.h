@@ -11,6 +11,8 @@
 #include <pcl_bsh/query/stop_rule.h>
 #include <pcl_bsh/trajectory/voxel_in_model_frame-inl.h>
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
@@ -59,6 +61,25 @@ struct BoxEnds {
     }
     return squared;
   }
+};
+
+/// Boxes by their distance from a point, those at the same distance as they come.
+class BoxesByDistance {
+public:
+  /// @return valid until the next call
+  const std::vector<ModelBox>& sort(const std::vector<ModelBox>& boxes, const Point& from)
+  {
+    order_.clear();
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) order_.emplace_back(BoxEnds(boxes[i]).squaredDistance(from), i);
+    std::sort(order_.begin(), order_.end());
+    sorted_.clear();
+    for (const auto& [distance, i] : order_) sorted_.push_back(boxes[i]);
+    return sorted_;
+  }
+
+private:
+  std::vector<std::pair<float, std::uint32_t>> order_;
+  std::vector<ModelBox> sorted_;
 };
 
 /// Opens the model's boxes.

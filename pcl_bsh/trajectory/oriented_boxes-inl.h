@@ -57,6 +57,10 @@ public:
   void see(std::uint32_t node, const VoxelMotion& motion, const float (&radius)[kLanes],
            float (&extent)[3][kLanes]) const
   {
+    if (halves_.empty()) {
+      for (std::size_t axis = 0; axis < 3; ++axis) std::copy(radius, radius + kLanes, extent[axis]);
+      return;
+    }
     const Half& half = halves_[node];
     const float share = kRounding + 4.0f * static_cast<float>(voxel_frame_.path.skew);
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -109,6 +109,11 @@ PosePath::PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::
   divideAll(progress);
 }
 
+void PosePath::check(const std::vector<Eigen::Isometry3d>& model_poses, const Sweep& sweep, Progress& progress)
+{
+  PosePath().plan(model_poses, partsOf(model_poses), sweep, progress);
+}
+
 double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const std::vector<PolarDecomposition>& parts,
                       const Sweep& sweep, Progress& progress)
 {

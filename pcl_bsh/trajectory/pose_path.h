@@ -6,7 +6,7 @@
 #include <pcl_bsh/geometry/point3.h>
 #include <pcl_bsh/geometry/polar_decomposition.h>
 #include <pcl_bsh/geometry/rigid_motion.h>
-#include <pcl_bsh/trajectory/trajectory_progress.h>
+#include <pcl_bsh/query/progress.h>
 
 #include <Eigen/Geometry>
 
@@ -71,6 +71,9 @@ public:
   PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::Isometry3d>& model_poses, const Point3& center,
            const Sweep& sweep, Progress& progress);
 
+  /// Throws what the constructor of a swept path throws, without making it.
+  static void check(const std::vector<Eigen::Isometry3d>& model_poses, const Sweep& sweep, Progress& progress);
+
   std::vector<PathPose> poses;
   std::vector<PathInterval> intervals; ///< intervals[0] is the whole path; empty when that has no pose
   double skew = 0.0; ///< how far the rotations are from rigid: bounds |R'R - I|, of pose and scan summed
@@ -90,6 +93,8 @@ public:
   }
 
 private:
+  PosePath() = default;
+
   /// A given pose and the motion from there to the next.
   struct Step {
     double cuts = 0.0;                              ///< parts that it is cut into

@@ -166,7 +166,9 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   Progress progress(request.progress);
   try {
     progress.limit(&rule);
-    const TrajectoryQuery query(scan, model, model_poses, request, result, progress);
+    const BoxTree boxes(model.storage());
+    const TrajectoryQuery query(scan, model, boxes, model_poses, request, result, progress);
+    result.work.volumes_built += countChildren(boxes.storage.top);
     progress.limit(nullptr);
     if (!query.inFloatRange()) return brute_force::collideAlong(scan, model, model_poses, request);
     follow(query, rule, progress);

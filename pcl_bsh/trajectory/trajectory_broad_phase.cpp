@@ -36,7 +36,7 @@ bool TrajectoryQuery::near(const WorldSphere& sphere, const PathInterval& interv
 }
 
 void TrajectoryQuery::collectNear(std::uint32_t node, std::uint32_t lane, std::uint32_t index, const StopRule& rule,
-                                  Progress& progress, std::vector<std::vector<std::uint32_t>>& near_intervals) const
+                                  Progress& progress, std::vector<NearVoxel>& near_voxels) const
 {
   progress.tick(4);
   const SphereHierarchy::Storage& storage = scan.hierarchy().storage();
@@ -58,16 +58,26 @@ void TrajectoryQuery::collectNear(std::uint32_t node, std::uint32_t lane, std::u
     if (!near(sphere, interval, stray)) return;
   }
   if (interval.divided() && stray > (is_voxel ? 0.5 : 1.0) * sphere.radius) {
-    collectNear(node, lane, interval.left, rule, progress, near_intervals);
-    collectNear(node, lane, interval.right, rule, progress, near_intervals);
+    collectNear(node, lane, interval.left, rule, progress, near_voxels);
+    collectNear(node, lane, interval.right, rule, progress, near_voxels);
   }
   else if (is_voxel) {
-    near_intervals[of.begin[lane]].push_back(index);
+    near_voxels.push_back({of.begin[lane], index});
   }
   else {
     const std::uint32_t below = of.child[lane];
     for (std::uint32_t i = 0; i < storage.top[below].count; ++i)
-      collectNear(below, i, index, rule, progress, near_intervals);
+      collectNear(below, i, index, rule, progress, near_voxels);
+  }
+}
+
+void TrajectoryQuery::collectNear(const StopRule& rule, Progress& progress, std::vector<NearVoxel>& near_voxels) const
+{
+  const SphereHierarchy::Storage& storage = scan.hierarchy().storage();
+  if (storage.size == 0 || boxes.storage.size == 0 || path.poses.empty()) return;
+  for (std::uint32_t lane = 0; lane < storage.top[0].count; ++lane) {
+    collectNear(0, lane, 0, rule, progress, near_voxels);
+    progress.skipTo(lane + 1);
   }
 }
 
@@ -75,12 +85,10 @@ std::vector<std::vector<std::uint32_t>> TrajectoryQuery::nearIntervals(const Sto
 {
   const SphereHierarchy::Storage& storage = scan.hierarchy().storage();
   std::vector<std::vector<std::uint32_t>> near_intervals(storage.voxel_count);
-  if (storage.size == 0 || boxes.storage.size == 0 || path.poses.empty()) return near_intervals;
-  progress.begin(Progress::kBroadPhase, storage.top[0].count);
-  for (std::uint32_t lane = 0; lane < storage.top[0].count; ++lane) {
-    collectNear(0, lane, 0, rule, progress, near_intervals);
-    progress.skipTo(lane + 1);
-  }
+  progress.begin(Progress::kBroadPhase, storage.size == 0 ? 0 : storage.top[0].count);
+  std::vector<NearVoxel> near_voxels;
+  collectNear(rule, progress, near_voxels);
+  for (const NearVoxel& near : near_voxels) near_intervals[near.voxel].push_back(near.interval);
   progress.end();
   return near_intervals;
 }

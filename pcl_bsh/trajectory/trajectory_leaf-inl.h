@@ -57,7 +57,7 @@ public:
                const VoxelMotion& motion, const std::vector<ModelBox>& candidates, float bound)
   {
     const std::uint32_t all = firstBits(points.count);
-    if ((all & ~results_.settled[slot]) == 0) return false;
+    if ((all & ~results_.settled[slot]) == 0 || results_.witness) return false;
     const double share = motion.steps > kManyPoses ? kManyPosesStray : kLeafStray;
     const double limit = path_.is_swept ? path_.stray : share * node.r[lane] * voxel_frame_.frame.unit;
     if (motion.divides(limit)) {
@@ -122,13 +122,7 @@ private:
   {
     const std::uint32_t i = points.count / 2;
     const Point at = carryPoint(motion.from.m, motion.from.g, {points.x()[i], points.y()[i], points.z()[i]});
-    order_.clear();
-    for (std::uint32_t c = 0; c < candidates.size(); ++c)
-      order_.emplace_back(BoxEnds(candidates[c]).squaredDistance(at), c);
-    std::sort(order_.begin(), order_.end());
-    ordered_.clear();
-    for (const auto& [distance, c] : order_) ordered_.push_back(candidates[c]);
-    return ordered_;
+    return by_distance_.sort(candidates, at);
   }
 
   /// Opens a box of the model that the leaf may meet, or compares its points.
@@ -321,7 +315,8 @@ private:
     const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      double& first = results_.first[leaf.points.begin + i];
+      double at_first = std::numeric_limits<double>::infinity(); // of a witness alone, not kept
+      double& first = query_.witness ? at_first : results_.first[leaf.points.begin + i];
       if (!query_.closest && first <= begin + steps * clipped.from[i]) continue;
       const std::uint32_t record = leaf.points.record(i);
       const PointSegment segment(query_, record, *motion.interval);
@@ -331,6 +326,7 @@ private:
         const double radii = query_.scan.hierarchy().view().radius(record) + query_.model.view().radius(q);
         const ClosestApproach approach = segment.approachTo(query_, q, query_.reach - query_.radii + radii);
         if (!approach.contact) continue;
+        if (query_.witness) return keepWitness(leaf, {record, q});
         results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | 1u << i);
         first = std::min(first, begin + steps * approach.enter);
         if (query_.closest)
@@ -342,6 +338,12 @@ private:
         if (bestBounds(leaf.points.begin + i, motion)) lowerReach(leaf, i, best.reach, motion);
       }
     }
+  }
+
+  void keepWitness(LeafVisit& leaf, const PointPair& pair)
+  {
+    results_.witness = pair;
+    leaf.open = 0;
   }
 
   /// Whether the best so far bounds the search for a point of the voxel from this motion on.
@@ -383,8 +385,8 @@ private:
   };
   static constexpr std::uint32_t kKeptPlaces = 16;
 
-  std::vector<ModelBox> stack_, ordered_;
-  std::vector<std::pair<float, std::uint32_t>> order_;
+  std::vector<ModelBox> stack_;
+  BoxesByDistance by_distance_;
   std::uint64_t visit_ = 0; // how many leaves were compared
   Places places_[kKeptPlaces];
   std::vector<std::uint16_t> pose_hits_; // per pose of a motion: points of a leaf

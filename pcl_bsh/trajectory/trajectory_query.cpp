@@ -31,10 +31,33 @@ double farthest(const BoxTree& boxes, const Point3& from)
   return std::sqrt(squared) * (1.0 + kDoubleMargin);
 }
 
-/// Swept: what double arithmetic may get wrong has to fit into a sixteenth of the tolerance. Every length that it
-/// handles counts: where the scan is, the model at its poses and in its own frame, and the pivot.
-void checkTolerance(const Placed& scan, const std::vector<Eigen::Isometry3d>& poses, const TrajectoryRequest& request,
-                    const BoxTree& boxes, double reach)
+double largestRadii(const Placed& scan, const SphereHierarchy& model)
+{
+  return scan.hierarchy().storage().largest_radius + model.storage().largest_radius;
+}
+
+PosePath pathOf(const Placed& scan, const std::vector<Eigen::Isometry3d>& poses, const TrajectoryRequest& request,
+                const BoxTree& boxes, double reach, Progress& progress)
+{
+  if (!request.swept) return PosePath(scan.pose, poses, boxes.origin, progress);
+  double far = 0.0;
+  for (const Eigen::Isometry3d& pose : poses) far = std::max(far, farthestPlace(pose, boxes, request.pivot));
+  checkTolerance(scan, request, boxes, reach, far);
+  return PosePath(scan.pose, poses, boxes.origin, sweepOf(request, boxes, reach), progress);
+}
+
+} // namespace
+
+double farthestPlace(const Eigen::Isometry3d& pose, const BoxTree& boxes, const Point3& pivot)
+{
+  double far = 0.0;
+  for (const Point3& center : {carried(pose, boxes.origin), carried(pose, pivot)})
+    for (const double x : center) far = std::max(far, std::abs(x));
+  return far;
+}
+
+void checkTolerance(const Placed& scan, const TrajectoryRequest& request, const BoxTree& boxes, double reach,
+                    double far)
 {
   double size = 4 * boxes.radius + reach;
   const LocalFrame& frame = scan.hierarchy().storage().frame;
@@ -42,10 +65,6 @@ void checkTolerance(const Placed& scan, const std::vector<Eigen::Isometry3d>& po
   for (std::size_t axis = 0; axis < 3; ++axis)
     size += std::abs(origin[axis]) + 2 * frame.reach[axis] * frame.unit + std::abs(boxes.origin[axis]) +
             std::abs(request.pivot[axis]);
-  double far = 0.0;
-  for (const Eigen::Isometry3d& pose : poses)
-    for (const Point3& center : {carried(pose, boxes.origin), carried(pose, request.pivot)})
-      for (const double x : center) far = std::max(far, std::abs(x));
   size += 3 * far;
   constexpr double smallest = 0x1p-400; // its square is far from underflow
   constexpr double rounding = 0x1p-46;  // of places along the motion; a sixteenth of the tolerance is for it
@@ -61,41 +80,34 @@ void checkTolerance(const Placed& scan, const std::vector<Eigen::Isometry3d>& po
       .withValue(*request.swept);
 }
 
-PosePath pathOf(const Placed& scan, const std::vector<Eigen::Isometry3d>& poses, const TrajectoryRequest& request,
-                const BoxTree& boxes, double reach, Progress& progress)
+double reachOf(const Placed& scan, const SphereHierarchy& model, const TrajectoryRequest& request)
 {
-  if (!request.swept) return PosePath(scan.pose, poses, boxes.origin, progress);
+  return request.clearance + request.swept.value_or(0.0) / 2 + largestRadii(scan, model);
+}
+
+PosePath::Sweep sweepOf(const TrajectoryRequest& request, const BoxTree& boxes, double reach)
+{
   const double tolerance = *request.swept;
-  checkTolerance(scan, poses, request, boxes, reach);
-  return PosePath(scan.pose, poses, boxes.origin,
-                  {request.pivot, farthest(boxes, request.pivot), boxes.radius, reach + tolerance,
-                   kStrayShare * tolerance, tolerance / 64},
-                  progress);
+  return {request.pivot,     farthest(boxes, request.pivot), boxes.radius,
+          reach + tolerance, kStrayShare * tolerance,        tolerance / 64};
 }
 
-double largestRadii(const Placed& scan, const SphereHierarchy& model)
-{
-  return scan.hierarchy().storage().largest_radius + model.storage().largest_radius;
-}
-
-} // namespace
-
-TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of,
+TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of, const BoxTree& model_boxes,
                                  const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
-                                 TrajectoryResult& into, Progress& progress)
+                                 TrajectoryResult& into, Progress& progress, Wanted what)
 : scan(scan_at),
   model(model_of),
   given(model_poses),
   request(asked),
   result(into),
-  boxes(model_of.storage()),
+  boxes(model_boxes),
   radii(largestRadii(scan_at, model_of)),
-  reach(asked.clearance + asked.swept.value_or(0.0) / 2 + radii),
+  reach(reachOf(scan_at, model_of, asked)),
   path(pathOf(scan_at, model_poses, asked, boxes, reach, progress)),
+  witness(what == Wanted::witness),
   closest(asked.distances || asked.closest_poses),
   first(asked.first_poses || asked.swept.has_value())
 {
-  result.work.volumes_built += countChildren(boxes.storage.top);
 }
 
 double TrajectoryQuery::error(const Point3& origin) const

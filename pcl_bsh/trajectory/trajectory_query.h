@@ -20,11 +20,18 @@ struct NearestAtPose {
   bool found = false;
 };
 
+/// What a walk has to find.
+enum class Wanted : std::uint8_t {
+  points,  ///< what the request asks for, of each point
+  witness, ///< swept: one pair that collides, and nothing else
+};
+
 /// The question, and what its answer takes that no voxel changes.
 struct TrajectoryQuery {
-  TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of,
+  /// @param model_boxes of the model
+  TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of, const BoxTree& model_boxes,
                   const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
-                  TrajectoryResult& into, Progress& progress);
+                  TrajectoryResult& into, Progress& progress, Wanted what = Wanted::points);
 
   const Placed& scan;
   const SphereHierarchy& model;
@@ -32,10 +39,11 @@ struct TrajectoryQuery {
   const TrajectoryRequest& request;
   TrajectoryResult& result;
 
-  const BoxTree boxes;
+  const BoxTree& boxes;
   const double radii; ///< the largest of the scan and of the model, summed
   const double reach; ///< of points: the clearance, half of the tolerance, the radii
   const PosePath path;
+  const bool witness;        ///< the walk ends at the first pair that collides
   const bool closest, first; ///< what has to be known of each point, beside whether it collides
   /// Whether the best so far bounds the search for a point, with all of a path that begins at `from`: what is farther
   /// changes nothing then. Not where it may collide earlier than is known, nor where it counts for a pose.
@@ -56,6 +64,14 @@ struct TrajectoryQuery {
   /// over, all intervals not yet tested are included.
   std::vector<std::vector<std::uint32_t>> nearIntervals(const StopRule& rule, Progress& progress) const;
 
+  /// A voxel of the scan, and an interval during which it may be near the model.
+  struct NearVoxel {
+    std::uint32_t voxel, interval;
+  };
+
+  /// Appends all of them; those of a voxel in the order of its intervals.
+  void collectNear(const StopRule& rule, Progress& progress, std::vector<NearVoxel>& near_voxels) const;
+
   mutable std::mutex mutex; ///< of the two below
   mutable std::vector<NearestAtPose> nearest_at_pose;
   mutable std::vector<std::size_t> pose_counts;
@@ -68,14 +84,31 @@ private:
 
   bool near(const WorldSphere& sphere, const PathInterval& interval, double& stray) const;
   void collectNear(std::uint32_t node, std::uint32_t lane, std::uint32_t interval, const StopRule& rule,
-                   Progress& progress, std::vector<std::vector<std::uint32_t>>& near_intervals) const;
+                   Progress& progress, std::vector<NearVoxel>& near_voxels) const;
 };
+
+/// The largest coordinate of the model's middle and of the pivot at a pose.
+double farthestPlace(const Eigen::Isometry3d& pose, const BoxTree& boxes, const Point3& pivot);
+
+/// Swept: what double arithmetic may get wrong has to fit into a sixteenth of the tolerance. Every length that it
+/// handles counts: where the scan is, the model at its poses and in its own frame, and the pivot.
+/// @param reach as TrajectoryQuery has it. @param far the largest farthestPlace() of the poses
+/// @throws InvalidInput
+void checkTolerance(const Placed& scan, const TrajectoryRequest& request, const BoxTree& boxes, double reach,
+                    double far);
+
+/// How far from a point of the scan a point of the model matters.
+double reachOf(const Placed& scan, const SphereHierarchy& model, const TrajectoryRequest& request);
+
+/// Of a request with `swept`. @param reach as TrajectoryQuery has it
+PosePath::Sweep sweepOf(const TrajectoryRequest& request, const BoxTree& boxes, double reach);
 
 /// What a voxel's walk returns.
 struct VoxelResult {
   Work work;
   std::size_t colliding = 0;
-  bool undecided = false; ///< whether points were left so
+  bool undecided = false;           ///< whether points were left so
+  std::optional<PointPair> witness; ///< where one is wanted
   double first_contact =
       std::numeric_limits<double>::infinity(); ///< swept: pose of the path plus fraction of the motion to the next
 };

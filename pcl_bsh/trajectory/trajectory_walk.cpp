@@ -66,7 +66,7 @@ public:
       results_.beginPoses(query_.path.intervals[intervals.front()].first, query_.path.intervals[intervals.back()].last);
     std::vector<ModelBox> candidates;
     for (const std::uint32_t interval : intervals) {
-      if (stop_check_.isOver() || stopped_) return leave(true);
+      if (stop_check_.isOver() || isDone()) return leave(true);
       const VoxelMotion motion = voxel_frame_.motionOf(interval);
       candidates.clear();
       ++results_.work.volumes_carried;
@@ -92,7 +92,8 @@ private:
   VoxelResult leave(bool unsure)
   {
     VoxelResult answer;
-    if (voxel_ && !rule_.mayStop()) answer = results_.finish(*voxel_);
+    if (voxel_ && !rule_.mayStop() && !query_.witness) answer = results_.finish(*voxel_);
+    answer.witness = results_.witness;
     if (rule_.mayStop()) answer.undecided = voxel_ ? results_.decide(*voxel_, unsure) : unsure;
     if (rule_.mayStop() && !voxel_ && !unsure)
       query_.scan.hierarchy().storage().forEachRecord(
@@ -106,6 +107,7 @@ private:
     voxel_ = &query_.scan.hierarchy().storage().built(index_, results_.work);
     for (const Node& node : voxel_->nodes) open_lanes_.push_back(static_cast<std::uint8_t>(firstBits(node.count)));
     results_.begin(*voxel_);
+    if (query_.witness) return;
     oriented_boxes_.fit(*voxel_, motion.from);
     results_.work.volumes_built += countChildren(voxel_->nodes);
   }
@@ -115,8 +117,10 @@ private:
   {
     constexpr std::uint32_t often = 256;
     if (++descents_ % often == 0) stopped_ = progress_.pulse();
-    return stopped_;
+    return isDone();
   }
+
+  bool isDone() const { return stopped_ || results_.witness; }
 
   /// Takes a node, all its children at once, through its candidates; then each child through its own.
   void descend(std::uint32_t index, const VoxelMotion& motion, const std::vector<ModelBox>& candidates,
@@ -146,7 +150,7 @@ private:
     if (motion.at_rest) boundDistances(visit, index, motion, candidates);
     if (settling_) settleByPoints(visit, index, motion, candidates);
     for (const ModelBox& candidate : candidates) take(visit, candidate, motion, open_lanes_[index]);
-    for (std::uint32_t bits = open_lanes_[index]; bits != 0; bits &= bits - 1) {
+    for (std::uint32_t bits = open_lanes_[index]; bits != 0 && !isDone(); bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
       bool open = true;

@@ -31,7 +31,7 @@ void VoxelResults::begin(const Voxel& voxel)
   hit.assign(voxel.nodes.size() * kNodeChildren, 0);
   settled.assign(voxel.nodes.size() * kNodeChildren, 0);
   undecided.assign(voxel.nodes.size() * kNodeChildren, 0);
-  if (query_.first) first.assign(voxel.count, std::numeric_limits<double>::infinity());
+  if (query_.first && !query_.witness) first.assign(voxel.count, std::numeric_limits<double>::infinity());
   if (query_.closest) best.assign(voxel.count, NearestPoint{});
 }
 

@@ -40,6 +40,7 @@ public:
   std::vector<std::uint16_t> undecided;    ///< per slot: likewise, of a child that is no leaf any bit stands for all
   std::vector<double> first;               ///< per point: when it collides first, if that is asked for
   std::vector<NearestPoint> best;          ///< per point, if that is asked for
+  std::optional<PointPair> witness;        ///< where one is wanted
   Work work;
 
   /// Whether the pair collides at a pose, in exact arithmetic.

@@ -21,6 +21,7 @@ struct Options : ProgramOptions {
   std::size_t poses = 1000;
   std::size_t slow_poses = 60;
   std::size_t many_poses = 0;
+  std::size_t motions = 0;
 };
 
 struct Bodies {
@@ -78,28 +79,53 @@ Score score(const Bodies& bodies, PoseClass kind, std::size_t at_most, unsigned 
   return result;
 }
 
-/// Poses around a near miss: turned by up to `spread` about any axis, moved by up to `spread` along each axis.
+/// Turned by up to `spread` about any axis, moved by up to `spread` along each axis.
+RigidPose poseAround(const RigidPose& middle, double spread, Random& random)
+{
+  RigidPose pose;
+  const std::array<double, 3> axis = random.direction();
+  const double angle = spread * random.uniform(-1, 1), c = std::cos(angle), s = std::sin(angle), d = 1 - c;
+  const auto [x, y, z] = axis;
+  const std::array<double, 9> turn = {c + x * x * d,     x * y * d - z * s, x * z * d + y * s,
+                                      y * x * d + z * s, c + y * y * d,     y * z * d - x * s,
+                                      z * x * d - y * s, z * y * d + x * s, c + z * z * d};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      pose.rotation[3 * i + j] = 0.0;
+      for (std::size_t k = 0; k < 3; ++k) pose.rotation[3 * i + j] += middle.rotation[3 * i + k] * turn[3 * k + j];
+    }
+    pose.translation[i] = middle.translation[i] + spread * random.uniform(-1, 1);
+  }
+  return pose;
+}
+
+/// Poses around a near miss.
 std::vector<RigidPose> posesAround(const PosedCase& middle, std::size_t count, double spread)
 {
   Random random(5);
-  std::vector<RigidPose> poses(count);
-  for (RigidPose& pose : poses) {
-    const std::array<double, 3> axis = random.direction();
-    const double angle = spread * random.uniform(-1, 1), c = std::cos(angle), s = std::sin(angle), d = 1 - c;
-    const auto [x, y, z] = axis;
-    const std::array<double, 9> turn = {c + x * x * d,     x * y * d - z * s, x * z * d + y * s,
-                                        y * x * d + z * s, c + y * y * d,     y * z * d - x * s,
-                                        z * x * d - y * s, z * y * d + x * s, c + z * z * d};
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) {
-        pose.rotation[3 * i + j] = 0.0;
-        for (std::size_t k = 0; k < 3; ++k)
-          pose.rotation[3 * i + j] += middle.pose.rotation[3 * i + k] * turn[3 * k + j];
-      }
-      pose.translation[i] = middle.pose.translation[i] + spread * random.uniform(-1, 1);
-    }
-  }
+  std::vector<RigidPose> poses;
+  for (std::size_t i = 0; i < count; ++i) poses.push_back(poseAround(middle.pose, spread, random));
   return poses;
+}
+
+/// A tree of poses that grows about a near miss, as planners make it: each pose by a step from an earlier one, with a
+/// motion from that one and from the one before that.
+Roadmap roadmapAround(const PosedCase& middle, std::size_t motions, double step)
+{
+  Random random(6);
+  Roadmap map;
+  map.poses.push_back(middle.pose);
+  std::vector<std::uint32_t> parent = {0};
+  while (map.motions.size() < motions) {
+    const auto from = static_cast<std::uint32_t>(random.bits() % map.poses.size());
+    const auto to = static_cast<std::uint32_t>(map.poses.size());
+    map.poses.push_back(poseAround(map.poses[from], step, random));
+    parent.push_back(from);
+    map.motions.emplace_back(from, to);
+    if (from != 0) map.motions.emplace_back(to, parent[from]);
+  }
+  map.motions.resize(motions);
+  return map;
 }
 
 /// Rates at many poses in one call, beside those of single calls at some of them.
@@ -137,6 +163,38 @@ bool raceMany(const Options& options, const Bodies& bodies, const std::string& r
   return right;
 }
 
+/// Rates of motions in one call, beside those of a call for each of some of them.
+bool raceMotions(const Options& options, const Bodies& bodies, const std::string& racer_name, RigidRacer& racer,
+                 Table& table)
+{
+  const auto middle = std::find_if(bodies.cases.begin(), bodies.cases.end(),
+                                   [](const PosedCase& posed) { return posed.kind == PoseClass::near_miss; });
+  bool right = true;
+  for (const double step : {0.02, 0.1, 0.4}) {
+    const Roadmap map = roadmapAround(*middle, options.motions, step);
+    const std::size_t some = std::min<std::size_t>(options.motions, 1000);
+    const auto addRow = [&](const std::string& how, std::size_t count, double seconds, std::size_t hits) {
+      table.add({std::to_string(bodies.a.size()), "any on motions, " + how, "steps of " + text(step), racer_name,
+                 std::to_string(count), text(1e6 * seconds / static_cast<double>(count)), "", "", "", "",
+                 std::to_string(hits) + " hits; " + racer.remark()});
+    };
+    racer.remark();
+    progress(racer_name + ", " + std::to_string(some) + " motions, steps of " + text(step));
+    const Stopwatch watch;
+    const std::size_t alone = racer.anyOnEachMotion(map, some);
+    addRow("a call for each", some, watch.seconds(), alone);
+    right = racer.anyOnMotions(map, some, 1) == alone && right;
+    racer.remark();
+    for (const unsigned threads : {1u, 2u}) {
+      progress(racer_name + ", " + std::to_string(options.motions) + " motions, steps of " + text(step));
+      const Stopwatch batch;
+      const std::size_t hits = racer.anyOnMotions(map, options.motions, threads);
+      addRow("one call, " + std::to_string(threads) + " threads", options.motions, batch.seconds(), hits);
+    }
+  }
+  return right;
+}
+
 bool race(const Options& options, std::size_t size, Table& table)
 {
   const Bodies bodies = makeBodies(size, options.poses);
@@ -168,6 +226,8 @@ bool race(const Options& options, std::size_t size, Table& table)
                  [&](bool answer, double truth) { return answer == (truth <= bodies.spacing); }));
     }
     if (options.many_poses != 0) wrong += !raceMany(options, bodies, racer_name, *racer, table);
+    if (options.motions != 0 && racer->takesMotions())
+      wrong += !raceMotions(options, bodies, racer_name, *racer, table);
     if (!racer->measuresDistance()) continue;
     progress(racer_name + ", " + std::to_string(size) + " points: distance");
     addRow("distance", PoseClass::near_miss,
@@ -200,6 +260,10 @@ int main(int argc, char** argv)
       ->capture_default_str();
   app.add_option("--many-poses", options.many_poses,
                  "poses around a near miss in one call, beside single calls; mean times, in the column of the median")
+      ->check(CLI::Range(0, 10000000))
+      ->capture_default_str();
+  app.add_option("--motions", options.motions,
+                 "motions between poses around a near miss in one call, beside a call for each; likewise")
       ->check(CLI::Range(0, 10000000))
       ->capture_default_str();
   app.add_option("--racers", options.racers, "who runs")

@@ -7,6 +7,8 @@
 #endif
 
 #include <pcl_bsh/collision/collide_at_poses.h>
+#include <pcl_bsh/trajectory/collide_on_motions.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <optional>
 #include <stdexcept>
@@ -63,18 +65,48 @@ public:
     return found.colliding;
   }
 
+  bool takesMotions() const override { return true; }
+  std::size_t anyOnEachMotion(const Roadmap& map, std::size_t count) const override
+  {
+    TrajectoryRequest request;
+    request.clearance = request_.clearance;
+    request.swept = kMotionTolerance * request_.clearance;
+    std::size_t colliding = 0;
+    for (std::size_t m = 0; m < count; ++m) {
+      const auto [from, to] = map.motions[m];
+      const std::vector<Eigen::Isometry3d> ends = {toEigen(map.poses[from]), toEigen(map.poses[to])};
+      colliding += counted(collideAlong({*a_}, *b_, ends, request)).colliding > 0 ? 1 : 0;
+    }
+    return colliding;
+  }
+  std::size_t anyOnMotions(const Roadmap& map, std::size_t count, unsigned threads) const override
+  {
+    MotionsRequest request;
+    request.clearance = request_.clearance;
+    request.tolerance = kMotionTolerance * request_.clearance;
+    request.threads = threads;
+    std::vector<PoseMotion> motions;
+    for (std::size_t m = 0; m < count; ++m) motions.push_back({map.motions[m].first, map.motions[m].second});
+    const AnyOnMotions found = anyCollisionOnMotions({*a_}, *b_, PosesOf{map.poses}, motions, request);
+    work_ += found.work;
+    answers_ += count;
+    return found.colliding;
+  }
+
   std::string remark() override
   {
     if (answers_ == 0) return "";
     const std::string words = std::to_string(work_.node_pairs / answers_) + " node pairs, " +
                               std::to_string(work_.updates() / answers_) + " updates, " +
-                              std::to_string(work_.leaf_pairs / answers_) + " leaf pairs a pose";
+                              std::to_string(work_.leaf_pairs / answers_) + " leaf pairs a question";
     work_ = {};
     answers_ = 0;
     return words;
   }
 
 private:
+  static constexpr double kMotionTolerance = 0.1; ///< of the clearance
+
   template <typename Result>
   const Result& counted(const Result& result) const
   {

@@ -4,11 +4,19 @@
 
 #include "workload/points.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh::bench {
+
+/// Poses of b in a's frame, and motions between them: from which pose to which, by their indices.
+struct Roadmap {
+  std::vector<RigidPose> poses;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> motions;
+};
 
 class RigidRacer {
 public:
@@ -28,6 +36,13 @@ public:
   /// Whether any() of many poses in one call is a thing of its own; then anyOfMany() answers them.
   virtual bool takesMany() const { return false; }
   virtual std::size_t anyOfMany(const std::vector<RigidPose>&, unsigned /*threads*/) const { return 0; }
+
+  /// Whether the motion between two poses can be asked about; then on how many of the first `count` motions of a
+  /// roadmap any pair comes within the d of build(), to a tolerance of a tenth of it: one call for each, or one for
+  /// all.
+  virtual bool takesMotions() const { return false; }
+  virtual std::size_t anyOnEachMotion(const Roadmap&, std::size_t /*count*/) const { return 0; }
+  virtual std::size_t anyOnMotions(const Roadmap&, std::size_t /*count*/, unsigned /*threads*/) const { return 0; }
 
   /// What the answers since the last call took on average, in words.
   virtual std::string remark() { return ""; }

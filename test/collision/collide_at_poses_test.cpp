@@ -316,5 +316,56 @@ TEST(AtPoses, ACallbackEndsFlagsInThreads)
   }
 }
 
+TEST(AtPoses, ACallbackStopsThemInThreads)
+{
+  struct Mine {};
+  const Bodies bodies(300, 1500, 0.05);
+  for (const unsigned threads : {1u, 2u})
+    for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.1)}) {
+      const auto any = [&](const PosesProgress& progress) {
+        return anyCollisionAtPoses({bodies.a}, bodies.b, bodies.poses, {0.03, accuracy, threads}, progress).verdicts;
+      };
+      const auto closest = [&](const PosesProgress& progress) {
+        const Poses some(bodies.poses.begin(), bodies.poses.begin() + 300);
+        return closestPairAtPoses({bodies.a}, bodies.b, some, {accuracy, threads}, progress).distances;
+      };
+      const auto expectStops = [](const auto& query) {
+        double last = 0.0;
+        const auto whole = query([&](double done) {
+          EXPECT_GE(done, last);
+          last = done;
+          return true;
+        });
+        EXPECT_EQ(last, 1.0);
+        for (const int stop_at : {1, 2, 3}) {
+          int calls = 0;
+          const auto stops = [&](double) { return ++calls < stop_at; };
+          const auto throws = [&](double) -> bool {
+            if (++calls == stop_at) throw Mine();
+            return true;
+          };
+          try {
+            query(stops);
+            EXPECT_LT(calls, stop_at) << "it went on"; // the other thread may have left the caller few of the batches
+          }
+          catch (const Cancelled&) {
+            EXPECT_EQ(calls, stop_at) << "no call after the one that asked to stop";
+          }
+          calls = 0;
+          try {
+            query(throws);
+            EXPECT_LT(calls, stop_at);
+          }
+          catch (const Mine&) {
+            EXPECT_EQ(calls, stop_at);
+          }
+        }
+        EXPECT_EQ(query({}), whole);
+      };
+      expectStops(any);
+      expectStops(closest);
+    }
+}
+
 } // namespace
 } // namespace pcl_bsh

@@ -7,6 +7,7 @@
 #include <pcl_bsh/collision/trace.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/report/clashes.h>
+#include <pcl_bsh/trajectory/collide_on_motions.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "../query/question.h"
@@ -311,6 +312,22 @@ TEST(AllocationFailure, OfTrajectories)
   for (const TrajectoryRequest& asked : {everything, in_threads, swept, at_level})
     failEachAllocation(
         freshPair, [&](const auto& pair) { return answerOf(collideAlong(pair->placedA(), pair->b, poses, asked)); });
+}
+
+TEST(AllocationFailure, OfManyMotions)
+{
+  const std::vector<Eigen::Isometry3d> poses = somePoses();
+  std::vector<PoseMotion> motions;
+  for (std::uint32_t k = 1; k < poses.size(); ++k) motions.insert(motions.end(), {{k - 1, k}, {k, 0}});
+  for (const unsigned threads : {1u, 2u}) {
+    MotionsRequest asked;
+    asked.clearance = 0.01;
+    asked.tolerance = 0.002;
+    asked.threads = threads;
+    failEachAllocation(freshPair, [&](const auto& pair) {
+      return anyCollisionOnMotions(pair->placedA(), pair->b, poses, motions, asked).verdicts;
+    });
+  }
 }
 
 TEST(AllocationFailure, LeaksNothing)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tells the caller of a trajectory query how far it is, and learns whether to stop.
+// Tells the caller of a long query how far it is, and learns whether to stop.
 #pragma once
 
+#include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/query/stop_rule.h>
-#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>
 #include <atomic>
@@ -18,11 +18,12 @@ struct OutOfTime {};
 
 class Progress {
 public:
-  /// @param report see TrajectoryRequest::progress; called in the thread that made this object
+  /// @param report is called in the thread that made this object, with the fraction done in [0, 1], which never falls;
+  ///   false: stop
   explicit Progress(const std::function<bool(double)>& report) : report_(report) {}
 
   static constexpr double kPath = 0.05,
-                          kBroadPhase = 0.1; ///< what these parts take the whole to; the walks do the rest
+                          kBroadPhase = 0.1; ///< along a path: what these parts take the whole to; walks do the rest
 
   /// Begins the next part of the work: all of its steps together take the whole to this fraction.
   void begin(double end, std::size_t steps)

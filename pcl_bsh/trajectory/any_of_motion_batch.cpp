@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Any collision on motions near each other: what is apart at the middle of a group of them by more than all of them
+// move is apart on all of them. The motions that are left are looked at one by one, likely witnesses first.
+#include <pcl_bsh/collision/any_collision.h>
+#include <pcl_bsh/trajectory/motion_batch.h>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/trajectory/any_of_motion_batch.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/collision/any_search-inl.h>
+#include <pcl_bsh/collision/pose_groups-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace {
+
+class AnyOfMotions {
+public:
+  AnyOfMotions(const MotionBatch& batch, std::uint8_t* verdicts, Progress& progress)
+  : batch_(batch),
+    query_(batch.query),
+    verdicts_(verdicts),
+    progress_(progress)
+  {
+    at_middle_.clearance = query_.request.clearance;
+  }
+
+  Work run()
+  {
+    PoseGroups groups(batch_.middles, query_.beyond,
+                      [this](std::size_t i, NodePairs& pairs, std::size_t from) { decide(i, pairs, from); });
+    Work work = groups.run();
+    return work += work_;
+  }
+
+private:
+  void decide(std::size_t i, NodePairs& pairs, std::size_t from)
+  {
+    const Eigen::Isometry3d& middle = batch_.middles.poses[i];
+    bool near = false;
+    pairs.findNear(middle, query_.beyond + batch_.middles.extents[i], from,
+                   [&near](std::size_t, double) { near = true; });
+    if (near && collides(i, {query_.model, middle}, pairs, from)) verdicts_[i] = flagOf(Verdict::colliding);
+  }
+
+  /// What collides at an instant, decided exactly, collides on the motion, too. What does not collide at the instants
+  /// that are tried needs the walk.
+  bool collides(std::size_t i, const Placed& at_middle, NodePairs& pairs, std::size_t from)
+  {
+    const RigidMotion& motion = batch_.motions[i];
+    if (witness_ && collidesDuring(query_, motion, *witness_, work_)) return true;
+    std::optional<PointPair> witness = searchAt(at_middle, pairs, from);
+    if (!witness) witness = findOnMotion(query_, motion, progress_, work_);
+    if (!witness) return false;
+    witness_ = witness;
+    return true;
+  }
+
+  std::optional<PointPair> searchAt(const Placed& model, NodePairs& pairs, std::size_t from)
+  {
+    near_.clear();
+    pairs.findNear(model.pose, at_middle_.clearance, from, [&](std::size_t k, double squared) {
+      near_.push_back(pairs.lanes(k));
+      near_.back().key = static_cast<float>(squared);
+    });
+    if (near_.empty()) return std::nullopt;
+    nearestLast(near_, 0);
+    AnySearch search(query_.scan, model, at_middle_, NoObserver());
+    std::optional<PointPair> witness = search.searchBelow(near_);
+    work_ += search.work();
+    return witness;
+  }
+
+  const MotionBatch& batch_;
+  const MotionsQuery& query_;
+  std::uint8_t* verdicts_;
+  Progress& progress_;
+  AnyRequest at_middle_;
+  std::optional<PointPair> witness_; ///< of the last motion that collided
+  std::vector<LanePair> near_;
+  Work work_;
+};
+
+} // namespace
+
+Work anyOfMotionBatchOnTarget(const MotionBatch& batch, std::uint8_t* verdicts, Progress& progress)
+{
+  return AnyOfMotions(batch, verdicts, progress).run();
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(anyOfMotionBatchOnTarget);
+
+Work anyOfMotionBatch(const MotionBatch& batch, std::uint8_t* verdicts, Progress& progress)
+{
+  return HWY_DYNAMIC_DISPATCH(anyOfMotionBatchOnTarget)(batch, verdicts, progress);
+}
+
+} // namespace pcl_bsh
+#endif

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/query/brute_force_points.h>
+#include <pcl_bsh/trajectory/check_motions.h>
+#include <pcl_bsh/trajectory/point_segment.h>
+
+#include <algorithm>
+
+namespace pcl_bsh::brute_force {
+namespace {
+
+/// Whether a point of the scan comes near enough to one of the model in the part of the path after pose k of it.
+bool comeNear(const TrajectoryQuery& query, std::uint32_t k, const FinitePoint& p, const FinitePoint& q)
+{
+  PathInterval part;
+  part.first = k;
+  part.last = k + 1;
+  const double near_enough = query.reach - query.radii + p.radius + q.radius;
+  return PointSegment(query, p.record, part).approachTo(query, q.record, near_enough).contact;
+}
+
+} // namespace
+
+AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
+                                   const std::vector<PoseMotion>& motions, const MotionsRequest& request)
+{
+  check(scan, poses, motions, request);
+  checkNoUncertainty("model", model.view());
+  const DefaultFloatEnvironment environment;
+  AnyOnMotions result;
+  result.verdicts.assign(motions.size(), flagOf(Verdict::free));
+  if (scan.hierarchy().empty() || model.empty()) return result;
+  const MotionsQuery query(scan, model, request);
+  std::vector<std::uint32_t> used;
+  for (const PoseMotion& motion : motions) used.insert(used.end(), {motion.from, motion.to});
+  checkSwept(query, poses, used, motions);
+  const std::vector<FinitePoint> points = finitePoints(scan.hierarchy().view()), obstacles = finitePoints(model.view());
+  const std::function<bool(double)> silent;
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    const RigidMotion motion = motionBetween(poses[motions[m].from], poses[motions[m].to], request.pivot);
+    const std::vector<Eigen::Isometry3d> ends = {motion.from(), motion.to()};
+    Progress progress(silent);
+    TrajectoryResult unused;
+    const TrajectoryQuery path(scan, model, query.boxes, ends, query.swept, unused, progress, Wanted::witness);
+    const auto collides = [&](const FinitePoint& p, const FinitePoint& q) {
+      ++result.work.exact_decisions;
+      for (const Eigen::Isometry3d& pose : ends)
+        if (ExactDistance(scan.pose, pose).compare(p.point, q.point, request.clearance, p.radius, q.radius) <= 0)
+          return true;
+      for (std::uint32_t k = 0; k + 1 < path.path.poses.size(); ++k)
+        if (comeNear(path, k, p, q)) return true;
+      return false;
+    };
+    const bool colliding = std::any_of(points.begin(), points.end(), [&](const FinitePoint& p) {
+      return std::any_of(obstacles.begin(), obstacles.end(), [&](const FinitePoint& q) { return collides(p, q); });
+    });
+    if (!colliding) continue;
+    result.verdicts[m] = flagOf(Verdict::colliding);
+    ++result.colliding;
+  }
+  return result;
+}
+
+} // namespace pcl_bsh::brute_force
