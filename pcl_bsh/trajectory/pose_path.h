@@ -6,7 +6,7 @@
 #include <pcl_bsh/geometry/point3.h>
 #include <pcl_bsh/geometry/polar_decomposition.h>
 #include <pcl_bsh/geometry/rigid_motion.h>
-#include <pcl_bsh/trajectory/trajectory_progress.h>
+#include <pcl_bsh/query/progress.h>
 
 #include <Eigen/Geometry>
 
@@ -15,6 +15,9 @@
 #include <vector>
 
 namespace pcl_bsh {
+
+/// What these parts of a query along a path take its progress to; the walks do the rest.
+inline constexpr double kPathDone = 0.05, kBroadPhaseDone = 0.1;
 
 /// Seen by the model at this pose, point x of the world is at R' (x - center), from the model's centre. Of a swept path
 /// R is the rotation nearest to the pose's linear part.

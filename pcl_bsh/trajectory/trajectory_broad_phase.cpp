@@ -76,7 +76,7 @@ std::vector<std::vector<std::uint32_t>> TrajectoryQuery::nearIntervals(const Sto
   const SphereHierarchy::Storage& storage = scan.hierarchy().storage();
   std::vector<std::vector<std::uint32_t>> near_intervals(storage.voxel_count);
   if (storage.size == 0 || boxes.storage.size == 0 || path.poses.empty()) return near_intervals;
-  progress.begin(Progress::kBroadPhase, storage.top[0].count);
+  progress.begin(kBroadPhaseDone, storage.top[0].count);
   for (std::uint32_t lane = 0; lane < storage.top[0].count; ++lane) {
     collectNear(0, lane, 0, rule, progress, near_intervals);
     progress.skipTo(lane + 1);

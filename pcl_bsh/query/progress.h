@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tells the caller of a trajectory query how far it is, and learns whether to stop.
+// Tells the caller of a long query how far it is, and learns whether to stop.
 #pragma once
 
+#include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/query/stop_rule.h>
-#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>
 #include <atomic>
@@ -20,9 +20,6 @@ class Progress {
 public:
   /// @param report see TrajectoryRequest::progress; called in the thread that made this object
   explicit Progress(const std::function<bool(double)>& report) : report_(report) {}
-
-  static constexpr double kPath = 0.05,
-                          kBroadPhase = 0.1; ///< what these parts take the whole to; the walks do the rest
 
   /// Begins the next part of the work: all of its steps together take the whole to this fraction.
   void begin(double end, std::size_t steps)
