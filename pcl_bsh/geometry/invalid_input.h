@@ -38,6 +38,7 @@ enum class Input : std::uint8_t {
   result, ///< of another query than is asked for
   motion, ///< of a scene's object
   scene,  ///< its options, objects, parts or rules
+  max_distance, ///< of points' distances
 };
 
 /// Thrown by the core wherever its declarations say std::invalid_argument.
