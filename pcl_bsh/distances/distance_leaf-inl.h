@@ -11,6 +11,7 @@
 
 #include <pcl_bsh/distances/distance_query.h>
 #include <pcl_bsh/distances/distance_visit-inl.h>
+#include <pcl_bsh/distances/rounded_lengths-inl.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,7 @@ namespace HWY_NAMESPACE {
 
 class DistanceLeaf {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  static constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
   static constexpr double kMargin = kSphereMargin; ///< 16 u: above what roots, radii and sums round
 
 public:
@@ -36,69 +38,96 @@ public:
     view_b_(query.b.hierarchy().view()),
     unit_(query.b.hierarchy().storage().frame.unit),
     largest_radius_(query.b.hierarchy().storage().largest_radius),
-    max_(query.pairs.clearance)
+    own_radii_(roundUp(query.a.hierarchy().storage().largest_radius / unit_)),
+    max_(query.pairs.clearance),
+    lengths_only_(query.proven && !query.pairs.haveRadii() && query.a.pose.linear() == Eigen::Matrix3d::Identity() &&
+                  query.b.pose.linear() == Eigen::Matrix3d::Identity())
   {
+    for (int k = 0; k < 3; ++k)
+      shift_[static_cast<std::size_t>(k)] = twoSum(query.a.pose.translation()(k), -query.b.pose.translation()(k));
   }
 
   /// Measures all points of a leaf.
   /// @param visit of the node it is a child of @param lane the child
-  /// @param near the leaves of b that can hold a nearest point; left in the order of their lower bounds
+  /// @param near the leaves of b that can hold a nearest point; left in another order
   void measure(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near)
   {
     leaf_ = {&voxel, visit.node->begin[lane], visit.node->comparedPoints(lane)};
     ++stamp_;
-    std::sort(near.begin(), near.end(), [](const NearSphere& x, const NearSphere& y) { return x.lower < y.lower; });
     std::uint32_t undecided = firstBits(leaf_.count);
     const bool by_float = largest_radius_ > 0.0 ? findNearest<true>(visit, lane, near, undecided)
                                                 : findNearest<false>(visit, lane, near, undecided);
     for (std::uint32_t i = 0; i < leaf_.count; ++i) {
-      const Found found = (undecided >> i & 1) != 0 ? decide(i, near, visit.cut[lane], by_float) : named(i, near);
-      write(i, found, visit.node->begin[lane], visit.node->begin[lane + 1]);
+      Found& found = found_[i];
+      found = (undecided >> i & 1) != 0 ? decide(i, near, visit.cut[lane], by_float) : named(i, near);
     }
+    if (lengths_only_) measureLengths();
+    for (std::uint32_t i = 0; i < leaf_.count; ++i)
+      write(i, found_[i], visit.node->begin[lane], visit.node->begin[lane + 1]);
   }
 
 private:
   /// The point of b that is the nearest to one of a.
   struct Found {
-    const Voxel* voxel = nullptr;         ///< null: none
-    std::uint32_t point = 0;              ///< in the voxel
-    double least = 0.0, most = kInfinity; ///< of the distance, less the radius of b's point alone
+    const Voxel* voxel = nullptr;                ///< null: none
+    std::uint32_t point = 0;                     ///< in the voxel
+    double least = -kInfinity, most = kInfinity; ///< of the distance, less the radius of b's point alone
   };
 
   /// Finds the nearest two of b's points to each point of the leaf by their float distances.
   /// @param undecided receives the points whose nearest is not proven @return false when floats decide nothing
   template <bool kBalls>
-  bool findNearest(const DistanceVisit& visit, std::uint32_t lane, const std::vector<NearSphere>& near,
+  bool findNearest(const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near,
                    std::uint32_t& undecided)
   {
     if (kBalls && !(unit_ >= 0x1p-60 && unit_ <= 0x1p60)) return false; // radii would leave the range of float
     two_.clear();
     for (std::uint32_t i = leaf_.count; i < kLeafPoints; ++i) two_.first[i] = -std::numeric_limits<float>::infinity();
     error_ = kSmallestLength;
-    float limit = visit.cut[lane];
-    for (std::size_t n = 0; n < near.size() && !(near[n].lower > limit); ++n) {
+    float limit = visit.cut[lane], farthest = std::numeric_limits<float>::infinity();
+    for (std::size_t n = 0; n < near.size(); ++n) {
+      if (n < kNearestFirst) bringNearest(near, n);
       const NearSphere& candidate = near[n];
+      if (candidate.lower > limit) {
+        if (n < kNearestFirst) break;
+        continue;
+      }
       const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
       if (!obstacle.is_plain || n >= kMostNamed) return false;
       ++work_.leaf_pairs;
-      const CarriedNode& own = visit.carried[candidate.sphere.obstacle];
+      const CarriedLeaf& own = carried(candidate.sphere.obstacle);
       const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
       std::uint32_t facing = firstBits(other.count);
       if constexpr (!kBalls) {
-        const float reach = own.r[lane] + limit * obstacle.at_most_inside + obstacle.prune_reach;
-        facing = pointsNear(other.x(), other.y(), other.z(), other.count, own.x[lane], own.y[lane], own.z[lane], reach,
-                            2 * kSphereMargin); // twice: the limit is rounded, too
+        const float reach = (limit + own_radii_) * obstacle.at_most_inside + obstacle.prune_reach;
+        facing &= pointsNearBox(other.x(), other.y(), other.z(), own.low, own.high, reach,
+                                2 * kSphereMargin); // twice: the limit is rounded, too
         if (facing == 0) continue;
       }
-      const float* const radii = kBalls && other.voxel->radii ? other.voxel->radii + other.begin : nullptr;
-      takeNearestTwo<kBalls>(carried(candidate.sphere.obstacle), other.x(), other.y(), other.z(), radii,
-                             static_cast<float>(1.0 / unit_), facing, static_cast<std::int32_t>(n * kLeafPoints), two_);
+      const float* const radii = kBalls ? other.voxel->radii + other.begin : nullptr;
+      takeNearestTwo<kBalls>(own.points, other.x(), other.y(), other.z(), radii, static_cast<float>(1.0 / unit_),
+                             facing, static_cast<std::int32_t>(n * kLeafPoints), two_);
       error_ = std::max(error_, static_cast<double>(obstacle.error));
       skew_ = obstacle.frame.skew();
-      limit = std::min(limit, beyond(mostOf<kBalls>(largestOf(two_.first, leaf_.count))));
+      const float now = largestOf(two_.first, kLeafPoints);
+      if (now < farthest) {
+        farthest = now;
+        limit = std::min(limit, beyond(mostOf<kBalls>(farthest)));
+      }
     }
     undecided = query_.proven ? ambiguous<kBalls>() : 0;
     return true;
+  }
+
+  static constexpr std::size_t kNearestFirst = 3; ///< of the candidates: these leave little to the others
+
+  /// Swaps the nearest of the candidates from n on to that place.
+  static void bringNearest(std::vector<NearSphere>& near, std::size_t n)
+  {
+    std::size_t least = n;
+    for (std::size_t i = n + 1; i < near.size(); ++i)
+      if (near[i].lower < near[least].lower) least = i;
+    std::swap(near[n], near[least]);
   }
 
   static constexpr std::size_t kMostNamed = std::size_t{1} << 27; ///< leaves whose points have names
@@ -139,14 +168,19 @@ private:
     return bits;
   }
 
-  const LeafPoints& carried(std::uint32_t obstacle)
+  const CarriedLeaf& carried(std::uint32_t obstacle)
   {
     CarriedLeaf& own = leaves_[obstacle];
-    if (own.stamp != stamp_) {
-      carryLeaf(obstacles_[obstacle].frame, leaf_, own.points);
-      own.stamp = stamp_;
+    if (own.stamp == stamp_) return own;
+    own.stamp = stamp_;
+    carryLeaf(obstacles_[obstacle].frame, leaf_, own.points);
+    float* const axes[] = {own.points.x, own.points.y, own.points.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::fill(axes[k] + leaf_.count, axes[k] + kLeafPoints, axes[k][0]);
+      own.low[k] = smallestOf(axes[k], kLeafPoints);
+      own.high[k] = largestOf(axes[k], kLeafPoints);
     }
-    return own.points;
+    return own;
   }
 
   Found named(std::uint32_t i, const std::vector<NearSphere>& near) const
@@ -154,12 +188,14 @@ private:
     if (two_.name[i] < 0) return {};
     const auto name = static_cast<std::size_t>(two_.name[i]);
     const ObstacleSphere& sphere = near[name / kLeafPoints].sphere;
+    Found found{obstacles_[sphere.obstacle].voxel,
+                sphere.node->begin[sphere.lane] + static_cast<std::uint32_t>(name % kLeafPoints)};
+    if (query_.proven && max_ == kInfinity) return found;
     const bool balls = largest_radius_ > 0.0;
     const float value = two_.first[i];
-    return {obstacles_[sphere.obstacle].voxel,
-            sphere.node->begin[sphere.lane] + static_cast<std::uint32_t>(name % kLeafPoints),
-            (balls ? leastOf<true>(value) : leastOf<false>(value)) * unit_,
-            (balls ? mostOf<true>(value) : mostOf<false>(value)) * unit_};
+    found.least = (balls ? leastOf<true>(value) : leastOf<false>(value)) * unit_;
+    found.most = (balls ? mostOf<true>(value) : mostOf<false>(value)) * unit_;
+    return found;
   }
 
   Point3 given(std::uint32_t i) const { return leaf_.voxel->point(view_a_, leaf_.begin + i); }
@@ -186,10 +222,10 @@ private:
     };
     if (best.voxel) take(best, posed(i, best));
     for (const NearSphere& candidate : near) {
-      if (double{candidate.lower} * unit_ > most) break;
+      if (double{candidate.lower} * unit_ > most) continue;
       const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
       const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
-      const LeafPoints& points = carried(candidate.sphere.obstacle);
+      const LeafPoints& points = carried(candidate.sphere.obstacle).points;
       alignas(64) float squared[kLeafPoints];
       leafSquaredDistances(other.x(), other.y(), other.z(), points.x[i], points.y[i], points.z[i], squared);
       const double within = (most + own_radius + largest_radius_) * (1.0 + kDoubleMargin);
@@ -222,18 +258,32 @@ private:
     return query_.pairs.distance.compare(pair.p, pair.q, max_, pair.radius_p, pair.radius_q) <= 0;
   }
 
+  /// The distances of all that were found, where poses are translations and points have no radii.
+  void measureLengths()
+  {
+    for (std::uint32_t i = 0; i < leaf_.count; ++i) {
+      const Found& found = found_[i];
+      const Point3 p = given(i), q = found.voxel ? found.voxel->point(view_b_, found.point) : p;
+      for (std::size_t k = 0; k < 3; ++k) given_.p[k][i] = p[k], given_.q[k][i] = q[k];
+    }
+    roundedLengths(given_, shift_, lengths_);
+  }
+
   /// Writes what was found of point i; of a place that many points share, for all of them.
   void write(std::uint32_t i, const Found& found, std::uint32_t begin, std::uint32_t end)
   {
-    double distance = std::numeric_limits<double>::quiet_NaN();
+    double distance = kNotKnown;
     std::uint32_t nearest = PointDistances::kNoPoint;
     Interval interval{max_, kInfinity};
     if (found.voxel) {
-      const ExactDistance::Pair pair = posed(i, found);
-      if (isWithin(found, pair)) {
+      const bool is_known = lengths_only_ && max_ == kInfinity && !std::isnan(lengths_[i]);
+      const ExactDistance::Pair pair = is_known ? ExactDistance::Pair() : posed(i, found);
+      if (is_known || isWithin(found, pair)) {
         nearest = recordOf(found);
         const bool by_float = !query_.proven && found.most < kInfinity;
-        distance = by_float ? (found.least + found.most) / 2 - pair.radius_p : query_.pairs.distance.gap(pair);
+        distance = lengths_only_ ? lengths_[i] : kNotKnown;
+        if (by_float) distance = (found.least + found.most) / 2 - pair.radius_p;
+        if (std::isnan(distance)) distance = query_.pairs.distance.gap(pair);
         if (sheet_.interval) interval = intervalOf(distance);
       }
     }
@@ -258,10 +308,16 @@ private:
   const PointsView& view_a_;
   const PointsView& view_b_;
   const double unit_; ///< of bounds and floats, in the clouds' unit
-  const double largest_radius_;
+  const double largest_radius_; ///< of b's points, in the clouds' unit
+  const float own_radii_;       ///< the largest of a's points, in the walk's unit
   const double max_;
+  const bool lengths_only_; ///< whether distances are lengths of differences between given points, and a shift
+  std::array<WithError, 3> shift_;
 
   LeafRange leaf_;
+  Found found_[kLeafPoints];
+  GivenPairs given_ = {};
+  alignas(64) double lengths_[kLeafPoints];
   NearestTwo two_;
   double error_ = 0.0; ///< of the float distances, in the walk's unit
   double skew_ = 0.0;

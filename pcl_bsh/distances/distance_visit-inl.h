@@ -56,7 +56,8 @@ struct CarriedNode {
 
 /// A leaf of a likewise.
 struct CarriedLeaf {
-  LeafPoints points;
+  LeafPoints points;       ///< those past the leaf's count are its first
+  float low[3], high[3];   ///< the box around them
   std::uint64_t stamp = 0; ///< of the leaf
 };
 

@@ -50,6 +50,26 @@ HWY_INLINE std::uint32_t pointsNear(const float* x, const float* y, const float*
   return ~far & firstBits(count);
 }
 
+/// Which of sixteen points are not proven to be farther than reach from the box [low, high]; the arrays go on that far.
+HWY_INLINE std::uint32_t pointsNearBox(const float* x, const float* y, const float* z, const float* low,
+                                       const float* high, float reach, float margin)
+{
+  const LaneTag d;
+  const LaneVector limit = hn::Set(d, reach * reach * (1.0f + margin));
+  const auto outside = [d](const float* at, float least, float most) {
+    const LaneVector value = hn::LoadU(d, at);
+    return hn::Max(hn::Max(hn::Sub(hn::Set(d, least), value), hn::Sub(value, hn::Set(d, most))), hn::Zero(d));
+  };
+  std::uint32_t far = 0;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+    const LaneVector dx = outside(x + i, low[0], high[0]);
+    const LaneVector dy = outside(y + i, low[1], high[1]);
+    const LaneVector dz = outside(z + i, low[2], high[2]);
+    far |= bitsOf(d, hn::Gt(squaredNorm(dx, dy, dz), limit)) << i;
+  }
+  return ~far & firstBits(kLeafPoints);
+}
+
 /// Lowers nearest[i] to the smallest squared distance of point i to those points (x, y, z) that have their bit set;
 /// none may be NaN where the result is used.
 HWY_INLINE void nearestSquared(const LeafPoints& points, const float* x, const float* y, const float* z,
