@@ -119,7 +119,7 @@ private:
     return true;
   }
 
-  static constexpr std::size_t kNearestFirst = 3; ///< of the candidates: these leave little to the others
+  static constexpr std::size_t kNearestFirst = 1; ///< of the candidates: these leave little to the others
 
   /// Swaps the nearest of the candidates from n on to that place.
   static void bringNearest(std::vector<NearSphere>& near, std::size_t n)
@@ -307,7 +307,7 @@ private:
   Work& work_;
   const PointsView& view_a_;
   const PointsView& view_b_;
-  const double unit_; ///< of bounds and floats, in the clouds' unit
+  const double unit_;           ///< of bounds and floats, in the clouds' unit
   const double largest_radius_; ///< of b's points, in the clouds' unit
   const float own_radii_;       ///< the largest of a's points, in the walk's unit
   const double max_;

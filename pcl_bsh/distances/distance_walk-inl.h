@@ -142,7 +142,7 @@ private:
       const std::uint32_t begin = node.begin[lane], end = node.begin[lane + 1];
       if (near.empty())
         for (std::uint32_t i = begin; i < end; ++i) setBeyond(a_voxel_->records()[i]);
-      else if (depth + 1 >= rule_.deepest || (node.isLeaf(lane) && !std::all_of(near.begin(), near.end(), isOfPoints)))
+      else if (rule_.mayStop() && isLeft(visit, lane, depth))
         leave(begin, end, near, visit.cut[lane]);
       else if (node.isLeaf(lane))
         leaf_.measure(*a_voxel_, visit, lane, near);
@@ -152,8 +152,14 @@ private:
     }
   }
 
-  /// Of spheres in voxels and above: whether it is a leaf's, of points.
-  static bool isOfPoints(const NearSphere& near) { return near.sphere.level > 0 && near.sphere.isLeaf(); }
+  /// Whether a child ends here undecided: the level does not go further down in one of the clouds.
+  bool isLeft(const DistanceVisit& visit, std::uint32_t lane, std::size_t depth) const
+  {
+    const auto is_of_points = [](const NearSphere& near) { return near.sphere.level > 0 && near.sphere.isLeaf(); };
+    const std::vector<NearSphere>& near = visit.near[lane];
+    return depth + 1 >= rule_.deepest ||
+           (visit.node->isLeaf(lane) && !std::all_of(near.begin(), near.end(), is_of_points));
+  }
 
   /// Bounds the distances from the children of the visit that are in `lanes` to a sphere of b.
   DistanceRow compare(DistanceVisit& visit, const ObstacleSphere& sphere, std::uint32_t lanes)
@@ -197,7 +203,8 @@ private:
   {
     const std::uint32_t near = row.lanes & notAbove(row.lower, visit.cut);
     if (near == 0) return;
-    const std::uint32_t opening = isOpened(row.sphere) ? near & (visit.leaves | smallerLanes(visit, row.sphere)) : 0;
+    const std::uint32_t opening =
+        isOpened(row.sphere) ? near & (visit.leaves | smallerLanes(visit, row.sphere, near & ~visit.leaves)) : 0;
     if ((near & ~opening) != 0) {
       visit.kept.push_back(row);
       visit.kept.back().lanes = near & ~opening;
@@ -233,14 +240,15 @@ private:
     return rule_.leavesTimeToBuild(b_.storage.pointsToBuild(sphere.node->begin[sphere.lane]));
   }
 
-  /// The children of the visit that are smaller than the sphere.
-  std::uint32_t smallerLanes(DistanceVisit& visit, const ObstacleSphere& sphere)
+  /// The children of the visit among these that are smaller than the sphere.
+  std::uint32_t smallerLanes(DistanceVisit& visit, const ObstacleSphere& sphere, std::uint32_t among)
   {
+    if (among == 0) return 0;
     const CarriedNode& own = carried(visit, sphere.obstacle);
     const float radius = sphere.node->r[sphere.lane];
     std::uint32_t smaller = 0;
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) smaller |= (own.r[lane] < radius ? 1u : 0u) << lane;
-    return smaller;
+    return smaller & among;
   }
 
   /// The first child of a sphere that is opened. Entering a voxel builds it.
@@ -329,7 +337,7 @@ private:
   Interval certain(float lower, float upper) const
   {
     const double low = double{lower} * unit_, high = double{upper} * unit_;
-    return {std::min(low, std::nextafter(max_, 0.0)), high > max_ ? kInfinity : high};
+    return {std::min(low, std::nextafter(max_, 0.0)), high >= max_ ? kInfinity : high};
   }
 
   const DistanceQuery& query_;
