@@ -24,7 +24,7 @@ inline std::uint32_t hitPoints(const ObstacleVoxel& obstacle, const FlagVisit& v
   std::uint32_t hit = 0;
   for (const ObstacleSphere& candidate : visit.near[lane]) {
     ++work.leaf_pairs;
-    const LeafRange other = candidate.leaf(obstacle);
+    const LeafRange other = candidate.leaf(*obstacle.voxel);
     // Of neighbouring leaves, only the points that face each other.
     const std::uint32_t facing = pointsNear(other.x(), other.y(), other.z(), other.count, visit.x[lane], visit.y[lane],
                                             visit.z[lane], visit.r[lane] + obstacle.prune_reach, kSphereMargin);
@@ -36,7 +36,7 @@ inline std::uint32_t hitPoints(const ObstacleVoxel& obstacle, const FlagVisit& v
   const std::uint32_t undecided = open & ~hit & ~above(nearest, obstacle.band.miss);
   for (const ObstacleSphere& candidate : visit.near[lane]) {
     if ((undecided & ~hit) == 0) break;
-    const LeafRange other = candidate.leaf(obstacle);
+    const LeafRange other = candidate.leaf(*obstacle.voxel);
     eachPairNotBeyond(points, undecided, other, obstacle.band.miss, [&](std::uint32_t i, std::uint32_t j, float) {
       if ((hit >> i & 1) == 0 && pairs.collide({leaf.record(i), other.record(j)}, work)) hit |= 1u << i;
       return (undecided & ~hit) == 0;
@@ -54,7 +54,7 @@ inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, const FlagVisit& vi
   for (const ObstacleSphere& candidate : visit.near[lane]) {
     if (hit == open) break;
     ++work.leaf_pairs;
-    const LeafRange other = candidate.leaf(obstacle);
+    const LeafRange other = candidate.leaf(*obstacle.voxel);
     eachBallPairNear(obstacle.frame, points, open, leaf, other, pairs.clearance,
                      [&](std::uint32_t i, std::uint32_t j, float) {
                        if ((hit >> i & 1) == 0 && pairs.collide({leaf.record(i), other.record(j)}, work))

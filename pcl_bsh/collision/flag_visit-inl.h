@@ -11,7 +11,7 @@
 
 #include <pcl_bsh/geometry/distance_band.h>
 #include <pcl_bsh/hierarchy/slabs.h>
-#include <pcl_bsh/traversal/leaf_pair-inl.h>
+#include <pcl_bsh/traversal/obstacle_sphere-inl.h>
 
 #include <deque>
 #include <vector>
@@ -30,27 +30,6 @@ struct ObstacleVoxel {
   float blunt_radius;
   DistanceBand band;
   const Slabs* slabs = nullptr; ///< of its nodes, once asked for
-};
-
-/// A sphere of b that the points of some node of a may collide with: a child of `node`, in one of the obstacle voxels.
-struct ObstacleSphere {
-  const Node* node;
-  std::uint16_t lane;
-  std::uint16_t level; ///< of `node` below its voxel, from 1
-  std::uint32_t obstacle;
-
-  bool isLeaf() const { return node->isLeaf(lane); }
-  ObstacleSphere below(const Node& child, std::uint32_t i) const
-  {
-    return {&child, static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(level + 1), obstacle};
-  }
-  LeafRange leaf(const ObstacleVoxel& m) const { return {m.voxel, node->begin[lane], node->comparedPoints(lane)}; }
-};
-
-/// A sphere in the frame of a's voxel.
-struct BoundingSphere {
-  Point center;
-  float radius;
 };
 
 /// One node of a on its way through b, its children tested all at once.
@@ -104,7 +83,7 @@ inline bool hasPointWithin(const ObstacleVoxel& obstacle, const ObstacleSphere& 
                            Work& work)
 {
   if (candidate.isLeaf()) {
-    const LeafRange leaf = candidate.leaf(obstacle);
+    const LeafRange leaf = candidate.leaf(*obstacle.voxel);
     return anyPointWithin(leaf.x(), leaf.y(), leaf.z(), leaf.count, ball.x, ball.y, ball.z, ball.near_reach);
   }
   const Node& below = obstacle.voxel->nodes[candidate.node->child[candidate.lane]];

@@ -6,6 +6,7 @@
 #include <pcl_bsh/geometry/compensated_sum.h>
 #include <pcl_bsh/geometry/dyadic.h>
 #include <pcl_bsh/geometry/expansion.h>
+#include <pcl_bsh/geometry/rounded_length.h>
 
 #include <limits>
 
@@ -162,6 +163,8 @@ int ExactDistance::compareGaps(const Pair& first, const ExactDistance& other, co
 
 double ExactDistance::gap(const Pair& pair) const
 {
+  const double quick = roundedLength(difference(pair.p, pair.q), pair.radius_p, pair.radius_q);
+  if (!std::isnan(quick)) return quick;
   const Dyadic squared = squaredDistance(pair.p, pair.q);
   const Dyadic radii = Dyadic(pair.radius_p) + Dyadic(pair.radius_q);
   if (compareRoot(squared, radii) == 0) return 0.0;
@@ -242,6 +245,32 @@ ExactDistance::Enclosure ExactDistance::encloseClosely(const Point3& p, const Po
   const double distance = std::sqrt(squared);
   const double error = kFewDoubleRoundings * distance + CompensatedSum::kError * terms + kUnderflow;
   return {distance - error, distance + error};
+}
+
+/// T_a p - T_b q with its rounding errors: translated as in encloseTranslated(), posed as in encloseClosely().
+std::array<LongCoordinate, 3> ExactDistance::difference(const Point3& p, const Point3& q) const
+{
+  std::array<LongCoordinate, 3> vector;
+  for (std::size_t k = 0; k < 3; ++k) {
+    LongCoordinate& c = vector[k];
+    if (translations_only_) {
+      const WithError between = twoSum(p[k], -q[k]);
+      const WithError shift = twoSum(a_[k][3], -b_[k][3]);
+      const WithError sum = twoSum(between.value, shift.value);
+      c = {sum.value, between.error + shift.error + sum.error,
+           4 * kDoubleUnit * (std::abs(between.error) + std::abs(shift.error) + std::abs(sum.error))};
+      continue;
+    }
+    CompensatedSum sum;
+    sum.add(a_[k][3]);
+    sum.add(-b_[k][3]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      sum.addProduct(a_[k][j], p[j]);
+      sum.addProduct(-b_[k][j], q[j]);
+    }
+    c = {sum.sum, sum.errors, CompensatedSum::kError * sum.absolute + kUnderflow};
+  }
+  return vector;
 }
 
 /// T_a p - T_b q when its three coordinates are doubles, found without rounding, and safelySquared().

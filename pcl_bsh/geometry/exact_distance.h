@@ -19,6 +19,7 @@
 namespace pcl_bsh {
 
 class Dyadic;
+struct LongCoordinate;
 
 /// |T_a p - T_b q| under two fixed poses. Const methods may run in several threads at once. Cost: some 20 ns when
 /// double arithmetic can vouch for the answer, up to a microsecond when it cannot.
@@ -63,6 +64,7 @@ private:
 
   Enclosure encloseTranslated(const Point3& p, const Point3& q) const;
   Enclosure encloseClosely(const Point3& p, const Point3& q) const;
+  std::array<LongCoordinate, 3> difference(const Point3& p, const Point3& q) const;
   bool exactDifference(const Point3& p, const Point3& q, Point3& difference) const;
   Dyadic squaredDistance(const Point3& p, const Point3& q) const;
 

@@ -39,6 +39,7 @@ enum class Input : std::uint8_t {
   result, ///< of another query than is asked for
   motion, ///< of a scene's object, or one of many
   scene,  ///< its options, objects, parts or rules
+  max_distance, ///< of points' distances
 };
 
 /// Thrown by the core wherever its declarations say std::invalid_argument.

@@ -22,9 +22,6 @@ public:
   ///   false: stop
   explicit Progress(const std::function<bool(double)>& report) : report_(report) {}
 
-  static constexpr double kPath = 0.05,
-                          kBroadPhase = 0.1; ///< along a path: what these parts take the whole to; walks do the rest
-
   /// Begins the next part of the work: all of its steps together take the whole to this fraction.
   void begin(double end, std::size_t steps)
   {

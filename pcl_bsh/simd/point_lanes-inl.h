@@ -11,6 +11,7 @@
 #include <pcl_bsh/simd/sphere_lanes-inl.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
@@ -49,6 +50,26 @@ HWY_INLINE std::uint32_t pointsNear(const float* x, const float* y, const float*
   return ~far & firstBits(count);
 }
 
+/// Which of sixteen points are not proven to be farther than reach from the box [low, high]; the arrays go on that far.
+HWY_INLINE std::uint32_t pointsNearBox(const float* x, const float* y, const float* z, const float* low,
+                                       const float* high, float reach, float margin)
+{
+  const LaneTag d;
+  const LaneVector limit = hn::Set(d, reach * reach * (1.0f + margin));
+  const auto outside = [d](const float* at, float least, float most) {
+    const LaneVector value = hn::LoadU(d, at);
+    return hn::Max(hn::Max(hn::Sub(hn::Set(d, least), value), hn::Sub(value, hn::Set(d, most))), hn::Zero(d));
+  };
+  std::uint32_t far = 0;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+    const LaneVector dx = outside(x + i, low[0], high[0]);
+    const LaneVector dy = outside(y + i, low[1], high[1]);
+    const LaneVector dz = outside(z + i, low[2], high[2]);
+    far |= bitsOf(d, hn::Gt(squaredNorm(dx, dy, dz), limit)) << i;
+  }
+  return ~far & firstBits(kLeafPoints);
+}
+
 /// Lowers nearest[i] to the smallest squared distance of point i to those points (x, y, z) that have their bit set;
 /// none may be NaN where the result is used.
 HWY_INLINE void nearestSquared(const LeafPoints& points, const float* x, const float* y, const float* z,
@@ -68,6 +89,54 @@ HWY_INLINE void nearestSquared(const LeafPoints& points, const float* x, const f
     }
     hn::StoreU(best_a, d, nearest + i);
     hn::StoreU(best_b, d, nearest + k);
+  }
+}
+
+/// The nearest of the other points so far, of each of sixteen, and how near the next one is.
+struct NearestTwo {
+  alignas(64) float first[kLeafPoints];
+  alignas(64) float second[kLeafPoints];
+  alignas(64) std::int32_t name[kLeafPoints]; ///< of the first
+
+  HWY_INLINE void clear()
+  {
+    const LaneTag d;
+    const hn::RebindToSigned<LaneTag> di;
+    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+      hn::Store(hn::Set(d, std::numeric_limits<float>::infinity()), d, first + i);
+      hn::Store(hn::Set(d, std::numeric_limits<float>::infinity()), d, second + i);
+      hn::Store(hn::Set(di, -1), di, name + i);
+    }
+  }
+};
+
+/// Takes those points (x, y, z) that have their bit set into the nearest two of each of sixteen; point j is called
+/// name + j. Compares squared distances; with radii, distances less the other point's radius times `scale`. None may be
+/// NaN where the result is used.
+/// @tparam kBalls whether there are radii
+template <bool kBalls>
+HWY_INLINE void takeNearestTwo(const LeafPoints& points, const float* x, const float* y, const float* z,
+                               const float* radii, float scale, std::uint32_t others, std::int32_t name,
+                               NearestTwo& nearest)
+{
+  const LaneTag d;
+  const hn::RebindToSigned<LaneTag> di;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+    const LaneVector px = hn::Load(d, points.x + i), py = hn::Load(d, points.y + i), pz = hn::Load(d, points.z + i);
+    LaneVector first = hn::Load(d, nearest.first + i), second = hn::Load(d, nearest.second + i);
+    auto names = hn::Load(di, nearest.name + i);
+    for (std::uint32_t bits = others; bits != 0; bits &= bits - 1) {
+      const int j = std::countr_zero(bits);
+      LaneVector value =
+          squaredNorm(hn::Sub(px, hn::Set(d, x[j])), hn::Sub(py, hn::Set(d, y[j])), hn::Sub(pz, hn::Set(d, z[j])));
+      if constexpr (kBalls) value = hn::Sub(hn::Sqrt(value), hn::Set(d, radii[j] * scale));
+      names = hn::IfThenElse(hn::RebindMask(di, hn::Lt(value, first)), hn::Set(di, name + j), names);
+      second = hn::Min(second, hn::Max(first, value));
+      first = hn::Min(first, value);
+    }
+    hn::Store(first, d, nearest.first + i);
+    hn::Store(second, d, nearest.second + i);
+    hn::Store(names, di, nearest.name + i);
   }
 }
 

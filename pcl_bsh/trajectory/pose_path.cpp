@@ -188,7 +188,7 @@ void PosePath::add(const Eigen::Isometry3d& scan_pose, const Eigen::Isometry3d& 
 
 void PosePath::divideAll(Progress& progress)
 {
-  progress.begin(Progress::kPath, poses.size());
+  progress.begin(kPathDone, poses.size());
   if (!poses.empty()) divide(0, static_cast<std::uint32_t>(poses.size() - 1), progress);
   progress.end();
 }

@@ -16,6 +16,9 @@
 
 namespace pcl_bsh {
 
+/// What these parts of a query along a path take its progress to; the walks do the rest.
+inline constexpr double kPathDone = 0.05, kBroadPhaseDone = 0.1;
+
 /// Seen by the model at this pose, point x of the world is at R' (x - center), from the model's centre. Of a swept path
 /// R is the rotation nearest to the pose's linear part.
 struct PathPose {

@@ -85,7 +85,7 @@ std::vector<std::vector<std::uint32_t>> TrajectoryQuery::nearIntervals(const Sto
 {
   const SphereHierarchy::Storage& storage = scan.hierarchy().storage();
   std::vector<std::vector<std::uint32_t>> near_intervals(storage.voxel_count);
-  progress.begin(Progress::kBroadPhase, storage.size == 0 ? 0 : storage.top[0].count);
+  progress.begin(kBroadPhaseDone, storage.size == 0 ? 0 : storage.top[0].count);
   std::vector<NearVoxel> near_voxels;
   collectNear(rule, progress, near_voxels);
   for (const NearVoxel& near : near_voxels) near_intervals[near.voxel].push_back(near.interval);

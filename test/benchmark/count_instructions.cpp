@@ -5,6 +5,7 @@
 //
 // Less those of `build`, which every other kind begins with.
 #include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -68,6 +69,14 @@ Work neighbors(const SphereHierarchy& a, const std::vector<float>& queries)
   return work;
 }
 
+Work distances(const SphereHierarchy& a, const SphereHierarchy& b, const Eigen::Isometry3d& pose)
+{
+  Work work = pointDistances({a}, {b}).work;
+  PointDistancesRequest request;
+  request.max_distance = 2.0;
+  return work += pointDistances({a}, {b, pose}, request).work;
+}
+
 Work path(const SphereHierarchy& scan)
 {
   std::vector<float> xyz;
@@ -106,10 +115,12 @@ int main(int argc, char** argv)
     work = anyAndDistance(a, b, pose);
   else if (kind == "neighbors")
     work = neighbors(a, xyz_a);
+  else if (kind == "distances")
+    work = distances(a, b, pose);
   else if (kind == "path")
     work = path(a);
   else if (kind != "build") {
-    std::fputs("count_instructions: give one of build, flags, pairs, neighbors, path\n", stderr);
+    std::fputs("count_instructions: give one of build, flags, pairs, neighbors, distances, path\n", stderr);
     return 2;
   }
   const auto counted = [](std::uint64_t count) { return static_cast<unsigned long long>(count); };

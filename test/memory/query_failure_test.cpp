@@ -5,6 +5,7 @@
 #include <pcl_bsh/collision/colliding_indices.h>
 #include <pcl_bsh/collision/contacts.h>
 #include <pcl_bsh/collision/trace.h>
+#include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/report/clashes.h>
 #include <pcl_bsh/trajectory/collide_on_motions.h>
@@ -251,6 +252,37 @@ TEST(AllocationFailure, OfLessThanExactQueries)
       return std::tuple(found.distance, found.interval.lower, found.interval.upper);
     });
   }
+}
+
+TEST(AllocationFailure, OfPointDistancesLeavesAUsableResult)
+{
+  struct Subject {
+    std::unique_ptr<FreshPair> pair = freshPair();
+    PointDistances result;
+  };
+  for (const unsigned threads : {1u, 2u}) {
+    PointDistancesRequest asked;
+    asked.max_distance = 0.5;
+    asked.threads = threads;
+    asked.accuracy = threads == 1 ? Accuracy::exact() : Accuracy::level(2);
+    failEachAllocation([] { return Subject(); },
+                       [&](Subject& subject) {
+                         const Placed a = subject.pair->placedA(), b = subject.pair->placedB();
+                         try {
+                           pointDistances(a, b, asked, subject.result);
+                         }
+                         catch (const std::bad_alloc&) {
+                           EXPECT_TRUE(subject.result.distance.empty() && subject.result.nearest.empty());
+                           throw;
+                         }
+                         return std::tuple(subject.result.nearest, subject.result.measured, subject.result.undecided,
+                                           subject.result.greatest_pair);
+                       });
+  }
+  failEachAllocation(freshPair, [](const auto& pair) {
+    const SymmetricDistances found = symmetricDistances(pair->placedA(), pair->placedB());
+    return std::tuple(found.a.nearest, found.b.nearest, found.hausdorff_pair);
+  });
 }
 
 TEST(AllocationFailure, OfClustersClashesAndSpacing)

@@ -3,7 +3,9 @@
 // of exact arithmetic. Every query, fit and instruction set, one thread and several.
 #include <pcl_bsh/collision/brute_force.h>
 #include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/distances/brute_force_distances.h>
 
+#include "../distances/expect_distances.h"
 #include "hard_cases.h"
 #include "question.h"
 #include "random_clouds.h"
@@ -41,12 +43,14 @@ struct Truth {
   AnyResult any;
   FlagsResult flags;
   DistanceResult closest;
+  PointDistances distances;
 };
 
 Truth truthOf(const HardCase& c, const Placed& a, const Placed& b)
 {
   Truth truth{brute_force::anyCollision(a, b, within(c.clearance, 1)),
-              brute_force::collisionFlags(a, b, within(c.clearance, 1)), brute_force::closestPair(a, b)};
+              brute_force::collisionFlags(a, b, within(c.clearance, 1)), brute_force::closestPair(a, b),
+              brute_force::pointDistances(a, b)};
   if (c.colliding_pairs != unknown) {
     EXPECT_EQ(countPairs(c), c.colliding_pairs);
     EXPECT_EQ(truth.any.verdict == Verdict::colliding, c.colliding_pairs > 0);
@@ -73,7 +77,10 @@ void expectTruth(const Truth& truth, const HardCase& c, const Placed& a, const P
   const DistanceResult closest = closestPair(a, b, request);
   EXPECT_EQ(closest.distance, truth.closest.distance);
   EXPECT_EQ(closest.pair, truth.closest.pair);
-  checks += 4;
+  PointDistancesRequest all;
+  all.threads = threads;
+  test::expectSame(pointDistances(a, b, all), truth.distances);
+  checks += 5;
 }
 
 constexpr SphereFit all_fits[] = {SphereFit::box_center, SphereFit::ritter, SphereFit::minimal};
@@ -234,7 +241,9 @@ TEST(HardCaseSeries, H25AnyEnvironmentOfTheCaller)
       const AnyResult any = anyCollision({ha, c.pose_a}, {hb, c.pose_b}, within(c.clearance, 2));
       const FlagsResult flags = collisionFlags({ha, c.pose_a}, {hb, c.pose_b}, within(c.clearance, 2));
       const DistanceResult closest = closestPair({ha, c.pose_a}, {hb, c.pose_b});
+      const PointDistances distances = pointDistances({ha, c.pose_a}, {hb, c.pose_b});
       set(false);
+      test::expectSame(distances, truth.distances);
       EXPECT_EQ(any.verdict, truth.any.verdict);
       EXPECT_EQ(flags.a, truth.flags.a);
       EXPECT_EQ(flags.b, truth.flags.b);

@@ -3,6 +3,7 @@
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/collision/colliding_indices.h>
 #include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/hierarchy/retained_memory.h>
 
 #include "allocations.h"
@@ -98,6 +99,22 @@ TEST_F(RepeatedQueries, OfContactsAllocateNothing)
             }),
             0u);
   EXPECT_GT(contacts, 0u);
+}
+
+TEST_F(RepeatedQueries, OfPointDistancesAllocateNothing)
+{
+  for (const double max : {0.05, std::numeric_limits<double>::infinity()}) {
+    PointDistancesRequest request;
+    request.max_distance = max;
+    PointDistances result;
+    std::size_t measured = 0;
+    EXPECT_EQ(allocationsOf([&](const Placed& a, const Placed& b) {
+                pointDistances(a, b, request, result);
+                measured += result.measured;
+              }),
+              0u);
+    EXPECT_GT(measured, 0u);
+  }
 }
 
 TEST_F(RepeatedQueries, AllocateAnewWhereNothingMayBeKept)

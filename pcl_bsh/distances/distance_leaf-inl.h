@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The nearest points of b to the points of one leaf of a. Float arithmetic finds the nearest two to each point; where
+// its error leaves open which of them is the nearer, the point is decided by itself in exact arithmetic.
+
+#if defined(PCL_BSH_DISTANCES_DISTANCE_LEAF_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_DISTANCES_DISTANCE_LEAF_INL_H_
+#undef PCL_BSH_DISTANCES_DISTANCE_LEAF_INL_H_
+#else
+#define PCL_BSH_DISTANCES_DISTANCE_LEAF_INL_H_
+#endif
+
+#include <pcl_bsh/distances/distance_query.h>
+#include <pcl_bsh/distances/distance_visit-inl.h>
+#include <pcl_bsh/distances/rounded_lengths-inl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+class DistanceLeaf {
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  static constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kMargin = kSphereMargin; ///< 16 u: above what roots, radii and sums round
+
+public:
+  DistanceLeaf(const DistanceQuery& query, const DistanceSheet& sheet, DistanceScratch& scratch, Work& work)
+  : query_(query),
+    sheet_(sheet),
+    obstacles_(scratch.obstacles),
+    leaves_(scratch.leaves),
+    stamp_(scratch.stamp),
+    work_(work),
+    view_a_(query.a.hierarchy().view()),
+    view_b_(query.b.hierarchy().view()),
+    unit_(query.b.hierarchy().storage().frame.unit),
+    largest_radius_(query.b.hierarchy().storage().largest_radius),
+    own_radii_(roundUp(query.a.hierarchy().storage().largest_radius / unit_)),
+    max_(query.pairs.clearance),
+    lengths_only_(query.proven && !query.pairs.haveRadii() && query.a.pose.linear() == Eigen::Matrix3d::Identity() &&
+                  query.b.pose.linear() == Eigen::Matrix3d::Identity())
+  {
+    for (int k = 0; k < 3; ++k)
+      shift_[static_cast<std::size_t>(k)] = twoSum(query.a.pose.translation()(k), -query.b.pose.translation()(k));
+  }
+
+  /// Measures all points of a leaf.
+  /// @param visit of the node it is a child of @param lane the child
+  /// @param near the leaves of b that can hold a nearest point; left in another order
+  void measure(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near)
+  {
+    leaf_ = {&voxel, visit.node->begin[lane], visit.node->comparedPoints(lane)};
+    ++stamp_;
+    std::uint32_t undecided = firstBits(leaf_.count);
+    const bool by_float = largest_radius_ > 0.0 ? findNearest<true>(visit, lane, near, undecided)
+                                                : findNearest<false>(visit, lane, near, undecided);
+    for (std::uint32_t i = 0; i < leaf_.count; ++i) {
+      Found& found = found_[i];
+      found = (undecided >> i & 1) != 0 ? decide(i, near, visit.cut[lane], by_float) : named(i, near);
+    }
+    if (lengths_only_) measureLengths();
+    for (std::uint32_t i = 0; i < leaf_.count; ++i)
+      write(i, found_[i], visit.node->begin[lane], visit.node->begin[lane + 1]);
+  }
+
+private:
+  /// The point of b that is the nearest to one of a.
+  struct Found {
+    const Voxel* voxel = nullptr;                ///< null: none
+    std::uint32_t point = 0;                     ///< in the voxel
+    double least = -kInfinity, most = kInfinity; ///< of the distance, less the radius of b's point alone
+  };
+
+  /// Finds the nearest two of b's points to each point of the leaf by their float distances.
+  /// @param undecided receives the points whose nearest is not proven @return false when floats decide nothing
+  template <bool kBalls>
+  bool findNearest(const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near,
+                   std::uint32_t& undecided)
+  {
+    if (kBalls && !(unit_ >= 0x1p-60 && unit_ <= 0x1p60)) return false; // radii would leave the range of float
+    two_.clear();
+    for (std::uint32_t i = leaf_.count; i < kLeafPoints; ++i) two_.first[i] = -std::numeric_limits<float>::infinity();
+    error_ = kSmallestLength;
+    float limit = visit.cut[lane], farthest = std::numeric_limits<float>::infinity();
+    for (std::size_t n = 0; n < near.size(); ++n) {
+      if (n < kNearestFirst) bringNearest(near, n);
+      const NearSphere& candidate = near[n];
+      if (candidate.lower > limit) {
+        if (n < kNearestFirst) break;
+        continue;
+      }
+      const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
+      if (!obstacle.is_plain || n >= kMostNamed) return false;
+      ++work_.leaf_pairs;
+      const CarriedLeaf& own = carried(candidate.sphere.obstacle);
+      const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
+      std::uint32_t facing = firstBits(other.count);
+      if constexpr (!kBalls) {
+        const float reach = (limit + own_radii_) * obstacle.at_most_inside + obstacle.prune_reach;
+        facing &= pointsNearBox(other.x(), other.y(), other.z(), own.low, own.high, reach,
+                                2 * kSphereMargin); // twice: the limit is rounded, too
+        if (facing == 0) continue;
+      }
+      const float* const radii = kBalls ? other.voxel->radii + other.begin : nullptr;
+      takeNearestTwo<kBalls>(own.points, other.x(), other.y(), other.z(), radii, static_cast<float>(1.0 / unit_),
+                             facing, static_cast<std::int32_t>(n * kLeafPoints), two_);
+      error_ = std::max(error_, static_cast<double>(obstacle.error));
+      skew_ = obstacle.frame.skew();
+      const float now = largestOf(two_.first, kLeafPoints);
+      if (now < farthest) {
+        farthest = now;
+        limit = std::min(limit, beyond(mostOf<kBalls>(farthest)));
+      }
+    }
+    undecided = query_.proven ? ambiguous<kBalls>() : 0;
+    return true;
+  }
+
+  static constexpr std::size_t kNearestFirst = 1; ///< of the candidates: these leave little to the others
+
+  /// Swaps the nearest of the candidates from n on to that place.
+  static void bringNearest(std::vector<NearSphere>& near, std::size_t n)
+  {
+    std::size_t least = n;
+    for (std::size_t i = n + 1; i < near.size(); ++i)
+      if (near[i].lower < near[least].lower) least = i;
+    std::swap(near[n], near[least]);
+  }
+
+  static constexpr std::size_t kMostNamed = std::size_t{1} << 27; ///< leaves whose points have names
+
+  // In the walk's unit.
+
+  /// At least, and at most, the distance that float arithmetic found to be so: squared, or that to a ball.
+  template <bool kBalls>
+  double mostOf(float value) const
+  {
+    const double length = kBalls ? std::abs(value) + 2.0 * largest_radius_ / unit_ : std::sqrt(double{value});
+    return (kBalls ? double{value} : length) + (error_ + (kMargin + 2 * skew_) * (length + error_));
+  }
+  template <bool kBalls>
+  double leastOf(float value) const
+  {
+    const double length = kBalls ? std::abs(value) + 2.0 * largest_radius_ / unit_ : std::sqrt(double{value});
+    return (kBalls ? double{value} : length) - (error_ + (kMargin + 2 * skew_) * (length + error_));
+  }
+
+  /// What is farther than this is of no interest once all points of the leaf have one so near. Points keep theirs out
+  /// of the tolerance until it is certain that they have any.
+  float beyond(double found) const
+  {
+    const bool all_within = found * unit_ * (1.0 + kMargin) <= max_;
+    return roundUp(all_within ? found - query_.tolerance / unit_ * (1.0 - kDoubleMargin) : found);
+  }
+
+  /// The points whose second nearest may be the nearest.
+  template <bool kBalls>
+  std::uint32_t ambiguous() const
+  {
+    std::uint32_t bits = 0;
+    for (std::uint32_t i = 0; i < leaf_.count; ++i) {
+      const bool two = two_.second[i] < std::numeric_limits<float>::infinity();
+      if (two && !(leastOf<kBalls>(two_.second[i]) > mostOf<kBalls>(two_.first[i]))) bits |= 1u << i;
+    }
+    return bits;
+  }
+
+  const CarriedLeaf& carried(std::uint32_t obstacle)
+  {
+    CarriedLeaf& own = leaves_[obstacle];
+    if (own.stamp == stamp_) return own;
+    own.stamp = stamp_;
+    carryLeaf(obstacles_[obstacle].frame, leaf_, own.points);
+    float* const axes[] = {own.points.x, own.points.y, own.points.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::fill(axes[k] + leaf_.count, axes[k] + kLeafPoints, axes[k][0]);
+      own.low[k] = smallestOf(axes[k], kLeafPoints);
+      own.high[k] = largestOf(axes[k], kLeafPoints);
+    }
+    return own;
+  }
+
+  Found named(std::uint32_t i, const std::vector<NearSphere>& near) const
+  {
+    if (two_.name[i] < 0) return {};
+    const auto name = static_cast<std::size_t>(two_.name[i]);
+    const ObstacleSphere& sphere = near[name / kLeafPoints].sphere;
+    Found found{obstacles_[sphere.obstacle].voxel,
+                sphere.node->begin[sphere.lane] + static_cast<std::uint32_t>(name % kLeafPoints)};
+    if (query_.proven && max_ == kInfinity) return found;
+    const bool balls = largest_radius_ > 0.0;
+    const float value = two_.first[i];
+    found.least = (balls ? leastOf<true>(value) : leastOf<false>(value)) * unit_;
+    found.most = (balls ? mostOf<true>(value) : mostOf<false>(value)) * unit_;
+    return found;
+  }
+
+  Point3 given(std::uint32_t i) const { return leaf_.voxel->point(view_a_, leaf_.begin + i); }
+
+  ExactDistance::Pair posed(std::uint32_t i, const Found& found) const
+  {
+    return {given(i), found.voxel->point(view_b_, found.point), leaf_.radius(i),
+            found.voxel->radii ? double{found.voxel->radii[found.point]} : 0.0};
+  }
+
+  /// The nearest to one point in exact arithmetic, of several the smallest record.
+  /// @param cut upper bound of its distance, unless that exceeds the greatest one
+  Found decide(std::uint32_t i, const std::vector<NearSphere>& near, float cut, bool by_float)
+  {
+    Found best = by_float ? named(i, near) : Found();
+    const double own_radius = leaf_.radius(i);
+    ExactDistance::Pair best_pair;
+    double most = double{cut} * unit_; // of the distance
+    const auto take = [&](const Found& found, const ExactDistance::Pair& pair) {
+      best = found;
+      best_pair = pair;
+      const double radii = pair.radius_p + pair.radius_q, far = query_.pairs.distance.enclose(pair.p, pair.q).high;
+      most = std::min(most, far - radii + kFewDoubleRoundings * (far + radii));
+    };
+    if (best.voxel) take(best, posed(i, best));
+    for (const NearSphere& candidate : near) {
+      if (double{candidate.lower} * unit_ > most) continue;
+      const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
+      const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
+      const LeafPoints& points = carried(candidate.sphere.obstacle).points;
+      alignas(64) float squared[kLeafPoints];
+      leafSquaredDistances(other.x(), other.y(), other.z(), points.x[i], points.y[i], points.z[i], squared);
+      const double within = (most + own_radius + largest_radius_) * (1.0 + kDoubleMargin);
+      const float miss = obstacle.frame.band(std::isnan(within) ? kInfinity : std::max(within, 0.0)).miss;
+      for (std::uint32_t bits = firstBits(other.count) & ~above(squared, miss); bits != 0; bits &= bits - 1) {
+        const Found found{other.voxel, other.begin + static_cast<std::uint32_t>(std::countr_zero(bits))};
+        if (found.voxel == best.voxel && found.point == best.point) continue;
+        const ExactDistance::Pair pair = posed(i, found);
+        if (best.voxel) {
+          ++work_.exact_decisions;
+          const int sign = query_.pairs.distance.compareGaps(pair, best_pair);
+          if (sign > 0 || (sign == 0 && recordOf(best) < recordOf(found))) continue;
+        }
+        take(found, pair);
+      }
+    }
+    best.least = -kInfinity; // the float distance, if there is one, may be another point's
+    best.most = kInfinity;
+    return best;
+  }
+
+  static std::uint32_t recordOf(const Found& found) { return found.voxel->records()[found.point]; }
+
+  /// Whether the nearest point is within the greatest distance.
+  bool isWithin(const Found& found, const ExactDistance::Pair& pair)
+  {
+    if (max_ == kInfinity || found.most - pair.radius_p < max_ * (1.0 - kDoubleMargin)) return true;
+    if (found.least - pair.radius_p > max_ * (1.0 + kDoubleMargin)) return false;
+    ++work_.exact_decisions;
+    return query_.pairs.distance.compare(pair.p, pair.q, max_, pair.radius_p, pair.radius_q) <= 0;
+  }
+
+  /// The distances of all that were found, where poses are translations and points have no radii.
+  void measureLengths()
+  {
+    for (std::uint32_t i = 0; i < leaf_.count; ++i) {
+      const Found& found = found_[i];
+      const Point3 p = given(i), q = found.voxel ? found.voxel->point(view_b_, found.point) : p;
+      for (std::size_t k = 0; k < 3; ++k) given_.p[k][i] = p[k], given_.q[k][i] = q[k];
+    }
+    roundedLengths(given_, shift_, lengths_);
+  }
+
+  /// Writes what was found of point i; of a place that many points share, for all of them.
+  void write(std::uint32_t i, const Found& found, std::uint32_t begin, std::uint32_t end)
+  {
+    double distance = kNotKnown;
+    std::uint32_t nearest = PointDistances::kNoPoint;
+    Interval interval{max_, kInfinity};
+    if (found.voxel) {
+      const bool is_known = lengths_only_ && max_ == kInfinity && !std::isnan(lengths_[i]);
+      const ExactDistance::Pair pair = is_known ? ExactDistance::Pair() : posed(i, found);
+      if (is_known || isWithin(found, pair)) {
+        nearest = recordOf(found);
+        const bool by_float = !query_.proven && found.most < kInfinity;
+        distance = lengths_only_ ? lengths_[i] : kNotKnown;
+        if (by_float) distance = (found.least + found.most) / 2 - pair.radius_p;
+        if (std::isnan(distance)) distance = query_.pairs.distance.gap(pair);
+        if (sheet_.interval) interval = intervalOf(distance);
+      }
+    }
+    if (end - begin <= kMaxLeafPoints) return sheet_.set(leaf_.record(i), distance, nearest, interval);
+    for (std::uint32_t k = begin; k < end; ++k) sheet_.set(leaf_.voxel->records()[k], distance, nearest, interval);
+  }
+
+  Interval intervalOf(double distance) const
+  {
+    double lower = std::nextafter(distance, -kInfinity);
+    if (query_.tolerance > 0.0) lower = std::nextafter(lower - query_.tolerance, -kInfinity);
+    if (!query_.pairs.haveRadii()) lower = std::max(lower, 0.0);
+    return {lower, distance == 0.0 && !query_.pairs.haveRadii() ? 0.0 : std::nextafter(distance, kInfinity)};
+  }
+
+  const DistanceQuery& query_;
+  const DistanceSheet& sheet_;
+  const std::vector<DistanceObstacle>& obstacles_;
+  std::vector<CarriedLeaf>& leaves_;
+  std::uint64_t& stamp_;
+  Work& work_;
+  const PointsView& view_a_;
+  const PointsView& view_b_;
+  const double unit_;           ///< of bounds and floats, in the clouds' unit
+  const double largest_radius_; ///< of b's points, in the clouds' unit
+  const float own_radii_;       ///< the largest of a's points, in the walk's unit
+  const double max_;
+  const bool lengths_only_; ///< whether distances are lengths of differences between given points, and a shift
+  std::array<WithError, 3> shift_;
+
+  LeafRange leaf_;
+  Found found_[kLeafPoints];
+  GivenPairs given_ = {};
+  alignas(64) double lengths_[kLeafPoints];
+  NearestTwo two_;
+  double error_ = 0.0; ///< of the float distances, in the walk's unit
+  double skew_ = 0.0;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/query/stop_rule.h>
+#include <pcl_bsh/traversal/point_pairs.h>
+
+#include <cstdint>
+
+namespace pcl_bsh {
+
+/// What the walks through all voxels of a have in common. The greatest distance is the pairs' clearance.
+struct DistanceQuery {
+  const Placed& a;
+  const Placed& b;
+  const PointPairs& pairs;
+  RelativeRotation rotation;
+  double tolerance = 0.0; ///< how much farther than the nearest a point may be
+  bool proven = true;     ///< whether more than float has to decide
+};
+
+/// Where the answers of one walk go: arrays with an entry for each record of a. No interval: null.
+struct DistanceSheet {
+  double* distance;
+  std::uint32_t* nearest;
+  Interval* interval;
+
+  void set(std::uint32_t record, double to_nearest, std::uint32_t other, const Interval& certain) const
+  {
+    distance[record] = to_nearest;
+    nearest[record] = other;
+    if (interval) interval[record] = certain;
+  }
+};
+
+/// What one walk through a voxel came to.
+struct MeasuredVoxel {
+  Work work;
+  bool undecided = false; ///< whether points were left so
+};
+
+} // namespace pcl_bsh

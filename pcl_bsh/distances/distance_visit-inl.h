@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a walk that measures points keeps of one node of a: how near and how far each of its children may be from the
+// spheres of b that can hold the nearest points. Bounds are floats in one unit for all frames, rounded outward.
+
+#if defined(PCL_BSH_DISTANCES_DISTANCE_VISIT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_DISTANCES_DISTANCE_VISIT_INL_H_
+#undef PCL_BSH_DISTANCES_DISTANCE_VISIT_INL_H_
+#else
+#define PCL_BSH_DISTANCES_DISTANCE_VISIT_INL_H_
+#endif
+
+#include <pcl_bsh/traversal/obstacle_sphere-inl.h>
+
+#include <deque>
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// A space of b, as seen from a voxel of a.
+struct DistanceObstacle {
+  const Voxel* voxel; ///< null: the tree above the voxels
+  RelativeFrame frame;
+  float prune_reach;    ///< pruneReach(0)
+  float blunt_radius;   ///< as the frame has it
+  float error;          ///< of carried points, at least
+  float least, most;    ///< at most, and at least, what a length of 1 in the frame is, in the walk's unit
+  float at_most_inside; ///< at least what a length of 1 in the walk's unit is in the frame
+  bool is_plain;        ///< whether float distances in the frame can be compared with those in others
+
+  /// @param unit of the walk, in the clouds' unit
+  DistanceObstacle(const Voxel* entered, const LocalFrame& space, const RelativeFrame& from_a, double unit)
+  : voxel(entered),
+    frame(from_a),
+    prune_reach(frame.pruneReach(0.0)),
+    blunt_radius(frame.bluntRadius()),
+    error(roundUp(frame.error))
+  {
+    constexpr double smallest = 0x1p-60, largest = 0x1p60; // factors beyond are given up: no bound is as good
+    const double ratio = space.unit / unit, margin = 2 * frame.skew() + kDoubleMargin;
+    least = ratio < smallest ? 0.0f : roundDown(std::min(ratio, largest) * (1.0 - margin));
+    most = roundUp(std::max(ratio, smallest) * (1.0 + margin));
+    at_most_inside = roundUp(std::max(1.0 / ratio, smallest) * (1.0 + margin));
+    is_plain = ratio == 1.0 && frame.error < std::numeric_limits<double>::infinity();
+  }
+};
+
+/// The children of a node of a in the frame of an obstacle.
+struct CarriedNode {
+  std::uint64_t stamp = 0; ///< of the visit it was carried for
+  float x[kLanes], y[kLanes], z[kLanes], r[kLanes];
+  Point center; ///< of the sphere around them all
+  float radius;
+};
+
+/// A leaf of a likewise.
+struct CarriedLeaf {
+  LeafPoints points;       ///< those past the leaf's count are its first
+  float low[3], high[3];   ///< the box around them
+  std::uint64_t stamp = 0; ///< of the leaf
+};
+
+/// A sphere of b, and a lower bound of the distances from each child of the visit to it.
+struct DistanceRow {
+  ObstacleSphere sphere;
+  std::uint32_t lanes; ///< children that it matters to
+  float lower[kLanes];
+};
+
+/// The same for one child.
+struct NearSphere {
+  ObstacleSphere sphere;
+  float lower;
+};
+
+/// One node of a, its children measured all at once.
+struct DistanceVisit {
+  const Node* node = nullptr;
+  std::uint64_t stamp = 0; ///< a number that no other visit or leaf has had
+  BoundingSphere around;   ///< holds them all; in the frame of a's voxel
+  std::uint32_t leaves = 0;
+  float cut[kLanes];                ///< what is farther than this is not the nearest of any point of the child
+  std::vector<DistanceRow> rows;    ///< of what the node itself was near to
+  std::vector<DistanceRow> kept;    ///< of what its children are to be compared with
+  std::vector<CarriedNode> carried; ///< by obstacle
+  std::vector<NearSphere> near[kLanes];
+
+  void begin(const Node& entered, const BoundingSphere& holding_all, float upper, std::uint64_t number)
+  {
+    stamp = number;
+    node = &entered;
+    around = holding_all;
+    leaves = 0;
+    for (std::uint32_t lane = 0; lane < entered.count; ++lane)
+      if (entered.isLeaf(lane)) leaves |= 1u << lane;
+    for (float& value : cut) value = upper;
+    rows.clear();
+    kept.clear();
+    for (auto& list : near) list.clear();
+  }
+};
+
+/// Lower bounds of the distances from each of eight spheres to one other; lowers each `cut` to an upper bound of the
+/// distances from any point of that sphere to its nearest one in the other.
+///
+/// In the frame, centres are sqrt(s) apart within its error, which prune_reach includes. Relative to the sum of the
+/// lengths, sqrt(s) errs by 3.5 u, the sum of radii (stretched) and reach by 3 u, the last sum by u: kSphereMargin is
+/// 16 u. Squares that overflow stand for lengths above 2^63. NaN bounds nothing.
+/// @param radius of the other, stretched
+HWY_INLINE void boundDistances(const CarriedNode& spheres, const DistanceObstacle& obstacle, const Point& center,
+                               float radius, float* lower, float* cut)
+{
+  const LaneTag d;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const LaneVector between = hn::Sqrt(squaredNorm(hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, center.x)),
+                                                    hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, center.y)),
+                                                    hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, center.z))));
+    const LaneVector radii = hn::Add(hn::LoadU(d, spheres.r + i), hn::Set(d, radius + obstacle.prune_reach));
+    const LaneVector margin = hn::Mul(hn::Add(between, radii), hn::Set(d, kSphereMargin));
+    const LaneVector near = hn::Sub(hn::Sub(hn::Min(between, hn::Set(d, 0x1p63f)), radii), margin);
+    const LaneVector far = hn::Add(hn::Add(between, radii), margin);
+    hn::StoreU(hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most))), d,
+               lower + i);
+    const LaneVector upper = hn::Mul(far, hn::Set(d, obstacle.most)), old = hn::LoadU(d, cut + i);
+    hn::StoreU(hn::IfThenElse(hn::Lt(upper, old), upper, old), d, cut + i);
+  }
+}
+
+/// Which of eight values are not above those of others.
+HWY_INLINE std::uint32_t notAbove(const float* values, const float* limits)
+{
+  const LaneTag d;
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
+    bits |= bitsOf(d, hn::Gt(hn::LoadU(d, values + i), hn::LoadU(d, limits + i))) << i;
+  return bits ^ ((1u << kLanes) - 1);
+}
+
+/// Memory of one walk after another, to be had by a ScratchLease.
+struct DistanceScratch {
+  std::uint64_t stamp = 0;          ///< the last one given
+  std::deque<DistanceVisit> visits; ///< by depth; a deque, for references to shallower visits stay in use
+  std::vector<DistanceObstacle> obstacles;
+  std::vector<NearSphere> roots;          ///< what the walk begins with
+  std::vector<CarriedLeaf> leaves;        ///< by obstacle
+  std::vector<std::uint32_t> obstacle_of; ///< by voxel of b: its obstacle, 0 where it has none yet
+  std::vector<std::uint32_t> entered;     ///< the voxels that have one
+
+  std::size_t bytes() const noexcept
+  {
+    std::size_t sum = visits.size() * sizeof(DistanceVisit) + obstacles.capacity() * sizeof(DistanceObstacle) +
+                      roots.capacity() * sizeof(NearSphere) + leaves.capacity() * sizeof(CarriedLeaf) +
+                      (obstacle_of.capacity() + entered.capacity()) * sizeof(std::uint32_t);
+    for (const DistanceVisit& visit : visits) {
+      sum += (visit.rows.capacity() + visit.kept.capacity()) * sizeof(DistanceRow) +
+             visit.carried.capacity() * sizeof(CarriedNode);
+      for (const auto& list : visit.near) sum += list.capacity() * sizeof(NearSphere);
+    }
+    return sum;
+  }
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The walk that measures the points of one voxel of a. Every node of a carries the list of the spheres of b that can
+// hold the nearest point of one of its points: those whose lower bound does not exceed the least upper bound of all,
+// for every sphere holds a point. The list begins with the spheres above the voxels of b, and becomes finer as the
+// nodes of a become smaller, so that the points of a share one descent.
+
+#if defined(PCL_BSH_DISTANCES_DISTANCE_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_DISTANCES_DISTANCE_WALK_INL_H_
+#undef PCL_BSH_DISTANCES_DISTANCE_WALK_INL_H_
+#else
+#define PCL_BSH_DISTANCES_DISTANCE_WALK_INL_H_
+#endif
+
+#include <pcl_bsh/distances/distance_leaf-inl.h>
+#include <pcl_bsh/hierarchy/crowded_cell.h>
+#include <pcl_bsh/hierarchy/kept_scratch.h>
+#include <pcl_bsh/query/progress.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+class DistanceWalk {
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  static constexpr std::uint32_t kAbove = 0; ///< the obstacle above the voxels of b
+
+public:
+  DistanceWalk(const DistanceQuery& query, const StopRule& rule, const DistanceSheet& sheet, Progress& progress,
+               DistanceScratch& scratch)
+  : query_(query),
+    rule_(rule),
+    sheet_(sheet),
+    progress_(progress),
+    scratch_(scratch),
+    obstacles_(scratch.obstacles),
+    a_(query.a),
+    b_(query.b),
+    unit_(b_.storage.frame.unit),
+    max_(query.pairs.clearance),
+    leaf_(query, sheet, scratch, found.work)
+  {
+    forgetObstacles();
+    if (scratch_.obstacle_of.size() < b_.storage.voxel_count) scratch_.obstacle_of.resize(b_.storage.voxel_count);
+  }
+  ~DistanceWalk() { forgetObstacles(); }
+  DistanceWalk(const DistanceWalk&) = delete;
+  DistanceWalk& operator=(const DistanceWalk&) = delete;
+
+  /// Measures the points of one voxel of a. @pre neither cloud is empty
+  void run(std::uint32_t voxel)
+  {
+    voxel_ = voxel;
+    addObstacle(kAboveVoxels, nullptr);
+    const float cut = roundUp(max_ / unit_ * (1.0 + kDoubleMargin));
+    if (max_ < kInfinity || rule_.mayStop()) {
+      const Bounds whole = boundVoxel(cut);
+      if (double{whole.lower} * unit_ > max_) return forAll([this](std::uint32_t record) { setBeyond(record); });
+      if (!mayEnter()) {
+        const Interval interval = certain(whole.lower, whole.upper);
+        return forAll([&](std::uint32_t record) { leave(record, interval); });
+      }
+    }
+    a_voxel_ = &a_.voxel(voxel, found.work);
+    const Node& root = b_.storage.top[0];
+    scratch_.roots.clear();
+    for (std::uint32_t lane = 0; lane < root.count; ++lane)
+      scratch_.roots.push_back({{&root, static_cast<std::uint16_t>(lane), 0, kAbove}, 0.0f});
+    descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, scratch_.roots, cut, 0);
+  }
+
+  MeasuredVoxel found;
+
+private:
+  struct Bounds {
+    float lower = std::numeric_limits<float>::infinity();
+    float upper;
+  };
+
+  /// Whether the walk may go below the voxel of a, and has the time to build it.
+  bool mayEnter() const
+  {
+    return rule_.deepest > 0 && !rule_.isSpent(found.work.node_pairs) &&
+           rule_.leavesTimeToBuild(a_.storage.pointsToBuild(voxel_));
+  }
+
+  /// How near and how far the voxels of b are from the sphere of the whole voxel of a.
+  Bounds boundVoxel(float cut)
+  {
+    const DistanceObstacle& above = obstacles_[kAbove];
+    ++found.work.volumes_carried;
+    Bounds bounds;
+    bounds.upper = cut;
+    boundBelow(above, b_.storage.top[0], a_.storage.voxels[voxel_].radius * above.frame.stretch_a, bounds);
+    return bounds;
+  }
+
+  void boundBelow(const DistanceObstacle& above, const Node& node, float radius, Bounds& bounds)
+  {
+    CarriedNode spheres;
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      spheres.x[lane] = node.x[lane];
+      spheres.y[lane] = node.y[lane];
+      spheres.z[lane] = node.z[lane];
+      spheres.r[lane] = node.r[lane] * above.frame.stretch_b;
+    }
+    float lower[kLanes], upper[kLanes];
+    std::fill(std::begin(upper), std::end(upper), bounds.upper);
+    const auto& g = above.frame.g;
+    boundDistances(spheres, above, {g[0], g[1], g[2]}, radius, lower, upper);
+    found.work.node_pairs += node.count;
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) bounds.upper = std::min(bounds.upper, upper[lane]);
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+      if (lower[lane] > bounds.upper) continue;
+      if (node.isLeaf(lane))
+        bounds.lower = std::min(bounds.lower, orNone(lower[lane]));
+      else
+        boundBelow(above, b_.storage.top[node.child[lane]], radius, bounds);
+    }
+  }
+
+  static float orNone(float lower) { return std::isnan(lower) ? -std::numeric_limits<float>::infinity() : lower; }
+
+  /// Takes a node of a, all its children at once, through the list; then each child through its own.
+  void descend(const Node& node, const BoundingSphere& around, const std::vector<NearSphere>& list, float cut,
+               std::size_t depth)
+  {
+    if (stops()) return;
+    if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs))
+      return leave(node.begin[0], node.begin[node.count], list, cut);
+    if (scratch_.visits.size() == depth) scratch_.visits.emplace_back();
+    DistanceVisit& visit = scratch_.visits[depth];
+    visit.begin(node, around, cut, ++scratch_.stamp);
+    for (const NearSphere& near : list) visit.rows.push_back(compare(visit, near.sphere, firstBits(node.count)));
+    for (const DistanceRow& row : visit.rows) take(visit, row);
+    for (const DistanceRow& row : visit.kept)
+      for (std::uint32_t bits = row.lanes & notAbove(row.lower, visit.cut); bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+        visit.near[lane].push_back({row.sphere, orNone(row.lower[lane])});
+      }
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+      std::vector<NearSphere>& near = visit.near[lane];
+      const std::uint32_t begin = node.begin[lane], end = node.begin[lane + 1];
+      if (near.empty())
+        for (std::uint32_t i = begin; i < end; ++i) setBeyond(a_voxel_->records()[i]);
+      else if (rule_.mayStop() && isLeft(visit, lane, depth))
+        leave(begin, end, near, visit.cut[lane]);
+      else if (node.isLeaf(lane))
+        leaf_.measure(*a_voxel_, visit, lane, near);
+      else
+        descend(a_voxel_->nodes[node.child[lane]], {{node.x[lane], node.y[lane], node.z[lane]}, node.r[lane]}, near,
+                visit.cut[lane], depth + 1);
+    }
+  }
+
+  /// Whether a child ends here undecided: the level does not go further down in one of the clouds.
+  bool isLeft(const DistanceVisit& visit, std::uint32_t lane, std::size_t depth) const
+  {
+    const auto is_of_points = [](const NearSphere& near) { return near.sphere.level > 0 && near.sphere.isLeaf(); };
+    const std::vector<NearSphere>& near = visit.near[lane];
+    return depth + 1 >= rule_.deepest ||
+           (visit.node->isLeaf(lane) && !std::all_of(near.begin(), near.end(), is_of_points));
+  }
+
+  /// Bounds the distances from the children of the visit that are in `lanes` to a sphere of b.
+  DistanceRow compare(DistanceVisit& visit, const ObstacleSphere& sphere, std::uint32_t lanes)
+  {
+    const CarriedNode& own = carried(visit, sphere.obstacle);
+    const DistanceObstacle& obstacle = obstacles_[sphere.obstacle];
+    const Node& node = *sphere.node;
+    const float radius = node.r[sphere.lane] * obstacle.frame.stretch_b;
+    DistanceRow row{sphere, lanes, {}};
+    boundDistances(own, obstacle, {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]}, radius, row.lower,
+                   visit.cut);
+    found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
+    if (radius <= obstacle.blunt_radius && obstacle.voxel) compareAsGiven(visit, own, row);
+    return row;
+  }
+
+  /// Sharpens the bounds of children which float arithmetic cannot tell from the row's sphere by the points as given.
+  void compareAsGiven(DistanceVisit& visit, const CarriedNode& own, DistanceRow& row)
+  {
+    const DistanceObstacle& obstacle = obstacles_[row.sphere.obstacle];
+    GivenSphere other;
+    for (std::uint32_t bits = row.lanes & notAbove(row.lower, visit.cut); bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (own.r[lane] > obstacle.blunt_radius) continue;
+      ++found.work.exact_decisions;
+      if (!other.isKnown()) other = givenSphereOf(b_.storage.view, *obstacle.voxel, *row.sphere.node, row.sphere.lane);
+      const GivenSphere sphere = givenSphereOf(a_.storage.view, *a_voxel_, *visit.node, lane);
+      const ExactDistance::Enclosure between = query_.pairs.distance.enclose(sphere.center, other.center);
+      const double radii = (sphere.radius + other.radius) * (1.0 + 2 * kPoseStretch);
+      const double lower = (between.low - radii - kFewDoubleRoundings * (between.high + radii)) / unit_;
+      const double upper = (between.high + radii) * (1.0 + kFewDoubleRoundings) / unit_;
+      if (!(std::isfinite(lower) && std::isfinite(upper))) continue;
+      row.lower[lane] = std::max(orNone(row.lower[lane]), roundDown(lower));
+      visit.cut[lane] = std::min(visit.cut[lane], roundUp(upper));
+    }
+  }
+
+  /// Keeps a sphere of b for those children that it matters to, or opens it: where it is larger than they are, and for
+  /// leaves.
+  void take(DistanceVisit& visit, const DistanceRow& row)
+  {
+    const std::uint32_t near = row.lanes & notAbove(row.lower, visit.cut);
+    if (near == 0) return;
+    const std::uint32_t opening =
+        isOpened(row.sphere) ? near & (visit.leaves | smallerLanes(visit, row.sphere, near & ~visit.leaves)) : 0;
+    if ((near & ~opening) != 0) {
+      visit.kept.push_back(row);
+      visit.kept.back().lanes = near & ~opening;
+    }
+    if (opening == 0) return;
+    const ObstacleSphere below = childOf(row.sphere);
+    const CarriedNode& own = carried(visit, below.obstacle);
+    const DistanceObstacle& obstacle = obstacles_[below.obstacle];
+    const Node& node = *below.node;
+    float cut = -std::numeric_limits<float>::infinity();
+    for (std::uint32_t bits = opening; bits != 0; bits &= bits - 1)
+      cut = std::max(cut, visit.cut[std::countr_zero(bits)]);
+    const float reach = (own.radius + cut * obstacle.at_most_inside + obstacle.prune_reach) * (1.0f + kReachMargin);
+    alignas(32) float gap[kLanes];
+    found.work.node_pairs += node.count;
+    std::uint32_t children = spheresNear({node.x, node.y, node.z, node.r, obstacle.frame.stretch_b},
+                                         {own.center.x, own.center.y, own.center.z, reach, 0.0f}, gap) &
+                             firstBits(node.count);
+    while (children != 0) { // the nearest first: it lowers the cut
+      const std::uint32_t lane = smallestLane(gap, children);
+      children &= ~(1u << lane);
+      ObstacleSphere child = below;
+      child.lane = static_cast<std::uint16_t>(lane);
+      take(visit, compare(visit, child, opening));
+    }
+  }
+
+  /// Whether a sphere of b has spheres below it that the walk may look at.
+  bool isOpened(const ObstacleSphere& sphere) const
+  {
+    if (sphere.level > 0) return !sphere.isLeaf() && sphere.level < rule_.deepest;
+    if (!sphere.isLeaf() || !rule_.isTimed()) return true;
+    return rule_.leavesTimeToBuild(b_.storage.pointsToBuild(sphere.node->begin[sphere.lane]));
+  }
+
+  /// The children of the visit among these that are smaller than the sphere.
+  std::uint32_t smallerLanes(DistanceVisit& visit, const ObstacleSphere& sphere, std::uint32_t among)
+  {
+    if (among == 0) return 0;
+    const CarriedNode& own = carried(visit, sphere.obstacle);
+    const float radius = sphere.node->r[sphere.lane];
+    std::uint32_t smaller = 0;
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) smaller |= (own.r[lane] < radius ? 1u : 0u) << lane;
+    return smaller & among;
+  }
+
+  /// The first child of a sphere that is opened. Entering a voxel builds it.
+  ObstacleSphere childOf(const ObstacleSphere& sphere)
+  {
+    const Node& node = *sphere.node;
+    if (sphere.level > 0) return sphere.below(obstacles_[sphere.obstacle].voxel->nodes[node.child[sphere.lane]], 0);
+    if (!sphere.isLeaf()) return {&b_.storage.top[node.child[sphere.lane]], 0, 0, kAbove};
+    const std::uint32_t voxel = node.begin[sphere.lane];
+    if (scratch_.obstacle_of[voxel] == 0) {
+      const Voxel* const entered = &b_.voxel(voxel, found.work);
+      scratch_.entered.push_back(voxel);
+      addObstacle(voxel, entered);
+      scratch_.obstacle_of[voxel] = static_cast<std::uint32_t>(obstacles_.size() - 1);
+    }
+    const std::uint32_t obstacle = scratch_.obstacle_of[voxel];
+    return {obstacles_[obstacle].voxel->nodes.data(), 0, 1, obstacle};
+  }
+
+  void addObstacle(std::uint32_t space, const Voxel* voxel)
+  {
+    const RelativeFrame frame(a_.frame(voxel_), a_.pose, b_.frame(space), b_.pose, query_.rotation);
+    obstacles_.emplace_back(voxel, b_.frame(space), frame, unit_);
+    if (scratch_.leaves.size() < obstacles_.size()) scratch_.leaves.resize(2 * obstacles_.size());
+  }
+
+  /// The children of the visit in the frame of an obstacle.
+  const CarriedNode& carried(DistanceVisit& visit, std::uint32_t obstacle)
+  {
+    if (visit.carried.size() <= obstacle) visit.carried.resize(2 * std::size_t{obstacle} + 8);
+    CarriedNode& own = visit.carried[obstacle];
+    if (own.stamp == visit.stamp) return own;
+    own.stamp = visit.stamp;
+    const RelativeFrame& frame = obstacles_[obstacle].frame;
+    carry(frame.m.data(), frame.g.data(), visit.node->x, visit.node->y, visit.node->z, kLanes, own.x, own.y, own.z);
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) own.r[lane] = visit.node->r[lane] * frame.stretch_a;
+    own.center = carryPoint(frame.m.data(), frame.g.data(), visit.around.center);
+    own.radius = visit.around.radius * frame.stretch_a;
+    found.work.volumes_carried += visit.node->count + std::uint64_t{1};
+    return own;
+  }
+
+  void forgetObstacles() noexcept
+  {
+    for (const std::uint32_t voxel : scratch_.entered) scratch_.obstacle_of[voxel] = 0;
+    scratch_.entered.clear();
+    obstacles_.clear();
+  }
+
+  /// Whether the caller wants the walk to end. It is asked now and then.
+  bool stops()
+  {
+    if (++steps_ % 256 == 0) progress_.pulse();
+    return progress_.stopped();
+  }
+
+  template <class Visit>
+  void forAll(const Visit& visit)
+  {
+    a_.storage.forEachRecord(voxel_, visit);
+  }
+
+  /// Farther than the greatest distance.
+  void setBeyond(std::uint32_t record)
+  {
+    sheet_.set(record, std::numeric_limits<double>::quiet_NaN(), PointDistances::kNoPoint, {max_, kInfinity});
+  }
+
+  void leave(std::uint32_t begin, std::uint32_t end, const std::vector<NearSphere>& list, float cut)
+  {
+    float lower = std::numeric_limits<float>::infinity();
+    for (const NearSphere& near : list) lower = std::min(lower, near.lower);
+    const Interval interval = certain(lower, cut);
+    for (std::uint32_t i = begin; i < end; ++i) leave(a_voxel_->records()[i], interval);
+  }
+
+  void leave(std::uint32_t record, const Interval& interval)
+  {
+    found.undecided = true;
+    Interval& known = sheet_.interval[record];
+    known = {std::max(known.lower, interval.lower), std::min(known.upper, interval.upper)};
+  }
+
+  /// Of points that have not been measured: what is beyond the greatest distance has not been looked at, and may be
+  /// the nearest all the same.
+  Interval certain(float lower, float upper) const
+  {
+    const double low = double{lower} * unit_, high = double{upper} * unit_;
+    return {std::min(low, std::nextafter(max_, 0.0)), high >= max_ ? kInfinity : high};
+  }
+
+  const DistanceQuery& query_;
+  const StopRule& rule_;
+  const DistanceSheet& sheet_;
+  Progress& progress_;
+  DistanceScratch& scratch_;
+  std::vector<DistanceObstacle>& obstacles_;
+  const Spaces a_, b_;
+  const double unit_; ///< of bounds, in the clouds' unit
+  const double max_;
+  DistanceLeaf leaf_;
+  std::uint32_t voxel_ = kNoVoxel; ///< of a
+  const Voxel* a_voxel_ = nullptr;
+  std::uint32_t steps_ = 0;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far each point of one cloud is from another cloud, and from which of its points.
+//
+//   SphereHierarchy before(viewOf(before_xyz, n)), after(viewOf(after_xyz, m));
+//   PointDistancesRequest request;
+//   request.max_distance = 2.0;                                      // in the clouds' unit; inclusive
+//   PointDistances change = pointDistances({after}, {before}, request);
+//   // change.distance[i]: from record i of `after` to the nearest point of `before`, NaN where that is farther than 2
+//
+// The distance of points p and q is |T_a p - T_b q|, less the points' radii where given: then it may be negative. The
+// nearest point is the one that exact arithmetic on the given numbers finds, of several the smallest record. The same
+// input gives the same answer, bit for bit, for any number of threads and any processor.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/query/result.h>
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+struct PointDistancesRequest {
+  /// Points of a that have no point of b within it get no distance; >= 0, inclusive, infinity for no limit.
+  double max_distance = std::numeric_limits<double>::infinity();
+  /// A tolerance: each distance is within it of the smallest; which points have one is exact all the same. Those that
+  /// stop early (level, pairs, time) give an interval for each point, and a distance where the search came to its end;
+  /// pairs and time are shared by all points that one call asks about.
+  Accuracy accuracy;
+  unsigned threads = 1; ///< 0: all of the machine's
+  /// Called now and then, by the calling thread, with the fraction done in [0, 1], which never falls, and at least once
+  /// where there is anything to do. False: stop, the query throws Cancelled. What it throws itself comes out of the
+  /// query.
+  std::function<bool(double)> progress;
+};
+
+/// Vectors have one entry per record of the view of a.
+struct PointDistances {
+  static constexpr std::uint32_t kNoPoint = 0xffffffffu; ///< among `nearest`: no record
+
+  /// To the nearest point of b, in the clouds' unit, rounded to the nearest double. NaN: no point of b within
+  /// max_distance, undecided, or no point of a (its record is not finite, or outside the view's subset).
+  std::vector<double> distance;
+  std::vector<std::uint32_t> nearest; ///< that point's record, of several the smallest; kNoPoint where NaN
+  /// Holds each point's distance for certain, whether within max_distance or not; from max_distance to infinity where
+  /// it is proven to be farther than that, and NaN where the record is no point. Empty when the accuracy is exact, for
+  /// then the doubles beside `distance` do the same, and when it is float alone, for then nothing is certain.
+  std::vector<Interval> interval;
+  std::size_t measured = 0;  ///< points that have a distance
+  std::size_t undecided = 0; ///< points that may have one within max_distance, but were left when the search stopped
+  /// The greatest of all distances (from a to b, the directed Hausdorff distance, where every point has one), and the
+  /// pair that realises it, of several the smallest (a, b). NaN and none where no point has one.
+  double greatest = std::numeric_limits<double>::quiet_NaN();
+  std::optional<PointPair> greatest_pair;
+  Work work;
+};
+
+/// The distance from each point of a to b.
+/// @throws std::invalid_argument when max_distance is negative or NaN, when the accuracy or a pose is not what its
+///   declaration asks for. Cancelled.
+PointDistances pointDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request = {});
+
+/// The same into the memory of an earlier result, which is empty should anything be thrown.
+void pointDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request, PointDistances& result);
+
+/// Both directions.
+struct SymmetricDistances {
+  PointDistances a; ///< from each point of a to b
+  PointDistances b; ///< from each point of b to a
+  /// The symmetric Hausdorff distance: the greatest of all. NaN where a point of either cloud has no distance, because
+  /// it is farther than max_distance or undecided, or the other cloud is empty; then it is not known.
+  double hausdorff = std::numeric_limits<double>::quiet_NaN();
+  std::optional<PointPair> hausdorff_pair; ///< that realises it, of several the smallest (a, b)
+};
+
+/// Distances from each cloud to the other. A count of sphere tests, or a time, is for both together.
+/// @throws as pointDistances() does
+SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request = {});
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

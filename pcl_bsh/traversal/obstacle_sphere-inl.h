@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What walks keep that take each node of a through a list of spheres of b.
+
+#if defined(PCL_BSH_TRAVERSAL_OBSTACLE_SPHERE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAVERSAL_OBSTACLE_SPHERE_INL_H_
+#undef PCL_BSH_TRAVERSAL_OBSTACLE_SPHERE_INL_H_
+#else
+#define PCL_BSH_TRAVERSAL_OBSTACLE_SPHERE_INL_H_
+#endif
+
+#include <pcl_bsh/traversal/leaf_pair-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// A sphere of b that matters to the points of some node of a: a child of `node`, in one of the spaces of b that the
+/// walk has numbered.
+struct ObstacleSphere {
+  const Node* node;
+  std::uint16_t lane;
+  std::uint16_t level; ///< of `node` below its voxel, from 1; 0 above the voxels
+  std::uint32_t obstacle;
+
+  bool isLeaf() const { return node->isLeaf(lane); }
+  ObstacleSphere below(const Node& child, std::uint32_t i) const
+  {
+    return {&child, static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(level + 1), obstacle};
+  }
+  LeafRange leaf(const Voxel& voxel) const { return {&voxel, node->begin[lane], node->comparedPoints(lane)}; }
+};
+
+/// A sphere in the frame of a's voxel.
+struct BoundingSphere {
+  Point center;
+  float radius;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

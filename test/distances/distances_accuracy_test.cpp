@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The dial: what less than exact distances promise, held against brute force.
+#include "../query/random_clouds.h"
+#include "expect_distances.h"
+
+namespace pcl_bsh {
+namespace {
+
+using test::Scene;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class DistancesAccuracy : public testing::Test {
+protected:
+  /// Asks about random scenes, each with a limit and without.
+  template <class Check>
+  void forEachScene(const Check& check)
+  {
+    for (std::uint64_t seed = 0; seed < 150; ++seed) {
+      const Scene scene = test::anyScene(seed, 200);
+      SCOPED_TRACE(scene.name);
+      HierarchyOptions options;
+      if (seed % 2 == 0) options.voxel_edge = std::max(1e-3, 4 * scene.clearance);
+      const SphereHierarchy ha(scene.a.view(), options), hb(scene.b.view(), options);
+      const Placed a(ha, scene.pose_a), b(hb, scene.pose_b);
+      const PointDistances all = brute_force::pointDistances(a, b);
+      for (const double max : {kInfinity, scene.clearance}) {
+        PointDistancesRequest request;
+        request.max_distance = max;
+        check(a, b, request, brute_force::pointDistances(a, b, request), all);
+        if (testing::Test::HasFailure()) return;
+      }
+    }
+  }
+
+  /// Every interval holds the distance; who has a distance, has the right one.
+  static void expectCertain(const PointDistances& found, const PointDistances& truth, const PointDistances& all,
+                            double max)
+  {
+    std::size_t undecided = 0;
+    for (std::size_t i = 0; i < all.distance.size(); ++i) {
+      const Interval& interval = found.interval[i];
+      if (all.nearest[i] == PointDistances::kNoPoint) { // no point, or nothing there
+        EXPECT_TRUE(std::isnan(interval.lower) || interval.upper == kInfinity);
+        continue;
+      }
+      EXPECT_LE(interval.lower, all.distance[i]) << i;
+      EXPECT_GE(interval.upper, all.distance[i]) << i;
+      if (found.nearest[i] != PointDistances::kNoPoint) {
+        EXPECT_EQ(found.nearest[i], truth.nearest[i]);
+        EXPECT_EQ(found.distance[i], truth.distance[i]);
+      }
+      else if (interval.lower >= max) {
+        EXPECT_EQ(truth.nearest[i], PointDistances::kNoPoint) << i;
+      }
+      else {
+        ++undecided;
+      }
+    }
+    EXPECT_EQ(found.undecided, undecided);
+  }
+};
+
+TEST_F(DistancesAccuracy, ToleranceKeepsWhoIsMeasuredAndTheDistanceWithinIt)
+{
+  forEachScene([](const Placed& a, const Placed& b, PointDistancesRequest request, const PointDistances& truth,
+                  const PointDistances& all) {
+    for (const double tolerance : {0.0, 0.01, 1.0}) {
+      request.accuracy = Accuracy::tolerance(tolerance);
+      const PointDistances found = pointDistances(a, b, request);
+      EXPECT_EQ(found.undecided, 0u);
+      for (std::size_t i = 0; i < truth.distance.size(); ++i) {
+        ASSERT_EQ(std::isnan(found.distance[i]), std::isnan(truth.distance[i])) << i;
+        if (std::isnan(truth.distance[i])) {
+          EXPECT_TRUE(std::isnan(all.distance[i]) || found.interval[i].lower <= all.distance[i]);
+          continue;
+        }
+        EXPECT_GE(found.distance[i], truth.distance[i]);
+        EXPECT_LE(found.distance[i], std::nextafter(truth.distance[i] + tolerance, kInfinity));
+        EXPECT_LE(found.interval[i].lower, truth.distance[i]);
+        EXPECT_GE(found.interval[i].upper, truth.distance[i]);
+      }
+    }
+  });
+}
+
+TEST_F(DistancesAccuracy, LevelsGiveCertainIntervalsThatShrink)
+{
+  forEachScene([](const Placed& a, const Placed& b, PointDistancesRequest request, const PointDistances& truth,
+                  const PointDistances& all) {
+    std::size_t undecided = ~std::size_t{0};
+    for (const unsigned level : {0u, 1u, 2u, 3u, 5u, 60u}) {
+      request.accuracy = Accuracy::level(level);
+      const PointDistances found = pointDistances(a, b, request);
+      expectCertain(found, truth, all, request.max_distance);
+      EXPECT_LE(found.undecided, undecided);
+      undecided = found.undecided;
+    }
+    EXPECT_EQ(undecided, 0u);
+  });
+}
+
+TEST_F(DistancesAccuracy, BudgetsGiveCertainIntervalsAndInTheEndAllDistances)
+{
+  forEachScene([](const Placed& a, const Placed& b, PointDistancesRequest request, const PointDistances& truth,
+                  const PointDistances& all) {
+    for (const std::uint64_t count : {0u, 10u, 300u, 3000u, 1u << 30}) {
+      request.accuracy = Accuracy::nodePairs(count);
+      expectCertain(pointDistances(a, b, request), truth, all, request.max_distance);
+      const SymmetricDistances both = symmetricDistances(a, b, request);
+      expectCertain(both.a, truth, all, request.max_distance);
+      EXPECT_TRUE(count < 1u << 30 || both.a.undecided + both.b.undecided == 0);
+    }
+    for (const double seconds : {0.0, 1e-5, 100.0}) {
+      request.accuracy = Accuracy::time(seconds);
+      const PointDistances found = pointDistances(a, b, request);
+      expectCertain(found, truth, all, request.max_distance);
+      EXPECT_TRUE(seconds < 1.0 || found.undecided == 0);
+    }
+  });
+}
+
+TEST_F(DistancesAccuracy, FloatAloneIsNearlyRight)
+{
+  forEachScene([](const Placed& a, const Placed& b, PointDistancesRequest request, const PointDistances&,
+                  const PointDistances& all) {
+    if (std::isfinite(request.max_distance)) return;
+    request.accuracy = Accuracy::floatOnly();
+    const PointDistances found = pointDistances(a, b, request);
+    EXPECT_TRUE(found.interval.empty());
+    const double scale = std::isnan(all.greatest) ? 0.0 : std::abs(all.greatest);
+    for (std::size_t i = 0; i < all.distance.size(); ++i) {
+      ASSERT_EQ(std::isnan(found.distance[i]), std::isnan(all.distance[i]));
+      if (std::isnan(all.distance[i])) continue;
+      EXPECT_NEAR(found.distance[i], all.distance[i], 1e-3 + 1e-5 * scale) << i;
+    }
+  });
+}
+
+} // namespace
+} // namespace pcl_bsh

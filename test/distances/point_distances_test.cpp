@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Distances of points against brute force: random clouds of every shape and layout, poses, radii, limits, threads, both
+// directions.
+#include <pcl_bsh/geometry/invalid_input.h>
+
+#include "../query/adversarial_clouds.h"
+#include "../query/random_clouds.h"
+#include "../query/work_counts.h"
+#include "expect_distances.h"
+
+namespace pcl_bsh {
+namespace {
+
+using test::Cloud;
+using test::Random;
+using test::Scene;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+PointDistancesRequest within(double max_distance, unsigned threads = 1)
+{
+  PointDistancesRequest request;
+  request.max_distance = max_distance;
+  request.threads = threads;
+  return request;
+}
+
+HierarchyOptions optionsFor(const Scene& scene, std::uint64_t seed)
+{
+  HierarchyOptions options;
+  constexpr SphereFit fits[] = {SphereFit::box_center, SphereFit::ritter, SphereFit::minimal};
+  options.fit = fits[seed % 3];
+  if (seed % 2 == 0) options.voxel_edge = std::max(1e-3, 4 * scene.clearance);
+  return options;
+}
+
+TEST(PointDistances, OfRandomClouds)
+{
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    const Scene scene = test::anyScene(seed, 250);
+    SCOPED_TRACE(scene.name);
+    const HierarchyOptions options = optionsFor(scene, seed);
+    const SphereHierarchy ha(scene.a.view(), options), hb(scene.b.view(), options);
+    const Placed a(ha, scene.pose_a), b(hb, scene.pose_b);
+    for (const double max : {kInfinity, scene.clearance}) {
+      test::expectSame(pointDistances(a, b, within(max)), brute_force::pointDistances(a, b, within(max)));
+      if (testing::Test::HasFailure()) return;
+    }
+  }
+}
+
+TEST(PointDistances, OfBallsWithinALimit)
+{
+  Random random(7);
+  for (int i = 0; i < 60; ++i) { // of a alone, of b alone, of both
+    Cloud one(test::makePoints(test::Shape::plane, 150, 1, random));
+    Cloud other(test::makePoints(test::Shape::sphere, 150, 1, random));
+    const auto radii = [&] {
+      std::vector<float> values(150);
+      for (float& value : values) value = random.chance(0.1) ? 0.5f : static_cast<float>(random.uniform(0, 0.05));
+      return values;
+    };
+    if (i % 3 != 0) one.setRadii(radii());
+    if (i % 3 != 1) other.setRadii(radii());
+    const SphereHierarchy a(one.view()), b(other.view());
+    const double max = random.uniform(0, 0.3);
+    test::expectSame(pointDistances(a, b, within(max)), brute_force::pointDistances(a, b, within(max)));
+  }
+}
+
+TEST(PointDistances, ThreadsGiveTheSameAnswerForTheSameWork)
+{
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Scene scene = test::anyScene(seed, 2000);
+    HierarchyOptions options = optionsFor(scene, seed);
+    options.voxel_edge = 0.25;
+    const auto ask = [&](unsigned threads) {
+      const SphereHierarchy ha(scene.a.view(), options), hb(scene.b.view(), options);
+      return pointDistances({ha, scene.pose_a}, {hb, scene.pose_b}, within(kInfinity, threads));
+    };
+    const PointDistances one = ask(1), four = ask(4);
+    test::expectSame(four, one);
+    EXPECT_EQ(test::countsOf(four.work), test::countsOf(one.work));
+  }
+}
+
+TEST(PointDistances, OfBothDirectionsGiveTheSymmetricHausdorffDistance)
+{
+  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+    const Scene scene = test::anyScene(seed, 120);
+    SCOPED_TRACE(scene.name);
+    const SphereHierarchy ha(scene.a.view()), hb(scene.b.view());
+    const Placed a(ha, scene.pose_a), b(hb, scene.pose_b);
+    for (const double max : {kInfinity, scene.clearance}) {
+      const SymmetricDistances found = symmetricDistances(a, b, within(max));
+      const PointDistances of_a = brute_force::pointDistances(a, b, within(max));
+      const PointDistances of_b = brute_force::pointDistances(b, a, within(max));
+      test::expectSame(found.a, of_a);
+      test::expectSame(found.b, of_b);
+      const bool known = of_a.measured == ha.size() && of_b.measured == hb.size() && ha.size() > 0 && hb.size() > 0;
+      EXPECT_EQ(found.hausdorff_pair.has_value(), known);
+      EXPECT_EQ(std::isnan(found.hausdorff), !known);
+      if (!known) continue;
+      EXPECT_EQ(found.hausdorff, std::max(of_a.greatest, of_b.greatest));
+      const PointPair p = *of_a.greatest_pair, q = {of_b.greatest_pair->b, of_b.greatest_pair->a};
+      if (of_a.greatest != of_b.greatest) {
+        EXPECT_EQ(*found.hausdorff_pair, of_a.greatest > of_b.greatest ? p : q);
+      }
+      EXPECT_TRUE(*found.hausdorff_pair == p || *found.hausdorff_pair == q);
+    }
+  }
+}
+
+TEST(PointDistances, AreNoneWhereACloudIsEmpty)
+{
+  const Cloud none(std::vector<Point3>{}), some({{1, 2, 3}, {std::nan(""), 0, 0}});
+  const SphereHierarchy empty(none.view()), full(some.view());
+  PointDistancesRequest request;
+  EXPECT_TRUE(pointDistances(empty, full, request).distance.empty());
+  request.accuracy = Accuracy::level(1);
+  const PointDistances found = pointDistances(full, empty, request);
+  EXPECT_EQ(found.measured + found.undecided, 0u);
+  EXPECT_EQ(found.nearest, (std::vector<std::uint32_t>{PointDistances::kNoPoint, PointDistances::kNoPoint}));
+  EXPECT_EQ(found.interval[0].lower, kInfinity);
+  EXPECT_TRUE(std::isnan(found.interval[1].lower));
+  EXPECT_TRUE(std::isnan(symmetricDistances(full, empty).hausdorff));
+}
+
+TEST(PointDistances, AreRefusedWithoutMeaning)
+{
+  const Cloud one({{1, 2, 3}});
+  const SphereHierarchy point(one.view());
+  for (const double bad : {-1.0, std::nan("")}) {
+    try {
+      pointDistances(point, point, within(bad));
+      ADD_FAILURE();
+    }
+    catch (const InvalidInput& error) {
+      EXPECT_EQ(error.input(), Input::max_distance);
+    }
+  }
+  Eigen::Isometry3d scaled = Eigen::Isometry3d::Identity();
+  scaled.linear() *= 2.0;
+  EXPECT_THROW(pointDistances({point, scaled}, point), InvalidInput);
+  EXPECT_THROW(symmetricDistances(point, {point, scaled}), InvalidInput);
+  PointDistancesRequest request;
+  request.accuracy = Accuracy::tolerance(-1);
+  EXPECT_THROW(brute_force::pointDistances(point, point, request), InvalidInput);
+}
+
+TEST(PointDistances, ReportProgressAndStop)
+{
+  Random random(3);
+  const Cloud cloud(test::makePoints(test::Shape::uniform, 5000, 1, random));
+  HierarchyOptions fine;
+  fine.voxel_edge = 0.25;
+  const SphereHierarchy a(cloud.view(), fine);
+  std::vector<double> told;
+  PointDistancesRequest request;
+  request.progress = [&](double done) {
+    told.push_back(done);
+    return true;
+  };
+  const PointDistances truth = pointDistances(a, a, request);
+  ASSERT_GT(told.size(), 10u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(told.back(), 1.0);
+  for (const unsigned threads : {1u, 3u}) {
+    int calls = 0;
+    request.threads = threads;
+    request.progress = [&](double) { return ++calls < 5; };
+    PointDistances result = truth;
+    EXPECT_THROW(pointDistances(a, a, request, result), Cancelled);
+    EXPECT_TRUE(result.distance.empty() && result.nearest.empty() && !result.greatest_pair);
+    request.progress = [](double) -> bool { throw std::runtime_error("of the caller"); };
+    EXPECT_THROW(symmetricDistances(a, a, request), std::runtime_error);
+  }
+  request.progress = nullptr;
+  test::expectSame(pointDistances(a, a, request), truth);
+}
+
+/// Work per point of the larger cloud, which must not grow with it.
+TEST(PointDistances, TakeLinearWorkOfHardClouds)
+{
+  using namespace test::adversarial;
+  const auto perPoint = [](const std::vector<Point3>& one, const std::vector<Point3>& other) {
+    const Cloud cloud_a(one), cloud_b(other);
+    const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+    const Work work = pointDistances(a, b).work;
+    return static_cast<double>(work.node_pairs + 16 * work.leaf_pairs + work.exact_decisions) /
+           static_cast<double>(std::max(one.size(), other.size()));
+  };
+  const std::vector<Point3> center = {{0, 0, 0}};
+  EXPECT_LT(perPoint(center, shells(20'000, 1, 0)), 12.0); // all at the same distance
+  EXPECT_LT(perPoint(shells(20'000, 1, 0), center), 12.0);
+  const std::vector<Point3> place(20'000, {1, 2, 3});
+  EXPECT_LT(perPoint(place, place), 1.0);
+  EXPECT_LT(perPoint(place, shells(20'000, 1, 0)), 12.0);
+  EXPECT_LT(perPoint(sheet(20'000, 0, 0), sheet(20'000, 0.5, 0)), 250.0); // four at the same distance from each
+}
+
+TEST(PointDistances, OfCloudsBelowFloatResolution)
+{
+  Random random(5);
+  for (const double grain : {0x1p-24, 0x1p-40, 0x1p-60}) {
+    std::vector<Point3> points(1500);
+    for (Point3& p : points) p = random.point([&] { return 0.25 + grain * random.integer(0, 64); });
+    points[0] = {1, 1, 1};
+    std::vector<Point3> shifted = points;
+    for (Point3& p : shifted) p[0] += 32 * grain;
+    const Cloud cloud_a(points, {Scalar::float64, 0, 0}), cloud_b(shifted, {Scalar::float64, 0, 0});
+    const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+    test::expectSame(pointDistances(a, b), brute_force::pointDistances(a, b));
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh
