@@ -73,6 +73,20 @@ PosePath pathOf(const Placed& scan, const std::vector<Eigen::Isometry3d>& poses,
                   progress);
 }
 
+Travel travelOf(const std::vector<Eigen::Isometry3d>& poses, const Point3& center)
+{
+  Travel travel;
+  const Eigen::Vector3d at(center[0], center[1], center[2]);
+  for (std::size_t k = 0; k + 1 < poses.size(); ++k) {
+    const Eigen::Matrix3d turn = poses[k + 1].linear() - poses[k].linear();
+    const Eigen::Vector3d step =
+        poses[k].linear().transpose() * (turn * at + poses[k + 1].translation() - poses[k].translation());
+    for (std::size_t axis = 0; axis < 3; ++axis) travel.way[axis] += std::abs(step[static_cast<Eigen::Index>(axis)]);
+    travel.turned += turn.norm() / std::sqrt(2.0); // of small angles
+  }
+  return travel;
+}
+
 double largestRadii(const Placed& scan, const SphereHierarchy& model)
 {
   return scan.hierarchy().storage().largest_radius + model.storage().largest_radius;
@@ -88,7 +102,7 @@ TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& m
   given(model_poses),
   request(asked),
   result(into),
-  boxes(model_of.storage()),
+  boxes(model_of.storage(), travelOf(model_poses, model_of.storage().frame.origin)),
   radii(largestRadii(scan_at, model_of)),
   reach(asked.clearance + asked.swept.value_or(0.0) / 2 + radii),
   path(pathOf(scan_at, model_poses, asked, boxes, reach, progress)),
