@@ -10,35 +10,51 @@
 
 #include <pcl_bsh/simd/sphere_lanes-inl.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Segments from start to end, each to be tested against boxes that are widened by a reach of its own. The caller pays
-/// for rounding in the reach, also for taking a motion for one of `smallest` that is smaller (kSegmentRounding).
+/// Arcs from start to end, each to be tested against boxes that are widened by a reach of its own: at t from 0 to 1, on
+/// the parabola start + t motion + 4 t (1 - t) bow. The caller pays for rounding in the reach, also for taking a motion
+/// for one of `smallest` that is smaller (kSegmentRounding).
 /// @tparam Reaches 3: along each axis another, 1: the same along all.
 template <std::size_t Count, std::size_t Reaches = 1>
 struct Segments {
-  alignas(64) float inverse[3][Count]; ///< of end - start
+  alignas(64) float inverse[3][Count]; ///< of the motion
   alignas(64) float start[3][Count];
+  alignas(64) float motion[3][Count]; ///< end - start
+  alignas(64) float bow[3][Count];
   alignas(64) float reach[Reaches][Count];
+  float ball = 0.0f; ///< with three reaches: what they have in common, a distance in all directions
 
-  HWY_INLINE void set(const float (&from)[3][Count], const float (&to)[3][Count], float smallest)
+  HWY_INLINE void set(const float (&from)[3][Count], const float (&to)[3][Count], const float (&bows)[3][Count],
+                      float smallest)
   {
     const LaneTag d;
     const LaneVector least = hn::Set(d, smallest), one = hn::Set(d, 1.0f);
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::size_t i = 0; i < Count; i += hn::Lanes(d)) {
         const LaneVector first = hn::Load(d, from[axis] + i);
-        const LaneVector motion = hn::Sub(hn::Load(d, to[axis] + i), first);
+        const LaneVector way = hn::Sub(hn::Load(d, to[axis] + i), first);
         hn::Store(first, d, start[axis] + i);
-        hn::Store(hn::Div(one, hn::CopySign(hn::Max(hn::Abs(motion), least), motion)), d, inverse[axis] + i);
+        hn::Store(way, d, motion[axis] + i);
+        hn::Store(hn::Load(d, bows[axis] + i), d, bow[axis] + i);
+        hn::Store(hn::Div(one, hn::CopySign(hn::Max(hn::Abs(way), least), way)), d, inverse[axis] + i);
       }
   }
 };
 
 static_assert(2 * kCarriedProductError + (2 + 2 + 2 * 6) * kFloatUnit < kSegmentRounding);
+
+// Of a place on the parabola: 8 u of the largest coordinate for its start, middle and end carried, 7 u for the
+// parabola's products and sums, 4 u for the gap to a box, on each of three axes: less than 40 u of the 64. Of the bow
+// less than 32 u on each axis; the caller counts it eightfold.
+static_assert(1.7321 * (8 + 7 + 4) * kFloatUnit < kSegmentRounding && 1.7321 * 32 * kFloatUnit < 8 * kSegmentRounding);
 
 /// When a segment is in a box: a part of [0, 1].
 template <std::size_t Count>
@@ -51,22 +67,68 @@ struct ClippedLanes {
   LaneVector from, to;
 };
 
-HWY_INLINE void clipAxis(LaneVector start, LaneVector inverse, LaneVector reach, LaneVector low, LaneVector high,
-                         ClippedLanes& clip)
+/// Some arcs along one axis.
+struct ArcLanes {
+  LaneVector start, motion, inverse, bow, reach;
+};
+
+/// The chord is where the box is that is widened by the bow, too.
+HWY_INLINE void clipAxis(const ArcLanes& arc, LaneVector low, LaneVector high, ClippedLanes& clip)
 {
-  const LaneVector at_low = hn::Mul(hn::Sub(low, hn::Add(start, reach)), inverse);
-  const LaneVector at_high = hn::Mul(hn::Sub(high, hn::Sub(start, reach)), inverse);
+  const LaneTag d;
+  const LaneVector zero = hn::Zero(d);
+  const LaneVector under = hn::Add(arc.reach, hn::Max(arc.bow, zero)),
+                   over = hn::Sub(arc.reach, hn::Min(arc.bow, zero));
+  const LaneVector at_low = hn::Mul(hn::Sub(low, hn::Add(arc.start, under)), arc.inverse);
+  const LaneVector at_high = hn::Mul(hn::Sub(high, hn::Sub(arc.start, over)), arc.inverse);
   clip.from = hn::Max(clip.from, hn::Min(at_low, at_high));
   clip.to = hn::Min(clip.to, hn::Max(at_low, at_high));
 }
 
+HWY_INLINE LaneVector placeOn(const ArcLanes& arc, LaneVector t)
+{
+  const LaneTag d;
+  const LaneVector bent = hn::Mul(hn::Mul(hn::Set(d, 4.0f), arc.bow), hn::Sub(hn::Set(d, 1.0f), t));
+  return hn::Add(arc.start, hn::Mul(t, hn::Add(arc.motion, bent)));
+}
+
+/// No more than the distance of the clipped part of an arc from a box along an axis, less what the reach exceeds the
+/// ball by: the part bows by the square of its share of the whole.
+HWY_INLINE LaneVector gapToBox(const ArcLanes& arc, LaneVector ball, LaneVector low, LaneVector high,
+                               const ClippedLanes& clip)
+{
+  const LaneTag d;
+  const LaneVector zero = hn::Zero(d), extent = hn::Sub(arc.reach, ball);
+  const LaneVector first = placeOn(arc, clip.from), last = placeOn(arc, clip.to), part = hn::Sub(clip.to, clip.from);
+  const LaneVector bow = hn::Mul(arc.bow, hn::Mul(part, part));
+  const LaneVector least = hn::Add(hn::Min(first, last), hn::Sub(hn::Min(bow, zero), extent));
+  const LaneVector most = hn::Add(hn::Max(first, last), hn::Add(hn::Max(bow, zero), extent));
+  return hn::Max(hn::Max(hn::Sub(low, most), hn::Sub(least, high)), zero);
+}
+
 /// Whether a clipped part contains one of the instants i / steps; always where steps are too many for floats to tell.
-HWY_INLINE std::uint32_t isInsideAtStep(LaneTag d, const ClippedLanes& clip, float steps)
+HWY_INLINE auto isInsideAtStep(LaneTag d, const ClippedLanes& clip, float steps)
 {
   const LaneVector scale = hn::Set(d, steps), slack = hn::Set(d, steps * kStepRounding);
   const LaneVector first = hn::Ceil(hn::Sub(hn::Mul(clip.from, scale), slack));
   const LaneVector last = hn::Floor(hn::Add(hn::Mul(clip.to, scale), slack));
-  return bitsOf(d, hn::And(hn::Le(clip.from, clip.to), hn::Le(first, last)));
+  return hn::And(hn::Le(clip.from, clip.to), hn::Le(first, last));
+}
+
+/// Bits of the lanes of arcs that may be in boxes at an instant j / steps; at any instant when steps is 0.
+template <class ArcAt, class LowAt, class HighAt>
+HWY_INLINE std::uint32_t arcsInBoxes(const ArcAt& arc, LaneVector ball, const LowAt& low, const HighAt& high,
+                                     float steps, ClippedLanes& clip)
+{
+  const LaneTag d;
+  clip = {hn::Zero(d), hn::Set(d, 1.0f)};
+  for (std::size_t axis = 0; axis < 3; ++axis) clipAxis(arc(axis), low(axis), high(axis), clip);
+  const std::uint32_t bits = bitsOf(d, isInsideAtStep(d, clip, steps));
+  if (bits == 0) return 0;
+  const LaneVector squared =
+      squaredNorm(gapToBox(arc(0), ball, low(0), high(0), clip), gapToBox(arc(1), ball, low(1), high(1), clip),
+                  gapToBox(arc(2), ball, low(2), high(2), clip));
+  return bits & bitsOf(d, hn::Le(squared, hn::Add(hn::Mul(ball, ball), hn::Set(d, kVanishingSquare))));
 }
 
 /// Bit i: segment i may be in the box at an instant j / steps; at any instant when steps is 0.
@@ -77,11 +139,17 @@ HWY_INLINE std::uint32_t segmentsInBox(const Segments<Count, Reaches>& segments,
   const LaneTag d;
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < Count; i += hn::Lanes(d)) {
-    ClippedLanes clip{hn::Zero(d), hn::Set(d, 1.0f)};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      clipAxis(hn::Load(d, segments.start[axis] + i), hn::Load(d, segments.inverse[axis] + i),
-               hn::Load(d, segments.reach[axis % Reaches] + i), hn::Set(d, low[axis]), hn::Set(d, high[axis]), clip);
-    bits |= isInsideAtStep(d, clip, steps) << i;
+    ClippedLanes clip;
+    bits |= arcsInBoxes(
+                [&](std::size_t axis) HWY_ATTR {
+                  return ArcLanes{hn::Load(d, segments.start[axis] + i), hn::Load(d, segments.motion[axis] + i),
+                                  hn::Load(d, segments.inverse[axis] + i), hn::Load(d, segments.bow[axis] + i),
+                                  hn::Load(d, segments.reach[axis % Reaches] + i)};
+                },
+                Reaches == 1 ? hn::Load(d, segments.reach[0] + i) : hn::Set(d, segments.ball),
+                [&](std::size_t axis) HWY_ATTR { return hn::Set(d, low[axis]); },
+                [&](std::size_t axis) HWY_ATTR { return hn::Set(d, high[axis]); }, steps, clip)
+            << i;
     if (clipped) {
       hn::Store(clip.from, d, clipped->from + i);
       hn::Store(clip.to, d, clipped->to + i);
@@ -92,7 +160,7 @@ HWY_INLINE std::uint32_t segmentsInBox(const Segments<Count, Reaches>& segments,
 
 /// One segment, with a reach along each axis.
 struct Segment {
-  float start[3], inverse[3], reach[3];
+  float start[3], motion[3], inverse[3], bow[3], reach[3], ball;
 };
 
 /// Bit i: the segment may be in box i of eight at an instant j / steps. @param low, high 3 x 8 floats.
@@ -102,11 +170,16 @@ HWY_INLINE std::uint32_t boxesOnSegment(const Segment& segment, const float (*lo
   const LaneTag d;
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
-    ClippedLanes clip{hn::Zero(d), hn::Set(d, 1.0f)};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      clipAxis(hn::Set(d, segment.start[axis]), hn::Set(d, segment.inverse[axis]), hn::Set(d, segment.reach[axis]),
-               hn::Load(d, low[axis] + i), hn::Load(d, high[axis] + i), clip);
-    bits |= isInsideAtStep(d, clip, steps) << i;
+    ClippedLanes clip;
+    bits |= arcsInBoxes(
+                [&](std::size_t axis) HWY_ATTR {
+                  return ArcLanes{hn::Set(d, segment.start[axis]), hn::Set(d, segment.motion[axis]),
+                                  hn::Set(d, segment.inverse[axis]), hn::Set(d, segment.bow[axis]),
+                                  hn::Set(d, segment.reach[axis])};
+                },
+                hn::Set(d, segment.ball), [&](std::size_t axis) HWY_ATTR { return hn::Load(d, low[axis] + i); },
+                [&](std::size_t axis) HWY_ATTR { return hn::Load(d, high[axis] + i); }, steps, clip)
+            << i;
   }
   return bits;
 }
@@ -157,70 +230,69 @@ HWY_INLINE void lowerToFarthestCorner(const float (*places)[kLanes], const float
     hn::Store(hn::Min(hn::Load(d, least + i), squaredNorm(away(0, i), away(1, i), away(2, i))), d, least + i);
 }
 
-/// The motions of the same segments, for tests against points.
+/// Bit i of `lanes`: arc i may come within its reach of one of `count` points, at (x, y, z) + shift, at an instant
+/// j / steps (at any instant when steps is 0) of its clipped part. That part is taken for a segment: it bows by the
+/// square of its share of the whole. Few arcs reach into a box: each by itself, against all points at once.
+/// @param x, y, z readable for whole vectors. @param rounding in lengths: what that may amount to, at least 64 u of the
+///   largest coordinate
+/// @param clipped becomes when that is: from the first instant for any of the points to the last; of lanes whose bit is
+///   set
 template <std::size_t Count>
-struct SegmentMotions {
-  alignas(64) float motion[3][Count];
-  alignas(64) float inverse_length[Count]; ///< of the motion, or of `smallest` where that is longer
-  float rounding; ///< in lengths: what it may amount to, at least 64 u of the largest coordinate
-
-  HWY_INLINE void set(const float (&from)[3][Count], const float (&to)[3][Count], float smallest, float rounded)
-  {
-    const LaneTag d;
-    rounding = rounded;
-    for (std::size_t i = 0; i < Count; i += hn::Lanes(d)) {
-      const LaneVector x = hn::Sub(hn::Load(d, to[0] + i), hn::Load(d, from[0] + i));
-      const LaneVector y = hn::Sub(hn::Load(d, to[1] + i), hn::Load(d, from[1] + i));
-      const LaneVector z = hn::Sub(hn::Load(d, to[2] + i), hn::Load(d, from[2] + i));
-      const LaneVector length = hn::Sqrt(squaredNorm(x, y, z)), least = hn::Set(d, smallest);
-      const auto moves = hn::Gt(length, least);
-      hn::Store(hn::IfThenElseZero(moves, x), d, motion[0] + i);
-      hn::Store(hn::IfThenElseZero(moves, y), d, motion[1] + i);
-      hn::Store(hn::IfThenElseZero(moves, z), d, motion[2] + i);
-      hn::Store(hn::Div(hn::Set(d, 1.0f), hn::Max(length, least)), d, inverse_length + i);
-    }
-  }
-};
-
-/// Bit i: segment i may come within its reach of one of `count` points, at (x, y, z) + shift.
-/// @param clipped when that is: from the first instant for any of the points to the last; of lanes whose bit is set.
-template <std::size_t Count>
-HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, const SegmentMotions<Count>& motions,
-                                            const float* x, const float* y, const float* z, std::size_t count,
-                                            const float* shift, ClippedSegments<Count>& clipped)
+HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, std::uint32_t lanes, const float* x,
+                                            const float* y, const float* z, std::size_t count, const float* shift,
+                                            float steps, float smallest, float rounding,
+                                            ClippedSegments<Count>& clipped)
 {
   const LaneTag d;
   const LaneVector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  std::uint32_t bits = 0;
-  for (std::size_t i = 0; i < Count; i += hn::Lanes(d)) {
-    const LaneVector mx = hn::Load(d, motions.motion[0] + i), my = hn::Load(d, motions.motion[1] + i),
-                     mz = hn::Load(d, motions.motion[2] + i), inverse = hn::Load(d, motions.inverse_length + i);
-    const LaneVector sx = hn::Sub(hn::Load(d, segments.start[0] + i), hn::Set(d, shift[0]));
-    const LaneVector sy = hn::Sub(hn::Load(d, segments.start[1] + i), hn::Set(d, shift[1]));
-    const LaneVector sz = hn::Sub(hn::Load(d, segments.start[2] + i), hn::Set(d, shift[2]));
-    const LaneVector reach = hn::Add(hn::Load(d, segments.reach[0] + i), hn::Set(d, motions.rounding));
-    const LaneVector limit = hn::Mul(reach, reach);
-    const LaneVector slack = hn::Mul(hn::Set(d, motions.rounding), inverse);
+  std::uint32_t near_lanes = 0;
+  for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    const float begin = clipped.from[i], end = clipped.to[i], part = end - begin;
+    float first[3], way[3], reach = segments.reach[0][i] + rounding, squared = 0.0f;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float bow = segments.bow[axis][i];
+      const auto place = [&](float t) {
+        return segments.start[axis][i] + t * (segments.motion[axis][i] + 4.0f * bow * (1.0f - t));
+      };
+      const float at = place(begin);
+      first[axis] = at - shift[axis];
+      way[axis] = place(end) - at;
+      squared += way[axis] * way[axis];
+      reach += std::abs(bow) * (part * part);
+    }
+    float length = std::sqrt(squared);
+    if (!(length > smallest)) {
+      way[0] = way[1] = way[2] = 0.0f;
+      length = smallest;
+    }
+    const LaneVector inverse = hn::Set(d, 1.0f / length), limit = hn::Set(d, reach * reach);
+    const LaneVector slack = hn::Set(d, rounding / length);
+    const LaneVector mx = hn::Set(d, way[0]), my = hn::Set(d, way[1]), mz = hn::Set(d, way[2]);
     LaneVector from = one, to = zero;
-    for (std::size_t j = 0; j < count; ++j) {
-      const LaneVector wx = hn::Sub(hn::Set(d, x[j]), sx), wy = hn::Sub(hn::Set(d, y[j]), sy),
-                       wz = hn::Sub(hn::Set(d, z[j]), sz);
+    for (std::size_t j = 0; j < count; j += hn::Lanes(d)) {
+      const LaneVector wx = hn::Sub(hn::LoadU(d, x + j), hn::Set(d, first[0])),
+                       wy = hn::Sub(hn::LoadU(d, y + j), hn::Set(d, first[1])),
+                       wz = hn::Sub(hn::LoadU(d, z + j), hn::Set(d, first[2]));
       const LaneVector along = hn::Add(hn::Add(hn::Mul(wx, mx), hn::Mul(wy, my)), hn::Mul(wz, mz));
       const LaneVector at = hn::Mul(hn::Mul(along, inverse), inverse);
       const LaneVector left = hn::Sub(
           limit, squaredNorm(hn::Sub(wx, hn::Mul(at, mx)), hn::Sub(wy, hn::Mul(at, my)), hn::Sub(wz, hn::Mul(at, mz))));
       const LaneVector half = hn::Add(hn::Mul(hn::Sqrt(hn::Max(left, zero)), inverse), slack);
-      const auto near = hn::Ge(left, zero);
-      from = hn::Min(from, hn::IfThenElse(near, hn::Sub(at, half), one));
-      to = hn::Max(to, hn::IfThenElse(near, hn::Add(at, half), zero));
+      // Of the whole way.
+      const LaneVector enter = hn::Add(hn::Set(d, begin), hn::Mul(hn::Set(d, part), hn::Max(hn::Sub(at, half), zero)));
+      const LaneVector leave = hn::Add(hn::Set(d, begin), hn::Mul(hn::Set(d, part), hn::Min(hn::Add(at, half), one)));
+      const auto near =
+          hn::And(hn::And(hn::FirstN(d, count - j), hn::Ge(left, zero)), isInsideAtStep(d, {enter, leave}, steps));
+      if (hn::AllFalse(d, near)) continue;
+      near_lanes |= 1u << i;
+      from = hn::Min(from, hn::IfThenElse(near, enter, one));
+      to = hn::Max(to, hn::IfThenElse(near, leave, zero));
     }
-    from = hn::Max(from, zero);
-    to = hn::Min(to, one);
-    hn::Store(from, d, clipped.from + i);
-    hn::Store(to, d, clipped.to + i);
-    bits |= bitsOf(d, hn::Le(from, to)) << i;
+    clipped.from[i] = hn::GetLane(hn::MinOfLanes(d, from));
+    clipped.to[i] = std::min(hn::GetLane(hn::MaxOfLanes(d, to)), 1.0f);
   }
-  return bits;
+  return near_lanes;
 }
 
 } // namespace HWY_NAMESPACE

@@ -22,19 +22,19 @@ namespace HWY_NAMESPACE {
 /// A box of the model: a child of one of a voxel's nodes, or of the nodes above the voxels.
 struct ModelBox {
   const BoxNode* boxes;
-  const Node* nodes;
   std::uint32_t voxel;
   std::uint32_t node;
   std::uint32_t lane;
   std::uint32_t level; ///< of `node` below its voxel, from 1; 0: above
 
   const BoxNode& box() const { return boxes[node]; }
-  bool isLeaf() const { return voxel != kAboveVoxels && nodes[node].isLeaf(lane); }
-  float size() const
+  bool isLeaf() const { return voxel != kAboveVoxels && box().isLeaf(lane); }
+  /// Half of its longest side, where sides along the way count for less. @param stretch of the tree
+  float size(const float (&stretch)[3]) const
   {
     float largest = 0.0f;
     for (std::size_t axis = 0; axis < 3; ++axis)
-      largest = std::max(largest, box().high[axis][lane] - box().low[axis][lane]);
+      largest = std::max(largest, (box().high[axis][lane] - box().low[axis][lane]) / stretch[axis]);
     return 0.5f * largest;
   }
 };
@@ -88,7 +88,7 @@ public:
   ModelBoxes(const BoxTree& tree, const StopRule& rule, Work& work) : tree_(tree), rule_(rule), work_(work) {}
 
   /// The node above all boxes, as its first child.
-  ModelBox root() const { return {tree_.top().data(), tree_.storage.top.data(), kAboveVoxels, 0, 0, 0}; }
+  ModelBox root() const { return {tree_.top().data(), kAboveVoxels, 0, 0, 0}; }
 
   /// Whether a candidate that is not a leaf may be opened: not below the level where to stop, nor without the time to
   /// build a voxel.
@@ -96,24 +96,23 @@ public:
   {
     if (!rule_.mayStop()) return true;
     if (c.voxel != kAboveVoxels) return c.level < rule_.deepest;
-    if (!c.nodes[c.node].isLeaf(c.lane)) return true;
-    return rule_.deepest > 0 && rule_.leavesTimeToBuild(tree_.storage.pointsToBuild(c.nodes[c.node].begin[c.lane]));
+    if (!c.box().isLeaf(c.lane)) return true;
+    return rule_.deepest > 0 && rule_.leavesTimeToBuild(tree_.storage.pointsToBuild(c.box().leaf(c.lane)));
   }
 
   /// The node below a candidate that is not a leaf, as its first child.
   ModelBox below(const ModelBox& c)
   {
-    if (c.voxel != kAboveVoxels || !c.nodes[c.node].isLeaf(c.lane))
-      return {c.boxes, c.nodes, c.voxel, c.nodes[c.node].child[c.lane], 0, c.voxel == kAboveVoxels ? 0 : c.level + 1};
-    const std::uint32_t voxel = c.nodes[c.node].begin[c.lane];
-    const std::vector<BoxNode>& boxes = tree_.voxel(voxel, work_);
-    return {boxes.data(), tree_.storage.voxels[voxel].nodes.data(), voxel, 0, 0, 1};
+    if (c.voxel != kAboveVoxels || !c.box().isLeaf(c.lane))
+      return {c.boxes, c.voxel, c.box().child[c.lane], 0, c.voxel == kAboveVoxels ? 0 : c.level + 1};
+    const std::uint32_t voxel = c.box().leaf(c.lane);
+    return {tree_.voxel(voxel, work_).data(), voxel, 0, 0, 1};
   }
 
   /// Bits of the children of a node that a thick segment may meet.
   std::uint32_t near(const Segment& segment, const ModelBox& node, float steps)
   {
-    const std::uint32_t count = node.nodes[node.node].count;
+    const std::uint32_t count = node.box().count;
     work_.node_pairs += count;
     return boxesOnSegment(segment, node.box().low, node.box().high, steps) & firstBits(count);
   }
@@ -124,7 +123,7 @@ public:
   {
     for (std::uint32_t bits = near(segment, node, motion.steps); bits != 0; bits &= bits - 1) {
       node.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (node.isLeaf() || node.size() < size || !mayOpen(node))
+      if (node.isLeaf() || node.size(tree_.stretch) < size || !mayOpen(node))
         into.push_back(node);
       else
         collect(motion, segment, size, below(node), into);

@@ -40,7 +40,7 @@ MotionsQuery::MotionsQuery(const Placed& scan_at, const SphereHierarchy& model_o
 : scan(scan_at),
   model(model_of),
   request(asked),
-  boxes(model_of.storage()),
+  boxes(model_of.storage(), Travel()), // of motions in all directions
   swept(requestOfOne(asked)),
   beyond(asked.clearance + asked.tolerance)
 {

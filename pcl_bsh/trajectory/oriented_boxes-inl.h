@@ -64,9 +64,9 @@ public:
     const Half& half = halves_[node];
     const float share = kRounding + 4.0f * static_cast<float>(voxel_frame_.path.skew);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      float turn[2][3];
-      const float* ends[2] = {motion.from.m + 3 * axis, motion.to.m + 3 * axis};
-      for (std::size_t k = 0; k < 2; ++k)
+      float turn[3][3];
+      const float* ends[3] = {motion.from.m + 3 * axis, motion.to.m + 3 * axis, motion.bow.m + 3 * axis};
+      for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t j = 0; j < 3; ++j) {
           const float* along = axes_ + 3 * j;
           turn[k][j] = std::abs(ends[k][0] * along[0] + ends[k][1] * along[1] + ends[k][2] * along[2]);
@@ -74,7 +74,8 @@ public:
       for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
         const float first = turn[0][0] * half[0][lane] + turn[0][1] * half[1][lane] + turn[0][2] * half[2][lane];
         const float last = turn[1][0] * half[0][lane] + turn[1][1] * half[1][lane] + turn[1][2] * half[2][lane];
-        extent[axis][lane] = std::min(radius[lane], std::max(first, last) + share * radius[lane] + slack_);
+        const float bow = turn[2][0] * half[0][lane] + turn[2][1] * half[1][lane] + turn[2][2] * half[2][lane];
+        extent[axis][lane] = std::min(radius[lane], std::max(first, last) + bow + share * radius[lane] + slack_);
       }
     }
   }

@@ -217,26 +217,42 @@ void PosePath::bound(PathInterval& interval) const
   const Point3& pivot = interval.pivot = poses[first + (last - first) / 2].center;
   const PathPose &from = poses[first], &to = poses[last];
   const Point3 from_seen = from.see(pivot), to_seen = to.see(pivot);
-  double drift = 0.0, turn = 0.0, extent = distance(from.center, pivot) + distance(to.center, pivot);
+  const PathPose& middle = poses[interval.middle()];
+  const Point3 middle_seen = middle.see(pivot);
+  // Twelve numbers for each pose: R', and where it sees the pivot.
+  const auto number = [](const PathPose& pose, const Point3& seen, std::size_t i) {
+    return i < 9 ? pose.back[i] : seen[i - 9];
+  };
+  const double at_middle = last > first ? static_cast<double>(interval.middle() - first) / (last - first) : 0.0;
+  const double bent = at_middle > 0.0 ? 1.0 / (at_middle * (1.0 - at_middle)) : 0.0; // of 4 t (1 - t) there: 1
+  double line[2] = {0.0, 0.0}, bend[2] = {0.0, 0.0}, bow[12], bow_squared[2] = {0.0, 0.0};
+  for (std::size_t i = 0; i < 12; ++i) {
+    bow[i] = bent * (number(middle, middle_seen, i) -
+                     ((1.0 - at_middle) * number(from, from_seen, i) + at_middle * number(to, to_seen, i)));
+    bow_squared[i / 9] += bow[i] * bow[i];
+  }
+  double extent = distance(from.center, pivot) + distance(to.center, pivot);
   for (std::uint32_t k = first + 1; k < last; ++k) {
     const double t = static_cast<double>(k - first) / (last - first);
-    double squared = 0.0;
-    for (std::size_t i = 0; i < 9; ++i) {
-      const double difference = poses[k].back[i] - ((1.0 - t) * from.back[i] + t * to.back[i]);
-      squared += difference * difference;
-    }
-    turn = std::max(turn, squared);
     const Point3 seen = poses[k].see(pivot);
-    squared = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double difference = seen[i] - ((1.0 - t) * from_seen[i] + t * to_seen[i]);
-      squared += difference * difference;
+    double from_line[2] = {0.0, 0.0}, from_bend[2] = {0.0, 0.0};
+    for (std::size_t i = 0; i < 12; ++i) {
+      const double strays =
+          number(poses[k], seen, i) - ((1.0 - t) * number(from, from_seen, i) + t * number(to, to_seen, i));
+      const double left = strays - t * (1.0 - t) * bow[i];
+      from_line[i / 9] += strays * strays;
+      from_bend[i / 9] += left * left;
     }
-    drift = std::max(drift, squared);
+    for (std::size_t i = 0; i < 2; ++i) {
+      line[i] = std::max(line[i], from_line[i]);
+      bend[i] = std::max(bend[i], from_bend[i]);
+    }
     extent = std::max(extent, distance(poses[k].center, pivot));
   }
-  interval.turn = std::sqrt(turn) * (1.0 + kRounding) + (last > first ? kRounding : 0.0);
-  interval.drift = std::sqrt(drift) * (1.0 + kRounding) + kRounding * extent;
+  interval.turn = std::sqrt(line[0]) * (1.0 + kRounding) + (last > first ? kRounding : 0.0);
+  interval.drift = std::sqrt(line[1]) * (1.0 + kRounding) + kRounding * extent;
+  interval.bend_turn = std::sqrt(bend[0]) * (1.0 + kRounding) + (last > first ? 4 * kRounding : 0.0);
+  interval.bend_drift = std::sqrt(bend[1]) * (1.0 + kRounding) + 4 * kRounding * extent;
   if (!is_swept || first == last) return;
   double bow_drift = 0.0, bow_turn = 0.0;
   for (std::uint32_t k = first; k < last; ++k) {
@@ -250,7 +266,14 @@ void PosePath::bound(PathInterval& interval) const
   }
   interval.drift += bow_drift * (1.0 + kRounding);
   interval.turn += bow_turn * (1.0 + kRounding);
-  if (!stretches_.empty()) interval.drift += stretchStray(first, last);
+  // From one pose to the next, the parabola itself bows by a share of its own bow.
+  const double share = (1.0 + kRounding) / (4.0 * (last - first) * (last - first));
+  interval.bend_drift += (bow_drift + std::sqrt(bow_squared[1]) * share) * (1.0 + kRounding);
+  interval.bend_turn += (bow_turn + std::sqrt(bow_squared[0]) * share) * (1.0 + kRounding);
+  if (stretches_.empty()) return;
+  const double stretch = stretchStray(first, last);
+  interval.drift += stretch;
+  interval.bend_drift += stretch;
 }
 
 /// How far the model's points stray from straight lines because the poses stretch them, each by a little and otherwise.

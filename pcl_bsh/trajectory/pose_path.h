@@ -43,9 +43,12 @@ struct PathInterval {
   std::uint32_t first = 0, last = 0;
   std::uint32_t left = 0, right = 0; ///< its halves, as indices of intervals; 0: not divided further
   double drift = 0.0, turn = 0.0;
+  double bend_drift = 0.0, bend_turn = 0.0; ///< likewise, from the parabola through where it is seen at the first, at
+                                            ///< the middle and at the last
   Point3 pivot = {0, 0, 0};
 
   bool divided() const { return left != 0; }
+  std::uint32_t middle() const { return first + (last - first) / 2; }
 };
 
 class PosePath {

@@ -166,7 +166,7 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   Progress progress(request.progress);
   try {
     progress.limit(&rule);
-    const BoxTree boxes(model.storage());
+    const BoxTree boxes(model.storage(), travelOf(model_poses, model.storage().frame.origin));
     const TrajectoryQuery query(scan, model, boxes, model_poses, request, result, progress);
     result.work.volumes_built += countChildren(boxes.storage.top);
     progress.limit(nullptr);

@@ -19,10 +19,8 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-inline constexpr double kLeafStray = 0.15;      ///< of a leaf's radius: an interval that strays farther is divided
-inline constexpr double kManyPosesStray = 0.08; ///< likewise, where it has many poses
-inline constexpr float kManyPoses = 64;
-inline constexpr float kFewPoses = 4; ///< as quickly looked at one by one as all together
+inline constexpr double kLeafStray = 0.01; ///< of a leaf's radius: an interval that strays farther is divided
+inline constexpr float kFewPoses = 4;      ///< as quickly looked at one by one as all together
 
 /// A leaf of the scan, its points tested all at once.
 struct LeafVisit {
@@ -30,7 +28,6 @@ struct LeafVisit {
   std::size_t slot;   ///< of its flags
   std::uint32_t open; ///< bits of the points that are not settled
   Segments<kLeafPoints> segments;
-  SegmentMotions<kLeafPoints> motions;
   Segment around;
   float low[3], high[3];                       ///< of the model's box that it is compared with
   alignas(64) float near_squared[kLeafPoints]; ///< farther from a box, squared, nothing in it matters, at one pose
@@ -58,9 +55,8 @@ public:
   {
     const std::uint32_t all = firstBits(points.count);
     if ((all & ~results_.settled[slot]) == 0 || results_.witness) return false;
-    const double share = motion.steps > kManyPoses ? kManyPosesStray : kLeafStray;
-    const double limit = path_.is_swept ? path_.stray : share * node.r[lane] * voxel_frame_.frame.unit;
-    if (motion.divides(limit)) {
+    const double limit = path_.is_swept ? path_.stray : kLeafStray * node.r[lane] * voxel_frame_.frame.unit;
+    if (motion.interval->divided() && (path_.is_swept ? motion.line_stray : motion.stray) > limit) {
       return compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->left), candidates, bound) &&
              compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->right), candidates, bound);
     }
@@ -68,21 +64,22 @@ public:
     leaf.points = points;
     leaf.slot = slot;
     leaf.open = all & ~results_.settled[slot];
-    alignas(64) float from[3][kLeafPoints], to[3][kLeafPoints];
+    alignas(64) float from[3][kLeafPoints], to[3][kLeafPoints], bow[3][kLeafPoints];
     carry(motion.from.m, motion.from.g, points.x(), points.y(), points.z(), points.count, from[0], from[1], from[2]);
     carry(motion.to.m, motion.to.g, points.x(), points.y(), points.z(), points.count, to[0], to[1], to[2]);
+    carry(motion.bow.m, motion.bow.g, points.x(), points.y(), points.z(), points.count, bow[0], bow[1], bow[2]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::fill(bow[axis] + points.count, bow[axis] + kLeafPoints, 0.0f);
       std::fill(from[axis] + points.count, from[axis] + kLeafPoints, 0.0f);
       std::fill(to[axis] + points.count, to[axis] + kLeafPoints, 0.0f);
     }
-    leaf.segments.set(from, to, motion.smallest);
-    if (path_.is_swept || motion.steps >= kFewPoses) leaf.motions.set(from, to, motion.smallest, motion.rounding);
+    leaf.segments.set(from, to, bow, motion.smallest);
     std::fill(leaf.segments.reach[0], leaf.segments.reach[0] + kLeafPoints, motion.reach);
     std::fill(leaf.near_squared, leaf.near_squared + kLeafPoints, voxel_frame_.nearSquared(motion, bound));
     for (std::uint32_t i = 0; query_.closest && i < points.count; ++i)
       if (bestBounds(points.begin + i, motion)) lowerReach(leaf, i, results_.best[points.begin + i].reach, motion);
     const float no_extent[3][kLeafPoints] = {};
-    leaf.around = voxel_frame_.aroundSegments(motion, from, to, no_extent, points.count);
+    leaf.around = voxel_frame_.aroundSegments(motion, from, to, bow, no_extent, points.count);
     ++results_.work.volumes_carried;
     if (query_.request.pose_summaries) pose_hits_.assign(motion.interval->last - motion.interval->first + 1, 0);
 
@@ -159,8 +156,10 @@ private:
       }
       return;
     }
-    const Node& node = candidate.nodes[candidate.node];
-    const LeafRange other{&tree_.storage.voxels[candidate.voxel], node.begin[k], node.comparedPoints(k)};
+    const std::uint32_t at_leaf = candidate.box().leaf(k);
+    const Voxel& of = tree_.storage.voxels[candidate.voxel];
+    const Node& node = of.nodes[at_leaf / kNodeChildren];
+    const LeafRange other{&of, node.begin[at_leaf % kNodeChildren], node.comparedPoints(at_leaf % kNodeChildren)};
     if (path_.is_swept)
       compareSegments(leaf, lanes, clipped, other, candidate.voxel, motion);
     else if constexpr (AtRest)
@@ -173,12 +172,12 @@ private:
   HWY_INLINE void comparePoses(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
                                const LeafRange& other, std::uint32_t voxel, const VoxelMotion& motion)
   {
-    PoseRanges ranges = rangesOf(lanes, clipped, motion);
+    const bool narrows = motion.squares && other.voxel->frame.unit == 1.0;
+    if (narrows) lanes = nearPoints(leaf, lanes, other, voxel, motion, clipped);
+    const PoseRanges ranges = rangesOf(lanes, clipped, motion);
     if (ranges.lanes == 0) return;
-    if (static_cast<float>(ranges.end - ranges.begin) > kFewPoses && motion.squares && other.voxel->frame.unit == 1.0) {
-      lanes &= nearPoints(leaf, other, voxel, clipped);
-      ranges = rangesOf(lanes, clipped, motion);
-      lanes = ranges.lanes;
+    lanes = ranges.lanes;
+    if (narrows) {
       if (!query_.everything() && !query_.first) {
         // Any pose will do: the one in the middle is nearest.
         for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
@@ -201,13 +200,13 @@ private:
   }
 
   /// Bits of the leaf's points whose segments come near to points of the model's leaf, and when.
-  std::uint32_t nearPoints(const LeafVisit& leaf, const LeafRange& other, std::uint32_t voxel,
-                           ClippedSegments<kLeafPoints>& clipped) const
+  std::uint32_t nearPoints(const LeafVisit& leaf, std::uint32_t lanes, const LeafRange& other, std::uint32_t voxel,
+                           const VoxelMotion& motion, ClippedSegments<kLeafPoints>& clipped) const
   {
     const Point3 at = tree_.offset(voxel);
     const float shift[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
-    return segmentsNearPoints(leaf.segments, leaf.motions, other.x(), other.y(), other.z(), other.count, shift,
-                              clipped);
+    return segmentsNearPoints(leaf.segments, lanes, other.x(), other.y(), other.z(), other.count, shift, motion.steps,
+                              motion.smallest, motion.rounding, clipped);
   }
 
   /// Two leaves at pose k: by float bands, and exactly within the bands.
@@ -310,7 +309,8 @@ private:
   HWY_NOINLINE void compareSegments(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
                                     const LeafRange& other, std::uint32_t voxel, const VoxelMotion& motion)
   {
-    if (motion.squares && other.voxel->frame.unit == 1.0) lanes &= nearPoints(leaf, other, voxel, clipped);
+    if (motion.squares && other.voxel->frame.unit == 1.0)
+      lanes = nearPoints(leaf, lanes, other, voxel, motion, clipped);
     ++results_.work.leaf_pairs;
     const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {

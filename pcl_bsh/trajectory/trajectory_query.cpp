@@ -92,6 +92,20 @@ PosePath::Sweep sweepOf(const TrajectoryRequest& request, const BoxTree& boxes, 
           reach + tolerance, kStrayShare * tolerance,        tolerance / 64};
 }
 
+Travel travelOf(const std::vector<Eigen::Isometry3d>& poses, const Point3& center)
+{
+  Travel travel;
+  const Eigen::Vector3d at(center[0], center[1], center[2]);
+  for (std::size_t k = 0; k + 1 < poses.size(); ++k) {
+    const Eigen::Matrix3d turn = poses[k + 1].linear() - poses[k].linear();
+    const Eigen::Vector3d step =
+        poses[k].linear().transpose() * (turn * at + poses[k + 1].translation() - poses[k].translation());
+    for (std::size_t axis = 0; axis < 3; ++axis) travel.way[axis] += std::abs(step[static_cast<Eigen::Index>(axis)]);
+    travel.turned += turn.norm() / std::sqrt(2.0); // of small angles
+  }
+  return travel;
+}
+
 TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of, const BoxTree& model_boxes,
                                  const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
                                  TrajectoryResult& into, Progress& progress, Wanted what)

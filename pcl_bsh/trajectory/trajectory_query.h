@@ -87,6 +87,9 @@ private:
                    Progress& progress, std::vector<NearVoxel>& near_voxels) const;
 };
 
+/// @param center the point of the model whose way counts
+Travel travelOf(const std::vector<Eigen::Isometry3d>& poses, const Point3& center);
+
 /// The largest coordinate of the model's middle and of the pivot at a pose.
 double farthestPlace(const Eigen::Isometry3d& pose, const BoxTree& boxes, const Point3& pivot);
 

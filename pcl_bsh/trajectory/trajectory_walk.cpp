@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Along a trajectory: every node of the scan carries the list of what can still matter of the model, for an interval of
-// poses at once. Seen by the model, the scan's points move in nearly straight lines: a node is a thick segment, the
-// model a tree of boxes. How thick follows from the node's sphere and from how far the interval strays from a line;
-// whichever is larger is divided.
+// poses at once. Seen by the model, the scan's points move nearly on parabolas: a node is a thick arc, the model a tree
+// of boxes. How thick follows from the node's sphere and from how far the interval strays from a parabola; whichever is
+// larger is divided.
 #include <pcl_bsh/trajectory/trajectory_walk.h>
 
 #include <algorithm>
@@ -23,9 +23,9 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr double kNodeStray = 0.5; // of a node's radius: an interval that strays farther is divided
-constexpr float kSeedSize = 0.5f;  // of the voxel's radius: larger boxes of the model are opened before its descent
-constexpr float kBoxSize = 1.0f;   // of a node's radius: a larger box of the model is opened
+constexpr double kNodeStray = 0.03; // of a node's radius: an interval that strays farther is divided
+constexpr float kSeedSize = 0.5f;   // of the voxel's radius: larger boxes of the model are opened before its descent
+constexpr float kBoxSize = 2.0f;    // of a node's radius: a larger box of the model is opened
 
 /// A node of the scan that is tested against the model, all of its children at once.
 struct NodeVisit {
@@ -182,10 +182,11 @@ private:
   void begin(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
   {
     const Node& node = voxel_->nodes[index];
-    alignas(64) float from[3][kLanes], to[3][kLanes];
+    alignas(64) float from[3][kLanes], to[3][kLanes], bow[3][kLanes];
     carry(motion.from.m, motion.from.g, node.x, node.y, node.z, kLanes, from[0], from[1], from[2]);
     carry(motion.to.m, motion.to.g, node.x, node.y, node.z, kLanes, to[0], to[1], to[2]);
-    visit.children.set(from, to, motion.smallest);
+    carry(motion.bow.m, motion.bow.g, node.x, node.y, node.z, kLanes, bow[0], bow[1], bow[2]);
+    visit.children.set(from, to, bow, motion.smallest);
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
       visit.near[lane].clear();
       visit.radius[lane] = voxel_frame_.seenRadius(node.r[lane]);
@@ -195,7 +196,8 @@ private:
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::uint32_t lane = 0; lane < kLanes; ++lane)
         visit.children.reach[axis][lane] = (motion.reach + extent[axis][lane]) * (1.0f + kReachMargin);
-    visit.around = voxel_frame_.aroundSegments(motion, from, to, extent, node.count);
+    visit.children.ball = motion.reach * (1.0f + kReachMargin);
+    visit.around = voxel_frame_.aroundSegments(motion, from, to, bow, extent, node.count);
     results_.work.volumes_carried += node.count + std::uint64_t{1}; // the children and what is around them
     if (!motion.at_rest) return;
     constexpr float unbounded = std::numeric_limits<float>::infinity();
@@ -277,18 +279,19 @@ private:
     if (candidate.isLeaf()) {
       const Voxel& voxel = query_.boxes.storage.voxels[candidate.voxel];
       if (voxel.frame.unit != 1.0) return false;
-      const Node& node = candidate.nodes[candidate.node];
+      const std::uint32_t leaf = candidate.box().leaf(candidate.lane);
+      const Node& node = voxel.nodes[leaf / kNodeChildren];
       const AffineMap map = voxel_frame_.mapAt(poseAt(probe.pose), query_.boxes.offset(candidate.voxel), 1.0);
       for (const float g : map.g)
         if (!(std::abs(g) <= voxel_frame_.far)) return false;
       const Point at = carryPoint(map.m, map.g, probe.center);
-      const std::uint32_t begin = node.begin[candidate.lane];
+      const std::uint32_t begin = node.begin[leaf % kNodeChildren];
       return anyPointWithin(voxel.x() + begin, voxel.y() + begin, voxel.z() + begin,
-                            node.comparedPoints(candidate.lane), at.x, at.y, at.z, probe.reach);
+                            node.comparedPoints(leaf % kNodeChildren), at.x, at.y, at.z, probe.reach);
     }
     if (!model_.mayOpen(candidate)) return false;
     ModelBox child = model_.below(candidate);
-    const std::uint32_t count = child.nodes[child.node].count;
+    const std::uint32_t count = child.box().count;
     results_.work.node_pairs += count;
     float distance[kLanes];
     std::uint32_t near = 0;
@@ -336,7 +339,7 @@ private:
                                                 static_cast<ClippedSegments<kLanes>*>(nullptr)));
     if (near_lanes == 0) return;
     const bool opens = !candidate.isLeaf() && model_.mayOpen(candidate);
-    const float size = candidate.size();
+    const float size = candidate.size(query_.boxes.stretch);
     std::uint32_t opening = 0;
     for (std::uint32_t bits = near_lanes; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));

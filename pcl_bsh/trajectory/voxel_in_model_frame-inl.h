@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the model sees a voxel of the scan that it passes: its points move in nearly straight lines.
+// How the model sees a voxel of the scan that it passes: its points move nearly on parabolas.
 
 #if defined(PCL_BSH_TRAJECTORY_VOXEL_IN_MODEL_FRAME_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAJECTORY_VOXEL_IN_MODEL_FRAME_INL_H_
@@ -26,16 +26,17 @@ struct AffineMap {
 /// How the scan's voxel moves, as the model sees it, during an interval of poses.
 struct VoxelMotion {
   const PathInterval* interval;
-  AffineMap from, to;
-  double stray;       ///< of any point of the voxel from its straight line
-  float steps;        ///< poses after the first; 0 where all instants count
-  float reach;        ///< of points: within this of a straight line, in floats, is all that collides
-  float near;         ///< farther from a box than this, in floats at one pose, nothing in it collides
-  float near_squared; ///< of that
-  float smallest;     ///< motion that floats distinguish from rest
-  float rounding;     ///< of places in floats
-  bool squares;       ///< whether squares of places and of such motions are in the range of floats
-  bool at_rest;       ///< one pose, and nothing before or after it
+  AffineMap from, to, bow; ///< the bow is that of a parabola: see Segments
+  double stray;            ///< of any point of the voxel from its parabola
+  double line_stray;       ///< from its straight line
+  float steps;             ///< poses after the first; 0 where all instants count
+  float reach;             ///< of points: within this of a parabola, in floats, is all that collides
+  float near;              ///< farther from a box than this, in floats at one pose, nothing in it collides
+  float near_squared;      ///< of that
+  float smallest;          ///< motion that floats distinguish from rest
+  float rounding;          ///< of places in floats
+  bool squares;            ///< whether squares of places and of such motions are in the range of floats
+  bool at_rest;            ///< one pose, and nothing before or after it
 
   /// Whether it has halves, and strays farther than `stray_limit`.
   bool divides(double stray_limit) const { return interval->divided() && stray > stray_limit; }
@@ -113,54 +114,93 @@ public:
       coordinate = std::max({coordinate, std::abs(static_cast<double>(motion.from.g[axis])),
                              std::abs(static_cast<double>(motion.to.g[axis]))});
     }
-    motion.stray = interval.drift + interval.turn * ((std::sqrt(squared) + radius) * (1.0 + kDoubleMargin));
-    if (path.is_swept && !interval.divided()) motion.stray = std::min(motion.stray, path.stray);
+    const double away = (std::sqrt(squared) + radius) * (1.0 + kDoubleMargin);
+    motion.stray = interval.bend_drift + interval.bend_turn * away;
+    motion.line_stray = interval.drift + interval.turn * away;
+    if (path.is_swept && !interval.divided()) {
+      motion.stray = std::min(motion.stray, path.stray);
+      motion.line_stray = std::min(motion.line_stray, path.stray);
+    }
+    const double bow = setBow(motion);
     motion.steps = path.is_swept ? 0.0f : static_cast<float>(interval.last - interval.first);
     const double reach = query_.reach * (1.0 + path.skew) + placing_ + motion.stray;
     const double rounding =
-        static_cast<double>(kSegmentRounding) * (coordinate + 2.01 * radius + tree.radius + reach) + kSmallestRounding;
+        static_cast<double>(kSegmentRounding) * (coordinate + 2.01 * radius + tree.radius + reach + 8 * bow) +
+        kSmallestRounding;
     motion.reach = roundUp(reach + rounding);
     motion.rounding = roundUp(rounding);
     motion.near = roundUp(reach - motion.stray + 2 * rounding);
     motion.near_squared = motion.near * motion.near * (1.0f + kReachRounding) + kVanishingSquare;
     motion.smallest = motion.rounding * kSmallestMotion;
     motion.squares =
-        motion.smallest >= kSmallestSquared && inFloatRange(coordinate + 2.01 * radius + tree.radius + reach);
+        motion.smallest >= kSmallestSquared && inFloatRange(coordinate + 2.01 * radius + tree.radius + reach + 8 * bow);
     return motion;
+  }
+
+  /// The parabola through where the model sees a point at the first, middle and last pose. None of fewer poses.
+  /// @return how far any point of the voxel bows at most
+  double setBow(VoxelMotion& motion) const
+  {
+    const PathInterval& interval = *motion.interval;
+    std::fill(motion.bow.m, motion.bow.m + 9, 0.0f);
+    std::fill(motion.bow.g, motion.bow.g + 3, 0.0f);
+    if (interval.last - interval.first < 2) return 0.0;
+    const AffineMap middle = mapAt(path.poses[interval.middle()], {0, 0, 0}, 1.0);
+    const double t = static_cast<double>(interval.middle() - interval.first) / (interval.last - interval.first);
+    const double bent = 0.25 / (t * (1.0 - t));
+    double squared[2] = {0.0, 0.0};
+    const auto set = [&](float& bow, float from, float at, float to, double& sum) {
+      const double value = bent * (at - ((1.0 - t) * from + t * to));
+      bow = roundToFloat(value);
+      sum += value * value;
+    };
+    for (std::size_t i = 0; i < 9; ++i) set(motion.bow.m[i], motion.from.m[i], middle.m[i], motion.to.m[i], squared[0]);
+    for (std::size_t i = 0; i < 3; ++i) set(motion.bow.g[i], motion.from.g[i], middle.g[i], motion.to.g[i], squared[1]);
+    return std::sqrt(squared[1]) + std::sqrt(squared[0]) * voxel.radius;
   }
 
   static Segment ballOn(const VoxelMotion& motion, const Point& center, float ball)
   {
     Segment segment = segmentOf(carryPoint(motion.from.m, motion.from.g, center),
                                 carryPoint(motion.to.m, motion.to.g, center), motion.smallest);
+    const Point bow = carryPoint(motion.bow.m, motion.bow.g, center);
+    segment.bow[0] = bow.x;
+    segment.bow[1] = bow.y;
+    segment.bow[2] = bow.z;
     std::fill(segment.reach, segment.reach + 3, motion.reach + ball);
+    segment.ball = motion.reach + ball;
     return segment;
   }
 
-  /// Around `count` segments, each with an extent of its own along the axes.
+  /// Around `count` arcs, each with an extent of its own along the axes.
   template <std::size_t Count>
   static Segment aroundSegments(const VoxelMotion& motion, const float (&from)[3][Count], const float (&to)[3][Count],
-                                const float (&extent)[3][Count], std::size_t count)
+                                const float (&bow)[3][Count], const float (&extent)[3][Count], std::size_t count)
   {
-    float start[3], end[3], reach[3];
+    float start[3], end[3], bent[3], reach[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      float low[2], high[2];
-      const float* ends[2] = {from[axis], to[axis]};
-      for (std::size_t k = 0; k < 2; ++k) {
+      float low[3], high[3];
+      const float* ends[3] = {from[axis], to[axis], bow[axis]};
+      for (std::size_t k = 0; k < 3; ++k) {
         low[k] = std::numeric_limits<float>::infinity();
         high[k] = -low[k];
         for (std::size_t i = 0; i < count; ++i) {
-          low[k] = std::min(low[k], ends[k][i] - extent[axis][i]);
-          high[k] = std::max(high[k], ends[k][i] + extent[axis][i]);
+          const float around = k < 2 ? extent[axis][i] : 0.0f;
+          low[k] = std::min(low[k], ends[k][i] - around);
+          high[k] = std::max(high[k], ends[k][i] + around);
         }
       }
       start[axis] = 0.5f * (low[0] + high[0]);
       end[axis] = 0.5f * (low[1] + high[1]);
+      bent[axis] = 0.5f * (low[2] + high[2]);
       const float half =
-          std::max({high[0] - start[axis], start[axis] - low[0], high[1] - end[axis], end[axis] - low[1]});
+          std::max({high[0] - start[axis], start[axis] - low[0], high[1] - end[axis], end[axis] - low[1]}) +
+          std::max(high[2] - bent[axis], bent[axis] - low[2]);
       reach[axis] = (motion.reach + motion.rounding + half) * (1.0f + kRadiusMargin);
     }
     Segment segment = segmentOf({start[0], start[1], start[2]}, {end[0], end[1], end[2]}, motion.smallest);
+    std::copy(bent, bent + 3, segment.bow);
+    segment.ball = (motion.reach + motion.rounding) * (1.0f + kRadiusMargin);
     std::copy(reach, reach + 3, segment.reach);
     return segment;
   }
@@ -176,12 +216,13 @@ public:
   {
     Segment segment = ballOn(motion, {0.0f, 0.0f, 0.0f}, 0.0f);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      double from = 0.0, to = 0.0;
+      double from = 0.0, to = 0.0, bow = 0.0;
       for (std::size_t k = 0; k < 3; ++k) {
         from += std::abs(static_cast<double>(motion.from.m[3 * axis + k])) * frame.reach[k];
         to += std::abs(static_cast<double>(motion.to.m[3 * axis + k])) * frame.reach[k];
+        bow += std::abs(static_cast<double>(motion.bow.m[3 * axis + k])) * frame.reach[k];
       }
-      const double extent = std::max(from, to) * (1.0 + kRadiusMargin) + motion.interval->turn * radius;
+      const double extent = (std::max(from, to) + bow) * (1.0 + kRadiusMargin) + motion.interval->turn * radius;
       const auto sphere = static_cast<double>(seenRadius(voxel.radius));
       segment.reach[axis] = roundUp((motion.reach + std::min(sphere, extent)) * (1.0 + kRadiusMargin));
     }
@@ -237,6 +278,8 @@ private:
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float motion = end[axis] - start[axis];
       segment.start[axis] = start[axis];
+      segment.motion[axis] = motion;
+      segment.bow[axis] = 0.0f;
       segment.inverse[axis] = 1.0f / std::copysign(std::max(std::abs(motion), smallest), motion);
     }
     return segment;

@@ -55,16 +55,17 @@ bool slabsApartOnTarget(const test::TestSlab& slab, float stretch, const test::T
   return (slabsApart({at[0], at[1], at[2], at[3], stretch}, {at[4], at[5], at[6], at[7]}, held, reach) & 1) != 0;
 }
 
-test::Stay segmentInBoxOnTarget(const float* start, const float* end, float smallest, float reach, const float* low,
-                                const float* high)
+test::Stay segmentInBoxOnTarget(const float* start, const float* end, const float* bow, float smallest, float reach,
+                                const float* low, const float* high)
 {
-  alignas(64) float from[3][8], to[3][8];
+  alignas(64) float from[3][8], to[3][8], bows[3][8];
   for (std::size_t k = 0; k < 3; ++k) {
+    std::fill(bows[k], bows[k] + 8, bow[k]);
     std::fill(from[k], from[k] + 8, start[k]);
     std::fill(to[k], to[k] + 8, end[k]);
   }
   Segments<8> segments;
-  segments.set(from, to, smallest);
+  segments.set(from, to, bows, smallest);
   std::fill(segments.reach[0], segments.reach[0] + 8, reach);
   ClippedSegments<8> clipped;
   const bool in_box = (segmentsInBox(segments, low, high, 0.0f, &clipped) & 1) != 0;
@@ -114,10 +115,10 @@ bool slabsApart(const TestSlab& slab, float stretch, const TestSlab& other, floa
   return HWY_DYNAMIC_DISPATCH(slabsApartOnTarget)(slab, stretch, other, reach);
 }
 
-Stay segmentInBox(const float (&start)[3], const float (&end)[3], float smallest, float reach, const float (&low)[3],
-                  const float (&high)[3])
+Stay segmentInBox(const float (&start)[3], const float (&end)[3], const float (&bow)[3], float smallest, float reach,
+                  const float (&low)[3], const float (&high)[3])
 {
-  return HWY_DYNAMIC_DISPATCH(segmentInBoxOnTarget)(start, end, smallest, reach, low, high);
+  return HWY_DYNAMIC_DISPATCH(segmentInBoxOnTarget)(start, end, bow, smallest, reach, low, high);
 }
 
 } // namespace test

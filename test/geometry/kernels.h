@@ -36,7 +36,7 @@ struct Stay {
   bool in_box;
   float from, to;
 };
-Stay segmentInBox(const float (&start)[3], const float (&end)[3], float smallest, float reach, const float (&low)[3],
-                  const float (&high)[3]);
+Stay segmentInBox(const float (&start)[3], const float (&end)[3], const float (&bow)[3], float smallest, float reach,
+                  const float (&low)[3], const float (&high)[3]);
 
 } // namespace pcl_bsh::test

@@ -167,7 +167,7 @@ double boxFraction(const Numbers& n)
   if (!(enter <= leave)) return 0.0;
   const Real rounding = Real{kSegmentRounding} * largest;
   const auto holds = [&](Real margin) {
-    const test::Stay stay = test::segmentInBox(ends[0], ends[1], static_cast<float>(rounding) * 0x1p-8f,
+    const test::Stay stay = test::segmentInBox(ends[0], ends[1], {0, 0, 0}, static_cast<float>(rounding) * 0x1p-8f,
                                                roundUp(static_cast<double>(reach + margin)), low, high);
     return stay.in_box && stay.from <= enter && stay.to >= leave;
   };
@@ -193,6 +193,71 @@ TEST(LanesAttack, SegmentsInBoxes)
     const double reached = test::climbFromMany(start, boxFraction, 40, 400, random);
     test::report("segments in boxes, " + target, reached);
     EXPECT_GE(reached, 0.1);
+  });
+}
+
+/// A bowed way past a box, nearest to it at some instant: the least margin with which it is near for a reach of just
+/// that distance, as a part of kSegmentRounding; and its stay has to hold the instant.
+double bowedFraction(const Numbers& n)
+{
+  float start[3], end[3], bow[3], low[3], high[3];
+  Real largest = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    start[k] = floatOf(n[k]);
+    end[k] = floatOf(n[3 + k]);
+    bow[k] = floatOf(n[6 + k]);
+    low[k] = floatOf(n[9 + k]);
+    high[k] = low[k] + std::abs(floatOf(n[12 + k]));
+    largest = std::max(
+        {largest, std::abs(Real{start[k]}), std::abs(Real{end[k]}), std::abs(Real{low[k]}), std::abs(Real{high[k]})});
+  }
+  if (!(largest < 16)) return 0.0;
+  const auto distanceAt = [&](Real t) {
+    Real squared = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Real at = start[k] + t * (Real{end[k]} - start[k]) + 4 * t * (1 - t) * bow[k];
+      const Real gap = std::max({Real{low[k]} - at, at - high[k], Real{0}});
+      squared += gap * gap;
+    }
+    return std::sqrt(squared);
+  };
+  Real instant = 0;
+  for (int i = 1; i <= 64; ++i)
+    if (distanceAt(i / Real{64}) < distanceAt(instant)) instant = i / Real{64};
+  for (Real step = 1 / Real{128}; step > 1e-9L; step /= 2)
+    for (const Real next : {instant - step, instant + step})
+      if (next >= 0 && next <= 1 && distanceAt(next) < distanceAt(instant)) instant = next;
+  const Real reach = distanceAt(instant);
+  const Real bows = std::sqrt(Real{bow[0]} * bow[0] + Real{bow[1]} * bow[1] + Real{bow[2]} * bow[2]);
+  const Real rounding = Real{kSegmentRounding} * (largest + reach + 8 * bows);
+  const auto holds = [&](Real margin) {
+    const test::Stay stay = test::segmentInBox(start, end, bow, static_cast<float>(rounding) * 0x1p-8f,
+                                               roundUp(static_cast<double>(reach + margin)), low, high);
+    return stay.in_box && stay.from <= instant && stay.to >= instant;
+  };
+  if (!holds(rounding)) return 2.0;
+  Real least = 0, most = rounding;
+  for (int k = 0; k < 12; ++k) {
+    const Real middle = (least + most) / 2;
+    (holds(middle) ? most : least) = middle;
+  }
+  return static_cast<double>(most / rounding);
+}
+
+TEST(LanesAttack, BowedSegmentsInBoxes)
+{
+  test::onEveryTarget([](const std::string& target) {
+    Random random(203);
+    const auto start = [&] {
+      Numbers n(15);
+      for (double& x : n) x = test::suspect(random, 3);
+      for (std::size_t k = 6; k < 9; ++k) n[k] = std::ldexp(n[k], -random.integer(0, 12));
+      return n;
+    };
+    const double reached = test::climbFromMany(start, bowedFraction, 40, 400, random);
+    test::report("bowed segments in boxes, " + target, reached);
+    EXPECT_LE(reached, 1.0);
+    EXPECT_GE(reached, 0.02);
   });
 }
 

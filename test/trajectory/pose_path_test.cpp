@@ -13,8 +13,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -75,6 +78,76 @@ Eigen::Isometry3d poseOf(const double* x, double reach, double turn)
   const Eigen::Vector3d axis(x[3], x[4], x[5]);
   if (axis.norm() > 0.0) pose.linear() = Eigen::AngleAxisd(turn * axis.norm(), axis.normalized()).toRotationMatrix();
   return pose;
+}
+
+/// The parabola through three places, the second of them at t = `at_middle`.
+Vector onParabola(const Vector& from, const Vector& middle, const Vector& to, Real at_middle, Real t)
+{
+  const Vector line = (1 - at_middle) * from + at_middle * to;
+  return (1 - t) * from + t * to + (middle - line) * (t * (1 - t) / (at_middle * (1 - at_middle)));
+}
+
+/// How much of the bound on straying from a parabola a point of the world reaches, at the poses of an interval.
+double bendShareAtPoses(const PathInterval& interval, const Poses& poses, const Vector& point)
+{
+  const Vector pivot(interval.pivot[0], interval.pivot[1], interval.pivot[2]);
+  const Real bound = interval.bend_drift + interval.bend_turn * (point - pivot).norm();
+  if (interval.last - interval.first < 3) return 0.0; // through all
+  const Real steps = interval.last - interval.first, middle = interval.middle() - interval.first;
+  Real most = 0;
+  for (std::uint32_t k = interval.first; k <= interval.last; ++k)
+    most = std::max(most, (seen(poses[k], point) - onParabola(seen(poses[interval.first], point),
+                                                              seen(poses[interval.middle()], point),
+                                                              seen(poses[interval.last], point), middle / steps,
+                                                              static_cast<Real>(k - interval.first) / steps))
+                              .norm());
+  return static_cast<double>(bound > 0 ? most / bound : Real(most > 0));
+}
+
+/// Four poses and a point: 4 x 6 + 3 numbers.
+double bendShare(const std::array<double, 27>& x, double reach, double turn, double away)
+{
+  const Poses poses = {poseOf(&x[0], reach, turn), poseOf(&x[6], reach, turn), poseOf(&x[12], reach, turn),
+                       poseOf(&x[18], reach, turn)};
+  for (std::size_t k = 1; k < poses.size(); ++k)
+    if (poses[k].matrix() == poses[k - 1].matrix()) return 0.0;
+  const PosePath path = pathOf(poses);
+  return bendShareAtPoses(path.intervals[0], poses, away * Vector(x[24], x[25], x[26]));
+}
+
+TEST(PosePath, NoPointStraysFartherFromTheParabolaAtPoses)
+{
+  Random random(4);
+  double straight = 0.0, any = 0.0;
+  for (const double scale : {1e-3, 1.0, 1e4}) {
+    const auto of = [&](double reach, double turn, double away) {
+      return climb<27>([&](const auto& x) { return bendShare(x, reach, turn, away); }, 6, 400, random);
+    };
+    straight = std::max(straight, of(scale, 0.0, scale));
+    any = std::max(
+        {any, of(0.0, 1.5, scale), of(scale, 1.5, scale), of(scale, 0.01, 100 * scale), of(100 * scale, 0.01, scale)});
+  }
+  EXPECT_LE(straight, 1.0);
+  EXPECT_GT(straight, 0.999) << "a translation strays by the drift itself";
+  EXPECT_LE(any, 1.0);
+  EXPECT_GT(any, 0.65);
+  RecordProperty("straight", std::to_string(straight));
+  RecordProperty("any", std::to_string(any));
+}
+
+/// A bend, as of a track: the parabola's bound falls with the cube of the interval, the line's with its square.
+TEST(PosePath, ABendStraysLessFromTheParabola)
+{
+  Poses poses;
+  for (int i = 0; i <= 256; ++i) {
+    poses.emplace_back(Eigen::AngleAxisd(0.0002 * i, Eigen::Vector3d::UnitZ()));
+    poses.back().translation() = 180.0 * Eigen::Vector3d(std::sin(0.0002 * i), 1 - std::cos(0.0002 * i), 0);
+  }
+  const PosePath path = pathOf(poses);
+  const PathInterval &whole = path.intervals[0], &half = path.intervals[whole.left];
+  const auto bend = [](const PathInterval& interval) { return interval.bend_drift + 2.0 * interval.bend_turn; };
+  EXPECT_LT(bend(whole), 0.03 * (whole.drift + 2.0 * whole.turn));
+  EXPECT_LT(bend(half), 0.14 * bend(whole));
 }
 
 /// How much of the bound on straying a point of the world reaches, at the poses of an interval.
@@ -217,10 +290,17 @@ TEST(PosePath, NoPointStraysFartherInWholeIntervals)
       const Vector from = apart(interval.first), to = apart(interval.last);
       const Vector pivot(interval.pivot[0], interval.pivot[1], interval.pivot[2]);
       const Real bound = interval.drift + interval.turn * (point - pivot).norm();
+      const Real bend_bound = interval.bend_drift + interval.bend_turn * (point - pivot).norm();
+      const auto bent = [&](Real t) -> Vector {
+        if (interval.last - interval.first < 2) return (1 - t) * from + t * to;
+        const Real middle = interval.middle() - interval.first;
+        return onParabola(from, apart(interval.middle()), to, middle / (interval.last - interval.first), t);
+      };
       for (std::uint32_t k = interval.first; k <= interval.last; ++k) {
         const Real t = static_cast<Real>(k - interval.first) / (interval.last - interval.first);
         const Real strays = (apart(k) - ((1 - t) * from + t * to)).norm();
         ASSERT_LE(strays, bound + 1e-14L * scale) << "pose " << k;
+        ASSERT_LE((apart(k) - bent(t)).norm(), bend_bound + 1e-14L * scale) << "pose " << k;
         if (bound > 0) highest = std::max(highest, static_cast<double>(strays / bound));
         if (k == interval.last) continue;
         // Between it and the next, lengths are those of the motion itself, which poseBetween() knows.
@@ -234,6 +314,8 @@ TEST(PosePath, NoPointStraysFartherInWholeIntervals)
         const Real at = (static_cast<Real>(k - interval.first) + f) / (interval.last - interval.first);
         const Real line = ((1 - at) * from + at * to).norm();
         ASSERT_LE(std::abs(length - line), bound + 1e-13L * scale) << "between " << k << " and the next";
+        ASSERT_LE(std::abs(length - bent(at).norm()), bend_bound + 1e-13L * scale)
+            << "between " << k << " and the next";
       }
     }
   }
@@ -262,6 +344,22 @@ TEST(PosePath, RefusesTooLongAPathBeforeItTakesMemory)
   EXPECT_LT(test::allocations() - before, 60u) << "of messages alone: no pose of the path is made";
 }
 
+/// Visits the leaves below a node of boxes, each with all boxes around it.
+void forEachLeaf(const std::vector<BoxNode>& boxes, std::uint32_t node,
+                 std::vector<std::pair<const BoxNode*, std::uint32_t>>& around,
+                 const std::function<void(std::uint32_t leaf)>& visit)
+{
+  ASSERT_GE(boxes[node].count, 1u);
+  for (std::uint32_t lane = 0; lane < boxes[node].count; ++lane) {
+    around.emplace_back(&boxes[node], lane);
+    if (boxes[node].isLeaf(lane))
+      visit(boxes[node].leaf(lane));
+    else
+      forEachLeaf(boxes, boxes[node].child[lane], around, visit);
+    around.pop_back();
+  }
+}
+
 TEST(BoxTree, BoxesHoldTheirPointsExactly)
 {
   using Rational = boost::multiprecision::cpp_rational;
@@ -271,25 +369,74 @@ TEST(BoxTree, BoxesHoldTheirPointsExactly)
     const Cloud cloud = test::anyCloud(static_cast<std::size_t>(random.integer(1, 300)),
                                        std::exp2(random.integer(-10, 4)), {far, -far, far / 3}, random);
     const SphereHierarchy hierarchy(cloud.view());
-    const BoxTree tree(hierarchy.storage());
+    const Travel travel{{random.uniform(0, 1), random.uniform(0, 0.1), 0}, random.uniform(0, 1e-3)};
+    const BoxTree tree(hierarchy.storage(), travel);
     if (hierarchy.empty()) continue;
     Work work;
+    std::size_t points = 0;
     for (std::uint32_t v = 0; v < hierarchy.storage().voxel_count; ++v) {
       const std::vector<BoxNode>& boxes = tree.voxel(v, work);
       const Voxel& voxel = hierarchy.storage().voxels[v];
-      for (std::uint32_t n = 0; n < voxel.nodes.size(); ++n)
-        for (std::uint32_t lane = 0; lane < voxel.nodes[n].count; ++lane)
-          for (std::uint32_t i = voxel.nodes[n].begin[lane]; i < voxel.nodes[n].begin[lane + 1]; ++i) {
-            const Point3 p = cloud.view().point(voxel.records()[i]);
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-              const Rational at = Rational(p[axis]) - Rational(tree.origin[axis]);
-              ASSERT_LE(Rational(boxes[n].low[axis][lane]), at);
-              ASSERT_GE(Rational(boxes[n].high[axis][lane]), at);
-              ASSERT_LE(Rational(tree.low[axis]), at);
-              ASSERT_GE(Rational(tree.high[axis]), at);
+      std::vector<std::pair<const BoxNode*, std::uint32_t>> around;
+      forEachLeaf(boxes, 0, around, [&](std::uint32_t leaf) {
+        const Node& node = voxel.nodes[leaf / kNodeChildren];
+        const std::uint32_t lane = leaf % kNodeChildren;
+        ASSERT_TRUE(node.isLeaf(lane));
+        for (std::uint32_t i = node.begin[lane]; i < node.begin[lane + 1]; ++i) {
+          ++points;
+          const Point3 p = cloud.view().point(voxel.records()[i]);
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Rational at = Rational(p[axis]) - Rational(tree.origin[axis]);
+            for (const auto& [box, child] : around) {
+              ASSERT_LE(Rational(box->low[axis][child]), at);
+              ASSERT_GE(Rational(box->high[axis][child]), at);
             }
+            ASSERT_LE(Rational(tree.low[axis]), at);
+            ASSERT_GE(Rational(tree.high[axis]), at);
           }
+        }
+      });
     }
+    EXPECT_EQ(points, hierarchy.size()) << "each leaf once";
+  }
+}
+
+TEST(BoxTree, IsLongerAlongTheWay)
+{
+  const auto stretchOf = [](const Travel& travel) {
+    std::vector<float> xyz;
+    for (int i = 0; i < 1000; ++i)
+      for (const int x : {i % 10, i / 10 % 10, i / 100}) xyz.push_back(static_cast<float>(x));
+    const SphereHierarchy hierarchy(viewOf(xyz.data(), 1000));
+    const BoxTree tree(hierarchy.storage(), travel);
+    return std::vector<float>(tree.stretch, tree.stretch + 3);
+  };
+  using Stretch = std::vector<float>;
+  EXPECT_EQ(stretchOf({}), (Stretch{1, 1, 1})) << "at rest";
+  EXPECT_EQ(stretchOf({{10, 1, 1}, 0}), (Stretch{5, 1, 1}));
+  EXPECT_EQ(stretchOf({{0, 10, 0}, 0}), (Stretch{1, 32, 1}));
+  EXPECT_EQ(stretchOf({{0, 3, 3}, 0}), (Stretch{1, 1, 1})) << "across the axes";
+  EXPECT_EQ(stretchOf({{0, 0, 10}, 6.28}), (Stretch{1, 1, 1})) << "turning about itself";
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(stretchOf({{infinite, 0, 1}, 0}), (Stretch{1, 1, 1})) << "beyond the range of doubles";
+}
+
+/// Leaves of all sizes: halves of the space hold one leaf and all others.
+TEST(BoxTree, IsNeverDeep)
+{
+  std::vector<float> xyz;
+  for (int i = 0; i < 4000; ++i)
+    xyz.insert(xyz.end(),
+               {std::exp2(-0.02f * static_cast<float>(i)), 1e-3f * std::exp2(-0.02f * static_cast<float>(i)), 0});
+  const SphereHierarchy hierarchy(viewOf(xyz.data(), xyz.size() / 3));
+  const BoxTree tree(hierarchy.storage(), {{1, 0, 0}, 0});
+  Work work;
+  for (std::uint32_t v = 0; v < hierarchy.storage().voxel_count; ++v) {
+    const std::vector<BoxNode>& boxes = tree.voxel(v, work);
+    std::size_t deepest = 0;
+    std::vector<std::pair<const BoxNode*, std::uint32_t>> around;
+    forEachLeaf(boxes, 0, around, [&](std::uint32_t) { deepest = std::max(deepest, around.size()); });
+    EXPECT_LE(deepest, 24u);
   }
 }
 

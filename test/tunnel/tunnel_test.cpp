@@ -144,17 +144,38 @@ TEST(TightTunnel, GrazesTheWagonAlongTheBend)
   EXPECT_LT(near, run.scan.size() / 20);
 }
 
+/// The node pairs of flags in a tight tunnel.
+double workAt(double scale, double poses = 1.0, const std::vector<double>& clearances = {clearance})
+{
+  Size size = Size::atScale(scale);
+  size.poses = static_cast<std::size_t>(poses * static_cast<double>(size.poses));
+  const Passage run = makePassage(size, Course::tight);
+  const SphereHierarchy scan(viewOf(run.scan)), wagon(viewOf(run.wagon));
+  double most = 0.0;
+  for (const double distance : clearances) {
+    TrajectoryRequest request;
+    request.clearance = distance;
+    most = std::max(most, static_cast<double>(collideAlong({scan}, wagon, run.poses, request).work.node_pairs));
+  }
+  return most;
+}
+
 /// Three times as many points of scan and wagon and three times as many poses: little more than three times the work.
 TEST(TightTunnel, NodePairsGrowLittleMoreThanThePoints)
 {
-  const auto work = [](double scale) {
-    const Passage run = makePassage(Size::atScale(scale), Course::tight);
-    const SphereHierarchy scan(viewOf(run.scan)), wagon(viewOf(run.wagon));
-    TrajectoryRequest request;
-    request.clearance = clearance;
-    return static_cast<double>(collideAlong({scan}, wagon, run.poses, request).work.node_pairs);
-  };
-  EXPECT_LT(work(0.06), 3.6 * work(0.02));
+  const double small = workAt(0.02);
+  EXPECT_LT(small, 6.5e6) << "of 378,400 points";
+  EXPECT_LT(workAt(0.06), 3.6 * small);
+}
+
+TEST(TightTunnel, TenTimesThePosesAreLittleMoreWork)
+{
+  EXPECT_LT(workAt(0.02, 10), 2.0 * workAt(0.02));
+}
+
+TEST(TightTunnel, NoClearanceIsMuchMoreWork)
+{
+  EXPECT_LT(workAt(0.02, 1, {0.1, 0.15, 0.22, 0.26, 0.3, 0.4}), 3.0 * workAt(0.02));
 }
 
 } // namespace

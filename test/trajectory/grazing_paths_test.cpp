@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Long bodies which pass surfaces at about the clearance, on paths that intervals may follow far: all poses that a
+// short cut takes together, against brute force.
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include "journeys.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using test::everything;
+using test::expectSame;
+using test::flagsOnly;
+using test::Poses;
+using test::Random;
+
+using Cloud = std::vector<Eigen::Vector3d>;
+
+constexpr double kClearance = 0.05;
+constexpr double kNoise = 0.006;
+
+PointsView viewOf(const Cloud& cloud)
+{
+  return pcl_bsh::viewOf(cloud.front().data(), cloud.size());
+}
+
+Eigen::Vector3d noise(Random& random)
+{
+  return kNoise * Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+}
+
+/// The side of a body 8 m long, with an edge, along an axis of its own.
+Cloud bodyAlong(const Eigen::Vector3d& axis, Random& random)
+{
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), axis);
+  Cloud body;
+  for (int i = 0; i < 250; ++i) {
+    const double along = random.uniform(-4, 4), down = random.uniform(0, 0.4);
+    body.push_back(turn * Eigen::Vector3d(along, i % 2 == 0 ? 0.0 : -down, i % 2 == 0 ? -down : 0.5 * down) +
+                   noise(random));
+  }
+  return body;
+}
+
+/// Places which points of the body's edge pass at about the clearance: beside it at poses picked at random.
+Cloud wallBeside(const Poses& poses, const Eigen::Vector3d& axis, Random& random)
+{
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), axis);
+  Cloud wall;
+  for (int i = 0; i < 160; ++i) {
+    const Eigen::Isometry3d& pose =
+        poses[static_cast<std::size_t>(random.integer(0, static_cast<int>(poses.size()) - 1))];
+    const double gap = kClearance + random.uniform(-0.02, 0.03);
+    wall.push_back(pose * (turn * Eigen::Vector3d(random.uniform(-4, 4), gap, random.uniform(-0.2, 0.1))) +
+                   noise(random));
+  }
+  return wall;
+}
+
+struct GrazingPath {
+  std::string name;
+  std::function<Eigen::Isometry3d(int k, Random& random)> pose;
+};
+
+Eigen::Isometry3d placed(double angle, const Eigen::Vector3d& axis, const Eigen::Vector3d& at)
+{
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(angle, axis.normalized()));
+  pose.translation() = at;
+  return pose;
+}
+
+/// Of radius r in the plane, heading along it.
+Eigen::Isometry3d onBend(double radius, double way, double rise = 0.0)
+{
+  const double angle = way / radius;
+  return placed(angle, Eigen::Vector3d::UnitZ(),
+                {radius * std::sin(angle), radius * (1 - std::cos(angle)), rise * angle});
+}
+
+std::vector<GrazingPath> grazingPaths()
+{
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+  return {
+      {"straight", [=](int k, Random&) { return placed(0, z, 0.1 * k * x); }},
+      {"a bend", [](int k, Random&) { return onBend(180, 0.1 * k); }},
+      {"a narrow bend", [](int k, Random&) { return onBend(3, 0.05 * k); }},
+      {"a helix", [](int k, Random&) { return onBend(6, 0.1 * k, 2.0); }},
+      {"bends to both sides",
+       [=](int k, Random&) {
+         return placed(0.05 * std::cos(0.05 * k), z, {0.1 * k, 0.1 * std::sin(0.05 * k), 0});
+       }},
+      {"uneven steps", [](int k, Random&) { return onBend(60, 0.002 * k * k); }},
+      {"repeated poses", [](int k, Random&) { return onBend(40, 0.4 * (k / 5)); }},
+      {"a jump", [](int k, Random&) { return onBend(90, 0.1 * k + (k > 70 ? 30 : 0)); }},
+      {"on the spot",
+       [=](int k, Random&) {
+         return placed(0.01 * k, z, {1, 2, 3});
+       }},
+      {"full turns", [=](int k, Random&) { return placed(0.3 * k, x + 0.1 * y, 0.01 * k * x); }},
+      {"there and back", [](int k, Random&) { return onBend(50, 0.1 * (k < 50 ? k : 100 - k)); }},
+      {"far away", [](int k, Random&) { return Eigen::Translation3d(4e5, -3e6, 100) * onBend(180, 0.1 * k); }},
+      {"not quite rigid",
+       [](int k, Random& random) {
+         Eigen::Isometry3d pose = onBend(180, 0.1 * k);
+         pose.linear() *= 1.0 + random.uniform(-2e-7, 2e-7);
+         return pose;
+       }},
+      {"trembling", [](int k, Random& random) { return onBend(180, 0.1 * k) * Eigen::Translation3d(noise(random)); }},
+  };
+}
+
+TEST(GrazingPaths, AnswerAsBruteForce)
+{
+  std::uint64_t seed = 0;
+  for (const GrazingPath& path : grazingPaths())
+    for (const Eigen::Vector3d& axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(1, 1, 0.3)}) {
+      SCOPED_TRACE(path.name);
+      Random random(++seed);
+      Poses poses;
+      for (int k = 0; k < 100; ++k) poses.push_back(path.pose(k, random));
+      for (Eigen::Isometry3d& pose : poses) // the body heads along its way
+        pose.rotate(Eigen::Quaterniond::FromTwoVectors(axis, Eigen::Vector3d::UnitX()));
+      const Cloud body = bodyAlong(axis, random), wall = wallBeside(poses, axis, random);
+      const SphereHierarchy scan(viewOf(wall)), model(viewOf(body));
+      const TrajectoryResult expected = brute_force::collideAlong({scan}, model, poses, everything(kClearance));
+      EXPECT_GT(expected.colliding, 5u);
+      EXPECT_LT(expected.colliding, wall.size());
+      expectSame(collideAlong({scan}, model, poses, everything(kClearance)), expected);
+      EXPECT_EQ(collideAlong({scan}, model, poses, flagsOnly(kClearance)).flags, expected.flags);
+      TrajectoryRequest first = flagsOnly(kClearance);
+      first.first_poses = true;
+      first.threads = 2;
+      EXPECT_EQ(collideAlong({scan}, model, poses, first).first_pose, expected.first_pose);
+      // Swept: what collides at a pose collides, too.
+      TrajectoryRequest swept = flagsOnly(kClearance);
+      swept.swept = 0.01;
+      const TrajectoryResult moved = collideAlong({scan}, model, poses, swept);
+      for (std::size_t i = 0; i < wall.size(); ++i) EXPECT_GE(moved.flags[i], expected.flags[i]) << i;
+    }
+}
+
+} // namespace
+} // namespace pcl_bsh
