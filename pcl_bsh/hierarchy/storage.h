@@ -8,6 +8,7 @@
 #include <pcl_bsh/hierarchy/build_work.h>
 #include <pcl_bsh/hierarchy/large_buffer.h>
 #include <pcl_bsh/hierarchy/node.h>
+#include <pcl_bsh/hierarchy/point_runs.h>
 #include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
@@ -18,7 +19,7 @@
 
 namespace pcl_bsh {
 
-/// A point before its voxel is built: local coordinates and where it came from.
+/// A point while its voxel is built: local coordinates and where it came from.
 struct PointRecord {
   float x, y, z;
   std::uint32_t record;
@@ -55,13 +56,15 @@ struct Voxel {
   std::uint32_t lowest = 0; ///< smallest record number of its points
   std::uint32_t count = 0;  ///< its points, at least 1
   float radius = 0.0f; ///< of a sphere around the frame's origin that holds all of its points, in the frame's units
-  float largest_radius = 0.0f; ///< of its points, in the cloud's unit
-  double leaf_radii = 0.0;     ///< sum over its leaves when last built; 0 until a refit asks
-  float* block = nullptr;  ///< PointRecord[count] while sorted; x[count], y[count], z[count], record[count] once built
-  float* radii = nullptr;  ///< one per point in the order of x, once built; null when points have none
-  std::vector<Node> nodes; ///< nodes[0] is the root; empty until built
-  std::vector<GivenSphere> given; ///< see givenSpheres(); empty unless the voxel has crowded cells
-  LazySlabs slabs;                ///< of the nodes, once built and asked for
+  float largest_radius = 0.0f;         ///< of its points, in the cloud's unit
+  double leaf_radii = 0.0;             ///< sum over its leaves when last built; 0 until a refit asks
+  float* block = nullptr;              ///< x[count], y[count], z[count], record[count], once built
+  const std::uint32_t* list = nullptr; ///< its records while it is not built, as runs (point_runs.h): of a list of all
+                                       ///< voxels, or at the beginning of the block
+  float* radii = nullptr;              ///< one per point in the order of x, once built; null when points have none
+  std::vector<Node> nodes;             ///< nodes[0] is the root; empty until built
+  std::vector<GivenSphere> given;      ///< see givenSpheres(); empty unless the voxel has crowded cells
+  LazySlabs slabs;                     ///< of the nodes, once built and asked for
   std::atomic<std::uint8_t> state{sorted};
 
   /// Becomes what the other voxel is. Neither may be visited meanwhile.
@@ -76,6 +79,7 @@ struct Voxel {
     largest_radius = other.largest_radius;
     leaf_radii = other.leaf_radii;
     block = other.block;
+    list = other.list;
     radii = other.radii;
     nodes = std::move(other.nodes);
     given = std::move(other.given);
@@ -89,6 +93,27 @@ struct Voxel {
     if (!frame.lossless) return view.point(records()[i]);
     return {frame.origin[0] + static_cast<double>(x()[i]), frame.origin[1] + static_cast<double>(y()[i]),
             frame.origin[2] + static_cast<double>(z()[i])};
+  }
+
+  bool isListedInBlock() const noexcept { return list == reinterpret_cast<const std::uint32_t*>(block); }
+
+  /// Lists records in the block, of which recordOf(i) is the i-th.
+  template <class RecordOf>
+  void listInBlock(const RecordOf& recordOf)
+  {
+    auto* const words = reinterpret_cast<std::uint32_t*>(block);
+    eachRun(0, count, recordOf, RunWriter(words));
+    list = words;
+  }
+
+  /// Calls visit(record) for its points: in the order of the view until it is built, then in that of the block.
+  template <class Visit>
+  void forEachRecord(const Visit& visit) const
+  {
+    if (state.load(std::memory_order_acquire) != built)
+      eachRecord(list, count, visit);
+    else
+      for (std::uint32_t i = 0; i < count; ++i) visit(records()[i]);
   }
 
   /// Floats of its block and the padding behind it.
@@ -140,11 +165,10 @@ public:
     Voxel& v = voxels[voxel];
     if (claim(v)) {
       const Claim claimed{v}; // others wait: the visit may throw
-      const auto* sorted = reinterpret_cast<const PointRecord*>(v.block);
-      for (std::uint32_t i = 0; i < v.count; ++i) visit(sorted[i].record);
+      eachRecord(v.list, v.count, visit);
     }
     else {
-      for (std::uint32_t i = 0; i < v.count; ++i) visit(v.records()[i]);
+      v.forEachRecord(visit);
     }
   }
 
@@ -199,6 +223,9 @@ public:
   /// Sum of the voxels' radii.
   double sumOfRadii() const;
 
+  LargeBuffer<std::uint32_t> lists; ///< Voxel::list of the voxels as sorted, unless these are in the blocks
+  std::size_t list_words = 0;       ///< of it
+
   /// Every voxel's block, each followed by padding that vector loads may touch. The first holds the voxels as sorted;
   /// others those that an update made anew.
   std::vector<LargeBuffer<float>> buffers;
@@ -247,6 +274,9 @@ inline std::size_t mostVoxels(std::size_t points) noexcept
 /// Floats of padding behind each voxel's block: a whole leaf can be loaded from any point of it.
 inline constexpr std::size_t kBlockPadding = kMaxLeafPoints;
 
+/// Words behind a list of records that may be read.
+inline constexpr std::size_t kListPadding = 24;
+
 inline std::size_t Voxel::blockSize() const noexcept
 {
   return 4 * std::size_t{count} + kBlockPadding;
@@ -262,8 +292,8 @@ inline PointRecord storedIn(const LocalFrame& frame, const Point3& p, std::uint3
   return {local[0], local[1], local[2], record};
 }
 
-/// Turns the voxel's sorted points into cells and bounding spheres. When it throws, the voxel is sorted still, its
-/// points perhaps in another order.
+/// Reads the voxel's points and turns them into cells and bounding spheres. When it throws, the voxel is sorted
+/// still.
 /// @param cube of the voxel in the grid
 void buildVoxel(Voxel& voxel, const PointsView& view, const HierarchyOptions& options, const Cube& cube);
 
@@ -278,6 +308,8 @@ struct VoxelSorting {
   std::size_t voxel_count = 0;
   std::unique_ptr<Voxel[]> voxels;
   LargeBuffer<float> buffer;
+  LargeBuffer<std::uint32_t> lists;
+  std::size_t list_words = 0;
   std::array<double, 3> base = {0, 0, 0};
   LocalFrame frame; ///< of the whole cloud
 };
