@@ -50,8 +50,8 @@ struct CellScratch {
 /// Sorts a voxel's points into cells, and makes the nodes above them: ranges of points and child nodes, no spheres yet.
 class CellTree {
 public:
-  /// @param voxel sorted, its points in its block. @param sorted room for its points, which end there in the order of
-  /// the leaves.
+  /// @param voxel not built, its points in its block. @param sorted room for its points, which end there in the order
+  /// of the leaves.
   /// @param nodes empty
   CellTree(Voxel& voxel, const PointsView& view, CellScratch& scratch, std::vector<PointRecord>& sorted,
            std::vector<Node>& nodes)
@@ -71,11 +71,13 @@ public:
   {
     if (voxel_.count <= kMaxLeafPoints) {
       std::copy_n(given_, voxel_.count, sorted_.data());
+      moved_ = true;
       nodes_[newNode()].addChild(0, voxel_.count, Node::kLeaf);
       return;
     }
     if (split == CellSplit::octants) {
       std::copy_n(given_, voxel_.count, sorted_.data());
+      moved_ = true;
       divide(0, voxel_.count, localCube(cube), 0);
       return;
     }
@@ -89,6 +91,9 @@ public:
 
   /// Whether any cell is crowded.
   bool hasCrowdedCells() const { return crowded_; }
+
+  /// Whether all points are in `sorted`, whatever build() has thrown; some perhaps no longer where they were.
+  bool hasMoved() const { return moved_; }
 
 private:
   /// The voxel's cube in the voxel's frame; where points have strayed from it since they were sorted, one around them.
@@ -157,6 +162,7 @@ private:
   {
     if (bounds.extent(longestAxis(bounds)) <= crowded_extent_ || recursion == kMostRecursions) {
       std::copy(given_ + begin, given_ + end, sorted_.begin() + begin);
+      moved_ = true;
       return growCrowded(begin, end);
     }
     const auto [computed, bits] = codeCells(begin, end, bounds);
@@ -169,6 +175,7 @@ private:
     starts[1] = begin;
     for (std::size_t cell = 2; cell < starts.size(); ++cell) starts[cell] += starts[cell - 1];
     for (std::uint32_t i = begin; i < end; ++i) sorted_[starts[(scratch_.codes[i] >> dropped) + 1u]++] = given_[i];
+    moved_ = true;
     starts[0] = begin;
     return cutCells(starts, {0, bits}, recursion);
   }
@@ -354,6 +361,7 @@ private:
   PointRecord* given_; // the voxel's block
   double crowded_extent_;
   bool crowded_ = false;
+  bool moved_ = false;
 };
 
 } // namespace HWY_NAMESPACE

@@ -90,19 +90,31 @@ private:
   Quad low_, high_;
 };
 
-/// The points that a list names, in its order. @param list followed by kListPadding words that may be read
+constexpr std::size_t kRunsAhead = kListPadding / 2; // each takes two words at most
+constexpr std::size_t kMostAhead = 4096;             // bytes: the rest of a long run comes by itself
+
+/// Reads the points that a voxel lists into its block.
 template <class T>
-void readPoints(const LocalFrame& frame, const PointsView& view, const std::uint32_t* list, std::uint32_t count,
-                PointRecord* out)
+void readPointsOf(const Voxel& voxel, const PointsView& view)
 {
-  const LocalReader<T> read(frame, view);
+  const LocalReader<T> read(voxel.frame, view);
   const auto* const data = static_cast<const unsigned char*>(view.data) + view.offset[0];
-  RunReader runs(list);
-  for (const PointRecord* const end = out + count; out != end;) {
-    // Points may be far from each other: memory is asked for each before its turn.
-    __builtin_prefetch(data + view.stride * (runs.next()[kListPadding] >> 1));
+  auto* out = reinterpret_cast<PointRecord*>(voxel.block);
+  RunReader runs(voxel.list), ahead(voxel.list);
+  for (std::size_t k = 0; k < kRunsAhead; ++k) ahead();
+  for (const PointRecord* const end = out + voxel.count; out != end;) {
+    // Runs are short, and far from each other: memory is asked for before its turn.
+    const Run soon = ahead();
+    const auto* const first = data + view.stride * soon.number;
+    const std::size_t bytes = std::min(view.stride * soon.points, kMostAhead);
+    for (std::size_t byte = 0; byte < bytes; byte += 64) __builtin_prefetch(first + byte);
     out = read(runs(), out);
   }
+}
+
+inline void readPoints(const Voxel& voxel, const PointsView& view)
+{
+  view.scalar == Scalar::float32 ? readPointsOf<float>(voxel, view) : readPointsOf<double>(voxel, view);
 }
 
 } // namespace HWY_NAMESPACE

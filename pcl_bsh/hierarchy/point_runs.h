@@ -45,8 +45,6 @@ public:
     return {head >> 1, (head & 1) == 0 ? 1u : *next_++};
   }
 
-  const std::uint32_t* next() const { return next_; }
-
 private:
   const std::uint32_t* next_;
 };
@@ -66,7 +64,7 @@ void eachRun(std::size_t begin, std::size_t end, const RecordOf& recordOf, Visit
 
 /// Calls visit(record) for the `count` records that are stored as runs.
 template <class Visit>
-void eachRecord(const std::uint32_t* runs, std::uint32_t count, const Visit& visit)
+void eachRecord(const std::uint32_t* runs, std::uint32_t count, Visit&& visit)
 {
   RunReader read(runs);
   while (count > 0) {

@@ -74,9 +74,9 @@ void follow(Voxel& voxel, const LocalFrame& frame, const PointsView& now, double
   if (built && voxel.leaf_radii == 0.0) voxel.leaf_radii = sumOfLeafRadii(voxel);
   voxel.frame = frame; // its unit may be another: radii are compared in the cloud's
   bool keep = built && voxel.given.empty() && !hasCoincidentLeaf(voxel);
-  if (built)
-    for (std::uint32_t i = 0; i < voxel.count; ++i)
-      points[i] = storedIn(frame, now.point(voxel.records()[i]), voxel.records()[i]);
+  if (!voxel.isListed())
+    voxel.forEachRecord(
+        [&, out = points](std::uint32_t record) mutable { *out++ = storedIn(frame, now.point(record), record); });
   if (keep) {
     try {
       refitVoxel(voxel, points, now, fit);
@@ -86,8 +86,8 @@ void follow(Voxel& voxel, const LocalFrame& frame, const PointsView& now, double
       keep = false;
     }
   }
-  if (built && !keep) {
-    voxel.listInBlock([&](std::size_t i) { return points[i].record; });
+  if (!keep && !voxel.isListed()) {
+    std::copy_n(points, voxel.count, reinterpret_cast<PointRecord*>(voxel.block));
     voxel.nodes.clear();
     voxel.given.clear();
     voxel.leaf_radii = 0.0;

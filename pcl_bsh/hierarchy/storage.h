@@ -19,7 +19,7 @@
 
 namespace pcl_bsh {
 
-/// A point while its voxel is built: local coordinates and where it came from.
+/// A point before its voxel is built: local coordinates and where it came from.
 struct PointRecord {
   float x, y, z;
   std::uint32_t record;
@@ -56,11 +56,12 @@ struct Voxel {
   std::uint32_t lowest = 0; ///< smallest record number of its points
   std::uint32_t count = 0;  ///< its points, at least 1
   float radius = 0.0f; ///< of a sphere around the frame's origin that holds all of its points, in the frame's units
-  float largest_radius = 0.0f;         ///< of its points, in the cloud's unit
-  double leaf_radii = 0.0;             ///< sum over its leaves when last built; 0 until a refit asks
-  float* block = nullptr;              ///< x[count], y[count], z[count], record[count], once built
-  const std::uint32_t* list = nullptr; ///< its records while it is not built, as runs (point_runs.h): of a list of all
-                                       ///< voxels, or at the beginning of the block
+  float largest_radius = 0.0f; ///< of its points, in the cloud's unit
+  double leaf_radii = 0.0;     ///< sum over its leaves when last built; 0 until a refit asks
+  /// x[count], y[count], z[count], record[count], once built; PointRecord[count] until then, unless they are listed
+  float* block = nullptr;
+  const std::uint32_t* list = nullptr; ///< until it is built, perhaps: its records, as runs (point_runs.h). Null: the
+                                       ///< block has its points
   float* radii = nullptr;              ///< one per point in the order of x, once built; null when points have none
   std::vector<Node> nodes;             ///< nodes[0] is the root; empty until built
   std::vector<GivenSphere> given;      ///< see givenSpheres(); empty unless the voxel has crowded cells
@@ -95,25 +96,17 @@ struct Voxel {
             frame.origin[2] + static_cast<double>(z()[i])};
   }
 
-  bool isListedInBlock() const noexcept { return list == reinterpret_cast<const std::uint32_t*>(block); }
-
-  /// Lists records in the block, of which recordOf(i) is the i-th.
-  template <class RecordOf>
-  void listInBlock(const RecordOf& recordOf)
-  {
-    auto* const words = reinterpret_cast<std::uint32_t*>(block);
-    eachRun(0, count, recordOf, RunWriter(words));
-    list = words;
-  }
+  /// Whether the block holds nothing yet: points are to be read from the cloud.
+  bool isListed() const noexcept { return list != nullptr; }
 
   /// Calls visit(record) for its points: in the order of the view until it is built, then in that of the block.
   template <class Visit>
-  void forEachRecord(const Visit& visit) const
+  void forEachRecord(Visit&& visit) const
   {
-    if (state.load(std::memory_order_acquire) != built)
-      eachRecord(list, count, visit);
-    else
-      for (std::uint32_t i = 0; i < count; ++i) visit(records()[i]);
+    if (isListed()) return eachRecord(list, count, visit);
+    const bool is_built = state.load(std::memory_order_acquire) == built;
+    const auto* points = reinterpret_cast<const PointRecord*>(block);
+    for (std::uint32_t i = 0; i < count; ++i) visit(is_built ? records()[i] : points[i].record);
   }
 
   /// Floats of its block and the padding behind it.
@@ -163,13 +156,9 @@ public:
   void forEachRecord(std::size_t voxel, const Visit& visit) const
   {
     Voxel& v = voxels[voxel];
-    if (claim(v)) {
-      const Claim claimed{v}; // others wait: the visit may throw
-      eachRecord(v.list, v.count, visit);
-    }
-    else {
-      v.forEachRecord(visit);
-    }
+    if (!claim(v)) return v.forEachRecord(visit);
+    const Claim claimed{v}; // others wait: the visit may throw
+    v.forEachRecord(visit);
   }
 
   PointsView view;
@@ -223,7 +212,7 @@ public:
   /// Sum of the voxels' radii.
   double sumOfRadii() const;
 
-  LargeBuffer<std::uint32_t> lists; ///< Voxel::list of the voxels as sorted, unless these are in the blocks
+  LargeBuffer<std::uint32_t> lists; ///< every Voxel::list, of the voxels as sorted
   std::size_t list_words = 0;       ///< of it
 
   /// Every voxel's block, each followed by padding that vector loads may touch. The first holds the voxels as sorted;
@@ -275,7 +264,7 @@ inline std::size_t mostVoxels(std::size_t points) noexcept
 inline constexpr std::size_t kBlockPadding = kMaxLeafPoints;
 
 /// Words behind a list of records that may be read.
-inline constexpr std::size_t kListPadding = 24;
+inline constexpr std::size_t kListPadding = 6;
 
 inline std::size_t Voxel::blockSize() const noexcept
 {

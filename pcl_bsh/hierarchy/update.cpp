@@ -85,7 +85,9 @@ void fill(Voxel& voxel, const Touched& from, const PointsView& view, float* bloc
   Bounds bounds;
   for (const Point3& p : from.points) bounds.add(p);
   voxel.frame = frameBetween(bounds.low, bounds.high, view.scalar == Scalar::float32);
-  voxel.listInBlock([&](std::size_t i) { return from.records[i]; });
+  auto* stored = reinterpret_cast<PointRecord*>(block);
+  for (std::size_t i = 0; i < from.points.size(); ++i)
+    *stored++ = storedIn(voxel.frame, from.points[i], from.records[i]);
 }
 
 /// Moves all blocks into one buffer, when too much of the present ones is left behind. Changes nothing when it throws.
@@ -98,10 +100,8 @@ void compact(SphereHierarchy::Storage& storage)
   float* next = buffer.get();
   for (std::size_t v = 0; v < storage.voxel_count; ++v) {
     Voxel& voxel = storage.voxels[v];
-    const bool listed_in_block = voxel.isListedInBlock(), built = voxel.state.load() == Voxel::built;
-    if (built || listed_in_block) std::memcpy(next, voxel.block, 4 * std::size_t{voxel.count} * sizeof(float));
+    if (!voxel.isListed()) std::memcpy(next, voxel.block, 4 * std::size_t{voxel.count} * sizeof(float));
     voxel.block = next;
-    if (listed_in_block) voxel.list = reinterpret_cast<const std::uint32_t*>(next);
     next += voxel.blockSize();
     if (!radii) continue;
     std::memcpy(radii.get() + voxel.begin, voxel.radii, voxel.count * sizeof(float));

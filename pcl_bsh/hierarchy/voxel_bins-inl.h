@@ -22,8 +22,10 @@ template <class T>
 struct Bin {
   std::uint64_t cell = 0;
   std::uint32_t count = 0;
-  std::uint32_t words = 0;          ///< that the chunk's records are stored as
-  std::uint32_t* records = nullptr; ///< where they go, known after merging
+  std::uint32_t words = 0;       ///< that the chunk's records are stored as
+  std::uint32_t voxel = 0;       ///< its number, known after merging
+  std::uint32_t first = 0;       ///< place in the voxel of this chunk's first point, likewise
+  std::uint32_t* list = nullptr; ///< where the chunk's records go, likewise, where they are listed
   alignas(16) T low[4];
   alignas(16) T high[4];
 

@@ -31,12 +31,11 @@ namespace {
 struct BuildScratch {
   std::size_t bytes() const noexcept
   {
-    return cells.bytes() + list.capacity() * sizeof(std::uint32_t) + sorted.capacity() * sizeof(PointRecord) +
-           bounds.capacity() * sizeof(PointBounds) + nodes.capacity() * sizeof(Node);
+    return cells.bytes() + sorted.capacity() * sizeof(PointRecord) + bounds.capacity() * sizeof(PointBounds) +
+           nodes.capacity() * sizeof(Node);
   }
 
   CellScratch cells;
-  std::vector<std::uint32_t> list; ///< Voxel::list, where that is in the block
   std::vector<PointRecord> sorted; ///< in the order of the leaves
   std::vector<PointBounds> bounds; ///< of child i of node n at [kNodeChildren * n + i]
   std::vector<Node> nodes;
@@ -57,15 +56,9 @@ public:
   {
     scratch_.sorted.resize(voxel_.count);
     nodes_.clear();
-    const bool listed_in_block = voxel_.isListedInBlock();
-    if (listed_in_block) {
-      scratch_.list.reserve(voxel_.count + kListPadding);
-      scratch_.list.assign(voxel_.list, voxel_.list + voxel_.count);
-      scratch_.list.resize(voxel_.count + kListPadding);
-    }
     CellTree cells(voxel_, view_, scratch_.cells, scratch_.sorted, nodes_);
     try {
-      readPoints(listed_in_block ? scratch_.list.data() : voxel_.list);
+      if (voxel_.isListed()) readPoints(voxel_, view_);
       cells.build(split, cube);
       fitBounds();
       storeAsArrays();
@@ -73,22 +66,17 @@ public:
       voxel_.nodes.assign(nodes_.begin(), nodes_.end());
       if (cells.hasCrowdedCells()) voxel_.given = givenSpheres(voxel_, view_);
     }
-    catch (...) { // out of memory: the voxel needs its list again
-      if (listed_in_block)
-        std::copy_n(scratch_.list.begin(), voxel_.count, reinterpret_cast<std::uint32_t*>(voxel_.block));
+    catch (...) { // out of memory: the block has to be what a voxel that is not built has, in the cloud's order
+      if (!voxel_.isListed()) {
+        auto* const points = reinterpret_cast<PointRecord*>(voxel_.block);
+        if (cells.hasMoved()) std::copy(scratch_.sorted.begin(), scratch_.sorted.end(), points);
+        std::sort(points, points + voxel_.count,
+                  [](const PointRecord& l, const PointRecord& r) { return l.record < r.record; });
+      }
       voxel_.nodes.clear();
       throw;
     }
-  }
-
-  /// Into the block.
-  void readPoints(const std::uint32_t* list) const
-  {
-    auto* const points = reinterpret_cast<PointRecord*>(voxel_.block);
-    if (view_.scalar == Scalar::float32)
-      HWY_NAMESPACE::readPoints<float>(voxel_.frame, view_, list, voxel_.count, points);
-    else
-      HWY_NAMESPACE::readPoints<double>(voxel_.frame, view_, list, voxel_.count, points);
+    voxel_.list = nullptr;
   }
 
   /// The same tree for points that have moved.

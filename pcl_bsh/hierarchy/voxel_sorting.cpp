@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which points are in which voxel: a counting sort of record numbers, which reads the cloud once. Points are read again
-// where a voxel is built: what no query visits is never copied.
+// Which points are in which voxel: a counting sort. Where points follow each other in long runs, as in a scan, it lists
+// runs, and points are read again where a voxel is built: what no query visits is never copied. Points in another order
+// are copied at once, since later each of them would be a miss of the caches.
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/hierarchy/storage.h>
@@ -17,6 +18,7 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/hierarchy/cell_numbers-inl.h>
+#include <pcl_bsh/hierarchy/local_points-inl.h>
 #include <pcl_bsh/hierarchy/voxel_bins-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -49,7 +51,7 @@ public:
         if (!(least_edge < 0x1p1006)) throw std::logic_error("SphereHierarchy: voxels do not reach over the cloud");
     }
     mergeBins();
-    listRecords();
+    result_.lists ? listRecords() : movePoints();
     for (std::size_t v = 0; v < result_.voxel_count; ++v) result_.voxels[v].lowest = lowestRecord(result_.voxels[v]);
     return std::move(result_);
   }
@@ -246,8 +248,6 @@ private:
     result_.voxels = std::make_unique<Voxel[]>(result_.voxel_count);
     result_.buffer = makeBuffer<float>(4 * result_.size + kBlockPadding * result_.voxel_count);
 
-    // Points in the order of a scan are few runs: their lists stand together, and no page of the blocks is touched yet.
-    // Long lists are kept where the points will be.
     if (words <= result_.size / 2) {
       result_.list_words = words + kListPadding;
       result_.lists = makeBuffer<std::uint32_t>(result_.list_words);
@@ -263,19 +263,19 @@ private:
       voxel.key = entry->key;
       voxel.begin = static_cast<std::uint32_t>(point);
       voxel.block = result_.buffer.get() + 4 * point + kBlockPadding * v;
-      std::uint32_t* next = list ? list : reinterpret_cast<std::uint32_t*>(voxel.block);
-      voxel.list = next;
+      voxel.list = list;
       Bounds bounds;
       for (; entry != entries.end() && entry->key == voxel.key; ++entry) {
-        entry->bin->records = next;
-        next += entry->bin->words;
+        entry->bin->voxel = static_cast<std::uint32_t>(v);
+        entry->bin->first = voxel.count;
+        entry->bin->list = list;
+        if (list) list += entry->bin->words;
         voxel.count += entry->bin->count;
         widen(bounds, *entry->bin);
         widen(all, *entry->bin);
       }
       voxel.frame = frameBetween(bounds.low, bounds.high, std::is_same_v<T, float>);
       point += voxel.count;
-      if (list) list = next;
     }
     if (result_.size > 0) result_.frame = frameBetween(all.low, all.high, std::is_same_v<T, float>);
   }
@@ -286,7 +286,7 @@ private:
     parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
       std::vector<RunWriter> lists;
       lists.reserve(chunks_[chunk].bins.size());
-      for (const Bin<T>& bin : chunks_[chunk].bins) lists.emplace_back(bin.records);
+      for (const Bin<T>& bin : chunks_[chunk].bins) lists.emplace_back(bin.list);
       RunReader read_run(runs_.get() + begins_[chunk]);
       for (std::size_t i = begins_[chunk]; i < begins_[chunk + 1];) {
         const Run run = read_run();
@@ -296,16 +296,42 @@ private:
     });
   }
 
-  /// Records stand in the view's order, so that without a subset the first is the lowest.
+  /// Every voxel's points, in the order of the view.
+  void movePoints()
+  {
+    parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
+      std::vector<Target> targets;
+      targets.reserve(chunks_[chunk].bins.size());
+      for (const Bin<T>& bin : chunks_[chunk].bins) {
+        const Voxel& voxel = result_.voxels[bin.voxel];
+        targets.push_back(
+            {LocalReader<T>(voxel.frame, view_), reinterpret_cast<PointRecord*>(voxel.block) + bin.first});
+      }
+      RunReader read_run(runs_.get() + begins_[chunk]);
+      for (std::size_t i = begins_[chunk]; i < begins_[chunk + 1];) {
+        const Run run = read_run();
+        if (run.number != kNoBin) {
+          Target& target = targets[run.number];
+          for (std::size_t k = i; k < i + run.points; ++k) target.read(view_.record(k), *target.next++);
+        }
+        i += run.points;
+      }
+    });
+  }
+
+  struct Target {
+    LocalReader<T> read;
+    PointRecord* next;
+  };
+
+  /// Points stand in the view's order, so that without a subset the first is the lowest.
   std::uint32_t lowestRecord(const Voxel& voxel) const
   {
-    RunReader read(voxel.list);
-    Run run = read();
-    std::uint32_t lowest = run.number;
-    for (std::uint32_t left = voxel.count - run.points; view_.indices && left > 0; left -= run.points) {
-      run = read();
-      lowest = std::min(lowest, run.number);
-    }
+    if (!view_.indices)
+      return voxel.isListed() ? RunReader(voxel.list)().number
+                              : reinterpret_cast<const PointRecord*>(voxel.block)->record;
+    std::uint32_t lowest = 0xffffffffu;
+    voxel.forEachRecord([&](std::uint32_t record) { lowest = std::min(lowest, record); });
     return lowest;
   }
 
