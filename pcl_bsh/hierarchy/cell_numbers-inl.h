@@ -27,7 +27,7 @@ class CellNumbers {
 public:
   /// @param base number 0 on each axis, in cells from the origin
   CellNumbers(double edge, const std::array<double, 3>& base)
-  : inverse_(Point<T>::of(static_cast<T>(1.0 / edge))),
+  : inverse_(GivenPoint<T>::of(static_cast<T>(1.0 / edge))),
     base_(pointOf(base))
   {
   }
@@ -43,17 +43,17 @@ public:
     return base;
   }
 
-  static Point<T> pointOf(const Point3& p)
+  static GivenPoint<T> pointOf(const Point3& p)
   {
     const T copy[4] = {static_cast<T>(p[0]), static_cast<T>(p[1]), static_cast<T>(p[2]), 0};
-    return Point<T>::load(copy);
+    return GivenPoint<T>::load(copy);
   }
 
   /// The cell's numbers along the axes, in the point's type.
-  Point<T> numbers(const Point<T>& p) const { return (p * inverse_ - base_).truncated(); }
+  GivenPoint<T> numbers(const GivenPoint<T>& p) const { return (p * inverse_ - base_).truncated(); }
 
   /// The same as one number; kOutsideGrid when the point is not finite or too far from the bounds to be counted.
-  static std::uint64_t together(const Point<T>& numbers)
+  static std::uint64_t together(const GivenPoint<T>& numbers)
   {
     std::int32_t number[4];
     numbers.storeTruncated(number);
@@ -70,7 +70,7 @@ public:
 private:
   static constexpr T kMargin = 1024; // cells below the bounds: those of a sample leave some points out
 
-  Point<T> inverse_, base_;
+  GivenPoint<T> inverse_, base_;
 };
 
 } // namespace HWY_NAMESPACE

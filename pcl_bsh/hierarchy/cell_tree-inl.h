@@ -50,7 +50,8 @@ struct CellScratch {
 /// Sorts a voxel's points into cells, and makes the nodes above them: ranges of points and child nodes, no spheres yet.
 class CellTree {
 public:
-  /// @param voxel sorted, not built. @param sorted room for its points, which end there in the order of the leaves.
+  /// @param voxel not built, its points in its block. @param sorted room for its points, which end there in the order
+  /// of the leaves.
   /// @param nodes empty
   CellTree(Voxel& voxel, const PointsView& view, CellScratch& scratch, std::vector<PointRecord>& sorted,
            std::vector<Node>& nodes)

@@ -71,7 +71,7 @@ struct PointOf<double> {
   using Type = Triple;
 };
 template <class T>
-using Point = typename PointOf<T>::Type;
+using GivenPoint = typename PointOf<T>::Type;
 
 /// Reads points of a view as they are stored.
 template <class T>
@@ -90,20 +90,29 @@ public:
       whole_ = static_cast<std::uint32_t>(view.count - 1);
   }
 
-  Point<T> operator()(std::uint32_t record) const
+  GivenPoint<T> operator()(std::uint32_t record) const
   {
+    if (record < whole_) return load(record);
     const unsigned char* base = data_ + stride_ * record;
-    if (record < whole_) return Point<T>::load(reinterpret_cast<const T*>(base + offset_[0]));
     T copy[4] = {};
     for (std::size_t k = 0; k < 3; ++k) std::memcpy(copy + k, base + offset_[k], sizeof(T));
-    return Point<T>::load(copy);
+    return GivenPoint<T>::load(copy);
+  }
+
+  /// Records below it may be read at once, with what follows.
+  std::uint32_t whole() const { return whole_; }
+
+  /// @pre record < whole()
+  GivenPoint<T> load(std::uint32_t record) const
+  {
+    return GivenPoint<T>::load(reinterpret_cast<const T*>(data_ + stride_ * record + offset_[0]));
   }
 
 private:
   const unsigned char* data_;
   std::size_t stride_;
   std::array<std::size_t, 3> offset_;
-  std::uint32_t whole_ = 0; ///< records below it may be read at once, with what follows
+  std::uint32_t whole_ = 0;
 };
 
 } // namespace HWY_NAMESPACE

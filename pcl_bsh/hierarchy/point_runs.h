@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the points of a cloud go, in the order of the cloud, in few bytes.
+// Numbers that often follow each other, in few bytes: which bins the points of a cloud go to, in the order of the
+// cloud; and which records a voxel has.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace pcl_bsh {
 
 inline constexpr std::uint32_t kNoBin = 0x7fffffffu;
 
-/// Points that follow each other in the cloud, all in the same bin.
+/// Points that follow each other in the cloud.
 struct Run {
-  std::uint32_t bin; ///< kNoBin: not finite
+  std::uint32_t number; ///< of the bin that all of them are in, kNoBin: they are not finite; or of their first record
   std::uint32_t points;
+
+  /// How many numbers it is stored as.
+  std::uint32_t words() const { return points == 1 ? 1 : 2; }
 };
 
-/// Stores runs as numbers: twice the bin's number for a single point, one more than that and the number of points for
+/// Stores runs as numbers: twice the run's number for a single point, one more than that and the number of points for
 /// others. Takes at most one number a point.
 class RunWriter {
 public:
@@ -22,7 +27,7 @@ public:
 
   void operator()(const Run& run)
   {
-    *next_++ = run.bin << 1 | (run.points == 1 ? 0u : 1u);
+    *next_++ = run.number << 1 | (run.points == 1 ? 0u : 1u);
     if (run.points != 1) *next_++ = run.points;
   }
 
@@ -43,5 +48,30 @@ public:
 private:
   const std::uint32_t* next_;
 };
+
+/// Calls visit(run) for the runs that these records come in, of which recordOf(i) is the i-th, begin <= i < end.
+template <class RecordOf, class Visit>
+void eachRun(std::size_t begin, std::size_t end, const RecordOf& recordOf, Visit&& visit)
+{
+  while (begin < end) {
+    const std::uint32_t first = recordOf(begin);
+    std::uint32_t points = 1;
+    while (begin + points < end && recordOf(begin + points) == first + points) ++points;
+    visit(Run{first, points});
+    begin += points;
+  }
+}
+
+/// Calls visit(record) for the `count` records that are stored as runs.
+template <class Visit>
+void eachRecord(const std::uint32_t* runs, std::uint32_t count, Visit&& visit)
+{
+  RunReader read(runs);
+  while (count > 0) {
+    const Run run = read();
+    for (std::uint32_t i = 0; i < run.points; ++i) visit(run.number + i);
+    count -= run.points;
+  }
+}
 
 } // namespace pcl_bsh

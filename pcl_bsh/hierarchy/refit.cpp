@@ -52,20 +52,11 @@ bool hasCoincidentLeaf(const Voxel& voxel)
   return false;
 }
 
-/// Calls visit(i, record) for the voxel's points, in their order.
-template <class Visit>
-void eachRecord(const Voxel& voxel, const Visit& visit)
-{
-  const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;
-  const auto* sorted = reinterpret_cast<const PointRecord*>(voxel.block);
-  for (std::uint32_t i = 0; i < voxel.count; ++i) visit(i, built ? voxel.records()[i] : sorted[i].record);
-}
-
 /// Where the voxel's points are now, and their largest radius. @return false when one is not finite any more
 bool readBounds(const Voxel& voxel, const PointsView& view, Bounds& bounds, float& largest_radius)
 {
   bool finite = true;
-  eachRecord(voxel, [&](std::uint32_t, std::uint32_t record) {
+  voxel.forEachRecord([&](std::uint32_t record) {
     const Point3 p = view.point(record);
     finite = finite && isFinite(p);
     bounds.add(p);
@@ -83,9 +74,10 @@ void follow(Voxel& voxel, const LocalFrame& frame, const PointsView& now, double
   const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;
   if (built && voxel.leaf_radii == 0.0) voxel.leaf_radii = sumOfLeafRadii(voxel);
   voxel.frame = frame; // its unit may be another: radii are compared in the cloud's
-  eachRecord(voxel,
-             [&](std::uint32_t i, std::uint32_t record) { points[i] = storedIn(frame, now.point(record), record); });
   bool keep = built && voxel.given.empty() && !hasCoincidentLeaf(voxel);
+  if (!voxel.isListed())
+    voxel.forEachRecord(
+        [&, out = points](std::uint32_t record) mutable { *out++ = storedIn(frame, now.point(record), record); });
   if (keep) {
     try {
       refitVoxel(voxel, points, now, fit);
@@ -95,7 +87,7 @@ void follow(Voxel& voxel, const LocalFrame& frame, const PointsView& now, double
       keep = false;
     }
   }
-  if (!keep) {
+  if (!keep && !voxel.isListed()) {
     std::copy_n(points, voxel.count, reinterpret_cast<PointRecord*>(voxel.block));
     voxel.nodes.clear();
     voxel.given.clear();

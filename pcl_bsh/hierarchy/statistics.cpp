@@ -28,7 +28,7 @@ HierarchyStatistics SphereHierarchy::statistics() const
   result.nodes = s.top.size();
   result.bytes = sizeof(Storage) + s.voxel_count * (sizeof(Voxel) + kBlockPadding * sizeof(float)) +
                  s.size * (sizeof(PointRecord) + (s.view.radii ? sizeof(float) : 0)) + s.top.capacity() * sizeof(Node) +
-                 s.floats_unused * sizeof(float);
+                 s.floats_unused * sizeof(float) + s.list_words * sizeof(std::uint32_t);
   double leaf_points = 0.0, leaf_radii = 0.0;
   for (std::size_t v = 0; v < s.voxel_count; ++v) {
     const Voxel& voxel = s.voxels[v];

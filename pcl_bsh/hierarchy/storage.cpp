@@ -22,6 +22,8 @@ SphereHierarchy::Storage::Storage(const PointsView& points, const HierarchyOptio
   voxel_count = sorting.voxel_count;
   voxels = std::move(sorting.voxels);
   buffers.push_back(std::move(sorting.buffer));
+  lists = std::move(sorting.lists);
+  list_words = sorting.list_words;
   frame = sorting.frame;
   if (size > 0 && view.radii) {
     radii_buffers.push_back(std::make_unique<float[]>(size));
@@ -36,12 +38,9 @@ void measureVoxel(Voxel& voxel, const PointsView& view)
 {
   voxel.slabs.reset();
   voxel.largest_radius = 0.0f;
-  if (view.radii) {
-    const bool built = voxel.state.load(std::memory_order_relaxed) == Voxel::built;
-    const auto* sorted = reinterpret_cast<const PointRecord*>(voxel.block);
-    for (std::uint32_t i = 0; i < voxel.count; ++i)
-      voxel.largest_radius = std::max(voxel.largest_radius, view.radii[built ? voxel.records()[i] : sorted[i].record]);
-  }
+  if (view.radii)
+    voxel.forEachRecord(
+        [&](std::uint32_t record) { voxel.largest_radius = std::max(voxel.largest_radius, view.radii[record]); });
   voxel.radius = radiusOf(voxel.frame, voxel.largest_radius);
 }
 

@@ -8,6 +8,7 @@
 #include <pcl_bsh/hierarchy/build_work.h>
 #include <pcl_bsh/hierarchy/large_buffer.h>
 #include <pcl_bsh/hierarchy/node.h>
+#include <pcl_bsh/hierarchy/point_runs.h>
 #include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/uncertainty_range.h>
@@ -58,11 +59,14 @@ struct Voxel {
   float radius = 0.0f; ///< of a sphere around the frame's origin that holds all of its points, in the frame's units
   float largest_radius = 0.0f; ///< of its points, in the cloud's unit
   double leaf_radii = 0.0;     ///< sum over its leaves when last built; 0 until a refit asks
-  float* block = nullptr;  ///< PointRecord[count] while sorted; x[count], y[count], z[count], record[count] once built
-  float* radii = nullptr;  ///< one per point in the order of x, once built; null when points have none
-  std::vector<Node> nodes; ///< nodes[0] is the root; empty until built
-  std::vector<GivenSphere> given; ///< see givenSpheres(); empty unless the voxel has crowded cells
-  LazySlabs slabs;                ///< of the nodes, once built and asked for
+  /// x[count], y[count], z[count], record[count], once built; PointRecord[count] until then, unless they are listed
+  float* block = nullptr;
+  const std::uint32_t* list = nullptr; ///< until it is built, perhaps: its records, as runs (point_runs.h). Null: the
+                                       ///< block has its points
+  float* radii = nullptr;              ///< one per point in the order of x, once built; null when points have none
+  std::vector<Node> nodes;             ///< nodes[0] is the root; empty until built
+  std::vector<GivenSphere> given;      ///< see givenSpheres(); empty unless the voxel has crowded cells
+  LazySlabs slabs;                     ///< of the nodes, once built and asked for
   std::atomic<std::uint8_t> state{sorted};
 
   /// Becomes what the other voxel is. Neither may be visited meanwhile.
@@ -77,6 +81,7 @@ struct Voxel {
     largest_radius = other.largest_radius;
     leaf_radii = other.leaf_radii;
     block = other.block;
+    list = other.list;
     radii = other.radii;
     nodes = std::move(other.nodes);
     given = std::move(other.given);
@@ -90,6 +95,19 @@ struct Voxel {
     if (!frame.lossless) return view.point(records()[i]);
     return {frame.origin[0] + static_cast<double>(x()[i]), frame.origin[1] + static_cast<double>(y()[i]),
             frame.origin[2] + static_cast<double>(z()[i])};
+  }
+
+  /// Whether the block holds nothing yet: points are to be read from the cloud.
+  bool isListed() const noexcept { return list != nullptr; }
+
+  /// Calls visit(record) for its points: in the order of the view until it is built, then in that of the block.
+  template <class Visit>
+  void forEachRecord(Visit&& visit) const
+  {
+    if (isListed()) return eachRecord(list, count, visit);
+    const bool is_built = state.load(std::memory_order_acquire) == built;
+    const auto* points = reinterpret_cast<const PointRecord*>(block);
+    for (std::uint32_t i = 0; i < count; ++i) visit(is_built ? records()[i] : points[i].record);
   }
 
   /// Floats of its block and the padding behind it.
@@ -139,14 +157,9 @@ public:
   void forEachRecord(std::size_t voxel, const Visit& visit) const
   {
     Voxel& v = voxels[voxel];
-    if (claim(v)) {
-      const Claim claimed{v}; // others wait: the visit may throw
-      const auto* sorted = reinterpret_cast<const PointRecord*>(v.block);
-      for (std::uint32_t i = 0; i < v.count; ++i) visit(sorted[i].record);
-    }
-    else {
-      for (std::uint32_t i = 0; i < v.count; ++i) visit(v.records()[i]);
-    }
+    if (!claim(v)) return v.forEachRecord(visit);
+    const Claim claimed{v}; // others wait: the visit may throw
+    v.forEachRecord(visit);
   }
 
   PointsView view;
@@ -201,6 +214,9 @@ public:
   /// Sum of the voxels' radii.
   double sumOfRadii() const;
 
+  LargeBuffer<std::uint32_t> lists; ///< every Voxel::list, of the voxels as sorted
+  std::size_t list_words = 0;       ///< of it
+
   /// Every voxel's block, each followed by padding that vector loads may touch. The first holds the voxels as sorted;
   /// others those that an update made anew.
   std::vector<LargeBuffer<float>> buffers;
@@ -249,6 +265,9 @@ inline std::size_t mostVoxels(std::size_t points) noexcept
 /// Floats of padding behind each voxel's block: a whole leaf can be loaded from any point of it.
 inline constexpr std::size_t kBlockPadding = kMaxLeafPoints;
 
+/// Words behind a list of records that may be read.
+inline constexpr std::size_t kListPadding = 6;
+
 inline std::size_t Voxel::blockSize() const noexcept
 {
   return 4 * std::size_t{count} + kBlockPadding;
@@ -264,8 +283,8 @@ inline PointRecord storedIn(const LocalFrame& frame, const Point3& p, std::uint3
   return {local[0], local[1], local[2], record};
 }
 
-/// Turns the voxel's sorted points into cells and bounding spheres. When it throws, the voxel is sorted still, its
-/// points perhaps in another order.
+/// Reads the voxel's points and turns them into cells and bounding spheres. When it throws, the voxel is sorted
+/// still.
 /// @param cube of the voxel in the grid
 void buildVoxel(Voxel& voxel, const PointsView& view, const HierarchyOptions& options, const Cube& cube);
 
@@ -280,6 +299,8 @@ struct VoxelSorting {
   std::size_t voxel_count = 0;
   std::unique_ptr<Voxel[]> voxels;
   LargeBuffer<float> buffer;
+  LargeBuffer<std::uint32_t> lists;
+  std::size_t list_words = 0;
   std::array<double, 3> base = {0, 0, 0};
   LocalFrame frame; ///< of the whole cloud
 };

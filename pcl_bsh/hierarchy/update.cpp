@@ -46,12 +46,6 @@ constexpr double kMostUnused = 0.5; // of the floats in use, before blocks are m
   throw InvalidInput(Input::points, "HierarchyUpdate", what);
 }
 
-std::uint32_t recordOf(const Voxel& voxel, std::uint32_t i)
-{
-  if (voxel.state.load(std::memory_order_acquire) == Voxel::built) return voxel.records()[i];
-  return reinterpret_cast<const PointRecord*>(voxel.block)[i].record;
-}
-
 /// A touched voxel: its points after the change.
 struct Touched {
   std::uint64_t key = 0;
@@ -106,7 +100,7 @@ void compact(SphereHierarchy::Storage& storage)
   float* next = buffer.get();
   for (std::size_t v = 0; v < storage.voxel_count; ++v) {
     Voxel& voxel = storage.voxels[v];
-    std::memcpy(next, voxel.block, 4 * std::size_t{voxel.count} * sizeof(float));
+    if (!voxel.isListed()) std::memcpy(next, voxel.block, 4 * std::size_t{voxel.count} * sizeof(float));
     voxel.block = next;
     next += voxel.blockSize();
     if (!radii) continue;
@@ -254,10 +248,10 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
   std::vector<std::uint32_t> staying;
   for (Touched& voxel : touched) {
     staying.clear();
-    for (std::uint32_t i = 0; voxel.old && i < voxel.old->count; ++i) {
-      const std::uint32_t record = recordOf(*voxel.old, i);
-      if (!changed[record]) staying.push_back(record);
-    }
+    if (voxel.old)
+      voxel.old->forEachRecord([&](std::uint32_t record) {
+        if (!changed[record]) staying.push_back(record);
+      });
     if ((voxel.old ? voxel.old->count : 0) - staying.size() != voxel.leaving) return sortAnew(now);
     eachPoint(now, staying, [&](std::uint32_t record, const Point3& p) { voxel.add(record, p); });
     if (!voxel.records.empty()) floats += 4 * voxel.records.size() + kBlockPadding;

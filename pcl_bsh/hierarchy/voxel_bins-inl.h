@@ -22,8 +22,10 @@ template <class T>
 struct Bin {
   std::uint64_t cell = 0;
   std::uint32_t count = 0;
-  std::uint32_t voxel = 0; ///< its number, known after merging
-  std::uint32_t first = 0; ///< place in the voxel of this chunk's first point, likewise
+  std::uint32_t words = 0;       ///< that the chunk's records are stored as
+  std::uint32_t voxel = 0;       ///< its number, known after merging
+  std::uint32_t first = 0;       ///< place in the voxel of this chunk's first point, likewise
+  std::uint32_t* list = nullptr; ///< where the chunk's records go, likewise, where they are listed
   alignas(16) T low[4];
   alignas(16) T high[4];
 
@@ -33,14 +35,15 @@ struct Bin {
     std::fill(high, high + 4, -std::numeric_limits<T>::infinity());
   }
 
-  void add(const Point<T>& p) { add(p, p, 1); }
+  void add(const GivenPoint<T>& p) { add(p, p, 1, 1); }
 
-  /// `more` points between two corners.
-  void add(const Point<T>& lowest, const Point<T>& highest, std::uint32_t more)
+  /// `more` points between two corners, whose records are stored as so many words.
+  void add(const GivenPoint<T>& lowest, const GivenPoint<T>& highest, std::uint32_t more, std::uint32_t more_words)
   {
     count += more;
-    min(Point<T>::load(low), lowest).store(low);
-    max(Point<T>::load(high), highest).store(high);
+    words += more_words;
+    min(GivenPoint<T>::load(low), lowest).store(low);
+    max(GivenPoint<T>::load(high), highest).store(high);
   }
 };
 

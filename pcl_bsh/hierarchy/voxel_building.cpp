@@ -18,6 +18,7 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/hierarchy/cell_tree-inl.h>
+#include <pcl_bsh/hierarchy/local_points-inl.h>
 #include <pcl_bsh/simd/point_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -57,6 +58,7 @@ public:
     nodes_.clear();
     CellTree cells(voxel_, view_, scratch_.cells, scratch_.sorted, nodes_);
     try {
+      if (voxel_.isListed()) readPoints(voxel_, view_);
       cells.build(split, cube);
       fitBounds();
       storeAsArrays();
@@ -65,13 +67,16 @@ public:
       if (cells.hasCrowdedCells()) voxel_.given = givenSpheres(voxel_, view_);
     }
     catch (...) { // out of memory: the block has to be what a voxel that is not built has, in the cloud's order
-      auto* const points = reinterpret_cast<PointRecord*>(voxel_.block);
-      if (cells.hasMoved()) std::copy(scratch_.sorted.begin(), scratch_.sorted.end(), points);
-      std::sort(points, points + voxel_.count,
-                [](const PointRecord& l, const PointRecord& r) { return l.record < r.record; });
+      if (!voxel_.isListed()) {
+        auto* const points = reinterpret_cast<PointRecord*>(voxel_.block);
+        if (cells.hasMoved()) std::copy(scratch_.sorted.begin(), scratch_.sorted.end(), points);
+        std::sort(points, points + voxel_.count,
+                  [](const PointRecord& l, const PointRecord& r) { return l.record < r.record; });
+      }
       voxel_.nodes.clear();
       throw;
     }
+    voxel_.list = nullptr;
   }
 
   /// The same tree for points that have moved.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points into voxels: a counting sort that reads the cloud twice and keeps 4 bytes per point on the way.
+// Which points are in which voxel: a counting sort. Where points follow each other in long runs, as in a scan, it lists
+// runs, and points are read again where a voxel is built: what no query visits is never copied. Points in another order
+// are copied at once, since later each of them would be a miss of the caches.
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/hierarchy/storage.h>
@@ -16,6 +18,7 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/hierarchy/cell_numbers-inl.h>
+#include <pcl_bsh/hierarchy/local_points-inl.h>
 #include <pcl_bsh/hierarchy/voxel_bins-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -24,60 +27,6 @@ namespace HWY_NAMESPACE {
 namespace {
 
 constexpr std::size_t kChunkPoints = 1 << 16; // points a thread takes at least: below that, one thread is faster
-
-/// Stores points of the cloud as a frame has them.
-template <class T>
-class ToLocal {
-public:
-  ToLocal(const LocalFrame& frame, PointRecord* next)
-  : next_(next),
-    plain_(frame.unit == 1.0),
-    inverse_(1.0 / frame.unit),
-    origin_(Point<T>::of(0))
-  {
-    T origin[4] = {};
-    for (std::size_t k = 0; k < 3; ++k) {
-      origin[k] = static_cast<T>(frame.origin[k]);
-      scaled_[k] = frame.origin[k] * inverse_;
-    }
-    origin_ = Point<T>::load(origin);
-  }
-
-  /// Points [first, last) of the view, behind those before.
-  void store(const Reader<T>& read, const PointsView& view, std::size_t first, std::size_t last)
-  {
-    PointRecord* next = next_;
-    for (std::size_t i = first; i < last; ++i) store(read(view.record(i)), view.record(i), *next++);
-    next_ = next;
-  }
-
-private:
-  void store(const Point<T>& p, std::uint32_t record, PointRecord& out) const
-  {
-    if constexpr (std::is_same_v<T, float>) {
-      if (plain_) {
-        (p - origin_).store(reinterpret_cast<float*>(&out));
-        out.record = record;
-        return;
-      }
-    }
-    T local[4];
-    (plain_ ? p - origin_ : p).store(local);
-    out = {stored(local[0], 0), stored(local[1], 1), stored(local[2], 2), record};
-  }
-
-  float stored(T value, std::size_t k) const
-  {
-    if (plain_) return roundToFloat(static_cast<double>(value));
-    return roundToFloat(static_cast<double>(value) * inverse_ - scaled_[k]);
-  }
-
-  PointRecord* next_;
-  bool plain_;
-  double inverse_;
-  double scaled_[3];
-  Point<T> origin_;
-};
 
 template <class T>
 class VoxelSorter {
@@ -102,7 +51,7 @@ public:
         if (!(least_edge < 0x1p1006)) throw std::logic_error("SphereHierarchy: voxels do not reach over the cloud");
     }
     mergeBins();
-    moveToVoxels();
+    result_.lists ? listRecords() : movePoints();
     for (std::size_t v = 0; v < result_.voxel_count; ++v) result_.voxels[v].lowest = lowestRecord(result_.voxels[v]);
     return std::move(result_);
   }
@@ -123,9 +72,9 @@ private:
   {
     std::vector<Bin<T>> parts(chunk_count_);
     parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
-      Point<T> low = Point<T>::load(parts[chunk].low), high = Point<T>::load(parts[chunk].high);
+      GivenPoint<T> low = GivenPoint<T>::load(parts[chunk].low), high = GivenPoint<T>::load(parts[chunk].high);
       eachPoint(chunk, [&](std::size_t, std::uint32_t record) {
-        const Point<T> p = read_(record);
+        const GivenPoint<T> p = read_(record);
         if (!p.finite()) return;
         low = min(low, p);
         high = max(high, p);
@@ -155,7 +104,7 @@ private:
     Bin<T> bin;
     const std::size_t sample = sampleSize(view_);
     for (std::size_t i = 0; i < sample; ++i) {
-      const Point<T> p = read_(sampleRecord(view_, i));
+      const GivenPoint<T> p = read_(sampleRecord(view_, i));
       if (p.finite()) bin.add(p);
     }
     Bounds bounds;
@@ -178,26 +127,27 @@ private:
     const CellNumbers<T> cell_of(result_.edge, result_.base);
     if (!runs_) runs_ = makeBuffer<std::uint32_t>(view_.size());
     chunks_.assign(chunk_count_, BinTable<T>());
+    moveBeginsToRuns(cell_of);
     std::vector<std::uint8_t> gave_up(chunk_count_, 0);
     parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
       BinTable<T>& table = chunks_[chunk];
-      RunWriter write(runs_.get() + chunkBegin(chunk));
-      const Point<T> nowhere = Point<T>::of(std::numeric_limits<T>::quiet_NaN());
-      Point<T> cell_of_run = nowhere, low = nowhere, high = nowhere;
+      RunWriter write(runs_.get() + begins_[chunk]);
+      const GivenPoint<T> nowhere = GivenPoint<T>::of(std::numeric_limits<T>::quiet_NaN());
+      GivenPoint<T> cell_of_run = nowhere, low = nowhere, high = nowhere;
       std::uint32_t bin = kNoBin;
-      std::size_t first = chunkBegin(chunk);
+      std::size_t first = begins_[chunk];
       const auto endRun = [&](std::size_t end) {
         if (end == first) return;
         const auto points = static_cast<std::uint32_t>(end - first);
-        if (bin != kNoBin) table.bins[bin].add(low, high, points);
+        if (bin != kNoBin) table.bins[bin].add(low, high, points, wordsOf(first, end));
         write({bin, points});
         first = end;
       };
       const std::int32_t* const indices = view_.indices;
-      const std::size_t end = chunkEnd(chunk);
-      for (std::size_t i = chunkBegin(chunk); i < end; ++i) {
-        const Point<T> p = read_(static_cast<std::uint32_t>(indices ? indices[i] : i));
-        const Point<T> numbers = cell_of.numbers(p);
+      const std::size_t end = begins_[chunk + 1];
+      for (std::size_t i = first; i < end; ++i) {
+        const GivenPoint<T> p = read_(static_cast<std::uint32_t>(indices ? indices[i] : i));
+        const GivenPoint<T> numbers = cell_of.numbers(p);
         if (sameXyz(numbers, cell_of_run)) {
           low = min(low, p);
           high = max(high, p);
@@ -225,6 +175,38 @@ private:
       endRun(end);
     });
     return std::find(gave_up.begin(), gave_up.end(), 1) == gave_up.end() && countCells() <= most;
+  }
+
+  /// Calls visit(run) for the runs of records that points [begin, end) of the view are.
+  template <class Visit>
+  void eachRunOf(std::size_t begin, std::size_t end, Visit&& visit) const
+  {
+    if (view_.indices)
+      eachRun(
+          begin, end, [&](std::size_t i) { return view_.record(i); }, visit);
+    else
+      visit(Run{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin)});
+  }
+
+  std::uint32_t wordsOf(std::size_t begin, std::size_t end) const
+  {
+    std::uint32_t words = 0;
+    eachRunOf(begin, end, [&](const Run& run) { words += run.words(); });
+    return words;
+  }
+
+  /// Has chunks begin where runs of points in one cell do, so that runs are the same for any number of chunks.
+  void moveBeginsToRuns(const CellNumbers<T>& cell_of)
+  {
+    begins_.assign(chunk_count_ + 1, view_.size());
+    const auto numbersOf = [&](std::size_t i) { return cell_of.numbers(read_(view_.record(i))); };
+    for (std::size_t chunk = 0; chunk < chunk_count_; ++chunk) {
+      std::size_t begin = std::max(chunkBegin(chunk), chunk > 0 ? begins_[chunk - 1] : 0);
+      if (begin > 0)
+        for (const auto before = numbersOf(begin - 1); begin < view_.size() && sameXyz(numbersOf(begin), before);)
+          ++begin;
+      begins_[chunk] = begin;
+    }
   }
 
   /// Cells that any chunk has points in; perhaps more, but not more than mostVoxels(), where those are fewer.
@@ -258,9 +240,20 @@ private:
 
     for (std::size_t i = 0; i < entries.size(); ++i)
       result_.voxel_count += i == 0 || entries[i].key != entries[i - 1].key;
-    for (const Entry& entry : entries) result_.size += entry.bin->count;
+    std::size_t words = 0;
+    for (const Entry& entry : entries) {
+      result_.size += entry.bin->count;
+      words += entry.bin->words;
+    }
     result_.voxels = std::make_unique<Voxel[]>(result_.voxel_count);
     result_.buffer = makeBuffer<float>(4 * result_.size + kBlockPadding * result_.voxel_count);
+
+    if (words <= result_.size / 2) {
+      result_.list_words = words + kListPadding;
+      result_.lists = makeBuffer<std::uint32_t>(result_.list_words);
+      std::fill_n(result_.lists.get() + words, kListPadding, 0u);
+    }
+    std::uint32_t* list = result_.lists.get();
 
     std::size_t point = 0;
     Bounds all;
@@ -270,10 +263,13 @@ private:
       voxel.key = entry->key;
       voxel.begin = static_cast<std::uint32_t>(point);
       voxel.block = result_.buffer.get() + 4 * point + kBlockPadding * v;
+      voxel.list = list;
       Bounds bounds;
       for (; entry != entries.end() && entry->key == voxel.key; ++entry) {
         entry->bin->voxel = static_cast<std::uint32_t>(v);
         entry->bin->first = voxel.count;
+        entry->bin->list = list;
+        if (list) list += entry->bin->words;
         voxel.count += entry->bin->count;
         widen(bounds, *entry->bin);
         widen(all, *entry->bin);
@@ -284,31 +280,58 @@ private:
     if (result_.size > 0) result_.frame = frameBetween(all.low, all.high, std::is_same_v<T, float>);
   }
 
-  void moveToVoxels()
+  /// Every voxel's records, in the order of the view.
+  void listRecords()
   {
     parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
-      std::vector<ToLocal<T>> targets;
-      targets.reserve(chunks_[chunk].bins.size());
-      for (const Bin<T>& bin : chunks_[chunk].bins) {
-        const Voxel& voxel = result_.voxels[bin.voxel];
-        targets.emplace_back(voxel.frame, reinterpret_cast<PointRecord*>(voxel.block) + bin.first);
-      }
-      RunReader read_run(runs_.get() + chunkBegin(chunk));
-      for (std::size_t i = chunkBegin(chunk); i < chunkEnd(chunk);) {
+      std::vector<RunWriter> lists;
+      lists.reserve(chunks_[chunk].bins.size());
+      for (const Bin<T>& bin : chunks_[chunk].bins) lists.emplace_back(bin.list);
+      RunReader read_run(runs_.get() + begins_[chunk]);
+      for (std::size_t i = begins_[chunk]; i < begins_[chunk + 1];) {
         const Run run = read_run();
-        if (run.bin != kNoBin) targets[run.bin].store(read_, view_, i, i + run.points);
+        if (run.number != kNoBin) eachRunOf(i, i + run.points, lists[run.number]);
         i += run.points;
       }
     });
   }
 
+  /// Every voxel's points, in the order of the view.
+  void movePoints()
+  {
+    parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
+      std::vector<Target> targets;
+      targets.reserve(chunks_[chunk].bins.size());
+      for (const Bin<T>& bin : chunks_[chunk].bins) {
+        const Voxel& voxel = result_.voxels[bin.voxel];
+        targets.push_back(
+            {LocalReader<T>(voxel.frame, view_), reinterpret_cast<PointRecord*>(voxel.block) + bin.first});
+      }
+      RunReader read_run(runs_.get() + begins_[chunk]);
+      for (std::size_t i = begins_[chunk]; i < begins_[chunk + 1];) {
+        const Run run = read_run();
+        if (run.number != kNoBin) {
+          Target& target = targets[run.number];
+          for (std::size_t k = i; k < i + run.points; ++k) target.read(view_.record(k), *target.next++);
+        }
+        i += run.points;
+      }
+    });
+  }
+
+  struct Target {
+    LocalReader<T> read;
+    PointRecord* next;
+  };
+
   /// Points stand in the view's order, so that without a subset the first is the lowest.
   std::uint32_t lowestRecord(const Voxel& voxel) const
   {
-    const auto* points = reinterpret_cast<const PointRecord*>(voxel.block);
-    std::uint32_t lowest = points->record;
-    if (view_.indices)
-      for (std::uint32_t i = 1; i < voxel.count; ++i) lowest = std::min(lowest, points[i].record);
+    if (!view_.indices)
+      return voxel.isListed() ? RunReader(voxel.list)().number
+                              : reinterpret_cast<const PointRecord*>(voxel.block)->record;
+    std::uint32_t lowest = 0xffffffffu;
+    voxel.forEachRecord([&](std::uint32_t record) { lowest = std::min(lowest, record); });
     return lowest;
   }
 
@@ -317,6 +340,7 @@ private:
   const Reader<T> read_;
   const unsigned threads_;
   const std::size_t chunk_count_;
+  std::vector<std::size_t> begins_; // of the chunks, and the end
   LargeBuffer<std::uint32_t> runs_; // each chunk's from where its points begin
   std::vector<BinTable<T>> chunks_;
   VoxelSorting result_;

@@ -10,6 +10,7 @@
 #include <malloc.h>
 #include <memory>
 #include <stdexcept>
+#include <sys/resource.h>
 
 namespace pcl_bsh::bench {
 namespace {
@@ -78,6 +79,13 @@ std::size_t MemoryPeak::bytes() const
 {
   const std::size_t peak = statusBytes("VmHWM");
   return peak > before_ ? peak - before_ : 0;
+}
+
+double minorFaults()
+{
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_minflt);
 }
 
 void Table::add(std::vector<std::string> row)

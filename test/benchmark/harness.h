@@ -63,6 +63,9 @@ private:
   std::size_t before_;
 };
 
+/// Minor page faults of the process so far: pages touched for the first time, of whatever size.
+double minorFaults();
+
 /// Rows of text under headings that carry their units; printed aligned, or written as CSV with the machine, the
 /// compiler, the commit and the clock in front of each row.
 class Table {

@@ -70,6 +70,20 @@ TEST(HierarchyAllocationFailure, OfBuildingAll)
   }
 }
 
+TEST(HierarchyAllocationFailure, OfBuildingPointsInTheOrderOfAScan) // which are not copied before
+{
+  std::vector<Point3> points;
+  for (int i = 0; i < 900; ++i) points.push_back({0.1 * (i % 30), 0.1 * (i / 30), 0.01 * (i % 7)});
+  for (const Scalar scalar : {Scalar::float32, Scalar::float64}) {
+    const Cloud cloud(points, Layout{scalar, 0, 0});
+    failEachAllocation([&] { return std::make_unique<SphereHierarchy>(cloud.view(), fineOptions()); },
+                       [&](const auto& hierarchy) {
+                         hierarchy->buildAll();
+                         return std::tuple(hierarchy->validate().none(), answerOf(*hierarchy));
+                       });
+  }
+}
+
 /// A cloud that changes, before and after in memory of their own.
 struct Change {
   Cloud before, after;
