@@ -124,6 +124,8 @@ public:
     else
       testChildrenOfB(pair.a, enter(b, pair.b), clearance, out);
     if (out.radius <= out.frame->bluntRadius()) dropApartAsGiven(pair, opened, clearance, out);
+    const bool is_larger = out.radius > static_cast<float>(kLargeLeaf) * out.radii[0] * out.stretch;
+    if (HWY_UNLIKELY(is_larger) && out.near != 0 && leafIsApart(pair, opened, clearance)) out.near = 0;
   }
 
   void testChildrenOfA(const Lane& entered, const Lane& lane_b, double clearance, Step& out)
@@ -212,6 +214,40 @@ public:
   }
 
 private:
+  static constexpr double kLargeLeaf = 8.0; ///< in radii of what is opened
+
+  /// Whether the other side of a pair is a leaf much larger than what was opened, and none of its points is near that.
+  /// Such a leaf's sphere tells nothing: in a shell about a tiny ball, each leaf would be compared with all of the
+  /// ball. (What is not a leaf is opened before what is smaller.)
+  HWY_NOINLINE bool leafIsApart(const LanePair& pair, Opened opened, double clearance)
+  {
+    const bool leaf_is_a = opened == Opened::b;
+    const double ra = nodeOf(a, pair.a).r[pair.a.lane] * a.frame(pair.a.space).unit;
+    const double rb = nodeOf(b, pair.b).r[pair.b.lane] * b.frame(pair.b.space).unit;
+    if (!(leaf_is_a ? ra > kLargeLeaf * rb : rb > kLargeLeaf * ra)) return false;
+    const RelativeFrame& frame = frames.find(pair.a.space, pair.b.space);
+    const LeafRange points = leaf_is_a ? leaf(a, pair.a) : leaf(b, pair.b);
+    work.node_pairs += points.count;
+    LeafPoints places;
+    if (leaf_is_a) {
+      carryLeaf(frame, points, places);
+      return pointsNearLeaf(frame, places, points, nodeOf(b, pair.b), pair.b.lane, clearance) == 0;
+    }
+    const Node& node = nodeOf(a, pair.a);
+    const Point center = carriedCenter(frame, node, pair.a.lane);
+    double radius = 0.0;
+    for (std::uint32_t i = 0; i < kLeafPoints; ++i) {
+      const bool is_point = i < points.count;
+      places.x[i] = is_point ? points.x()[i] : 0.0f;
+      places.y[i] = is_point ? points.y()[i] : 0.0f;
+      places.z[i] = is_point ? points.z()[i] : 0.0f;
+      if (is_point) radius = std::max(radius, points.radius(i));
+    }
+    const float reach = node.r[pair.a.lane] * frame.stretch_a + frame.pruneReach(clearance + radius);
+    return pointsNear(places.x, places.y, places.z, points.count, center.x, center.y, center.z, reach, kSphereMargin) ==
+           0;
+  }
+
   /// Whether slabs can be compared: in voxels of the same unit, where points have no radii.
   bool haveSlabs(const Lane& lane_a, const Lane& lane_b) const
   {

@@ -131,6 +131,25 @@ TEST(PairWork, FlagsWithManyCandidatesAreThoseOfSearchesForNeighbors)
   }
 }
 
+TEST(PairWork, TinyBallWithinAShell)
+{
+  // The spheres of the shell's leaves are larger than the ball: its points tell what they do not.
+  const auto ball = [](std::size_t n) {
+    HardPair pair{shells(n, 1, 0), cube(n, 2), 0.9998};
+    for (Point3& p : pair.b) p = scaled(p, 1e-4);
+    return pair;
+  };
+  expectLinear("any", ball, 500, kAny);
+  expectLinear("closest", ball, 500, kClosest);
+  const auto swapped = [&ball](std::size_t n) {
+    HardPair pair = ball(n);
+    std::swap(pair.a, pair.b);
+    return pair;
+  };
+  expectLinear("any, swapped", swapped, 500, kAny);
+  expectLinear("closest, swapped", swapped, 500, kClosest);
+}
+
 TEST(PairWork, GrowsAsTheClouds)
 {
   struct Named {

@@ -169,6 +169,7 @@ TEST(OnMotions, EachIsThatOfTheMotionAloneForRandomCloudsAndThreads)
     for (std::size_t m = 0; m < asked.motions.size(); ++m) {
       const Eigen::Isometry3d &from = asked.poses[asked.motions[m].from], &to = asked.poses[asked.motions[m].to];
       ASSERT_EQ(found.verdicts[m], verdictAlone(scan, b, from, to, asked.request)) << "motion " << m;
+      ASSERT_EQ(motionBetween(from, to, {0, 0, 0}).from().matrix(), motionBetween(to, from, {0, 0, 0}).from().matrix());
       count += found.verdicts[m];
     }
     EXPECT_EQ(found.colliding, count);
