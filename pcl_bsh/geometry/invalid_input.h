@@ -35,9 +35,9 @@ enum class Input : std::uint8_t {
   pivot,      ///< of swept motion
   summaries,  ///< of poses, next to swept motion
   cluster_distance,
-  result, ///< of another query than is asked for
-  motion, ///< of a scene's object
-  scene,  ///< its options, objects, parts or rules
+  result,       ///< of another query than is asked for
+  motion,       ///< of a scene's object
+  scene,        ///< its options, objects, parts or rules
   max_distance, ///< of points' distances
 };
 
