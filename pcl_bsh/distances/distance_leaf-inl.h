@@ -105,8 +105,8 @@ private:
         if (facing == 0) continue;
       }
       const float* const radii = kBalls ? other.voxel->radii + other.begin : nullptr;
-      takeNearestTwo<kBalls>(own.points, other.x(), other.y(), other.z(), radii, static_cast<float>(1.0 / unit_),
-                             facing, static_cast<std::int32_t>(n * kLeafPoints), two_);
+      takeNearestTwo<kBalls>(own.points, leaf_.count, other.x(), other.y(), other.z(), radii,
+                             static_cast<float>(1.0 / unit_), facing, static_cast<std::int32_t>(n * kLeafPoints), two_);
       error_ = std::max(error_, static_cast<double>(obstacle.error));
       skew_ = obstacle.frame.skew();
       const float now = largestOf(two_.first, kLeafPoints);
@@ -266,7 +266,7 @@ private:
       const Point3 p = given(i), q = found.voxel ? found.voxel->point(view_b_, found.point) : p;
       for (std::size_t k = 0; k < 3; ++k) given_.p[k][i] = p[k], given_.q[k][i] = q[k];
     }
-    roundedLengths(given_, shift_, lengths_);
+    roundedLengths(given_, leaf_.count, shift_, lengths_);
   }
 
   /// Writes what was found of point i; of a place that many points share, for all of them.
@@ -320,7 +320,7 @@ private:
   alignas(64) double lengths_[kLeafPoints];
   NearestTwo two_;
   double error_ = 0.0; ///< of the float distances, in the walk's unit
-  double skew_ = 0.0;
+  double skew_ = 0.0;  ///< of the poses
 };
 
 } // namespace HWY_NAMESPACE

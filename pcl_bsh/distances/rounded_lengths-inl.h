@@ -23,10 +23,11 @@ struct GivenPairs {
   alignas(64) double q[3][kLeafPoints];
 };
 
-/// |(p - q) + shift| of sixteen pairs, each as roundedLength() has it without radii; NaN where doubles are in doubt, or
-/// where the instruction set has no such arithmetic.
+/// |(p - q) + shift| of the first `count` pairs, and those that fill the last vector, each as roundedLength() has it
+/// without radii; NaN where doubles are in doubt, or where the instruction set has no such arithmetic.
 /// @param shift between the clouds, along each axis, with its rounding error
-HWY_INLINE void roundedLengths(const GivenPairs& pairs, const std::array<WithError, 3>& shift, double* lengths)
+HWY_INLINE void roundedLengths(const GivenPairs& pairs, std::size_t count, const std::array<WithError, 3>& shift,
+                               double* lengths)
 {
 #if HWY_NATIVE_FMA
   const hn::CappedTag<double, kLanes> d;
@@ -37,7 +38,7 @@ HWY_INLINE void roundedLengths(const GivenPairs& pairs, const std::array<WithErr
     return sum;
   };
   const Vector unit = hn::Set(d, kDoubleUnit);
-  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     Vector high = hn::Zero(d), low = hn::Zero(d), size_of_low = hn::Zero(d), error = hn::Zero(d);
     for (std::size_t k = 0; k < 3; ++k) {
       Vector between_error, sum_error;
@@ -71,7 +72,7 @@ HWY_INLINE void roundedLengths(const GivenPairs& pairs, const std::array<WithErr
     hn::StoreU(hn::IfThenElse(sure, rounded, hn::Set(d, std::numeric_limits<double>::quiet_NaN())), d, lengths + i);
   }
 #else
-  (void)pairs, (void)shift;
+  (void)pairs, (void)count, (void)shift;
   std::fill(lengths, lengths + kLeafPoints, std::numeric_limits<double>::quiet_NaN());
 #endif
 }

@@ -20,9 +20,9 @@ namespace pcl_bsh {
 
 /// The part of the input that is wrong.
 enum class Input : std::uint8_t {
-  points,    ///< a view or a cloud: its data, its number of points, its type, its subset
-  index,     ///< of a point, outside its cloud
-  radius,    ///< of a point or of a search
+  points, ///< a view or a cloud: its data, its number of points, its type, its subset
+  index,  ///< of a point, outside its cloud
+  radius, ///< of a point or of a search
   uncertainty,
   box,       ///< of a search
   neighbors, ///< how many a search is to find
@@ -36,9 +36,9 @@ enum class Input : std::uint8_t {
   pivot,      ///< of swept motion
   summaries,  ///< of poses, next to swept motion
   cluster_distance,
-  result, ///< of another query than is asked for
-  motion, ///< of a scene's object, or one of many
-  scene,  ///< its options, objects, parts or rules
+  result,       ///< of another query than is asked for
+  motion,       ///< of a scene's object, or one of many
+  scene,        ///< its options, objects, parts or rules
   max_distance, ///< of points' distances
 };
 

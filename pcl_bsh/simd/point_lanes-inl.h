@@ -110,18 +110,18 @@ struct NearestTwo {
   }
 };
 
-/// Takes those points (x, y, z) that have their bit set into the nearest two of each of sixteen; point j is called
-/// name + j. Compares squared distances; with radii, distances less the other point's radius times `scale`. None may be
-/// NaN where the result is used.
+/// Takes those points (x, y, z) that have their bit set into the nearest two of each of the first `count` points, and
+/// of those that fill the last vector; point j is called name + j. Compares squared distances; with radii, distances
+/// less the other point's radius times `scale`. None may be NaN where the result is used.
 /// @tparam kBalls whether there are radii
 template <bool kBalls>
-HWY_INLINE void takeNearestTwo(const LeafPoints& points, const float* x, const float* y, const float* z,
-                               const float* radii, float scale, std::uint32_t others, std::int32_t name,
+HWY_INLINE void takeNearestTwo(const LeafPoints& points, std::size_t count, const float* x, const float* y,
+                               const float* z, const float* radii, float scale, std::uint32_t others, std::int32_t name,
                                NearestTwo& nearest)
 {
   const LaneTag d;
   const hn::RebindToSigned<LaneTag> di;
-  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const LaneVector px = hn::Load(d, points.x + i), py = hn::Load(d, points.y + i), pz = hn::Load(d, points.z + i);
     LaneVector first = hn::Load(d, nearest.first + i), second = hn::Load(d, nearest.second + i);
     auto names = hn::Load(di, nearest.name + i);
