@@ -186,6 +186,7 @@ void collidingIndices(const Placed& a, const Placed& b, const FlagsRequest& requ
   CollidingIndices found;
   std::swap(found, result); // should something throw, the result has no collision
   for (Indices* const indices : {&found.a, &found.b, &found.undecided_a, &found.undecided_b}) indices->clear();
+  found.work = Work();
   if (!areUncertain(a, b)) {
     listPlaces(a, b, request, Places::measured, found);
   }

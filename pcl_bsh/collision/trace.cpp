@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/collision/check_request.h>
-#include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/collision/trace.h>
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/query/request_check.h>
 
 #include <map>
 #include <tuple>
