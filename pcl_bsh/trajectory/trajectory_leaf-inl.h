@@ -13,7 +13,6 @@
 #include <pcl_bsh/trajectory/pose_ranges-inl.h>
 #include <pcl_bsh/trajectory/voxel_results.h>
 
-#include <deque>
 #include <tuple>
 
 HWY_BEFORE_NAMESPACE();
@@ -26,9 +25,8 @@ inline constexpr float kFewPoses = 4;      ///< as quickly looked at one by one 
 /// A leaf of the scan, its points tested all at once.
 struct LeafVisit {
   LeafRange points;
-  std::size_t slot;                     ///< of its flags
-  std::uint32_t open;                   ///< bits of the points that are not settled
-  std::vector<ModelBox>* met = nullptr; ///< where leaves of the model go that are met; null: compared
+  std::size_t slot;   ///< of its flags
+  std::uint32_t open; ///< bits of the points that are not settled
   Segments<kLeafPoints> segments;
   Segment around;
   float low[3], high[3];                       ///< of the model's box that it is compared with
@@ -57,15 +55,12 @@ public:
   {
     const std::uint32_t all = firstBits(points.count);
     if ((all & ~results_.settled[slot]) == 0 || results_.witness) return false;
-    const double limit = kLeafStray * node.r[lane] * voxel_frame_.frame.unit;
-    if (motion.divides(path_.is_swept ? std::max(limit, path_.stray) : limit)) {
+    const double limit = path_.is_swept ? path_.stray : kLeafStray * node.r[lane] * voxel_frame_.frame.unit;
+    if (motion.interval->divided() && (path_.is_swept ? motion.line_stray : motion.stray) > limit) {
       return compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->left), candidates, bound) &&
              compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->right), candidates, bound);
     }
-    // Motion between poses is compared point by point only where it is straight. Until then boxes are left out.
-    const bool straight = !path_.is_swept || !motion.interval->divided() || motion.line_stray <= path_.stray;
     LeafVisit leaf;
-    if (!straight) leaf.met = &takeList();
     leaf.points = points;
     leaf.slot = slot;
     leaf.open = all & ~results_.settled[slot];
@@ -106,25 +101,10 @@ public:
     stack_.clear();
     if (query_.request.pose_summaries) countPoses(leaf, motion, node.points(lane));
     if (!query_.everything()) results_.settled[slot] = results_.hit[slot];
-    if (!straight) {
-      if (!leaf.met->empty() &&
-          compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->left), *leaf.met, bound))
-        compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->right), *leaf.met, bound);
-      --lists_used_;
-    }
     return (all & ~results_.settled[slot]) != 0;
   }
 
 private:
-  /// Of boxes, empty; to be given back in reverse order.
-  std::vector<ModelBox>& takeList()
-  {
-    if (lists_used_ == lists_.size()) lists_.emplace_back();
-    std::vector<ModelBox>& list = lists_[lists_used_++];
-    list.clear();
-    return list;
-  }
-
   /// From now on, what is farther from a point of the leaf than the best does not matter, during the motion.
   void lowerReach(LeafVisit& leaf, std::uint32_t i, float best, const VoxelMotion& motion) const
   {
@@ -180,9 +160,7 @@ private:
     const Voxel& of = tree_.storage.voxels[candidate.voxel];
     const Node& node = of.nodes[at_leaf / kNodeChildren];
     const LeafRange other{&of, node.begin[at_leaf % kNodeChildren], node.comparedPoints(at_leaf % kNodeChildren)};
-    if (leaf.met)
-      leaf.met->push_back(candidate);
-    else if (path_.is_swept)
+    if (path_.is_swept)
       compareSegments(leaf, lanes, clipped, other, candidate.voxel, motion);
     else if constexpr (AtRest)
       compareAt(leaf, lanes, other, candidate.voxel, motion.interval->first, motion);
@@ -408,8 +386,6 @@ private:
   static constexpr std::uint32_t kKeptPlaces = 16;
 
   std::vector<ModelBox> stack_;
-  std::deque<std::vector<ModelBox>> lists_; // a deque, for those in use stay where they are
-  std::size_t lists_used_ = 0;
   BoxesByDistance by_distance_;
   std::uint64_t visit_ = 0; // how many leaves were compared
   Places places_[kKeptPlaces];
