@@ -95,9 +95,8 @@ AnyResult searchUncertain(const Placed& a, const Placed& b, const AnyRequest& re
 {
   if (request.accuracy.stopsEarly()) {
     IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt);
-    const UncertaintyRange &own = a.hierarchy().storage().uncertainty, &other = b.hierarchy().storage().uncertainty;
-    const bool certain = found.distance.upper <= Reach(request.clearance, own, other, Places::certain).least;
-    const bool possible = !(found.distance.lower > Reach(request.clearance, own, other, Places::possible).most);
+    const bool certain = found.distance.upper <= reachBetween(a, b, request.clearance, Places::certain).least;
+    const bool possible = !(found.distance.lower > reachBetween(a, b, request.clearance, Places::possible).most);
     const Verdict verdict = certain ? Verdict::colliding : possible ? Verdict::undecided : Verdict::free;
     return {verdict, certain ? found.pair : std::nullopt, found.distance, found.work};
   }

@@ -73,9 +73,8 @@ AnyResult anyCollisionSharedOnTarget(const Placed& a, const Placed& b, const Any
     shared.emplace(search.left());
   } // what it used is there for this thread's share
   shared->visit(threads, [&] { return AnyShare(a, b, request, places); });
-  const Reach reach(request.clearance, a.hierarchy().storage().uncertainty, b.hierarchy().storage().uncertainty,
-                    places);
-  return resultOf({reach, request.accuracy}, shared->found(), false, alone += shared->work());
+  return resultOf({reachBetween(a, b, request.clearance, places), request.accuracy}, shared->found(), false,
+                  alone += shared->work());
 }
 
 } // namespace HWY_NAMESPACE

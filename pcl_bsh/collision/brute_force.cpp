@@ -20,6 +20,7 @@ void forEachPair(const Placed& a, const Placed& b, double clearance, const Visit
 {
   const ExactDistance distance(a.pose, b.pose);
   const double of_a = a.hierarchy().view().uncertainty, of_b = b.hierarchy().view().uncertainty;
+  const bool uncertain = areUncertain(a, b);
   const std::vector<FinitePoint> obstacles = finitePoints(b.hierarchy().view());
   for (const FinitePoint& p : finitePoints(a.hierarchy().view())) {
     for (const FinitePoint& q : obstacles) {
@@ -29,7 +30,7 @@ void forEachPair(const Placed& a, const Placed& b, double clearance, const Visit
                                  sign * q.uncertainty}) <= 0;
       };
       Verdict verdict = Verdict::free;
-      if (areUncertain(a, b))
+      if (uncertain)
         verdict = collide(-1.0) ? Verdict::colliding : collide(1.0) ? Verdict::undecided : Verdict::free;
       else if (distance.compare(p.point, q.point, clearance, p.radius, q.radius) <= 0)
         verdict = Verdict::colliding;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/distances/check_distances.h>
 
-#include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/query/request_check.h>
+#include <pcl_bsh/traversal/point_pairs.h>
 
 namespace pcl_bsh {
 
@@ -24,19 +24,17 @@ void findGreatest(const Placed& a, const Placed& b, PointDistances& result)
 {
   result.measured = 0;
   std::size_t greatest = 0; // a record, once any is measured
-  const ExactDistance distance(a.pose, b.pose);
-  const PointsView &view_a = a.hierarchy().view(), &view_b = b.hierarchy().view();
+  const PointPairs pairs(a, b, 0.0);
   const auto posed = [&](std::size_t record) {
-    const PointPair pair{static_cast<std::uint32_t>(record), result.nearest[record]};
-    return ExactDistance::Pair{view_a.point(pair.a), view_b.point(pair.b), view_a.radius(pair.a),
-                               view_b.radius(pair.b)};
+    return pairs.posed({static_cast<std::uint32_t>(record), result.nearest[record]});
   };
   for (std::size_t i = 0; i < result.nearest.size(); ++i) {
     if (result.nearest[i] == PointDistances::kNoPoint) continue;
     // Rounding keeps the order: only of equal doubles one may be the greater.
     const double here = result.distance[i];
-    const bool greater = result.measured == 0 || here > result.distance[greatest] ||
-                         (here == result.distance[greatest] && distance.compareGaps(posed(i), posed(greatest)) > 0);
+    const bool greater =
+        result.measured == 0 || here > result.distance[greatest] ||
+        (here == result.distance[greatest] && pairs.distance.compareGaps(posed(i), posed(greatest)) > 0);
     if (greater) greatest = i;
     ++result.measured;
   }
@@ -55,12 +53,8 @@ void findHausdorff(const Placed& a, const Placed& b, SymmetricDistances& result)
   if (!all || !result.a.greatest_pair || !result.b.greatest_pair) return;
   const PointPair from_a = *result.a.greatest_pair;
   const PointPair from_b = {result.b.greatest_pair->b, result.b.greatest_pair->a};
-  const PointsView &view_a = a.hierarchy().view(), &view_b = b.hierarchy().view();
-  const auto posed = [&](const PointPair& pair) {
-    return ExactDistance::Pair{view_a.point(pair.a), view_b.point(pair.b), view_a.radius(pair.a),
-                               view_b.radius(pair.b)};
-  };
-  const int sign = ExactDistance(a.pose, b.pose).compareGaps(posed(from_a), posed(from_b));
+  const PointPairs pairs(a, b, 0.0);
+  const int sign = pairs.distance.compareGaps(pairs.posed(from_a), pairs.posed(from_b));
   const bool takes_a = sign > 0 || (sign == 0 && from_a < from_b);
   result.hausdorff_pair = takes_a ? from_a : from_b;
   result.hausdorff = takes_a ? result.a.greatest : result.b.greatest;

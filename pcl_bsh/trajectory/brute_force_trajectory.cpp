@@ -3,7 +3,6 @@
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/brute_force_points.h>
-#include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/trajectory/check_trajectory.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -30,8 +29,7 @@ struct Closest {
 TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
 {
-  check(scan, model_poses, request);
-  checkNoUncertainty("model", model.view());
+  check(scan, model, model_poses, request);
   if (request.swept)
     throw InvalidInput(Input::swept, "brute_force::collideAlong", "knows poses only, not what is between");
   const DefaultFloatEnvironment environment;

@@ -76,8 +76,8 @@ std::size_t firstWrong(std::size_t count, unsigned threads, const IsWrong& isWro
 
 } // namespace
 
-void check(const Placed& scan, const PoseList& poses, const std::vector<PoseMotion>& motions,
-           const MotionsRequest& request)
+void check(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
+           const std::vector<PoseMotion>& motions, const MotionsRequest& request)
 {
   checkClearance(request.clearance);
   if (!(std::isfinite(request.tolerance) && request.tolerance > 0.0))
@@ -89,6 +89,7 @@ void check(const Placed& scan, const PoseList& poses, const std::vector<PoseMoti
       throw InvalidInput(Input::pivot, "pivot", plainText(coordinate), "give three finite coordinates")
           .withValue(coordinate);
   checkNoUncertainty("scan", scan.hierarchy().view());
+  checkNoUncertainty("model", model.view());
   checkPose("pose of the scan", scan.pose);
   checkPoses(poses, "the model", request.threads);
   constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();

@@ -103,8 +103,7 @@ Work decideOpen(const MotionsQuery& query, const PoseList& poses, const std::vec
 AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
                                    const std::vector<PoseMotion>& motions, const MotionsRequest& request)
 {
-  check(scan, poses, motions, request);
-  checkNoUncertainty("model", model.view());
+  check(scan, model, poses, motions, request);
   const DefaultFloatEnvironment environment;
   AnyOnMotions result;
   result.verdicts.assign(motions.size(), flagOf(Verdict::free));

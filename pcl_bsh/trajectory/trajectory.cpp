@@ -156,8 +156,7 @@ void follow(const TrajectoryQuery& query, const StopRule& rule, Progress& progre
 TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
 {
-  check(scan, model_poses, request);
-  checkNoUncertainty("model", model.view());
+  check(scan, model, model_poses, request);
   const DefaultFloatEnvironment environment;
   TrajectoryResult result;
   allocate(result, request, scan.hierarchy().view().count, model_poses.size());

@@ -37,6 +37,10 @@ struct LeafRange {
   const float* z() const { return voxel->z() + begin; }
   std::uint32_t record(std::uint32_t i) const { return voxel->records()[begin + i]; }
   double radius(std::uint32_t i) const { return voxel->radii ? voxel->radii[begin + i] : 0.0; }
+  double largestRadius() const
+  {
+    return voxel->radii ? *std::max_element(voxel->radii + begin, voxel->radii + begin + count) : 0.0;
+  }
 };
 
 HWY_INLINE LeafRange leafOf(const Spaces& side, std::uint32_t space, const Node& node, std::uint32_t lane)
@@ -54,10 +58,7 @@ HWY_INLINE void carryLeaf(const RelativeFrame& frame, const LeafRange& leaf, Lea
 HWY_INLINE std::uint32_t pointsNearLeaf(const RelativeFrame& frame, const LeafPoints& points, const LeafRange& a,
                                         const Node& node, std::uint32_t lane, double clearance)
 {
-  double radius = 0.0;
-  if (a.voxel->radii)
-    for (std::uint32_t i = 0; i < a.count; ++i) radius = std::max(radius, a.radius(i));
-  const float reach = node.r[lane] * frame.stretch_b + frame.pruneReach(clearance + radius);
+  const float reach = node.r[lane] * frame.stretch_b + frame.pruneReach(clearance + a.largestRadius());
   return pointsNear(points.x, points.y, points.z, a.count, node.x[lane], node.y[lane], node.z[lane], reach,
                     kSphereMargin);
 }

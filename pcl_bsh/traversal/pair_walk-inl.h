@@ -228,24 +228,16 @@ private:
     const RelativeFrame& frame = frames.find(pair.a.space, pair.b.space);
     const LeafRange points = leaf_is_a ? leaf(a, pair.a) : leaf(b, pair.b);
     work.node_pairs += points.count;
-    LeafPoints places;
     if (leaf_is_a) {
+      LeafPoints places;
       carryLeaf(frame, points, places);
       return pointsNearLeaf(frame, places, points, nodeOf(b, pair.b), pair.b.lane, clearance) == 0;
     }
     const Node& node = nodeOf(a, pair.a);
     const Point center = carriedCenter(frame, node, pair.a.lane);
-    double radius = 0.0;
-    for (std::uint32_t i = 0; i < kLeafPoints; ++i) {
-      const bool is_point = i < points.count;
-      places.x[i] = is_point ? points.x()[i] : 0.0f;
-      places.y[i] = is_point ? points.y()[i] : 0.0f;
-      places.z[i] = is_point ? points.z()[i] : 0.0f;
-      if (is_point) radius = std::max(radius, points.radius(i));
-    }
-    const float reach = node.r[pair.a.lane] * frame.stretch_a + frame.pruneReach(clearance + radius);
-    return pointsNear(places.x, places.y, places.z, points.count, center.x, center.y, center.z, reach, kSphereMargin) ==
-           0;
+    const float reach = node.r[pair.a.lane] * frame.stretch_a + frame.pruneReach(clearance + points.largestRadius());
+    return pointsNear(points.x(), points.y(), points.z(), points.count, center.x, center.y, center.z, reach,
+                      kSphereMargin) == 0;
   }
 
   /// Whether slabs can be compared: in voxels of the same unit, where points have no radii.

@@ -7,12 +7,16 @@
 
 namespace pcl_bsh {
 
+inline Reach reachBetween(const Placed& a, const Placed& b, double clearance, Places places)
+{
+  return {clearance, a.hierarchy().storage().uncertainty, b.hierarchy().storage().uncertainty, places};
+}
+
 /// Decides pairs of points by the coordinates as given, in exact arithmetic.
 class PointPairs {
 public:
   PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places = Places::measured)
-  : PointPairs(a, b, greatest_distance, places,
-               {greatest_distance, a.hierarchy().storage().uncertainty, b.hierarchy().storage().uncertainty, places})
+  : PointPairs(a, b, greatest_distance, places, reachBetween(a, b, greatest_distance, places))
   {
   }
 

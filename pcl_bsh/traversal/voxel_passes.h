@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Voxels that are walked in passes, each farther down, until all is decided or a rule ends it.
+#pragma once
+
+#include <pcl_bsh/hierarchy/kept_scratch.h>
+#include <pcl_bsh/hierarchy/parallel.h>
+#include <pcl_bsh/query/stop_rule.h>
+#include <pcl_bsh/query/work.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// Memory of one query after another, to be had by a ScratchLease.
+template <class Place, class Part>
+struct PassScratch {
+  std::vector<Place> places;
+  std::vector<Part> parts;
+
+  std::size_t bytes() const noexcept { return places.capacity() * sizeof(Place) + parts.capacity() * sizeof(Part); }
+};
+
+/// @tparam Place a voxel with something undecided
+/// @tparam Part what one walk through it came to: its `work`, and whether something was left `undecided`
+template <class Place, class Part>
+class VoxelPasses {
+public:
+  /// @param work receives that of all walks
+  VoxelPasses(unsigned threads, Work& work) : threads_(threads), work_(work) { places.clear(); }
+
+  /// Whether everything is decided.
+  bool done() const { return places.empty(); }
+
+  /// Sphere tests of all passes so far.
+  std::uint64_t spent() const { return spent_; }
+
+  /// All passes of a rule. @param tests for all of them, those already spent among them
+  /// @param walk Part(rule, place), from several threads at once for different places
+  template <class Walk>
+  void run(StopRule rule, std::uint64_t tests, const Walk& walk)
+  {
+    if (!rule.mayStop()) return pass(rule, walk);
+    for (const std::uint64_t deepest : rule.passes()) {
+      rule.deepest = deepest;
+      if (tests != StopRule::kNever) rule.node_pairs = tests - std::min(tests, spent_);
+      pass(rule, walk);
+    }
+  }
+
+private:
+  /// Walks what was left undecided. The rule's sphere tests are for this pass.
+  template <class Walk>
+  void pass(const StopRule& rule, const Walk& walk)
+  {
+    parts_.assign(places.size(), Part());
+    if (rule.node_pairs == StopRule::kNever) {
+      parallelFor(places.size(), threads_, [&](std::size_t i) { parts_[i] = walk(rule, places[i]); });
+    }
+    else { // one after another: what one leaves is the next one's
+      StopRule own = rule;
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        parts_[i] = walk(own, places[i]);
+        own.node_pairs -= std::min(own.node_pairs, parts_[i].work.node_pairs);
+      }
+    }
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      work_ += parts_[i].work;
+      spent_ += parts_[i].work.node_pairs;
+      if (parts_[i].undecided && rule.mayStop()) places[left++] = places[i];
+    }
+    places.resize(left);
+  }
+
+  const ScratchLease<PassScratch<Place, Part>> scratch_;
+  std::vector<Part>& parts_ = (*scratch_).parts; ///< of the last pass
+  const unsigned threads_;
+  Work& work_;
+  std::uint64_t spent_ = 0;
+
+public:
+  std::vector<Place>& places = (*scratch_).places; ///< to be set before the first pass
+};
+
+/// Both clouds share the budget: each has half of it, and what one leaves is the other's.
+/// @tparam Side has done(), spent() and passes(rule, tests), as VoxelPasses
+template <class Side>
+void passBothWithin(Side& a, Side& b, const StopRule& rule)
+{
+  const StopRule half = rule.part(0.5);
+  a.passes(half, half.node_pairs);
+  // Of a count of tests, b gets more than half only when a is done: then a is done with any larger count as well, and
+  // whatever a count decides, a larger one decides.
+  const std::uint64_t left = rule.node_pairs - std::min(rule.node_pairs, a.spent());
+  b.passes(rule, rule.node_pairs == StopRule::kNever || !a.done() ? half.node_pairs : std::max(half.node_pairs, left));
+  if (rule.isTimed()) a.passes(rule, StopRule::kNever);
+}
+
+} // namespace pcl_bsh
