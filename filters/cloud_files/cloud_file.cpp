@@ -2,9 +2,11 @@
 #include <pcl_bsh/files/file_identity.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/mesh_faces.h>
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/cloud_files/ply.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
+#include <pcl_bsh/filters/cloud_files/stl.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 #include <pcl_bsh/filters/text_files/file_bytes.h>
 #include <pcl_bsh/filters/text_files/small_letters.h>
@@ -33,6 +35,7 @@ pcl::PCLPointCloud2 parse(const std::string& extension, std::string_view file, V
   if (extension == ".ply") return parsePly(file, viewpoint);
   if (extension == ".obj") return parseObj(file);
   if (extension == ".off") return parseOff(file);
+  if (extension == ".stl") return parseStl(file, nullptr);
   return parseColumns(file);
 }
 
@@ -42,6 +45,7 @@ pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view f
   if (extension == ".ply") return parsePlyHeader(file);
   if (extension == ".obj") return parseObjHeader(file);
   if (extension == ".off") return parseOffHeader(file);
+  if (extension == ".stl") return parseStlHeader(file);
   return parseColumnNames(file);
 }
 
@@ -83,13 +87,14 @@ std::string extensionByContent(std::string_view file)
 
 /// Gives the file's extension and content to `parse`; names the file when that throws.
 template <typename Parse>
-pcl::PCLPointCloud2 parsed(const std::filesystem::path& path, const FileBytes& file, Parse&& parse)
+std::invoke_result_t<Parse, std::string, std::string_view> parsed(const std::filesystem::path& path,
+                                                                  const FileBytes& file, Parse&& parse)
 {
-  constexpr std::array readable = {".pcd", ".ply", ".obj", ".off", ".xyz", ".txt"};
+  constexpr std::array readable = {".pcd", ".ply", ".obj", ".off", ".stl", ".xyz", ".txt"};
   std::string extension = extensionOf(path);
   if (std::find(readable.begin(), readable.end(), extension) == readable.end()) {
     if (!isPipe(path)) {
-      throw files::FileError(path, unknown(extension), "give a .pcd, .ply, .obj, .off, .xyz or .txt file");
+      throw files::FileError(path, unknown(extension), "give a .pcd, .ply, .obj, .off, .stl, .xyz or .txt file");
     }
     extension = extensionByContent(file.view());
   }
@@ -123,6 +128,27 @@ pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* view
     setDense(cloud);
     if (viewpoint != nullptr) *viewpoint = stored;
     return cloud;
+  });
+}
+
+Mesh readMesh(const std::filesystem::path& path)
+{
+  return parsed(path, FileBytes(path), [](const std::string& extension, std::string_view file) {
+    Mesh mesh;
+    Polygons faces;
+    Viewpoint ignored = no_viewpoint;
+    if (extension == ".stl")
+      mesh.vertices = parseStl(file, &mesh.triangles);
+    else if (extension == ".ply")
+      mesh.vertices = parsePly(file, ignored, &faces);
+    else
+      mesh.vertices = parse(extension, file, ignored);
+    if (extension == ".obj") faces = parseObjFaces(file);
+    if (extension == ".off") faces = parseOffFaces(file);
+    requireCoordinates(mesh.vertices);
+    setDense(mesh.vertices);
+    for (const Triangle& triangle : trianglesOf(faces, viewOf(mesh.vertices))) mesh.triangles.push_back(triangle);
+    return mesh;
   });
 }
 

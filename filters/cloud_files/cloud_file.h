@@ -9,12 +9,14 @@
 #pragma once
 
 #include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/surface/surface_cover.h>
 
 #include <pcl/PCLPointCloud2.h>
 
 #include <array>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace pcl_bsh::io {
 
@@ -29,6 +31,7 @@ inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 /// .ply        ascii and binary of both byte orders; every vertex property in its type (a list, if of one length, is a
 ///             field with a count); of other elements only PCL's `camera`
 /// .obj .off   vertices with their colours and normals; x y z as float64
+/// .stl        the corners of the triangles, binary or ASCII, each place once; x y z as float32
 /// .xyz .txt   a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says; x y
 /// z
 ///             and then column_4, column_5, ... as float64, unless the first line, or a comment before it, names the
@@ -44,6 +47,16 @@ inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 /// @param viewpoint if not null, set to the file's (PCD, PLY), or to no_viewpoint
 /// @throws files::FileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z
 pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr);
+
+/// A cloud and the triangles between its points.
+struct Mesh {
+  pcl::PCLPointCloud2 vertices;
+  std::vector<Triangle> triangles; ///< empty where the file has no faces
+};
+
+/// Reads the faces, too, of .obj, .off, .ply and .stl; of others the points alone. Polygons are cut into triangles.
+/// Throws as readCloud() does, and where a face names a vertex that is not there.
+Mesh readMesh(const std::filesystem::path& path);
 
 /// The fields of a file's cloud and, where its header says so, the number of its points; the points are not read.
 /// Throws as readCloud() does for what a header can tell, and for a pipe.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/polygons.h>
 
 #include <ostream>
 #include <string_view>
@@ -11,8 +12,9 @@ namespace pcl_bsh::io {
 
 /// The vertices, with PCL's names and packed colours (pcl_names.h).
 /// @param viewpoint set to what an element `camera` says, as PCL's writer has it, or to no_viewpoint
+/// @param faces if not null, gets the polygons of elements `face`, and the triangles of `tristrips`
 /// @throws FormatError
-pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint);
+pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint, Polygons* faces = nullptr);
 
 /// The vertices' fields and the number of them that the header promises, without the points. @throws FormatError
 pcl::PCLPointCloud2 parsePlyHeader(std::string_view file);

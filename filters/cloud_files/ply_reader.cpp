@@ -199,14 +199,75 @@ void readCamera(Rows& rows, Element camera, Viewpoint& viewpoint)
   skipElement(rows, camera);
 }
 
+/// The value of a list of whole numbers.
+template <typename Rows>
+std::int64_t readIndex(Rows& rows, const Property& property)
+{
+  std::uint8_t bytes[sizeof(std::uint64_t)];
+  rows.value(property.datatype, bytes);
+  return withFieldType(property.datatype, [&](auto index) {
+    std::memcpy(&index, bytes, sizeof index);
+    if (!(static_cast<double>(index) >= -1 && static_cast<double>(index) <= 0xffffffff)) {
+      throw FormatError("its list '" + property.name + "' holds no index of a vertex");
+    }
+    return static_cast<std::int64_t>(index);
+  });
+}
+
+/// Takes the corners of a row: of a face, or of a strip of triangles, in which -1 begins another.
+template <typename Rows>
+void readCorners(Rows& rows, const Property& property, bool strips, Polygons& faces)
+{
+  std::vector<std::uint64_t> strip;
+  for (std::uint64_t i = 0, length = readLength(rows, property); i < length; ++i) {
+    const std::int64_t index = readIndex(rows, property);
+    if (index < 0 && !strips) throw FormatError("a face names the vertex -1");
+    if (index < 0) {
+      strip.clear();
+      continue;
+    }
+    strip.push_back(static_cast<std::uint64_t>(index));
+    if (!strips) {
+      faces.addCorner(strip.back());
+    }
+    else if (strip.size() >= 3) {
+      for (std::size_t k = strip.size() - 3; k < strip.size(); ++k) faces.addCorner(strip[k]);
+      faces.end();
+    }
+  }
+  if (!strips) faces.end();
+}
+
+/// Takes what an element `face` or `tristrips` lists as its vertices; skips all else.
+template <typename Rows>
+void readFaces(Rows& rows, const Element& element, Polygons& faces)
+{
+  for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
+    rows.begin();
+    for (const Property& property : element.properties) {
+      if (property.length_type && (property.name == "vertex_indices" || property.name == "vertex_index")) {
+        readCorners(rows, property, element.name == "tristrips", faces);
+      }
+      else {
+        const std::uint64_t length = readLength(rows, property);
+        rows.skip(property.datatype, length);
+      }
+    }
+    rows.end();
+  }
+}
+
 /// Reads all elements, also those that are not wanted: a file cut off behind its vertices is damaged, too.
 template <typename Rows>
-pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part, Viewpoint& viewpoint)
+pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part, Viewpoint& viewpoint, Polygons* faces)
 {
   std::optional<pcl::PCLPointCloud2> cloud;
   for (const Element& element : header.elements) {
     if (element.name == "camera" && element.count > 0 && !element.properties.empty()) {
       readCamera(rows, element, viewpoint);
+    }
+    else if (faces != nullptr && (element.name == "face" || element.name == "tristrips")) {
+      readFaces(rows, element, *faces);
     }
     else if (element.name != "vertex") {
       skipElement(rows, element);
@@ -223,20 +284,20 @@ pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part, 
   return std::move(*cloud);
 }
 
-pcl::PCLPointCloud2 parse(std::string_view file, Part part, Viewpoint& viewpoint)
+pcl::PCLPointCloud2 parse(std::string_view file, Part part, Viewpoint& viewpoint, Polygons* faces)
 {
   viewpoint = no_viewpoint;
   TextCursor text(file);
   const PlyHeader header = readPlyHeader(text);
   pcl::PCLPointCloud2 cloud;
   if (header.format == "ascii") {
-    cloud = readElements(AsciiRows(text), header, part, viewpoint);
+    cloud = readElements(AsciiRows(text), header, part, viewpoint, faces);
   }
   else if (header.format == "binary_little_endian") {
-    cloud = readElements(BinaryRows(text.rest(), std::endian::little), header, part, viewpoint);
+    cloud = readElements(BinaryRows(text.rest(), std::endian::little), header, part, viewpoint, faces);
   }
   else if (header.format == "binary_big_endian") {
-    cloud = readElements(BinaryRows(text.rest(), std::endian::big), header, part, viewpoint);
+    cloud = readElements(BinaryRows(text.rest(), std::endian::big), header, part, viewpoint, faces);
   }
   else {
     throw FormatError("has the unknown format '" + header.format + "'",
@@ -252,15 +313,15 @@ pcl::PCLPointCloud2 parse(std::string_view file, Part part, Viewpoint& viewpoint
 
 } // namespace
 
-pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint)
+pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint, Polygons* faces)
 {
-  return parse(file, Part::all, viewpoint);
+  return parse(file, Part::all, viewpoint, faces);
 }
 
 pcl::PCLPointCloud2 parsePlyHeader(std::string_view file)
 {
   Viewpoint ignored;
-  return parse(file, Part::header, ignored);
+  return parse(file, Part::header, ignored, nullptr);
 }
 
 } // namespace pcl_bsh::io

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The faces of a mesh file: polygons by their vertices, and the triangles they are cut into.
+#pragma once
+
+#include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/surface/surface_cover.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// Polygons as a file has them. Corners are checked when they are cut, for files may give faces before vertices.
+class Polygons {
+public:
+  void addCorner(std::uint64_t vertex) { corners_.push_back(vertex); }
+  void end() { ends_.push_back(corners_.size()); }
+
+  std::size_t size() const { return ends_.size(); }
+  std::span<const std::uint64_t> operator[](std::size_t i) const
+  {
+    const std::size_t first = i == 0 ? 0 : ends_[i - 1];
+    return std::span(corners_).subspan(first, ends_[i] - first);
+  }
+
+private:
+  std::vector<std::uint64_t> corners_;
+  std::vector<std::size_t> ends_;
+};
+
+/// Convex polygons as fans, others by clipping ears (Meisters, Polygons Have Ears, 1975) in the plane of their vector
+/// area. A polygon that crosses itself is a fan of its first corner: that covers all of it, and more. Faces of one or
+/// two corners have no surface, and are left out.
+/// @throws FormatError when a polygon names a vertex that is not there, or has more than 4096 corners and is not convex
+std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& vertices);
+
+} // namespace pcl_bsh::io
