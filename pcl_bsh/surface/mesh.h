@@ -44,7 +44,9 @@ struct Patch {
   std::vector<Piece> pieces;
   Vector3d center = Vector3d::Zero();
   double radius = 0.0;
-  std::uint32_t triangle = 0; ///< which the centre lies on
+  std::uint32_t triangle = 0;         ///< which the centre lies on
+  Vector3d middle = Vector3d::Zero(); ///< of the smallest ball that holds the pieces, wherever its centre lies
+  double least = 0.0;                 ///< the radius of that
 };
 
 } // namespace pcl_bsh::surface

@@ -50,8 +50,7 @@ Vector3d nearestOnPiece(const Vector3d& p, const Vector3d* corner, std::size_t c
   return nearest;
 }
 
-} // namespace
-
+/// The centre of the smallest ball that holds all points, to float rounding.
 Vector3d middleOf(const std::vector<Vector3d>& points)
 {
   const std::size_t count = points.size();
@@ -65,6 +64,8 @@ Vector3d middleOf(const std::vector<Vector3d>& points)
   return points[0] + Vector3d(c[0], c[1], c[2]);
 }
 
+} // namespace
+
 void fitBall(const std::vector<Vector3d>& corners, Patch& patch)
 {
   std::vector<Vector3d> points;
@@ -72,16 +73,20 @@ void fitBall(const std::vector<Vector3d>& corners, Patch& patch)
     const auto first = corners.begin() + static_cast<std::ptrdiff_t>(piece.first);
     points.insert(points.end(), first, first + piece.count);
   }
-  const Vector3d middle = middleOf(points);
+  const auto reachFrom = [&points](const Vector3d& place) {
+    double most = 0.0;
+    for (const Vector3d& p : points) most = std::max(most, (p - place).squaredNorm());
+    return std::sqrt(most);
+  };
+  patch.middle = middleOf(points);
+  patch.least = reachFrom(patch.middle);
   double least = std::numeric_limits<double>::infinity();
   for (const Piece& piece : patch.pieces) {
-    const Vector3d q = nearestOnPiece(middle, corners.data() + piece.first, piece.count);
-    const double squared = (q - middle).squaredNorm();
+    const Vector3d q = nearestOnPiece(patch.middle, corners.data() + piece.first, piece.count);
+    const double squared = (q - patch.middle).squaredNorm();
     if (squared < least) least = squared, patch.center = q, patch.triangle = piece.triangle;
   }
-  double most = 0.0;
-  for (const Vector3d& p : points) most = std::max(most, (p - patch.center).squaredNorm());
-  patch.radius = std::sqrt(most);
+  patch.radius = reachFrom(patch.center);
 }
 
 } // namespace pcl_bsh::surface

@@ -9,10 +9,7 @@
 
 namespace pcl_bsh::surface {
 
-/// The centre of the smallest ball that holds all points, to float rounding.
-Vector3d middleOf(const std::vector<Vector3d>& points);
-
-/// Sets a patch's centre, radius and triangle. The centre is the point of the pieces that is nearest to the centre of
+/// Sets all of a patch but its pieces. The centre is the point of the pieces that is nearest to the centre of
 /// their smallest enclosing ball. Of one convex piece, that ball's radius is not exceeded: no point of a convex set is
 /// farther from where a centre is projected to than from the centre.
 void fitBall(const std::vector<Vector3d>& corners, Patch& patch);

@@ -20,23 +20,48 @@ constexpr std::size_t kPartners = 8; ///< of a patch, the nearest, are tried
 
 using Cube = std::array<std::int64_t, 3>;
 
-/// The patches whose centres lie in each cube, two rooms wide: centres of patches that one ball holds lie in the same
-/// or in neighbouring cubes.
+/// How far another centre may be for one ball of radius `room` to hold this, too. From any place, the farthest point of
+/// a set is at least as far as its smallest ball's radius and the place's distance from that ball's centre have it by
+/// Pythagoras; so centres of sets that one ball holds are no farther apart than both leeways together.
+double leewayOf(const Patch& patch, double room)
+{
+  return std::sqrt(std::max(0.0, room * room - patch.least * patch.least)) + 1e-6 * room;
+}
+
+/// A patch where it can be seen from its neighbours, without going to its pieces.
+struct Entry {
+  Vector3d middle;
+  double leeway;
+  std::size_t patch;
+};
+
+/// The patches in each cube, two rooms wide: those that one ball may hold lie in the same or in neighbouring cubes.
 class Grid {
 public:
-  explicit Grid(double room) : edge_(2 * room) {}
+  explicit Grid(double room) : room_(room), edge_(2.1 * room) {}
 
-  void add(const Patch& patch, std::size_t i) { patches_[cubeOf(patch)].push_back(i); }
-  void remove(const Patch& patch, std::size_t i) { std::erase(patches_[cubeOf(patch)], i); }
+  void add(const Patch& patch, std::size_t i)
+  {
+    entries_[cubeOf(patch)].push_back({patch.middle, leewayOf(patch, room_), i});
+  }
+  void remove(const Patch& patch, std::size_t i)
+  {
+    std::erase_if(entries_[cubeOf(patch)], [i](const Entry& entry) { return entry.patch == i; });
+  }
 
+  /// Calls visit(squared distance, patch) for those that may take in a patch.
   template <class Visit>
   void forEachNear(const Patch& patch, const Visit& visit) const
   {
     const Cube middle = cubeOf(patch);
+    const double leeway = leewayOf(patch, room_);
     for (std::int64_t k = 0; k < 27; ++k) {
-      const auto found = patches_.find({middle[0] + k % 3 - 1, middle[1] + k / 3 % 3 - 1, middle[2] + k / 9 - 1});
-      if (found == patches_.end()) continue;
-      for (const std::size_t i : found->second) visit(i);
+      const auto found = entries_.find({middle[0] + k % 3 - 1, middle[1] + k / 3 % 3 - 1, middle[2] + k / 9 - 1});
+      if (found == entries_.end()) continue;
+      for (const Entry& entry : found->second) {
+        const double squared = (entry.middle - patch.middle).squaredNorm(), most = leeway + entry.leeway;
+        if (squared <= most * most) visit(squared, entry.patch);
+      }
     }
   }
 
@@ -45,36 +70,13 @@ private:
   {
     Cube cube;
     for (std::size_t k = 0; k < 3; ++k)
-      cube[k] = static_cast<std::int64_t>(std::floor(patch.center[static_cast<Eigen::Index>(k)] / edge_));
+      cube[k] = static_cast<std::int64_t>(std::floor(patch.middle[static_cast<Eigen::Index>(k)] / edge_));
     return cube;
   }
 
-  double edge_;
-  std::unordered_map<Cube, std::vector<std::size_t>, boost::hash<Cube>> patches_;
+  double room_, edge_;
+  std::unordered_map<Cube, std::vector<Entry>, boost::hash<Cube>> entries_;
 };
-
-/// Of many corners those that reach farthest in some directions: a ball that cannot hold these cannot hold all.
-std::vector<Vector3d> outermost(const std::vector<Vector3d>& corners, const Patch& patch)
-{
-  static const std::vector<Vector3d> directions = [] {
-    std::vector<Vector3d> found;
-    for (int k = 1; k < 27; ++k)
-      if (k != 13) found.push_back(Vector3d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1).normalized());
-    return found;
-  }();
-  std::vector<Vector3d> all;
-  for (const Piece& piece : patch.pieces)
-    all.insert(all.end(), corners.begin() + static_cast<std::ptrdiff_t>(piece.first),
-               corners.begin() + static_cast<std::ptrdiff_t>(piece.first + piece.count));
-  if (all.size() <= directions.size()) return all;
-  std::vector<Vector3d> outer;
-  for (const Vector3d& direction : directions) {
-    outer.push_back(*std::max_element(all.begin(), all.end(), [&](const Vector3d& p, const Vector3d& q) {
-      return direction.dot(p) < direction.dot(q);
-    }));
-  }
-  return outer;
-}
 
 class Union {
 public:
@@ -84,8 +86,6 @@ public:
     patches_(patches),
     grid_(mesh.room)
   {
-    outer_.reserve(patches.size());
-    for (const Patch& patch : patches) outer_.push_back(outermost(corners, patch));
   }
 
   void operator()()
@@ -117,13 +117,12 @@ private:
     }
   };
 
-  /// The nearest patches, by their centres' distance.
-  std::vector<Partner> partnersOf(std::size_t i, const Vector3d& place) const
+  /// The nearest patches that may take in another, which is not one of them.
+  std::vector<Partner> partnersOf(std::size_t i, const Patch& taken) const
   {
     std::vector<Partner> near;
-    grid_.forEachNear(patches_[i], [&](std::size_t j) {
-      const double apart = (patches_[j].center - place).norm();
-      if (j != i && apart <= 2 * room_) near.push_back({apart, j});
+    grid_.forEachNear(taken, [&](double squared, std::size_t j) {
+      if (j != i) near.push_back({squared, j});
     });
     const auto tried = static_cast<std::ptrdiff_t>(std::min(kPartners, near.size()));
     std::partial_sort(near.begin(), near.begin() + tried, near.end());
@@ -131,43 +130,35 @@ private:
     return near;
   }
 
-  /// Of the least ball that holds both, wherever its centre lies; at least that, where corners were left out.
-  double leastRadius(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) const
+  Patch united(Patch patch, const std::vector<Piece>& pieces) const
   {
-    std::vector<Vector3d> both = a;
-    both.insert(both.end(), b.begin(), b.end());
-    const Vector3d middle = middleOf(both);
-    double most = 0.0;
-    for (const Vector3d& p : both) most = std::max(most, (p - middle).squaredNorm());
-    return std::sqrt(most);
+    patch.pieces.insert(patch.pieces.end(), pieces.begin(), pieces.end());
+    fitBall(corners_, patch);
+    return patch;
   }
 
   /// Takes in the partner that leaves the least room; the partner is then empty.
   bool joinBestOf(std::size_t i)
   {
-    std::vector<Partner> partners = partnersOf(i, patches_[i].center);
-    for (Partner& partner : partners) partner.measure = -leastRadius(outer_[i], outer_[partner.patch]);
-    std::sort(partners.begin(), partners.end());
-    for (const Partner& partner : partners) {
-      if (-partner.measure > room_) continue;
-      Patch& other = patches_[partner.patch];
-      Patch both = patches_[i];
-      both.pieces.insert(both.pieces.end(), other.pieces.begin(), other.pieces.end());
-      fitBall(corners_, both);
-      if (both.radius > room_) continue;
-      grid_.remove(other, partner.patch);
-      other.pieces.clear();
-      replace(i, std::move(both));
-      return true;
+    Patch best;
+    std::size_t partner = i;
+    for (const Partner& near : partnersOf(i, patches_[i])) {
+      Patch both = united(patches_[i], patches_[near.patch].pieces);
+      if (both.radius > room_ || (partner != i && both.radius <= best.radius)) continue;
+      best = std::move(both);
+      partner = near.patch;
     }
-    return false;
+    if (partner == i) return false;
+    grid_.remove(patches_[partner], partner);
+    patches_[partner].pieces.clear();
+    replace(i, std::move(best));
+    return true;
   }
 
   void replace(std::size_t i, Patch patch)
   {
     grid_.remove(patches_[i], i);
     patches_[i] = std::move(patch);
-    outer_[i] = outermost(corners_, patches_[i]);
     grid_.add(patches_[i], i);
   }
 
@@ -191,17 +182,15 @@ private:
       alone.pieces = {piece};
       fitBall(corners_, alone);
       bool taken = false;
-      for (const Partner& partner : partnersOf(i, alone.center)) {
+      for (const Partner& partner : partnersOf(i, alone)) {
         const auto known =
             std::find_if(grown.begin(), grown.end(), [&](const auto& entry) { return entry.first == partner.patch; });
-        Patch both = known != grown.end() ? known->second : patches_[partner.patch];
-        both.pieces.push_back(piece);
-        fitBall(corners_, both);
+        Patch both = united(known != grown.end() ? known->second : patches_[partner.patch], {piece});
         if (both.radius > room_) continue;
         if (known != grown.end())
           known->second = std::move(both);
         else
-          grown.push_back({partner.patch, std::move(both)});
+          grown.emplace_back(partner.patch, std::move(both));
         taken = true;
         break;
       }
@@ -217,7 +206,6 @@ private:
   double room_;
   const std::vector<Vector3d>& corners_;
   std::vector<Patch>& patches_;
-  std::vector<std::vector<Vector3d>> outer_; ///< corners of each patch
   Grid grid_;
 };
 
