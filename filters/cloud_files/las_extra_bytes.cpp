@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace pcl_bsh::io {
 
@@ -39,14 +40,30 @@ std::string nameOf(std::string_view descriptor)
   return name.empty() ? "extra_bytes" : name;
 }
 
-std::string freeName(const std::vector<LasField>& fields, std::string name)
-{
-  const auto taken = [&] {
-    return std::any_of(fields.begin(), fields.end(), [&](const LasField& field) { return field.name == name; });
-  };
-  while (name == "_" || taken()) name.insert(0, "extra_");
-  return name;
-}
+/// Names that are free, however many ask for the same one.
+class FreeNames {
+public:
+  explicit FreeNames(const std::vector<LasField>& fields)
+  {
+    for (const LasField& field : fields) taken_.emplace(field.name, 1);
+    taken_.emplace("_", 1); // PCL's name of padding
+  }
+
+  std::string operator()(const std::string& name)
+  {
+    if (taken_.emplace(name, 1).second) return name;
+    const std::string extra = "extra_" + name;
+    unsigned& number = taken_[extra];
+    for (;;) {
+      ++number;
+      std::string numbered = number == 1 ? extra : extra + '_' + std::to_string(number);
+      if (number == 1 || taken_.emplace(numbered, 1).second) return numbered;
+    }
+  }
+
+private:
+  std::map<std::string, unsigned> taken_; ///< and how often it was asked for
+};
 
 LasField describedField(std::string_view descriptor, std::size_t at)
 {
@@ -94,17 +111,18 @@ void addExtraBytes(std::vector<LasField>& fields, std::string_view descriptors, 
     described += sizeOfExtra(known.back());
   }
   if (described > record_length - first_byte) known.clear();
+  FreeNames free_name(fields);
   std::size_t at = first_byte;
   for (const std::string_view descriptor : known) {
     if (sizeOfExtra(descriptor) == 0) continue;
     LasField field = describedField(descriptor, at);
-    field.name = freeName(fields, field.name);
+    field.name = free_name(field.name);
     at += sizeOfExtra(descriptor);
     fields.push_back(std::move(field));
   }
   if (at == record_length) return;
   LasField rest;
-  rest.name = freeName(fields, "extra_bytes");
+  rest.name = free_name("extra_bytes");
   rest.datatype = rest.stored = Type::UINT8;
   rest.count = static_cast<std::uint32_t>(record_length - at);
   rest.at = at;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace pcl_bsh::io {
 
@@ -135,12 +136,12 @@ std::string descriptionOf(const std::string& name)
 {
   constexpr std::array<std::array<const char*, 2>, 4> known = {{
       {"collision", "1 collides, 2 undecided, 0 free"},
-      {"distance", "smallest distance, NaN where free"},
+      {"distance", "smallest distance; NaN: free"},
       {"first_pose", "first pose that collides, or -1"},
       {"closest_pose", "pose of smallest distance, or -1"},
   }};
   const auto found = std::find_if(known.begin(), known.end(), [&](const auto& row) { return name == row[0]; });
-  return found == known.end() ? std::string() : std::string((*found)[1]).substr(0, 32);
+  return found == known.end() ? "" : (*found)[1];
 }
 
 /// Whether the field's values go to that place without a change.
@@ -169,7 +170,8 @@ public:
     header_(header),
     plan_(plan)
   {
-    rest_ = points.fields();
+    for (std::size_t i = 0; i < points.fields().size(); ++i) places_.emplace(points.fields()[i].name, i);
+    taken_.resize(points.fields().size(), false);
   }
 
   void place()
@@ -190,7 +192,10 @@ public:
       return target.field.name == "red" && (target.packed_colour || target.datatype != 0);
     };
     if (std::any_of(plan_.targets.begin(), plan_.targets.end(), holds_colour)) {
-      std::erase_if(rest_, [](const auto& field) { return field.name == "rgb" && isPackedColour(field); });
+      for (std::size_t i = 0; i < taken_.size(); ++i) {
+        const pcl::PCLPointField& field = points_.fields()[i];
+        if (field.name == "rgb" && isPackedColour(field)) taken_[i] = true; // no more than these say
+      }
     }
     plan_.record_length = lasRecordBytes(plan_.format);
     placeExtraBytes();
@@ -200,15 +205,13 @@ private:
   /// Takes the cloud's field for this one of the file, if it fits.
   bool take(const LasField& field, bool certainly)
   {
-    const auto is_it = [&](const pcl::PCLPointField& other) {
-      return other.name == field.name && other.count == field.count;
-    };
-    const auto found = std::find_if(rest_.begin(), rest_.end(), is_it);
-    if (found == rest_.end()) return false;
-    const LasTarget target = {field, found->offset, found->datatype};
-    if (!certainly && !fits(points_, target)) return false;
+    const auto found = places_.find(field.name);
+    if (found == places_.end() || taken_[found->second]) return false;
+    const pcl::PCLPointField& from = points_.fields()[found->second];
+    const LasTarget target = {field, from.offset, from.datatype};
+    if (from.count != field.count || (!certainly && !fits(points_, target))) return false;
     plan_.targets.push_back(target);
-    rest_.erase(found);
+    taken_[found->second] = true;
     return true;
   }
 
@@ -234,7 +237,9 @@ private:
           appendUndescribed(descriptors, bytes);
       }
     }
-    for (const pcl::PCLPointField& field : rest_) {
+    for (std::size_t i = 0; i < taken_.size(); ++i) {
+      if (taken_[i]) continue;
+      const pcl::PCLPointField& field = points_.fields()[i];
       changed = true;
       for (std::uint32_t k = 0; k < field.count; ++k) addNew(field, k, descriptors);
     }
@@ -277,7 +282,8 @@ private:
   const LasPoints& points_;
   const LasHeader* header_;
   LasPlan& plan_;
-  std::vector<pcl::PCLPointField> rest_; ///< without a place so far
+  std::map<std::string, std::size_t> places_; ///< of the cloud's fields by name
+  std::vector<bool> taken_;                   ///< whether a field of the cloud has a place
 };
 
 } // namespace

@@ -475,6 +475,19 @@ TEST(Las, NoScaleForExtraBytes)
   }
 }
 
+TEST(Las, AsManyFieldsAsARecordHasBytes)
+{
+  constexpr std::size_t many = 65535 - 30;
+  LasSample sample(4, 6, many);
+  std::string descriptors;
+  for (std::size_t i = 0; i < many; ++i) descriptors += LasSample::descriptor(1, "same");
+  sample.extended = {LasSample::extendedRecord("LASF_Spec", 4, descriptors)};
+  sample.addPoints(1);
+  const Las las = readText(sample.text());
+  EXPECT_EQ(las.cloud.fields.back().name, "extra_same_65504");
+  EXPECT_EQ(difference(written(las.cloud, &las.header), sample.text()), "");
+}
+
 TEST(Las, CompressedFilesNameWhatUnpacksThem)
 {
   const TemporaryFolder folder;
