@@ -146,20 +146,7 @@ bool converted(From from, To& to)
   }
 }
 
-/// A neighbour of a stored value: what a division that rounded may have missed.
-template <typename T>
-T neighbour(T value, int side)
-{
-  if constexpr (std::is_floating_point_v<T>) {
-    return std::nextafter(value, side > 0 ? std::numeric_limits<T>::max() : std::numeric_limits<T>::lowest());
-  }
-  else {
-    const T limit = side > 0 ? std::numeric_limits<T>::max() : std::numeric_limits<T>::lowest();
-    return value == limit ? value : static_cast<T>(value + static_cast<T>(side));
-  }
-}
-
-/// The stored value that is read as `value`, or the one next to it.
+/// The stored value nearest to `value`. @param exact whether that is read as `value`
 /// @return whether there is one
 template <typename T, typename Read>
 bool unscaled(double value, const LasScaling& scaling, const Read& read, T& stored, bool& exact)
@@ -184,16 +171,7 @@ bool unscaled(double value, const LasScaling& scaling, const Read& read, T& stor
       return exact;
     }
   }
-  const double wanted = read(value);
-  const auto hits = [&](T candidate) { return read(valueOf(candidate, scaling)) == wanted; };
-  exact = hits(stored);
-  for (const int side : {-1, 1}) {
-    if (exact) break;
-    if (const T candidate = neighbour(stored, side); hits(candidate)) {
-      stored = candidate;
-      exact = true;
-    }
-  }
+  exact = read(valueOf(stored, scaling)) == read(value);
   return true;
 }
 

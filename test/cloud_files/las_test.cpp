@@ -99,6 +99,36 @@ TEST(Las, CoordinatesAreScaledAndMovedInDouble)
   }
 }
 
+/// Where doubles do not tell multiples of the scale apart, integers may change, coordinates must not.
+TEST(Las, CoordinatesStayWhereDoublesAreCoarse)
+{
+  for (const double scale : {1e-10, 0.3e-10, 1e-17, 1e-310}) {
+    LasSample sample(4, 6, 12);
+    sample.scale = {scale, -scale, scale};
+    sample.offset = {1e6, 1.1e6, -3e9};
+    const std::string descriptors =
+        LasSample::descriptor(9, "a", 24, 0.1, 1e5) + LasSample::descriptor(10, "b", 24, 0.3, -7);
+    sample.records = {LasSample::record("LASF_Spec", 4, descriptors)};
+    sample.addPoints(500);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> usual(-100, 100);
+    for (std::string& point : sample.points) {
+      put(point, 30, static_cast<float>(usual(random)));
+      put(point, 34, usual(random));
+    }
+    const Las las = readText(sample.text());
+    const Las again = readText(written(las.cloud, &las.header));
+    EXPECT_EQ(namesOf(again.cloud), namesOf(las.cloud));
+    EXPECT_TRUE(again.header.descriptors == descriptors) << scale;
+    for (std::size_t i = 0; i < 500; ++i) {
+      for (const char* name : {"x", "y", "z", "a", "b"}) {
+        const double before = valueOf(las.cloud, i, name), after = valueOf(again.cloud, i, name);
+        EXPECT_TRUE(before == after || (before != before && after != after)) << name << ' ' << scale;
+      }
+    }
+  }
+}
+
 TEST(Las, FieldsOfOldFormats)
 {
   LasSample sample(3, 5);
