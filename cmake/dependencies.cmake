@@ -8,6 +8,7 @@ find_package(Boost 1.74 REQUIRED) # headers of Multiprecision
 find_package(TBB 2021 REQUIRED CONFIG)
 find_package(hwy 1.0 REQUIRED CONFIG)
 find_package(nlohmann_json 3.11 REQUIRED CONFIG)
+find_package(FastFloat 3 REQUIRED CONFIG)
 if(PCL_BSH_BUILD_EXAMPLES)
   find_package(CLI11 2 REQUIRED CONFIG)
 endif()

@@ -66,8 +66,7 @@ int main(int argc, char** argv)
   float leaf = 0.0f;
   double clearance = 0.0;
   app.add_option("SCAN", scan, "Point cloud with float32 coordinates: .pcd or .ply")->required();
-  app.add_option("OBSTACLE", obstacle, "Point cloud in the frame of SCAN: .pcd, .ply, .obj, .off, .xyz or .txt")
-      ->required();
+  app.add_option("OBSTACLE", obstacle, "Point cloud in the frame of SCAN: any file that is read")->required();
   app.add_option("OUTPUT", output, ".pcd or .ply")->required();
   app.add_option("LEAF", leaf, "Edge of VoxelGrid's cells, in the clouds' unit")->required();
   app.add_option("CLEARANCE", clearance, "Points no farther than this from OBSTACLE are removed")->required();

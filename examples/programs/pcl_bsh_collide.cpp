@@ -36,6 +36,7 @@ constexpr auto program = cli::collide_program;
 struct Scan {
   pcl::PCLPointCloud2 cloud;
   io::Viewpoint viewpoint = io::no_viewpoint;
+  io::LasHeaderPtr las;
 };
 
 /// The core names what is wrong with a request; users know it by the option.
@@ -97,7 +98,7 @@ Scan load(const fs::path& path, double& seconds)
 {
   cli::Step step("Loading " + path.string());
   Scan scan;
-  scan.cloud = io::readCloud(path, &scan.viewpoint);
+  scan.cloud = io::readCloud(path, &scan.viewpoint, &scan.las);
   seconds += step.done(std::to_string(std::size_t{scan.cloud.width} * scan.cloud.height) + " points");
   return scan;
 }
@@ -165,7 +166,7 @@ void write(const Options& options, const Scan& input, const TrajectoryResult& fo
   const pcl::PCLPointCloud2 cloud = options.keep == Keep::flagged
                                         ? marked(options.input, input.cloud, newFields(options, found))
                                         : select(input.cloud, viewOf(input.cloud), found.flags, options.keep);
-  io::writeCloud(options.output, cloud, input.viewpoint);
+  io::writeCloud(options.output, cloud, input.viewpoint, input.las);
   seconds += step.done(std::to_string(std::size_t{cloud.width} * cloud.height) + " points");
 }
 

@@ -19,7 +19,8 @@ they are drawn larger and in orange, all others dimmed. A cloud that holds the f
 distance or first_pose shows these as they are.
 A scene's objects are drawn at their poses of one step, responses included: fixed ones in grey, moving ones in blue,
 and points within the scene's clearance, or D, in orange and yellow.
-Reads .pcd .ply .obj .off .xyz .txt, pipes, and standard input as -. Without --screenshot and --export a window opens: h shows its keys.
+Reads .pcd .ply .las .obj .off .pts .ptx .csv .xyz .txt, pipes, and standard input as -.
+Without --screenshot and --export a window opens: h shows its keys.
 Exit code: 0 done; 1 failed; 2 command line not understood.
 
 Examples:

@@ -2,10 +2,12 @@
 #include <pcl_bsh/files/file_identity.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/las.h>
 #include <pcl_bsh/filters/cloud_files/mesh_faces.h>
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/cloud_files/ply.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
+#include <pcl_bsh/filters/cloud_files/scan_text.h>
 #include <pcl_bsh/filters/cloud_files/stl.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 #include <pcl_bsh/filters/text_files/file_bytes.h>
@@ -29,14 +31,63 @@ std::string unknown(const std::string& extension)
   return extension.empty() ? "has no extension" : "unknown extension '" + extension + "'";
 }
 
-pcl::PCLPointCloud2 parse(const std::string& extension, std::string_view file, Viewpoint& viewpoint)
+constexpr auto readable_list = ".pcd, .ply, .las, .obj, .off, .stl, .pts, .ptx, .csv, .xyz or .txt";
+constexpr std::array readable = {".pcd", ".ply", ".las", ".obj", ".off", ".stl",
+                                 ".pts", ".ptx", ".csv", ".xyz", ".txt"};
+
+/// What a file holds.
+struct Contents {
+  pcl::PCLPointCloud2 cloud;
+  Viewpoint viewpoint = no_viewpoint;
+  LasHeaderPtr las;
+};
+
+Contents readAll(LasReader reader)
 {
-  if (extension == ".pcd") return parsePcd(file, viewpoint);
-  if (extension == ".ply") return parsePly(file, viewpoint);
-  if (extension == ".obj") return parseObj(file);
-  if (extension == ".off") return parseOff(file);
-  if (extension == ".stl") return parseStl(file, nullptr);
-  return parseColumns(file);
+  Contents contents;
+  contents.cloud = readLas(reader);
+  contents.las = std::make_shared<LasHeader>(reader.header());
+  return contents;
+}
+
+Contents parse(const std::string& extension, std::string_view file)
+{
+  if (extension == ".las") return readAll(LasReader(std::make_unique<HeldBytes>(file)));
+  Contents contents;
+  if (extension == ".pcd") {
+    contents.cloud = parsePcd(file, contents.viewpoint);
+  }
+  else if (extension == ".ply") {
+    contents.cloud = parsePly(file, contents.viewpoint);
+  }
+  else if (extension == ".ptx") {
+    contents.cloud = parsePtx(file, contents.viewpoint);
+  }
+  else if (extension == ".obj") {
+    contents.cloud = parseObj(file);
+  }
+  else if (extension == ".off") {
+    contents.cloud = parseOff(file);
+  }
+  else if (extension == ".stl") {
+    contents.cloud = parseStl(file, nullptr);
+  }
+  else if (extension == ".pts") {
+    contents.cloud = parsePts(file);
+  }
+  else {
+    contents.cloud = parseColumns(file);
+  }
+  return contents;
+}
+
+/// The number of points is known, too.
+pcl::PCLPointCloud2 lasHeader(const LasReader& reader)
+{
+  pcl::PCLPointCloud2 header = reader.cloudHeader();
+  requirePoints(reader.size());
+  header.width = static_cast<std::uint32_t>(reader.size());
+  return header;
 }
 
 pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view file)
@@ -46,16 +97,19 @@ pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view f
   if (extension == ".obj") return parseObjHeader(file);
   if (extension == ".off") return parseOffHeader(file);
   if (extension == ".stl") return parseStlHeader(file);
+  if (extension == ".pts") return parsePtsHeader(file);
+  if (extension == ".ptx") return parsePtxHeader(file);
   return parseColumnNames(file);
 }
 
 void print(const std::string& extension, std::ostream& out, const pcl::PCLPointCloud2& cloud,
-           const Viewpoint& viewpoint)
+           const Viewpoint& viewpoint, const LasHeader* las)
 {
   if (extension == ".pcd") return writePcd(out, cloud, viewpoint);
   if (extension == ".ply") return writePly(out, cloud, viewpoint);
+  if (extension == ".las") return writeLas(out, cloud, las);
   if (extension == ".obj") return writeObj(out, cloud);
-  writeColumns(out, cloud);
+  writeColumns(out, cloud, extension == ".csv" ? ',' : ' ');
 }
 
 /// That the points have usable x y z.
@@ -82,74 +136,114 @@ std::string extensionByContent(std::string_view file)
   if (begins("ply")) return ".ply";
   if (begins("# .PCD") || begins("VERSION") || begins("FIELDS")) return ".pcd";
   if (begins("OFF")) return ".off";
+  if (begins("LASF")) return ".las";
   return ".txt";
 }
 
-/// Gives the file's extension and content to `parse`; names the file when that throws.
-template <typename Parse>
-std::invoke_result_t<Parse, std::string, std::string_view> parsed(const std::filesystem::path& path,
-                                                                  const FileBytes& file, Parse&& parse)
+/// What `read` gives; names the file when that throws.
+template <typename Read>
+auto naming(const std::filesystem::path& path, Read&& read)
 {
-  constexpr std::array readable = {".pcd", ".ply", ".obj", ".off", ".stl", ".xyz", ".txt"};
-  std::string extension = extensionOf(path);
-  if (std::find(readable.begin(), readable.end(), extension) == readable.end()) {
-    if (!isPipe(path)) {
-      throw files::FileError(path, unknown(extension), "give a .pcd, .ply, .obj, .off, .stl, .xyz or .txt file");
-    }
-    extension = extensionByContent(file.view());
-  }
   try {
-    return parse(extension, file.view());
+    return read();
   }
   catch (const FormatError& error) {
     throw files::FileError(path, error.what(), error.remedy());
   }
 }
 
+/// The file's extension, of those that can be read; of a pipe, that which its name or `beginning` tells.
+std::string readableExtension(const std::filesystem::path& path, std::string_view beginning)
+{
+  std::string extension = extensionOf(path);
+  if (std::find(readable.begin(), readable.end(), extension) != readable.end()) return extension;
+  if (extension == ".laz") throw files::FileError(path, las_is_compressed, unpack_las);
+  if (!isPipe(path)) throw files::FileError(path, unknown(extension), std::string("give a ") + readable_list + " file");
+  return extensionByContent(beginning);
+}
+
+/// Whether the file is LAS, which is not held in memory.
+bool isLasFile(const std::filesystem::path& path)
+{
+  return extensionOf(path) == ".las" && !isPipe(path);
+}
+
+/// The cloud, once it is known to be usable.
+pcl::PCLPointCloud2 checked(Contents contents, Viewpoint* viewpoint, LasHeaderPtr* las)
+{
+  requireCoordinates(contents.cloud);
+  setDense(contents.cloud);
+  if (viewpoint != nullptr) *viewpoint = contents.viewpoint;
+  if (las != nullptr) *las = std::move(contents.las);
+  return std::move(contents.cloud);
+}
+
+pcl::PCLPointCloud2 checkedHeader(pcl::PCLPointCloud2 header)
+{
+  pcl::PCLPointCloud2 fields = header;
+  fields.width = fields.height = fields.row_step = 0; // the records are not there
+  requireCoordinates(fields);
+  return header;
+}
+
 pcl::PCLPointCloud2 headerOf(const std::filesystem::path& path, const FileBytes& file)
 {
-  return parsed(path, file, [](const std::string& extension, std::string_view bytes) {
-    pcl::PCLPointCloud2 header = parseHeader(extension, bytes);
-    pcl::PCLPointCloud2 fields = header;
-    fields.width = fields.height = fields.row_step = 0; // the records are not there
-    requireCoordinates(fields);
-    return header;
-  });
+  const std::string extension = readableExtension(path, file.view());
+  return naming(path, [&] { return checkedHeader(parseHeader(extension, file.view())); });
 }
 
 } // namespace
 
-pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint)
+pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint, LasHeaderPtr* las)
 {
-  return parsed(path, FileBytes(path), [&](const std::string& extension, std::string_view file) {
-    Viewpoint stored = no_viewpoint;
-    pcl::PCLPointCloud2 cloud = parse(extension, file, stored);
-    requireCoordinates(cloud);
-    setDense(cloud);
-    if (viewpoint != nullptr) *viewpoint = stored;
-    return cloud;
+  if (isLasFile(path)) {
+    return naming(path, [&] { return checked(readAll(LasReader(openBytes(path))), viewpoint, las); });
+  }
+  const FileBytes file(path);
+  const std::string extension = readableExtension(path, file.view());
+  return naming(path, [&] { return checked(parse(extension, file.view()), viewpoint, las); });
+}
+
+pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, Viewpoint* viewpoint)
+{
+  const FileBytes file(path);
+  return naming(path, [&] {
+    Contents contents;
+    contents.cloud = parsePtx(file.view(), contents.viewpoint, scan);
+    return checked(std::move(contents), viewpoint, nullptr);
   });
 }
 
 Mesh readMesh(const std::filesystem::path& path)
 {
-  return parsed(path, FileBytes(path), [](const std::string& extension, std::string_view file) {
-    Mesh mesh;
-    Polygons faces;
-    Viewpoint ignored = no_viewpoint;
-    if (extension == ".stl")
-      mesh.vertices = parseStl(file, &mesh.triangles);
-    else if (extension == ".ply")
-      mesh.vertices = parsePly(file, ignored, &faces);
-    else
-      mesh.vertices = parse(extension, file, ignored);
-    if (extension == ".obj") faces = parseObjFaces(file);
-    if (extension == ".off") faces = parseOffFaces(file);
-    requireCoordinates(mesh.vertices);
-    setDense(mesh.vertices);
-    for (const Triangle& triangle : trianglesOf(faces, viewOf(mesh.vertices))) mesh.triangles.push_back(triangle);
+  Mesh mesh;
+  if (isLasFile(path)) {
+    mesh.vertices = readCloud(path);
     return mesh;
+  }
+  const FileBytes file(path);
+  const std::string extension = readableExtension(path, file.view());
+  return naming(path, [&] {
+    Contents contents;
+    Polygons faces;
+    if (extension == ".stl")
+      contents.cloud = parseStl(file.view(), &mesh.triangles);
+    else if (extension == ".ply")
+      contents.cloud = parsePly(file.view(), contents.viewpoint, &faces);
+    else
+      contents = parse(extension, file.view());
+    if (extension == ".obj") faces = parseObjFaces(file.view());
+    if (extension == ".off") faces = parseOffFaces(file.view());
+    mesh.vertices = checked(std::move(contents), nullptr, nullptr);
+    for (const Triangle& triangle : trianglesOf(faces, viewOf(mesh.vertices))) mesh.triangles.push_back(triangle);
+    return std::move(mesh);
   });
+}
+
+pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan)
+{
+  const FileBytes file(path);
+  return naming(path, [&] { return parsePtxHeader(file.view(), scan); });
 }
 
 pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path)
@@ -157,6 +251,9 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path)
   if (isPipe(path)) {
     throw files::FileError(path, "is a pipe, whose header and points cannot be read one after the other",
                            "save the cloud to a file first");
+  }
+  if (isLasFile(path)) {
+    return naming(path, [&] { return checkedHeader(lasHeader(LasReader(openBytes(path)))); });
   }
   constexpr std::size_t usual = std::size_t{1} << 16;
   const FileBytes beginning(path, usual);
@@ -172,9 +269,12 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path)
 void requireWritableCloud(const std::filesystem::path& path)
 {
   const std::string extension = writtenExtension(path);
-  constexpr std::array writable = {".pcd", ".ply", ".obj", ".xyz", ".txt"};
+  constexpr std::array writable = {".pcd", ".ply", ".las", ".obj", ".csv", ".xyz", ".txt"};
+  if (extension == ".laz") {
+    throw files::FileError(path, "is the name of a compressed file, which is not written", "write a .las file");
+  }
   if (std::find(writable.begin(), writable.end(), extension) == writable.end()) {
-    throw files::FileError(path, unknown(extension), "write a .pcd, .ply, .obj, .xyz or .txt file");
+    throw files::FileError(path, unknown(extension), "write a .pcd, .ply, .las, .obj, .csv, .xyz or .txt file");
   }
   files::requireWritable(path);
 }
@@ -185,23 +285,17 @@ void requireWritableCloud(const std::filesystem::path& path, pcl::PCLPointCloud2
   header.width = 0;
   header.data.clear();
   std::ostringstream nowhere;
-  try {
-    print(writtenExtension(path), nowhere, header, no_viewpoint);
-  }
-  catch (const FormatError& error) {
-    throw files::FileError(path, error.what(), error.remedy());
-  }
+  naming(path, [&] { print(writtenExtension(path), nowhere, header, no_viewpoint, nullptr); });
 }
 
-void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint)
+void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint,
+                const LasHeaderPtr& las)
 {
   requireWritableCloud(path);
-  try {
-    files::replaceFile(path, [&](std::ostream& out) { print(writtenExtension(path), out, cloud, viewpoint); });
-  }
-  catch (const FormatError& error) {
-    throw files::FileError(path, error.what(), error.remedy());
-  }
+  naming(path, [&] {
+    files::replaceFile(path,
+                       [&](std::ostream& out) { print(writtenExtension(path), out, cloud, viewpoint, las.get()); });
+  });
 }
 
 } // namespace pcl_bsh::io

@@ -14,7 +14,9 @@
 #include <pcl/PCLPointCloud2.h>
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,11 @@ namespace pcl_bsh::io {
 using Viewpoint = std::array<float, 7>;
 inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 
+/// What a LAS file says beside its points: scale and offset, version, records of the coordinate system and others. For
+/// writeCloud(), which keeps it. Null for other formats.
+struct LasHeader;
+using LasHeaderPtr = std::shared_ptr<const LasHeader>;
+
 /// Reads the points of a file; the format is told by its extension, in any case of letters.
 ///
 /// .pcd        ascii, binary, binary_compressed; every field in its type, float64 included
@@ -32,21 +39,34 @@ inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 ///             field with a count); of other elements only PCL's `camera`
 /// .obj .off   vertices with their colours and normals; x y z as float64
 /// .stl        the corners of the triangles, binary or ASCII, each place once; x y z as float32
-/// .xyz .txt   a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says; x y
+/// .las        LAS 1.0 to 1.4, point formats 0 to 10, every field (las_fields.h); x y z as float64
+/// .pts .ptx   Leica's scans (scan_text.h): intensity, colours; of PTX, all scans in their common frame, the scanner's
+///             pose, and NaN where it saw nothing; x y z as float64
+/// .xyz .txt .csv  a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says;
+/// x y
 /// z
 ///             and then column_4, column_5, ... as float64, unless the first line, or a comment before it, names the
 ///             columns; comments start with # or //
 ///
-/// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY or OFF file does, and columns
-/// otherwise.
+/// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY, OFF or LAS file does, and
+/// columns otherwise.
 ///
 /// Fields have PCL's names and meaning: normal_x normal_y normal_z, and rgb or rgba packed from a byte per channel;
 /// what files call them, and what stays as it is, says layOutForPcl() in pcl_names.h. The cloud has float32 or float64
 /// x y z, at most 2^31 - 1 points, and is_dense as PCL defines it. A file that says it holds no points is an empty
 /// cloud.
-/// @param viewpoint if not null, set to the file's (PCD, PLY), or to no_viewpoint
+/// @param viewpoint if not null, set to the file's (PCD, PLY, PTX), or to no_viewpoint
+/// @param las if not null, set to the header of a LAS file, or to null
 /// @throws files::FileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z
-pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr);
+pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr,
+                              LasHeaderPtr* las = nullptr);
+
+/// Only one of the scans of a .ptx file, as an organised cloud. Throws as readCloud() does.
+/// @param scan from 0
+pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, Viewpoint* viewpoint = nullptr);
+
+/// The fields that readPtxScan() makes. Throws as readCloud() does.
+pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan);
 
 /// A cloud and the triangles between its points.
 struct Mesh {
@@ -62,15 +82,16 @@ Mesh readMesh(const std::filesystem::path& path);
 /// Throws as readCloud() does for what a header can tell, and for a pipe.
 pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path);
 
-/// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .xyz and .txt (named columns) or .obj (vertices),
-/// with the names that readers of the format expect: nx ny nz, and a number per channel of a colour. rgb has no
-/// opacity: its fourth byte is kept by PCD alone. `-` is standard output, as PCD. The
-/// file appears complete or not at all; what `path` held before is
-/// replaced only then. PCD and PLY hold a viewpoint. PLY holds no 64-bit integers, text no field with a count, OBJ x y
-/// z, a packed colour and normals.
+/// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .las (las.h), .xyz, .txt and .csv (named columns)
+/// or .obj (vertices), with the names that readers of the format expect: nx ny nz, and a number per channel of a
+/// colour. rgb has no opacity: its fourth byte is kept by PCD alone. `-` is standard output, as PCD. The file appears
+/// complete or not at all; what `path` held before is replaced only then. PCD and PLY hold a viewpoint. PLY holds no
+/// 64-bit integers, text no field with a count, OBJ x y z, a packed colour and normals. LAS has no place for points
+/// without finite coordinates, and leaves them out.
+/// @param las what the file of these points said, if it was LAS: kept in a .las
 /// @throws files::FileError when the extension is unknown, a field cannot be held, or the disk says no
 void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
-                const Viewpoint& viewpoint = no_viewpoint);
+                const Viewpoint& viewpoint = no_viewpoint, const LasHeaderPtr& las = nullptr);
 
 /// Fails early, before hours of work, where writeCloud() would for the path's sake.
 /// @throws files::FileError

@@ -142,6 +142,7 @@ Fields namedForFiles(Fields fields, const ChannelNames& channels)
 
 std::string remarkOnColours(const pcl::PCLPointCloud2& cloud)
 {
+  if (std::any_of(cloud.fields.begin(), cloud.fields.end(), isPackedColour)) return {}; // beside channels of LAS
   for (const ChannelNames& names : channel_names) {
     const auto is_channel = [&](const PointField& field) {
       return std::find(names.begin(), names.begin() + 3, inSmallLetters(field.name)) != names.begin() + 3;

@@ -39,7 +39,8 @@ std::vector<std::uint32_t> layOutForPcl(const Fields& values, pcl::PCLPointCloud
 /// would get the name of another field stays as it is.
 Fields namedForFiles(Fields fields, const ChannelNames& channels);
 
-/// Says which colours of the cloud are not packed, where PCL's tools will not see them; empty when there are none.
+/// Says which colours of the cloud are not packed, where PCL's tools will not see them; empty when there are none, or a
+/// packed one beside them.
 std::string remarkOnColours(const pcl::PCLPointCloud2& cloud);
 
 } // namespace pcl_bsh::io

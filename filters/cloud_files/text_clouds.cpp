@@ -140,10 +140,13 @@ pcl::PCLPointCloud2 parseColumns(std::string_view file)
   TextCursor text(file, '#');
   const Columns columns = readColumns(text, file);
   TextRows rows(columns.values);
+  std::vector<double> numbers(columns.values.size());
+  rows.reserveLines(text.rest());
   for (bool at_row = columns.at_row; at_row; at_row = nextRow(text)) {
     rows.add();
     rows.take(text, rows.size() - 1, 0, columns.values.size());
     text.requireEndOfLine();
+    for (TextCursor row = text; row.nextNumbers(numbers) && rows.add(numbers);) text = row;
   }
   return std::move(rows).finished();
 }

@@ -10,10 +10,10 @@
 
 namespace pcl_bsh::io {
 
-/// .xyz, .txt: a point per line. Values are separated by semicolons, commas, tabs or blanks, as the first line that has
-/// values says. That line, or a comment before it (// or #) with as many words, may name the columns; then colours of a
-/// byte per channel are packed, and normals get PCL's names (pcl_names.h). Without a row, a file that names x, y and z
-/// is an empty cloud. @throws FormatError
+/// .xyz, .txt, .csv: a point per line. Values are separated by semicolons, commas, tabs or blanks, as the first line
+/// that has values says. That line, or a comment before it (// or #) with as many words, may name the columns; then
+/// colours of a byte per channel are packed, and normals get PCL's names (pcl_names.h). Without a row, a file that
+/// names x, y and z is an empty cloud. @throws FormatError
 pcl::PCLPointCloud2 parseColumns(std::string_view file);
 
 /// Only the fields that parseColumns() makes. Rows are looked at where columns are named as a colour is: whether it is
@@ -38,8 +38,9 @@ pcl::PCLPointCloud2 parseOffHeader(std::string_view file);
 
 /// A first line that names the columns, then a point per line, every number with as many digits as its type needs. A
 /// packed colour is columns r g b [a], normals are nx ny nz.
+/// @param separator between values: a blank, or what CSV has
 /// @throws FormatError when a field cannot be a column
-void writeColumns(std::ostream& out, const pcl::PCLPointCloud2& cloud);
+void writeColumns(std::ostream& out, const pcl::PCLPointCloud2& cloud, char separator = ' ');
 
 /// The fields that an .obj has a place for: x y z, a packed colour, normals.
 std::vector<pcl::PCLPointField> fieldsForObj(const pcl::PCLPointCloud2& cloud);

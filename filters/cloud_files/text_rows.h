@@ -6,6 +6,9 @@
 #include <pcl_bsh/filters/cloud_files/pcl_names.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
 
+#include <algorithm>
+#include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +36,12 @@ public:
   const Fields& values() const { return values_; }
   std::size_t size() const { return cloud_.data.size() / cloud_.point_step; }
   void reserve(std::size_t points) { cloud_.data.reserve(points * cloud_.point_step); }
+  /// Room for as many rows as a text has lines, but no more than it can hold rows.
+  void reserveLines(std::string_view text)
+  {
+    const std::size_t most = text.size() / (2 * values_.size()) + 1; // a digit and a separator each
+    reserve(std::min(most, static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1));
+  }
   void add() { cloud_.data.resize(cloud_.data.size() + cloud_.point_step); }
 
   /// Where value i of a record is.
@@ -45,6 +54,28 @@ public:
   void take(TextCursor& text, std::size_t record, std::size_t first, std::size_t last)
   {
     for (std::size_t i = first; i < last; ++i) readNumber(text, values_[i].datatype, at(record, i));
+  }
+
+  /// Adds a record of these values. @return false, and nothing has happened, if one cannot be of its type
+  bool add(std::span<const double> numbers)
+  {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const bool byte = values_[i].datatype == pcl::PCLPointField::UINT8;
+      if (byte && !(numbers[i] >= 0 && numbers[i] <= 255 && std::trunc(numbers[i]) == numbers[i])) return false;
+    }
+    const std::size_t record = size();
+    add();
+    for (std::size_t i = 0; i < numbers.size(); ++i) put(record, i, numbers[i]);
+    return true;
+  }
+
+  /// Sets value i of a record, which its type can hold.
+  void put(std::size_t record, std::size_t i, double number)
+  {
+    withFieldType(values_[i].datatype, [&](auto zero) {
+      const auto value = static_cast<decltype(zero)>(number);
+      std::memcpy(at(record, i), &value, sizeof value);
+    });
   }
 
   /// The cloud, once all records are there. @throws FormatError beyond max_points

@@ -82,8 +82,9 @@ Fields allOf(const Fields& fields, const std::vector<const char*>& names)
 
 } // namespace
 
-void writeColumns(std::ostream& out, const pcl::PCLPointCloud2& cloud)
+void writeColumns(std::ostream& out, const pcl::PCLPointCloud2& cloud, char separator)
 {
+  const std::string between(1, separator);
   const Fields fields = namedForFiles(namedFields(cloud), text_channels);
   std::vector<TextValue> values;
   for (const pcl::PCLPointField& field : fields) {
@@ -91,12 +92,12 @@ void writeColumns(std::ostream& out, const pcl::PCLPointCloud2& cloud)
       throw FormatError("field '" + field.name + "' has " + std::to_string(field.count) + " values per point",
                         "write a .pcd instead");
     }
-    if (looksLikeNumber(field.name) || field.name.find_first_of("#,;") != std::string::npos ||
+    if (looksLikeNumber(field.name) || field.name.find_first_of("#,;\"") != std::string::npos ||
         field.name.starts_with("//") || field.name.starts_with(utf8_mark) || isUtf16(field.name)) {
       throw FormatError("field '" + field.name + "' cannot name a column", "rename the field");
     }
-    out << (values.empty() ? "" : " ") << field.name;
-    values.push_back({field, values.empty() ? "" : " "});
+    out << (values.empty() ? "" : between) << field.name;
+    values.push_back({field, values.empty() ? "" : between});
   }
   out << '\n';
   writeRows(out, cloud, values);

@@ -16,7 +16,7 @@ std::shared_ptr<StageCloud> ownCloud(StageCloudPtr&& cloud)
 
 std::shared_ptr<StageCloud> emptyLike(const StageCloud& cloud)
 {
-  return std::make_shared<StageCloud>(StageCloud{withoutRecords(cloud.cloud), cloud.viewpoint});
+  return std::make_shared<StageCloud>(StageCloud{withoutRecords(cloud.cloud), cloud.viewpoint, cloud.las_header});
 }
 
 } // namespace pcl_bsh::pipeline

@@ -11,12 +11,18 @@
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh::io {
+struct LasHeader;
+}
+
 namespace pcl_bsh::pipeline {
 
-/// A cloud with all its fields, and where its sensor stood: tx ty tz qw qx qy qz, as a PCD file has it.
+/// A cloud with all its fields, and what its file said beside them: where the sensor stood, tx ty tz qw qx qy qz, as a
+/// PCD file has it; of a LAS file all but its points (scale, offset, coordinate system), which writers.las keeps.
 struct StageCloud {
   pcl::PCLPointCloud2 cloud;
   std::array<float, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};
+  std::shared_ptr<const io::LasHeader> las_header = nullptr;
 };
 
 /// Several stages may read one cloud, so it does not change.
@@ -29,7 +35,7 @@ using CloudHeader = pcl::PCLPointCloud2;
 /// The cloud itself, to be changed in place, when this is the only pointer to it; otherwise a copy.
 std::shared_ptr<StageCloud> ownCloud(StageCloudPtr&& cloud);
 
-/// A cloud with the fields, the frame and the viewpoint of this one, and no points.
+/// A cloud with all that this one has but its points.
 std::shared_ptr<StageCloud> emptyLike(const StageCloud& cloud);
 
 } // namespace pcl_bsh::pipeline

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/file_identity.h>
+#include <pcl_bsh/filters/text_files/byte_source.h>
 #include <pcl_bsh/filters/text_files/file_bytes.h>
 
 #include <fcntl.h>
@@ -60,7 +61,43 @@ std::size_t expectedSize(const fs::path& path, int descriptor)
   return S_ISREG(status.st_mode) ? static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) : 0;
 }
 
+class OpenFile : public ByteSource {
+public:
+  explicit OpenFile(const fs::path& path)
+  : path_(path),
+    descriptor_(path),
+    size_(expectedSize(path, descriptor_.number()))
+  {
+    if (size_ == 0) throw files::FileError(path, "is empty", "export or copy the file again");
+  }
+
+  std::uint64_t size() const override { return size_; }
+
+  void read(std::uint64_t at, char* to, std::size_t count) override
+  {
+    while (count > 0) {
+      const ssize_t got = pread(descriptor_.number(), to, count, static_cast<off_t>(at));
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) failToRead(path_, "cannot be read", errno);
+      if (got == 0) throw files::FileError(path_, "became shorter while it was read", "read it when it is complete");
+      at += static_cast<std::uint64_t>(got);
+      to += got;
+      count -= static_cast<std::size_t>(got);
+    }
+  }
+
+private:
+  fs::path path_;
+  Descriptor descriptor_;
+  std::uint64_t size_;
+};
+
 } // namespace
+
+std::unique_ptr<ByteSource> openBytes(const fs::path& path)
+{
+  return std::make_unique<OpenFile>(path);
+}
 
 FileBytes::FileBytes(const fs::path& path, std::size_t most)
 {

@@ -2,6 +2,7 @@
 // Walks a text line by line, and a line word by word.
 #pragma once
 
+#include <pcl_bsh/filters/text_files/number_line.h>
 #include <pcl_bsh/filters/text_files/parse_number.h>
 
 #include <cstddef>
@@ -42,7 +43,8 @@ public:
   }
 
   /// From now on exactly one such character separates words, and blanks around a word do not count; two in a row have
-  /// an empty word between them, one at the end of a line has none behind it. ' ': any number of blanks and tabs.
+  /// an empty word between them, one at the end of a line has none behind it. Quotes around a word do not count: "x".
+  /// ' ': any number of blanks and tabs.
   void separateBy(char separator) noexcept { separator_ = separator; }
 
   /// Goes to the next line that has a word. False when there is none.
@@ -52,6 +54,18 @@ public:
       if (end_ == text_.size()) return false;
       readLine();
     } while (line_.empty());
+    return true;
+  }
+
+  /// Takes the next line as a whole, if it is that many numbers and nothing else. Otherwise nothing has happened, and
+  /// nextLine() and its words tell what is there.
+  bool nextNumbers(std::span<double> values)
+  {
+    const std::size_t bytes = readNumberLine(text_.substr(end_), separator_, values);
+    if (bytes == 0) return false;
+    end_ += bytes;
+    ++line_number_;
+    line_ = {};
     return true;
   }
 
@@ -132,7 +146,13 @@ private:
     const std::string_view taken = line_.substr(0, length);
     line_.remove_prefix(std::min(length + 1, line_.size()));
     skipBlanks();
-    return taken.substr(0, taken.find_last_not_of(" \t") + 1);
+    return withoutQuotes(taken.substr(0, taken.find_last_not_of(" \t") + 1));
+  }
+
+  static std::string_view withoutQuotes(std::string_view word) noexcept
+  {
+    const bool quoted = word.size() >= 2 && word.front() == '"' && word.back() == '"';
+    return quoted ? word.substr(1, word.size() - 2) : word;
   }
 
   void readLine() noexcept

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files damaged at random are read or refused: no crash, no hang, no memory that the file does not justify.
+#include "las_sample.h"
 #include "samples.h"
 
+#include <pcl_bsh/filters/cloud_files/las.h>
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/cloud_files/ply.h>
+#include <pcl_bsh/filters/cloud_files/scan_text.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 
 #include <functional>
@@ -24,6 +27,18 @@ pcl::PCLPointCloud2 parseAnyPly(std::string_view file)
 {
   Viewpoint viewpoint;
   return parsePly(file, viewpoint);
+}
+
+pcl::PCLPointCloud2 parseAnyLas(std::string_view file)
+{
+  LasReader reader(std::make_unique<HeldBytes>(file));
+  return readLas(reader);
+}
+
+pcl::PCLPointCloud2 parseAnyPtx(std::string_view file)
+{
+  Viewpoint viewpoint;
+  return parsePtx(file, viewpoint);
 }
 
 template <typename Write>
@@ -101,6 +116,23 @@ TEST(Damage, Text)
   expectSurvival(parseObj, "vn 0 0 1\nv 1 2 3 0.2 0.4 1\nf 1//1 1 1\n");
   expectSurvival(parseColumns, "x y z i\n1 2 3 4\n5 6 7 8\n");
   expectSurvival(parseColumns, "//X,Y,Z,R,G,B\n1,2,3,40,50,60\n5,6,7,8,9,10\n");
+}
+
+TEST(Damage, Las)
+{
+  LasSample sample(4, 7, 6);
+  sample.records = {LasSample::record(
+      "LASF_Spec", 4, LasSample::descriptor(3, "width", 25, 0.1, 3, 9) + LasSample::descriptor(9, "more"))};
+  sample.extended = {LasSample::extendedRecord("somebody", 9, "more")};
+  sample.addPoints(2);
+  expectSurvival(parseAnyLas, sample.text());
+}
+
+TEST(Damage, Scans)
+{
+  expectSurvival(parsePts, "2\n1 2 3 -4 50 60 70\n5 6 7 8 9 10 11\n");
+  const std::string head = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 7 1\n";
+  expectSurvival(parseAnyPtx, "1\n2\n" + head + "1 2 3 0.5\n0 0 0 0.5\n1\n1\n" + head + "4 5 6 1\n");
 }
 
 } // namespace pcl_bsh::io

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files name normals and colours in their own way; between reader and writer they have PCL's names and meaning.
+#include "../cloud_files/las_sample.h"
 #include "../cloud_files/samples.h"
 #include "run_stage.h"
 
@@ -89,6 +90,68 @@ TEST_F(FileFields, TheSensorsPlaceIsKept)
   EXPECT_NEAR(viewpoint[1], 5, 1e-6);
   EXPECT_NEAR(viewpoint[3], std::sqrt(0.5), 1e-6);
   EXPECT_NEAR(viewpoint[6], std::sqrt(0.5), 1e-6);
+}
+
+/// Scale, offset, records and waveforms travel with the points through every kind of stage.
+TEST_F(FileFields, HeadersOfLasGoFromReaderToWriter)
+{
+  io::LasSample sample(4, 9, 2);
+  sample.global_encoding = 2;
+  sample.records = {io::LasSample::record("LASF_Projection", 2112, "PROJCS[...]"),
+                    io::LasSample::record("LASF_Spec", 4, io::LasSample::descriptor(3, "width"))};
+  sample.extended = {io::LasSample::extendedRecord("LASF_Spec", 65535, "waves")};
+  sample.addPoints(30);
+  folder.write("a.las", sample.text());
+  folder.write("robot.xyz", "0 0 0\n");
+  const auto bare = [&](const std::string& stages) {
+    EXPECT_THAT(run("a.las", stages, "b.las").warnings, testing::IsEmpty());
+    return contentOf(folder / "b.las");
+  };
+  const std::string all = R"({"type": "filters.pass_through", "filter_field_name": "intensity", "negative": true,
+                              "filter_limits": [70000, 80000]})";
+  EXPECT_TRUE(bare(all) == sample.text());
+
+  const std::string robot = "\"obstacle\": \"" + (folder / "robot.xyz").string() + "\", \"clearance\": 1";
+  const std::string flagged = bare("{\"type\": \"filters.bsh_flag\", " + robot + "}");
+  EXPECT_NE(flagged.find("PROJCS"), std::string::npos);
+  EXPECT_NE(flagged.find("1 collides"), std::string::npos);
+  EXPECT_TRUE(flagged.ends_with("waves"));
+  EXPECT_TRUE(bare("{\"type\": \"filters.bsh_collision\", " + robot + "}") == sample.text());
+
+  for (const std::string stage : {R"({"type": "filters.voxel_grid", "leaf_size": 1e6})",
+                                  R"({"type": "filters.transform", "transform": [0, 0, 0.001, 0, 0, 0]})"}) {
+    const std::string file = bare(stage);
+    EXPECT_EQ(io::get<double>(file, 131), sample.scale[0]) << stage;
+    EXPECT_NE(file.find("PROJCS"), std::string::npos) << stage;
+    EXPECT_TRUE(file.ends_with("waves")) << stage;
+  }
+}
+
+TEST_F(FileFields, LasLeavesOutWhatIsNotFinite)
+{
+  folder.write("a.xyz", "0 0 0\nnan 0 0\n1 1 1\n");
+  const auto warnings = run("a.xyz", R"({"type": "filters.merge"})", "b.las").warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], HasSubstr("1 are left out"));
+  EXPECT_EQ(io::readCloud(folder / "b.las").width, 2U);
+}
+
+TEST_F(FileFields, OneScanOfSeveral)
+{
+  const std::string head = "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 ";
+  folder.write("a.ptx", head + "5 1\n1 2 3 0.5\n" + head + "9 1\n1 2 3 0.5\n");
+  const auto read = [&](const std::string& option) {
+    Pipeline::parse("[{\"type\": \"readers.ptx\", \"filename\": \"" + (folder / "a.ptx").string() + "\"" + option +
+                    "}, \"" + (folder / "b.pcd").string() + "\"]")
+        .run();
+    io::Viewpoint viewpoint;
+    const pcl::PCLPointCloud2 cloud = io::readCloud(folder / "b.pcd", &viewpoint);
+    return io::namesOf(cloud) + " " + std::to_string(cloud.width) + " " +
+           std::to_string(static_cast<int>(viewpoint[2]));
+  };
+  EXPECT_EQ(read(""), "x y z intensity scan 2 5");
+  EXPECT_EQ(read(", \"scan\": 1"), "x y z intensity 1 9");
+  EXPECT_THROW(read(", \"scan\": 2"), std::exception);
 }
 
 } // namespace

@@ -3,6 +3,9 @@
 
 #include <pcl_bsh/filters/text_files/text_cursor.h>
 
+#include <array>
+#include <cstring>
+
 namespace pcl_bsh::io {
 
 TEST(TextCursor, WalksWordsOfLinesOfAllSystems)
@@ -81,6 +84,51 @@ TEST(TextCursor, RestBeginsBehindTheLine)
     ASSERT_TRUE(text.nextLine());
     EXPECT_EQ(text.rest(), "\x01 body");
   }
+}
+
+TEST(TextCursor, LinesOfNumbersAreReadAsTheirWordsAre)
+{
+  const std::vector<std::string> lines = {
+      "1 2 3",     " 1\t2 3 ",
+      "1,2,3",     "1 , 2,\t3",
+      "1;2;3",     "1\t2\t3",
+      "1\t\t3",    "1e5 -.5 5.",
+      "+1 2 3",    "1 2",
+      "1 2 3 4",   "1 2 x",
+      "1 2 3x",    "nan inf 1",
+      "1e400 1 1", "1e-400 1 1",
+      "1,2,",      "1,,3",
+      "0x10 1 1",  "1 2 3#c",
+      "",          "  ",
+      "1 2,3",     "-nan 0 -0",
+      "\"1\",2,3", "1.7976931348623157e308 4.9e-324 123456789012345678901234567890"};
+  for (const char separator : {' ', ',', ';', '\t'}) {
+    for (const std::string end : {"", "\n", "\r\n", "\r", "\n7 8 9", "\r7"}) {
+      for (const std::string& line : lines) {
+        const std::string text = line + end;
+        TextCursor fast(text), slow(text);
+        fast.separateBy(separator);
+        slow.separateBy(separator);
+        std::array<double, 3> values{};
+        if (!fast.nextNumbers(values)) continue;
+        ASSERT_TRUE(slow.nextLine()) << text;
+        for (const double value : values) {
+          const double word = slow.number<double>();
+          EXPECT_EQ(std::memcmp(&word, &value, sizeof word), 0) << text;
+        }
+        slow.requireEndOfLine();
+        EXPECT_EQ(fast.rest(), slow.rest()) << text;
+      }
+    }
+  }
+  std::array<double, 3> values{};
+  TextCursor text("1 2 3\n4 5 6\nx\n");
+  EXPECT_TRUE(text.nextNumbers(values) && text.nextNumbers(values));
+  EXPECT_EQ(values[2], 6);
+  EXPECT_FALSE(text.nextNumbers(values));
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(text.line(), "x");
+  EXPECT_EQ(defectOf([&] { text.number<int>(); }).find("line 3"), 0U);
 }
 
 TEST(TextCursor, ErrorsNameTheLine)

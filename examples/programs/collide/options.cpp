@@ -14,8 +14,8 @@ namespace {
 
 constexpr auto collide_footer =
     R"(Point p of INPUT and q of OBSTACLE collide iff |p - POSE q| <= D, decided exactly, or as --accuracy says.
-Reads .pcd .ply .obj .off .xyz .txt, writes all of these but .off. Files may be pipes; - is standard input (PCD, PLY,
-OFF or columns), or standard output for OUTPUT (PCD) and --report.
+Reads .pcd .ply .las .obj .off .pts .ptx .csv .xyz .txt, writes all of these but .off .pts .ptx. Files may be pipes; -
+is standard input (PCD, PLY, LAS, OFF or columns), or standard output for OUTPUT (PCD) and --report.
 Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example: which points of a hall are within 5 cm of a robot at (1.5, 2, 0), turned by 90 degrees?

@@ -20,6 +20,7 @@ struct BshFlag : Stage, CollisionQuestion {
   {
     auto output = std::make_shared<StageCloud>();
     output->viewpoint = inputs[0]->viewpoint;
+    output->las_header = inputs[0]->las_header;
     Filter filter;
     setUp(filter, inputs[0], *this);
     filter.setKeepFlagged(true);

@@ -9,6 +9,9 @@ std::deque<StageType> builtInStages()
           plyReader(),
           objReader(),
           offReader(),
+          lasReader(),
+          ptsReader(),
+          ptxReader(),
           textReader(),
           voxelGrid(),
           approximateVoxelGrid(),
@@ -25,6 +28,7 @@ std::deque<StageType> builtInStages()
           bshFlag(),
           pcdWriter(),
           plyWriter(),
+          lasWriter(),
           objWriter(),
           textWriter(),
           clashWriter()};

@@ -5,8 +5,10 @@
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/text_files/small_letters.h>
+#include <pcl_bsh/search/cloud_view.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace pcl_bsh::pipeline {
 namespace {
@@ -35,7 +37,26 @@ struct FileReader : Stage {
   StageCloudPtr run(StageClouds&&) override
   {
     auto cloud = std::make_shared<StageCloud>();
-    cloud->cloud = io::readCloud(filename.path, &cloud->viewpoint);
+    cloud->cloud = io::readCloud(filename.path, &cloud->viewpoint, &cloud->las_header);
+    return cloud;
+  }
+};
+
+/// A PTX file may hold several scans.
+struct PtxReader : FileReader {
+  std::optional<int> scan;
+
+  CloudHeader plan(const std::vector<CloudHeader>& inputs) override
+  {
+    CloudHeader header = FileReader::plan(inputs);
+    return scan ? io::readPtxScanHeader(filename.path, static_cast<std::size_t>(*scan)) : header;
+  }
+
+  StageCloudPtr run(StageClouds&& inputs) override
+  {
+    if (!scan) return FileReader::run(std::move(inputs));
+    auto cloud = std::make_shared<StageCloud>();
+    cloud->cloud = io::readPtxScan(filename.path, static_cast<std::size_t>(*scan), &cloud->viewpoint);
     return cloud;
   }
 };
@@ -59,7 +80,25 @@ struct FileWriter : Stage {
 
 protected:
   virtual CloudHeader written(const CloudHeader& cloud) const { return cloud; }
-  virtual void write(const StageCloud& cloud) { io::writeCloud(filename.path, cloud.cloud, cloud.viewpoint); }
+  virtual void write(const StageCloud& cloud)
+  {
+    io::writeCloud(filename.path, cloud.cloud, cloud.viewpoint, cloud.las_header);
+  }
+};
+
+/// LAS stores coordinates as integers.
+struct LasWriter : FileWriter {
+protected:
+  void write(const StageCloud& cloud) override
+  {
+    const PointsView points = viewOf(cloud.cloud);
+    std::size_t left_out = 0;
+    for (std::uint32_t i = 0; i < points.count; ++i)
+      if (!isFinite(points.point(i))) ++left_out;
+    if (left_out > 0)
+      warn("a .las has no place for points that are not finite: " + std::to_string(left_out) + " are left out");
+    FileWriter::write(cloud);
+  }
 };
 
 /// OBJ has room for x y z, a colour and normals alone.
@@ -90,8 +129,13 @@ template <typename S>
 StageType ofFiles(const std::string& name, const std::vector<std::string>& extensions, const std::string& doc,
                   const std::string& option_doc)
 {
-  StageType type =
-      describe<S>(name, doc).extensions(extensions).option(&S::filename, "filename", option_doc).required();
+  StageDescription<S> description = describe<S>(name, doc);
+  description.extensions(extensions).option(&S::filename, "filename", option_doc).required();
+  if constexpr (std::is_same_v<S, PtxReader>) {
+    description.option(&S::scan, "scan", "only that scan, from 0, as an organised cloud; all when it is not given")
+        .atLeast(0);
+  }
+  StageType type = description;
   type.make = [extensions] {
     auto stage = std::make_unique<S>();
     stage->extensions = extensions;
@@ -136,10 +180,31 @@ StageType offReader()
       "The vertices of an OFF file, as float64, with their normals, and their colours packed as rgba or rgb.");
 }
 
+StageType lasReader()
+{
+  return reader("readers.las", {".las"},
+                "LAS 1.0 to 1.4, point formats 0 to 10: x y z as float64, every field and the extra bytes by their "
+                "descriptions. Scale, offset and all records, as of the coordinate system, go on to writers.las.");
+}
+
+StageType ptsReader()
+{
+  return reader("readers.pts", {".pts"}, "Leica's PTS: x y z as float64, intensity as float32, colours packed as rgb.");
+}
+
+StageType ptxReader()
+{
+  return ofFiles<PtxReader>("readers.ptx", {".ptx"},
+                            "Leica's PTX: all scans in their common frame, the scanner's pose as viewpoint, NaN where "
+                            "it saw nothing. One scan "
+                            "is an organised cloud; several are one row of points with a field `scan`.",
+                            "the file to read");
+}
+
 StageType textReader()
 {
   return reader(
-      "readers.text", {".txt", ".xyz"},
+      "readers.text", {".txt", ".xyz", ".csv"},
       "A point per line, as float64: x y z and more columns, named by the first line or column_4, ...; columns "
       "r g b of whole numbers up to 255 are packed as rgb, nx ny nz become normal_x normal_y normal_z.");
 }
@@ -158,6 +223,17 @@ StageType plyWriter()
       to_write);
 }
 
+StageType lasWriter()
+{
+  return ofFiles<LasWriter>("writers.las", {".las"},
+                            "LAS as its input file was: version, point format, scale, offset and all records; without "
+                            "one LAS 1.4, the scale by "
+                            "the cloud's extent. Other fields, as `collision`, are extra bytes with a description. "
+                            "Points that are not finite "
+                            "are left out, with a warning.",
+                            to_write);
+}
+
 StageType objWriter()
 {
   return ofFiles<ObjWriter>("writers.obj", {".obj"},
@@ -167,8 +243,9 @@ StageType objWriter()
 
 StageType textWriter()
 {
-  return ofFiles<FileWriter>("writers.text", {".txt", ".xyz"},
-                             "A line that names the fields, then a point per line; colours are columns r g b.",
+  return ofFiles<FileWriter>("writers.text", {".txt", ".xyz", ".csv"},
+                             "A line that names the fields, then a point per line; colours are columns r g b. A .csv "
+                             "has commas between values, others blanks.",
                              to_write);
 }
 

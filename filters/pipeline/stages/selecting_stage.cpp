@@ -28,7 +28,8 @@ StageCloudPtr SelectingStage::run(StageClouds&& inputs)
     }
   }
   if (!keep_organized) {
-    return std::make_shared<StageCloud>(StageCloud{selectedRecords(input->cloud, kept), input->viewpoint});
+    return std::make_shared<StageCloud>(
+        StageCloud{selectedRecords(input->cloud, kept), input->viewpoint, input->las_header});
   }
   const auto output = ownCloud(std::move(input));
   overwritePoints(output->cloud, removed, filterValue());

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/cloud_files/las.h>
+#include <pcl_bsh/filters/cloud_files/records.h>
+
+#include <algorithm>
+
+namespace pcl_bsh::io {
+
+namespace {
+
+constexpr std::size_t most_bytes_at_once = std::size_t{1} << 17; // which the caches hold, decoded as well
+
+} // namespace
+
+std::vector<LasField> lasFieldsOf(const LasBlock& block, std::string_view descriptors)
+{
+  std::vector<LasField> fields = lasFields(block.format, block.scale, block.offset);
+  addExtraBytes(fields, descriptors, lasRecordBytes(block.format), block.record_length);
+  return fields;
+}
+
+LasReader::LasReader(std::unique_ptr<ByteSource> file) : file_(std::move(file)), block_(readLasBlock(*file_))
+{
+  header_.block = block_;
+  header_.before_points = file_->text(0, block_.points_at);
+  findDescriptors();
+  fields_ = lasFieldsOf(block_, header_.descriptors);
+  offsets_ = layOutLas(fields_, cloud_);
+  cloud_.height = 1;
+}
+
+void LasReader::findDescriptors()
+{
+  const std::vector<LasExtendedRecord> behind = lasExtendedRecords(*file_, block_);
+  for (const LasRecord& record : lasRecordsOf(header_.before_points, block_).records) {
+    if (record.user() != las_specification || record.id() != las_extra_bytes_id) continue;
+    header_.descriptors = record.content();
+    return;
+  }
+  for (const LasExtendedRecord& record : behind) {
+    if (record.user != las_specification || record.id != las_extra_bytes_id) continue;
+    header_.descriptors = file_->text(record.at + las_extended_head, static_cast<std::size_t>(record.content_bytes));
+    header_.described_behind = record.at - block_.endOfPoints();
+    return;
+  }
+}
+
+LasHeader LasReader::header() const
+{
+  LasHeader header = header_;
+  const std::uint64_t end = block_.endOfPoints();
+  header.behind_points = file_->text(end, static_cast<std::size_t>(file_->size() - end));
+  return header;
+}
+
+/// Channels have 16 bits, but many writers put bytes there. A file without a channel above 255 is taken for one of
+/// those; most others show one in their first points.
+unsigned LasReader::colourShift()
+{
+  if (colour_shift_) return *colour_shift_;
+  const std::size_t at = lasFields(block_.format, block_.scale, block_.offset).size();
+  const auto colour = std::find_if(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(at),
+                                   [](const LasField& field) { return field.kind == LasField::Kind::colour; });
+  colour_shift_ = 0;
+  const std::uint64_t batch = std::max<std::uint64_t>(most_bytes_at_once / block_.record_length, 1);
+  for (std::uint64_t i = 0; colour != fields_.end() && i < block_.points && *colour_shift_ == 0; i += batch) {
+    const std::uint64_t points = std::min(batch, block_.points - i);
+    const std::string records = file_->text(block_.points_at + i * block_.record_length, points * block_.record_length);
+    for (std::size_t k = 0; k < points; ++k)
+      for (std::size_t channel = 0; channel < 3; ++channel)
+        if (lasNumber<std::uint16_t>(records, k * block_.record_length + colour->at + 2 * channel) > 255) {
+          colour_shift_ = 8;
+        }
+  }
+  return *colour_shift_;
+}
+
+std::size_t LasReader::read(std::uint8_t* records, std::size_t most)
+{
+  const unsigned colour_shift = hasLasColours(block_.format) ? colourShift() : 0;
+  const std::size_t step = cloud_.point_step, length = block_.record_length;
+  const std::size_t wanted = static_cast<std::size_t>(std::min<std::uint64_t>(most, block_.points - next_));
+  for (std::size_t done = 0; done < wanted;) {
+    const std::size_t points = std::min(std::max<std::size_t>(most_bytes_at_once / length, 1), wanted - done);
+    records_.resize(points * length);
+    file_->read(block_.points_at + next_ * length, records_.data(), records_.size());
+    for (std::size_t f = 0; f < fields_.size(); ++f) {
+      decodeLas(fields_[f], records_.data(), length, points, records + done * step + offsets_[f], step, colour_shift);
+    }
+    done += points;
+    next_ += points;
+  }
+  return wanted;
+}
+
+std::size_t LasReader::read(pcl::PCLPointCloud2& batch, std::size_t most)
+{
+  if (batch.point_step != cloud_.point_step || batch.fields.size() != cloud_.fields.size()) batch = cloud_;
+  const auto points = static_cast<std::uint32_t>(std::min<std::uint64_t>({most, block_.points - next_, max_points}));
+  batch.width = points;
+  batch.row_step = points * batch.point_step;
+  batch.data.resize(std::size_t{points} * batch.point_step);
+  read(batch.data.data(), points);
+  setDense(batch);
+  return points;
+}
+
+pcl::PCLPointCloud2 readLas(LasReader& reader)
+{
+  requirePoints(reader.size());
+  pcl::PCLPointCloud2 cloud = reader.cloudHeader();
+  allocate(cloud, static_cast<std::uint32_t>(reader.size()));
+  reader.read(cloud.data.data(), cloud.width);
+  return cloud;
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// LAS files read in batches of points, so that memory does not grow with the file.
+//
+//   LasReader reader(openBytes("site.las"));
+//   for (pcl::PCLPointCloud2 batch; reader.read(batch, 1 << 16) > 0;) use(batch);
+#pragma once
+
+#include <pcl_bsh/filters/cloud_files/las_fields.h>
+#include <pcl_bsh/filters/cloud_files/las_header.h>
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// LAS 1.0 to 1.4, point formats 0 to 10. What the header says of places and lengths is checked against the file's size
+/// before anything is read there. Counts of records that have no room before the points are taken for what has room,
+/// and bounds are not looked at; the points themselves must all be there.
+class LasReader {
+public:
+  /// @throws FormatError for what a header can tell; what `file` throws
+  explicit LasReader(std::unique_ptr<ByteSource> file);
+
+  /// Points of the file.
+  std::uint64_t size() const noexcept { return block_.points; }
+
+  const LasBlock& block() const noexcept { return block_; }
+  const std::vector<LasField>& fields() const noexcept { return fields_; }
+
+  /// The fields of the clouds that read() gives (lasFields(), addExtraBytes()), without points.
+  const pcl::PCLPointCloud2& cloudHeader() const noexcept { return cloud_; }
+
+  /// Everything beside the points. Takes as much memory as that does in the file.
+  LasHeader header() const;
+
+  /// Reads the next points, `most` at most, into a cloud of one row. Its memory is used again.
+  /// @return how many; 0 at the end
+  std::size_t read(pcl::PCLPointCloud2& batch, std::size_t most);
+
+  /// The same into records of cloudHeader()'s layout, for which there is room.
+  std::size_t read(std::uint8_t* records, std::size_t most);
+
+private:
+  void findDescriptors();
+  unsigned colourShift();
+
+  std::unique_ptr<ByteSource> file_;
+  LasBlock block_;
+  LasHeader header_; ///< all but what is behind the points
+  std::vector<LasField> fields_;
+  std::vector<std::uint32_t> offsets_; ///< of fields_, in the cloud's records
+  pcl::PCLPointCloud2 cloud_;
+  std::uint64_t next_ = 0;
+  std::string records_;
+  std::optional<unsigned> colour_shift_;
+};
+
+/// The fields of a file, as LasReader has them. @param descriptors of its extra bytes
+std::vector<LasField> lasFieldsOf(const LasBlock& block, std::string_view descriptors);
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Besides what holds of every reader: written with the header that was read, a cloud is the same; without it, it has as
+// many points.
+#include "read.h"
+
+#include <pcl_bsh/filters/cloud_files/las.h>
+
+namespace {
+
+using namespace pcl_bsh;
+
+io::LasReader readerOf(std::string_view file)
+{
+  return io::LasReader(std::make_unique<io::HeldBytes>(file));
+}
+
+pcl::PCLPointCloud2 parse(std::string_view file)
+{
+  io::LasReader reader = readerOf(file);
+  return io::readLas(reader);
+}
+
+pcl::PCLPointCloud2 parseHeader(std::string_view file)
+{
+  return readerOf(file).cloudHeader();
+}
+
+} // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+  const std::string_view file(reinterpret_cast<const char*>(data), size);
+  std::optional<io::LasHeader> header;
+  const auto write = [&](std::ostream& out, const pcl::PCLPointCloud2& cloud) {
+    header = readerOf(file).header();
+    io::writeLas(out, cloud, &*header);
+  };
+  fuzz::readAny(data, size, parse, parseHeader, write);
+  if (!header) return 0;
+  const pcl::PCLPointCloud2 cloud = parse(file);
+  const auto bare = fuzz::written(
+      cloud, [](std::ostream& out, const pcl::PCLPointCloud2& points) { io::writeLas(out, points, nullptr); });
+  if (bare) fuzz::require(readerOf(*bare).size() == cloud.width, "other points when written without a header");
+  return 0;
+}
