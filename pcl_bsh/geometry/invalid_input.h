@@ -40,6 +40,7 @@ enum class Input : std::uint8_t {
   motion,       ///< of a scene's object, or one of many
   scene,        ///< its options, objects, parts or rules
   max_distance, ///< of points' distances
+  beyond,       ///< which distance points are far
 };
 
 /// Thrown by the core wherever its declarations say std::invalid_argument.
