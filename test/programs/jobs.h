@@ -23,8 +23,8 @@ inline std::vector<Job> allJobs()
   std::vector<Job> jobs = {
       {"pcl_bsh_collide",
        {"scan.xyz", "robot.xyz", "out.pcd", "--clearance", "0.1", "--report", "report.json", "--clashes", "list.json",
-        "--clashes", "list.csv", "--clashes", "list.html"},
-       {"out.pcd", "report.json", "list.json", "list.csv", "list.html"}},
+        "--clashes", "list.csv", "--clashes", "list.html", "--distances", "--distance-page", "distances.html"},
+       {"out.pcd", "report.json", "list.json", "list.csv", "list.html", "distances.html"}},
       {"pcl_bsh_pipeline",
        {"pipeline.json", "--metadata", "run.json"},
        {"run.json", "out.pcd", "out.ply", "list.html", "list.csv"}},

@@ -23,11 +23,13 @@ std::deque<StageType> builtInStages()
           merge(),
           bshCollision(),
           bshFlag(),
+          bshDistance(),
           pcdWriter(),
           plyWriter(),
           objWriter(),
           textWriter(),
-          clashWriter()};
+          clashWriter(),
+          distanceWriter()};
 }
 
 } // namespace pcl_bsh::pipeline

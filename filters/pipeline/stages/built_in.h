@@ -27,11 +27,13 @@ StageType euclideanCluster();
 StageType merge();
 StageType bshCollision();
 StageType bshFlag();
+StageType bshDistance();
 StageType pcdWriter();
 StageType plyWriter();
 StageType objWriter();
 StageType textWriter();
 StageType clashWriter();
+StageType distanceWriter();
 
 /// All of them, in the order of the documentation.
 std::deque<StageType> builtInStages();
