@@ -64,13 +64,9 @@ void requireClashFormat(const fs::path& list)
 
 void requireDistancePage(const fs::path& page)
 {
-  try {
-    if (page.extension() != ".html") throw files::FileError(page, "is no page for browsers", "name a .html file");
-    files::requireWritable(page);
-  }
-  catch (const files::FileError& error) {
-    throw UsageError(std::string("--distance-page: ") + error.what());
-  }
+  if (page.extension() != ".html")
+    throw UsageError("--distance-page: " + page.string() + ": is no page for browsers: name a .html file");
+  files::requireWritable(page);
 }
 
 /// Checks all that can be checked before the first cloud is loaded.
