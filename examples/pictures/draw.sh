@@ -30,6 +30,15 @@ view "${man[@]}" --pose=-7,0,-2.6,0,0,0 --clearance 0.5 --trace --camera=-9.4,-2
 view --scene examples/scenes/walk.json --step 90 --clearance 0.3 --camera=-17,-7.5,-0.4,-6.6,0.3,-2.9 \
   --screenshot examples/pictures/scene.png
 
+# Two real scans of a room, at the first guess of how they lie to each other: how far is each point of the first from the
+# second? Drawn where the scans are there: PCL_BSH_SHARED_DIR is a folder with data/indoor_room_scan1.pcd and ..._scan2.pcd
+# (from PCL's repository of data, tutorials/room_scan1.pcd and room_scan2.pcd).
+rooms="${PCL_BSH_SHARED_DIR:-}/data/indoor_room_scan"
+if [[ -r "${rooms}1.pcd" ]]; then
+  view "${rooms}1.pcd" --model "${rooms}2.pcd" --pose 1.79387,0.720047,0,0,0,0.6931 --color distance \
+    --camera=-9,-13,15,0.5,0,-0.5 --screenshot examples/pictures/distances.png
+fi
+
 # What accuracy costs in time: measured, so draw it while nothing else runs.
 "$programs/pcl_bsh_accuracy" "$scans/building.ply" "$scans/man.off" --clearance 0.5 --pose=-7,0,-2.6,0,0,0 --poses 10 \
   --repeat 41 --unit m --peers --out "$work/study" >/dev/null

@@ -6,11 +6,13 @@
 #include "collide/report.h"
 
 #include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
+#include <pcl_bsh/filters/reports/distance_report.h>
 #include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/search/cloud_view.h>
@@ -61,6 +63,13 @@ void requireClashFormat(const fs::path& list)
   }
 }
 
+void requireDistancePage(const fs::path& page)
+{
+  if (page.extension() != ".html")
+    throw UsageError("--distance-page: " + page.string() + ": is no page for browsers: name a .html file");
+  files::requireWritable(page);
+}
+
 /// Checks all that can be checked before the first cloud is loaded.
 void check(const Options& options)
 {
@@ -92,6 +101,7 @@ void check(const Options& options)
     requireClashFormat(list);
     files::requireWritable(list);
   }
+  if (options.distances && options.distances->page) requireDistancePage(*options.distances->page);
 }
 
 Scan load(const fs::path& path, double& seconds)
@@ -140,11 +150,23 @@ pcl::PCLPointCloud2 marked(const fs::path& path, const pcl::PCLPointCloud2& clou
   }
 }
 
+/// The distance of every point, of both clouds, and that of the input's as the output tells it.
+struct Distances {
+  SymmetricDistances found;
+  std::vector<float> field;
+};
+
 /// What the output gets beside all the input had.
-std::vector<NewField> newFields(const Options& options, const TrajectoryResult& found)
+std::vector<NewField> newFields(const Options& options, const TrajectoryResult& found, const Distances& distances)
 {
   const bool all = options.moves() && !options.accuracy.stopsEarly();
-  return all ? fieldsOf(found) : std::vector<NewField>{{collision_field_name, &found.flags}};
+  std::vector<NewField> fields;
+  if (all)
+    fields = fieldsOf(found);
+  else if (options.keep == Keep::flagged)
+    fields.push_back({collision_field_name, &found.flags});
+  if (options.distances) fields.push_back({distance_field_name, &distances.field});
+  return fields;
 }
 
 /// The input's points that are wanted, as one row.
@@ -160,12 +182,15 @@ pcl::PCLPointCloud2 select(const pcl::PCLPointCloud2& cloud, const PointsView& v
   return selectedRecords(cloud, kept);
 }
 
-void write(const Options& options, const Scan& input, const TrajectoryResult& found, double& seconds)
+void write(const Options& options, const Scan& input, const TrajectoryResult& found, const Distances& distances,
+           double& seconds)
 {
   cli::Step step("Writing " + options.output.string());
-  const pcl::PCLPointCloud2 cloud = options.keep == Keep::flagged
-                                        ? marked(options.input, input.cloud, newFields(options, found))
-                                        : select(input.cloud, viewOf(input.cloud), found.flags, options.keep);
+  pcl::PCLPointCloud2 cloud;
+  if (options.keep == Keep::flagged || options.distances)
+    cloud = marked(options.input, input.cloud, newFields(options, found, distances));
+  if (options.keep != Keep::flagged)
+    cloud = select(options.distances ? cloud : input.cloud, viewOf(input.cloud), found.flags, options.keep);
   io::writeCloud(options.output, cloud, input.viewpoint, input.las);
   seconds += step.done(std::to_string(std::size_t{cloud.width} * cloud.height) + " points");
 }
@@ -182,7 +207,23 @@ std::string distanceText(const cli::CollisionReport& report)
   return text.str();
 }
 
-void summarise(const Options& options, const cli::CollisionReport& report, const std::vector<Clash>& clashes)
+/// With the unit, where it is known.
+std::string distanceSummary(const io::DistanceReport& report)
+{
+  const auto length = [&](double value) {
+    std::ostringstream text;
+    if (std::isnan(value)) return std::string("unknown");
+    text << value << (report.question.unit.empty() ? "" : " ") << report.question.unit;
+    return text.str();
+  };
+  const DistanceStatistics& statistics = report.input.statistics;
+  return "; distances of " + std::to_string(statistics.count) + " points: mean " + length(statistics.mean) + ", RMS " +
+         length(statistics.rms) + ", median " + length(statistics.median) + ", greatest " + length(statistics.maximum) +
+         "; Hausdorff distance " + length(report.hausdorff);
+}
+
+void summarise(const Options& options, const cli::CollisionReport& report, const std::vector<Clash>& clashes,
+               const std::optional<io::DistanceReport>& distances)
 {
   cli::warn(program, report.warnings);
   std::ostream& out = options.files.summary();
@@ -203,6 +244,7 @@ void summarise(const Options& options, const cli::CollisionReport& report, const
     out << "; " << clashes.size() - static_cast<std::size_t>(resolved) << " clashes";
     if (options.previous) out << ", " << resolved << " resolved";
   }
+  if (distances) out << distanceSummary(*distances);
   out << "; wrote " << options.output.string() << '\n';
 }
 
@@ -321,6 +363,44 @@ std::vector<Clash> readEarlier(const Options& options, std::vector<std::string>&
   return list.clashes;
 }
 
+PointDistancesRequest distancesRequest(const Options& options)
+{
+  PointDistancesRequest request;
+  request.max_distance = options.distances->most;
+  request.accuracy = options.accuracy;
+  request.threads = options.threads;
+  return request;
+}
+
+Distances measure(const Options& options, const SphereHierarchy& a, const SphereHierarchy& b,
+                  cli::CollisionReport& report)
+{
+  cli::Step step("Measuring distances");
+  PointDistancesRequest request = distancesRequest(options);
+  request.progress = [&](double fraction) {
+    step.share(fraction);
+    return true;
+  };
+  Distances distances;
+  distances.found = symmetricDistances({a}, {b, options.pose}, request);
+  distances.field.assign(distances.found.a.distance.begin(), distances.found.a.distance.end());
+  report.work += distances.found.a.work;
+  report.work += distances.found.b.work;
+  report.seconds.distances = step.done(std::to_string(distances.found.a.measured) + " points");
+  return distances;
+}
+
+std::optional<io::DistanceReport> reportDistances(const Options& options, const SphereHierarchy& a,
+                                                  const SphereHierarchy& b, const Distances& distances)
+{
+  if (!options.distances) return std::nullopt;
+  const io::DistanceQuestion question = {options.input.string(), options.obstacle.string(), options.distances->unit,
+                                         distancesRequest(options), std::nullopt};
+  io::DistanceReport report = io::reportOf(question, {a}, {b, options.pose}, distances.found);
+  if (options.distances->page) io::writeDistances(*options.distances->page, report);
+  return report;
+}
+
 int collide(const Options& options)
 {
   check(options);
@@ -332,14 +412,15 @@ int collide(const Options& options)
   report.accuracy = options.accuracy;
 
   const Scan input = load(options.input, report.seconds.load);
-  if (options.keep == Keep::flagged)
-    marked(options.input, withoutRecords(input.cloud), newFields(options, {})); // fails now
+  if (options.keep == Keep::flagged || options.distances)
+    marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
   const Scan obstacle = load(options.obstacle, report.seconds.load);
   const auto a = build(input, options.input, options.threads, report.seconds.build);
   const auto b = build(obstacle, options.obstacle, options.threads, report.seconds.build);
 
   const bool by_place = options.moves() || !options.clashes.empty();
   const TrajectoryResult found = by_place ? alongPath(options, poses, a, b, report) : atPose(options, a, b, report);
+  const Distances distances = options.distances ? measure(options, a, b, report) : Distances();
   report.density = {spacingOf(a), spacingOf(b)};
   report.colliding = found.colliding;
   report.voxels_total = a.statistics().voxels + b.statistics().voxels;
@@ -347,13 +428,15 @@ int collide(const Options& options)
   report.obstacle = {options.obstacle.string(), b.view().count, b.size()};
   warnOf(report.input, a, report.clearance, report.warnings);
   warnOf(report.obstacle, b, report.clearance, report.warnings);
-  warnOfHoles(report);
+  if (options.asks_collisions) warnOfHoles(report);
 
-  write(options, input, found, report.seconds.write);
+  write(options, input, found, distances, report.seconds.write);
   std::vector<Clash> clashes;
   if (!options.clashes.empty()) clashes = listClashes(options, poses, a, b, found, earlier, report);
+  const std::optional<io::DistanceReport> measured = reportDistances(options, a, b, distances);
+  if (measured) report.distances = io::distanceJson(*measured);
   if (options.report) cli::writeReport(*options.report, report);
-  summarise(options, report, clashes);
+  summarise(options, report, clashes, measured);
   return 0;
 }
 

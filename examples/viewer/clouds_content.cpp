@@ -159,6 +159,30 @@ std::vector<float> CloudsContent::distances(std::size_t step) const
   return distances;
 }
 
+std::vector<double> CloudsContent::allDistances(std::size_t step) const
+{
+  if (options_.clearance) return {};
+  if (viewed_clouds_.size() == 1) {
+    const auto field = scan().field(distance_field_name);
+    if (!field) return {};
+    const auto collides = scan().field(collision_field_name);
+    for (std::size_t i = 0; i < field->size(); ++i) {
+      const bool free = !collides || (*collides)[i] == 0.0f;
+      if (free && std::isfinite((*field)[i])) return {field->begin(), field->end()};
+    }
+    return {}; // distances along a path are those of what collides
+  }
+  PointDistancesRequest request;
+  request.threads = options_.threads;
+  std::vector<double> nearest;
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
+    const std::vector<double> found = pointDistances(placed(0, step), placed(other, step), request).distance;
+    if (nearest.empty()) nearest.assign(found.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < found.size(); ++i) nearest[i] = std::fmin(nearest[i], found[i]);
+  }
+  return nearest;
+}
+
 std::vector<std::int32_t> CloudsContent::firstPoses() const
 {
   if (first_poses_) return *first_poses_;

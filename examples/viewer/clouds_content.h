@@ -5,6 +5,7 @@
 #include "view_content.h"
 
 #include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 namespace pcl_bsh::view {
@@ -27,6 +28,10 @@ public:
 
   /// Or the scan's field `distance`.
   std::vector<float> distances(std::size_t step) const override;
+
+  /// Without a clearance: to the nearest point of any obstacle. Without obstacles the scan's field `distance`, where it
+  /// holds those of free points.
+  std::vector<double> allDistances(std::size_t step) const override;
 
   /// Or the scan's field `first_pose`. Asked once, then kept.
   std::vector<std::int32_t> firstPoses() const override;

@@ -3,6 +3,8 @@
 
 #include "cli/program.h"
 
+#include <pcl_bsh/report/distance_statistics.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -152,6 +154,32 @@ void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& co
 {
   paintScan(clouds[0], bar, content, coloring);
   for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].paint(plainColor(content.viewedClouds()[i]));
+}
+
+bool paintDistances(std::vector<CloudActor>& clouds, ValueBar& bar, ValueHistogram& histogram,
+                    const ViewContent& content, Coloring coloring, std::size_t step)
+{
+  if (coloring != Coloring::distance) return false;
+  const std::vector<double> distances = content.allDistances(step);
+  if (distances.empty()) return false;
+  const Options& options = content.options();
+  const DistanceStatistics statistics = statisticsOf(distances);
+  // Outliers should not take all colours for themselves.
+  const double end = options.range.value_or(statistics.count > 0 ? statistics.percentiles.back() : 1.0);
+  const auto table = colorTable(0.0, end, false);
+  const std::string title = lengthTitle("distance", options);
+  std::vector<Color> colors(distances.size(), scan_color);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    if (std::isnan(distances[i])) continue;
+    const unsigned char* const c = table->MapValue(distances[i]);
+    colors[i] = {c[0], c[1], c[2]};
+  }
+  clouds[0].paint(colors);
+  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].paint(compared_color);
+  bar.show(*table, title, false);
+  histogram.show(distances, *table, "distance [" + (options.unit.empty() ? "cloud's unit" : options.unit) + "]",
+                 options.unit);
+  return true;
 }
 
 void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& content, const StepCollisions& collisions,

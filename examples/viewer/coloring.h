@@ -3,6 +3,7 @@
 
 #include "cloud_actor.h"
 #include "value_bar.h"
+#include "value_histogram.h"
 #include "view_content.h"
 
 #include <vector>
@@ -15,6 +16,11 @@ Coloring coloringOf(const ViewContent& content, const StepCollisions& collisions
 /// Gives all clouds their colours, and shows the bar where these stand for values.
 /// @throws cli::UsageError when the clouds lack what the colours stand for
 void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& content, Coloring coloring);
+
+/// Colours the scan by the distances of all of its points at this step, where these are asked for and known; then the
+/// bar and the histogram say which there are. @return whether it did
+bool paintDistances(std::vector<CloudActor>& clouds, ValueBar& bar, ValueHistogram& histogram,
+                    const ViewContent& content, Coloring coloring, std::size_t step);
 
 /// Marks what collides at this step; where the marks' colours stand for values, the bar says which.
 /// @throws cli::UsageError when it is not known what collides

@@ -26,6 +26,7 @@ Exit code: 0 done; 1 failed; 2 command line not understood.
 Examples:
   pcl_bsh_view hall.ply --model robot.pcd --pose 1.5,2,0,0,0,1.57 --clearance 0.05 --unit m
   pcl_bsh_view tunnel.pcd --model wagon.ply --trajectory path.txt --clearance 0.1 --color first_pose
+  pcl_bsh_view after.pcd before.pcd --color distance --unit m --screenshot change.png
   pcl_bsh_view --scene walk.json --step 80 --clearance 0.3
   pcl_bsh_view marked.pcd --camera colliding --screenshot marked.png --size 1600x1000
   pcl_bsh_view hall.ply --model robot.pcd --clearance 0.05 --level 2 --export hall.vtm)";
@@ -137,8 +138,7 @@ void checkClouds(const Options& options)
   if (options.clearance && !obstacles)
     throw UsageError("--clearance: there is nothing to collide with: give a second cloud or --model");
   if (!options.clearance && obstacles && options.color &&
-      (*options.color == Coloring::collision || *options.color == Coloring::distance ||
-       *options.color == Coloring::first_pose))
+      (*options.color == Coloring::collision || *options.color == Coloring::first_pose))
     throw UsageError("--clearance: is missing: this --color asks what collides");
   if (options.trace && !options.clearance) throw UsageError("--clearance: is missing: --trace shows a query");
   if (options.closest && !obstacles)
@@ -148,10 +148,9 @@ void checkClouds(const Options& options)
 void checkRange(const Options& options)
 {
   if (!options.range) return;
-  if (!options.clearance || options.color != Coloring::distance)
-    throw UsageError("--range: is for distances at a clearance: give --clearance and --color distance");
-  if (!(*options.range > *options.clearance) || !std::isfinite(*options.range))
-    throw UsageError("--range: give a length greater than --clearance");
+  if (options.color != Coloring::distance) throw UsageError("--range: is for distances: give --color distance, too");
+  if (!(*options.range > options.clearance.value_or(0.0)) || !std::isfinite(*options.range))
+    throw UsageError("--range: give a length greater than --clearance, or than 0");
 }
 
 void checkFiles(const Options& options)
@@ -193,7 +192,8 @@ std::optional<Options> parseOptions(int argc, char** argv)
       ->type_name("D")
       ->transform(cli::number<double>(cli::give_length));
   app.add_option("--color", options.color,
-                 "collision (default where known), distance, first_pose, height,\nrgb or intensity")
+                 "collision (default where known), distance, first_pose, height,\nrgb or intensity; distance without "
+                 "--clearance is of all points,\nwith a histogram")
       ->type_name("BY")
       ->transform(cli::choice<Coloring>({{"collision", Coloring::collision},
                                          {"distance", Coloring::distance},
@@ -202,8 +202,8 @@ std::optional<Options> parseOptions(int argc, char** argv)
                                          {"rgb", Coloring::rgb},
                                          {"intensity", Coloring::intensity}}));
   app.add_option("--range", options.range,
-                 "with --color distance: colour points up to this distance, and\nthose that collide in orange "
-                 "(default: the clearance)")
+                 "with --color distance: colours end at this distance; with\n--clearance, what collides is orange "
+                 "(default: the clearance;\nwithout one, what 99 of 100 points are within)")
       ->type_name("D")
       ->transform(cli::number<double>(cli::give_length));
   app.add_option("--cut", cut,

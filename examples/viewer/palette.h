@@ -18,6 +18,7 @@ inline constexpr Color ground = {24, 30, 38};
 inline constexpr Color text_color = {235, 238, 242};
 inline constexpr Color scan_color = {126, 140, 154};
 inline constexpr Color obstacle_color = {86, 180, 233};
+inline constexpr Color compared_color = {84, 92, 102};  ///< of clouds that distances lead to: colours are for these
 inline constexpr Color colliding_color = {255, 106, 0}; ///< vermillion, brighter than in print
 inline constexpr Color obstacle_colliding_color = {240, 228, 66};
 inline constexpr Color sphere_color = {86, 180, 233};

@@ -25,7 +25,8 @@ RenderView::RenderView(const ViewContent& content, vtkRenderer& renderer)
   closest_props_(renderer),
   path_props_(renderer),
   caption_(renderer, content.options().width, content.options().height),
-  bar_(renderer, content.options().width)
+  bar_(renderer, content.options().width),
+  histogram_(renderer, content.options().width, content.options().height)
 {
   const Options& options = content.options();
   const std::array<double, 3> c = fractions(ground);
@@ -71,7 +72,8 @@ void RenderView::drawClouds()
     deformed = true;
   }
   if (deformed) paint(clouds_, bar_, content_, coloring_);
-  mark(clouds_, bar_, content_, collisions_, coloring_, step_);
+  if (!paintDistances(clouds_, bar_, histogram_, content_, coloring_, step_))
+    mark(clouds_, bar_, content_, collisions_, coloring_, step_);
 }
 
 void RenderView::drawExtras()
@@ -123,11 +125,12 @@ std::vector<LegendEntry> RenderView::legend() const
   for (std::size_t i = 0; i < content_.viewedClouds().size(); ++i) {
     const ViewedCloud& viewed = content_.viewedClouds()[i];
     if (viewed.role == ViewedCloud::Role::obstacle) {
-      add(viewed.legend, obstacle_color);
+      add(viewed.legend, histogram_.isShown() ? compared_color : obstacle_color);
       if (!collisions_.flags[i].empty()) add(viewed.legend + ", colliding", obstacle_colliding_color);
       continue;
     }
     const bool by_value = coloring_ == Coloring::distance || coloring_ == Coloring::first_pose;
+    if (histogram_.isShown()) continue; // which says it all
     if (by_value || coloring_ == Coloring::collision)
       add(viewed.legend + (collisions_.known ? ", free" : ""), scan_color);
     if (collisions_.known && (!by_value || content_.options().range))

@@ -7,6 +7,7 @@
 #include "cloud_actor.h"
 #include "extra_actors.h"
 #include "value_bar.h"
+#include "value_histogram.h"
 #include "view_content.h"
 
 #include <vtkBoundingBox.h>
@@ -56,6 +57,7 @@ private:
   PropGroup extra_props_, closest_props_, path_props_;
   Caption caption_;
   ValueBar bar_;
+  ValueHistogram histogram_;
   Coloring coloring_;
   Extras extras_;
   StepCollisions collisions_;

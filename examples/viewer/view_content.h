@@ -68,8 +68,9 @@ public:
   virtual MotionPaths paths(std::size_t step) const = 0;
 
   // Of the scan, per record; empty where that is not known.
-  virtual std::vector<float> distances(std::size_t /*step*/) const { return {}; } ///< NaN where free
-  virtual std::vector<std::int32_t> firstPoses() const { return {}; }             ///< -1 where always free
+  virtual std::vector<float> distances(std::size_t /*step*/) const { return {}; }     ///< NaN where free
+  virtual std::vector<double> allDistances(std::size_t /*step*/) const { return {}; } ///< of free points, too
+  virtual std::vector<std::int32_t> firstPoses() const { return {}; }                 ///< -1 where always free
 
   /// More text about a picked point, put behind its name and coordinates; or empty.
   virtual std::string details(std::size_t /*cloud*/, std::uint32_t /*record*/, std::size_t /*step*/) const

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The numbers of the page; clash_page.html has the page itself.
-#include <pcl_bsh/filters/json/json_document.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
-#include <pcl_bsh/filters/text_files/number_text.h>
+#include <pcl_bsh/filters/reports/page_text.h>
 
 #include "clash_page.html.h"
+#include "page_style.css.h"
 
 #include <kainjow/mustache.hpp>
 
@@ -31,31 +31,6 @@ struct Area {
   double left, top, width, height;
 };
 constexpr Area path_area{54, 12, 1010, 130}, top_view_area{6, 6, 508, 268}, approach_area{54, 10, 456, 236};
-
-/// Text of files and their names; the template escapes it. HTML has no control characters.
-std::string plain(const std::string& text)
-{
-  std::string safe;
-  for (const char c : validUtf8(text)) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-      safe += "\xef\xbf\xbd"; // U+FFFD
-    else
-      safe += c;
-  }
-  return safe;
-}
-
-/// So many significant digits, and no exponent where that is readable.
-std::string number(double value, int digits = 4)
-{
-  return numberText(value, std::chars_format::general, digits);
-}
-
-/// A coordinate: millimetres if the unit is a metre.
-std::string coordinate(double value)
-{
-  return numberText(value, std::chars_format::fixed, 3);
-}
 
 /// The longest side of its box.
 double longestSide(const Clash& clash)
@@ -84,7 +59,8 @@ public:
 private:
   Data contents() const
   {
-    Object page = {{"input", plain(report_.input)},
+    Object page = {{"style", std::string(page_style_css)},
+                   {"input", plain(report_.input)},
                    {"obstacle", plain(report_.obstacle)},
                    {"present", std::to_string(report_.clashes.size() - report_.count(ClashStatus::resolved))},
                    {"poses", std::to_string(report_.poses.size())},
@@ -242,9 +218,7 @@ private:
     const auto x = [&](double value) { return area.left + area.width / 2 + scale * (value - middle.x()); };
     const auto y = [&](double value) { return area.top + area.height / 2 - scale * (value - middle.y()); };
     // The scale bar is a round length, a fifth of the drawing or so.
-    const double wish = area.width / scale / 5;
-    const double decade = std::pow(10.0, std::floor(std::log10(wish)));
-    const double length = decade * (wish / decade >= 5 ? 5 : wish / decade >= 2 ? 2 : 1);
+    const double length = roundLength(area.width / scale / 5);
     return Object{{"dots", dotsOf(
                                clash, [&](std::uint32_t record) { return x(report_.scan.point(record)[0]); },
                                [&](std::uint32_t record) { return y(report_.scan.point(record)[1]); })},

@@ -41,6 +41,7 @@ enum class Input : std::uint8_t {
   scene,        ///< its options, objects, parts or rules
   max_distance, ///< of points' distances
   surface,      ///< its triangles, or the tolerance of its cover
+  beyond,       ///< which distance points are far
 };
 
 /// Thrown by the core wherever its declarations say std::invalid_argument.

@@ -20,6 +20,12 @@ inline std::vector<std::uint32_t> bitsOf(const std::vector<float>& values)
   for (const float value : values) bits.push_back(std::bit_cast<std::uint32_t>(value));
   return bits;
 }
+inline std::vector<std::uint64_t> bitsOf(const std::vector<double>& values)
+{
+  std::vector<std::uint64_t> bits;
+  for (const double value : values) bits.push_back(std::bit_cast<std::uint64_t>(value));
+  return bits;
+}
 
 template <typename PointT>
 auto contentsOf(const pcl::PointCloud<PointT>& cloud)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What PCL's classes allocate fails too, save for the points of typed clouds: those are Eigen's, not operator new's.
 #include <pcl_bsh/filters/collision_filter.h>
+#include <pcl_bsh/filters/distance_filter.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "../filters/clouds.h"
@@ -80,16 +81,25 @@ enum class Mode { plain, negative, organised, trajectory, swept, threads, subset
 constexpr Mode kModes[] = {Mode::plain, Mode::negative, Mode::organised, Mode::trajectory,
                            Mode::swept, Mode::threads,  Mode::subset};
 
+void ask(ObstacleQuery& query, Mode mode)
+{
+  query.setClearance(kClearance);
+  if (mode == Mode::trajectory || mode == Mode::swept) query.setTrajectory(poses());
+  if (mode == Mode::swept) query.setSwept(0.01);
+}
+void ask(DistanceQuery& query, Mode)
+{
+  query.setFilterLimits(0.05, kClearance);
+}
+
 template <typename AnyFilter, typename AnyCloud>
 void set(AnyFilter& filter, const std::shared_ptr<AnyCloud>& input, Mode mode)
 {
   filter.setInputCloud(input);
   filter.setObstacleCloud(obstacleCloud());
-  filter.setClearance(kClearance);
+  ask(filter, mode);
   filter.setNegative(mode == Mode::negative);
   filter.setKeepOrganized(mode == Mode::organised);
-  if (mode == Mode::trajectory || mode == Mode::swept) filter.setTrajectory(poses());
-  if (mode == Mode::swept) filter.setSwept(0.01);
   if (mode == Mode::threads) filter.setNumberOfThreads(2);
   if (mode == Mode::subset) filter.setIndices(std::make_shared<pcl::Indices>(pcl::Indices{3, 7, 150, 20, 21, 22}));
 }
@@ -378,6 +388,53 @@ TEST_F(FilterAllocationFailure, OfCopies)
 {
   failAssignments<Filter, Cloud>(scanCloud);
   failAssignments<BlobFilter, Blob>(scanBlob);
+}
+
+using DistanceSubject = Subject<DistanceFilter<pcl::PointXYZ>, Cloud>;
+using DistanceBlobSubject = Subject<DistanceFilter<Blob>, Blob>;
+
+TEST_F(FilterAllocationFailure, OfDistances)
+{
+  for (const Mode mode : {Mode::plain, Mode::negative, Mode::threads, Mode::subset})
+    failIntoCloud([mode] { return std::make_unique<DistanceSubject>(scanCloud(), mode); });
+  for (const Mode mode : {Mode::plain, Mode::organised})
+    failIntoCloud([mode] { return std::make_unique<DistanceBlobSubject>(scanBlob(), mode); });
+  failInPlace([] { return std::make_unique<DistanceBlobSubject>(scanBlob(), Mode::plain); });
+  failEachAllocation([] { return std::make_unique<DistanceSubject>(scanCloud(), Mode::plain); },
+                     [](const auto& subject) {
+                       PointDistances result;
+                       subject->filter.computeDistances(result);
+                       return std::tuple(bitsOf(result.distance), result.nearest, result.greatest);
+                     });
+}
+
+TEST_F(FilterAllocationFailure, OfCopiesOfDistances)
+{
+  const auto make = [] {
+    auto pair = std::make_unique<std::pair<DistanceSubject, DistanceSubject>>(
+        std::piecewise_construct, std::forward_as_tuple(scanCloud(), Mode::plain),
+        std::forward_as_tuple(scanCloud(), Mode::negative));
+    const std::vector<int> listener(100, 1);
+    pair->first.filter.setProgress([listener](double) { return !listener.empty(); });
+    for (DistanceSubject* const subject : {&pair->first, &pair->second}) subject->filter.filter(subject->kept);
+    return pair;
+  };
+  const auto pair = make();
+  const pcl::Indices from_kept = pair->first.kept, to_kept = pair->second.kept;
+  const pcl::Indices to_removed = *pair->second.filter.getRemovedIndices();
+  ASSERT_NE(from_kept, to_kept);
+  underEachFailure(
+      make, [](auto& subject) { subject.second.filter = subject.first.filter; },
+      [&](auto& subject, bool thrown) {
+        auto& [from, to] = subject;
+        EXPECT_EQ(*to.filter.getRemovedIndices() == to_removed, thrown);
+        EXPECT_NE(to.filter.getRemovedIndices(), from.filter.getRemovedIndices());
+        EXPECT_EQ(to.filter.getInputCloud(), thrown ? to.input : from.input);
+        to.filter.filter(to.kept);
+        EXPECT_EQ(to.kept, thrown ? to_kept : from_kept);
+        from.filter.filter(from.kept);
+        EXPECT_EQ(from.kept, from_kept);
+      });
 }
 
 TEST_F(FilterAllocationFailure, LeaksNothing)

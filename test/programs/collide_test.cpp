@@ -295,6 +295,83 @@ TEST_F(Collide, ThreadsChangeNothing)
   EXPECT_GT(found["colliding"], 0);
 }
 
+TEST_F(Collide, TellsTheDistanceOfEveryPoint)
+{
+  const std::string page = "{a\"<b>.html}";
+  const Outcome done = collide("{input.ply} {obstacle.xyz} {out.pcd} --clearance 0.5 --distances --unit m "
+                               "--report {report.json} --distance-page '" +
+                               page + "'");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("2 of 5 points collide"));
+  EXPECT_THAT(done.out, HasSubstr("; distances of 4 points: mean "));
+  EXPECT_THAT(done.out, HasSubstr(" m; Hausdorff distance 14.5258 m; wrote "));
+  EXPECT_EQ(flags("out.pcd"), (std::vector<int>{0, 1, 1, 0, 0}));
+  const pcl::PCLPointCloud2 cloud = io::readCloud(folder / "out.pcd");
+  EXPECT_EQ(cloud.fields.back().name, "distance");
+  EXPECT_EQ(cloud.fields.back().datatype, pcl::PCLPointField::FLOAT32);
+  const std::vector<double> expected = {1.5, 0.5, 0.5, std::nan(""), std::hypot(1.5f, 1.0f)};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const double told = valueOf(cloud, i, "distance");
+    EXPECT_TRUE(std::abs(told - expected[i]) < 1e-6 || (std::isnan(told) && std::isnan(expected[i]))) << i;
+  }
+  const Json distances = report()["distances"];
+  EXPECT_EQ(distances["unit"], "m");
+  EXPECT_EQ(distances["input_to_obstacle"]["count"], 4);
+  EXPECT_EQ(distances["input_to_obstacle"]["median"], 1.0);
+  EXPECT_EQ(distances["input_to_obstacle"]["farthest_pair"], (Json{4, 0}));
+  EXPECT_EQ(distances["obstacle_to_input"]["farthest_pair"], (Json{2, 1}));
+  EXPECT_EQ(distances["hausdorff"], distances["obstacle_to_input"]["maximum"]);
+  EXPECT_EQ(distances["hausdorff_pair"], (Json{2, 1}));
+  const std::string html = io::contentOf(folder / "a\"<b>.html");
+  EXPECT_THAT(html, HasSubstr("Hausdorff distance [m]"));
+
+  expectDone("{input.ply} {obstacle.xyz} {near.ply} --distances --max-distance 0.5 --report {report.json}");
+  const pcl::PCLPointCloud2 near = io::readCloud(folder / "near.ply");
+  EXPECT_EQ(valueOf(near, 1, "distance"), 0.5) << "inclusive";
+  EXPECT_TRUE(std::isnan(valueOf(near, 0, "distance")));
+  EXPECT_EQ(report()["warnings"].size(), 1U) << "without a clearance, none is too small";
+  EXPECT_TRUE(report()["distances"]["hausdorff"].is_null());
+
+  expectDone("{input.ply} {obstacle.xyz} {free.ply} --distances --clearance 0.5 --keep free");
+  const pcl::PCLPointCloud2 free = io::readCloud(folder / "free.ply");
+  ASSERT_EQ(free.width, 2U);
+  EXPECT_EQ(valueOf(free, 0, "distance"), 1.5);
+  EXPECT_EQ(free.fields.size(), 7U);
+}
+
+TEST_F(Collide, DistancesOfNothing)
+{
+  folder.write("nothing.xyz", "nan 0 0\n");
+  for (const std::string clouds :
+       {"{input.ply} {nothing.xyz}", "{nothing.xyz} {input.ply}", "{nothing.xyz} {nothing.xyz}"}) {
+    expectDone(clouds + " {out.pcd} --distances --report {report.json} --distance-page {page.html}");
+    const Json distances = report()["distances"];
+    for (const char* side : {"input_to_obstacle", "obstacle_to_input"}) {
+      EXPECT_EQ(distances[side]["count"], 0);
+      EXPECT_TRUE(distances[side]["mean"].is_null());
+    }
+    EXPECT_TRUE(distances["hausdorff"].is_null());
+    EXPECT_TRUE(std::isnan(valueOf(io::readCloud(folder / "out.pcd"), 0, "distance")));
+  }
+}
+
+TEST_F(Collide, RefusesDistancesThatCannotBe)
+{
+  const std::string job = "{input.ply} {obstacle.xyz} {out.pcd} --clearance 0.5 ";
+  for (const std::string option : {"--max-distance 1", "--distance-page {p.html}", "--unit m"})
+    expectFailure(job + option, 2, "no distances are asked for: give --distances");
+  expectFailure(job + "--distances --max-distance -1", 2, "--max-distance: -1: give a length >= 0");
+  expectFailure(job + "--distances --max-distance nan", 2, "--max-distance: ");
+  expectFailure(job + "--distances --distance-page {p.txt}", 2, "--distance-page: ");
+  expectFailure(job + "--distances --distance-page {none/p.html}", 1, "none");
+  expectFailure(job + "--distances --distance-page {out.pcd}", 2, "is the file of OUTPUT");
+  expectFailure(job + "--distances --accuracy level=1", 2, "--accuracy: level=1: leaves points without a distance");
+  expectFailure(job + "--distances --from 0,0,0,0,0,0 --to 1,0,0,0,0,0 --steps 2", 2, "--distances: are of one pose");
+  expectFailure("{input.ply} {obstacle.xyz} {out.pcd} --max-distance 1", 2, "give --distances");
+  folder.write("taken.txt", "x y z distance\n0 0 0 7\n");
+  expectFailure("{taken.txt} {obstacle.xyz} {out.pcd} --distances", 1, "field 'distance' exists already");
+}
+
 /// Two sheets, one over the other: many voxels, and a distance that a coarse look cannot tell.
 class CollideAccuracy : public Collide {
 protected:

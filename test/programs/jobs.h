@@ -23,11 +23,11 @@ inline std::vector<Job> allJobs()
   std::vector<Job> jobs = {
       {"pcl_bsh_collide",
        {"scan.xyz", "robot.xyz", "out.pcd", "--clearance", "0.1", "--report", "report.json", "--clashes", "list.json",
-        "--clashes", "list.csv", "--clashes", "list.html"},
-       {"out.pcd", "report.json", "list.json", "list.csv", "list.html"}},
+        "--clashes", "list.csv", "--clashes", "list.html", "--distances", "--distance-page", "distances.html"},
+       {"out.pcd", "report.json", "list.json", "list.csv", "list.html", "distances.html"}},
       {"pcl_bsh_pipeline",
        {"pipeline.json", "--metadata", "run.json"},
-       {"run.json", "out.pcd", "out.ply", "list.html", "list.csv"}},
+       {"run.json", "out.pcd", "out.ply", "list.html", "list.csv", "distances.html", "distances.json"}},
       {"pcl_bsh_own_stage", {"own.json"}, {"out.pcd"}},
       {"pcl_bsh_scene", {"scene.json", "--out", "run"}, {"run/"}},
       {"pcl_bsh_tunnel", {"run", "--scale", "0.0005"}, {"run/"}},
@@ -58,7 +58,9 @@ inline void prepareJobs(const files::TemporaryFolder& folder)
   folder.write("pipeline.json",
                R"(["scan.xyz", {"type": "filters.bsh_flag", "tag": "f", "obstacle": "robot.xyz", "clearance": 0.1},
                    {"type": "writers.clashes", "obstacle": "robot.xyz", "clearance": 0.1, "filename": "list.html",
-                    "also": "list.csv"}, {"type": "writers.pcd", "inputs": "f", "filename": "out.pcd"},
+                    "also": "list.csv"},
+                   {"type": "writers.distances", "obstacle": "robot.xyz", "filename": "distances.html",
+                    "also": "distances.json"}, {"type": "writers.pcd", "inputs": "f", "filename": "out.pcd"},
                    {"type": "writers.ply", "inputs": "f", "filename": "out.ply"}])");
   folder.write("own.json", R"(["scan.xyz", {"type": "filters.every_nth", "step": 10}, "out.pcd"])");
   folder.write("scene.json",

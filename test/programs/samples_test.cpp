@@ -93,6 +93,20 @@ TEST_F(Samples, EachPipelineRunsOnTheCloudsMadeForIt)
   EXPECT_GE(run, 6U);
 }
 
+/// Two epochs: what came, what went, a page, and a picture.
+TEST_F(Samples, WhatChangedIsShown)
+{
+  expectDone("bash examples/pipelines/make_clouds.sh build/samples; cd build/samples\n"
+             "../release/bin/pcl_bsh_pipeline ../../examples/pipelines/what_changed.json");
+  const fs::path made = clone / "build/samples";
+  EXPECT_NE(files::contentOf(made / "changes.html").find("Hausdorff distance [m]"), std::string::npos);
+  if (!fs::exists(clone / "build/release/bin/pcl_bsh_view"))
+    GTEST_SKIP() << "pcl_bsh_view is not built: install libvtk9-dev, libegl-dev and libx11-dev";
+  expectDone("cd build/samples; ../release/bin/pcl_bsh_view changes.pcd --color distance --range 0.5 --unit m "
+             "--screenshot changes.png");
+  EXPECT_GT(fs::file_size(made / "changes.png"), 10000U);
+}
+
 TEST_F(Samples, EachSceneRuns)
 {
   std::size_t run = 0;

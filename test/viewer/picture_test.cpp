@@ -4,6 +4,7 @@
 
 #include <viewer/clouds_content.h>
 
+#include <pcl_bsh/distances/brute_force_distances.h>
 #include <pcl_bsh/vtk/hierarchy_data.h>
 
 #include <gmock/gmock.h>
@@ -95,6 +96,54 @@ TEST_F(Picture, DistancesHaveColoursUpToTheRangeAndCollisionsTheirOwn)
   EXPECT_GT(pixels.countNear(colliding_color, x, y, 40), 200u);
   const auto [u, v] = to_range.seen(beside);
   EXPECT_EQ(pixels.differing(dim, u, v, 2), 25u) << "has the colour of its distance";
+}
+
+TEST_F(Picture, DistancesOfAllPointsHaveColoursABarAndAHistogram)
+{
+  Options all = options();
+  all.clearance.reset();
+  all.color = Coloring::distance;
+  all.range = 2.0;
+  all.camera.kind = Camera::Kind::given;
+  all.camera.eye = {0, 0, -6};
+  all.camera.focus = {0, 0, 0};
+  all.camera.up = {0, 1, 0};
+  all.width = 800, all.height = 600;
+  OffscreenView view(all);
+  const Pixels pixels = view.draw();
+  EXPECT_FALSE(view.view->collisions().known);
+  const auto table = colorTable(0.0, 2.0, false);
+  const SphereHierarchy& obstacle = *view.content->viewedClouds()[1].hierarchy;
+  const std::vector<double> distances =
+      brute_force::pointDistances({*view.content->viewedClouds()[0].hierarchy}, {obstacle, all.pose}).distance;
+  std::size_t compared = 0;
+  for (std::uint32_t i = 0; i < distances.size(); i += 37) {
+    const Point3 p = view.content->scan().points().point(i);
+    const auto [x, y] = view.seen(p.data());
+    if (y < 300 || y > 560 || x > 560) continue; // words, the bar and the histogram
+    const unsigned char* const c = table->MapValue(distances[i]);
+    EXPECT_GT(pixels.countNear({c[0], c[1], c[2]}, x, y, 1, 12), 0u) << i;
+    ++compared;
+  }
+  EXPECT_GT(compared, 20u);
+  EXPECT_GT(pixels.countIf(700, 100, 99, [&](int u, int v) { return pixels.at(u, v) != ground; }), 1000u)
+      << "the histogram";
+
+  // As read from a field, too: what pcl_bsh_collide --distances wrote.
+  const std::filesystem::path told = folder / "told.pcd";
+  ASSERT_EQ(run("pcl_bsh_collide", floor.string() + ' ' + ball.string() + ' ' + told.string() +
+                                       " --pose=-0.5,0.5,0.2,0,0,0 --clearance 0.1 --distances")
+                .exit_code,
+            0);
+  Options field = all;
+  field.clouds = {told};
+  field.model.reset();
+  field.pose = Eigen::Isometry3d::Identity();
+  OffscreenView from_field(field);
+  from_field.draw();
+  const std::vector<double> read = from_field.content->allDistances(0);
+  ASSERT_EQ(read.size(), distances.size());
+  for (std::size_t i = 0; i < read.size(); ++i) EXPECT_EQ(read[i], static_cast<float>(distances[i]));
 }
 
 TEST_F(Picture, NothingOfTheFirstCloudIsDrawnBeyondTheCut)
@@ -318,7 +367,9 @@ TEST_F(Picture, RefusesWhatItCannotShow)
   fails(one + " --camera 0,0,9,0,0,1,0,0,-3" + png, 2, "up is 0 or along the view");
   fails(one + " --cut 1,2,3" + png, 2, "--cut: '1,2,3' is no plane");
   fails(one + " --cut 0,0,0,0,0,0" + png, 2, "--cut: '0,0,0,0,0,0' is no plane");
-  fails(one + " --range 1" + png, 2, "--range: is for distances at a clearance");
+  fails(one + " --range 1" + png, 2, "--range: is for distances: give --color distance, too");
+  fails(one + " --color distance" + png, 2, "--color: ");
+  fails(one + ' ' + ball.string() + " --color distance --range 0" + png, 2, "--range: give a length greater");
   fails(one + " --size 10" + png, 2, "--size");
   fails(one + " --trajectory " + path.string() + png, 2, "--model");
   fails(one + " --model " + ball.string() + " --trajectory " + path.string() + " --step 99" + png, 2, "--step");

@@ -21,7 +21,9 @@ Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 13
 Example: which points of a hall are within 5 cm of a robot at (1.5, 2, 0), turned by 90 degrees?
   pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708
 Example: does a wagon keep 5 cm from a tunnel on its way, and where does it not?
-  pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html)";
+  pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html
+Example: how far has each point of a scan moved away from an earlier scan?
+  pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html)";
 
 Accuracy parseAccuracy(const std::string& text)
 {
@@ -32,6 +34,53 @@ Accuracy parseAccuracy(const std::string& text)
     throw UsageError("--accuracy: " + error.advice());
   }
 }
+
+/// As the options about distances are written.
+struct DistanceTexts {
+  bool asked = false;
+  std::optional<double> most;
+  std::optional<std::filesystem::path> page;
+  std::optional<std::string> unit;
+
+  void addTo(CLI::App& app)
+  {
+    app.add_flag("--distances", asked,
+                 "each point's distance to the nearest point of OBSTACLE: a field\n"
+                 "'distance'; statistics of both directions in --report");
+    app.add_option("--max-distance", most,
+                   "greater distances are not told, but are NaN; less is faster (default: none)")
+        ->type_name("M")
+        ->transform(number<double>("give a length >= 0", [](double d) { return d >= 0; }));
+    app.add_option("--distance-page", page, "page for browsers: statistics, histograms, the farthest places")
+        ->type_name("FILE.html");
+    app.add_option("--unit", unit, "name of the clouds' unit, for reports of distances")->type_name("NAME");
+  }
+
+  /// @throws UsageError where they do not fit each other, or what else is asked
+  void read(CollideOptions& options) const
+  {
+    const auto refuse = [](const char* option, const char* wrong) {
+      throw UsageError(std::string(option) + ": " + wrong);
+    };
+    for (const auto& [given, option] : {std::pair{most.has_value(), "--max-distance"},
+                                        {page.has_value(), "--distance-page"},
+                                        {unit.has_value(), "--unit"}}) {
+      if (given && !asked) refuse(option, "no distances are asked for: give --distances");
+    }
+    if (!asked) return;
+    if (options.moves())
+      refuse("--distances",
+             "are of one pose; along a path the output has the smallest within the clearance: leave it out");
+    if (options.accuracy.stopsEarly())
+      refuse("--accuracy",
+             (options.accuracy.text() + ": leaves points without a distance: give exact, float or tolerance=LENGTH")
+                 .c_str());
+    options.distances.emplace();
+    options.distances->most = most.value_or(options.distances->most);
+    options.distances->page = page;
+    options.distances->unit = unit.value_or("");
+  }
+};
 
 /// Checks that involve several options.
 void requireConsistent(const CollideOptions& options)
@@ -60,10 +109,11 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   app.add_option("INPUT", options.input, "the cloud whose points are tested")->type_name("")->required();
   app.add_option("OBSTACLE", options.obstacle, "cloud to collide with")->type_name("")->required();
   app.add_option("OUTPUT", options.output, "INPUT's points with all their fields")->type_name("")->required();
-  app.add_option("--clearance", options.clearance, "greatest distance that counts as collision, in the clouds' unit")
-      ->type_name("D")
-      ->transform(number<double>(give_length))
-      ->required();
+  CLI::Option* const clearance = app.add_option("--clearance", options.clearance,
+                                                "greatest distance that counts as collision, in the clouds' unit\n"
+                                                "(default with --distances: 0)")
+                                     ->type_name("D")
+                                     ->transform(number<double>(give_length));
   app.add_option("--pose", pose,
                  "of OBSTACLE in INPUT's frame: x,y,z,roll,pitch,yaw, the angles in\n"
                  "radians (R = Rz(yaw) Ry(pitch) Rx(roll)); or a file of 12 or 16\n"
@@ -84,6 +134,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
                  "'collision'; along a path, level, pairs and time give no distances and\n"
                  "no poses")
       ->type_name("HOW");
+  DistanceTexts distances;
+  distances.addTo(app);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--threads", options.threads, "0: all of the machine's (default); any number gives the same result")
       ->type_name("N")
@@ -110,12 +162,16 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   if (path.isStraight()) options.path = path.straightRun(options.warnings);
   options.swept = path.swept;
   requireConsistent(options);
+  distances.read(options);
+  options.asks_collisions = !clearance->empty();
+  if (!options.asks_collisions && !options.distances)
+    throw UsageError(std::string("command line: --clearance is required: see ") + collide_program + " --help");
 
   CommandFiles& files = options.files;
   files.reads("INPUT", options.input).reads("OBSTACLE", options.obstacle).readsPose("--pose", pose);
   files.reads("--trajectory", path.file).readsPose("--from", path.from).readsPose("--to", path.to);
   files.reads("--previous", options.previous.value_or("")).writes("OUTPUT", options.output, in_place ? "INPUT" : "");
-  files.writes("--report", options.report.value_or(""));
+  files.writes("--report", options.report.value_or("")).writes("--distance-page", distances.page.value_or(""));
   for (const std::filesystem::path& list : options.clashes) files.writes("--clashes", list, "--previous"); // updated
   return options;
 }

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,13 @@ namespace pcl_bsh::cli {
 inline constexpr auto collide_program = "pcl_bsh_collide";
 
 enum class Keep { flagged, colliding, free };
+
+/// What is asked about the distance of every point.
+struct DistanceOptions {
+  double most = std::numeric_limits<double>::infinity(); ///< greater ones are not told
+  std::optional<std::filesystem::path> page;
+  std::string unit; ///< of the clouds, for reports; empty: not known
+};
 
 struct CollideOptions {
   std::filesystem::path input;
@@ -31,8 +39,10 @@ struct CollideOptions {
   std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;
+  std::optional<DistanceOptions> distances;
   double clearance = 0.0;
-  unsigned threads = 0; ///< all of the machine's
+  bool asks_collisions = true; ///< a clearance was given
+  unsigned threads = 0;        ///< all of the machine's
   Accuracy accuracy;
   std::vector<std::string> warnings; ///< of the options themselves
   CommandFiles files;                ///< all that are read or written

@@ -66,6 +66,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
                      {"blind", report.density.blind()},
                      {"could_hide_collisions", report.density.couldHide(report.clearance)}};
   if (report.path) json["path"] = toJson(*report.path);
+  if (report.distances) json["distances"] = *report.distances;
   json["work"] = {{"node_pairs", report.work.node_pairs},
                   {"volumes_carried", report.work.volumes_carried},
                   {"volumes_built", report.work.volumes_built},
@@ -73,11 +74,9 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
                   {"exact_decisions", report.work.exact_decisions},
                   {"voxels_built", report.work.voxels_built},
                   {"voxels_total", report.voxels_total}};
-  json["seconds"] = {{"load", report.seconds.load},
-                     {"build", report.seconds.build},
-                     {"query", report.seconds.query},
-                     {"clashes", report.seconds.clashes},
-                     {"write", report.seconds.write}};
+  json["seconds"] = {{"load", report.seconds.load},       {"build", report.seconds.build},
+                     {"query", report.seconds.query},     {"distances", report.seconds.distances},
+                     {"clashes", report.seconds.clashes}, {"write", report.seconds.write}};
   json["warnings"] = report.warnings;
   return json;
 }

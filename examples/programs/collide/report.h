@@ -50,6 +50,7 @@ struct Seconds {
   double load = 0;
   double build = 0; ///< sorting into voxels; their trees are built by the query that visits them
   double query = 0;
+  double distances = 0;
   double clashes = 0;
   double write = 0;
 };
@@ -64,7 +65,8 @@ struct CollisionReport {
   DistanceResult closest;    ///< a: the input, b: the obstacle; along a path within the clearance only
   Density density;
   std::optional<PathReport> path;
-  Work work; ///< of all queries
+  std::optional<nlohmann::ordered_json> distances; ///< where every point's was asked for
+  Work work;                                       ///< of all queries
   std::size_t voxels_total = 0;
   Seconds seconds;
   std::vector<std::string> warnings;

@@ -26,12 +26,14 @@ std::deque<StageType> builtInStages()
           merge(),
           bshCollision(),
           bshFlag(),
+          bshDistance(),
           pcdWriter(),
           plyWriter(),
           lasWriter(),
           objWriter(),
           textWriter(),
-          clashWriter()};
+          clashWriter(),
+          distanceWriter()};
 }
 
 } // namespace pcl_bsh::pipeline

@@ -30,12 +30,14 @@ StageType euclideanCluster();
 StageType merge();
 StageType bshCollision();
 StageType bshFlag();
+StageType bshDistance();
 StageType pcdWriter();
 StageType plyWriter();
 StageType lasWriter();
 StageType objWriter();
 StageType textWriter();
 StageType clashWriter();
+StageType distanceWriter();
 
 /// All of them, in the order of the documentation.
 std::deque<StageType> builtInStages();

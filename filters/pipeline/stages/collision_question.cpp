@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/pipeline/stages/collision_question.h>
+#include <pcl_bsh/filters/pipeline/stages/other_cloud.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
-#include <pcl_bsh/filters/pose_files/rigid_pose.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -14,13 +14,7 @@ namespace {
 std::vector<Eigen::Isometry3d> posesOf(const std::optional<Pose>& pose, const std::optional<InputFile>& trajectory,
                                        std::vector<std::string>& warnings)
 {
-  if (!trajectory) {
-    Eigen::Isometry3d only = Eigen::Isometry3d::Identity();
-    if (pose) only.matrix() = pose->matrix;
-    const io::RigidPose rigid = io::nearestRigid(only);
-    if (rigid.deviation > 0) warnings.push_back("pose: " + io::nearestRotationWarning(rigid.deviation));
-    return {rigid.pose};
-  }
+  if (!trajectory) return {rigidPoseOf(pose, warnings)};
   if (pose) throw OptionError("trajectory", "and `pose` are both given: give one of them");
   try {
     return io::readPoses(trajectory->path, &warnings);
@@ -43,12 +37,6 @@ std::string optionOf(Input input, bool moves)
   default:
     return moves ? "trajectory" : "pose";
   }
-}
-
-/// Shares the ownership of what it points into.
-std::shared_ptr<const pcl::PCLPointCloud2> pointsOf(const StageCloudPtr& cloud)
-{
-  return {cloud, &cloud->cloud};
 }
 
 } // namespace

@@ -8,7 +8,7 @@
 
 namespace pcl_bsh::pipeline {
 
-float SelectingStage::filterValue() const
+float SelectionOptions::filterValue() const
 {
   return user_filter_value ? static_cast<float>(*user_filter_value) : std::numeric_limits<float>::quiet_NaN();
 }

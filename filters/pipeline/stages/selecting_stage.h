@@ -10,32 +10,36 @@
 
 namespace pcl_bsh::pipeline {
 
-/// Kept points keep every byte of their records, so float64 coordinates too. Points that are not finite are removed.
-struct SelectingStage : Stage {
+/// The options that all of them have.
+struct SelectionOptions {
   bool negative = false;
   bool keep_organized = false;
   std::optional<double> user_filter_value;
 
+protected:
+  /// What a removed point's coordinates become in an organised cloud.
+  float filterValue() const;
+};
+
+/// Kept points keep every byte of their records, so float64 coordinates too. Points that are not finite are removed.
+struct SelectingStage : Stage, SelectionOptions {
   StageCloudPtr run(StageClouds&& inputs) override;
 
 protected:
   /// One per record: 1 for what the stage lets pass when `negative` is false. What it says of points that are not
   /// finite does not count.
   virtual std::vector<std::uint8_t> passing(const StageCloudPtr& cloud) = 0;
-
-  /// What a removed point's coordinates become in an organised cloud.
-  float filterValue() const;
 };
 
-/// Adds the options that all of them have.
+/// Adds the SelectionOptions.
 template <typename S>
 StageDescription<S>& withSelectionOptions(StageDescription<S>& description)
 {
   return description
-      .option(&SelectingStage::negative, "negative", "keep what would be removed, remove what would be kept")
-      .option(&SelectingStage::keep_organized, "keep_organized",
+      .option(&SelectionOptions::negative, "negative", "keep what would be removed, remove what would be kept")
+      .option(&SelectionOptions::keep_organized, "keep_organized",
               "keep rows and columns: removed points get `user_filter_value` as coordinates")
-      .option(&SelectingStage::user_filter_value, "user_filter_value",
+      .option(&SelectionOptions::user_filter_value, "user_filter_value",
               "x, y and z of removed points in an organised cloud; null: NaN");
 }
 

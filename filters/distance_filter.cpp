@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/impl/distance_filter.hpp>
+
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/removed_points.h>
+#include <pcl_bsh/filters/selected_records.h>
+
+#include <pcl/impl/instantiate.hpp>
+#include <pcl/point_types.h>
+
+namespace pcl_bsh {
+
+void DistanceFilter<pcl::PCLPointCloud2>::setInputCloud(const PCLPointCloud2ConstPtr& cloud)
+{
+  if (!cloud) throw std::invalid_argument("input cloud is null: give an empty cloud if there are no points");
+  field_sizes_.reserve(cloud->fields.size()); // PCL's takes the cloud before it has room for these
+  DistanceFilterBase<pcl::PCLPointCloud2>::setInputCloud(cloud);
+}
+
+void DistanceFilter<pcl::PCLPointCloud2>::applyFilter(pcl::PCLPointCloud2& output)
+{
+  pcl::Indices kept;
+  std::vector<float> distances;
+  select(inputView(), negative_, kept, removed_indices_.get(), distances);
+  output = withFields(*input_, {{distance_field_name, &distances}});
+  if (keep_organized_)
+    overwritePoints(output, *removed_indices_, user_filter_value_);
+  else
+    output = selectedRecords(output, kept);
+}
+
+} // namespace pcl_bsh
+
+template class pcl_bsh::QueryFilter<pcl::PCLPointCloud2, pcl_bsh::DistanceQuery>;
+template class pcl_bsh::DistanceFilterBase<pcl::PCLPointCloud2>;
+PCL_INSTANTIATE(DistanceFilter, PCL_XYZ_POINT_TYPES)

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/distance_query.h>
+
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/float_environment.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace pcl_bsh {
+namespace {
+
+/// A record without a distance is farther than all that was asked for. A distance that equals the length was rounded:
+/// the coordinates decide.
+class Comparison {
+public:
+  Comparison(const PointsView& input, const PointsView& obstacle, const Eigen::Isometry3d& pose,
+             const PointDistances& found)
+  : input_(input),
+    obstacle_(obstacle),
+    found_(found),
+    exact_(Eigen::Isometry3d::Identity(), pose)
+  {
+  }
+
+  /// Sign of the record's distance less the length.
+  int compare(std::uint32_t record, double length) const
+  {
+    const double distance = found_.distance[record];
+    if (std::isnan(distance)) return 1;
+    if (distance != length) return distance < length ? -1 : 1;
+    return exact_.compare(input_.point(record), obstacle_.point(found_.nearest[record]), length);
+  }
+
+private:
+  const DefaultFloatEnvironment environment_;
+  const PointsView& input_;
+  const PointsView& obstacle_;
+  const PointDistances& found_;
+  const ExactDistance exact_;
+};
+
+} // namespace
+
+DistanceQuery& DistanceQuery::operator=(const DistanceQuery& other)
+{
+  return *this = DistanceQuery(other); // moving allocates nothing
+}
+
+void DistanceQuery::requireSettings() const
+{
+  const auto [least, most] = limits_;
+  if (!(0.0 <= least && least <= most && std::isfinite(least))) {
+    throw std::invalid_argument("filter limits: from " + std::to_string(least) + " to " + std::to_string(most) +
+                                ": give a finite least >= 0, and a most that is not less");
+  }
+  if (accuracy_.stopsEarly()) {
+    throw std::invalid_argument("accuracy: " + accuracy_.text() +
+                                ": leaves points without a distance: give exact, float or tolerance=LENGTH");
+  }
+  if (!(max_distance_ >= 0.0)) {
+    throw std::invalid_argument("max distance: " + std::to_string(max_distance_) + ": give a length >= 0, or infinity");
+  }
+}
+
+PointDistances DistanceQuery::within(const PointsView& input, double max_distance)
+{
+  requireSettings();
+  const SphereHierarchy& obstacle = obstacle_.hierarchy(threads_);
+  HierarchyOptions options;
+  options.threads = threads_;
+  const SphereHierarchy hierarchy(input, options);
+  PointDistancesRequest request;
+  request.max_distance = max_distance;
+  request.accuracy = accuracy_;
+  request.threads = threads_;
+  request.progress = progress_;
+  PointDistances found = pointDistances({hierarchy}, {obstacle, pose_}, request);
+  work_ = found.work;
+  return found;
+}
+
+/// How far the query must look to tell which points are within the limits.
+double DistanceQuery::reachOfLimits() const
+{
+  return std::isinf(limits_.second) ? limits_.first : limits_.second;
+}
+
+PointDistances DistanceQuery::distances(const PointsView& input)
+{
+  return within(input, max_distance_);
+}
+
+void DistanceQuery::part(const PointsView& input, const PointDistances& found, bool negative, pcl::Indices& kept,
+                         pcl::Indices* removed) const
+{
+  const auto [least, most] = limits_;
+  const Comparison distance(input, obstacle_.view(), pose_, found);
+  // `kept` may be the very list the input is seen through: it is replaced only at the end.
+  pcl::Indices keep;
+  pcl::Indices remove;
+  for (std::size_t i = 0; i < input.size(); ++i) {
+    const std::uint32_t record = input.record(i);
+    const auto isWithin = [&] {
+      return distance.compare(record, least) >= 0 && (std::isinf(most) || distance.compare(record, most) <= 0);
+    };
+    if (isFinite(input.point(record)) && isWithin() != negative)
+      keep.push_back(static_cast<pcl::index_t>(record));
+    else if (removed)
+      remove.push_back(static_cast<pcl::index_t>(record));
+  }
+  kept = std::move(keep);
+  if (removed) *removed = std::move(remove);
+}
+
+void DistanceQuery::select(const PointsView& input, bool negative, pcl::Indices& kept, pcl::Indices* removed)
+{
+  part(input, within(input, reachOfLimits()), negative, kept, removed);
+}
+
+void DistanceQuery::select(const PointsView& input, bool negative, pcl::Indices& kept, pcl::Indices* removed,
+                           std::vector<float>& distances)
+{
+  const PointDistances found = within(input, std::max(max_distance_, reachOfLimits()));
+  const Comparison distance(input, obstacle_.view(), pose_, found);
+  std::vector<float> told(input.count, std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < input.size(); ++i) {
+    const std::uint32_t record = input.record(i);
+    if (distance.compare(record, max_distance_) <= 0) told[record] = static_cast<float>(found.distance[record]);
+  }
+  part(input, found, negative, kept, removed);
+  distances = std::move(told);
+}
+
+} // namespace pcl_bsh

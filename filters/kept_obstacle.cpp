@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/kept_obstacle.h>
+
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+
+#include <cstring>
+#include <utility>
+
+namespace pcl_bsh {
+namespace {
+
+/// One step of a checksum: for each word a bijection of the sum, so that no change of one word goes unnoticed.
+std::uint64_t withWord(std::uint64_t sum, std::uint64_t word)
+{
+  constexpr std::uint64_t golden = 0x9e3779b97f4a7c15; // odd
+  sum = (sum ^ word) * golden;
+  return sum ^ sum >> 32; // products carry upward only: a sign that flips twice would cancel out
+}
+
+template <typename Bits>
+std::uint64_t coordinateChecksum(const PointsView& view)
+{
+  std::uint64_t sum = view.count;
+  const auto [x, y, z] = view.offset;
+  const auto* record = static_cast<const unsigned char*>(view.data);
+  for (std::size_t i = 0; i < view.count; ++i, record += view.stride) {
+    const auto bits = [record](std::size_t offset) {
+      Bits word;
+      std::memcpy(&word, record + offset, sizeof word);
+      return std::uint64_t{word};
+    };
+    if constexpr (sizeof(Bits) == 4) {
+      sum = withWord(sum, bits(y) << 32 | bits(x));
+    }
+    else {
+      sum = withWord(withWord(sum, bits(x)), bits(y));
+    }
+    sum = withWord(sum, bits(z));
+  }
+  return sum;
+}
+
+/// Of all coordinates and their order. Bytes between them may change.
+std::uint64_t coordinateChecksum(const PointsView& view)
+{
+  return view.scalar == Scalar::float32 ? coordinateChecksum<std::uint32_t>(view)
+                                        : coordinateChecksum<std::uint64_t>(view);
+}
+
+} // namespace
+
+void KeptObstacle::setView(std::function<PointsView()> view)
+{
+  view(); // a cloud that cannot be read is refused here, not at the first use
+  view_ = std::move(view);
+  hierarchy_.reset();
+}
+
+const SphereHierarchy& KeptObstacle::hierarchy(unsigned threads)
+{
+  if (!view_) throw std::invalid_argument("obstacle cloud is missing: call setObstacleCloud() before filtering");
+  const PointsView view = view_();
+  const std::uint64_t checksum = coordinateChecksum(view);
+  if (!hierarchy_) {
+    HierarchyOptions options;
+    options.threads = threads;
+    hierarchy_ = std::make_shared<SphereHierarchy>(view, options);
+    checksum_ = checksum;
+  }
+  // The hierarchy points into the cloud's memory, and its spheres hold the points as they were.
+  if (hierarchy_->view().data != view.data || hierarchy_->view().count != view.count || checksum_ != checksum) {
+    throw std::invalid_argument("obstacle cloud has changed since setObstacleCloud(): call it again");
+  }
+  return *hierarchy_;
+}
+
+const PointsView& KeptObstacle::view() const
+{
+  return hierarchy_->view();
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The question of the stages that measure distances: another cloud, its pose, and how far to look.
+#pragma once
+
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/filters/pipeline/stage_type.h>
+
+#include <Eigen/Geometry>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::pipeline {
+
+/// The options of a stage that derives from it, beside Stage.
+struct DistanceQuestion {
+  OtherCloud obstacle;
+  std::optional<Pose> pose;
+  std::optional<double> max_distance;
+  std::string accuracy = "exact";
+  unsigned number_of_threads = 1;
+
+protected:
+  /// For plan(): refuses what the query would refuse.
+  /// @return what to tell the user, a line each
+  /// @throws OptionError
+  std::vector<std::string> check();
+
+  /// Stops when the stage is cancelled.
+  PointDistancesRequest request(const Stage& stage) const;
+
+  /// After check(): of the obstacle, in the input's frame.
+  const Eigen::Isometry3d& obstaclePose() const noexcept { return obstacle_pose_; }
+
+private:
+  Eigen::Isometry3d obstacle_pose_ = Eigen::Isometry3d::Identity();
+};
+
+template <typename S>
+StageDescription<S>& withDistanceOptions(StageDescription<S>& description)
+{
+  return description.option(&S::obstacle, "obstacle", "the cloud that distances lead to")
+      .required()
+      .option(
+          &S::pose, "pose",
+          "of the obstacle in the input's frame; rigid, where a matrix of few printed digits stands for its nearest "
+          "rotation; null: the frames are one")
+      .option(&S::max_distance, "max_distance",
+              "greater distances are not told, but are NaN; less is faster; null: no limit")
+      .unit("m")
+      .atLeast(0)
+      .option(&S::accuracy, "accuracy",
+              "how sure distances are; less sure is faster: `exact`; `tolerance=LENGTH`: that much too great at most; "
+              "`float`: without proof")
+      .option(&S::number_of_threads, "number_of_threads",
+              "0: all of the machine's; the result is the same for any number")
+      .atMost(1024);
+}
+
+} // namespace pcl_bsh::pipeline
