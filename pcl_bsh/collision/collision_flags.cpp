@@ -132,19 +132,6 @@ void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, P
   found.undecided_b = sheet_b.undecided();
 }
 
-/// Points that may collide are undecided, unless they do for certain.
-void withhold(std::vector<std::uint8_t>& flags, const std::vector<std::uint8_t>& certain, std::size_t& colliding,
-              std::size_t& undecided)
-{
-  colliding = undecided = 0;
-  for (std::size_t i = 0; i < flags.size(); ++i) {
-    if (flags[i] == flagOf(Verdict::free)) continue;
-    const bool collides = certain[i] == flagOf(Verdict::colliding);
-    flags[i] = flagOf(collides ? Verdict::colliding : Verdict::undecided);
-    ++(collides ? colliding : undecided);
-  }
-}
-
 } // namespace
 
 void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request, FlagsResult& result)

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/query/reach.h>
+#include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/traversal/space.h>
 
 namespace pcl_bsh {
@@ -24,7 +24,7 @@ public:
   bool collide(PointPair pair, Work& work) const
   {
     ++work.exact_decisions;
-    if (places_ != Places::measured) return distance.compare(a_.point(pair.a), b_.point(pair.b), reachOf(pair)) <= 0;
+    if (!of_pairs_.areMeasured()) return distance.compare(a_.point(pair.a), b_.point(pair.b), of_pairs_.of(pair)) <= 0;
     return distance.compare(a_.point(pair.a), b_.point(pair.b), clearance, a_.radius(pair.a), b_.radius(pair.b)) <= 0;
   }
 
@@ -54,27 +54,13 @@ private:
     distance(a.pose, b.pose),
     a_(a.hierarchy().view()),
     b_(b.hierarchy().view()),
-    asked_(greatest_distance),
-    places_(places)
+    of_pairs_(a_, b_, greatest_distance, places)
   {
-  }
-
-  ExactDistance::Sum reachOf(PointPair pair) const
-  {
-    const double sign = places_ == Places::certain ? -1.0 : 1.0;
-    return {asked_,
-            a_.radius(pair.a),
-            b_.radius(pair.b),
-            sign * a_.uncertainty,
-            sign * b_.uncertainty,
-            sign * a_.ownUncertainty(pair.a),
-            sign * b_.ownUncertainty(pair.b)};
   }
 
   const PointsView& a_;
   const PointsView& b_;
-  const double asked_;
-  const Places places_;
+  const PairReach of_pairs_;
 };
 
 } // namespace pcl_bsh

@@ -34,26 +34,13 @@ FlagsRequest within(double clearance, Side flagged, unsigned threads = 1, const 
   return {clearance, flagged, threads, accuracy};
 }
 
-/// One length of all, one for each record, or both; of the size of the clearance, or so that ties are likely.
-void makeUncertain(Cloud& cloud, double scale, Random& random)
-{
-  const auto length = [&] {
-    return random.chance(0.5) ? scale * random.integer(0, 4) / 16 : scale * random.uniform(0, 0.2);
-  };
-  const bool of_all = random.chance(0.6);
-  std::vector<float> own;
-  if (!of_all || random.chance(0.3))
-    for (std::size_t i = 0; i < cloud.view().count; ++i) own.push_back(static_cast<float>(length()));
-  cloud.setUncertainties(of_all ? length() : 0.0, std::move(own));
-}
-
 Scene uncertainScene(std::uint64_t seed, int most_points)
 {
   Scene scene = test::anyScene(seed, most_points);
   Random random(seed + 1000000);
   const double scale = scene.clearance > 0.0 ? scene.clearance : 0.01;
-  if (random.chance(0.8)) makeUncertain(scene.a, scale, random);
-  if (random.chance(0.8)) makeUncertain(scene.b, scale, random);
+  if (random.chance(0.8)) test::makeUncertain(scene.a, scale, random);
+  if (random.chance(0.8)) test::makeUncertain(scene.b, scale, random);
   if (random.chance(0.3)) scene.clearance *= 2;
   return scene;
 }
