@@ -4,6 +4,7 @@
 
 #include "cli/used_files.h"
 
+#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <cstdint>
@@ -34,6 +35,7 @@ struct CollideOptions {
   double clearance = 0.0;
   unsigned threads = 0; ///< all of the machine's
   Accuracy accuracy;
+  Uncertainty input_uncertainty, obstacle_uncertainty;
   std::vector<std::string> warnings; ///< of the options themselves
   CommandFiles files;                ///< all that are read or written
 
