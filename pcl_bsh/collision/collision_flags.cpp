@@ -132,6 +132,21 @@ void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, P
   found.undecided_b = sheet_b.undecided();
 }
 
+/// Free points that may be within the clearance of a patch of b's surface are sparse.
+void guardDensity(const Placed& a, const Placed& b, FlagsRequest request, FlagsResult& found)
+{
+  request.flagged = Side::a;
+  FlagsResult covered;
+  flagPlaces(a, b, request, Places::covered, covered);
+  for (std::size_t i = 0; i < found.a.size(); ++i) {
+    if (found.a[i] != flagOf(Verdict::free) || covered.a[i] == flagOf(Verdict::free)) continue;
+    const bool sparse = covered.a[i] == flagOf(Verdict::colliding);
+    found.a[i] = flagOf(sparse ? Verdict::sparse : Verdict::undecided);
+    ++(sparse ? found.sparse_a : found.undecided_a);
+  }
+  found.work += covered.work;
+}
+
 } // namespace
 
 void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request, FlagsResult& result)
@@ -157,6 +172,7 @@ void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& reques
     withhold(found.b, certain.b, found.colliding_b, found.undecided_b);
     found.work += certain.work;
   }
+  if (request.spacings_of_b && request.flagged != Side::b) guardDensity(a, b, request, found);
   result = std::move(found);
 }
 

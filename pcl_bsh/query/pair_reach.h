@@ -12,18 +12,20 @@ namespace pcl_bsh {
 /// are asked about.
 class PairReach {
 public:
-  PairReach(const PointsView& a, const PointsView& b, double clearance, Places places)
+  PairReach(const PointsView& a, const PointsView& b, double clearance, Places places,
+            const PatchSpacings& patches_of_b = {})
   : a_(a),
     b_(b),
     clearance_(clearance),
-    places_(places)
+    places_(places),
+    patches_(patches_of_b)
   {
   }
 
   bool areMeasured() const { return places_ == Places::measured; }
 
   /// Whether it is the same for all pairs, but for their radii.
-  bool isOne() const { return areMeasured() || !(a_.uncertainties || b_.uncertainties); }
+  bool isOne() const { return areMeasured() || !(a_.uncertainties || b_.uncertainties || patches_.spacings); }
 
   /// Before rounding.
   ExactDistance::Sum of(PointPair pair) const
@@ -35,7 +37,8 @@ public:
             sign * a_.uncertainty,
             sign * b_.uncertainty,
             sign * a_.ownUncertainty(pair.a),
-            sign * b_.ownUncertainty(pair.b)};
+            sign * b_.ownUncertainty(pair.b),
+            patches_.spacings ? 0.5 * static_cast<double>(patches_.spacings[pair.b]) : 0.0};
   }
 
 private:
@@ -43,6 +46,7 @@ private:
   const PointsView& b_;
   const double clearance_;
   const Places places_;
+  const PatchSpacings patches_;
 };
 
 } // namespace pcl_bsh

@@ -7,16 +7,19 @@
 
 namespace pcl_bsh {
 
-inline Reach reachBetween(const Placed& a, const Placed& b, double clearance, Places places)
+inline Reach reachBetween(const Placed& a, const Placed& b, double clearance, Places places,
+                          const PatchSpacings& patches_of_b = {})
 {
-  return {clearance, a.hierarchy().storage().uncertainty, b.hierarchy().storage().uncertainty, places};
+  return {clearance, a.hierarchy().storage().uncertainty, b.hierarchy().storage().uncertainty, places, patches_of_b};
 }
 
 /// Decides pairs of points by the coordinates as given, in exact arithmetic.
 class PointPairs {
 public:
-  PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places = Places::measured)
-  : PointPairs(a, b, greatest_distance, places, reachBetween(a, b, greatest_distance, places))
+  PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places = Places::measured,
+             const PatchSpacings& patches_of_b = {})
+  : PointPairs(a, b, greatest_distance, places, patches_of_b,
+               reachBetween(a, b, greatest_distance, places, patches_of_b))
   {
   }
 
@@ -48,13 +51,14 @@ public:
   const ExactDistance distance;
 
 private:
-  PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places, const Reach& of_all)
+  PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places,
+             const PatchSpacings& patches_of_b, const Reach& of_all)
   : reach(of_all),
     clearance(std::max(0.0, of_all.most)),
     distance(a.pose, b.pose),
     a_(a.hierarchy().view()),
     b_(b.hierarchy().view()),
-    of_pairs_(a_, b_, greatest_distance, places)
+    of_pairs_(a_, b_, greatest_distance, places, patches_of_b)
   {
   }
 
