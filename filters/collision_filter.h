@@ -48,8 +48,8 @@ public:
   ~CollisionFilterBase() override = default;
 
   /// Keeps the points of the input that do not collide; after setNegative(true), those that do, with those that are
-  /// undecided (setAccuracy()). Points that are not finite are removed either way. `output` may be the input; on an
-  /// error it stays as it was, and getRemovedIndices() is of this call or the one before.
+  /// undecided (setAccuracy(), setInputUncertainty()). Points that are not finite are removed either way. `output` may
+  /// be the input; on an error it stays as it was, and getRemovedIndices() is of this call or the one before.
   /// @throws std::invalid_argument when input or obstacle is missing, or a setting is not what its declaration asks for
   void filter(Cloud& output);
 
@@ -57,8 +57,8 @@ public:
   void filter(pcl::Indices& indices);
 
   /// One flag per point of the whole input cloud, 1 = collides (also after setNegative(true)), 2 = undecided (only
-  /// where setAccuracy() lets a query stop early); 0 for points outside setIndices() and for points that are not
-  /// finite. Throws as filter() does.
+  /// where setAccuracy() lets a query stop early, or where points are uncertain); 0 for points outside setIndices() and
+  /// for points that are not finite. Throws as filter() does.
   void computeFlags(std::vector<std::uint8_t>& flags);
 
   /// More along the trajectory (or at the one pose) than flags: for each colliding point of the whole input cloud its

@@ -43,10 +43,17 @@ std::uint64_t checksumOf(const PointsView& view)
   return sum;
 }
 
-/// Of all coordinates and their order. Bytes between them may change.
+/// Of all coordinates, their order and the points' own uncertainties. Bytes between them may change.
 std::uint64_t checksumOf(const PointsView& view)
 {
-  return view.scalar == Scalar::float32 ? checksumOf<std::uint32_t>(view) : checksumOf<std::uint64_t>(view);
+  std::uint64_t sum =
+      view.scalar == Scalar::float32 ? checksumOf<std::uint32_t>(view) : checksumOf<std::uint64_t>(view);
+  for (std::size_t i = 0; view.uncertainties && i < view.count; ++i) {
+    std::uint32_t word;
+    std::memcpy(&word, view.uncertainties + i, sizeof word);
+    sum = mixed(sum, word);
+  }
+  return sum;
 }
 
 } // namespace
@@ -56,17 +63,39 @@ ObstacleQuery& ObstacleQuery::operator=(const ObstacleQuery& other)
   return *this = ObstacleQuery(other); // moving allocates nothing
 }
 
-void ObstacleQuery::setObstacle(std::function<PointsView()> view)
+void ObstacleQuery::setObstacle(std::function<PointsView()> view, Fields fields)
 {
   view(); // a cloud that cannot be read is refused here, not at the first use
   obstacle_ = std::move(view);
+  obstacle_fields_ = std::move(fields);
   hierarchy_.reset();
+}
+
+void ObstacleQuery::setInputUncertainty(const Uncertainty& uncertainty)
+{
+  checkUncertainty("input cloud", uncertainty);
+  Uncertainty copy = uncertainty;
+  input_uncertainty_ = std::move(copy);
+}
+
+void ObstacleQuery::setObstacleUncertainty(const Uncertainty& uncertainty)
+{
+  checkUncertainty("obstacle cloud", uncertainty);
+  Uncertainty copy = uncertainty;
+  obstacle_uncertainty_ = std::move(copy);
+  hierarchy_.reset(); // it holds its points' uncertainties
+}
+
+PointsView ObstacleQuery::obstacleView() const
+{
+  const auto fields = obstacle_uncertainty_.field.empty() ? std::vector<pcl::PCLPointField>() : obstacle_fields_();
+  return withUncertainty(obstacle_(), fields, "obstacle cloud", obstacle_uncertainty_);
 }
 
 const SphereHierarchy& ObstacleQuery::obstacleHierarchy()
 {
   if (!obstacle_) throw std::invalid_argument("obstacle cloud is missing: call setObstacleCloud() before filtering");
-  const PointsView view = obstacle_();
+  const PointsView view = obstacleView();
   const std::uint64_t checksum = checksumOf(view);
   if (!hierarchy_) {
     HierarchyOptions options;

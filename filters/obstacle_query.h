@@ -3,10 +3,12 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/search/cloud_view.h>
 
+#include <pcl/common/io.h>
 #include <pcl/memory.h>
 
 #include <Eigen/Geometry>
@@ -78,7 +80,18 @@ public:
   void setAccuracy(const Accuracy& accuracy) { accuracy_ = accuracy; }
   const Accuracy& getAccuracy() const { return accuracy_; }
 
-  /// How many points of the input the last query left undecided. 0 unless its accuracy let it stop early.
+  /// How far the points of the input, or of the obstacle, may truly be from where they were measured. Then a point
+  /// collides where it does wherever all points truly are, it is free where it cannot collide, and else it is
+  /// undecided: its flag is 2, and it counts as colliding wherever points are kept or removed. Default: not at all.
+  /// @throws std::invalid_argument for numbers that are not finite and >= 0. Filtering throws where a field is missing,
+  ///   or holds such a number for a finite point.
+  void setInputUncertainty(const Uncertainty& uncertainty);
+  void setObstacleUncertainty(const Uncertainty& uncertainty);
+  const Uncertainty& getInputUncertainty() const { return input_uncertainty_; }
+  const Uncertainty& getObstacleUncertainty() const { return obstacle_uncertainty_; }
+
+  /// How many points of the input the last query left undecided. 0 unless its accuracy let it stop early, or points are
+  /// uncertain.
   std::size_t getUndecidedCount() const { return undecided_; }
 
   /// Default 1; 0: all of the machine's. The answer is the same for any number.
@@ -113,15 +126,34 @@ protected:
   /// @param removed may be null
   void select(const PointsView& input, bool negative, pcl::Indices& kept, pcl::Indices* removed);
 
+  /// @param fields of the view's records
+  PointsView asUncertainInput(const PointsView& input, const std::vector<pcl::PCLPointField>& fields) const
+  {
+    return withUncertainty(input, fields, "input cloud", input_uncertainty_);
+  }
+
+  /// The fields of a cloud's records.
+  template <typename PointT>
+  static std::vector<pcl::PCLPointField> fieldsOfRecords(const pcl::PointCloud<PointT>&)
+  {
+    return pcl::getFields<PointT>();
+  }
+  static std::vector<pcl::PCLPointField> fieldsOfRecords(const pcl::PCLPointCloud2& cloud) { return cloud.fields; }
+
 private:
-  void setObstacle(std::function<PointsView()> view);
+  using Fields = std::function<std::vector<pcl::PCLPointField>()>;
+
+  void setObstacle(std::function<PointsView()> view, Fields fields);
+  PointsView obstacleView() const;
   void warnOfCoarse(const char* cloud, const SphereHierarchy& hierarchy);
   const SphereHierarchy& obstacleHierarchy();
   TrajectoryResult run(const PointsView& input, TrajectoryRequest& request);
 
   std::function<PointsView()> obstacle_; ///< owns its cloud
+  Fields obstacle_fields_;               ///< likewise
+  Uncertainty input_uncertainty_, obstacle_uncertainty_;
   std::shared_ptr<const SphereHierarchy> hierarchy_;
-  std::uint64_t checksum_ = 0; ///< of the coordinates that the hierarchy was built from
+  std::uint64_t checksum_ = 0; ///< of the coordinates and uncertainties that the hierarchy was built from
   std::function<bool(double)> progress_;
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
   std::optional<std::vector<Eigen::Isometry3d>> trajectory_; ///< instead of pose_
@@ -141,7 +173,7 @@ template <typename Cloud>
 void ObstacleQuery::setObstacleCloud(const std::shared_ptr<Cloud>& cloud)
 {
   if (!cloud) throw std::invalid_argument("obstacle cloud is null: give an empty cloud if there is no obstacle");
-  setObstacle([cloud] { return viewOf(*cloud); });
+  setObstacle([cloud] { return viewOf(*cloud); }, [cloud] { return fieldsOfRecords(*cloud); });
 }
 
 } // namespace pcl_bsh

@@ -113,12 +113,14 @@ Scan load(const fs::path& path, double& seconds)
   return scan;
 }
 
-SphereHierarchy build(const Scan& scan, const fs::path& path, unsigned threads, double& seconds)
+SphereHierarchy build(const Scan& scan, const fs::path& path, const Uncertainty& uncertainty, unsigned threads,
+                      double& seconds)
 {
+  const PointsView view = withUncertainty(viewOf(scan.cloud), scan.cloud.fields, path.string(), uncertainty);
   cli::Step step("Sorting " + path.string() + " into voxels");
   HierarchyOptions options;
   options.threads = threads;
-  SphereHierarchy hierarchy(viewOf(scan.cloud), options);
+  SphereHierarchy hierarchy(view, options);
   seconds += step.done(std::to_string(hierarchy.statistics().voxels) + " voxels");
   return hierarchy;
 }
@@ -228,7 +230,7 @@ void summarise(const Options& options, const cli::CollisionReport& report, const
   cli::warn(program, report.warnings);
   std::ostream& out = options.files.summary();
   out << report.colliding << " of " << report.input.points << " points collide";
-  if (report.accuracy.stopsEarly()) out << ", " << report.undecided << " are undecided";
+  if (report.mayLeaveUndecided()) out << ", " << report.undecided << " are undecided";
   if (report.closest.pair) {
     out << "; smallest distance " << distanceText(report) << ", between point " << report.closest.pair->a
         << " of the input and point " << report.closest.pair->b << " of the obstacle";
@@ -410,13 +412,15 @@ int collide(const Options& options)
   const std::vector<Clash> earlier = readEarlier(options, report.warnings);
   report.clearance = options.clearance;
   report.accuracy = options.accuracy;
+  report.input_uncertainty = options.input_uncertainty;
+  report.obstacle_uncertainty = options.obstacle_uncertainty;
 
   const Scan input = load(options.input, report.seconds.load);
   if (options.keep == Keep::flagged || options.distances)
     marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
   const Scan obstacle = load(options.obstacle, report.seconds.load);
-  const auto a = build(input, options.input, options.threads, report.seconds.build);
-  const auto b = build(obstacle, options.obstacle, options.threads, report.seconds.build);
+  const auto a = build(input, options.input, options.input_uncertainty, options.threads, report.seconds.build);
+  const auto b = build(obstacle, options.obstacle, options.obstacle_uncertainty, options.threads, report.seconds.build);
 
   const bool by_place = options.moves() || !options.clashes.empty();
   const TrajectoryResult found = by_place ? alongPath(options, poses, a, b, report) : atPose(options, a, b, report);

@@ -33,6 +33,13 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, unsi
   return viewed;
 }
 
+/// As the field `collision` has it: any other number is a collision.
+Verdict verdictOf(float value)
+{
+  if (value == 0.0f) return Verdict::free;
+  return value == static_cast<float>(flagOf(Verdict::undecided)) ? Verdict::undecided : Verdict::colliding;
+}
+
 } // namespace
 
 CloudsContent::CloudsContent(const Options& options) : ViewContent(options), poses_{options.pose}
@@ -93,9 +100,13 @@ StepCollisions CloudsContent::collisions(std::size_t step) const
   }
   else if (const auto field = scan().field(collision_field_name)) {
     found.known = true;
-    for (const float value : *field) found.flags[0].push_back(value != 0.0f);
+    for (const float value : *field) found.flags[0].push_back(flagOf(verdictOf(value)));
   }
-  found.colliding = static_cast<std::size_t>(std::count(found.flags[0].begin(), found.flags[0].end(), 1));
+  const auto count = [&](Verdict verdict) {
+    return static_cast<std::size_t>(std::count(found.flags[0].begin(), found.flags[0].end(), flagOf(verdict)));
+  };
+  found.colliding = count(Verdict::colliding);
+  found.undecided = count(Verdict::undecided);
   if (options_.closest) found.closest = closest(step);
   return found;
 }
@@ -119,6 +130,7 @@ std::string CloudsContent::heading(const StepCollisions& collisions, std::size_t
   text << scan().name << ": " << grouped(scan().hierarchy->size()) << " points";
   if (collisions.known) {
     text << ", " << grouped(collisions.colliding) << " collide";
+    if (collisions.undecided > 0) text << ", " << grouped(collisions.undecided) << " are undecided";
     if (options_.clearance) text << "  (clearance " << lengthOf(*options_.clearance, options_.unit) << ')';
   }
   if (steps() > 1) text << "\npose " << step << " of 0.." << steps() - 1;

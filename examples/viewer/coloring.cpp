@@ -92,12 +92,21 @@ void markValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Ran
   for (const float value : shown.values) known.push_back(std::isfinite(value) ? 1 : 0);
   std::vector<Color> colors = colorsOf(shown, *table);
   for (std::size_t i = 0; i < colliding.size(); ++i)
-    if (colliding[i] != 0) colors[i] = colliding_color;
+    if (colliding[i] != 0) colors[i] = colliding[i] == flagOf(Verdict::undecided) ? undecided_color : colliding_color;
   cloud.mark(known, colors);
   if (std::find(known.begin(), known.end(), 1) != known.end())
     bar.show(*table, shown.title, shown.counts);
   else
     bar.hide();
+}
+
+/// The colours of what is not free, one per record.
+std::vector<Color> colorsOfVerdicts(const std::vector<std::uint8_t>& flags)
+{
+  std::vector<Color> colors(flags.size(), colliding_color);
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    if (flags[i] == flagOf(Verdict::undecided)) colors[i] = undecided_color;
+  return colors;
 }
 
 Color plainColor(const ViewedCloud& viewed)
@@ -201,7 +210,8 @@ void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& con
   }
   else {
     if (coloring == Coloring::collision) requireCollisions(collisions, "collision");
-    clouds[0].mark(collisions.flags[0]);
+    const std::vector<std::uint8_t>& flags = collisions.flags[0];
+    clouds[0].mark(flags, collisions.undecided > 0 ? colorsOfVerdicts(flags) : std::vector<Color>());
   }
   for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].mark(collisions.flags[i]);
 }

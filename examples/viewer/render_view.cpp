@@ -135,6 +135,8 @@ std::vector<LegendEntry> RenderView::legend() const
       add(viewed.legend + (collisions_.known ? ", free" : ""), scan_color);
     if (collisions_.known && (!by_value || content_.options().range))
       add(viewed.legend + ", colliding", colliding_color);
+    if (collisions_.undecided > 0 && (!by_value || content_.options().range))
+      add(viewed.legend + ", undecided", undecided_color);
   }
   if (const MotionPaths paths = content_.paths(step_); !paths.poses.empty()) add(paths.name, path_color);
   if (collisions_.closest) add("closest pair", segment_color);
@@ -209,7 +211,11 @@ std::string RenderView::describe(const vtkProp* prop, vtkIdType id) const
     text << "point " << *record << " of " << viewed.name << std::setprecision(9) << ": " << p[0] << ", " << p[1] << ", "
          << p[2];
     const std::vector<std::uint8_t>& flags = collisions_.flags[i];
-    if (collisions_.known) text << (!flags.empty() && flags[*record] != 0 ? "; collides" : "; free");
+    const std::uint8_t flag = flags.empty() ? flagOf(Verdict::free) : flags[*record];
+    if (collisions_.known)
+      text << (flag == flagOf(Verdict::free)        ? "; free"
+               : flag == flagOf(Verdict::undecided) ? "; undecided"
+                                                    : "; collides");
     return text.str() + content_.details(i, *record, step_);
   }
   return {};

@@ -27,6 +27,7 @@ struct StepCollisions {
   bool known = false;                           ///< whether a query ran or a field says it
   std::vector<std::vector<std::uint8_t>> flags; ///< of each viewed cloud, 1 = collides, per record; empty: none do
   std::size_t colliding = 0;                    ///< points of the scan, or of all clouds of a scene
+  std::size_t undecided = 0;                    ///< likewise
   std::optional<ClosestPair> closest;
 };
 

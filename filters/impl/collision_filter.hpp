@@ -99,7 +99,8 @@ PointsView CollisionFilterBase<PointT>::inputView() const
 {
   // PCL fills in the indices of the whole cloud where none were set.
   const bool subset = this->indices_ && !this->fake_indices_;
-  return subset ? viewOf(*this->input_, *this->indices_) : viewOf(*this->input_);
+  const PointsView view = subset ? viewOf(*this->input_, *this->indices_) : viewOf(*this->input_);
+  return getInputUncertainty().isZero() ? view : asUncertainInput(view, fieldsOfRecords(*this->input_));
 }
 
 template <typename PointT>

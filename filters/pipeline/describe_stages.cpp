@@ -56,6 +56,8 @@ Json valueSchema(const Option& option)
   case Kind::output_file:
   case Kind::cloud:
     return {{"type", "string"}, {"minLength", 1}};
+  case Kind::length_or_field:
+    return {{"anyOf", {number, {{"type", "string"}, {"minLength", 1}}}}};
   }
   return {};
 }

@@ -169,6 +169,8 @@ std::string expectation(const Option& option)
     return "the name of a file to write";
   case Kind::cloud:
     return "the tag of an earlier stage, or the name of a cloud file";
+  case Kind::length_or_field:
+    return "a number" + rangeOf(option) + ", or the name of a field";
   }
   return {};
 }
@@ -198,6 +200,9 @@ Value valueOf(const Json& json, const Option& option)
   case Kind::input_file:
   case Kind::output_file:
   case Kind::cloud:
+    return nameOf(json, option);
+  case Kind::length_or_field:
+    if (json.is_number()) return numberOf(json, json, option);
     return nameOf(json, option);
   }
   return {};

@@ -8,6 +8,7 @@
 //   Pose                                                 [x, y, z, roll, pitch, yaw], a matrix, or a file with one
 //   InputFile, OutputFile                                "hall.pcd"
 //   OtherCloud                                           the tag of an earlier stage, or "robot.pcd"
+//   LengthOrField                                        0.005 or "sigma"
 //   std::optional of any                                 the same; nothing unless the document says something
 #pragma once
 
@@ -53,6 +54,7 @@ enum class Kind : std::uint8_t {
   input_file,
   output_file,
   cloud,
+  length_or_field,
 };
 
 template <std::size_t N>
@@ -81,6 +83,12 @@ struct OtherCloud {
   std::string name;    ///< the tag of a stage, or a file
   CloudHeader header;  ///< when Stage::plan() is called
   StageCloudPtr cloud; ///< when Stage::run() is called
+};
+
+/// One length for all points, or the name of the field that holds one for each.
+struct LengthOrField {
+  double length = 0;
+  std::string field; ///< empty: the length counts
 };
 
 /// What the type itself cannot exceed.
@@ -195,6 +203,20 @@ struct OptionType<OtherCloud> {
   static constexpr Kind kind = Kind::cloud;
   static OtherCloud from(const Value& value) { return {std::get<std::string>(value), {}, {}}; }
   static Value to(const OtherCloud& option) { return option.name; }
+};
+
+template <>
+struct OptionType<LengthOrField> {
+  static constexpr Kind kind = Kind::length_or_field;
+  static LengthOrField from(const Value& value)
+  {
+    if (const auto* field = std::get_if<std::string>(&value)) return {0, *field};
+    return {std::get<double>(value), {}};
+  }
+  static Value to(const LengthOrField& option)
+  {
+    return option.field.empty() ? Value(option.length) : Value(option.field);
+  }
 };
 
 template <typename T>

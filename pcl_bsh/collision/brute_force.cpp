@@ -7,6 +7,7 @@
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/query/brute_force_points.h>
+#include <pcl_bsh/query/pair_reach.h>
 
 #include <algorithm>
 
@@ -62,6 +63,19 @@ AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& reque
   return result;
 }
 
+/// Free points of a that may be within the clearance of a patch of b's surface.
+void guardDensity(const Placed& a, const Placed& b, const FlagsRequest& request, std::vector<std::uint8_t>& flags)
+{
+  const ExactDistance distance(a.pose, b.pose);
+  const PointsView &of_a = a.hierarchy().view(), &of_b = b.hierarchy().view();
+  const PairReach reach(of_a, of_b, request.clearance, Places::covered, {request.spacings_of_b, of_b.count});
+  for (const FinitePoint& p : finitePoints(of_a))
+    for (const FinitePoint& q : finitePoints(of_b))
+      if (flags[p.record] == flagOf(Verdict::free) &&
+          distance.compare(p.point, q.point, reach.of({p.record, q.record})) <= 0)
+        flags[p.record] = flagOf(Verdict::sparse);
+}
+
 FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request)
 {
   check(a, b, request);
@@ -82,6 +96,8 @@ FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest&
     return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flagOf(verdict)));
   };
   if (asked(Side::a)) {
+    if (request.spacings_of_b) guardDensity(a, b, request, flags_a);
+    result.sparse_a = count(flags_a, Verdict::sparse);
     result.colliding_a = count(flags_a, Verdict::colliding);
     result.undecided_a = count(flags_a, Verdict::undecided);
     result.a = std::move(flags_a);

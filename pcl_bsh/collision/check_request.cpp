@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/collision/check_request.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/query/request_check.h>
+
+#include <cmath>
 
 namespace pcl_bsh {
 namespace {
@@ -10,6 +14,16 @@ void checkPoses(const Placed& a, const Placed& b)
 {
   checkPose("pose of a", a.pose);
   checkPose("pose of b", b.pose);
+}
+
+void checkSpacings(const float* spacings, std::size_t count)
+{
+  for (std::size_t i = 0; spacings && i < count; ++i)
+    if (!(std::isfinite(spacings[i]) && spacings[i] >= 0.0f))
+      throw InvalidInput(Input::density, "density guard", plainText("spacing ", spacings[i], " of point ", i),
+                         "give finite lengths >= 0")
+          .withValue(static_cast<double>(spacings[i]))
+          .withIndex(i);
 }
 
 } // namespace
@@ -26,6 +40,7 @@ void check(const Placed& a, const Placed& b, const FlagsRequest& request)
   checkClearance(request.clearance);
   checkAccuracy(request.accuracy);
   checkPoses(a, b);
+  checkSpacings(request.spacings_of_b, b.hierarchy().view().count);
 }
 
 void check(const Placed& a, const Placed& b, const DistanceRequest& request)

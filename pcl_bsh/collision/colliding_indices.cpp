@@ -4,6 +4,7 @@
 #include <pcl_bsh/collision/colliding_indices.h>
 #include <pcl_bsh/collision/flag_side.h>
 #include <pcl_bsh/collision/uncertain.h>
+#include <pcl_bsh/geometry/invalid_input.h>
 
 #include <hwy/contrib/sort/vqsort.h>
 
@@ -182,6 +183,8 @@ void withhold(const Indices& possible, const Indices& left, const Indices& certa
 void collidingIndices(const Placed& a, const Placed& b, const FlagsRequest& request, CollidingIndices& result)
 {
   check(a, b, request);
+  if (request.spacings_of_b)
+    throw InvalidInput(Input::density, "density guard", "lists of points do not know it", "ask collisionFlags()");
   const DefaultFloatEnvironment environment;
   CollidingIndices found;
   std::swap(found, result); // should something throw, the result has no collision

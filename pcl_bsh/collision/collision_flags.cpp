@@ -132,17 +132,19 @@ void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, P
   found.undecided_b = sheet_b.undecided();
 }
 
-/// Points that may collide are undecided, unless they do for certain.
-void withhold(std::vector<std::uint8_t>& flags, const std::vector<std::uint8_t>& certain, std::size_t& colliding,
-              std::size_t& undecided)
+/// Free points that may be within the clearance of a patch of b's surface are sparse.
+void guardDensity(const Placed& a, const Placed& b, FlagsRequest request, FlagsResult& found)
 {
-  colliding = undecided = 0;
-  for (std::size_t i = 0; i < flags.size(); ++i) {
-    if (flags[i] == flagOf(Verdict::free)) continue;
-    const bool collides = certain[i] == flagOf(Verdict::colliding);
-    flags[i] = flagOf(collides ? Verdict::colliding : Verdict::undecided);
-    ++(collides ? colliding : undecided);
+  request.flagged = Side::a;
+  FlagsResult covered;
+  flagPlaces(a, b, request, Places::covered, covered);
+  for (std::size_t i = 0; i < found.a.size(); ++i) {
+    if (found.a[i] != flagOf(Verdict::free) || covered.a[i] == flagOf(Verdict::free)) continue;
+    const bool sparse = covered.a[i] == flagOf(Verdict::colliding);
+    found.a[i] = flagOf(sparse ? Verdict::sparse : Verdict::undecided);
+    ++(sparse ? found.sparse_a : found.undecided_a);
   }
+  found.work += covered.work;
 }
 
 } // namespace
@@ -170,6 +172,7 @@ void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& reques
     withhold(found.b, certain.b, found.colliding_b, found.undecided_b);
     found.work += certain.work;
   }
+  if (request.spacings_of_b && request.flagged != Side::b) guardDensity(a, b, request, found);
   result = std::move(found);
 }
 

@@ -22,17 +22,29 @@ struct FlagsRequest {
   Side flagged = Side::a; ///< whose points are flagged
   unsigned threads = 1;   ///< 0: all of the machine's
   Accuracy accuracy;      ///< exact, unless the caller asks for less
+
+  /// The density guard, for collisionFlags(): how far the samples of b's surface are apart at each record of its view
+  /// (patchSpacings() in neighbors/patch_spacings.h), finite and >= 0, alike at the same place; null: no guard. A patch
+  /// is the ball about a point of b whose diameter is its spacing. A point of a that is free, but within the clearance
+  /// of a patch (wherever points truly are), is Verdict::sparse instead of free.
+  ///
+  /// Promised: of a free point that stays free, no place of b's surface is within the clearance, if each place of that
+  /// surface is in a patch. Not promised: that the patches cover it. Holes wider than the spacings say, what nobody
+  /// scanned, and the gaps between the samples of a, whose surface the guard does not know, are as they were.
+  const float* spacings_of_b = nullptr;
 };
 
 struct FlagsResult {
   /// One per record of a's view, a Verdict as a number: 0 free, 1 collides, 2 undecided, the latter only when the
-  /// request's accuracy lets the walk stop early, or where points have uncertainties. Empty when not asked for.
+  /// request's accuracy lets the walk stop early, or where points have uncertainties; 3 sparse, with a density guard.
+  /// Empty when not asked for.
   std::vector<std::uint8_t> a;
   std::vector<std::uint8_t> b; ///< likewise for b
   std::size_t colliding_a = 0;
   std::size_t colliding_b = 0;
   std::size_t undecided_a = 0;
   std::size_t undecided_b = 0;
+  std::size_t sparse_a = 0; ///< not among the undecided
   Work work;
 };
 
@@ -40,7 +52,9 @@ struct FlagsResult {
 /// collides if some point of the other cloud is within the clearance of it wherever both truly are; it is free if none
 /// can be; else it is undecided. Several points of the other cloud of which always one is near, though not always the
 /// same, leave it undecided. That costs about two queries; a budget is divided between them.
-/// @throws std::invalid_argument when the clearance, the accuracy or a pose is not what its declaration asks for.
+/// A density guard is one search more.
+/// @throws std::invalid_argument when the clearance, the accuracy, a spacing or a pose is not what its declaration asks
+///   for.
 FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request);
 
 /// The same into a result whose memory is used again: for one pose after another.

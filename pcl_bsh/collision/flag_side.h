@@ -18,9 +18,9 @@ template <class Sheet>
 class FlagSide {
 public:
   FlagSide(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, const StopRule& rule,
-           Sheet& sheet, Work& work)
+           Sheet& sheet, Work& work, const PatchSpacings& patches_of_b = {})
   : sheet_(sheet),
-    pairs_(a, b, request.clearance, places),
+    pairs_(a, b, request.clearance, places, patches_of_b),
     query_{a, b, pairs_, RelativeRotation(a.pose, b.pose), Acceptance(pairs_.reach, request.accuracy)},
     voxels_(threadCount(request.threads), work)
   {
@@ -66,7 +66,9 @@ Work flagSides(const Placed& a, const Placed& b, const FlagsRequest& request, Pl
     return work;
   }
   if (request.flagged != Side::b) {
-    FlagSide(a, b, request, places, rule, sheet_a, work).passes(rule, rule.node_pairs);
+    const PatchSpacings patches(places == Places::covered ? request.spacings_of_b : nullptr,
+                                b.hierarchy().view().count);
+    FlagSide(a, b, request, places, rule, sheet_a, work, patches).passes(rule, rule.node_pairs);
     sheet_a.end();
   }
   if (request.flagged != Side::a) {

@@ -4,6 +4,10 @@
 
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/query/result.h>
+
+#include <cstddef>
+#include <vector>
 
 namespace pcl_bsh {
 
@@ -17,6 +21,20 @@ inline Accuracy halfOf(Accuracy accuracy)
 {
   if (accuracy.mode == Accuracy::Mode::node_pairs || accuracy.mode == Accuracy::Mode::time) accuracy.value /= 2;
   return accuracy;
+}
+
+/// Points that may collide are undecided, unless they do for certain.
+/// @param flags of what may collide, then the verdicts. @param certain of what does
+inline void withhold(std::vector<std::uint8_t>& flags, const std::vector<std::uint8_t>& certain, std::size_t& colliding,
+                     std::size_t& undecided)
+{
+  colliding = undecided = 0;
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    if (flags[i] == flagOf(Verdict::free)) continue;
+    const bool collides = certain[i] == flagOf(Verdict::colliding);
+    flags[i] = flagOf(collides ? Verdict::colliding : Verdict::undecided);
+    ++(collides ? colliding : undecided);
+  }
 }
 
 } // namespace pcl_bsh

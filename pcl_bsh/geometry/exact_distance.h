@@ -45,7 +45,7 @@ public:
   int compare(const Point3& p, const Point3& q, double clearance, double radius_p = 0.0, double radius_q = 0.0) const;
 
   /// A length that is a sum, before rounding.
-  using Sum = std::array<double, 7>;
+  using Sum = std::array<double, 8>;
 
   /// Sign of |T_a p - T_b q| - (the sum of the terms of `reach`). @pre finite terms
   int compare(const Point3& p, const Point3& q, const Sum& reach) const;

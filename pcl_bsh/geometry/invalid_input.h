@@ -24,6 +24,7 @@ enum class Input : std::uint8_t {
   index,  ///< of a point, outside its cloud
   radius, ///< of a point or of a search
   uncertainty,
+  density,   ///< spacings of a surface's patches
   box,       ///< of a search
   neighbors, ///< how many a search is to find
   voxel_edge,

@@ -13,7 +13,8 @@ namespace pcl_bsh {
 
 /// At which distances a request lets points collide: what is up to `accepted` may count as colliding, what is beyond
 /// `clearance` may not count if it is beyond `accepted`, too. As measured and exact, the two are one; a tolerance
-/// raises `accepted`, and where places are uncertain it is the least reach of all pairs and `clearance` the greatest.
+/// raises `accepted`, and where places are uncertain it is the least reach of all pairs and `clearance` the greatest;
+/// floats alone cannot tell these pairs apart.
 struct Acceptance {
   Acceptance(double asked, const Accuracy& accuracy) : Acceptance({asked, {}, {}, Places::measured}, accuracy) {}
 
@@ -22,7 +23,7 @@ struct Acceptance {
     accepted(reach.least),
     surely_within(reach.most),
     surely_beyond(reach.least),
-    proven(accuracy.isProven()),
+    proven(accuracy.isProven() || reach.least != reach.most),
     exact(proven)
   {
     if (accuracy.mode != Accuracy::Mode::tolerance || !(accuracy.value > 0.0)) return;

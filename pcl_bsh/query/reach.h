@@ -15,12 +15,29 @@ enum class Places : std::uint8_t {
   measured, ///< are they within the clearance as they were measured?
   certain,  ///< are they wherever they truly are, within their uncertainties?
   possible, ///< may they be?
+  covered,  ///< may the first be within it of the other's patch of surface?
+};
+
+/// How far the samples of a surface are apart at each of its records: nothing, or a float each.
+struct PatchSpacings {
+  PatchSpacings() = default;
+  PatchSpacings(const float* of_records, std::size_t count) : spacings(of_records)
+  {
+    if (!of_records || count == 0) return;
+    const auto [smallest, largest] = std::minmax_element(of_records, of_records + count);
+    least = static_cast<double>(*smallest);
+    most = static_cast<double>(*largest);
+  }
+
+  const float* spacings = nullptr;
+  double least = 0.0, most = 0.0;
 };
 
 /// How far a pair may be apart, less its radii: the clearance, less the uncertainties of both points for a certain
 /// answer, plus them for a possible one. Between these two, whatever the pair.
 struct Reach {
-  Reach(double clearance, const UncertaintyRange& a, const UncertaintyRange& b, Places places)
+  Reach(double clearance, const UncertaintyRange& a, const UncertaintyRange& b, Places places,
+        const PatchSpacings& patches = {})
   : least(clearance),
     most(clearance)
   {
@@ -28,6 +45,9 @@ struct Reach {
     const double low = down(a.least + b.least), high = up(a.most + b.most);
     least = down(places == Places::certain ? clearance - high : clearance + low);
     most = up(places == Places::certain ? clearance - low : clearance + high);
+    if (places != Places::covered) return;
+    least = down(least + patches.least / 2);
+    most = up(most + patches.most / 2);
   }
 
   double least; ///< below 0 where no pair without radii may be near enough

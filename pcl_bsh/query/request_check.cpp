@@ -43,7 +43,7 @@ void checkNoUncertainty(const std::string& name, const PointsView& points)
 {
   if (!points.isUncertain()) return;
   throw InvalidInput(Input::uncertainty, name, "its points have uncertainties, which this query does not know",
-                     "give a view without, or ask anyCollision(), collisionFlags() or collidingIndices() at each pose");
+                     "give a view without, or ask anyCollision(), collisionFlags(), collidingIndices() or collideAlong()");
 }
 
 bool isRigid(const Eigen::Isometry3d& pose)

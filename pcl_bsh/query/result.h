@@ -11,7 +11,8 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-enum class Verdict : std::uint8_t { free, colliding, undecided };
+/// Sparse: undecided, because the other cloud is not scanned densely enough there; only where a request asks for that.
+enum class Verdict : std::uint8_t { free, colliding, undecided, sparse };
 
 /// As it stands among flags.
 constexpr std::uint8_t flagOf(Verdict verdict) noexcept

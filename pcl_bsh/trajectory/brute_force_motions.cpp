@@ -41,7 +41,8 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
     const std::vector<Eigen::Isometry3d> ends = {motion.from(), motion.to()};
     Progress progress(silent);
     TrajectoryResult unused;
-    const TrajectoryQuery path(scan, model, query.boxes, ends, query.swept, unused, progress, Wanted::witness);
+    const TrajectoryQuery path(scan, model, query.boxes, ends, query.swept, unused, progress, Places::measured,
+                               Wanted::witness);
     const auto collides = [&](const FinitePoint& p, const FinitePoint& q) {
       ++result.work.exact_decisions;
       for (const Eigen::Isometry3d& pose : ends)

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/brute_force_points.h>
+#include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/trajectory/check_trajectory.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -29,7 +31,7 @@ struct Closest {
 TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
 {
-  check(scan, model, model_poses, request);
+  check(scan, model_poses, request);
   if (request.swept)
     throw InvalidInput(Input::swept, "brute_force::collideAlong", "knows poses only, not what is between");
   const DefaultFloatEnvironment environment;
@@ -50,26 +52,39 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   result.closest_point.assign(sized(closest), TrajectoryResult::kNoPoint);
   if (request.pose_summaries) result.poses.resize(model_poses.size());
 
+  const bool uncertain = areUncertain(scan, {model});
+  if (uncertain) result.certain_pose.assign(sized(request.first_poses), -1);
+  const auto reachAt = [&](Places places) {
+    return PairReach(scan.hierarchy().view(), model.view(), request.clearance, places);
+  };
+  const PairReach possible = reachAt(uncertain ? Places::possible : Places::measured);
+  const PairReach surely = reachAt(uncertain ? Places::certain : Places::measured);
   std::vector<Closest> of_poses(model_poses.size());
   for (const FinitePoint& p : points) {
     Closest of_point;
-    std::int32_t first = -1;
+    std::int32_t first = -1, certain = -1;
     for (std::size_t k = 0; k < distances.size(); ++k) {
-      bool collides = false;
+      Verdict verdict = Verdict::free;
       for (const FinitePoint& q : obstacles) {
         ++result.work.exact_decisions;
-        if (distances[k].compare(p.point, q.point, request.clearance, p.radius, q.radius) > 0) continue;
-        collides = true;
+        const PointPair pair{p.record, q.record};
+        if (distances[k].compare(p.point, q.point, possible.of(pair)) > 0) continue;
+        const bool collides = !uncertain || distances[k].compare(p.point, q.point, surely.of(pair)) <= 0;
+        if (collides || verdict == Verdict::free) verdict = collides ? Verdict::colliding : Verdict::undecided;
         of_point.consider(distances[k], k, p, q);
         of_poses[k].consider(distances[k], k, p, q);
       }
-      if (!collides) continue;
+      if (verdict == Verdict::free) continue;
+      const bool collides = verdict == Verdict::colliding;
       if (first < 0) first = static_cast<std::int32_t>(k);
-      if (request.pose_summaries) ++result.poses[k].colliding_points;
+      if (collides && certain < 0) certain = static_cast<std::int32_t>(k);
+      if (!request.pose_summaries) continue;
+      ++(collides ? result.poses[k].colliding_points : result.poses[k].undecided_points);
     }
     if (first < 0) continue;
-    ++result.colliding;
-    if (request.flags) result.flags[p.record] = 1;
+    ++(certain < 0 ? result.undecided : result.colliding);
+    if (request.flags) result.flags[p.record] = flagOf(certain < 0 ? Verdict::undecided : Verdict::colliding);
+    if (request.first_poses && uncertain) result.certain_pose[p.record] = certain;
     if (request.first_poses) result.first_pose[p.record] = first;
     if (request.distances) result.distance[p.record] = static_cast<float>(of_point.distance->gap(of_point.pair));
     if (request.closest_poses) result.closest_pose[p.record] = static_cast<std::int32_t>(of_point.pose);
@@ -78,7 +93,8 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   for (std::size_t k = 0; k < result.poses.size(); ++k) {
     PoseSummary& summary = result.poses[k];
     summary.colliding = summary.colliding_points > 0;
-    if (summary.colliding) summary.distance = of_poses[k].distance->gap(of_poses[k].pair);
+    if (summary.colliding_points + summary.undecided_points > 0)
+      summary.distance = of_poses[k].distance->gap(of_poses[k].pair);
   }
   return result;
 }

@@ -107,7 +107,8 @@ void check(const Placed& scan, const SphereHierarchy& model, const PoseList& pos
 void checkSwept(const MotionsQuery& query, const PoseList& poses, const std::vector<std::uint32_t>& used,
                 const std::vector<PoseMotion>& motions)
 {
-  const double reach = reachOf(query.scan, query.model, query.swept);
+  const double reach =
+      reachOf(query.scan, query.model, query.swept, Reach(query.swept.clearance, {}, {}, Places::measured));
   double far = 0.0;
   for (const std::uint32_t k : used) far = std::max(far, farthestPlace(poses[k], query.boxes, query.request.pivot));
   checkTolerance(query.scan, query.swept, query.boxes, reach, far);

@@ -10,8 +10,7 @@
 
 namespace pcl_bsh {
 
-void check(const Placed& scan, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& model_poses,
-           const TrajectoryRequest& request)
+void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
 {
   checkClearance(request.clearance);
   checkAccuracy(request.accuracy);
@@ -38,8 +37,6 @@ void check(const Placed& scan, const SphereHierarchy& model, const std::vector<E
   if (model_poses.size() > most_poses)
     throw InvalidInput(Input::trajectory, "trajectory",
                        plainText(model_poses.size(), " poses are more than an index can name (", most_poses, ")"));
-  checkNoUncertainty("scan", scan.hierarchy().view());
-  checkNoUncertainty("model", model.view());
   checkPose("pose of the scan", scan.pose);
   for (std::size_t k = 0; k < model_poses.size(); ++k)
     if (!isRigid(model_poses[k])) // a name for each of millions would cost as much as the path

@@ -8,8 +8,7 @@ namespace pcl_bsh {
 /// Every query along a path calls this before anything else. A pose of the model is named by its index.
 /// @throws InvalidInput naming the value: what check() of two clouds refuses; a tolerance or a pivot that is not what
 ///   its declaration asks for, and what the request's accuracy cannot tell.
-void check(const Placed& scan, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& model_poses,
-           const TrajectoryRequest& request);
+void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
 
 /// Whether a trajectory's result would hold anything.
 bool asksForAnything(const TrajectoryRequest& request);

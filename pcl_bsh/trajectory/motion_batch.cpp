@@ -83,7 +83,8 @@ std::optional<PointPair> findOnMotion(const MotionsQuery& query, const RigidMoti
   Progress own(goesOn);
   TrajectoryResult counted;
   const std::vector<Eigen::Isometry3d> ends = {motion.from(), motion.to()};
-  const TrajectoryQuery path(query.scan, query.model, query.boxes, ends, query.swept, counted, own, Wanted::witness);
+  const TrajectoryQuery path(query.scan, query.model, query.boxes, ends, query.swept, counted, own, Places::measured,
+                             Wanted::witness);
   const StopRule never(Accuracy::exact());
   std::vector<TrajectoryQuery::NearVoxel> near;
   path.collectNear(never, own, near);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A trajectory query as a whole: the path, which voxels of the scan come near when, their walks, and what they add up
 // to.
+#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/trajectory/check_trajectory.h>
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -151,13 +153,11 @@ void follow(const TrajectoryQuery& query, const StopRule& rule, Progress& progre
   if (request.pose_summaries) summarize(query, result);
 }
 
-} // namespace
-
-TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
-                              const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
+/// One walk, of points that are where `places` says. Nothing where floats cannot hold the lengths.
+std::optional<TrajectoryResult> walkAlong(const Placed& scan, const SphereHierarchy& model,
+                                          const std::vector<Eigen::Isometry3d>& model_poses,
+                                          const TrajectoryRequest& request, Places places)
 {
-  check(scan, model, model_poses, request);
-  const DefaultFloatEnvironment environment;
   TrajectoryResult result;
   allocate(result, request, scan.hierarchy().view().count, model_poses.size());
   if (!asksForAnything(request) || scan.hierarchy().empty() || model.empty() || model_poses.empty()) return result;
@@ -166,10 +166,10 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   try {
     progress.limit(&rule);
     const BoxTree boxes(model.storage(), travelOf(model_poses, model.storage().frame.origin));
-    const TrajectoryQuery query(scan, model, boxes, model_poses, request, result, progress);
+    const TrajectoryQuery query(scan, model, boxes, model_poses, request, result, progress, places);
     result.work.volumes_built += countChildren(boxes.storage.top);
     progress.limit(nullptr);
-    if (!query.inFloatRange()) return brute_force::collideAlong(scan, model, model_poses, request);
+    if (!query.inFloatRange()) return std::nullopt;
     follow(query, rule, progress);
   }
   catch (const OutOfTime&) { // before the path was made: nothing is known
@@ -178,6 +178,60 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
     countFlags(result);
   }
   return result;
+}
+
+/// Of each pose, what surely collides, and what else may.
+void withholdPoses(std::vector<PoseSummary>& possible, const std::vector<PoseSummary>& certain)
+{
+  for (std::size_t k = 0; k < possible.size(); ++k) {
+    PoseSummary& pose = possible[k];
+    const std::size_t may = pose.colliding_points;
+    pose.colliding_points = std::min(may, certain[k].colliding_points);
+    pose.undecided_points = may - pose.colliding_points;
+    pose.colliding = pose.colliding_points > 0;
+  }
+}
+
+/// One walk for what may collide, one for what does for certain.
+TrajectoryResult walkUncertain(const Placed& scan, const SphereHierarchy& model,
+                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked)
+{
+  TrajectoryRequest request = asked;
+  request.flags = true;
+  request.accuracy = halfOf(asked.accuracy);
+  const auto share = [&](double begin) {
+    return [&asked, begin](double fraction) { return asked.progress(begin + 0.5 * fraction); };
+  };
+  if (asked.progress) request.progress = share(0.0);
+  std::optional<TrajectoryResult> possible = walkAlong(scan, model, model_poses, request, Places::possible);
+  if (!possible) return brute_force::collideAlong(scan, model, model_poses, asked);
+  request.distances = request.closest_poses = false;
+  if (asked.progress) request.progress = share(0.5);
+  const std::optional<TrajectoryResult> certain = walkAlong(scan, model, model_poses, request, Places::certain);
+  if (!certain) return brute_force::collideAlong(scan, model, model_poses, asked);
+
+  TrajectoryResult& result = *possible;
+  withhold(result.flags, certain->flags, result.colliding, result.undecided);
+  withholdPoses(result.poses, certain->poses);
+  result.certain_pose = certain->first_pose;
+  for (std::size_t i = 0; i < result.certain_pose.size(); ++i)
+    if (result.flags[i] != flagOf(Verdict::colliding)) result.certain_pose[i] = -1;
+  result.certain_contact = certain->first_contact;
+  result.work += certain->work;
+  if (!asked.flags) result.flags.clear();
+  return std::move(*possible);
+}
+
+} // namespace
+
+TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
+                              const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
+{
+  check(scan, model_poses, request);
+  const DefaultFloatEnvironment environment;
+  if (areUncertain(scan, {model}) && asksForAnything(request)) return walkUncertain(scan, model, model_poses, request);
+  std::optional<TrajectoryResult> result = walkAlong(scan, model, model_poses, request, Places::measured);
+  return result ? std::move(*result) : brute_force::collideAlong(scan, model, model_poses, request);
 }
 
 } // namespace pcl_bsh

@@ -16,6 +16,11 @@
 // clearance + tolerance. From one pose to the next the model turns in the shorter direction, by less than half a turn.
 // Half a turn is refused: both directions are as short. More than half a turn needs poses between.
 //
+// Where points have uncertainties (PointsView), a point collides if at some pose it is within the clearance of a point
+// of the model wherever both truly are; it is free if at no pose it can be; else it is undecided. Swept likewise: free
+// is what cannot come within the clearance during the motion, colliding what surely comes within clearance + tolerance.
+// That costs about two queries; a budget is divided between them.
+//
 // An answer does not depend on what else is asked for. (Where the accuracy is a tolerance, or
 // float alone, pairs that may count or not may do so for one question and not for another.)
 #pragma once
@@ -61,7 +66,8 @@ struct TrajectoryRequest {
 struct PoseSummary {
   bool colliding = false;
   std::size_t colliding_points = 0; ///< points of the scan
-  /// Smallest distance of any pair when colliding, infinity when not.
+  std::size_t undecided_points = 0; ///< those that may collide, but do not for certain: their places are uncertain
+  /// Smallest distance of any pair that may collide, as measured; infinity when there is none.
   double distance = std::numeric_limits<double>::infinity();
 };
 
@@ -73,12 +79,17 @@ struct FirstContact {
 
 /// Vectors have one entry per record of the scan's view, and are empty unless asked for.
 ///
+/// Where points are uncertain, distances, first and closest poses and the first contact are those of what may collide:
+/// of points that collide or are undecided, and of pairs that may be within the clearance; distances between the
+/// measured places.
+///
 /// When swept, a distance is within half the tolerance of the smallest during the motion, and a pose's number k stands
 /// for the motion from pose k to pose k + 1.
 struct TrajectoryResult {
   static constexpr std::uint32_t kNoPoint = 0xffffffffu; ///< among closest_point: no record
 
-  std::vector<std::uint8_t> flags;        ///< 1 = collides, 2 = undecided, where the accuracy lets the walk stop early
+  std::vector<std::uint8_t> flags;        ///< 1 = collides, 2 = undecided, where the accuracy lets the walk stop early,
+                                          ///< or places are uncertain
   std::size_t colliding = 0;              ///< points that collide; 0 when nothing is asked for
   std::size_t undecided = 0;              ///< points that are
   std::vector<float> distance;            ///< less the radii; the float nearest to the distance in double; NaN: free
@@ -87,10 +98,13 @@ struct TrajectoryResult {
   std::vector<std::uint32_t> closest_point; ///< with distances or closest_poses: the record of the model that realises
                                             ///< the distance at the closest pose, of several the smallest;
                                             ///< kNoPoint where free
+  std::vector<std::int32_t> certain_pose;   ///< with first_poses, where points are uncertain: the first pose at which a
+                                            ///< point collides for certain; -1 where at none
   std::vector<PoseSummary> poses;           ///< one per pose
   /// Swept: no pair comes within the clearance before; at it, one is within clearance + tolerance. Empty when free.
   std::optional<FirstContact> first_contact;
-  Work work; ///< leaf pairs count once per pose they were compared at
+  std::optional<FirstContact> certain_contact; ///< the same of what collides for certain, where points are uncertain
+  Work work;                                   ///< leaf pairs count once per pose they were compared at
 };
 
 /// The model at each of `model_poses` (T_world_model, rigid within 1e-6), against the scan at its pose.

@@ -219,7 +219,8 @@ private:
     ++results_.work.leaf_pairs;
     const double unit = other.voxel->frame.unit;
     const AffineMap map = voxel_frame_.mapAt(path_.poses[k], tree_.offset(voxel), unit);
-    bool certain = query_.radii == 0.0 && unit == 1.0 && voxel_frame_.frame.unit == 1.0;
+    bool certain = (query_.everything() ? query_.nearestDecides() : query_.radii == 0.0) && unit == 1.0 &&
+                   voxel_frame_.frame.unit == 1.0;
     for (const float g : map.g) certain = certain && std::abs(g) <= voxel_frame_.far;
     LeafPoints points;
     carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, points.x, points.y,
@@ -291,8 +292,10 @@ private:
         const float dx = points.x[i] - other.x()[j], dy = points.y[i] - other.y()[j], dz = points.z[i] - other.z()[j];
         const float squared = (dx * dx + dy * dy) + dz * dz;
         if (certain && squared > within) continue;
-        if (for_point) results_.consider(*best, {leaf.points.record(i), other.record(j)}, k);
-        if (for_pose) results_.considerPose({leaf.points.record(i), other.record(j)}, k);
+        const PointPair pair{leaf.points.record(i), other.record(j)};
+        if (!query_.of_pairs.isOne() && !results_.collide(pair, k)) continue;
+        if (for_point) results_.consider(*best, pair, k);
+        if (for_pose) results_.considerPose(pair, k);
       }
       if (for_point && certain) {
         const double high = voxel_frame_.highOf(nearest[i]);
@@ -323,14 +326,16 @@ private:
       for (std::uint32_t j = 0; j < other.count; ++j) {
         ++results_.work.exact_decisions;
         const std::uint32_t q = other.record(j);
-        const double radii = query_.scan.hierarchy().view().radius(record) + query_.model.view().radius(q);
-        const ClosestApproach approach = segment.approachTo(query_, q, query_.reach - query_.radii + radii);
+        const double near_enough = query_.nearEnough({record, q});
+        if (near_enough < 0.0) continue;
+        const ClosestApproach approach = segment.approachTo(query_, q, near_enough);
         if (!approach.contact) continue;
         if (query_.witness) return keepWitness(leaf, {record, q});
         results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | 1u << i);
         first = std::min(first, begin + steps * approach.enter);
-        if (query_.closest)
-          consider(results_.best[leaf.points.begin + i], approach.distance - radii, begin + steps * approach.at, q);
+        if (!query_.closest) continue;
+        const double radii = query_.scan.hierarchy().view().radius(record) + query_.model.view().radius(q);
+        consider(results_.best[leaf.points.begin + i], approach.distance - radii, begin + steps * approach.at, q);
       }
       if (query_.closest && query_.radii == 0.0) {
         NearestPoint& best = results_.best[leaf.points.begin + i];

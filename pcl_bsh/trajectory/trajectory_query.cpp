@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace pcl_bsh {
 namespace {
@@ -80,9 +81,9 @@ void checkTolerance(const Placed& scan, const TrajectoryRequest& request, const 
       .withValue(*request.swept);
 }
 
-double reachOf(const Placed& scan, const SphereHierarchy& model, const TrajectoryRequest& request)
+double reachOf(const Placed& scan, const SphereHierarchy& model, const TrajectoryRequest& request, const Reach& between)
 {
-  return request.clearance + request.swept.value_or(0.0) / 2 + largestRadii(scan, model);
+  return std::max(0.0, between.most) + request.swept.value_or(0.0) / 2 + largestRadii(scan, model);
 }
 
 PosePath::Sweep sweepOf(const TrajectoryRequest& request, const BoxTree& boxes, double reach)
@@ -108,20 +109,30 @@ Travel travelOf(const std::vector<Eigen::Isometry3d>& poses, const Point3& cente
 
 TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of, const BoxTree& model_boxes,
                                  const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
-                                 TrajectoryResult& into, Progress& progress, Wanted what)
+                                 TrajectoryResult& into, Progress& progress, Places where, Wanted what)
 : scan(scan_at),
   model(model_of),
   given(model_poses),
   request(asked),
   result(into),
   boxes(model_boxes),
+  between(asked.clearance, scan_at.hierarchy().storage().uncertainty, model_of.storage().uncertainty, where),
+  of_pairs(scan_at.hierarchy().view(), model_of.view(), asked.clearance, where),
   radii(largestRadii(scan_at, model_of)),
-  reach(reachOf(scan_at, model_of, asked)),
+  reach(reachOf(scan_at, model_of, asked, between)),
   path(pathOf(scan_at, model_poses, asked, boxes, reach, progress)),
   witness(what == Wanted::witness),
   closest(asked.distances || asked.closest_poses),
   first(asked.first_poses || asked.swept.has_value())
 {
+}
+
+double TrajectoryQuery::nearEnough(PointPair pair) const
+{
+  const ExactDistance::Sum terms = of_pairs.of(pair);
+  if (of_pairs.areMeasured()) return reach - radii + (terms[1] + terms[2]);
+  const double within = std::accumulate(terms.begin(), terms.end(), 0.0);
+  return within < 0.0 ? within : within + *request.swept / 2;
 }
 
 double TrajectoryQuery::error(const Point3& origin) const

@@ -5,6 +5,7 @@
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/relative_frame.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/query/stop_rule.h>
 #include <pcl_bsh/trajectory/box_tree.h>
 #include <pcl_bsh/trajectory/pose_path.h>
@@ -28,10 +29,11 @@ enum class Wanted : std::uint8_t {
 
 /// The question, and what its answer takes that no voxel changes.
 struct TrajectoryQuery {
-  /// @param model_boxes of the model
+  /// @param model_boxes of the model. @param where the points are
   TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of, const BoxTree& model_boxes,
                   const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
-                  TrajectoryResult& into, Progress& progress, Wanted what = Wanted::points);
+                  TrajectoryResult& into, Progress& progress, Places where = Places::measured,
+                  Wanted what = Wanted::points);
 
   const Placed& scan;
   const SphereHierarchy& model;
@@ -40,8 +42,10 @@ struct TrajectoryQuery {
   TrajectoryResult& result;
 
   const BoxTree& boxes;
-  const double radii; ///< the largest of the scan and of the model, summed
-  const double reach; ///< of points: the clearance, half of the tolerance, the radii
+  const Reach between;      ///< of all pairs, less their radii
+  const PairReach of_pairs; ///< of each, radii included
+  const double radii;       ///< the largest of the scan and of the model, summed
+  const double reach;       ///< of points: the clearance, half of the tolerance, the radii; the greatest of all
   const PosePath path;
   const bool witness;        ///< the walk ends at the first pair that collides
   const bool closest, first; ///< what has to be known of each point, beside whether it collides
@@ -51,6 +55,12 @@ struct TrajectoryQuery {
   {
     return closest && !request.pose_summaries && (!first || first_contact <= from);
   }
+  /// Whether of the pairs of a point the nearest one collides where any does.
+  bool nearestDecides() const { return radii == 0.0 && of_pairs.isOne(); }
+
+  /// Swept: how near a pair of points counts as a contact; below 0 where it does at no distance.
+  double nearEnough(PointPair pair) const;
+
   bool everything() const { return closest || request.pose_summaries; } ///< whether a collision settles nothing
 
   /// Bounds what double arithmetic gets wrong about the place of a scan's point seen by the model, for a voxel whose
@@ -101,7 +111,8 @@ void checkTolerance(const Placed& scan, const TrajectoryRequest& request, const 
                     double far);
 
 /// How far from a point of the scan a point of the model matters.
-double reachOf(const Placed& scan, const SphereHierarchy& model, const TrajectoryRequest& request);
+double reachOf(const Placed& scan, const SphereHierarchy& model, const TrajectoryRequest& request,
+               const Reach& between);
 
 /// Of a request with `swept`. @param reach as TrajectoryQuery has it
 PosePath::Sweep sweepOf(const TrajectoryRequest& request, const BoxTree& boxes, double reach);

@@ -216,7 +216,7 @@ private:
                       const std::vector<ModelBox>& candidates)
   {
     const std::uint32_t count = voxel_->nodes[index].count;
-    if (query_.radii != 0.0 || !(motion.near > *std::min_element(visit.radius, visit.radius + count))) return;
+    if (!query_.nearestDecides() || !(motion.near > *std::min_element(visit.radius, visit.radius + count))) return;
     alignas(64) float corner[kLanes];
     std::fill(corner, corner + kLanes, std::numeric_limits<float>::infinity());
     for (const ModelBox& candidate : candidates) {

@@ -63,7 +63,7 @@ public:
     // Per axis, of a shift up to `far` and of products that add up to the radius at most: rows are of length 1.
     const double carried = kCarriedShiftError * far + kCarriedProductError * (1.0 + skew) * radius;
     error = placing_ + kAxes * carried * (1.0 + kDoubleMargin) + kSmallestLength;
-    const Acceptance acceptance(query.request.clearance, query.request.accuracy);
+    const Acceptance acceptance(query.between, query.request.accuracy);
     const auto squared = static_cast<float>(acceptance.clearance * acceptance.clearance);
     band = acceptance.proven ? acceptance.provenBand([&](double distance) { return skewedBand(distance, error, skew); })
                              : DistanceBand{squared, squared};

@@ -119,6 +119,7 @@ bool VoxelResults::collide(PointPair at, std::uint32_t k)
 {
   ++work.exact_decisions;
   const ExactDistance::Pair pair = posed(at);
+  if (!query_.of_pairs.areMeasured()) return exactAt(k).compare(pair.p, pair.q, query_.of_pairs.of(at)) <= 0;
   return exactAt(k).compare(pair.p, pair.q, query_.request.clearance, pair.radius_p, pair.radius_q) <= 0;
 }
 

@@ -2,21 +2,24 @@
 #pragma once
 
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/query/reach.h>
+#include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/traversal/space.h>
 
 namespace pcl_bsh {
 
-inline Reach reachBetween(const Placed& a, const Placed& b, double clearance, Places places)
+inline Reach reachBetween(const Placed& a, const Placed& b, double clearance, Places places,
+                          const PatchSpacings& patches_of_b = {})
 {
-  return {clearance, a.hierarchy().storage().uncertainty, b.hierarchy().storage().uncertainty, places};
+  return {clearance, a.hierarchy().storage().uncertainty, b.hierarchy().storage().uncertainty, places, patches_of_b};
 }
 
 /// Decides pairs of points by the coordinates as given, in exact arithmetic.
 class PointPairs {
 public:
-  PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places = Places::measured)
-  : PointPairs(a, b, greatest_distance, places, reachBetween(a, b, greatest_distance, places))
+  PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places = Places::measured,
+             const PatchSpacings& patches_of_b = {})
+  : PointPairs(a, b, greatest_distance, places, patches_of_b,
+               reachBetween(a, b, greatest_distance, places, patches_of_b))
   {
   }
 
@@ -24,7 +27,7 @@ public:
   bool collide(PointPair pair, Work& work) const
   {
     ++work.exact_decisions;
-    if (places_ != Places::measured) return distance.compare(a_.point(pair.a), b_.point(pair.b), reachOf(pair)) <= 0;
+    if (!of_pairs_.areMeasured()) return distance.compare(a_.point(pair.a), b_.point(pair.b), of_pairs_.of(pair)) <= 0;
     return distance.compare(a_.point(pair.a), b_.point(pair.b), clearance, a_.radius(pair.a), b_.radius(pair.b)) <= 0;
   }
 
@@ -48,33 +51,20 @@ public:
   const ExactDistance distance;
 
 private:
-  PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places, const Reach& of_all)
+  PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places,
+             const PatchSpacings& patches_of_b, const Reach& of_all)
   : reach(of_all),
     clearance(std::max(0.0, of_all.most)),
     distance(a.pose, b.pose),
     a_(a.hierarchy().view()),
     b_(b.hierarchy().view()),
-    asked_(greatest_distance),
-    places_(places)
+    of_pairs_(a_, b_, greatest_distance, places, patches_of_b)
   {
-  }
-
-  ExactDistance::Sum reachOf(PointPair pair) const
-  {
-    const double sign = places_ == Places::certain ? -1.0 : 1.0;
-    return {asked_,
-            a_.radius(pair.a),
-            b_.radius(pair.b),
-            sign * a_.uncertainty,
-            sign * b_.uncertainty,
-            sign * a_.ownUncertainty(pair.a),
-            sign * b_.ownUncertainty(pair.b)};
   }
 
   const PointsView& a_;
   const PointsView& b_;
-  const double asked_;
-  const Places places_;
+  const PairReach of_pairs_;
 };
 
 } // namespace pcl_bsh

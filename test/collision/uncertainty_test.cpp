@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,26 +35,13 @@ FlagsRequest within(double clearance, Side flagged, unsigned threads = 1, const 
   return {clearance, flagged, threads, accuracy};
 }
 
-/// One length of all, one for each record, or both; of the size of the clearance, or so that ties are likely.
-void makeUncertain(Cloud& cloud, double scale, Random& random)
-{
-  const auto length = [&] {
-    return random.chance(0.5) ? scale * random.integer(0, 4) / 16 : scale * random.uniform(0, 0.2);
-  };
-  const bool of_all = random.chance(0.6);
-  std::vector<float> own;
-  if (!of_all || random.chance(0.3))
-    for (std::size_t i = 0; i < cloud.view().count; ++i) own.push_back(static_cast<float>(length()));
-  cloud.setUncertainties(of_all ? length() : 0.0, std::move(own));
-}
-
 Scene uncertainScene(std::uint64_t seed, int most_points)
 {
   Scene scene = test::anyScene(seed, most_points);
   Random random(seed + 1000000);
   const double scale = scene.clearance > 0.0 ? scene.clearance : 0.01;
-  if (random.chance(0.8)) makeUncertain(scene.a, scale, random);
-  if (random.chance(0.8)) makeUncertain(scene.b, scale, random);
+  if (random.chance(0.8)) test::makeUncertain(scene.a, scale, random);
+  if (random.chance(0.8)) test::makeUncertain(scene.b, scale, random);
   if (random.chance(0.3)) scene.clearance *= 2;
   return scene;
 }
@@ -275,6 +263,80 @@ TEST(Uncertainty, AtManyPoses)
   const Placed placed(a, scene.pose_a);
   EXPECT_EQ(anyCollisionAtPoses(placed, b, poses, {scene.clearance, {}}).verdicts,
             brute_force::anyCollisionAtPoses(placed, b, poses, {scene.clearance, {}}).verdicts);
+}
+
+/// Free points near patches of the other surface, with and without uncertainties; ties at the patches' edges, too.
+TEST(DensityGuard, SameAsBruteForce)
+{
+  std::size_t flags[4] = {};
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Scene scene = seed % 2 == 0 ? uncertainScene(seed, 120) : test::anyScene(seed, 120);
+    SCOPED_TRACE(scene.name);
+    Random random(seed + 3000000);
+    const double scale = scene.clearance > 0.0 ? scene.clearance : 0.01;
+    std::map<Point3, float> at_place; // alike at the same place
+    std::vector<float> spacings;
+    for (std::uint32_t i = 0; i < scene.b.view().count; ++i) {
+      const auto spacing =
+          static_cast<float>(random.chance(0.5) ? scale * random.integer(0, 8) / 8
+                                                : scale * random.uniform(0, random.chance(0.1) ? 3 : 1));
+      const Point3 place = scene.b.view().point(i);
+      spacings.push_back(isFinite(place) ? at_place.emplace(place, spacing).first->second : spacing);
+    }
+    const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+    const Placed placed_a(a, scene.pose_a), placed_b(b, scene.pose_b);
+    for (const unsigned threads : {1u, 2u}) {
+      FlagsRequest request = within(scene.clearance, Side::both, threads);
+      const FlagsResult without = collisionFlags(placed_a, placed_b, request);
+      request.spacings_of_b = spacings.data();
+      const FlagsResult truth = brute_force::collisionFlags(placed_a, placed_b, request);
+      const FlagsResult found = collisionFlags(placed_a, placed_b, request);
+      ASSERT_EQ(found.a, truth.a);
+      ASSERT_EQ(found.b, truth.b);
+      ASSERT_EQ(found.sparse_a, truth.sparse_a);
+      ASSERT_EQ(found.undecided_a, truth.undecided_a);
+      ASSERT_EQ(found.colliding_a, truth.colliding_a);
+      for (std::size_t i = 0; i < found.a.size(); ++i) {
+        ASSERT_EQ(found.a[i] == 3 ? 0 : found.a[i], without.a[i]) << "only free points become sparse";
+      }
+      for (const std::uint8_t flag : found.a) ++flags[flag];
+      request.accuracy = Accuracy::nodePairs(60);
+      const FlagsResult early = collisionFlags(placed_a, placed_b, request);
+      for (std::size_t i = 0; i < early.a.size(); ++i) {
+        if (early.a[i] != 2 && early.a[i] != 3) {
+          ASSERT_EQ(early.a[i], truth.a[i]) << i;
+        }
+      }
+    }
+  }
+  for (const std::size_t count : flags) EXPECT_GT(count, 500u);
+}
+
+TEST(DensityGuard, TiesAreSparse)
+{
+  const Cloud cloud_a({{0, 0, 0}}), cloud_b({{1.75, 0, 0}, {9, 9, 9}});
+  const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+  FlagsRequest request = within(1.0, Side::a);
+  for (const float spacing : {1.5f, std::nextafter(1.5f, 0.0f), std::nextafter(1.5f, 9.0f)}) {
+    const std::vector<float> spacings = {spacing, 0.0f};
+    request.spacings_of_b = spacings.data();
+    EXPECT_EQ(collisionFlags({a}, {b}, request).a[0], flagOf(spacing < 1.5f ? Verdict::free : Verdict::sparse));
+  }
+}
+
+TEST(DensityGuard, RefusesWhatIsNoSpacing)
+{
+  const Cloud cloud({{0, 0, 0}, {1, 1, 1}});
+  const SphereHierarchy a(cloud.view());
+  FlagsRequest request = within(1.0, Side::a);
+  for (const double wrong : {-1.0, kInfinity, std::nan("")}) {
+    const std::vector<float> spacings = {0.0f, static_cast<float>(wrong)};
+    request.spacings_of_b = spacings.data();
+    EXPECT_THROW(collisionFlags({a}, {a}, request), InvalidInput);
+  }
+  const std::vector<float> spacings = {0.0f, 0.0f};
+  request.spacings_of_b = spacings.data();
+  EXPECT_THROW(collidingIndices({a}, {a}, request), InvalidInput);
 }
 
 TEST(Uncertainty, RefusesWhatIsNoLength)

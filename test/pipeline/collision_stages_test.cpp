@@ -10,6 +10,7 @@
 #include <pcl_bsh/filters/reports/clash_report.h>
 #include <pcl_bsh/report/clashes.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/search/find_field.h>
 
 #include <nlohmann/json.hpp>
 
@@ -157,6 +158,50 @@ TEST_F(CollisionStages, AccuracyIsTheFilters)
       EXPECT_EQ(outputOf(scan, stage("filters.bsh_collision", options + keep), model)->cloud.width, flags.size() - free)
           << accuracy << keep;
     }
+  }
+}
+
+TEST_F(CollisionStages, UncertaintyIsTheFilters)
+{
+  for (const std::string& along : {std::string(), R"(, "trajectory": )" + quoted(track)}) {
+    auto direct = filter();
+    if (along.empty()) direct.setPose(Eigen::Isometry3d::Identity());
+    direct.setInputUncertainty(0.01);
+    direct.setObstacleUncertainty(0.005);
+    std::vector<std::uint8_t> flags;
+    direct.computeFlags(flags);
+    const auto count = [&](std::uint8_t flag) {
+      return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flag));
+    };
+    ASSERT_GT(count(1), 0U);
+    ASSERT_GT(count(2), 0U);
+    const std::string options = R"("clearance": 0.03, "uncertainty": 0.01, "obstacle_uncertainty": 0.005)" + along;
+    const PipelineResult result = runStage(scan, stage("filters.bsh_flag", options), model);
+    const pcl::PCLPointCloud2& flagged = result.clouds.begin()->second->cloud;
+    const pcl::PCLPointField* const field = findField(flagged, "collision");
+    ASSERT_NE(field, nullptr);
+    for (std::size_t i = 0; i < flags.size(); ++i)
+      ASSERT_EQ(flagged.data[i * flagged.point_step + field->offset], flags[i]) << along;
+    EXPECT_THAT(result.warnings, testing::ElementsAre(HasSubstr(std::to_string(count(2)) + " points stay undecided")));
+    EXPECT_EQ(outputOf(scan, stage("filters.bsh_collision", options), model)->cloud.width, count(0));
+  }
+}
+
+TEST_F(CollisionStages, RefuseUncertaintiesThatAreNone)
+{
+  for (const std::string type : {"filters.bsh_flag", "filters.bsh_collision", "writers.clashes"}) {
+    const std::string file = type == "writers.clashes" ? R"("filename": )" + quoted(folder / "a.csv") + ", " : "";
+    for (const std::string option : {"uncertainty", "obstacle_uncertainty"}) {
+      const std::string key = file + '"' + option + R"(": )";
+      EXPECT_THAT(error(type, key + "-0.1"),
+                  HasSubstr("/" + option + ": is -0.1: give a number of at least 0, in m, or the name of a field"));
+      EXPECT_THAT(error(type, key + "[1]"), HasSubstr("/" + option + ": is [1]: give a number"));
+      EXPECT_THAT(error(type, key + R"("sigma")"),
+                  HasSubstr("/" + option + ": field 'sigma' of its points' sigmas is missing: give a length, or one"));
+    }
+    EXPECT_THAT(error(type, file + R"("uncertainty": 0.1, "sigmas": 2)"),
+                EndsWith("/sigmas: is given, but no uncertainty is a field: give the length itself"));
+    EXPECT_THAT(error(type, file + R"("sigmas": -2)"), HasSubstr("/sigmas: is -2: give a number of at least 0"));
   }
 }
 

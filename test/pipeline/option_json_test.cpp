@@ -30,6 +30,7 @@ struct Everything : Stage {
   OutputFile out;
   OtherCloud other;
   std::optional<double> maybe;
+  LengthOrField sigma;
 
   StageCloudPtr run(StageClouds&& inputs) override { return inputs[0]; }
 };
@@ -56,6 +57,8 @@ const StageType& everything()
                                     .option(&Everything::out, "out", "")
                                     .option(&Everything::other, "other", "")
                                     .option(&Everything::maybe, "maybe", "")
+                                    .option(&Everything::sigma, "sigma", "")
+                                    .atLeast(0)
                                     .option(&Everything::stamp, "stamp", "");
   return type;
 }
@@ -99,6 +102,8 @@ TEST(OptionJson, EachKindGoesInAndOut)
                                                         {"in", "\"a.pcd\""},
                                                         {"out", "\"b.pcd\""},
                                                         {"other", "\"tag\""},
+                                                        {"sigma", "0.25"},
+                                                        {"sigma", "\"sigma\""},
                                                         {"maybe", "null"},
                                                         {"maybe", "0.25"}}) {
     EXPECT_EQ(through(name, json), json) << name;
@@ -138,6 +143,8 @@ TEST(OptionJson, RefusesWrongValuesAndSaysWhatIsRight)
   EXPECT_THAT(refusal("pose", "[1, 2]"), HasSubstr("is [1,2]: give [x, y, z, roll, pitch, yaw]"));
   EXPECT_THAT(refusal("pose", "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]"), HasSubstr("and 0 0 0 1 as the last row"));
   EXPECT_EQ(refusal("pose", "\"none.txt\""), "none.txt: no such file: check the name");
+  EXPECT_EQ(refusal("sigma", "-1"), "is -1: give a number of at least 0, or the name of a field");
+  EXPECT_EQ(refusal("sigma", "\"\""), "is \"\": give a number of at least 0, or the name of a field");
   EXPECT_EQ(refusal("in", "\"\""), "is \"\": give the name of a file");
   EXPECT_EQ(refusal("in", "\"a\\u0000.pcd\""), "is \"a\\u0000.pcd\": give the name of a file");
 }

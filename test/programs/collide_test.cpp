@@ -104,6 +104,49 @@ TEST_F(Collide, KeepsOnlyWhatIsAskedFor)
   EXPECT_EQ(io::readCloud(folder / "none.pcd").width, 0U);
 }
 
+/// The distances are 1.5, 0.5, 0.5 and 1.8: ties on both sides of the clearance.
+TEST_F(Collide, VerdictsHoldWhereverPointsTrulyAre)
+{
+  const std::string job = "{input.ply} {obstacle.xyz} {out.ply} --clearance 1 --report {report.json} ";
+  for (const std::string options :
+       {"--uncertainty 0.5", "--obstacle-uncertainty 0.5", "--uncertainty 0.375 --obstacle-uncertainty 0.125"}) {
+    const Outcome done = collide(job + options);
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_EQ(flags("out.ply"), (std::vector<int>{2, 1, 1, 0, 0})) << options;
+    EXPECT_THAT(done.out, HasSubstr("2 of 5 points collide, 1 are undecided; smallest distance 0.5"));
+    const Json json = report();
+    EXPECT_EQ(json["colliding"], 2);
+    EXPECT_EQ(json["undecided"], 1);
+    EXPECT_EQ(json["free"], 1) << "the point that is not finite is neither";
+  }
+  EXPECT_EQ(report()["uncertainty"], (Json{{"input", 0.375}, {"obstacle", 0.125}}));
+  expectDone(job + "--uncertainty 0.4999");
+  EXPECT_EQ(flags("out.ply"), (std::vector<int>{0, 1, 1, 0, 0}));
+  expectDone(job + "--uncertainty 0.5001");
+  EXPECT_EQ(flags("out.ply"), (std::vector<int>{2, 2, 2, 0, 0}));
+
+  expectDone(job + "--uncertainty time --sigmas 5"); // 0.5, 1, 1.5 and 2.5
+  EXPECT_EQ(flags("out.ply"), (std::vector<int>{2, 2, 2, 0, 2}));
+  EXPECT_EQ(report()["uncertainty"]["input"], (Json{{"field", "time"}, {"sigmas", 5.0}}));
+  expectDone("{input.ply} {obstacle.xyz} {free.ply} --clearance 1 --uncertainty 0.5 --keep free");
+  EXPECT_EQ(io::readCloud(folder / "free.ply").width, 1U) << "what is undecided is not free";
+}
+
+TEST_F(Collide, RefusesUncertaintiesThatAreNone)
+{
+  const std::string job = "{input.ply} {obstacle.xyz} {out.ply} --clearance 1 ";
+  for (const std::string option : {"--uncertainty", "--obstacle-uncertainty"})
+    for (const std::string wrong : {"-1", "nan", "inf", "0,5"})
+      expectFailure(job + option + "=" + wrong, 2, ": give a finite length >= 0, or the name of a field");
+  expectFailure(job + "--uncertainty sigma", 1,
+                "input.ply: field 'sigma' of its points' sigmas is missing: give a length, or one of its fields: x, y");
+  expectFailure(job + "--uncertainty y --sigmas=-1", 2, "--sigmas");
+  expectFailure(job + "--uncertainty 1 --sigmas 2", 2, "--sigmas: no uncertainty is a field: give the length itself");
+  folder.write("negative.xyz", "0 0 0 0.5\n1 0 0 -0.5\n");
+  expectFailure("{negative.xyz} {obstacle.xyz} {out.ply} --clearance 1 --uncertainty column_4", 1,
+                "negative.xyz: field 'column_4' of point 1 is -0.5: give finite lengths >= 0");
+}
+
 TEST_F(Collide, ReportsWhatItFoundAndWhatItCost)
 {
   const Outcome done = collide("{input.ply} {obstacle.xyz} {out.pcd} --clearance 0.5 --report {report.json}");

@@ -139,6 +139,19 @@ private:
   bool subset_ = false;
 };
 
+/// One length of all, one for each record, or both; of the size of the clearance, or so that ties are likely.
+inline void makeUncertain(Cloud& cloud, double scale, Random& random)
+{
+  const auto length = [&] {
+    return random.chance(0.5) ? scale * random.integer(0, 4) / 16 : scale * random.uniform(0, 0.2);
+  };
+  const bool of_all = random.chance(0.6);
+  std::vector<float> own;
+  if (!of_all || random.chance(0.3))
+    for (std::size_t i = 0; i < cloud.view().count; ++i) own.push_back(static_cast<float>(length()));
+  cloud.setUncertainties(of_all ? length() : 0.0, std::move(own));
+}
+
 /// Two clouds, where they stand and how near counts as a collision.
 struct Scene {
   Cloud a, b;

@@ -48,6 +48,8 @@ inline void expectSame(const TrajectoryResult& result, const TrajectoryResult& e
 {
   EXPECT_EQ(result.flags, expected.flags);
   EXPECT_EQ(result.colliding, expected.colliding);
+  EXPECT_EQ(result.undecided, expected.undecided);
+  EXPECT_EQ(result.certain_pose, expected.certain_pose);
   EXPECT_EQ(bitsOf(result.distance), bitsOf(expected.distance));
   EXPECT_EQ(result.first_pose, expected.first_pose);
   EXPECT_EQ(result.closest_pose, expected.closest_pose);
@@ -57,6 +59,7 @@ inline void expectSame(const TrajectoryResult& result, const TrajectoryResult& e
     SCOPED_TRACE("pose " + std::to_string(k));
     EXPECT_EQ(result.poses[k].colliding, expected.poses[k].colliding);
     EXPECT_EQ(result.poses[k].colliding_points, expected.poses[k].colliding_points);
+    EXPECT_EQ(result.poses[k].undecided_points, expected.poses[k].undecided_points);
     EXPECT_EQ(result.poses[k].distance, expected.poses[k].distance);
   }
 }

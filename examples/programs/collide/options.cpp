@@ -5,6 +5,7 @@
 #include "cli/path.h"
 #include "cli/pose.h"
 
+#include <pcl_bsh/filters/text_files/parse_number.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 
 #include <cmath>
@@ -13,15 +14,18 @@ namespace pcl_bsh::cli {
 namespace {
 
 constexpr auto collide_footer =
-    R"(Point p of INPUT and q of OBSTACLE collide iff |p - POSE q| <= D, decided exactly, or as --accuracy says.
-Reads .pcd .ply .las .obj .off .pts .ptx .csv .xyz .txt, writes all of these but .off .pts .ptx. Files may be pipes; -
-is standard input (PCD, PLY, LAS, OFF or columns), or standard output for OUTPUT (PCD) and --report.
+    R"(Point p of INPUT and q of OBSTACLE collide iff |p - POSE q| <= D, decided exactly, or as --accuracy says. With
+--uncertainty a point collides, or is free, only if it is so wherever the points truly are; else it is undecided.
+Reads .pcd .ply .las .obj .off .stl .pts .ptx .csv .xyz .txt, writes all of these but .off .stl .pts .ptx. Files may be
+pipes; - is standard input (PCD, PLY, LAS, OFF or columns), or standard output for OUTPUT (PCD) and --report.
 Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example: which points of a hall are within 5 cm of a robot at (1.5, 2, 0), turned by 90 degrees?
   pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708
 Example: does a wagon keep 5 cm from a tunnel on its way, and where does it not?
   pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html
+Example: the same hall, whose scanner is off by up to 4 mm: what surely keeps 5 cm?
+  pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708 --uncertainty 0.004
 Example: how far has each point of a scan moved away from an earlier scan?
   pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html)";
 
@@ -82,6 +86,43 @@ struct DistanceTexts {
   }
 };
 
+/// As the options of uncertainties are written.
+struct UncertaintyTexts {
+  std::string input = "0", obstacle = "0";
+  std::optional<double> sigmas;
+
+  void addTo(CLI::App& app)
+  {
+    app.add_option("--uncertainty", input,
+                   "how far INPUT's points may truly be from where they were measured: a\n"
+                   "length, or the field that holds each point's sigma. What collides only\n"
+                   "perhaps gets 2 in the field 'collision'; distances are those of the\n"
+                   "measured places (default: 0)")
+        ->type_name("U");
+    app.add_option("--obstacle-uncertainty", obstacle, "the same for OBSTACLE's points (default: 0)")->type_name("U");
+    app.add_option("--sigmas", sigmas, "by how many sigmas a point may be off, where U is a field (default: 1)")
+        ->type_name("K")
+        ->transform(number<double>("give a number >= 0", [](double k) { return k >= 0 && std::isfinite(k); }));
+  }
+
+  Uncertainty uncertainty(const char* option, const std::string& text) const
+  {
+    if (!io::isNumber(text) && !io::looksLikeNumber(text)) return {text, sigmas.value_or(1.0)};
+    const double length = io::isNumber(text) ? io::parseNumber<double>(text) : -1.0;
+    if (!(length >= 0.0 && std::isfinite(length)))
+      throw UsageError(std::string(option) + ": '" + text + "': give a finite length >= 0, or the name of a field");
+    return length;
+  }
+
+  void read(CollideOptions& options) const
+  {
+    options.input_uncertainty = uncertainty("--uncertainty", input);
+    options.obstacle_uncertainty = uncertainty("--obstacle-uncertainty", obstacle);
+    if (sigmas && options.input_uncertainty.field.empty() && options.obstacle_uncertainty.field.empty())
+      throw UsageError("--sigmas: no uncertainty is a field: give the length itself");
+  }
+};
+
 /// Checks that involve several options.
 void requireConsistent(const CollideOptions& options)
 {
@@ -121,7 +162,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("POSE");
   path.addTo(app);
   app.add_option("--keep", options.keep,
-                 "flagged: all points, with a field 'collision' of 0 or 1 (default)\n"
+                 "flagged: all points, with a field 'collision': 1 collides, 0 is free,\n"
+                 "2 is undecided (default)\n"
                  "colliding: only these, and those that are undecided\n"
                  "free: only finite points that do not collide")
       ->type_name("WHICH")
@@ -136,6 +178,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("HOW");
   DistanceTexts distances;
   distances.addTo(app);
+  UncertaintyTexts uncertainties;
+  uncertainties.addTo(app);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--threads", options.threads, "0: all of the machine's (default); any number gives the same result")
       ->type_name("N")
@@ -156,6 +200,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   if (!understood(app, collide_program, argc, argv)) return std::nullopt;
 
   options.accuracy = parseAccuracy(accuracy);
+  uncertainties.read(options);
   path.requireConsistent(!pose.empty());
   if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
   options.trajectory = path.file;

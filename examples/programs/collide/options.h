@@ -4,6 +4,7 @@
 
 #include "cli/used_files.h"
 
+#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <cstdint>
@@ -44,6 +45,7 @@ struct CollideOptions {
   bool asks_collisions = true; ///< a clearance was given
   unsigned threads = 0;        ///< all of the machine's
   Accuracy accuracy;
+  Uncertainty input_uncertainty, obstacle_uncertainty;
   std::vector<std::string> warnings; ///< of the options themselves
   CommandFiles files;                ///< all that are read or written
 

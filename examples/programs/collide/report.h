@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/collision/closest_pair.h>
+#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -60,6 +61,7 @@ struct CollisionReport {
   CloudReport obstacle;
   double clearance = 0;
   Accuracy accuracy;
+  Uncertainty input_uncertainty, obstacle_uncertainty;
   std::size_t colliding = 0; ///< points of the input
   std::size_t undecided = 0; ///< likewise
   DistanceResult closest;    ///< a: the input, b: the obstacle; along a path within the clearance only
@@ -70,6 +72,11 @@ struct CollisionReport {
   std::size_t voxels_total = 0;
   Seconds seconds;
   std::vector<std::string> warnings;
+
+  bool mayLeaveUndecided() const
+  {
+    return accuracy.stopsEarly() || !input_uncertainty.isZero() || !obstacle_uncertainty.isZero();
+  }
 };
 
 /// `distance` and `closest_pair` are null when a cloud has no finite point, or nothing collides along a path;

@@ -11,7 +11,7 @@ namespace {
 struct BshFlag : Stage, CollisionQuestion {
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    for (std::string& warning : check(trajectory.has_value())) warn(std::move(warning));
+    for (std::string& warning : check(inputs[0], trajectory.has_value())) warn(std::move(warning));
     const TrajectoryResult nothing;
     return trajectory ? withFields(inputs[0], fieldsOf(nothing)) : withField(inputs[0], collision_field_name, {});
   }
@@ -35,7 +35,7 @@ struct BshCollision : SelectingStage, CollisionQuestion {
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    for (std::string& warning : check(false)) warn(std::move(warning));
+    for (std::string& warning : check(inputs[0], false)) warn(std::move(warning));
     return inputs[0];
   }
 
@@ -71,7 +71,8 @@ StageType bshFlag()
   auto description = describe<BshFlag>(
       "filters.bsh_flag",
       "Keeps all points and adds a field `collision` (uint8): 1 for those that collide with an obstacle, 2 for those "
-      "that `accuracy` leaves undecided; along a trajectory also `distance` (float32, the smallest; NaN where free), "
+      "that `accuracy` or the points' uncertainties leave undecided; along a trajectory also `distance` (float32, the "
+      "smallest; NaN where free), "
       "`first_pose` and `closest_pose` (int32, numbers of poses from 0; -1 where free). Exact unless `accuracy` says "
       "otherwise, for float64 coordinates too.");
   return withCollisionOptions(description);

@@ -18,7 +18,7 @@ struct ClashWriter : Stage, CollisionQuestion {
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    for (std::string& warning : check(true)) warn(std::move(warning));
+    for (std::string& warning : check(inputs[0], true)) warn(std::move(warning));
     requireWritable("filename", filename);
     if (also) requireWritable("also", *also);
     if (previous) readEarlier();

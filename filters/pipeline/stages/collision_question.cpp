@@ -41,7 +41,34 @@ std::string optionOf(Input input, bool moves)
 
 } // namespace
 
-std::vector<std::string> CollisionQuestion::check(bool distances)
+bool CollisionQuestion::isUncertain() const
+{
+  return !given(uncertainty).isZero() || !given(obstacle_uncertainty).isZero();
+}
+
+Uncertainty CollisionQuestion::given(const LengthOrField& option) const
+{
+  return option.field.empty() ? Uncertainty(option.length) : Uncertainty(option.field, sigmas);
+}
+
+/// By the fields of the clouds to come: their points are seen when the stage runs.
+void CollisionQuestion::checkUncertainties(const CloudHeader& input) const
+{
+  const auto require = [this](const char* name, const LengthOrField& option, const CloudHeader& cloud) {
+    try {
+      withUncertainty(PointsView(), cloud.fields, "cloud", given(option));
+    }
+    catch (const InvalidInput& error) {
+      throw OptionError(name, error.advice());
+    }
+  };
+  require("uncertainty", uncertainty, input);
+  require("obstacle_uncertainty", obstacle_uncertainty, obstacle.header);
+  if (sigmas != 1 && uncertainty.field.empty() && obstacle_uncertainty.field.empty())
+    throw OptionError("sigmas", "is given, but no uncertainty is a field: give the length itself");
+}
+
+std::vector<std::string> CollisionQuestion::check(const CloudHeader& input, bool distances)
 {
   std::vector<std::string> warnings;
   poses_ = posesOf(pose, trajectory, warnings);
@@ -58,6 +85,7 @@ std::vector<std::string> CollisionQuestion::check(bool distances)
   catch (const InvalidInput& error) {
     throw OptionError(optionOf(error.input(), trajectory.has_value()), error.advice());
   }
+  checkUncertainties(input);
   return warnings;
 }
 
@@ -71,14 +99,18 @@ void CollisionQuestion::setUp(Filter& filter, const StageCloudPtr& input, const 
   if (trajectory) filter.setTrajectory(poses_);
   filter.setSwept(swept);
   filter.setAccuracy(Accuracy::parse(accuracy));
+  filter.setInputUncertainty(given(uncertainty));
+  filter.setObstacleUncertainty(given(obstacle_uncertainty));
   filter.setNumberOfThreads(number_of_threads);
 }
 
-std::string CollisionQuestion::undecidedWarning(const Filter& filter)
+std::string CollisionQuestion::undecidedWarning(const Filter& filter) const
 {
   const std::size_t undecided = filter.getUndecidedCount();
   if (undecided == 0) return {};
-  return std::to_string(undecided) + " points stay undecided with this accuracy: they are not taken for free";
+  const char* const why = isUncertain() ? " points stay undecided where places are as uncertain"
+                                        : " points stay undecided with this accuracy";
+  return std::to_string(undecided) + why + ": they are not taken for free";
 }
 
 } // namespace pcl_bsh::pipeline

@@ -22,26 +22,34 @@ struct CollisionQuestion {
   double swept = 0;
   unsigned number_of_threads = 1;
   std::string accuracy = "exact";
+  LengthOrField uncertainty;
+  LengthOrField obstacle_uncertainty;
+  double sigmas = 1;
 
 protected:
   using Filter = CollisionFilter<pcl::PCLPointCloud2>;
 
   /// For plan(): reads the trajectory, and refuses what the query would refuse.
+  /// @param input the header of the cloud whose points are asked about
   /// @param distances whether the stage asks how near and when, beside which points collide
   /// @return what to tell the user, a line each
   /// @throws OptionError
-  std::vector<std::string> check(bool distances);
+  std::vector<std::string> check(const CloudHeader& input, bool distances);
 
   /// For run(). Along a trajectory, the filter stops when the stage is cancelled.
   void setUp(Filter& filter, const StageCloudPtr& input, const Stage& stage) const;
 
   /// What to tell the user after a query; empty when every point is decided.
-  static std::string undecidedWarning(const Filter& filter);
+  std::string undecidedWarning(const Filter& filter) const;
 
   /// After check(): at least one.
   const std::vector<Eigen::Isometry3d>& poses() const noexcept { return poses_; }
 
 private:
+  bool isUncertain() const;
+  Uncertainty given(const LengthOrField& option) const;
+  void checkUncertainties(const CloudHeader& input) const;
+
   std::vector<Eigen::Isometry3d> poses_;
 };
 
@@ -68,6 +76,18 @@ StageDescription<S>& withCollisionOptions(StageDescription<S>& description)
               "how sure the answer is; less sure is faster: `exact`; `tolerance=LENGTH`: distances in (clearance, "
               "clearance + LENGTH] may count, too; `level=N`, `pairs=N`, `time=SECONDS`: stops early, and what stays "
               "undecided is not free; `float`: without proof. With `swept` `exact`")
+      .option(&S::uncertainty, "uncertainty",
+              "how far the input's points may truly be from where they were measured: a length, or the field that "
+              "holds each point's sigma, of which `sigmas` count. A point then collides only if it does wherever the "
+              "points truly are, it is free if it cannot, and else undecided, which is not free; distances are those "
+              "of the measured places")
+      .unit("m")
+      .atLeast(0)
+      .option(&S::obstacle_uncertainty, "obstacle_uncertainty", "the same for the obstacle's points")
+      .unit("m")
+      .atLeast(0)
+      .option(&S::sigmas, "sigmas", "by how many sigmas a point may be off, where an uncertainty is a field")
+      .atLeast(0)
       .option(&S::number_of_threads, "number_of_threads",
               "0: all of the machine's; the result is the same for any number")
       .atMost(1024);

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/query/reach.h>
+#include <pcl_bsh/query/result.h>
+
+namespace pcl_bsh {
+
+/// How far apart the points of a pair may be measured, radii included, to be within the clearance at the places that
+/// are asked about.
+class PairReach {
+public:
+  PairReach(const PointsView& a, const PointsView& b, double clearance, Places places,
+            const PatchSpacings& patches_of_b = {})
+  : a_(a),
+    b_(b),
+    clearance_(clearance),
+    places_(places),
+    patches_(patches_of_b)
+  {
+  }
+
+  bool areMeasured() const { return places_ == Places::measured; }
+
+  /// Whether it is the same for all pairs, but for their radii.
+  bool isOne() const { return areMeasured() || !(a_.uncertainties || b_.uncertainties || patches_.spacings); }
+
+  /// Before rounding.
+  ExactDistance::Sum of(PointPair pair) const
+  {
+    const double sign = areMeasured() ? 0.0 : places_ == Places::certain ? -1.0 : 1.0;
+    return {clearance_,
+            a_.radius(pair.a),
+            b_.radius(pair.b),
+            sign * a_.uncertainty,
+            sign * b_.uncertainty,
+            sign * a_.ownUncertainty(pair.a),
+            sign * b_.ownUncertainty(pair.b),
+            patches_.spacings ? 0.5 * static_cast<double>(patches_.spacings[pair.b]) : 0.0};
+  }
+
+private:
+  const PointsView& a_;
+  const PointsView& b_;
+  const double clearance_;
+  const Places places_;
+  const PatchSpacings patches_;
+};
+
+} // namespace pcl_bsh

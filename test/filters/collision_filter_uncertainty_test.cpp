@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The filter where points may be elsewhere than they were measured: a length of all points, or a field of sigmas.
+#include <pcl_bsh/filters/collision_filter.h>
+
+#include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/collision/collide.h>
+
+#include "clouds.h"
+
+#include <pcl/point_types.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace pcl_bsh {
+namespace {
+
+using namespace test;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+using Cloud = pcl::PCLPointCloud2;
+
+constexpr double clearance = 0.08;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+auto refusedWith(const std::string& text)
+{
+  return ThrowsMessage<std::invalid_argument>(HasSubstr(text));
+}
+
+/// The field `intensity` of the test clouds holds the sigmas.
+void setSigma(Cloud& cloud, std::size_t i, float sigma)
+{
+  std::memcpy(&cloud.data[i * cloud.point_step + cloud.fields.back().offset], &sigma, sizeof sigma);
+}
+
+class CollisionFilterUncertainty : public testing::Test {
+protected:
+  CollisionFilterUncertainty()
+  {
+    points_[7].x() = nan;
+    input_ = fieldCloud<float>(points_);
+    obstacle_ = fieldCloud<double>(obstacle_points_);
+    for (std::size_t i = 0; i < points_.size(); ++i) setSigma(*input_, i, 0.001f * static_cast<float>(i % 11));
+    for (std::size_t i = 0; i < obstacle_points_.size(); ++i)
+      setSigma(*obstacle_, i, 0.002f * static_cast<float>(i % 7));
+    setUp(filter_);
+  }
+
+  template <typename Filter>
+  void setUp(Filter& filter) const
+  {
+    if constexpr (std::is_same_v<Filter, CollisionFilter<Cloud>>) filter.setInputCloud(input_);
+    filter.setObstacleCloud(obstacle_);
+    filter.setPose(pose_);
+    filter.setClearance(clearance);
+  }
+
+  /// What brute force says of the same views. @param sigmas of the input's points, whose own sigmas count
+  std::vector<std::uint8_t> expected(double sigmas, double of_obstacle) const
+  {
+    std::vector<float> own;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const double length = sigmas * static_cast<double>(0.001f * static_cast<float>(i % 11));
+      auto rounded = static_cast<float>(length);
+      if (static_cast<double>(rounded) < length) rounded = std::nextafter(rounded, 1.0f);
+      own.push_back(rounded);
+    }
+    PointsView a = viewOf(*input_), b = viewOf(*obstacle_);
+    a.uncertainties = own.data();
+    b.uncertainty = of_obstacle;
+    FlagsRequest request;
+    request.clearance = clearance;
+    const SphereHierarchy of_a(a), of_b(b);
+    return brute_force::collisionFlags({of_a}, {of_b, pose_}, request).a;
+  }
+
+  std::vector<std::uint8_t> flags()
+  {
+    std::vector<std::uint8_t> found;
+    filter_.computeFlags(found);
+    return found;
+  }
+
+  static std::size_t count(const std::vector<std::uint8_t>& flags, std::uint8_t flag)
+  {
+    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flag));
+  }
+
+  Points points_ = randomPoints(700, 1);
+  const Points obstacle_points_ = randomPoints(600, 2);
+  const Eigen::Isometry3d pose_ = somePose();
+  Cloud::Ptr input_, obstacle_;
+  CollisionFilter<Cloud> filter_{true};
+};
+
+TEST_F(CollisionFilterUncertainty, FlagsAreThoseOfBruteForce)
+{
+  filter_.setInputUncertainty(Uncertainty("intensity", 2.5));
+  filter_.setObstacleUncertainty(0.007);
+  const std::vector<std::uint8_t> wanted = expected(2.5, 0.007), found = flags();
+  ASSERT_GT(count(wanted, 0), 50U);
+  ASSERT_GT(count(wanted, 1), 50U);
+  ASSERT_GT(count(wanted, 2), 50U);
+  EXPECT_EQ(found, wanted);
+  EXPECT_EQ(filter_.getUndecidedCount(), count(wanted, 2));
+}
+
+TEST_F(CollisionFilterUncertainty, WhatIsUndecidedIsNotFree)
+{
+  filter_.setInputUncertainty(0.01);
+  const std::vector<std::uint8_t> found = flags();
+  ASSERT_GT(count(found, 2), 50U);
+  pcl::Indices kept;
+  filter_.filter(kept);
+  EXPECT_EQ(kept, where(found, false, points_)) << "free ones alone";
+  filter_.setNegative(true);
+  filter_.filter(kept);
+  EXPECT_EQ(kept, where(found, true, points_));
+  filter_.setKeepFlagged(true);
+  Cloud flagged;
+  filter_.filter(flagged);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    ASSERT_EQ(flagged.data[i * flagged.point_step + flagged.fields.back().offset], found[i]);
+}
+
+TEST_F(CollisionFilterUncertainty, TypedCloudsHaveFieldsToo)
+{
+  const auto typed = typedCloud<pcl::PointXYZI>(points_);
+  for (std::size_t i = 0; i < points_.size(); ++i) (*typed)[i].intensity = 0.001f * static_cast<float>(i % 11);
+  CollisionFilter<pcl::PointXYZI> filter;
+  filter.setInputCloud(typed);
+  setUp(filter);
+  filter.setInputUncertainty(Uncertainty("intensity", 1.0));
+  std::vector<std::uint8_t> found;
+  filter.computeFlags(found);
+  EXPECT_EQ(found, expected(1.0, 0.0));
+
+  const auto some = std::make_shared<pcl::Indices>(pcl::Indices{3, 5, 8, 7, 600});
+  filter.setIndices(some);
+  std::vector<std::uint8_t> of_some;
+  filter.computeFlags(of_some);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    EXPECT_EQ(of_some[i], std::find(some->begin(), some->end(), i) == some->end() ? 0 : found[i]) << i;
+}
+
+TEST_F(CollisionFilterUncertainty, EverySettingCountsAtItsNextUse)
+{
+  const std::vector<std::uint8_t> measured = flags();
+  EXPECT_EQ(count(measured, 2), 0U);
+  filter_.setObstacleUncertainty(0.007);
+  filter_.setInputUncertainty(Uncertainty("intensity", 1.0));
+  EXPECT_EQ(flags(), expected(1.0, 0.007)) << "the obstacle's hierarchy was built without";
+  filter_.setInputUncertainty(Uncertainty("intensity", 3.0));
+  EXPECT_EQ(flags(), expected(3.0, 0.007));
+  filter_.setObstacleUncertainty({});
+  EXPECT_EQ(flags(), expected(3.0, 0.0));
+  CollisionFilter<Cloud> copy(filter_);
+  filter_.setInputUncertainty({});
+  EXPECT_EQ(flags(), measured);
+  std::vector<std::uint8_t> found;
+  copy.computeFlags(found);
+  EXPECT_EQ(found, expected(3.0, 0.0));
+}
+
+TEST_F(CollisionFilterUncertainty, ObstaclesSigmasMustNotChangeUnseen)
+{
+  filter_.setObstacleUncertainty(Uncertainty("intensity", 1.0));
+  const std::vector<std::uint8_t> before = flags();
+  setSigma(*obstacle_, 5, 0.5f);
+  EXPECT_THAT([&] { flags(); }, refusedWith("obstacle cloud has changed"));
+  filter_.setObstacleCloud(obstacle_);
+  EXPECT_NE(flags(), before);
+}
+
+TEST_F(CollisionFilterUncertainty, RefusesWhatIsNoLength)
+{
+  filter_.setInputUncertainty(0.01);
+  for (const double wrong : {-0.1, nan, infinity, -infinity}) {
+    EXPECT_THAT([&] { filter_.setInputUncertainty(wrong); }, refusedWith("input cloud: uncertainty "));
+    EXPECT_THAT([&] { filter_.setObstacleUncertainty(Uncertainty("intensity", wrong)); },
+                refusedWith("obstacle cloud: number of sigmas "));
+  }
+  EXPECT_EQ(filter_.getInputUncertainty().length, 0.01) << "an error changes nothing";
+
+  filter_.setInputUncertainty(Uncertainty("sigma", 1.0));
+  EXPECT_THAT([&] { flags(); },
+              refusedWith("input cloud: field 'sigma' of its points' sigmas is missing: give a length, or one of its "
+                          "fields: label, x, y, z, intensity"));
+  filter_.setInputUncertainty(Uncertainty("intensity", 1.0));
+  for (const float wrong : {-0.25f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    setSigma(*input_, 12, wrong);
+    EXPECT_THAT([&] { flags(); }, refusedWith("input cloud: field 'intensity' of point 12 is "));
+  }
+  setSigma(*input_, 12, 1e38f);
+  EXPECT_NO_THROW(flags());
+  filter_.setInputUncertainty(Uncertainty("intensity", 1e6));
+  EXPECT_THAT([&] { flags(); }, refusedWith("point 12 is 1e+38"));
+}
+
+TEST_F(CollisionFilterUncertainty, PointsThatAreNotFiniteNeedNone)
+{
+  filter_.setInputUncertainty(Uncertainty("intensity", 1.0));
+  setSigma(*input_, 7, std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(flags(), expected(1.0, 0.0));
+}
+
+} // namespace
+} // namespace pcl_bsh
