@@ -2,6 +2,7 @@
 #include <pcl_bsh/distances/brute_force_distances.h>
 
 #include <pcl_bsh/distances/check_distances.h>
+#include <pcl_bsh/distances/greatest_distance.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/query/brute_force_points.h>

@@ -2,6 +2,7 @@
 // Distances of all points: each voxel of a is one task and owns its points.
 #include <pcl_bsh/distances/check_distances.h>
 #include <pcl_bsh/distances/distance_query.h>
+#include <pcl_bsh/distances/greatest_distance.h>
 #include <pcl_bsh/traversal/voxel_passes.h>
 
 #include <numeric>

@@ -268,7 +268,9 @@ std::array<LongCoordinate, 3> ExactDistance::difference(const Point3& p, const P
       sum.addProduct(a_[k][j], p[j]);
       sum.addProduct(-b_[k][j], q[j]);
     }
-    c = {sum.sum, sum.errors, CompensatedSum::kError * sum.absolute + kUnderflow};
+    // The terms cancel, and their errors do not: a tail as large as that would leave roundedLength() in doubt.
+    const WithError normal = twoSum(sum.sum, sum.errors);
+    c = {normal.value, normal.error, CompensatedSum::kError * sum.absolute + kUnderflow};
   }
   return vector;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The queries on real scans, where they are at hand, against an independent kd-tree.
 #include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/filters/collision_filter.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -199,6 +200,63 @@ TEST_F(RealScans, GeoreferencedTerrainIsExactInFloat64AndOnlyThere)
   ASSERT_TRUE(closest.pair);
   EXPECT_EQ(closest.distance,
             ExactDistance(identity, lifted).gap({view.point(closest.pair->a), view.point(closest.pair->b)}));
+}
+
+/// Distances of every `step`th record of a against a k-d tree of b, which gives those that exact arithmetic compares.
+void expectDistances(const Scan& a, const Eigen::Isometry3d& pose_a, const Scan& b, const Eigen::Isometry3d& pose_b,
+                     std::size_t step, double max_distance = std::numeric_limits<double>::infinity())
+{
+  PointDistancesRequest request;
+  request.max_distance = max_distance;
+  request.threads = 2;
+  const PointDistances found = pointDistances({a.hierarchy, pose_a}, {b.hierarchy, pose_b}, request);
+  ASSERT_EQ(found.nearest.size(), a.view().count);
+  const test::KdTree tree(b.view(), pose_b);
+  const ExactDistance distance(pose_a, pose_b);
+  for (std::uint32_t i = 0; i < a.view().count; i += static_cast<std::uint32_t>(step)) {
+    const Eigen::Vector3d query = test::KdTree::moved(a.view(), i, pose_a);
+    if (!query.allFinite()) {
+      ASSERT_EQ(found.nearest[i], PointDistances::kNoPoint);
+      continue;
+    }
+    const auto pairWith = [&](std::uint32_t j) { return ExactDistance::Pair{a.view().point(i), b.view().point(j)}; };
+    std::uint32_t nearest = tree.nearest(query).record;
+    tree.anyWithin(query, tree.nearest(query).distance + 1e-6, [&](std::uint32_t j) {
+      const int sign = distance.compareGaps(pairWith(j), pairWith(nearest));
+      if (sign < 0 || (sign == 0 && j < nearest)) nearest = j;
+      return false;
+    });
+    if (distance.compare(a.view().point(i), b.view().point(nearest), max_distance) > 0) {
+      ASSERT_EQ(found.nearest[i], PointDistances::kNoPoint) << "record " << i;
+      continue;
+    }
+    ASSERT_EQ(found.nearest[i], nearest) << "record " << i;
+    ASSERT_EQ(found.distance[i], distance.gap(pairWith(nearest))) << "record " << i;
+  }
+}
+
+TEST_F(RealScans, DistancesOfPointsAreThoseOfAKdTree)
+{
+  const Scan lion("statue_lion_takanawa"); // its coordinates have steps of 0.001: many points are equally near
+  Eigen::Isometry3d pushed = identity;
+  pushed.translation().x() = 0.05;
+  expectDistances(lion, identity, lion, pushed, 97);
+  expectDistances(lion, identity, lion, pushed, 97, 0.035);
+
+  const Scan sweep_a("lidar_sweep_a"), sweep_b("lidar_sweep_b");
+  Eigen::Isometry3d pose = identity;
+  pose.rotate(Eigen::AngleAxisd(-0.0122, Eigen::Vector3d(0.19, -0.15, 1).normalized()));
+  pose.pretranslate(Eigen::Vector3d(0.488882, 0.121214, -0.0253342));
+  expectDistances(sweep_a, identity, sweep_b, pose, 97);
+  expectDistances(sweep_b, pose, sweep_a, identity, 97, 0.1);
+
+  const Scan terrain("terrain_stbarth_utm20_f64"), rounded("terrain_stbarth_utm20_f32");
+  Eigen::Isometry3d lifted = identity; // turned about its own middle
+  lifted.translate(Eigen::Vector3d(515050, 1981050, 0.05));
+  lifted.rotate(Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitZ()));
+  lifted.translate(Eigen::Vector3d(-515050, -1981050, 0));
+  expectDistances(terrain, identity, terrain, lifted, 97);
+  expectDistances(rounded, identity, terrain, identity, 97); // float32 records: many are one place
 }
 
 } // namespace

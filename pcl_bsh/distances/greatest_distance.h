@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What follows from the distances of single points: the greatest, and of both directions the Hausdorff distance.
+#pragma once
+
+#include <pcl_bsh/distances/point_distances.h>
+
+namespace pcl_bsh {
+
+/// Sets what is said of all points together from the distances of the single ones.
+/// @pre `distance` and `nearest` are set
+void findGreatest(const Placed& a, const Placed& b, PointDistances& result);
+
+/// Sets what is said of both directions together from what is said of each.
+void findHausdorff(const Placed& a, const Placed& b, SymmetricDistances& result);
+
+} // namespace pcl_bsh

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the work of distances grows with clouds that are hard for bounding volumes.
+#include <pcl_bsh/distances/point_distances.h>
+
+#include "../query/adversarial_clouds.h"
+#include "../query/random_clouds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace pcl_bsh {
+namespace {
+
+using test::Cloud;
+using namespace test::adversarial;
+
+using Points = std::vector<Point3>;
+
+struct Corner {
+  const char* name;
+  std::function<Points(std::size_t)> a, b;
+  double growth; ///< at most, of the work of both directions, where points are four times as many; linear work has 4
+};
+
+Points circle(std::size_t n)
+{
+  return helix(n, 1.0, 0.0);
+}
+
+Points octaves(std::size_t n, double count, std::uint64_t seed)
+{
+  test::Random random(seed);
+  Points points(n);
+  for (Point3& p : points) p = scaled(direction(random), std::exp2(-count * random.uniform(0, 1)));
+  return points;
+}
+
+Points strayed(Points points)
+{
+  constexpr double far = std::numeric_limits<float>::max();
+  points.back() = {far, far, far};
+  return points;
+}
+
+std::uint64_t workOf(const Points& one, const Points& other)
+{
+  const Cloud cloud_a(one), cloud_b(other);
+  const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+  const SymmetricDistances found = symmetricDistances(a, b);
+  EXPECT_EQ(found.a.measured, a.size());
+  EXPECT_EQ(found.b.measured, b.size());
+  Work work = found.a.work;
+  work += found.b.work;
+  return work.node_pairs + 16 * work.leaf_pairs + work.exact_decisions;
+}
+
+/// Where nearly all pairs are at nearly the same distance work is quadratic, as that of exact comparisons would be: a
+/// ball in a shell, a circle and its axis. Octaves and strays are between. None may become worse.
+TEST(PointDistances, TakeNoMoreWorkOfGrowingCornersThanKnown)
+{
+  const Points center = {{0, 0, 0}};
+  const auto shell = [](double radius) {
+    return [radius](std::size_t n) {
+      Points points = shells(n, 1, 0);
+      for (Point3& p : points) p = scaled(p, radius);
+      return points;
+    };
+  };
+  const auto at_height = [](double z) { return [z](std::size_t n) { return sheet(n, 0.25, z); }; };
+  const auto at_scale = [](std::uint64_t seed, double count) {
+    return [=](std::size_t n) { return octaves(n, count, seed); };
+  };
+  const Corner corners[] = {
+      {"center and shell", [&](std::size_t) { return center; }, shell(1), 5.0},
+      {"concentric shells", shell(1), shell(1.5), 7.0},
+      {"ball in a shell", shell(1e-3), shell(1), 22.0},
+      {"circle and axis", circle, [](std::size_t n) { return axis(n, 1); }, 16.5},
+      {"sheets half a spacing apart", at_height(0), at_height(0.5), 6.0},
+      {"sheets ten spacings apart", at_height(0), at_height(10), 7.0},
+      {"octaves", at_scale(1, 40), at_scale(2, 40), 13.0},
+      {"one place",
+       [](std::size_t n) {
+         return Points(n, {1, 2, 3});
+       },
+       shell(1), 4.5},
+      {"one stray", [](std::size_t n) { return strayed(cube(n, 1)); }, [](std::size_t n) { return cube(n, 2); }, 7.5},
+      {"two strays", [](std::size_t n) { return strayed(cube(n, 1)); },
+       [](std::size_t n) { return strayed(cube(n, 2)); }, 11.0},
+  };
+  for (const Corner& corner : corners) {
+    SCOPED_TRACE(corner.name);
+    std::uint64_t before = 0;
+    for (const std::size_t n : {250, 1'000, 4'000}) {
+      const std::uint64_t work = workOf(corner.a(n), corner.b(n));
+      const double growth = before != 0 ? static_cast<double>(work) / static_cast<double>(before) : 0.0;
+      EXPECT_LE(growth, corner.growth) << n << " points: " << work;
+      before = work;
+    }
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh
