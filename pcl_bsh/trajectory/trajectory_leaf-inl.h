@@ -29,7 +29,6 @@ struct LeafVisit {
   std::uint32_t open; ///< bits of the points that are not settled
   Segments<kLeafPoints> segments;
   Segment around;
-  float low[3], high[3];                       ///< of the model's box that it is compared with
   alignas(64) float near_squared[kLeafPoints]; ///< farther from a box, squared, nothing in it matters, at one pose
 };
 
@@ -51,7 +50,7 @@ public:
   /// @param bound no less than the smallest distance of any of the points, where `motion` is one pose
   /// @return whether any of the leaf's points is not settled.
   bool compare(std::size_t slot, const LeafRange& points, const Node& node, std::uint32_t lane,
-               const VoxelMotion& motion, const std::vector<ModelBox>& candidates, float bound)
+               const VoxelMotion& motion, const std::vector<Siblings>& candidates, float bound)
   {
     const std::uint32_t all = firstBits(points.count);
     if ((all & ~results_.settled[slot]) == 0 || results_.witness) return false;
@@ -84,17 +83,19 @@ public:
     if (query_.request.pose_summaries) pose_hits_.assign(motion.interval->last - motion.interval->first + 1, 0);
 
     ++visit_;
-    const std::vector<ModelBox>& ordered =
-        motion.at_rest && query_.everything() ? nearestFirst(candidates, points, motion) : candidates;
-    for (const ModelBox& candidate : ordered) {
-      stack_.push_back(candidate);
+    if (motion.at_rest && query_.everything())
+      nearestFirst(candidates, points, motion);
+    else
+      model_.near(leaf.around, candidates, motion.steps, near_);
+    for (const Siblings& candidate : near_) {
+      push(leaf, candidate, leaf.open, motion);
       while (!stack_.empty() && leaf.open != 0 && !stop_check_.isOver()) {
-        const ModelBox next = stack_.back();
+        const PointsNearBoxes next = stack_.back();
         stack_.pop_back();
         if (motion.at_rest)
-          compareBox<true>(leaf, next, motion);
+          compareBox(leaf, next.boxes, motion);
         else
-          compareBox<false>(leaf, next, motion);
+          compareBoxes(leaf, next, motion);
       }
       if (leaf.open == 0) break;
     }
@@ -113,67 +114,110 @@ private:
   }
 
   /// The candidates by their distance from the leaf, at one pose: the sooner its points' bounds are small, the fewer
-  /// are opened.
-  const std::vector<ModelBox>& nearestFirst(const std::vector<ModelBox>& candidates, const LeafRange& points,
-                                            const VoxelMotion& motion)
+  /// boxes are opened.
+  void nearestFirst(const std::vector<Siblings>& candidates, const LeafRange& points, const VoxelMotion& motion)
   {
     const std::uint32_t i = points.count / 2;
     const Point at = carryPoint(motion.from.m, motion.from.g, {points.x()[i], points.y()[i], points.z()[i]});
-    return by_distance_.sort(candidates, at);
+    by_distance_.sort(candidates, at, near_);
   }
 
-  /// Opens a box of the model that the leaf may meet, or compares its points.
-  template <bool AtRest>
-  HWY_INLINE void compareBox(LeafVisit& leaf, const ModelBox& candidate, const VoxelMotion& motion)
+  /// Boxes of the model, and bits of the points of the leaf that may meet them.
+  struct PointsNearBoxes {
+    Siblings boxes;
+    std::uint32_t points;
+  };
+
+  /// At one pose boxes are compared one after another: what is found in one may bound the search before the next.
+  void push(const LeafVisit& leaf, const Siblings& boxes, std::uint32_t points, const VoxelMotion& motion)
   {
-    const std::uint32_t k = candidate.lane;
-    const BoxNode& box = candidate.box();
-    const float low[3] = {box.low[0][k], box.low[1][k], box.low[2][k]};
-    const float high[3] = {box.high[0][k], box.high[1][k], box.high[2][k]};
-    ClippedSegments<kLeafPoints> clipped;
+    if (!motion.at_rest) return stack_.push_back({boxes, points});
+    for (std::uint32_t bits = boxes.lanes; bits != 0; bits &= bits - 1)
+      stack_.push_back({boxes.only(bits & (~bits + 1)), leaf.open});
+  }
+
+  /// All points at one pose against a box: opens it, or compares its points.
+  void compareBox(LeafVisit& leaf, const Siblings& boxes, const VoxelMotion& motion)
+  {
+    const ModelBox box = boxes[static_cast<std::uint32_t>(std::countr_zero(boxes.lanes))];
+    const BoxEnds ends(box);
     results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(leaf.open));
-    std::copy(low, low + 3, leaf.low);
-    std::copy(high, high + 3, leaf.high);
-    std::uint32_t lanes = leaf.open;
-    if constexpr (AtRest) {
-      const LeafPoints& at = placesAt(leaf, motion.interval->first, motion);
-      lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, low, high, leaf.near_squared);
-    }
-    else {
-      lanes &= segmentsInBox(leaf.segments, low, high, motion.steps, &clipped);
-    }
-    if (lanes == 0) return;
-    if (!candidate.isLeaf()) {
-      if (!model_.mayOpen(candidate)) {
-        std::uint16_t& undecided = results_.undecided[leaf.slot];
-        undecided = static_cast<std::uint16_t>(undecided | lanes);
-        return;
-      }
-      ModelBox child = model_.below(candidate);
-      for (std::uint32_t bits = model_.near(leaf.around, child, motion.steps); bits != 0; bits &= bits - 1) {
-        child.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-        stack_.push_back(child);
+    const LeafPoints& at = placesAt(leaf, motion.interval->first, motion);
+    const std::uint32_t points =
+        leaf.open & pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, leaf.near_squared);
+    if (points == 0) return;
+    if (box.isLeaf())
+      compareAt(leaf, points, box, motion.interval->first, motion);
+    else if (model_.mayOpen(box))
+      push(leaf, model_.near(leaf.around, model_.below(box), motion.steps), leaf.open, motion);
+    else
+      leaveUndecided(leaf, points);
+  }
+
+  /// Points against boxes, during the motion: each point against all boxes at once, or each box against all points.
+  HWY_INLINE void compareBoxes(LeafVisit& leaf, const PointsNearBoxes& candidate, const VoxelMotion& motion)
+  {
+    const BoxNode& node = candidate.boxes.box();
+    const std::uint32_t points = candidate.points & leaf.open, boxes = candidate.boxes.lanes;
+    results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(points) * std::popcount(boxes));
+    ClippedSegments<kLeafPoints> clipped;
+    if (kLeafPoints / kLanes * static_cast<std::size_t>(std::popcount(boxes)) <
+        static_cast<std::size_t>(std::popcount(points))) {
+      for (std::uint32_t bits = boxes; bits != 0; bits &= bits - 1) {
+        const ModelBox box = candidate.boxes[static_cast<std::uint32_t>(std::countr_zero(bits))];
+        const BoxEnds ends(box);
+        meet(leaf, points & segmentsInBox(leaf.segments, ends.low, ends.high, motion.steps, &clipped), clipped, box,
+             motion);
       }
       return;
     }
-    const std::uint32_t at_leaf = candidate.box().leaf(k);
-    const Voxel& of = tree_.storage.voxels[candidate.voxel];
-    const Node& node = of.nodes[at_leaf / kNodeChildren];
-    const LeafRange other{&of, node.begin[at_leaf % kNodeChildren], node.comparedPoints(at_leaf % kNodeChildren)};
-    if (path_.is_swept)
-      compareSegments(leaf, lanes, clipped, other, candidate.voxel, motion);
-    else if constexpr (AtRest)
-      compareAt(leaf, lanes, other, candidate.voxel, motion.interval->first, motion);
-    else
-      comparePoses(leaf, lanes, clipped, other, candidate.voxel, motion);
+    std::uint32_t near[kLanes] = {}, met = 0;
+    for (std::uint32_t bits = points; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const std::uint32_t its = boxes & boxesOnArc(leaf.segments, i, node.low, node.high, motion.steps, clips_[i]);
+      met |= its;
+      for (std::uint32_t left = its; left != 0; left &= left - 1) near[std::countr_zero(left)] |= 1u << i;
+    }
+    for (; met != 0; met &= met - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(met));
+      for (std::uint32_t bits = node.isLeaf(k) ? near[k] : 0; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+        clipped.from[i] = clips_[i].from[k];
+        clipped.to[i] = clips_[i].to[k];
+      }
+      meet(leaf, near[k], clipped, candidate.boxes[k], motion);
+    }
   }
+
+  /// Opens a box that points in `lanes` may meet, or compares them with its points.
+  HWY_INLINE void meet(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped, const ModelBox& box,
+                       const VoxelMotion& motion)
+  {
+    lanes &= leaf.open;
+    if (lanes == 0) return;
+    if (!box.isLeaf()) {
+      if (!model_.mayOpen(box)) return leaveUndecided(leaf, lanes);
+      return push(leaf, model_.below(box), lanes, motion);
+    }
+    if (path_.is_swept)
+      compareSegments(leaf, lanes, clipped, box, motion);
+    else
+      comparePoses(leaf, lanes, clipped, box, motion);
+  }
+
+  void leaveUndecided(const LeafVisit& leaf, std::uint32_t points)
+  {
+    results_.undecided[leaf.slot] = static_cast<std::uint16_t>(results_.undecided[leaf.slot] | points);
+  }
+
+  BoxLeaf pointsIn(const ModelBox& leaf) const { return tree_.leaf(leaf.voxel, leaf.box().leaf(leaf.lane)); }
 
   /// Two leaves, at each pose that brings them near.
   HWY_INLINE void comparePoses(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
-                               const LeafRange& other, std::uint32_t voxel, const VoxelMotion& motion)
+                               const ModelBox& box, const VoxelMotion& motion)
   {
-    const bool narrows = motion.squares && other.voxel->frame.unit == 1.0;
-    if (narrows) lanes = nearPoints(leaf, lanes, other, voxel, motion, clipped);
+    const bool narrows = motion.squares && unitOf(box.voxel) == 1.0;
+    if (narrows) lanes = nearPoints(leaf, lanes, box, motion, clipped);
     const PoseRanges ranges = rangesOf(lanes, clipped, motion);
     if (ranges.lanes == 0) return;
     lanes = ranges.lanes;
@@ -184,7 +228,7 @@ private:
           const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
           if ((leaf.open >> i & 1) == 0) continue;
           const std::uint32_t k = ranges.first[i] + (ranges.last[i] - ranges.first[i]) / 2;
-          compareAt(leaf, ranges.at(k, lanes & leaf.open), other, voxel, k, motion);
+          compareAt(leaf, ranges.at(k, lanes & leaf.open), box, k, motion);
         }
       }
     }
@@ -195,30 +239,32 @@ private:
           const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
           if (results_.first[leaf.points.begin + i] <= k) here &= ~(1u << i);
         }
-      if (here != 0) compareAt(leaf, here, other, voxel, k, motion);
+      if (here != 0) compareAt(leaf, here, box, k, motion);
     }
   }
 
   /// Bits of the leaf's points whose segments come near to points of the model's leaf, and when.
-  std::uint32_t nearPoints(const LeafVisit& leaf, std::uint32_t lanes, const LeafRange& other, std::uint32_t voxel,
-                           const VoxelMotion& motion, ClippedSegments<kLeafPoints>& clipped) const
+  std::uint32_t nearPoints(const LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, const VoxelMotion& motion,
+                           ClippedSegments<kLeafPoints>& clipped) const
   {
-    const Point3 at = tree_.offset(voxel);
+    const BoxLeaf other = pointsIn(box);
+    const Point3 at = tree_.offset(box.voxel);
     const float shift[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
     return segmentsNearPoints(leaf.segments, lanes, other.x(), other.y(), other.z(), other.count, shift, motion.steps,
                               motion.smallest, motion.rounding, clipped);
   }
 
   /// Two leaves at pose k: by float bands, and exactly within the bands.
-  void compareAt(LeafVisit& leaf, std::uint32_t lanes, const LeafRange& other, std::uint32_t voxel, std::uint32_t k,
-                 const VoxelMotion& motion)
+  void compareAt(LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, std::uint32_t k, const VoxelMotion& motion)
   {
     const LeafPoints& at = placesAt(leaf, k, motion);
-    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, leaf.low, leaf.high, leaf.near_squared);
+    const BoxEnds ends(box);
+    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, leaf.near_squared);
     if (lanes == 0) return;
     ++results_.work.leaf_pairs;
-    const double unit = other.voxel->frame.unit;
-    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], tree_.offset(voxel), unit);
+    const BoxLeaf other = pointsIn(box);
+    const double unit = unitOf(box.voxel);
+    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], tree_.offset(box.voxel), unit);
     bool certain = query_.radii == 0.0 && unit == 1.0 && voxel_frame_.frame.unit == 1.0;
     for (const float g : map.g) certain = certain && std::abs(g) <= voxel_frame_.far;
     LeafPoints points;
@@ -262,9 +308,12 @@ private:
     return places.points;
   }
 
+  /// Of the coordinates that a voxel of the model stores.
+  double unitOf(std::uint32_t voxel) const { return tree_.storage.voxels[voxel].frame.unit; }
+
   /// What follows from the points in `hit`, which collide at pose k.
   void note(LeafVisit& leaf, std::uint32_t hit, const LeafPoints& points, const float* nearest, bool certain,
-            const LeafRange& other, std::uint32_t k, const VoxelMotion& motion)
+            const BoxLeaf& other, std::uint32_t k, const VoxelMotion& motion)
   {
     results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | hit);
     if (!query_.everything() && (!query_.first || k == motion.interval->first)) leaf.open &= ~hit;
@@ -307,10 +356,10 @@ private:
   /// Points that move in straight lines against points at rest: all instants at once. In double; what that gets wrong
   /// is small against the tolerance (checkTolerance()).
   HWY_NOINLINE void compareSegments(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
-                                    const LeafRange& other, std::uint32_t voxel, const VoxelMotion& motion)
+                                    const ModelBox& box, const VoxelMotion& motion)
   {
-    if (motion.squares && other.voxel->frame.unit == 1.0)
-      lanes = nearPoints(leaf, lanes, other, voxel, motion, clipped);
+    if (motion.squares && unitOf(box.voxel) == 1.0) lanes = nearPoints(leaf, lanes, box, motion, clipped);
+    const BoxLeaf other = pointsIn(box);
     ++results_.work.leaf_pairs;
     const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
@@ -385,7 +434,9 @@ private:
   };
   static constexpr std::uint32_t kKeptPlaces = 16;
 
-  std::vector<ModelBox> stack_;
+  std::vector<Siblings> near_; // what the leaf may meet
+  std::vector<PointsNearBoxes> stack_;
+  ClippedSegments<kLanes> clips_[kLeafPoints]; // of each point, when it is in the boxes it is compared with
   BoxesByDistance by_distance_;
   std::uint64_t visit_ = 0; // how many leaves were compared
   Places places_[kKeptPlaces];
