@@ -8,6 +8,7 @@
 #define PCL_BSH_TRAJECTORY_TRAJECTORY_LEAF_INL_H_
 #endif
 
+#include <pcl_bsh/trajectory/leaf_visit-inl.h>
 #include <pcl_bsh/trajectory/model_boxes-inl.h>
 #include <pcl_bsh/trajectory/point_segment.h>
 #include <pcl_bsh/trajectory/pose_ranges-inl.h>
@@ -21,16 +22,6 @@ namespace HWY_NAMESPACE {
 
 inline constexpr double kLeafStray = 0.01; ///< of a leaf's radius: an interval that strays farther is divided
 inline constexpr float kFewPoses = 4;      ///< as quickly looked at one by one as all together
-
-/// A leaf of the scan, its points tested all at once.
-struct LeafVisit {
-  LeafRange points;
-  std::size_t slot;   ///< of its flags
-  std::uint32_t open; ///< bits of the points that are not settled
-  Segments<kLeafPoints> segments;
-  Segment around;
-  alignas(64) float near_squared[kLeafPoints]; ///< farther from a box, squared, nothing in it matters, at one pose
-};
 
 /// Compares leaves of the scan with what they may meet of the model.
 class LeafWalk {
@@ -63,26 +54,14 @@ public:
     leaf.points = points;
     leaf.slot = slot;
     leaf.open = all & ~results_.settled[slot];
-    alignas(64) float from[3][kLeafPoints], to[3][kLeafPoints], bow[3][kLeafPoints];
-    carry(motion.from.m, motion.from.g, points.x(), points.y(), points.z(), points.count, from[0], from[1], from[2]);
-    carry(motion.to.m, motion.to.g, points.x(), points.y(), points.z(), points.count, to[0], to[1], to[2]);
-    carry(motion.bow.m, motion.bow.g, points.x(), points.y(), points.z(), points.count, bow[0], bow[1], bow[2]);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::fill(bow[axis] + points.count, bow[axis] + kLeafPoints, 0.0f);
-      std::fill(from[axis] + points.count, from[axis] + kLeafPoints, 0.0f);
-      std::fill(to[axis] + points.count, to[axis] + kLeafPoints, 0.0f);
-    }
-    leaf.segments.set(from, to, bow, motion.smallest);
-    std::fill(leaf.segments.reach[0], leaf.segments.reach[0] + kLeafPoints, motion.reach);
-    std::fill(leaf.near_squared, leaf.near_squared + kLeafPoints, voxel_frame_.nearSquared(motion, bound));
+    leaf.begin(voxel_frame_, motion, bound);
     for (std::uint32_t i = 0; query_.closest && i < points.count; ++i)
-      if (bestBounds(points.begin + i, motion)) lowerReach(leaf, i, results_.best[points.begin + i].reach, motion);
-    const float no_extent[3][kLeafPoints] = {};
-    leaf.around = voxel_frame_.aroundSegments(motion, from, to, bow, no_extent, points.count);
+      if (bestBounds(points.begin + i, motion))
+        leaf.lowerReach(voxel_frame_, i, results_.best[points.begin + i].reach, motion);
     ++results_.work.volumes_carried;
     if (query_.request.pose_summaries) pose_hits_.assign(motion.interval->last - motion.interval->first + 1, 0);
 
-    ++visit_;
+    places_.beginVisit();
     if (motion.at_rest && query_.everything())
       nearestFirst(candidates, points, motion);
     else
@@ -106,13 +85,6 @@ public:
   }
 
 private:
-  /// From now on, what is farther from a point of the leaf than the best does not matter, during the motion.
-  void lowerReach(LeafVisit& leaf, std::uint32_t i, float best, const VoxelMotion& motion) const
-  {
-    leaf.segments.reach[0][i] = std::min(leaf.segments.reach[0][i], voxel_frame_.reachOf(motion, best));
-    if (motion.at_rest) leaf.near_squared[i] = std::min(leaf.near_squared[i], voxel_frame_.nearSquared(motion, best));
-  }
-
   /// The candidates by their distance from the leaf, at one pose: the sooner its points' bounds are small, the fewer
   /// boxes are opened.
   void nearestFirst(const std::vector<Siblings>& candidates, const LeafRange& points, const VoxelMotion& motion)
@@ -142,7 +114,7 @@ private:
     const ModelBox box = boxes[static_cast<std::uint32_t>(std::countr_zero(boxes.lanes))];
     const BoxEnds ends(box);
     results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(leaf.open));
-    const LeafPoints& at = placesAt(leaf, motion.interval->first, motion);
+    const LeafPoints& at = places_.at(voxel_frame_, leaf.points, motion, motion.interval->first);
     const std::uint32_t points =
         leaf.open & pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, leaf.near_squared);
     if (points == 0) return;
@@ -257,7 +229,7 @@ private:
   /// Two leaves at pose k: by float bands, and exactly within the bands.
   void compareAt(LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, std::uint32_t k, const VoxelMotion& motion)
   {
-    const LeafPoints& at = placesAt(leaf, k, motion);
+    const LeafPoints& at = places_.at(voxel_frame_, leaf.points, motion, k);
     const BoxEnds ends(box);
     lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, leaf.near_squared);
     if (lanes == 0) return;
@@ -295,19 +267,6 @@ private:
     if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, motion);
   }
 
-  /// The leaf's points as seen at pose k; kept, for many boxes ask at the same few poses.
-  const LeafPoints& placesAt(const LeafVisit& leaf, std::uint32_t k, const VoxelMotion& motion)
-  {
-    Places& places = places_[(k - motion.interval->first) % kKeptPlaces];
-    if (places.visit == visit_ && places.pose == k) return places.points;
-    places.visit = visit_;
-    places.pose = k;
-    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], {0, 0, 0}, 1.0);
-    carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, places.points.x,
-          places.points.y, places.points.z);
-    return places.points;
-  }
-
   /// Of the coordinates that a voxel of the model stores.
   double unitOf(std::uint32_t voxel) const { return tree_.storage.voxels[voxel].frame.unit; }
 
@@ -329,7 +288,7 @@ private:
       }
       if (!query_.everything()) continue;
       // It collides at this pose: what is farther at this pose changes nothing.
-      if (motion.at_rest && certain) lowerReach(leaf, i, roundUp(voxel_frame_.highOf(nearest[i])), motion);
+      if (motion.at_rest && certain) leaf.lowerReach(voxel_frame_, i, roundUp(voxel_frame_.highOf(nearest[i])), motion);
       // Only what may be as near as the nearest in floats is worth an exact look.
       const float within = certain ? voxel_frame_.notBeyond(nearest[i]) : std::numeric_limits<float>::infinity();
       NearestPoint* best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
@@ -347,7 +306,7 @@ private:
         const double high = voxel_frame_.highOf(nearest[i]);
         best->limit = std::min(best->limit, voxel_frame_.notBeyond(nearest[i]));
         best->reach = std::min(best->reach, roundUp(high));
-        if (bestBounds(leaf.points.begin + i, motion)) lowerReach(leaf, i, best->reach, motion);
+        if (bestBounds(leaf.points.begin + i, motion)) leaf.lowerReach(voxel_frame_, i, best->reach, motion);
       }
       if (for_pose && certain) results_.lowerPoseLimit(k, voxel_frame_.notBeyond(nearest[i]));
     }
@@ -384,7 +343,7 @@ private:
       if (query_.closest && query_.radii == 0.0) {
         NearestPoint& best = results_.best[leaf.points.begin + i];
         best.reach = std::min(best.reach, roundUp(best.gap));
-        if (bestBounds(leaf.points.begin + i, motion)) lowerReach(leaf, i, best.reach, motion);
+        if (bestBounds(leaf.points.begin + i, motion)) leaf.lowerReach(voxel_frame_, i, best.reach, motion);
       }
     }
   }
@@ -427,19 +386,11 @@ private:
   ModelBoxes& model_;
   StopCheck& stop_check_;
   VoxelResults& results_;
-  struct Places {
-    std::uint64_t visit = 0;
-    std::uint32_t pose = 0;
-    LeafPoints points{};
-  };
-  static constexpr std::uint32_t kKeptPlaces = 16;
-
   std::vector<Siblings> near_; // what the leaf may meet
   std::vector<PointsNearBoxes> stack_;
   ClippedSegments<kLanes> clips_[kLeafPoints]; // of each point, when it is in the boxes it is compared with
   BoxesByDistance by_distance_;
-  std::uint64_t visit_ = 0; // how many leaves were compared
-  Places places_[kKeptPlaces];
+  PlacesAtPoses places_;
   std::vector<std::uint16_t> pose_hits_; // per pose of a motion: points of a leaf
 };
 

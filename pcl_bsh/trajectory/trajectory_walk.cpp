@@ -16,6 +16,7 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/trajectory/oriented_boxes-inl.h>
+#include <pcl_bsh/trajectory/point_probing-inl.h>
 #include <pcl_bsh/trajectory/trajectory_leaf-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -53,6 +54,7 @@ public:
     stop_check_(rule, results_.work.node_pairs),
     model_(query.boxes, rule, results_.work),
     leaves_(query, voxel_frame_, model_, stop_check_, results_),
+    probing_(query, voxel_frame_, model_, results_.work),
     settling_(!query.everything() && !query.first && query.radii == 0.0 && voxel_frame_.frame.unit == 1.0 &&
               voxel_frame_.band.hit > 0.0f),
     settled_reach_(settling_ ? std::sqrt(voxel_frame_.band.hit) * (1.0f - kRadiusMargin) : 0.0f),
@@ -262,57 +264,13 @@ private:
       const double steps = motion.interval->last - motion.interval->first; // beyond 2^24, motion.steps may be more
       const auto pose = motion.interval->first + static_cast<std::uint32_t>(std::lround(middle * steps));
       const ProbeSphere probe{{node.x[lane], node.y[lane], node.z[lane]}, reach, pose};
-      const AffineMap map = voxel_frame_.mapAt(poseAt(pose), {0, 0, 0}, 1.0);
+      const AffineMap map = voxel_frame_.mapAt(query_.path.poses[pose], {0, 0, 0}, 1.0);
       const Point center = carryPoint(map.m, map.g, probe.center);
       ++results_.work.volumes_carried;
-      if (box.squaredDistance(center) > reach * reach || !hasPointWithin(candidate, probe, center)) continue;
+      if (box.squaredDistance(center) > reach * reach || !probing_.hasPoint(candidate, probe, center)) continue;
       settle(index, lane);
       open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
     }
-  }
-
-  /// A probe of the scan's voxel, at a pose; its reach in the clouds' unit.
-  struct ProbeSphere {
-    Point center;
-    float reach;
-    std::uint32_t pose;
-  };
-
-  const PathPose& poseAt(std::uint32_t k) const { return query_.path.poses[k]; }
-
-  /// Whether the candidate has a point in the probe; the nearest boxes are asked first.
-  /// @param center of the probe, about where the model sees it.
-  bool hasPointWithin(const ModelBox& candidate, const ProbeSphere& probe, const Point& center)
-  {
-    if (candidate.isLeaf()) {
-      const Voxel& voxel = query_.boxes.storage.voxels[candidate.voxel];
-      if (voxel.frame.unit != 1.0) return false;
-      const BoxLeaf leaf = query_.boxes.leaf(candidate.voxel, candidate.box().leaf(candidate.lane));
-      const AffineMap map = voxel_frame_.mapAt(poseAt(probe.pose), query_.boxes.offset(candidate.voxel), 1.0);
-      for (const float g : map.g)
-        if (!(std::abs(g) <= voxel_frame_.far)) return false;
-      const Point at = carryPoint(map.m, map.g, probe.center);
-      return anyPointWithin(leaf.x(), leaf.y(), leaf.z(), leaf.count, at.x, at.y, at.z, probe.reach);
-    }
-    if (!model_.mayOpen(candidate)) return false;
-    const Siblings children = model_.below(candidate);
-    results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(children.lanes));
-    float distance[kLanes];
-    std::uint32_t near = 0;
-    for (std::uint32_t lane = 0; lane < children.box().count; ++lane) {
-      distance[lane] = BoxEnds(children[lane]).squaredDistance(center);
-      if (distance[lane] <= probe.reach * probe.reach) near |= 1u << lane;
-    }
-    while (near != 0) {
-      auto nearest = static_cast<std::uint32_t>(std::countr_zero(near));
-      for (std::uint32_t bits = near & (near - 1); bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-        if (distance[lane] < distance[nearest]) nearest = lane;
-      }
-      if (hasPointWithin(children[nearest], probe, center)) return true;
-      near &= ~(1u << nearest);
-    }
-    return false;
   }
 
   /// All points of a child collide.
@@ -373,6 +331,7 @@ private:
   bool stopped_ = false; // by the caller
   ModelBoxes model_;
   LeafWalk leaves_;
+  PointProbing probing_;
   const bool settling_;                  // whether one pose and one point of the model answer the request
   const float settled_reach_;            // a pair nearer than this, in floats, collides
   const Voxel* voxel_ = nullptr;         // once it was entered
