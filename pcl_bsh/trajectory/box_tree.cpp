@@ -3,7 +3,10 @@
 
 #include <pcl_bsh/geometry/rounding.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -31,10 +34,13 @@ void enclose(BoxNode& node, std::uint32_t lane, const BoxNode& below)
   }
 }
 
-/// A point of a voxel, by its place there.
+/// A point of a voxel, and its place there.
 struct PlacedPoint {
-  float at[3];
-  std::uint32_t place;
+  Eigen::Array4f at; ///< the fourth is none: the bits of the place
+
+  PlacedPoint(float x, float y, float z, std::uint32_t i) : at(x, y, z, std::bit_cast<float>(i)) {}
+
+  std::uint32_t place() const { return std::bit_cast<std::uint32_t>(at[3]); }
 };
 
 /// A tree of boxes over a voxel's points, which come to stand in the order of its leaves.
@@ -59,23 +65,22 @@ private:
 
   struct Group {
     Place begin, end;
-    float low[3], high[3];
-    std::size_t axis = 0; ///< along which it is divided
-    float size = -1.0f;   ///< along it, by the stretch; negative: a leaf
+    Eigen::Array4f low, high; ///< the fourth of each is none
+    Eigen::Index axis = 0;    ///< along which it is divided
+    float size = -1.0f;       ///< along it, by the stretch; negative: a leaf
   };
 
   static constexpr std::ptrdiff_t kLeastShare = 16; ///< a half with less than this part: the points' number is halved
 
   Group measured(Place begin, Place end) const
   {
-    Group group{begin, end, {kNone, kNone, kNone}, {-kNone, -kNone, -kNone}};
-    for (Place point = begin; point != end; ++point)
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        group.low[axis] = std::min(group.low[axis], point->at[axis]);
-        group.high[axis] = std::max(group.high[axis], point->at[axis]);
-      }
+    Group group{begin, end, Eigen::Array4f::Constant(kNone), Eigen::Array4f::Constant(-kNone)};
+    for (Place point = begin; point != end; ++point) {
+      group.low = group.low.min(point->at);
+      group.high = group.high.max(point->at);
+    }
     if (static_cast<std::size_t>(end - begin) <= kMaxLeafPoints) return group;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const float size = (group.high[axis] - group.low[axis]) / stretch_[axis];
       if (size <= group.size) continue;
       group.axis = axis;
@@ -87,7 +92,7 @@ private:
   /// In the middle of its space; of its points, where nearly all are on one side, so that the tree is never deep.
   Place divided(const Group& group) const
   {
-    const std::size_t axis = group.axis;
+    const Eigen::Index axis = group.axis;
     const float at = 0.5f * group.low[axis] + 0.5f * group.high[axis];
     const Place place =
         std::partition(group.begin, group.end, [&](const PlacedPoint& point) { return point.at[axis] < at; });
@@ -224,21 +229,24 @@ BoxedVoxel::BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* st
       if (!node.isLeaf(lane)) continue;
       const std::uint32_t end = node.begin[lane] + node.comparedPoints(lane);
       for (std::uint32_t i = node.begin[lane]; i < end; ++i)
-        points.push_back({{voxel.x()[i], voxel.y()[i], voxel.z()[i]}, i});
+        points.emplace_back(voxel.x()[i], voxel.y()[i], voxel.z()[i], i);
     }
   const double unit = voxel.frame.unit;
-  PointGrouping grouping(points, stretch, [&](BoxNode& node, std::uint32_t lane, const float* low, const float* high) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      place(node, lane, axis, low[axis] * unit, high[axis] * unit, offset[axis],
-            voxel.frame.slack(static_cast<int>(axis)) * unit);
-  });
+  PointGrouping grouping(points, stretch,
+                         [&](BoxNode& node, std::uint32_t lane, const Eigen::Array4f& low, const Eigen::Array4f& high) {
+                           for (std::size_t axis = 0; axis < 3; ++axis)
+                             place(node, lane, axis, low[static_cast<Eigen::Index>(axis)] * unit,
+                                   high[static_cast<Eigen::Index>(axis)] * unit, offset[axis],
+                                   voxel.frame.slack(static_cast<int>(axis)) * unit);
+                         });
   boxes_ = std::move(grouping.boxes);
   begins_ = std::move(grouping.begins);
   coordinates_.resize(3 * points.size() + kNodeChildren);
   records_.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) coordinates_[axis * points.size() + i] = points[i].at[axis];
-    records_[i] = voxel.records()[points[i].place];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      coordinates_[axis * points.size() + i] = points[i].at[static_cast<Eigen::Index>(axis)];
+    records_[i] = voxel.records()[points[i].place()];
   }
 }
 

@@ -193,15 +193,13 @@ private:
     const PoseRanges ranges = rangesOf(lanes, clipped, motion);
     if (ranges.lanes == 0) return;
     lanes = ranges.lanes;
-    if (narrows) {
-      if (!query_.everything() && !query_.first) {
-        // Any pose will do: the one in the middle is nearest.
-        for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-          const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-          if ((leaf.open >> i & 1) == 0) continue;
-          const std::uint32_t k = ranges.first[i] + (ranges.last[i] - ranges.first[i]) / 2;
-          compareAt(leaf, ranges.at(k, lanes & leaf.open), box, k, motion);
-        }
+    if (narrows && !query_.everything() && !query_.first) {
+      // Any pose will do: the one in the middle is nearest.
+      for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+        if ((leaf.open >> i & 1) == 0) continue;
+        const std::uint32_t k = ranges.first[i] + (ranges.last[i] - ranges.first[i]) / 2;
+        compareAt(leaf, ranges.at(k, lanes & leaf.open), box, k, motion);
       }
     }
     for (std::uint32_t k = ranges.begin; k < ranges.end && (lanes & leaf.open) != 0 && !stop_check_.isOver(); ++k) {
