@@ -184,6 +184,31 @@ HWY_INLINE std::uint32_t boxesOnSegment(const Segment& segment, const float (*lo
   return bits;
 }
 
+/// Bit j: arc i may be in box j of eight at an instant k / steps, during the clipped part. @param low, high 3 x 8
+/// floats.
+template <std::size_t Count>
+HWY_INLINE std::uint32_t boxesOnArc(const Segments<Count>& segments, std::uint32_t i, const float (*low)[kLanes],
+                                    const float (*high)[kLanes], float steps, ClippedSegments<kLanes>& clipped)
+{
+  const LaneTag d;
+  std::uint32_t bits = 0;
+  for (std::size_t j = 0; j < kLanes; j += hn::Lanes(d)) {
+    ClippedLanes clip;
+    const LaneVector reach = hn::Set(d, segments.reach[0][i]);
+    bits |= arcsInBoxes(
+                [&](std::size_t axis) HWY_ATTR {
+                  return ArcLanes{hn::Set(d, segments.start[axis][i]), hn::Set(d, segments.motion[axis][i]),
+                                  hn::Set(d, segments.inverse[axis][i]), hn::Set(d, segments.bow[axis][i]), reach};
+                },
+                reach, [&](std::size_t axis) HWY_ATTR { return hn::Load(d, low[axis] + j); },
+                [&](std::size_t axis) HWY_ATTR { return hn::Load(d, high[axis] + j); }, steps, clip)
+            << j;
+    hn::Store(clip.from, d, clipped.from + j);
+    hn::Store(clip.to, d, clipped.to + j);
+  }
+  return bits;
+}
+
 /// Bit i: point i of `count`, a multiple of the lanes, is within its limit of the box, in squared distances.
 HWY_INLINE std::uint32_t pointsNearBox(const float* x, const float* y, const float* z, std::size_t count,
                                        const float* low, const float* high, const float* squared_limits)
@@ -278,12 +303,13 @@ HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, std
       const LaneVector at = hn::Mul(hn::Mul(along, inverse), inverse);
       const LaneVector left = hn::Sub(
           limit, squaredNorm(hn::Sub(wx, hn::Mul(at, mx)), hn::Sub(wy, hn::Mul(at, my)), hn::Sub(wz, hn::Mul(at, mz))));
+      const auto within = hn::And(hn::FirstN(d, count - j), hn::Ge(left, zero));
+      if (hn::AllFalse(d, within)) continue;
       const LaneVector half = hn::Add(hn::Mul(hn::Sqrt(hn::Max(left, zero)), inverse), slack);
       // Of the whole way.
       const LaneVector enter = hn::Add(hn::Set(d, begin), hn::Mul(hn::Set(d, part), hn::Max(hn::Sub(at, half), zero)));
       const LaneVector leave = hn::Add(hn::Set(d, begin), hn::Mul(hn::Set(d, part), hn::Min(hn::Add(at, half), one)));
-      const auto near =
-          hn::And(hn::And(hn::FirstN(d, count - j), hn::Ge(left, zero)), isInsideAtStep(d, {enter, leave}, steps));
+      const auto near = hn::And(within, isInsideAtStep(d, {enter, leave}, steps));
       if (hn::AllFalse(d, near)) continue;
       near_lanes |= 1u << i;
       from = hn::Min(from, hn::IfThenElse(near, enter, one));

@@ -3,7 +3,10 @@
 
 #include <pcl_bsh/geometry/rounding.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -31,70 +34,79 @@ void enclose(BoxNode& node, std::uint32_t lane, const BoxNode& below)
   }
 }
 
-struct LeafBox {
-  float low[3], high[3];
-  std::uint32_t number; ///< BoxNode::leaf()
+/// A point of a voxel, and its place there.
+struct PlacedPoint {
+  Eigen::Array4f at; ///< the fourth is none: the bits of the place
+
+  PlacedPoint(float x, float y, float z, std::uint32_t i) : at(x, y, z, std::bit_cast<float>(i)) {}
+
+  std::uint32_t place() const { return std::bit_cast<std::uint32_t>(at[3]); }
 };
 
-/// A tree of boxes over a voxel's leaves.
-class LeafGrouping {
+/// A tree of boxes over a voxel's points, which come to stand in the order of its leaves.
+class PointGrouping {
 public:
-  LeafGrouping(std::vector<LeafBox> leaves, const float* stretch) : leaves_(std::move(leaves)), stretch_(stretch) {}
-
-  std::vector<BoxNode> run()
+  /// @param fit called as fit(node, lane, low, high) for each leaf: sets its box around the points between these places
+  template <class Fit>
+  PointGrouping(std::vector<PlacedPoint>& points, const float* stretch, const Fit& fit)
+  : points_(points),
+    stretch_(stretch)
   {
-    group(measured(leaves_.begin(), leaves_.end()));
-    return std::move(boxes_);
+    begins.reserve(points.size() / (kMaxLeafPoints / 2) + 2);
+    group(measured(points_.begin(), points_.end()), fit);
+    begins.push_back(static_cast<std::uint32_t>(points_.size()));
   }
 
+  std::vector<BoxNode> boxes;
+  std::vector<std::uint32_t> begins; ///< of leaves, then of none
+
 private:
-  using Place = std::vector<LeafBox>::iterator;
+  using Place = std::vector<PlacedPoint>::iterator;
 
   struct Group {
     Place begin, end;
-    std::size_t axis = 0; ///< along which it is divided, at a place of the leaves' middles
-    float size = -1.0f;   ///< along it, by the stretch; negative: one leaf
-    float twice_at = 0.0f;
+    Eigen::Array4f low, high; ///< the fourth of each is none
+    Eigen::Index axis = 0;    ///< along which it is divided
+    float size = -1.0f;       ///< along it, by the stretch; negative: a leaf
   };
 
-  static constexpr std::ptrdiff_t kLeastShare = 16; ///< a half with less than this part: the leaves' number is halved
-
-  static float twiceMiddle(const LeafBox& leaf, std::size_t axis) { return leaf.low[axis] + leaf.high[axis]; }
+  static constexpr std::ptrdiff_t kLeastShare = 16; ///< a half with less than this part: the points' number is halved
 
   Group measured(Place begin, Place end) const
   {
-    Group group{begin, end};
-    for (std::size_t axis = 0; axis < 3 && end - begin > 1; ++axis) {
-      float least = kNone, most = -kNone;
-      for (Place leaf = begin; leaf != end; ++leaf) {
-        least = std::min(least, twiceMiddle(*leaf, axis));
-        most = std::max(most, twiceMiddle(*leaf, axis));
-      }
-      const float size = (most - least) / stretch_[axis];
+    Group group{begin, end, Eigen::Array4f::Constant(kNone), Eigen::Array4f::Constant(-kNone)};
+    for (Place point = begin; point != end; ++point) {
+      group.low = group.low.min(point->at);
+      group.high = group.high.max(point->at);
+    }
+    if (static_cast<std::size_t>(end - begin) <= kMaxLeafPoints) return group;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const float size = (group.high[axis] - group.low[axis]) / stretch_[axis];
       if (size <= group.size) continue;
       group.axis = axis;
       group.size = size;
-      group.twice_at = 0.5f * least + 0.5f * most;
     }
     return group;
   }
 
-  /// In the middle of its space; of its leaves, where nearly all are on one side, so that the tree is never deep.
+  /// In the middle of its space; of its points, where nearly all are on one side, so that the tree is never deep.
   Place divided(const Group& group) const
   {
-    const Place place = std::partition(
-        group.begin, group.end, [&](const LeafBox& leaf) { return twiceMiddle(leaf, group.axis) < group.twice_at; });
+    const Eigen::Index axis = group.axis;
+    const float at = 0.5f * group.low[axis] + 0.5f * group.high[axis];
+    const Place place =
+        std::partition(group.begin, group.end, [&](const PlacedPoint& point) { return point.at[axis] < at; });
     const std::ptrdiff_t count = group.end - group.begin;
     if (kLeastShare * std::min(place - group.begin, group.end - place) > count) return place;
     const Place middle = group.begin + count / 2;
-    std::nth_element(group.begin, middle, group.end, [&](const LeafBox& a, const LeafBox& b) {
-      return twiceMiddle(a, group.axis) < twiceMiddle(b, group.axis);
-    });
+    std::nth_element(group.begin, middle, group.end,
+                     [&](const PlacedPoint& a, const PlacedPoint& b) { return a.at[axis] < b.at[axis]; });
     return middle;
   }
 
   /// @return the node that it becomes
-  std::uint32_t group(const Group& whole)
+  template <class Fit>
+  std::uint32_t group(const Group& whole, const Fit& fit)
   {
     Group parts[kNodeChildren] = {whole};
     std::uint32_t count = 1;
@@ -106,27 +118,27 @@ private:
       parts[count++] = measured(middle, largest.end);
       largest = measured(largest.begin, middle);
     }
-    const auto index = static_cast<std::uint32_t>(boxes_.size());
-    boxes_.emplace_back().count = count;
+    // Leaves are numbered in the order of their points.
+    std::sort(parts, parts + count, [](const Group& a, const Group& b) { return a.begin < b.begin; });
+    const auto index = static_cast<std::uint32_t>(boxes.size());
+    boxes.emplace_back().count = count;
     for (std::uint32_t lane = 0; lane < count; ++lane) {
-      const bool is_leaf = parts[lane].size < 0.0f;
-      const std::uint32_t below = is_leaf ? BoxNode::kLeaf | parts[lane].begin->number : group(parts[lane]);
-      boxes_[index].child[lane] = below;
-      if (!is_leaf) {
-        enclose(boxes_[index], lane, boxes_[below]);
+      const Group& part = parts[lane];
+      if (part.size < 0.0f) {
+        boxes[index].child[lane] = BoxNode::kLeaf | static_cast<std::uint32_t>(begins.size());
+        begins.push_back(static_cast<std::uint32_t>(part.begin - points_.begin()));
+        fit(boxes[index], lane, part.low, part.high);
         continue;
       }
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        boxes_[index].low[axis][lane] = parts[lane].begin->low[axis];
-        boxes_[index].high[axis][lane] = parts[lane].begin->high[axis];
-      }
+      const std::uint32_t below = group(part, fit);
+      boxes[index].child[lane] = below;
+      enclose(boxes[index], lane, boxes[below]);
     }
     return index;
   }
 
-  std::vector<LeafBox> leaves_;
+  std::vector<PlacedPoint>& points_;
   const float* stretch_;
-  std::vector<BoxNode> boxes_;
 };
 
 } // namespace
@@ -197,40 +209,45 @@ void BoxTree::fitTop()
   radius = std::sqrt(squared) * (1.0 + kDoubleMargin);
 }
 
-const std::vector<BoxNode>& BoxTree::voxel(std::uint32_t index, Work& work) const
+const BoxedVoxel& BoxTree::voxel(std::uint32_t index, Work& work) const
 {
   Entry& entry = voxels_[index];
   std::call_once(entry.once, [&] {
     const Voxel& built = storage.built(index, work);
-    entry.boxes = fitVoxel(built, index);
-    for (const BoxNode& node : entry.boxes) work.volumes_built += node.count;
+    entry.boxed = BoxedVoxel(built, offset(index), stretch);
+    for (const BoxNode& node : entry.boxed.boxes()) work.volumes_built += node.count;
   });
-  return entry.boxes;
+  return entry.boxed;
 }
 
-std::vector<BoxNode> BoxTree::fitVoxel(const Voxel& voxel, std::uint32_t index) const
+BoxedVoxel::BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* stretch)
 {
-  std::vector<LeafBox> leaves;
-  const Point3 at = offset(index);
-  const float* coordinates[3] = {voxel.x(), voxel.y(), voxel.z()};
-  const double unit = voxel.frame.unit;
-  for (std::uint32_t n = 0; n < voxel.nodes.size(); ++n) {
-    const Node& node = voxel.nodes[n];
+  std::vector<PlacedPoint> points;
+  points.reserve(voxel.count);
+  for (const Node& node : voxel.nodes)
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
       if (!node.isLeaf(lane)) continue;
-      LeafBox& leaf = leaves.emplace_back();
-      leaf.number = static_cast<std::uint32_t>(n * kNodeChildren + lane);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto [least, most] =
-            std::minmax_element(coordinates[axis] + node.begin[lane], coordinates[axis] + node.begin[lane + 1]);
-        BoxNode box;
-        place(box, 0, axis, *least * unit, *most * unit, at[axis], voxel.frame.slack(static_cast<int>(axis)) * unit);
-        leaf.low[axis] = box.low[axis][0];
-        leaf.high[axis] = box.high[axis][0];
-      }
+      const std::uint32_t end = node.begin[lane] + node.comparedPoints(lane);
+      for (std::uint32_t i = node.begin[lane]; i < end; ++i)
+        points.emplace_back(voxel.x()[i], voxel.y()[i], voxel.z()[i], i);
     }
+  const double unit = voxel.frame.unit;
+  PointGrouping grouping(points, stretch,
+                         [&](BoxNode& node, std::uint32_t lane, const Eigen::Array4f& low, const Eigen::Array4f& high) {
+                           for (std::size_t axis = 0; axis < 3; ++axis)
+                             place(node, lane, axis, low[static_cast<Eigen::Index>(axis)] * unit,
+                                   high[static_cast<Eigen::Index>(axis)] * unit, offset[axis],
+                                   voxel.frame.slack(static_cast<int>(axis)) * unit);
+                         });
+  boxes_ = std::move(grouping.boxes);
+  begins_ = std::move(grouping.begins);
+  coordinates_.resize(3 * points.size() + kNodeChildren);
+  records_.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      coordinates_[axis * points.size() + i] = points[i].at[static_cast<Eigen::Index>(axis)];
+    records_[i] = voxel.records()[points[i].place()];
   }
-  return LeafGrouping(std::move(leaves), stretch).run();
 }
 
 } // namespace pcl_bsh

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Boxes around a hierarchy's leaves: axis-aligned in the cloud's own frame, for queries that carry the other cloud
-// there. Made voxel by voxel, as a walk enters them.
+// Boxes around a cloud's points: axis-aligned in the cloud's own frame, for queries that carry the other cloud there.
+// Made voxel by voxel, as a walk enters them.
 #pragma once
 
 #include <pcl_bsh/hierarchy/storage.h>
@@ -23,8 +23,44 @@ struct alignas(32) BoxNode {
   std::uint32_t count = 0;            ///< children in use, 1..8
 
   bool isLeaf(std::size_t lane) const noexcept { return (child[lane] & kLeaf) != 0; }
-  /// Node of the hierarchy times kNodeChildren, plus lane; above the voxels the voxel.
+  /// A leaf of the voxel, counted from 0; above the voxels the voxel.
   std::uint32_t leaf(std::size_t lane) const noexcept { return child[lane] & ~kLeaf; }
+};
+
+/// Points of a voxel that share a box, sixteen at most. Readable for whole vectors.
+struct BoxLeaf {
+  const float *at_x, *at_y, *at_z; ///< as the voxel stores them
+  const std::uint32_t* records;
+  std::uint32_t count;
+
+  const float* x() const { return at_x; }
+  const float* y() const { return at_y; }
+  const float* z() const { return at_z; }
+  std::uint32_t record(std::uint32_t i) const { return records[i]; }
+};
+
+/// The boxes of a voxel, and its points in the order of their leaves. Points that coincide are one.
+class BoxedVoxel {
+public:
+  BoxedVoxel() = default;
+
+  /// @param offset from the tree's origin to the voxel's. @param stretch see BoxTree
+  BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* stretch);
+
+  const std::vector<BoxNode>& boxes() const { return boxes_; }
+
+  BoxLeaf leaf(std::uint32_t number) const
+  {
+    const std::uint32_t begin = begins_[number];
+    const float* x = coordinates_.data() + begin;
+    return {x, x + records_.size(), x + 2 * records_.size(), records_.data() + begin, begins_[number + 1] - begin};
+  }
+
+private:
+  std::vector<BoxNode> boxes_;
+  std::vector<float> coordinates_;     // x, y, z of each point
+  std::vector<std::uint32_t> records_; // per point
+  std::vector<std::uint32_t> begins_;  // per leaf: its first point; then their number
 };
 
 /// How the model moves along a path, by itself: what its middle travels along each of its own axes, and how far it
@@ -34,10 +70,10 @@ struct Travel {
   double turned = 0.0;
 };
 
-/// The hierarchy's leaves in boxes that are longer along the way that the cloud travels: what passes a long body beside
-/// it is tested against metres of its side at once. A box is divided where it is widest, and its length along the way
-/// counts for less, by `stretch`: as often as the cloud travels farther along that axis than its points move along
-/// others, kMostStretch at most.
+/// A cloud's points in boxes that are longer along the way that the cloud travels: what passes a long body beside it is
+/// tested against metres of its side at once, and beside a rough or noisy side only against what stands out. A box is
+/// divided where it is widest, and its length along the way counts for less, by `stretch`: as often as the cloud
+/// travels farther along that axis than its points move along others, kMostStretch at most.
 class BoxTree {
 public:
   BoxTree(const SphereHierarchy::Storage& storage, const Travel& travel);
@@ -53,7 +89,10 @@ public:
   const std::vector<BoxNode>& top() const { return top_; }
 
   /// The boxes of a voxel's nodes; makes them, and the voxel, on the first call; safe in several threads.
-  const std::vector<BoxNode>& voxel(std::uint32_t index, Work& work) const;
+  const BoxedVoxel& voxel(std::uint32_t index, Work& work) const;
+
+  /// A leaf of a voxel whose boxes were made.
+  BoxLeaf leaf(std::uint32_t voxel, std::uint32_t number) const { return voxels_[voxel].boxed.leaf(number); }
 
   /// From the tree's origin to the voxel's.
   Point3 offset(std::uint32_t index) const;
@@ -61,14 +100,13 @@ public:
 private:
   struct Entry {
     std::once_flag once;
-    std::vector<BoxNode> boxes;
+    BoxedVoxel boxed;
   };
 
   static constexpr double kMostStretch = 32; ///< more gained nothing: boxes are as long as their voxels by then
 
   void fitTop();
   void setStretch(const Travel& travel);
-  std::vector<BoxNode> fitVoxel(const Voxel& voxel, std::uint32_t index) const;
 
   std::vector<BoxNode> top_;
   std::unique_ptr<Entry[]> voxels_;

@@ -39,6 +39,19 @@ struct ModelBox {
   }
 };
 
+/// Some of the boxes of a node, tested eight at once.
+struct Siblings {
+  const BoxNode* boxes;
+  std::uint32_t voxel;
+  std::uint32_t node;
+  std::uint32_t lanes; ///< bits of the boxes
+  std::uint32_t level; ///< as ModelBox has it
+
+  const BoxNode& box() const { return boxes[node]; }
+  ModelBox operator[](std::uint32_t lane) const { return {boxes, voxel, node, lane, level}; }
+  Siblings only(std::uint32_t some) const { return {boxes, voxel, node, some, level}; }
+};
+
 /// Where a box ends along each axis.
 struct BoxEnds {
   float low[3], high[3];
@@ -66,20 +79,25 @@ struct BoxEnds {
 /// Boxes by their distance from a point, those at the same distance as they come.
 class BoxesByDistance {
 public:
-  /// @return valid until the next call
-  const std::vector<ModelBox>& sort(const std::vector<ModelBox>& boxes, const Point& from)
+  /// @param into each of them by itself
+  void sort(const std::vector<Siblings>& boxes, const Point& from, std::vector<Siblings>& into)
   {
     order_.clear();
-    for (std::uint32_t i = 0; i < boxes.size(); ++i) order_.emplace_back(BoxEnds(boxes[i]).squaredDistance(from), i);
+    into.clear();
+    for (const Siblings& some : boxes)
+      for (std::uint32_t bits = some.lanes; bits != 0; bits &= bits - 1) {
+        const BoxEnds box(some[static_cast<std::uint32_t>(std::countr_zero(bits))]);
+        order_.emplace_back(box.squaredDistance(from), static_cast<std::uint32_t>(sorted_.size()));
+        sorted_.push_back(some.only(bits & (~bits + 1)));
+      }
     std::sort(order_.begin(), order_.end());
+    for (const auto& [distance, i] : order_) into.push_back(sorted_[i]);
     sorted_.clear();
-    for (const auto& [distance, i] : order_) sorted_.push_back(boxes[i]);
-    return sorted_;
   }
 
 private:
   std::vector<std::pair<float, std::uint32_t>> order_;
-  std::vector<ModelBox> sorted_;
+  std::vector<Siblings> sorted_;
 };
 
 /// Opens the model's boxes.
@@ -87,8 +105,8 @@ class ModelBoxes {
 public:
   ModelBoxes(const BoxTree& tree, const StopRule& rule, Work& work) : tree_(tree), rule_(rule), work_(work) {}
 
-  /// The node above all boxes, as its first child.
-  ModelBox root() const { return {tree_.top().data(), kAboveVoxels, 0, 0, 0}; }
+  /// The boxes of the node above all of them.
+  Siblings root() const { return all({tree_.top().data(), kAboveVoxels, 0, 0, 0}); }
 
   /// Whether a candidate that is not a leaf may be opened: not below the level where to stop, nor without the time to
   /// build a voxel.
@@ -100,37 +118,48 @@ public:
     return rule_.deepest > 0 && rule_.leavesTimeToBuild(tree_.storage.pointsToBuild(c.box().leaf(c.lane)));
   }
 
-  /// The node below a candidate that is not a leaf, as its first child.
-  ModelBox below(const ModelBox& c)
+  /// The boxes of the node below a candidate that is not a leaf.
+  Siblings below(const ModelBox& c)
   {
     if (c.voxel != kAboveVoxels || !c.box().isLeaf(c.lane))
-      return {c.boxes, c.voxel, c.box().child[c.lane], 0, c.voxel == kAboveVoxels ? 0 : c.level + 1};
+      return all({c.boxes, c.voxel, c.box().child[c.lane], 0, c.voxel == kAboveVoxels ? 0 : c.level + 1});
     const std::uint32_t voxel = c.box().leaf(c.lane);
-    return {tree_.voxel(voxel, work_).data(), voxel, 0, 0, 1};
+    return all({tree_.voxel(voxel, work_).boxes().data(), voxel, 0, 0, 1});
   }
 
-  /// Bits of the children of a node that a thick segment may meet.
-  std::uint32_t near(const Segment& segment, const ModelBox& node, float steps)
+  /// Those that a thick segment may meet.
+  Siblings near(const Segment& segment, const Siblings& candidate, float steps)
   {
-    const std::uint32_t count = node.box().count;
-    work_.node_pairs += count;
-    return boxesOnSegment(segment, node.box().low, node.box().high, steps) & firstBits(count);
+    work_.node_pairs += static_cast<std::uint64_t>(std::popcount(candidate.lanes));
+    return candidate.only(candidate.lanes & boxesOnSegment(segment, candidate.box().low, candidate.box().high, steps));
   }
 
-  /// What a thick segment may meet of the model below a node, in boxes no larger than `size`.
-  void collect(const VoxelMotion& motion, const Segment& segment, float size, ModelBox node,
-               std::vector<ModelBox>& into)
+  /// Those of all candidates that a thick segment may meet.
+  void near(const Segment& segment, const std::vector<Siblings>& candidates, float steps, std::vector<Siblings>& into)
   {
-    for (std::uint32_t bits = near(segment, node, motion.steps); bits != 0; bits &= bits - 1) {
-      node.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (node.isLeaf() || node.size(tree_.stretch) < size || !mayOpen(node))
-        into.push_back(node);
+    into.clear();
+    for (const Siblings& candidate : candidates)
+      if (const Siblings met = near(segment, candidate, steps); met.lanes != 0) into.push_back(met);
+  }
+
+  /// What a thick segment may meet among boxes and below, in boxes no larger than `size`.
+  void collect(const Segment& segment, float steps, float size, const Siblings& boxes, std::vector<Siblings>& into)
+  {
+    std::uint32_t kept = 0;
+    for (std::uint32_t bits = near(segment, boxes, steps).lanes; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const ModelBox box = boxes[lane];
+      if (box.isLeaf() || box.size(tree_.stretch) < size || !mayOpen(box))
+        kept |= 1u << lane;
       else
-        collect(motion, segment, size, below(node), into);
+        collect(segment, steps, size, below(box), into);
     }
+    if (kept != 0) into.push_back(boxes.only(kept));
   }
 
 private:
+  static Siblings all(const Siblings& boxes) { return boxes.only(firstBits(boxes.box().count)); }
+
   const BoxTree& tree_;
   const StopRule& rule_;
   Work& work_;

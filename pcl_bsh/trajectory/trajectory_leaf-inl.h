@@ -8,6 +8,7 @@
 #define PCL_BSH_TRAJECTORY_TRAJECTORY_LEAF_INL_H_
 #endif
 
+#include <pcl_bsh/trajectory/leaf_visit-inl.h>
 #include <pcl_bsh/trajectory/model_boxes-inl.h>
 #include <pcl_bsh/trajectory/point_segment.h>
 #include <pcl_bsh/trajectory/pose_ranges-inl.h>
@@ -21,17 +22,6 @@ namespace HWY_NAMESPACE {
 
 inline constexpr double kLeafStray = 0.01; ///< of a leaf's radius: an interval that strays farther is divided
 inline constexpr float kFewPoses = 4;      ///< as quickly looked at one by one as all together
-
-/// A leaf of the scan, its points tested all at once.
-struct LeafVisit {
-  LeafRange points;
-  std::size_t slot;   ///< of its flags
-  std::uint32_t open; ///< bits of the points that are not settled
-  Segments<kLeafPoints> segments;
-  Segment around;
-  float low[3], high[3];                       ///< of the model's box that it is compared with
-  alignas(64) float near_squared[kLeafPoints]; ///< farther from a box, squared, nothing in it matters, at one pose
-};
 
 /// Compares leaves of the scan with what they may meet of the model.
 class LeafWalk {
@@ -51,7 +41,7 @@ public:
   /// @param bound no less than the smallest distance of any of the points, where `motion` is one pose
   /// @return whether any of the leaf's points is not settled.
   bool compare(std::size_t slot, const LeafRange& points, const Node& node, std::uint32_t lane,
-               const VoxelMotion& motion, const std::vector<ModelBox>& candidates, float bound)
+               const VoxelMotion& motion, const std::vector<Siblings>& candidates, float bound)
   {
     const std::uint32_t all = firstBits(points.count);
     if ((all & ~results_.settled[slot]) == 0 || results_.witness) return false;
@@ -64,37 +54,27 @@ public:
     leaf.points = points;
     leaf.slot = slot;
     leaf.open = all & ~results_.settled[slot];
-    alignas(64) float from[3][kLeafPoints], to[3][kLeafPoints], bow[3][kLeafPoints];
-    carry(motion.from.m, motion.from.g, points.x(), points.y(), points.z(), points.count, from[0], from[1], from[2]);
-    carry(motion.to.m, motion.to.g, points.x(), points.y(), points.z(), points.count, to[0], to[1], to[2]);
-    carry(motion.bow.m, motion.bow.g, points.x(), points.y(), points.z(), points.count, bow[0], bow[1], bow[2]);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::fill(bow[axis] + points.count, bow[axis] + kLeafPoints, 0.0f);
-      std::fill(from[axis] + points.count, from[axis] + kLeafPoints, 0.0f);
-      std::fill(to[axis] + points.count, to[axis] + kLeafPoints, 0.0f);
-    }
-    leaf.segments.set(from, to, bow, motion.smallest);
-    std::fill(leaf.segments.reach[0], leaf.segments.reach[0] + kLeafPoints, motion.reach);
-    std::fill(leaf.near_squared, leaf.near_squared + kLeafPoints, voxel_frame_.nearSquared(motion, bound));
+    leaf.begin(voxel_frame_, motion, bound);
     for (std::uint32_t i = 0; query_.closest && i < points.count; ++i)
-      if (bestBounds(points.begin + i, motion)) lowerReach(leaf, i, results_.best[points.begin + i].reach, motion);
-    const float no_extent[3][kLeafPoints] = {};
-    leaf.around = voxel_frame_.aroundSegments(motion, from, to, bow, no_extent, points.count);
+      if (bestBounds(points.begin + i, motion))
+        leaf.lowerReach(voxel_frame_, i, results_.best[points.begin + i].reach, motion);
     ++results_.work.volumes_carried;
     if (query_.request.pose_summaries) pose_hits_.assign(motion.interval->last - motion.interval->first + 1, 0);
 
-    ++visit_;
-    const std::vector<ModelBox>& ordered =
-        motion.at_rest && query_.everything() ? nearestFirst(candidates, points, motion) : candidates;
-    for (const ModelBox& candidate : ordered) {
-      stack_.push_back(candidate);
+    places_.beginVisit();
+    if (motion.at_rest && query_.everything())
+      nearestFirst(candidates, points, motion);
+    else
+      model_.near(leaf.around, candidates, motion.steps, near_);
+    for (const Siblings& candidate : near_) {
+      push(leaf, candidate, leaf.open, motion);
       while (!stack_.empty() && leaf.open != 0 && !stop_check_.isOver()) {
-        const ModelBox next = stack_.back();
+        const PointsNearBoxes next = stack_.back();
         stack_.pop_back();
         if (motion.at_rest)
-          compareBox<true>(leaf, next, motion);
+          compareBox(leaf, next.boxes, motion);
         else
-          compareBox<false>(leaf, next, motion);
+          compareBoxes(leaf, next, motion);
       }
       if (leaf.open == 0) break;
     }
@@ -105,87 +85,121 @@ public:
   }
 
 private:
-  /// From now on, what is farther from a point of the leaf than the best does not matter, during the motion.
-  void lowerReach(LeafVisit& leaf, std::uint32_t i, float best, const VoxelMotion& motion) const
-  {
-    leaf.segments.reach[0][i] = std::min(leaf.segments.reach[0][i], voxel_frame_.reachOf(motion, best));
-    if (motion.at_rest) leaf.near_squared[i] = std::min(leaf.near_squared[i], voxel_frame_.nearSquared(motion, best));
-  }
-
   /// The candidates by their distance from the leaf, at one pose: the sooner its points' bounds are small, the fewer
-  /// are opened.
-  const std::vector<ModelBox>& nearestFirst(const std::vector<ModelBox>& candidates, const LeafRange& points,
-                                            const VoxelMotion& motion)
+  /// boxes are opened.
+  void nearestFirst(const std::vector<Siblings>& candidates, const LeafRange& points, const VoxelMotion& motion)
   {
     const std::uint32_t i = points.count / 2;
     const Point at = carryPoint(motion.from.m, motion.from.g, {points.x()[i], points.y()[i], points.z()[i]});
-    return by_distance_.sort(candidates, at);
+    by_distance_.sort(candidates, at, near_);
   }
 
-  /// Opens a box of the model that the leaf may meet, or compares its points.
-  template <bool AtRest>
-  HWY_INLINE void compareBox(LeafVisit& leaf, const ModelBox& candidate, const VoxelMotion& motion)
+  /// Boxes of the model, and bits of the points of the leaf that may meet them.
+  struct PointsNearBoxes {
+    Siblings boxes;
+    std::uint32_t points;
+  };
+
+  /// At one pose boxes are compared one after another: what is found in one may bound the search before the next.
+  void push(const LeafVisit& leaf, const Siblings& boxes, std::uint32_t points, const VoxelMotion& motion)
   {
-    const std::uint32_t k = candidate.lane;
-    const BoxNode& box = candidate.box();
-    const float low[3] = {box.low[0][k], box.low[1][k], box.low[2][k]};
-    const float high[3] = {box.high[0][k], box.high[1][k], box.high[2][k]};
-    ClippedSegments<kLeafPoints> clipped;
+    if (!motion.at_rest) return stack_.push_back({boxes, points});
+    for (std::uint32_t bits = boxes.lanes; bits != 0; bits &= bits - 1)
+      stack_.push_back({boxes.only(bits & (~bits + 1)), leaf.open});
+  }
+
+  /// All points at one pose against a box: opens it, or compares its points.
+  void compareBox(LeafVisit& leaf, const Siblings& boxes, const VoxelMotion& motion)
+  {
+    const ModelBox box = boxes[static_cast<std::uint32_t>(std::countr_zero(boxes.lanes))];
+    const BoxEnds ends(box);
     results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(leaf.open));
-    std::copy(low, low + 3, leaf.low);
-    std::copy(high, high + 3, leaf.high);
-    std::uint32_t lanes = leaf.open;
-    if constexpr (AtRest) {
-      const LeafPoints& at = placesAt(leaf, motion.interval->first, motion);
-      lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, low, high, leaf.near_squared);
-    }
-    else {
-      lanes &= segmentsInBox(leaf.segments, low, high, motion.steps, &clipped);
-    }
-    if (lanes == 0) return;
-    if (!candidate.isLeaf()) {
-      if (!model_.mayOpen(candidate)) {
-        std::uint16_t& undecided = results_.undecided[leaf.slot];
-        undecided = static_cast<std::uint16_t>(undecided | lanes);
-        return;
-      }
-      ModelBox child = model_.below(candidate);
-      for (std::uint32_t bits = model_.near(leaf.around, child, motion.steps); bits != 0; bits &= bits - 1) {
-        child.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-        stack_.push_back(child);
+    const LeafPoints& at = places_.at(voxel_frame_, leaf.points, motion, motion.interval->first);
+    const std::uint32_t points =
+        leaf.open & pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, leaf.near_squared);
+    if (points == 0) return;
+    if (box.isLeaf())
+      compareAt(leaf, points, box, motion.interval->first, motion);
+    else if (model_.mayOpen(box))
+      push(leaf, model_.near(leaf.around, model_.below(box), motion.steps), leaf.open, motion);
+    else
+      leaveUndecided(leaf, points);
+  }
+
+  /// Points against boxes, during the motion: each point against all boxes at once, or each box against all points.
+  HWY_INLINE void compareBoxes(LeafVisit& leaf, const PointsNearBoxes& candidate, const VoxelMotion& motion)
+  {
+    const BoxNode& node = candidate.boxes.box();
+    const std::uint32_t points = candidate.points & leaf.open, boxes = candidate.boxes.lanes;
+    results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(points) * std::popcount(boxes));
+    ClippedSegments<kLeafPoints> clipped;
+    if (kLeafPoints / kLanes * static_cast<std::size_t>(std::popcount(boxes)) <
+        static_cast<std::size_t>(std::popcount(points))) {
+      for (std::uint32_t bits = boxes; bits != 0; bits &= bits - 1) {
+        const ModelBox box = candidate.boxes[static_cast<std::uint32_t>(std::countr_zero(bits))];
+        const BoxEnds ends(box);
+        meet(leaf, points & segmentsInBox(leaf.segments, ends.low, ends.high, motion.steps, &clipped), clipped, box,
+             motion);
       }
       return;
     }
-    const std::uint32_t at_leaf = candidate.box().leaf(k);
-    const Voxel& of = tree_.storage.voxels[candidate.voxel];
-    const Node& node = of.nodes[at_leaf / kNodeChildren];
-    const LeafRange other{&of, node.begin[at_leaf % kNodeChildren], node.comparedPoints(at_leaf % kNodeChildren)};
-    if (path_.is_swept)
-      compareSegments(leaf, lanes, clipped, other, candidate.voxel, motion);
-    else if constexpr (AtRest)
-      compareAt(leaf, lanes, other, candidate.voxel, motion.interval->first, motion);
-    else
-      comparePoses(leaf, lanes, clipped, other, candidate.voxel, motion);
+    std::uint32_t near[kLanes] = {}, met = 0;
+    for (std::uint32_t bits = points; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const std::uint32_t its = boxes & boxesOnArc(leaf.segments, i, node.low, node.high, motion.steps, clips_[i]);
+      met |= its;
+      for (std::uint32_t left = its; left != 0; left &= left - 1) near[std::countr_zero(left)] |= 1u << i;
+    }
+    for (; met != 0; met &= met - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(met));
+      for (std::uint32_t bits = node.isLeaf(k) ? near[k] : 0; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+        clipped.from[i] = clips_[i].from[k];
+        clipped.to[i] = clips_[i].to[k];
+      }
+      meet(leaf, near[k], clipped, candidate.boxes[k], motion);
+    }
   }
+
+  /// Opens a box that points in `lanes` may meet, or compares them with its points.
+  HWY_INLINE void meet(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped, const ModelBox& box,
+                       const VoxelMotion& motion)
+  {
+    lanes &= leaf.open;
+    if (lanes == 0) return;
+    if (!box.isLeaf()) {
+      if (!model_.mayOpen(box)) return leaveUndecided(leaf, lanes);
+      return push(leaf, model_.below(box), lanes, motion);
+    }
+    if (path_.is_swept)
+      compareSegments(leaf, lanes, clipped, box, motion);
+    else
+      comparePoses(leaf, lanes, clipped, box, motion);
+  }
+
+  void leaveUndecided(const LeafVisit& leaf, std::uint32_t points)
+  {
+    results_.undecided[leaf.slot] = static_cast<std::uint16_t>(results_.undecided[leaf.slot] | points);
+  }
+
+  BoxLeaf pointsIn(const ModelBox& leaf) const { return tree_.leaf(leaf.voxel, leaf.box().leaf(leaf.lane)); }
 
   /// Two leaves, at each pose that brings them near.
   HWY_INLINE void comparePoses(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
-                               const LeafRange& other, std::uint32_t voxel, const VoxelMotion& motion)
+                               const ModelBox& box, const VoxelMotion& motion)
   {
-    const bool narrows = motion.squares && other.voxel->frame.unit == 1.0;
-    if (narrows) lanes = nearPoints(leaf, lanes, other, voxel, motion, clipped);
+    const bool narrows = motion.squares && unitOf(box.voxel) == 1.0;
+    if (narrows) lanes = nearPoints(leaf, lanes, box, motion, clipped);
     const PoseRanges ranges = rangesOf(lanes, clipped, motion);
     if (ranges.lanes == 0) return;
     lanes = ranges.lanes;
-    if (narrows) {
-      if (!query_.everything() && !query_.first) {
-        // Any pose will do: the one in the middle is nearest.
-        for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-          const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-          if ((leaf.open >> i & 1) == 0) continue;
-          const std::uint32_t k = ranges.first[i] + (ranges.last[i] - ranges.first[i]) / 2;
-          compareAt(leaf, ranges.at(k, lanes & leaf.open), other, voxel, k, motion);
-        }
+    if (narrows && !query_.everything() && !query_.first) {
+      // Any pose will do: the one in the middle is nearest.
+      for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+        if ((leaf.open >> i & 1) == 0) continue;
+        const std::uint32_t k = ranges.first[i] + (ranges.last[i] - ranges.first[i]) / 2;
+        compareAt(leaf, ranges.at(k, lanes & leaf.open), box, k, motion);
       }
     }
     for (std::uint32_t k = ranges.begin; k < ranges.end && (lanes & leaf.open) != 0 && !stop_check_.isOver(); ++k) {
@@ -195,30 +209,32 @@ private:
           const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
           if (results_.first[leaf.points.begin + i] <= k) here &= ~(1u << i);
         }
-      if (here != 0) compareAt(leaf, here, other, voxel, k, motion);
+      if (here != 0) compareAt(leaf, here, box, k, motion);
     }
   }
 
   /// Bits of the leaf's points whose segments come near to points of the model's leaf, and when.
-  std::uint32_t nearPoints(const LeafVisit& leaf, std::uint32_t lanes, const LeafRange& other, std::uint32_t voxel,
-                           const VoxelMotion& motion, ClippedSegments<kLeafPoints>& clipped) const
+  std::uint32_t nearPoints(const LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, const VoxelMotion& motion,
+                           ClippedSegments<kLeafPoints>& clipped) const
   {
-    const Point3 at = tree_.offset(voxel);
+    const BoxLeaf other = pointsIn(box);
+    const Point3 at = tree_.offset(box.voxel);
     const float shift[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
     return segmentsNearPoints(leaf.segments, lanes, other.x(), other.y(), other.z(), other.count, shift, motion.steps,
                               motion.smallest, motion.rounding, clipped);
   }
 
   /// Two leaves at pose k: by float bands, and exactly within the bands.
-  void compareAt(LeafVisit& leaf, std::uint32_t lanes, const LeafRange& other, std::uint32_t voxel, std::uint32_t k,
-                 const VoxelMotion& motion)
+  void compareAt(LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, std::uint32_t k, const VoxelMotion& motion)
   {
-    const LeafPoints& at = placesAt(leaf, k, motion);
-    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, leaf.low, leaf.high, leaf.near_squared);
+    const LeafPoints& at = places_.at(voxel_frame_, leaf.points, motion, k);
+    const BoxEnds ends(box);
+    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, leaf.near_squared);
     if (lanes == 0) return;
     ++results_.work.leaf_pairs;
-    const double unit = other.voxel->frame.unit;
-    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], tree_.offset(voxel), unit);
+    const BoxLeaf other = pointsIn(box);
+    const double unit = unitOf(box.voxel);
+    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], tree_.offset(box.voxel), unit);
     bool certain = (query_.everything() ? query_.nearestDecides() : query_.radii == 0.0) && unit == 1.0 &&
                    voxel_frame_.frame.unit == 1.0;
     for (const float g : map.g) certain = certain && std::abs(g) <= voxel_frame_.far;
@@ -250,22 +266,12 @@ private:
     if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, motion);
   }
 
-  /// The leaf's points as seen at pose k; kept, for many boxes ask at the same few poses.
-  const LeafPoints& placesAt(const LeafVisit& leaf, std::uint32_t k, const VoxelMotion& motion)
-  {
-    Places& places = places_[(k - motion.interval->first) % kKeptPlaces];
-    if (places.visit == visit_ && places.pose == k) return places.points;
-    places.visit = visit_;
-    places.pose = k;
-    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], {0, 0, 0}, 1.0);
-    carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, places.points.x,
-          places.points.y, places.points.z);
-    return places.points;
-  }
+  /// Of the coordinates that a voxel of the model stores.
+  double unitOf(std::uint32_t voxel) const { return tree_.storage.voxels[voxel].frame.unit; }
 
   /// What follows from the points in `hit`, which collide at pose k.
   void note(LeafVisit& leaf, std::uint32_t hit, const LeafPoints& points, const float* nearest, bool certain,
-            const LeafRange& other, std::uint32_t k, const VoxelMotion& motion)
+            const BoxLeaf& other, std::uint32_t k, const VoxelMotion& motion)
   {
     results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | hit);
     if (!query_.everything() && (!query_.first || k == motion.interval->first)) leaf.open &= ~hit;
@@ -281,7 +287,7 @@ private:
       }
       if (!query_.everything()) continue;
       // It collides at this pose: what is farther at this pose changes nothing.
-      if (motion.at_rest && certain) lowerReach(leaf, i, roundUp(voxel_frame_.highOf(nearest[i])), motion);
+      if (motion.at_rest && certain) leaf.lowerReach(voxel_frame_, i, roundUp(voxel_frame_.highOf(nearest[i])), motion);
       // Only what may be as near as the nearest in floats is worth an exact look.
       const float within = certain ? voxel_frame_.notBeyond(nearest[i]) : std::numeric_limits<float>::infinity();
       NearestPoint* best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
@@ -301,7 +307,7 @@ private:
         const double high = voxel_frame_.highOf(nearest[i]);
         best->limit = std::min(best->limit, voxel_frame_.notBeyond(nearest[i]));
         best->reach = std::min(best->reach, roundUp(high));
-        if (bestBounds(leaf.points.begin + i, motion)) lowerReach(leaf, i, best->reach, motion);
+        if (bestBounds(leaf.points.begin + i, motion)) leaf.lowerReach(voxel_frame_, i, best->reach, motion);
       }
       if (for_pose && certain) results_.lowerPoseLimit(k, voxel_frame_.notBeyond(nearest[i]));
     }
@@ -310,10 +316,10 @@ private:
   /// Points that move in straight lines against points at rest: all instants at once. In double; what that gets wrong
   /// is small against the tolerance (checkTolerance()).
   HWY_NOINLINE void compareSegments(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
-                                    const LeafRange& other, std::uint32_t voxel, const VoxelMotion& motion)
+                                    const ModelBox& box, const VoxelMotion& motion)
   {
-    if (motion.squares && other.voxel->frame.unit == 1.0)
-      lanes = nearPoints(leaf, lanes, other, voxel, motion, clipped);
+    if (motion.squares && unitOf(box.voxel) == 1.0) lanes = nearPoints(leaf, lanes, box, motion, clipped);
+    const BoxLeaf other = pointsIn(box);
     ++results_.work.leaf_pairs;
     const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
@@ -340,7 +346,7 @@ private:
       if (query_.closest && query_.radii == 0.0) {
         NearestPoint& best = results_.best[leaf.points.begin + i];
         best.reach = std::min(best.reach, roundUp(best.gap));
-        if (bestBounds(leaf.points.begin + i, motion)) lowerReach(leaf, i, best.reach, motion);
+        if (bestBounds(leaf.points.begin + i, motion)) leaf.lowerReach(voxel_frame_, i, best.reach, motion);
       }
     }
   }
@@ -383,17 +389,11 @@ private:
   ModelBoxes& model_;
   StopCheck& stop_check_;
   VoxelResults& results_;
-  struct Places {
-    std::uint64_t visit = 0;
-    std::uint32_t pose = 0;
-    LeafPoints points{};
-  };
-  static constexpr std::uint32_t kKeptPlaces = 16;
-
-  std::vector<ModelBox> stack_;
+  std::vector<Siblings> near_; // what the leaf may meet
+  std::vector<PointsNearBoxes> stack_;
+  ClippedSegments<kLanes> clips_[kLeafPoints]; // of each point, when it is in the boxes it is compared with
   BoxesByDistance by_distance_;
-  std::uint64_t visit_ = 0; // how many leaves were compared
-  Places places_[kKeptPlaces];
+  PlacesAtPoses places_;
   std::vector<std::uint16_t> pose_hits_; // per pose of a motion: points of a leaf
 };
 

@@ -16,6 +16,7 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/trajectory/oriented_boxes-inl.h>
+#include <pcl_bsh/trajectory/point_probing-inl.h>
 #include <pcl_bsh/trajectory/trajectory_leaf-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -32,7 +33,8 @@ struct NodeVisit {
   Segments<kLanes, 3> children;
   Segment around;
   float radius[kLanes];
-  std::vector<ModelBox> near[kLanes];
+  std::vector<Siblings> candidates; ///< what all of them together may meet
+  std::vector<Siblings> near[kLanes];
   // Set at one pose only: the children's boxes, and no less than the smallest distance of any of their points.
   alignas(64) float low[3][kLanes], high[3][kLanes], near_squared[kLanes], bound[kLanes];
 };
@@ -52,6 +54,7 @@ public:
     stop_check_(rule, results_.work.node_pairs),
     model_(query.boxes, rule, results_.work),
     leaves_(query, voxel_frame_, model_, stop_check_, results_),
+    probing_(query, voxel_frame_, model_, results_.work),
     settling_(!query.everything() && !query.first && query.radii == 0.0 && voxel_frame_.frame.unit == 1.0 &&
               voxel_frame_.band.hit > 0.0f),
     settled_reach_(settling_ ? std::sqrt(voxel_frame_.band.hit) * (1.0f - kRadiusMargin) : 0.0f),
@@ -64,14 +67,14 @@ public:
   {
     if (query_.request.pose_summaries)
       results_.beginPoses(query_.path.intervals[intervals.front()].first, query_.path.intervals[intervals.back()].last);
-    std::vector<ModelBox> candidates;
+    std::vector<Siblings> candidates;
     for (const std::uint32_t interval : intervals) {
       if (stop_check_.isOver() || isDone()) return leave(true);
       const VoxelMotion motion = voxel_frame_.motionOf(interval);
       candidates.clear();
       ++results_.work.volumes_carried;
-      model_.collect(motion, voxel_frame_.aroundVoxel(motion), kSeedSize * static_cast<float>(voxel_frame_.radius),
-                     model_.root(), candidates);
+      model_.collect(voxel_frame_.aroundVoxel(motion), motion.steps,
+                     kSeedSize * static_cast<float>(voxel_frame_.radius), model_.root(), candidates);
       if (candidates.empty()) continue;
       if (!voxel_ && !mayEnter()) return leave(true);
       if (!voxel_) enter(motion);
@@ -123,7 +126,7 @@ private:
   bool isDone() const { return stopped_ || results_.witness; }
 
   /// Takes a node, all its children at once, through its candidates; then each child through its own.
-  void descend(std::uint32_t index, const VoxelMotion& motion, const std::vector<ModelBox>& candidates,
+  void descend(std::uint32_t index, const VoxelMotion& motion, const std::vector<Siblings>& candidates,
                std::size_t depth)
   {
     if (stop_check_.isOver() || isStopped()) return;
@@ -147,9 +150,10 @@ private:
     if (visits_.size() <= depth) visits_.resize(depth + 1);
     NodeVisit& visit = visits_[depth];
     begin(visit, index, motion);
-    if (motion.at_rest) boundDistances(visit, index, motion, candidates);
-    if (settling_) settleByPoints(visit, index, motion, candidates);
-    for (const ModelBox& candidate : candidates) take(visit, candidate, motion, open_lanes_[index]);
+    model_.near(visit.around, candidates, motion.steps, visit.candidates);
+    if (motion.at_rest) boundDistances(visit, index, motion);
+    if (settling_) settleByPoints(visit, index, motion);
+    for (const Siblings& candidate : visit.candidates) take(visit, candidate, motion, open_lanes_[index]);
     for (std::uint32_t bits = open_lanes_[index]; bits != 0 && !isDone(); bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
@@ -212,18 +216,18 @@ private:
 
   /// At one pose: every box holds a point of the model, so that no point of a child is farther from the model than from
   /// the farthest corner of any box. What is farther than that is none's nearest.
-  void boundDistances(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion,
-                      const std::vector<ModelBox>& candidates)
+  void boundDistances(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
   {
     const std::uint32_t count = voxel_->nodes[index].count;
     if (!query_.nearestDecides() || !(motion.near > *std::min_element(visit.radius, visit.radius + count))) return;
     alignas(64) float corner[kLanes];
     std::fill(corner, corner + kLanes, std::numeric_limits<float>::infinity());
-    for (const ModelBox& candidate : candidates) {
-      const BoxEnds box(candidate);
-      lowerToFarthestCorner(visit.children.start, box.low, box.high, corner);
-    }
-    results_.work.node_pairs += candidates.size() * count;
+    for (const Siblings& candidate : visit.candidates)
+      for (std::uint32_t bits = candidate.lanes; bits != 0; bits &= bits - 1) {
+        const BoxEnds box(candidate[static_cast<std::uint32_t>(std::countr_zero(bits))]);
+        lowerToFarthestCorner(visit.children.start, box.low, box.high, corner);
+        results_.work.node_pairs += count;
+      }
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       visit.bound[lane] = voxel_frame_.highOfBox(motion, corner[lane], visit.radius[lane]);
       visit.near_squared[lane] = voxel_frame_.nearSquared(motion, visit.bound[lane]);
@@ -231,84 +235,42 @@ private:
   }
 
   /// Settles children that a single point of the model is near enough to, at one pose, for all that they hold.
-  void settleByPoints(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion,
-                      const std::vector<ModelBox>& candidates)
+  void settleByPoints(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
   {
     const Node& node = voxel_->nodes[index];
     float smallest = std::numeric_limits<float>::infinity();
     for (std::uint32_t lane = 0; lane < node.count; ++lane) smallest = std::min(smallest, visit.radius[lane]);
     if (!(settled_reach_ > smallest)) return;
-    ClippedSegments<kLanes> clipped;
-    for (const ModelBox& candidate : candidates) {
-      const BoxEnds box(candidate);
-      results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(open_lanes_[index]));
-      std::uint32_t near =
-          open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, motion.steps, &clipped);
-      for (; near != 0; near &= near - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-        const float reach = settled_reach_ - visit.radius[lane] * (1.0f + 4 * kRadiusMargin);
-        if (!(reach > 0.0f)) continue;
-        const double middle = 0.5 * (std::max(clipped.from[lane], 0.0f) + std::min(clipped.to[lane], 1.0f));
-        const double steps = motion.interval->last - motion.interval->first; // beyond 2^24, motion.steps may be more
-        const auto pose = motion.interval->first + static_cast<std::uint32_t>(std::lround(middle * steps));
-        const ProbeSphere probe{{node.x[lane], node.y[lane], node.z[lane]}, reach, pose};
-        const AffineMap map = voxel_frame_.mapAt(poseAt(pose), {0, 0, 0}, 1.0);
-        const Point center = carryPoint(map.m, map.g, probe.center);
-        ++results_.work.volumes_carried;
-        if (box.squaredDistance(center) > reach * reach || !hasPointWithin(candidate, probe, center)) continue;
-        settle(index, lane);
-        open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
+    for (const Siblings& candidate : visit.candidates)
+      for (std::uint32_t bits = candidate.lanes; bits != 0; bits &= bits - 1) {
+        settleBy(candidate[static_cast<std::uint32_t>(std::countr_zero(bits))], visit, index, motion);
+        if (open_lanes_[index] == 0) return;
       }
-      if (open_lanes_[index] == 0) return;
-    }
   }
 
-  /// A probe of the scan's voxel, at a pose; its reach in the clouds' unit.
-  struct ProbeSphere {
-    Point center;
-    float reach;
-    std::uint32_t pose;
-  };
-
-  const PathPose& poseAt(std::uint32_t k) const { return query_.path.poses[k]; }
-
-  /// Whether the candidate has a point in the probe; the nearest boxes are asked first.
-  /// @param center of the probe, about where the model sees it.
-  bool hasPointWithin(const ModelBox& candidate, const ProbeSphere& probe, const Point& center)
+  /// Settles those that points in a box are near enough to.
+  void settleBy(const ModelBox& candidate, const NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
   {
-    if (candidate.isLeaf()) {
-      const Voxel& voxel = query_.boxes.storage.voxels[candidate.voxel];
-      if (voxel.frame.unit != 1.0) return false;
-      const std::uint32_t leaf = candidate.box().leaf(candidate.lane);
-      const Node& node = voxel.nodes[leaf / kNodeChildren];
-      const AffineMap map = voxel_frame_.mapAt(poseAt(probe.pose), query_.boxes.offset(candidate.voxel), 1.0);
-      for (const float g : map.g)
-        if (!(std::abs(g) <= voxel_frame_.far)) return false;
-      const Point at = carryPoint(map.m, map.g, probe.center);
-      const std::uint32_t begin = node.begin[leaf % kNodeChildren];
-      return anyPointWithin(voxel.x() + begin, voxel.y() + begin, voxel.z() + begin,
-                            node.comparedPoints(leaf % kNodeChildren), at.x, at.y, at.z, probe.reach);
+    const Node& node = voxel_->nodes[index];
+    ClippedSegments<kLanes> clipped;
+    const BoxEnds box(candidate);
+    results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(open_lanes_[index]));
+    std::uint32_t near = open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, motion.steps, &clipped);
+    for (; near != 0; near &= near - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      const float reach = settled_reach_ - visit.radius[lane] * (1.0f + 4 * kRadiusMargin);
+      if (!(reach > 0.0f)) continue;
+      const double middle = 0.5 * (std::max(clipped.from[lane], 0.0f) + std::min(clipped.to[lane], 1.0f));
+      const double steps = motion.interval->last - motion.interval->first; // beyond 2^24, motion.steps may be more
+      const auto pose = motion.interval->first + static_cast<std::uint32_t>(std::lround(middle * steps));
+      const ProbeSphere probe{{node.x[lane], node.y[lane], node.z[lane]}, reach, pose};
+      const AffineMap map = voxel_frame_.mapAt(query_.path.poses[pose], {0, 0, 0}, 1.0);
+      const Point center = carryPoint(map.m, map.g, probe.center);
+      ++results_.work.volumes_carried;
+      if (box.squaredDistance(center) > reach * reach || !probing_.hasPoint(candidate, probe, center)) continue;
+      settle(index, lane);
+      open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
     }
-    if (!model_.mayOpen(candidate)) return false;
-    ModelBox child = model_.below(candidate);
-    const std::uint32_t count = child.box().count;
-    results_.work.node_pairs += count;
-    float distance[kLanes];
-    std::uint32_t near = 0;
-    for (child.lane = 0; child.lane < count; ++child.lane) {
-      distance[child.lane] = BoxEnds(child).squaredDistance(center);
-      if (distance[child.lane] <= probe.reach * probe.reach) near |= 1u << child.lane;
-    }
-    while (near != 0) {
-      child.lane = static_cast<std::uint32_t>(std::countr_zero(near));
-      for (std::uint32_t bits = near & (near - 1); bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-        if (distance[lane] < distance[child.lane]) child.lane = lane;
-      }
-      if (hasPointWithin(child, probe, center)) return true;
-      near &= ~(1u << child.lane);
-    }
-    return false;
   }
 
   /// All points of a child collide.
@@ -324,35 +286,36 @@ private:
     for (std::uint32_t i = 0; i < voxel_->nodes[below].count; ++i) settle(below, i);
   }
 
-  /// Compares a box of the model with those children of the visit that are in `lanes`: drops it, keeps it for their own
-  /// descent, or opens it.
-  void take(NodeVisit& visit, const ModelBox& candidate, const VoxelMotion& motion, std::uint32_t lanes)
+  /// Compares boxes of the model with those children of the visit that are in `lanes`: drops them, keeps them for their
+  /// own descent, or opens them.
+  void take(NodeVisit& visit, const Siblings& candidate, const VoxelMotion& motion, std::uint32_t lanes)
   {
-    const std::uint32_t k = candidate.lane;
-    const BoxNode& box = candidate.box();
-    const float low[3] = {box.low[0][k], box.low[1][k], box.low[2][k]};
-    const float high[3] = {box.high[0][k], box.high[1][k], box.high[2][k]};
-    results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
-    const std::uint32_t near_lanes =
-        lanes & (motion.at_rest ? boxesNearBox(visit.low, visit.high, low, high, visit.near_squared)
-                                : segmentsInBox(visit.children, low, high, motion.steps,
-                                                static_cast<ClippedSegments<kLanes>*>(nullptr)));
-    if (near_lanes == 0) return;
-    const bool opens = !candidate.isLeaf() && model_.mayOpen(candidate);
-    const float size = candidate.size(query_.boxes.stretch);
-    std::uint32_t opening = 0;
-    for (std::uint32_t bits = near_lanes; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (opens && size > kBoxSize * visit.radius[lane])
-        opening |= 1u << lane;
-      else
-        visit.near[lane].push_back(candidate);
+    std::uint32_t kept[kLanes] = {};
+    for (std::uint32_t boxes = candidate.lanes; boxes != 0; boxes &= boxes - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(boxes));
+      const ModelBox box = candidate[k];
+      const BoxEnds ends(box);
+      results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
+      const std::uint32_t near_lanes =
+          lanes & (motion.at_rest ? boxesNearBox(visit.low, visit.high, ends.low, ends.high, visit.near_squared)
+                                  : segmentsInBox(visit.children, ends.low, ends.high, motion.steps,
+                                                  static_cast<ClippedSegments<kLanes>*>(nullptr)));
+      if (near_lanes == 0) continue;
+      const bool opens = !box.isLeaf() && model_.mayOpen(box);
+      const float size = box.size(query_.boxes.stretch);
+      std::uint32_t opening = 0;
+      for (std::uint32_t bits = near_lanes; bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+        if (opens && size > kBoxSize * visit.radius[lane])
+          opening |= 1u << lane;
+        else
+          kept[lane] |= 1u << k;
+      }
+      if (opening != 0) take(visit, model_.near(visit.around, model_.below(box), motion.steps), motion, opening);
     }
-    if (opening == 0) return;
-    ModelBox child = model_.below(candidate);
-    for (std::uint32_t bits = model_.near(visit.around, child, motion.steps); bits != 0; bits &= bits - 1) {
-      child.lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      take(visit, child, motion, opening);
+    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (kept[lane] != 0) visit.near[lane].push_back(candidate.only(kept[lane]));
     }
   }
 
@@ -368,6 +331,7 @@ private:
   bool stopped_ = false; // by the caller
   ModelBoxes model_;
   LeafWalk leaves_;
+  PointProbing probing_;
   const bool settling_;                  // whether one pose and one point of the model answer the request
   const float settled_reach_;            // a pair nearer than this, in floats, collides
   const Voxel* voxel_ = nullptr;         // once it was entered

@@ -65,9 +65,8 @@ HWY_INLINE std::uint32_t pointsNearLeaf(const RelativeFrame& frame, const LeafPo
 
 /// Calls found(i, j, squared) for the pairs among `lanes` of leaf a and the points of leaf b whose float distance does
 /// not exceed `miss`, in the order of b's points; stops when found() returns true.
-template <class Found>
-bool eachPairNotBeyond(const LeafPoints& points, std::uint32_t lanes, const LeafRange& b, float miss,
-                       const Found& found)
+template <class Leaf, class Found>
+bool eachPairNotBeyond(const LeafPoints& points, std::uint32_t lanes, const Leaf& b, float miss, const Found& found)
 {
   alignas(64) float squared[kLeafPoints];
   for (std::uint32_t j = 0; j < b.count && lanes != 0; ++j) {

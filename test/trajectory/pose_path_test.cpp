@@ -15,6 +15,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -360,6 +361,16 @@ void forEachLeaf(const std::vector<BoxNode>& boxes, std::uint32_t node,
   }
 }
 
+/// Whether a point is one of many that coincide, and not the first of them.
+bool isRepeated(const Voxel& voxel, std::uint32_t place)
+{
+  for (const Node& node : voxel.nodes)
+    for (std::uint32_t lane = 0; lane < node.count; ++lane)
+      if (node.isLeaf(lane) && node.begin[lane] <= place && place < node.begin[lane + 1])
+        return node.isCoincident(lane) && place > node.begin[lane];
+  return false;
+}
+
 TEST(BoxTree, BoxesHoldTheirPointsExactly)
 {
   using Rational = boost::multiprecision::cpp_rational;
@@ -373,18 +384,25 @@ TEST(BoxTree, BoxesHoldTheirPointsExactly)
     const BoxTree tree(hierarchy.storage(), travel);
     if (hierarchy.empty()) continue;
     Work work;
-    std::size_t points = 0;
     for (std::uint32_t v = 0; v < hierarchy.storage().voxel_count; ++v) {
-      const std::vector<BoxNode>& boxes = tree.voxel(v, work);
+      const BoxedVoxel& boxed = tree.voxel(v, work);
       const Voxel& voxel = hierarchy.storage().voxels[v];
+      std::map<std::uint32_t, std::uint32_t> places; // by record
+      for (std::uint32_t i = 0; i < voxel.count; ++i) places[voxel.records()[i]] = i;
       std::vector<std::pair<const BoxNode*, std::uint32_t>> around;
-      forEachLeaf(boxes, 0, around, [&](std::uint32_t leaf) {
-        const Node& node = voxel.nodes[leaf / kNodeChildren];
-        const std::uint32_t lane = leaf % kNodeChildren;
-        ASSERT_TRUE(node.isLeaf(lane));
-        for (std::uint32_t i = node.begin[lane]; i < node.begin[lane + 1]; ++i) {
-          ++points;
-          const Point3 p = cloud.view().point(voxel.records()[i]);
+      forEachLeaf(boxed.boxes(), 0, around, [&](std::uint32_t number) {
+        const BoxLeaf leaf = tree.leaf(v, number);
+        ASSERT_GE(leaf.count, 1u);
+        ASSERT_LE(leaf.count, kMaxLeafPoints);
+        for (std::uint32_t i = 0; i < leaf.count; ++i) {
+          const auto place = places.find(leaf.record(i));
+          ASSERT_NE(place, places.end()) << "each point once";
+          const std::uint32_t stored = place->second;
+          places.erase(place);
+          ASSERT_EQ(leaf.x()[i], voxel.x()[stored]);
+          ASSERT_EQ(leaf.y()[i], voxel.y()[stored]);
+          ASSERT_EQ(leaf.z()[i], voxel.z()[stored]);
+          const Point3 p = cloud.view().point(leaf.record(i));
           for (std::size_t axis = 0; axis < 3; ++axis) {
             const Rational at = Rational(p[axis]) - Rational(tree.origin[axis]);
             for (const auto& [box, child] : around) {
@@ -396,8 +414,8 @@ TEST(BoxTree, BoxesHoldTheirPointsExactly)
           }
         }
       });
+      for (const auto& [record, place] : places) EXPECT_TRUE(isRepeated(voxel, place)) << record;
     }
-    EXPECT_EQ(points, hierarchy.size()) << "each leaf once";
   }
 }
 
@@ -432,7 +450,7 @@ TEST(BoxTree, IsNeverDeep)
   const BoxTree tree(hierarchy.storage(), {{1, 0, 0}, 0});
   Work work;
   for (std::uint32_t v = 0; v < hierarchy.storage().voxel_count; ++v) {
-    const std::vector<BoxNode>& boxes = tree.voxel(v, work);
+    const std::vector<BoxNode>& boxes = tree.voxel(v, work).boxes();
     std::size_t deepest = 0;
     std::vector<std::pair<const BoxNode*, std::uint32_t>> around;
     forEachLeaf(boxes, 0, around, [&](std::uint32_t) { deepest = std::max(deepest, around.size()); });

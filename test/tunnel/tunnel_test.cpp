@@ -144,27 +144,32 @@ TEST(TightTunnel, GrazesTheWagonAlongTheBend)
   EXPECT_LT(near, run.scan.size() / 20);
 }
 
-/// The node pairs of flags in a tight tunnel.
-double workAt(double scale, double poses = 1.0, const std::vector<double>& clearances = {clearance})
+/// The node pairs of flags in a tight tunnel, at each of the clearances.
+std::vector<double> worksAt(double scale, double poses, const std::vector<double>& clearances)
 {
   Size size = Size::atScale(scale);
   size.poses = static_cast<std::size_t>(poses * static_cast<double>(size.poses));
   const Passage run = makePassage(size, Course::tight);
   const SphereHierarchy scan(viewOf(run.scan)), wagon(viewOf(run.wagon));
-  double most = 0.0;
+  std::vector<double> works;
   for (const double distance : clearances) {
     TrajectoryRequest request;
     request.clearance = distance;
-    most = std::max(most, static_cast<double>(collideAlong({scan}, wagon, run.poses, request).work.node_pairs));
+    works.push_back(static_cast<double>(collideAlong({scan}, wagon, run.poses, request).work.node_pairs));
   }
-  return most;
+  return works;
+}
+
+double workAt(double scale, double poses = 1.0)
+{
+  return worksAt(scale, poses, {clearance}).front();
 }
 
 /// Three times as many points of scan and wagon and three times as many poses: little more than three times the work.
 TEST(TightTunnel, NodePairsGrowLittleMoreThanThePoints)
 {
   const double small = workAt(0.02);
-  EXPECT_LT(small, 6.5e6) << "of 378,400 points";
+  EXPECT_LT(small, 3.6e6) << "of 378,400 points";
   EXPECT_LT(workAt(0.06), 3.6 * small);
 }
 
@@ -175,7 +180,9 @@ TEST(TightTunnel, TenTimesThePosesAreLittleMoreWork)
 
 TEST(TightTunnel, NoClearanceIsMuchMoreWork)
 {
-  EXPECT_LT(workAt(0.02, 1, {0.1, 0.15, 0.22, 0.26, 0.3, 0.4}), 3.0 * workAt(0.02));
+  std::vector<double> works = worksAt(0.02, 1, {0.0, 0.1, 0.2, 0.3, 0.4});
+  std::sort(works.begin(), works.end());
+  EXPECT_LT(works.back(), 2.0 * works[works.size() / 2]) << "the dearest against the median";
 }
 
 } // namespace
