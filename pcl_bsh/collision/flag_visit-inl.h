@@ -40,6 +40,8 @@ struct FlagVisit {
   std::uint32_t obstacle = 0;
   alignas(32) float x[kLanes], y[kLanes], z[kLanes], r[kLanes]; ///< their spheres in the obstacle voxel's frame
   float smallest = 0.0f;                                        ///< of r
+  float largest_leaf = 0.0f;                                    ///< of r, of leaves
+  bool has_several = false;                                     ///< candidates, so that slabs are worth fitting
   bool has_slabs = false;                                       ///< whether the following are set
   alignas(32) float nx[kLanes], ny[kLanes], nz[kLanes];         ///< normals of the children's slabs, likewise
   const Slabs* slabs = nullptr;                                 ///< the children's

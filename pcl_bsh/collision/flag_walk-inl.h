@@ -10,6 +10,7 @@
 #define PCL_BSH_COLLISION_FLAG_WALK_INL_H_
 #endif
 
+#include <pcl_bsh/collision/flag_apart-inl.h>
 #include <pcl_bsh/collision/flag_leaf-inl.h>
 #include <pcl_bsh/collision/flag_query.h>
 #include <pcl_bsh/hierarchy/crowded_cell.h>
@@ -129,6 +130,7 @@ private:
           std::find_if(from, candidates.end(), [&](const ObstacleSphere& c) { return c.obstacle != from->obstacle; });
       enter(visit, from->obstacle);
       visit.has_slabs = (candidates.size() > kManyCandidates || knowsSlabs(visit.obstacle)) && takeSlabs(visit);
+      visit.has_several = candidates.size() > kSeveralCandidates && !pairs_.haveRadii();
       for (auto c = from; c != to && visit.open != 0; ++c) settleByPoints(visit, *c);
       for (auto c = from; c != to && visit.open != 0; ++c) take(visit, *c, visit.open);
       compareLeaves(visit);
@@ -182,10 +184,13 @@ private:
     visit.ball = {center.x, center.y, center.z,
                   visit.around.radius * frame.stretch_a + obstacles_[obstacle].prune_reach, 0.0f};
     visit.smallest = std::numeric_limits<float>::infinity();
+    visit.largest_leaf = 0.0f;
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) visit.r[lane] = visit.node->r[lane] * frame.stretch_a;
     for (std::uint32_t lane = 0; lane < visit.node->count; ++lane) {
       visit.smallest = std::min(visit.smallest, visit.r[lane]);
-      if ((visit.leaves >> lane & 1) != 0) visit.near[lane].clear();
+      if ((visit.leaves >> lane & 1) == 0) continue;
+      visit.largest_leaf = std::max(visit.largest_leaf, visit.r[lane]);
+      visit.near[lane].clear();
     }
   }
 
@@ -220,6 +225,15 @@ private:
     if (near == 0) return;
     if (visit.has_slabs && (near &= ~slabsApartFrom(visit, obstacle, candidate, radius)) == 0) return;
     if (radius <= obstacle.blunt_radius && (near &= ~apartAsGiven(visit, candidate, ball, near)) == 0) return;
+    const bool has_large_leaf =
+        candidate.isLeaf() ? radius > kLargeLeaf * visit.smallest : visit.largest_leaf > kLargeLeaf * radius;
+    if (HWY_UNLIKELY(has_large_leaf) &&
+        (near &= ~leavesApart(obstacle, *a_voxel_, visit, candidate, ball, pairs_, near, found.work)) == 0)
+      return;
+    if (visit.has_several && mayBeFar(obstacle.prune_reach, radius)) {
+      const FarSides sides{a_.storage.voxels[voxel_], a_.pose, b_.storage.voxels[reached_[visit.obstacle]], b_.pose};
+      if ((near &= ~farApart(obstacle, sides, visit, candidate, ball, pairs_, near, found.work)) == 0) return;
+    }
     if (ball.inside_reach > visit.smallest) {
       for (std::uint32_t bits = spheresInside(spheres, ball) & near; bits != 0; bits &= bits - 1)
         settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
@@ -349,7 +363,8 @@ private:
   const Acceptance& acceptance_;
   const StopRule& rule_;
   Sink& sink_;
-  static constexpr std::size_t kManyCandidates = 256; ///< as they are where surfaces face each other
+  static constexpr std::size_t kManyCandidates = 256;   ///< as they are where surfaces face each other
+  static constexpr std::size_t kSeveralCandidates = 64; ///< as the clearance leaves them about what is far smaller
 
   std::uint32_t voxel_ = kNoVoxel; ///< of a
   bool knows_slabs_ = false;       ///< whether those of a's voxel may be used without fitting any

@@ -162,11 +162,14 @@ GivenSphere givenSphereOf(const PointsView& view, const Voxel& voxel, const Node
     const auto index = static_cast<std::size_t>(&node - voxel.nodes.data()) * kNodeChildren + child;
     if (voxel.given[index].isKnown()) return voxel.given[index];
   }
-  if (node.isLeaf(child)) return sphereOfPoints(voxel, view, node, child);
+  return node.isLeaf(child) ? sphereOfPoints(voxel, view, node, child) : storedSphere(voxel.frame, node, child);
+}
+
+GivenSphere storedSphere(const LocalFrame& frame, const Node& node, std::uint32_t child)
+{
   // Each coordinate of the centre is rounded twice, by v of what it is made of; twice as much pays for the sums here.
   constexpr double kCenterError = 4 * kDoubleUnit;
   constexpr double kVanishing = 0x1p-1070; // above what underflows
-  const LocalFrame& frame = voxel.frame;
   const float local[3] = {node.x[child], node.y[child], node.z[child]};
   GivenSphere sphere;
   sphere.radius = static_cast<double>(node.r[child]) * frame.unit;

@@ -54,12 +54,12 @@ Eigen::Matrix3d covarianceOf(const Voxel& voxel, const Node& node, std::uint32_t
   return covariance - mean * mean.transpose();
 }
 
-/// The direction along which points vary least, of length 1 within 2^-22; 0 where there is none.
-Eigen::Vector3f flattestDirection(const Eigen::Matrix3d& covariance)
+/// A principal axis of points, of length 1 within 2^-22; 0 where there is none.
+Eigen::Vector3f principalAxis(const Eigen::Matrix3d& covariance, SlabAxis axis)
 {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance);
-  const Eigen::Vector3d direction = solver.eigenvectors().col(0);
+  const Eigen::Vector3d direction = solver.eigenvectors().col(axis == SlabAxis::least ? 0 : 1);
   const double length = direction.norm();
   if (!(length > 0.5 && length < 2.0)) return Eigen::Vector3f::Zero();
   return (direction / length).cast<float>();
@@ -94,14 +94,14 @@ HWY_INLINE float thickness(const Voxel& voxel, const Node& node, std::uint32_t i
 
 } // namespace
 
-void fitSlabsOnTarget(const Voxel& voxel, Slabs* slabs)
+void fitSlabsOnTarget(const Voxel& voxel, SlabAxis axis, Slabs* slabs)
 {
   const double slack = storedSlack(voxel.frame);
   std::vector<Eigen::Vector3f> normals(voxel.nodes.size(), Eigen::Vector3f::Zero()); // of all that is below each node
   for (std::size_t n = 0; n < voxel.nodes.size(); ++n) {
     const Node& node = voxel.nodes[n];
     for (std::uint32_t i = 0; i < node.count; ++i) {
-      if (!node.isLeaf(i)) normals[node.child[i]] = flattestDirection(covarianceOf(voxel, node, i));
+      if (!node.isLeaf(i)) normals[node.child[i]] = principalAxis(covarianceOf(voxel, node, i), axis);
       const Eigen::Vector3f& normal = normals[node.isLeaf(i) ? n : node.child[i]];
       slabs[n].x[i] = normal.x();
       slabs[n].y[i] = normal.y();
@@ -125,7 +125,7 @@ HWY_EXPORT(fitSlabsOnTarget);
 const Slabs* LazySlabs::fit(const Voxel& voxel, BuildWork& work)
 {
   auto slabs = std::make_unique<Slabs[]>(voxel.nodes.size()); // all zero
-  HWY_DYNAMIC_DISPATCH(fitSlabsOnTarget)(voxel, slabs.get());
+  HWY_DYNAMIC_DISPATCH(fitSlabsOnTarget)(voxel, axis_, slabs.get());
   Slabs* known = nullptr;
   if (!slabs_.compare_exchange_strong(known, slabs.get(), std::memory_order_acq_rel)) return known;
   work.volumes_built += voxel.nodes.size() - 1; // every node but the root is a child that is no leaf

@@ -19,10 +19,16 @@ struct alignas(32) Slabs {
   float x[kNodeChildren], y[kNodeChildren], z[kNodeChildren], h[kNodeChildren];
 };
 
+/// The direction of a node's slab among those of its principal axes.
+enum class SlabAxis : std::uint8_t {
+  least, ///< along which its points vary least: across a surface
+  second ///< along which they vary second: across a line, or a strip, in its surface
+};
+
 /// The slabs of a voxel, fitted when they are first asked for.
 class LazySlabs {
 public:
-  LazySlabs() = default;
+  explicit LazySlabs(SlabAxis axis) : axis_(axis) {}
   LazySlabs(const LazySlabs&) = delete;
   LazySlabs& operator=(const LazySlabs&) = delete;
   ~LazySlabs() { reset(); }
@@ -49,6 +55,7 @@ public:
 private:
   const Slabs* fit(const Voxel& voxel, BuildWork& work);
 
+  const SlabAxis axis_;
   std::atomic<Slabs*> slabs_{nullptr};
 };
 

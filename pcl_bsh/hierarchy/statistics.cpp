@@ -37,7 +37,8 @@ HierarchyStatistics SphereHierarchy::statistics() const
     result.nodes += voxel.nodes.size();
     result.bytes += voxel.nodes.capacity() * sizeof(Node);
     result.bytes += voxel.given.capacity() * sizeof(GivenSphere);
-    if (voxel.slabs.isFitted()) result.bytes += voxel.nodes.size() * sizeof(Slabs);
+    for (const LazySlabs* slabs : {&voxel.slabs, &voxel.cross_slabs})
+      if (slabs->isFitted()) result.bytes += voxel.nodes.size() * sizeof(Slabs);
     result.depth = std::max(result.depth, depthBelow(voxel.nodes, 0));
     for (const Node& node : voxel.nodes)
       for (std::uint32_t i = 0; i < node.count; ++i) {

@@ -37,6 +37,7 @@ SphereHierarchy::Storage::Storage(const PointsView& points, const HierarchyOptio
 void measureVoxel(Voxel& voxel, const PointsView& view)
 {
   voxel.slabs.reset();
+  voxel.cross_slabs.reset();
   voxel.largest_radius = 0.0f;
   if (view.radii)
     voxel.forEachRecord(

@@ -66,7 +66,8 @@ struct Voxel {
   float* radii = nullptr;              ///< one per point in the order of x, once built; null when points have none
   std::vector<Node> nodes;             ///< nodes[0] is the root; empty until built
   std::vector<GivenSphere> given;      ///< see givenSpheres(); empty unless the voxel has crowded cells
-  LazySlabs slabs;                     ///< of the nodes, once built and asked for
+  LazySlabs slabs{SlabAxis::least};    ///< of the nodes, once built and asked for
+  LazySlabs cross_slabs{SlabAxis::second}; ///< likewise
   std::atomic<std::uint8_t> state{sorted};
 
   /// Becomes what the other voxel is. Neither may be visited meanwhile.
@@ -86,6 +87,7 @@ struct Voxel {
     nodes = std::move(other.nodes);
     given = std::move(other.given);
     slabs.adopt(other.slabs);
+    cross_slabs.adopt(other.cross_slabs);
     state.store(other.state.load(std::memory_order_relaxed), std::memory_order_relaxed);
   }
 

@@ -89,7 +89,9 @@ private:
     for (std::uint32_t i = 0; i < node.count; ++i) {
       if (node.begin[i] >= node.begin[i + 1]) return defect(here + "child " + std::to_string(i) + " is empty");
       checkSphere(node, i, frame, voxel, here);
-      if (voxel != kAboveVoxels && s_.voxels[voxel].slabs.isFitted()) checkSlab(node, index, i, s_.voxels[voxel], here);
+      if (voxel != kAboveVoxels)
+        for (LazySlabs* slabs : {&s_.voxels[voxel].slabs, &s_.voxels[voxel].cross_slabs})
+          if (slabs->isFitted()) checkSlab(node, index, i, s_.voxels[voxel], *slabs, here);
       if (node.isLeaf(i)) {
         if (voxel == kAboveVoxels ? node.points(i) != 1
                                   : node.isCoincident(i) && !isOnePlace(s_.voxels[voxel], node, i))
@@ -148,10 +150,11 @@ private:
 
   /// Every point below child i is between its planes, or has none. Double has the bits to say so: a slab is 2^-20 of
   /// its sphere's radius thicker than its points.
-  void checkSlab(const Node& node, std::uint32_t index, std::uint32_t i, Voxel& voxel, const std::string& here)
+  void checkSlab(const Node& node, std::uint32_t index, std::uint32_t i, const Voxel& voxel, LazySlabs& fitted,
+                 const std::string& here)
   {
     BuildWork unasked;
-    const Slabs& slabs = voxel.slabs.of(voxel, unasked)[index];
+    const Slabs& slabs = fitted.of(voxel, unasked)[index];
     const LocalFrame& f = voxel.frame;
     for (std::uint32_t k = node.begin[i]; k < node.begin[i + 1]; ++k) {
       const Point3 p = s_.view.point(voxel.records()[k]);

@@ -180,6 +180,19 @@ HWY_INLINE std::uint32_t spheresNear(const SphereLanes& spheres, const QueryBall
   return apart ^ ((1u << kLanes) - 1);
 }
 
+/// Bit i: from the centre of sphere i to that of another one it is more than `times` as far as both radii together.
+/// @param gap as spheresNear() gave it. @param radius of the other one
+HWY_INLINE std::uint32_t spheresFar(const float* gap, const float* radii, float stretch, float radius, float times)
+{
+  const LaneTag d;
+  std::uint32_t far = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const LaneVector own = hn::Mul(hn::LoadU(d, radii + i), hn::Set(d, (times - 1.0f) * stretch));
+    far |= bitsOf(d, hn::Gt(hn::LoadU(d, gap + i), hn::Add(own, hn::Set(d, times * radius)))) << i;
+  }
+  return far;
+}
+
 /// A sphere's points between two planes: |normal . (p - center)| <= h.
 struct Slab {
   Point normal;

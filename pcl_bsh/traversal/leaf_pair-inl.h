@@ -20,6 +20,10 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
+/// A leaf so many times as large as a node has points that are far from each other for the node: its sphere tells
+/// nothing.
+inline constexpr float kLargeLeaf = 8.0f;
+
 /// The centre of a's sphere in the frame of b.
 HWY_INLINE Point carriedCenter(const RelativeFrame& frame, const Node& node, std::uint32_t lane)
 {

@@ -11,6 +11,7 @@
 #endif
 
 #include <pcl_bsh/hierarchy/crowded_cell.h>
+#include <pcl_bsh/traversal/far_nodes.h>
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 #include <pcl_bsh/traversal/space.h>
 
@@ -123,9 +124,10 @@ public:
       testChildrenOfA(enter(a, pair.a), pair.b, clearance, out);
     else
       testChildrenOfB(pair.a, enter(b, pair.b), clearance, out);
-    if (out.radius <= out.frame->bluntRadius()) dropApartAsGiven(pair, opened, clearance, out);
-    const bool is_larger = out.radius > static_cast<float>(kLargeLeaf) * out.radii[0] * out.stretch;
-    if (HWY_UNLIKELY(is_larger) && out.near != 0 && leafIsApart(pair, opened, clearance)) out.near = 0;
+    const bool is_larger = out.radius > kLargeLeaf * out.radii[0] * out.stretch;
+    const bool is_blunt = out.radius <= out.frame->bluntRadius();
+    if (HWY_UNLIKELY(is_larger || is_blunt || mayBeFar(out.reach, out.radius)) && out.near != 0)
+      lookAgain(pair, opened, clearance, out);
   }
 
   void testChildrenOfA(const Lane& entered, const Lane& lane_b, double clearance, Step& out)
@@ -214,12 +216,20 @@ public:
   }
 
 private:
-  static constexpr double kLargeLeaf = 8.0; ///< in radii of what is opened
+  /// What spheres say least about: nodes as small as the float error, leaves large beside the other node, and nodes far
+  /// from each other for their size.
+  HWY_NOINLINE void lookAgain(const LanePair& pair, Opened opened, double clearance, Step& out)
+  {
+    if (out.radius <= out.frame->bluntRadius()) dropApartAsGiven(pair, opened, clearance, out);
+    const bool is_larger = out.radius > kLargeLeaf * out.radii[0] * out.stretch;
+    if (is_larger && out.near != 0 && leafIsApart(pair, opened, clearance)) out.near = 0;
+    if (out.near != 0 && mayBeFar(out.reach, out.radius)) dropFarApart(pair, opened, clearance, out);
+  }
 
   /// Whether the other side of a pair is a leaf much larger than what was opened, and none of its points is near that.
   /// Such a leaf's sphere tells nothing: in a shell about a tiny ball, each leaf would be compared with all of the
   /// ball. (What is not a leaf is opened before what is smaller.)
-  HWY_NOINLINE bool leafIsApart(const LanePair& pair, Opened opened, double clearance)
+  bool leafIsApart(const LanePair& pair, Opened opened, double clearance)
   {
     const bool leaf_is_a = opened == Opened::b;
     const double ra = nodeOf(a, pair.a).r[pair.a.lane] * a.frame(pair.a.space).unit;
@@ -251,6 +261,30 @@ private:
   {
     Voxel& voxel = side.storage.voxels[lane.space];
     return voxel.slabs.of(voxel, work)[lane.node];
+  }
+
+  NodeSupport supportOf(const Spaces& side, const Lane& lane)
+  {
+    Voxel& voxel = side.storage.voxels[lane.space];
+    return nodeSupport(voxel, voxel.nodes[lane.node], lane.lane, work);
+  }
+
+  /// Removes children from the step's `near` that are far from the other node for their size, and apart from it.
+  void dropFarApart(const LanePair& pair, Opened opened, double clearance, Step& out)
+  {
+    std::uint32_t far = out.near & spheresFar(out.gap, out.radii, out.stretch, out.radius, kFarNodes);
+    const LanePair first = childOf(pair, opened, out, 0);
+    if (far == 0 || !std::isfinite(clearance) || !haveSlabs(first.a, first.b)) return;
+    const NodeSupport other = opened == Opened::a ? supportOf(b, pair.b) : supportOf(a, pair.a);
+    for (; far != 0; far &= far - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(far));
+      const LanePair child = childOf(pair, opened, out, lane);
+      const NodeSupport own = opened == Opened::a ? supportOf(a, child.a) : supportOf(b, child.b);
+      ++work.exact_decisions;
+      if (opened == Opened::a ? areFarNodesApart(distance, a.pose, own, b.pose, other, clearance)
+                              : areFarNodesApart(distance, a.pose, other, b.pose, own, clearance))
+        out.near &= ~(1u << lane);
+    }
   }
 
   /// Whether both spheres of a pair are as small as the float error; one of them is child `lane` of the step.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A search for clouds that make queries slow: it climbs over sizes, places, roughness and clearances of pairs of shapes
 // towards the fastest growth of work, and reports what it found. A fixed seed, a bounded number of steps: as a test it
-// holds that no such pair costs more than all pairs of points do, nor grows faster.
+// holds that no such pair costs more than all pairs of points do, and how fast those found in its few steps grow.
 #include <pcl_bsh/collision/collide.h>
 
 #include "../query/adversarial_clouds.h"
@@ -194,7 +194,9 @@ TEST(WorkClimb, NoPairFoundGrowsFasterThanAllPairs)
       best = next;
     }
     std::printf("to %4.1f (%s): %s\n", most.most, kQueries[most.query], best.text().c_str());
-    EXPECT_LE(most.most, 20.0) << best.text(); // 16: as all pairs do; a little more where few points meet by chance
+    // 16: as all pairs do. Clouds of scales come to 9 where they begin, all others to less than 7.
+    const double bound = more ? 20.0 : best.a == Form::octaves ? 10.0 : 7.0;
+    EXPECT_LE(most.most, bound) << best.text();
   }
 }
 

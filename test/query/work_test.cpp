@@ -74,9 +74,9 @@ TEST(Work, OfTwoPoints)
   const SphereHierarchy a(one.view(), oneVoxel()), b(one.view(), oneVoxel());
   const Eigen::Isometry3d pose(Eigen::Translation3d(1, 0, 0));
   // Tested: the two voxels' spheres, b's leaf against a's voxel, a's leaf against b's. Each test carries a sphere of a.
-  // Decided exactly: two spheres of radius 0, and their two points.
-  EXPECT_EQ(countsOf(anyCollision({a}, {b, pose}, within<AnyRequest>(1)).work), counts(3, 3, 2, 1, 2, 2));
-  EXPECT_EQ(countsOf(anyCollision({a}, {b, pose}, within<AnyRequest>(1)).work), counts(3, 3, 0, 1, 2, 0));
+  // Decided exactly: two spheres of radius 0, their supports, and their two points.
+  EXPECT_EQ(countsOf(anyCollision({a}, {b, pose}, within<AnyRequest>(1)).work), counts(3, 3, 2, 1, 3, 2));
+  EXPECT_EQ(countsOf(anyCollision({a}, {b, pose}, within<AnyRequest>(1)).work), counts(3, 3, 0, 1, 3, 0));
   EXPECT_EQ(countsOf(anyCollision({a}, {b, pose}, within<AnyRequest>(0.5)).work),
             counts(0, 0, 0, 0, 0, 0)); // the clouds' bounds
 }

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Children of a node of a that are apart from a sphere of b, though their spheres are not: leaves that are large beside
+// the other sphere, and nodes that are far away for their size.
+
+#if defined(PCL_BSH_COLLISION_FLAG_APART_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_COLLISION_FLAG_APART_INL_H_
+#undef PCL_BSH_COLLISION_FLAG_APART_INL_H_
+#else
+#define PCL_BSH_COLLISION_FLAG_APART_INL_H_
+#endif
+
+#include <pcl_bsh/collision/flag_visit-inl.h>
+#include <pcl_bsh/traversal/far_nodes.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// The children in `near` that are apart from the candidate because one of the two is a leaf much larger than the
+/// other, which is none, and none of its points is near that. Such a leaf's sphere tells nothing: see
+/// PairWalk::leafIsApart().
+HWY_NOINLINE inline std::uint32_t leavesApart(const ObstacleVoxel& obstacle, const Voxel& voxel, const FlagVisit& visit,
+                                              const ObstacleSphere& candidate, const QueryBall& ball,
+                                              const PointPairs& pairs, std::uint32_t near, Work& work)
+{
+  const float radius = candidate.node->r[candidate.lane] * obstacle.frame.stretch_b;
+  std::uint32_t apart = 0;
+  for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    const bool is_leaf = (visit.leaves >> lane & 1) != 0;
+    if (is_leaf == candidate.isLeaf()) continue;
+    if (is_leaf && visit.r[lane] > kLargeLeaf * radius) {
+      const LeafRange leaf{&voxel, visit.node->begin[lane], visit.node->comparedPoints(lane)};
+      LeafPoints points;
+      carryLeaf(obstacle.frame, leaf, points);
+      const float reach = radius + obstacle.frame.pruneReach(pairs.clearance + leaf.largestRadius());
+      work.node_pairs += leaf.count;
+      if (pointsNear(points.x, points.y, points.z, leaf.count, ball.x, ball.y, ball.z, reach, kSphereMargin) == 0)
+        apart |= 1u << lane;
+    }
+    else if (!is_leaf && radius > kLargeLeaf * visit.r[lane]) {
+      const LeafRange leaf = candidate.leaf(*obstacle.voxel);
+      const float reach = visit.r[lane] + obstacle.frame.pruneReach(pairs.clearance + leaf.largestRadius());
+      work.node_pairs += leaf.count;
+      if (pointsNear(leaf.x(), leaf.y(), leaf.z(), leaf.count, visit.x[lane], visit.y[lane], visit.z[lane], reach,
+                     kSphereMargin) == 0)
+        apart |= 1u << lane;
+    }
+  }
+  return apart;
+}
+
+/// The voxels that two nodes are in, and where their clouds are.
+struct FarSides {
+  Voxel& voxel_a;
+  const Eigen::Isometry3d& pose_a;
+  Voxel& voxel_b;
+  const Eigen::Isometry3d& pose_b;
+};
+
+/// The children in `near` that are far from the candidate for their size, and apart from it. @pre no radii
+HWY_NOINLINE inline std::uint32_t farApart(const ObstacleVoxel& obstacle, const FarSides& sides, const FlagVisit& visit,
+                                           const ObstacleSphere& candidate, const QueryBall& ball,
+                                           const PointPairs& pairs, std::uint32_t near, Work& work)
+{
+  float gap[kLanes];
+  spheresNear({visit.x, visit.y, visit.z, visit.r, 1.0f}, ball, gap);
+  const float radius = candidate.node->r[candidate.lane] * obstacle.frame.stretch_b;
+  std::uint32_t far = near & spheresFar(gap, visit.r, 1.0f, radius, kFarNodes);
+  if (far == 0) return 0;
+  const NodeSupport other = nodeSupport(sides.voxel_b, *candidate.node, candidate.lane, work);
+  std::uint32_t apart = 0;
+  for (; far != 0; far &= far - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(far));
+    const NodeSupport own = nodeSupport(sides.voxel_a, *visit.node, lane, work);
+    ++work.exact_decisions;
+    if (areFarNodesApart(pairs.distance, sides.pose_a, own, sides.pose_b, other, pairs.clearance)) apart |= 1u << lane;
+  }
+  return apart;
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two nodes far from each other for their size. There a sphere says too little: of an arc, or of a patch of a sheet, it
+// reaches towards the other node by half of its length, its points by the square of that alone.
+#pragma once
+
+#include <pcl_bsh/geometry/given_sphere.h>
+#include <pcl_bsh/hierarchy/crowded_cell.h>
+#include <pcl_bsh/traversal/space.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_bsh {
+
+/// Nodes are far from each other where their middles are so many times as far apart as their radii are long together.
+inline constexpr float kFarNodes = 8.0f;
+
+/// Whether nodes can be that far from one of this radius and still be within reach.
+inline bool mayBeFar(float reach, float radius)
+{
+  return reach > (kFarNodes - 1.0f) * radius;
+}
+
+/// How far the points of a node are from its sphere's centre at most, along a direction: its support. Two slabs, along
+/// which points vary least, leave the sphere to what is across both.
+class NodeSupport {
+public:
+  /// @param slabs, cross_slabs of the node
+  NodeSupport(const LocalFrame& frame, const Node& node, std::uint32_t child, const Slabs& slabs,
+              const Slabs& cross_slabs)
+  : sphere_(storedSphere(frame, node, child)),
+    radius_(static_cast<double>(node.r[child]) * frame.unit)
+  {
+    const auto take = [&](const Slabs& from, Eigen::Vector3d& normal, double& h) {
+      normal = {from.x[child], from.y[child], from.z[child]};
+      h = static_cast<double>(from.h[child]) * frame.unit;
+    };
+    take(slabs, normal_, h_);
+    take(cross_slabs, cross_, cross_h_);
+  }
+
+  /// In the cloud's own frame.
+  const Point3& center() const { return sphere_.center; }
+
+  /// A direction is the sum of its parts along both normals, whatever these are, and of a rest, whose points are held
+  /// by the sphere. @param direction in the cloud's own frame, of length 1 within 1e-6
+  double along(const Eigen::Vector3d& direction) const
+  {
+    const double on_normal = direction.dot(normal_), on_cross = direction.dot(cross_);
+    const double rest = (direction - on_normal * normal_ - on_cross * cross_).norm();
+    const double support = std::abs(on_normal) * h_ + std::abs(on_cross) * cross_h_ + rest * radius_;
+    return support * (1.0 + kDoubleMargin) + kDoubleMargin * radius_ + (sphere_.radius - radius_);
+  }
+
+private:
+  GivenSphere sphere_;
+  double radius_;
+  Eigen::Vector3d normal_, cross_;
+  double h_, cross_h_;
+};
+
+/// @param voxel built, its points without radii. @param work what is fitted for it is added
+inline NodeSupport nodeSupport(Voxel& voxel, const Node& node, std::uint32_t child, BuildWork& work)
+{
+  const auto index = &node - voxel.nodes.data();
+  return {voxel.frame, node, child, voxel.slabs.of(voxel, work)[index], voxel.cross_slabs.of(voxel, work)[index]};
+}
+
+/// Whether no point of one node is within the clearance of one of the other, by how far both reach towards each other.
+/// The middles are compared in exact arithmetic.
+///
+/// With u along D, from centre to centre, |D + q - p| >= u . (D + q - p) >= |D| - support(u) - support(-u) for all p, q
+/// about their centres. u is computed from coordinates that err by e, so its angle to D is below 1.01 e / |D|, and
+/// u . D >= |D| - e^2 / |D|.
+inline bool areFarNodesApart(const ExactDistance& distance, const Eigen::Isometry3d& pose_a, const NodeSupport& a,
+                             const Eigen::Isometry3d& pose_b, const NodeSupport& b, double clearance)
+{
+  const Eigen::Map<const Eigen::Vector3d> center_a(a.center().data()), center_b(b.center().data());
+  const Eigen::Vector3d between = pose_b * center_b - pose_a * center_a;
+  const double length = between.norm();
+  const double error = 32 * kDoubleUnit *
+                       (center_a.lpNorm<1>() + center_b.lpNorm<1>() + pose_a.translation().lpNorm<1>() +
+                        pose_b.translation().lpNorm<1>());
+  if (!(error < 0x1p-20 * length && length > 0x1p-400 && length < 0x1p400)) return false; // squares are in range
+  const Eigen::Vector3d direction = between / length;
+  const double off = error / length * error;
+  return areApart(distance, {a.center(), a.along(pose_a.linear().transpose() * direction) + off},
+                  {b.center(), b.along(pose_b.linear().transpose() * direction) + off}, clearance);
+}
+
+} // namespace pcl_bsh

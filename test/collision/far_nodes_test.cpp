@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Nodes far from each other for their size, which are compared by how far they reach towards each other: clouds of
+// which spheres say little, at the very distance of two of their points.
+#include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/hierarchy/update.h>
+#include <pcl_bsh/traversal/far_nodes.h>
+
+#include "../query/adversarial_clouds.h"
+#include "../query/random_clouds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using test::Cloud;
+using test::Random;
+using namespace test::adversarial;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Lines, arcs, patches and clumps, one unit in size, whose points stray a little.
+std::vector<Point3> shapeOf(int kind, std::size_t n, Random& random)
+{
+  std::vector<Point3> points = kind == 0   ? axis(n, 1)
+                               : kind == 1 ? helix(n, 1, 0)
+                               : kind == 2 ? sheet(n, 0, 0)
+                               : kind == 3 ? shells(n, 1, 0)
+                                           : cube(n, 7);
+  if (kind == 2)
+    for (Point3& p : points) p = scaled(p, 1.0 / std::sqrt(static_cast<double>(n)));
+  const double rough = std::pow(10.0, random.uniform(-9, -2));
+  for (Point3& p : points)
+    for (double& x : p) x += rough * random.uniform(-1, 1);
+  return points;
+}
+
+Eigen::Isometry3d poseAt(double distance, Random& random)
+{
+  const Point3 to = direction(random);
+  Eigen::Isometry3d pose = random.pose(0.0);
+  pose.translation() += distance * Eigen::Vector3d(to[0], to[1], to[2]);
+  return pose;
+}
+
+/// The least distance of two nodes' points, at least and at most.
+ExactDistance::Enclosure nearest(const SphereHierarchy::Storage& a, const SphereHierarchy::Storage& b, const Voxel& va,
+                                 const Voxel& vb, const Node& na, const Node& nb, std::uint32_t i, std::uint32_t k,
+                                 const ExactDistance& distance)
+{
+  ExactDistance::Enclosure least{INFINITY, INFINITY};
+  for (std::uint32_t p = na.begin[i]; p < na.begin[i + 1]; ++p)
+    for (std::uint32_t q = nb.begin[k]; q < nb.begin[k + 1]; ++q) {
+      const auto of = distance.enclose(a.view.point(va.records()[p]), b.view.point(vb.records()[q]));
+      least.low = std::min(least.low, of.low), least.high = std::min(least.high, of.high);
+    }
+  return least;
+}
+
+TEST(FarNodes, AreNeverApartWithinTheDistanceOfTheirPoints)
+{
+  Random random(61);
+  double closest_claim = 0.0; // of a distance
+  std::size_t claims = 0;
+  for (int round = 0; round < 40; ++round) {
+    Cloud cloud_a(shapeOf(round % 5, 200, random), {round % 2 == 0 ? Scalar::float32 : Scalar::float64});
+    Cloud cloud_b(shapeOf(random.integer(0, 4), 200, random));
+    HierarchyOptions options;
+    options.voxel_edge = round % 3 == 0 ? 0.5 : 8.0;
+    const SphereHierarchy ha(cloud_a.view(), options), hb(cloud_b.view(), options);
+    ha.buildAll();
+    hb.buildAll();
+    const auto &a = ha.storage(), &b = hb.storage();
+    const double away = std::pow(10.0, random.uniform(-1, 4));
+    Eigen::Isometry3d pose_a = poseAt(round % 4 == 0 ? 1e6 : 0.0, random), pose_b = pose_a * poseAt(away, random);
+    if (round % 4 == 1) pose_b.linear() *= 1.0 + 4e-7; // within what is let pass as rigid
+    const ExactDistance distance(pose_a, pose_b);
+    BuildWork work;
+    for (std::size_t v = 0; v < a.voxel_count; ++v)
+      for (std::size_t w = 0; w < b.voxel_count; ++w)
+        for (const Node& na : a.voxels[v].nodes)
+          for (const Node& nb : b.voxels[w].nodes)
+            for (std::uint32_t i = 0; i < na.count; ++i)
+              for (std::uint32_t k = 0; k < nb.count; ++k) {
+                const NodeSupport sa = nodeSupport(a.voxels[v], na, i, work),
+                                  sb = nodeSupport(b.voxels[w], nb, k, work);
+                const auto least = nearest(a, b, a.voxels[v], b.voxels[w], na, nb, i, k, distance);
+                // What is said to be apart by this is so: its points are no nearer.
+                double claimed = 0.0, above = least.high * (1.0 + 1e-6) + 1e-300;
+                EXPECT_FALSE(areFarNodesApart(distance, pose_a, sa, pose_b, sb, least.high)) << round;
+                for (int step = 0; step < 30; ++step) {
+                  const double middle = 0.5 * (claimed + above);
+                  (areFarNodesApart(distance, pose_a, sa, pose_b, sb, middle) ? claimed : above) = middle;
+                }
+                claims += claimed > 0.0;
+                closest_claim = std::max(closest_claim, claimed / least.high);
+              }
+  }
+  EXPECT_GT(claims, 1000u);
+  EXPECT_GT(closest_claim, 1.0 - 1e-9); // some of these bounds are as good as can be
+}
+
+/// All answers at the distance of the nearest pair, a last bit less, and a little less, are those of brute force.
+void expectExact(const SphereHierarchy& a, const SphereHierarchy& b, const Eigen::Isometry3d& pose_b,
+                 const std::string& what)
+{
+  const Placed at_a(a), at_b(b, pose_b);
+  const DistanceResult expected = brute_force::closestPair(at_a, at_b), found = closestPair(at_a, at_b);
+  ASSERT_EQ(found.distance, expected.distance) << what;
+  ASSERT_EQ(found.pair, expected.pair) << what;
+  if (!expected.pair) return;
+  for (const double clearance : {expected.distance, std::nextafter(expected.distance, 0.0),
+                                 expected.distance * (1.0 - 1e-6), expected.distance * (1.0 + 1e-7)}) {
+    if (!(clearance >= 0.0)) continue;
+    const FlagsRequest request{clearance, Side::both, 1, {}};
+    const FlagsResult flags = brute_force::collisionFlags(at_a, at_b, request),
+                      own = collisionFlags(at_a, at_b, request);
+    ASSERT_EQ(own.a, flags.a) << what << ", " << clearance;
+    ASSERT_EQ(own.b, flags.b) << what << ", " << clearance;
+    ASSERT_EQ(anyCollision(at_a, at_b, {clearance, {}}).verdict,
+              brute_force::anyCollision(at_a, at_b, {clearance, {}}).verdict)
+        << what << ", " << clearance;
+  }
+}
+
+TEST(FarNodes, AnswersAreThoseOfBruteForce)
+{
+  Random random(62);
+  for (int kind_a = 0; kind_a < 5; ++kind_a)
+    for (int kind_b = 0; kind_b <= kind_a; ++kind_b) {
+      auto points_a = shapeOf(kind_a, 600, random), points_b = shapeOf(kind_b, 600, random);
+      const std::string what = std::to_string(kind_a) + " and " + std::to_string(kind_b);
+      const bool concentric = random.chance(0.3);
+      const double size = concentric ? std::pow(10.0, random.uniform(-4, -1)) : 1.0;
+      for (Point3& p : points_b) p = scaled(p, size);
+      for (int k = 0; k < 20; ++k) {
+        points_a[static_cast<std::size_t>(random.integer(0, 500))] = {kNan, 0, 0};
+        points_b[static_cast<std::size_t>(k)] = points_b[300]; // more points at one place than a leaf has
+      }
+      Cloud a(points_a), b(points_b);
+      if (random.chance(0.2)) b.setRadii(std::vector<float>(points_b.size(), 0.01f));
+      HierarchyOptions options;
+      if (random.chance(0.3)) options.voxel_edge = 0.3;
+      const SphereHierarchy of_a(a.view(), options), of_b(b.view(), options);
+      expectExact(of_a, of_b, concentric ? Eigen::Isometry3d::Identity() : poseAt(random.uniform(0, 12), random), what);
+      if (HasFatalFailure()) return;
+    }
+}
+
+TEST(FarNodes, OfOnePoint)
+{
+  const Cloud one({{0, 0, 0}}), ring(helix(900, 1, 0));
+  const SphereHierarchy a(one.view()), b(ring.view());
+  expectExact(a, b, Eigen::Isometry3d::Identity(), "one point within a ring");
+  expectExact(b, a, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.25)), "one point over a ring");
+}
+
+TEST(FarNodes, ForgetWhatWasFittedBeforePointsMoved)
+{
+  // A ring whose points are moved inward, each second one: what was fitted to the round one is too thin for it.
+  const std::vector<Point3> round = helix(1600, 1, 0);
+  Cloud line(axis(1600, 1)), ring(round);
+  const SphereHierarchy a(line.view());
+  SphereHierarchy b(ring.view());
+  const double before = closestPair(Placed(a), Placed(b)).distance;
+  ASSERT_TRUE(b.storage().voxels[0].cross_slabs.isFitted());
+  EXPECT_TRUE(b.validate().none());
+  std::vector<Point3> moved = round;
+  for (std::size_t i = 0; i < moved.size(); i += 2) moved[i] = scaled(moved[i], 0.998);
+  Cloud now(moved);
+  const RefitReport report = b.refit(now.view(), 100.0);
+  ASSERT_FALSE(report.sorted_anew);
+  ASSERT_EQ(report.voxels_dropped, 0u);
+  EXPECT_LT(closestPair(Placed(a), Placed(b)).distance, before);
+  expectExact(a, b, Eigen::Isometry3d::Identity(), "refitted");
+  EXPECT_TRUE(b.validate().none());
+
+  // And single records.
+  const std::int32_t record = 1200;
+  HierarchyUpdate update(b, &record, 1);
+  moved[1200] = scaled(moved[1200], 0.9);
+  Cloud later(moved);
+  update.commit(later.view());
+  expectExact(a, b, Eigen::Isometry3d::Identity(), "updated");
+}
+
+} // namespace
+} // namespace pcl_bsh
