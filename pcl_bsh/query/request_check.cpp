@@ -42,8 +42,9 @@ void checkAccuracy(const Accuracy& accuracy)
 void checkNoUncertainty(const std::string& name, const PointsView& points)
 {
   if (!points.isUncertain()) return;
-  throw InvalidInput(Input::uncertainty, name, "its points have uncertainties, which this query does not know",
-                     "give a view without, or ask anyCollision(), collisionFlags(), collidingIndices() or collideAlong()");
+  throw InvalidInput(
+      Input::uncertainty, name, "its points have uncertainties, which this query does not know",
+      "give a view without, or ask anyCollision(), collisionFlags(), collidingIndices() or collideAlong()");
 }
 
 bool isRigid(const Eigen::Isometry3d& pose)
