@@ -16,7 +16,8 @@ namespace pcl_bsh {
 
 struct TrajectoryResult;
 
-/// The field that holds collision flags: UINT8, 1 = collides, 2 = undecided, 0 = free.
+/// The field that holds collision flags: UINT8, 1 = collides, 2 = undecided, 3 = undecided, for the
+/// obstacle is not scanned densely enough, 0 = free.
 inline constexpr const char* collision_field_name = "collision";
 
 /// Along a trajectory: FLOAT32, the smallest distance, NaN where free; INT32, numbers of poses, -1 where free.

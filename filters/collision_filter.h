@@ -57,7 +57,8 @@ public:
   void filter(pcl::Indices& indices);
 
   /// One flag per point of the whole input cloud, 1 = collides (also after setNegative(true)), 2 = undecided (only
-  /// where setAccuracy() lets a query stop early, or where points are uncertain); 0 for points outside setIndices() and
+  /// where setAccuracy() lets a query stop early, or where points are uncertain), 3 = not scanned
+  /// densely enough (setDensityGuard()); 0 for points outside setIndices() and
   /// for points that are not finite. Throws as filter() does.
   void computeFlags(std::vector<std::uint8_t>& flags);
 

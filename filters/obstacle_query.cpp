@@ -2,10 +2,14 @@
 #include <pcl_bsh/filters/obstacle_query.h>
 
 #include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/geometry/plain_text.h>
+#include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <pcl/console/print.h>
 
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -69,6 +73,7 @@ void ObstacleQuery::setObstacle(std::function<PointsView()> view, Fields fields)
   obstacle_ = std::move(view);
   obstacle_fields_ = std::move(fields);
   hierarchy_.reset();
+  spacings_.reset();
 }
 
 void ObstacleQuery::setInputUncertainty(const Uncertainty& uncertainty)
@@ -84,6 +89,27 @@ void ObstacleQuery::setObstacleUncertainty(const Uncertainty& uncertainty)
   Uncertainty copy = uncertainty;
   obstacle_uncertainty_ = std::move(copy);
   hierarchy_.reset(); // it holds its points' uncertainties
+}
+
+void ObstacleQuery::setWidestGap(double widest_gap)
+{
+  widest_gap_ = widest_gap;
+  spacings_.reset();
+}
+
+const float* ObstacleQuery::obstacleSpacings(const SphereHierarchy& obstacle)
+{
+  if (!density_guard_) return nullptr;
+  if (!(std::isfinite(widest_gap_) && widest_gap_ >= 0.0)) {
+    throw InvalidInput(Input::density, "widest gap", plainText(widest_gap_), "give a finite length >= 0")
+        .withValue(widest_gap_);
+  }
+  if (!spacings_) {
+    const double gap = widest_gap_ > 0.0 ? widest_gap_ : usualGap(obstacle);
+    spacings_ = std::make_shared<std::vector<float>>(gap > 0.0 ? patchSpacings(obstacle, gap, threads_)
+                                                               : std::vector<float>(obstacle.view().count));
+  }
+  return spacings_->data();
 }
 
 PointsView ObstacleQuery::obstacleView() const
@@ -122,6 +148,10 @@ void ObstacleQuery::warnOfCoarse(const char* cloud, const SphereHierarchy& hiera
 
 TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& request)
 {
+  if (density_guard_) {
+    throw InvalidInput(Input::density, "density guard", "knows flags at one pose, neither paths nor distances",
+                       "call setPose(), or setDensityGuard(false)");
+  }
   if (trajectory_ && trajectory_->empty()) {
     throw std::invalid_argument("trajectory has no pose: give one at least, or call setPose()");
   }
@@ -142,6 +172,7 @@ TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& 
       collideAlong({hierarchy}, obstacle, trajectory_ ? *trajectory_ : std::vector{pose_}, request);
   work_ = result.work;
   undecided_ = result.undecided;
+  sparse_ = 0;
   return result;
 }
 
@@ -172,9 +203,11 @@ std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input)
   request.flagged = Side::a;
   request.threads = threads_;
   request.accuracy = accuracy_;
+  request.spacings_of_b = obstacleSpacings(obstacle);
   FlagsResult result = pcl_bsh::collisionFlags({hierarchy}, {obstacle, pose_}, request);
   work_ = result.work;
-  undecided_ = result.undecided_a;
+  undecided_ = result.undecided_a + result.sparse_a;
+  sparse_ = result.sparse_a;
   return std::move(result.a);
 }
 

@@ -94,6 +94,23 @@ public:
   /// uncertain.
   std::size_t getUndecidedCount() const { return undecided_; }
 
+  /// How many of them because the obstacle is not scanned densely enough.
+  std::size_t getSparseCount() const { return sparse_; }
+
+  /// The density guard: a point that is free of all of the obstacle's points, but not of its surface between them, is
+  /// undecided with the reason *not scanned densely enough*: its flag is 3, and it counts as colliding wherever points
+  /// are kept or removed. FlagsRequest::spacings_of_b says what is promised and what not, patchSpacings() how wide the
+  /// holes between the obstacle's points are taken to be. These are measured once for an obstacle. At one pose: along a
+  /// trajectory, filtering throws. Default: false.
+  void setDensityGuard(bool density_guard) { density_guard_ = density_guard; }
+  bool getDensityGuard() const { return density_guard_; }
+
+  /// What gapes wider in the obstacle is an opening, not a surface. 0 (default): eight times the median distance of its
+  /// points from their nearest neighbours. Where lines of a scan are farther apart than that, give more than what is
+  /// between the lines. Finite and >= 0, or filtering throws.
+  void setWidestGap(double widest_gap);
+  double getWidestGap() const { return widest_gap_; }
+
   /// Default 1; 0: all of the machine's. The answer is the same for any number.
   void setNumberOfThreads(unsigned threads) { threads_ = threads; }
   unsigned getNumberOfThreads() const { return threads_; }
@@ -147,6 +164,7 @@ private:
   PointsView obstacleView() const;
   void warnOfCoarse(const char* cloud, const SphereHierarchy& hierarchy);
   const SphereHierarchy& obstacleHierarchy();
+  const float* obstacleSpacings(const SphereHierarchy& obstacle);
   TrajectoryResult run(const PointsView& input, TrajectoryRequest& request);
 
   std::function<PointsView()> obstacle_; ///< owns its cloud
@@ -163,6 +181,10 @@ private:
   unsigned threads_ = 1;
   Work work_;
   std::size_t undecided_ = 0;
+  std::size_t sparse_ = 0;
+  bool density_guard_ = false;
+  double widest_gap_ = 0.0;
+  std::shared_ptr<const std::vector<float>> spacings_; ///< of the hierarchy's records, once they are asked for
   bool warned_ = false; ///< of coordinates too coarse for the clearance; once, for clouds come in streams
 
 public:

@@ -15,6 +15,7 @@
 #include <pcl_bsh/filters/reports/distance_report.h>
 #include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -231,6 +232,7 @@ void summarise(const Options& options, const cli::CollisionReport& report, const
   std::ostream& out = options.files.summary();
   out << report.colliding << " of " << report.input.points << " points collide";
   if (report.mayLeaveUndecided()) out << ", " << report.undecided << " are undecided";
+  if (report.widest_gap > 0) out << ", " << report.sparse << " are not scanned densely enough";
   if (report.closest.pair) {
     out << "; smallest distance " << distanceText(report) << ", between point " << report.closest.pair->a
         << " of the input and point " << report.closest.pair->b << " of the obstacle";
@@ -250,6 +252,15 @@ void summarise(const Options& options, const cli::CollisionReport& report, const
   out << "; wrote " << options.output.string() << '\n';
 }
 
+/// Of the density guard; none where it is not asked for, or the obstacle has no two places.
+std::vector<float> guardedSpacings(const Options& options, const SphereHierarchy& obstacle,
+                                   cli::CollisionReport& report)
+{
+  if (!options.density) return {};
+  report.widest_gap = options.widest_gap > 0 ? options.widest_gap : usualGap(obstacle);
+  return report.widest_gap > 0 ? patchSpacings(obstacle, report.widest_gap, options.threads) : std::vector<float>();
+}
+
 /// At one pose, without a list of clashes: flags, and the smallest distance however large.
 TrajectoryResult atPose(const Options& options, const SphereHierarchy& a, const SphereHierarchy& b,
                         cli::CollisionReport& report)
@@ -259,12 +270,15 @@ TrajectoryResult atPose(const Options& options, const SphereHierarchy& a, const 
   request.clearance = options.clearance;
   request.threads = options.threads;
   request.accuracy = options.accuracy;
+  const std::vector<float> spacings = guardedSpacings(options, b, report);
+  if (!spacings.empty()) request.spacings_of_b = spacings.data();
   FlagsResult flags = collisionFlags({a}, {b, options.pose}, request);
   report.closest = closestPair({a}, {b, options.pose}, {options.accuracy});
   report.seconds.query = query.done(std::to_string(flags.colliding_a) + " colliding");
   report.work = flags.work;
   report.work += report.closest.work;
   report.undecided = flags.undecided_a;
+  report.sparse = flags.sparse_a;
   TrajectoryResult found;
   found.flags = std::move(flags.a);
   found.colliding = flags.colliding_a;

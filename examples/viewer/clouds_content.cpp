@@ -36,8 +36,9 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, unsi
 /// As the field `collision` has it: any other number is a collision.
 Verdict verdictOf(float value)
 {
-  if (value == 0.0f) return Verdict::free;
-  return value == static_cast<float>(flagOf(Verdict::undecided)) ? Verdict::undecided : Verdict::colliding;
+  for (const Verdict verdict : {Verdict::free, Verdict::undecided, Verdict::sparse})
+    if (value == static_cast<float>(flagOf(verdict))) return verdict;
+  return Verdict::colliding;
 }
 
 } // namespace
@@ -107,6 +108,7 @@ StepCollisions CloudsContent::collisions(std::size_t step) const
   };
   found.colliding = count(Verdict::colliding);
   found.undecided = count(Verdict::undecided);
+  found.sparse = count(Verdict::sparse);
   if (options_.closest) found.closest = closest(step);
   return found;
 }
@@ -131,6 +133,7 @@ std::string CloudsContent::heading(const StepCollisions& collisions, std::size_t
   if (collisions.known) {
     text << ", " << grouped(collisions.colliding) << " collide";
     if (collisions.undecided > 0) text << ", " << grouped(collisions.undecided) << " are undecided";
+    if (collisions.sparse > 0) text << ", " << grouped(collisions.sparse) << " not scanned densely enough";
     if (options_.clearance) text << "  (clearance " << lengthOf(*options_.clearance, options_.unit) << ')';
   }
   if (steps() > 1) text << "\npose " << step << " of 0.." << steps() - 1;

@@ -81,6 +81,13 @@ void paintValues(CloudActor& cloud, ValueBar& bar, const Values& shown)
   bar.show(*table, shown.title, false);
 }
 
+/// Of what is not free.
+Color colorOfFlag(std::uint8_t flag)
+{
+  if (flag == flagOf(Verdict::undecided)) return undecided_color;
+  return flag == flagOf(Verdict::sparse) ? sparse_color : colliding_color;
+}
+
 /// Marks the points that have a value.
 /// @param colliding per record, drawn in the colour of collisions; empty: none
 void markValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Range& range,
@@ -92,7 +99,7 @@ void markValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Ran
   for (const float value : shown.values) known.push_back(std::isfinite(value) ? 1 : 0);
   std::vector<Color> colors = colorsOf(shown, *table);
   for (std::size_t i = 0; i < colliding.size(); ++i)
-    if (colliding[i] != 0) colors[i] = colliding[i] == flagOf(Verdict::undecided) ? undecided_color : colliding_color;
+    if (colliding[i] != 0) colors[i] = colorOfFlag(colliding[i]);
   cloud.mark(known, colors);
   if (std::find(known.begin(), known.end(), 1) != known.end())
     bar.show(*table, shown.title, shown.counts);
@@ -103,9 +110,9 @@ void markValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Ran
 /// The colours of what is not free, one per record.
 std::vector<Color> colorsOfVerdicts(const std::vector<std::uint8_t>& flags)
 {
-  std::vector<Color> colors(flags.size(), colliding_color);
-  for (std::size_t i = 0; i < flags.size(); ++i)
-    if (flags[i] == flagOf(Verdict::undecided)) colors[i] = undecided_color;
+  std::vector<Color> colors;
+  colors.reserve(flags.size());
+  for (const std::uint8_t flag : flags) colors.push_back(colorOfFlag(flag));
   return colors;
 }
 
@@ -211,7 +218,8 @@ void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& con
   else {
     if (coloring == Coloring::collision) requireCollisions(collisions, "collision");
     const std::vector<std::uint8_t>& flags = collisions.flags[0];
-    clouds[0].mark(flags, collisions.undecided > 0 ? colorsOfVerdicts(flags) : std::vector<Color>());
+    clouds[0].mark(flags,
+                   collisions.undecided + collisions.sparse > 0 ? colorsOfVerdicts(flags) : std::vector<Color>());
   }
   for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].mark(collisions.flags[i]);
 }

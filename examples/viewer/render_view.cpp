@@ -137,6 +137,8 @@ std::vector<LegendEntry> RenderView::legend() const
       add(viewed.legend + ", colliding", colliding_color);
     if (collisions_.undecided > 0 && (!by_value || content_.options().range))
       add(viewed.legend + ", undecided", undecided_color);
+    if (collisions_.sparse > 0 && (!by_value || content_.options().range))
+      add(viewed.legend + ", not scanned densely enough", sparse_color);
   }
   if (const MotionPaths paths = content_.paths(step_); !paths.poses.empty()) add(paths.name, path_color);
   if (collisions_.closest) add("closest pair", segment_color);
@@ -215,6 +217,7 @@ std::string RenderView::describe(const vtkProp* prop, vtkIdType id) const
     if (collisions_.known)
       text << (flag == flagOf(Verdict::free)        ? "; free"
                : flag == flagOf(Verdict::undecided) ? "; undecided"
+               : flag == flagOf(Verdict::sparse)    ? "; not scanned densely enough"
                                                     : "; collides");
     return text.str() + content_.details(i, *record, step_);
   }

@@ -28,6 +28,7 @@ struct StepCollisions {
   std::vector<std::vector<std::uint8_t>> flags; ///< of each viewed cloud, 1 = collides, per record; empty: none do
   std::size_t colliding = 0;                    ///< points of the scan, or of all clouds of a scene
   std::size_t undecided = 0;                    ///< likewise
+  std::size_t sparse = 0;                       ///< likewise, not scanned densely enough
   std::optional<ClosestPair> closest;
 };
 

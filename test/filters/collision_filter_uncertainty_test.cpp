@@ -212,5 +212,78 @@ TEST_F(CollisionFilterUncertainty, PointsThatAreNotFiniteNeedNone)
   EXPECT_EQ(flags(), expected(1.0, 0.0));
 }
 
+/// A wall scanned in lines that are apart by more than twice the clearance, and points before it.
+class CollisionFilterDensity : public testing::Test {
+protected:
+  CollisionFilterDensity()
+  {
+    Points wall;
+    for (int j = 0; j < 15; ++j)
+      for (int i = 0; i < 60; ++i) wall.emplace_back(0.0625 * i, 0.5 * j, 0.0);
+    for (int i = 0; i < 20; ++i)
+      for (const double z : {0.05, 0.15, 0.5}) points_.emplace_back(1.5, 2.0 + 0.1 * i, z);
+    filter_.setInputCloud(fieldCloud<float>(points_));
+    filter_.setObstacleCloud(fieldCloud<float>(wall));
+    filter_.setClearance(0.1);
+    filter_.setDensityGuard(true);
+    filter_.setWidestGap(1.0);
+  }
+
+  std::vector<std::uint8_t> flags()
+  {
+    std::vector<std::uint8_t> found;
+    filter_.computeFlags(found);
+    return found;
+  }
+
+  Points points_;
+  CollisionFilter<Cloud> filter_;
+};
+
+TEST_F(CollisionFilterDensity, HolesBetweenLinesAreNotFree)
+{
+  const std::vector<std::uint8_t> guarded = flags();
+  EXPECT_EQ(filter_.getSparseCount(), std::size_t(std::count(guarded.begin(), guarded.end(), 3)));
+  EXPECT_EQ(filter_.getUndecidedCount(), filter_.getSparseCount());
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (points_[i].z() <= 0.1) {
+      EXPECT_NE(guarded[i], 0) << "within the clearance of the wall";
+    }
+    if (points_[i].z() == 0.5) {
+      EXPECT_EQ(guarded[i], 0) << "farther than the clearance and half of a hole";
+    }
+  }
+  pcl::Indices kept;
+  filter_.filter(kept);
+  EXPECT_EQ(kept, where(guarded, false, points_)) << "free ones alone";
+  filter_.setDensityGuard(false);
+  const std::vector<std::uint8_t> plain = flags();
+  EXPECT_EQ(filter_.getSparseCount(), 0U);
+  for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_EQ(plain[i], guarded[i] == 3 ? 0 : guarded[i]);
+  EXPECT_NE(plain, guarded);
+}
+
+TEST_F(CollisionFilterDensity, WhatGapesWiderIsAnOpening)
+{
+  filter_.setWidestGap(0.25);
+  const std::vector<std::uint8_t> narrow = flags();
+  EXPECT_EQ(std::count(narrow.begin(), narrow.end(), 3), 0);
+  filter_.setWidestGap(1.0);
+  EXPECT_NE(flags(), narrow);
+}
+
+TEST_F(CollisionFilterDensity, Refuses)
+{
+  for (const double wrong : {-1.0, nan, infinity}) {
+    filter_.setWidestGap(wrong);
+    EXPECT_THAT([&] { flags(); }, refusedWith("widest gap: "));
+  }
+  filter_.setWidestGap(0.0);
+  EXPECT_NO_THROW(flags());
+  filter_.setTrajectory({Eigen::Isometry3d::Identity()});
+  EXPECT_THAT([&] { flags(); },
+              refusedWith("density guard: knows flags at one pose, neither paths nor distances: call "));
+}
+
 } // namespace
 } // namespace pcl_bsh

@@ -205,6 +205,27 @@ TEST_F(CollisionStages, RefuseUncertaintiesThatAreNone)
   }
 }
 
+TEST_F(CollisionStages, DensityIsTheFilters)
+{
+  auto direct = filter();
+  direct.setPose(Eigen::Isometry3d::Identity());
+  direct.setDensityGuard(true);
+  direct.setWidestGap(0.1);
+  std::vector<std::uint8_t> flags;
+  direct.computeFlags(flags);
+  ASSERT_GT(direct.getSparseCount(), 0U);
+  const std::string options = R"("clearance": 0.03, "density": true, "widest_gap": 0.1)";
+  const PipelineResult result = runStage(scan, stage("filters.bsh_flag", options), model);
+  const pcl::PCLPointCloud2& flagged = result.clouds.begin()->second->cloud;
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    ASSERT_EQ(flagged.data[i * flagged.point_step + flagged.fields.back().offset], flags[i]);
+  EXPECT_THAT(result.warnings, testing::ElementsAre(HasSubstr("where the obstacle is not scanned densely enough")));
+  EXPECT_THAT(error("filters.bsh_flag", R"("density": true, "trajectory": )" + quoted(track)),
+              EndsWith("/density: is for flags at one pose: leave out the trajectory, or `density`"));
+  EXPECT_THAT(error("filters.bsh_flag", R"("widest_gap": 1)"),
+              EndsWith("/widest_gap: is given, but not `density`: give `density`: true, too"));
+}
+
 TEST_F(CollisionStages, FieldsOfATrajectoryAreKnownBeforehand)
 {
   io::writeCloud(folder / "scan.pcd", scan->cloud);

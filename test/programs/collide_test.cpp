@@ -132,6 +132,31 @@ TEST_F(Collide, VerdictsHoldWhereverPointsTrulyAre)
   EXPECT_EQ(io::readCloud(folder / "free.ply").width, 1U) << "what is undecided is not free";
 }
 
+TEST_F(Collide, GuardsAgainstHolesBetweenPoints)
+{
+  std::string wall;
+  for (int j = 0; j < 12; ++j)
+    for (int i = 0; i < 12; ++i) wall += std::to_string(i) + ' ' + std::to_string(j) + " 0\n";
+  folder.write("wall.xyz", wall);
+  folder.write("points.xyz", "5 5 0.25\n5.5 5.5 0.25\n5.5 5.5 2\n");
+  const std::string job = "{points.xyz} {wall.xyz} {out.ply} --clearance 0.25 --report {report.json}";
+  expectDone(job);
+  EXPECT_EQ(flags("out.ply"), (std::vector<int>{1, 0, 0}));
+  EXPECT_EQ(report()["density"]["widest_gap"], nullptr);
+  const Outcome done = collide(job + " --density");
+  EXPECT_EQ(flags("out.ply"), (std::vector<int>{1, 3, 0}));
+  EXPECT_THAT(done.out, HasSubstr("1 of 3 points collide, 1 are not scanned densely enough; smallest distance"));
+  EXPECT_EQ(report()["not_scanned_densely_enough"], 1);
+  EXPECT_EQ(report()["free"], 1);
+  EXPECT_EQ(report()["density"]["widest_gap"], 8.0);
+  expectDone(job + " --density --widest-gap 1.2");
+  EXPECT_EQ(flags("out.ply"), (std::vector<int>{1, 0, 0})) << "what gapes wider is an opening";
+  expectFailure(job + " --widest-gap 1", 2, "--widest-gap: give --density, too");
+  expectFailure(job + " --density --widest-gap=-1", 2, "--widest-gap");
+  expectFailure(job + " --density --from 0,0,0,0,0,0 --to 1,0,0,0,0,0 --steps 2", 2,
+                "--density: is for flags at one pose: leave out the path and --clashes");
+}
+
 TEST_F(Collide, RefusesUncertaintiesThatAreNone)
 {
   const std::string job = "{input.ply} {obstacle.xyz} {out.ply} --clearance 1 ";

@@ -123,12 +123,28 @@ struct UncertaintyTexts {
   }
 };
 
+void addDensityOptions(CLI::App& app, CollideOptions& options)
+{
+  app.add_flag("--density", options.density,
+               "points that are free of OBSTACLE's points, but within D of its surface in\n"
+               "a hole between them, get 3 in the field 'collision': not scanned\n"
+               "densely enough");
+  app.add_option("--widest-gap", options.widest_gap,
+                 "with --density: what gapes wider in OBSTACLE is an opening, not a\n"
+                 "surface (default: eight spacings of OBSTACLE)")
+      ->type_name("L")
+      ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
+}
+
 /// Checks that involve several options.
 void requireConsistent(const CollideOptions& options)
 {
   if (options.clashes.empty() && (options.cluster_distance > 0 || options.previous))
     throw UsageError(std::string(options.previous ? "--previous" : "--cluster-distance") +
                      ": no clash report is written: give --clashes FILE");
+  if (options.density && (options.moves() || !options.clashes.empty()))
+    throw UsageError("--density: is for flags at one pose: leave out the path and --clashes");
+  if (options.widest_gap > 0 && !options.density) throw UsageError("--widest-gap: give --density, too");
   const Accuracy& accuracy = options.accuracy;
   if (accuracy.stopsEarly() && !options.clashes.empty())
     throw UsageError("--accuracy: " + accuracy.text() +
@@ -163,7 +179,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   path.addTo(app);
   app.add_option("--keep", options.keep,
                  "flagged: all points, with a field 'collision': 1 collides, 0 is free,\n"
-                 "2 is undecided (default)\n"
+                 "2 and 3 are undecided (default)\n"
                  "colliding: only these, and those that are undecided\n"
                  "free: only finite points that do not collide")
       ->type_name("WHICH")
@@ -180,6 +196,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   distances.addTo(app);
   UncertaintyTexts uncertainties;
   uncertainties.addTo(app);
+  addDensityOptions(app, options);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--threads", options.threads, "0: all of the machine's (default); any number gives the same result")
       ->type_name("N")

@@ -46,6 +46,8 @@ struct CollideOptions {
   unsigned threads = 0;        ///< all of the machine's
   Accuracy accuracy;
   Uncertainty input_uncertainty, obstacle_uncertainty;
+  bool density = false;
+  double widest_gap = 0;             ///< 0: as the obstacle's spacing suggests
   std::vector<std::string> warnings; ///< of the options themselves
   CommandFiles files;                ///< all that are read or written
 

@@ -56,7 +56,8 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   json["clearance"] = report.clearance;
   json["colliding"] = report.colliding;
   json["undecided"] = report.undecided;
-  json["free"] = report.input.finite - report.colliding - report.undecided;
+  json["not_scanned_densely_enough"] = report.sparse;
+  json["free"] = report.input.finite - report.colliding - report.undecided - report.sparse;
   json["uncertainty"] = {{"input", toJson(report.input_uncertainty)},
                          {"obstacle", toJson(report.obstacle_uncertainty)}};
   json["distance"] = nullptr;
@@ -74,6 +75,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   json["density"] = {{"input", toJson(report.density.input)},
                      {"obstacle", toJson(report.density.obstacle)},
                      {"blind", report.density.blind()},
+                     {"widest_gap", report.widest_gap > 0 ? nlohmann::ordered_json(report.widest_gap) : nullptr},
                      {"could_hide_collisions", report.density.couldHide(report.clearance)}};
   if (report.path) json["path"] = toJson(*report.path);
   if (report.distances) json["distances"] = *report.distances;

@@ -64,6 +64,8 @@ struct CollisionReport {
   Uncertainty input_uncertainty, obstacle_uncertainty;
   std::size_t colliding = 0; ///< points of the input
   std::size_t undecided = 0; ///< likewise
+  std::size_t sparse = 0;    ///< likewise, and not among the undecided
+  double widest_gap = 0;     ///< of the density guard; 0: not guarded
   DistanceResult closest;    ///< a: the input, b: the obstacle; along a path within the clearance only
   Density density;
   std::optional<PathReport> path;

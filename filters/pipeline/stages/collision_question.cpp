@@ -86,6 +86,9 @@ std::vector<std::string> CollisionQuestion::check(const CloudHeader& input, bool
     throw OptionError(optionOf(error.input(), trajectory.has_value()), error.advice());
   }
   checkUncertainties(input);
+  if (density && (trajectory || distances))
+    throw OptionError("density", "is for flags at one pose: leave out the trajectory, or `density`");
+  if (widest_gap && !density) throw OptionError("widest_gap", "is given, but not `density`: give `density`: true, too");
   return warnings;
 }
 
@@ -99,6 +102,8 @@ void CollisionQuestion::setUp(Filter& filter, const StageCloudPtr& input, const 
   if (trajectory) filter.setTrajectory(poses_);
   filter.setSwept(swept);
   filter.setAccuracy(Accuracy::parse(accuracy));
+  filter.setDensityGuard(density);
+  filter.setWidestGap(widest_gap.value_or(0.0));
   filter.setInputUncertainty(given(uncertainty));
   filter.setObstacleUncertainty(given(obstacle_uncertainty));
   filter.setNumberOfThreads(number_of_threads);
@@ -110,6 +115,10 @@ std::string CollisionQuestion::undecidedWarning(const Filter& filter) const
   if (undecided == 0) return {};
   const char* const why = isUncertain() ? " points stay undecided where places are as uncertain"
                                         : " points stay undecided with this accuracy";
+  if (const std::size_t sparse = filter.getSparseCount(); sparse > 0) {
+    return std::to_string(undecided) + " points stay undecided, of which " + std::to_string(sparse) +
+           " where the obstacle is not scanned densely enough: they are not taken for free";
+  }
   return std::to_string(undecided) + why + ": they are not taken for free";
 }
 

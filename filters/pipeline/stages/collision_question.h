@@ -25,6 +25,8 @@ struct CollisionQuestion {
   LengthOrField uncertainty;
   LengthOrField obstacle_uncertainty;
   double sigmas = 1;
+  bool density = false;
+  std::optional<double> widest_gap;
 
 protected:
   using Filter = CollisionFilter<pcl::PCLPointCloud2>;
@@ -88,6 +90,16 @@ StageDescription<S>& withCollisionOptions(StageDescription<S>& description)
       .atLeast(0)
       .option(&S::sigmas, "sigmas", "by how many sigmas a point may be off, where an uncertainty is a field")
       .atLeast(0)
+      .option(&S::density, "density",
+              "true: a point that is free of the obstacle's points, but within `clearance` of the surface in a hole "
+              "between "
+              "them, is undecided: not scanned densely enough. At one pose")
+      .option(
+          &S::widest_gap, "widest_gap",
+          "with `density`: what gapes wider in the obstacle is an opening, not a surface; null: eight times the median "
+          "distance between its neighbouring points, too little where lines of a scan are farther apart")
+      .unit("m")
+      .above(0)
       .option(&S::number_of_threads, "number_of_threads",
               "0: all of the machine's; the result is the same for any number")
       .atMost(1024);
