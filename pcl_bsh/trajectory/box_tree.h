@@ -94,6 +94,9 @@ public:
   /// A leaf of a voxel whose boxes were made.
   BoxLeaf leaf(std::uint32_t voxel, std::uint32_t number) const { return voxels_[voxel].boxed.leaf(number); }
 
+  /// Of the coordinates that a voxel stores.
+  double unit(std::uint32_t voxel) const { return storage.voxels[voxel].frame.unit; }
+
   /// From the tree's origin to the voxel's.
   Point3 offset(std::uint32_t index) const;
 

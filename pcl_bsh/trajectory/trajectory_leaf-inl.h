@@ -188,11 +188,10 @@ private:
   HWY_INLINE void comparePoses(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
                                const ModelBox& box, const VoxelMotion& motion)
   {
-    const bool narrows = motion.squares && unitOf(box.voxel) == 1.0;
+    const bool narrows = motion.squares && tree_.unit(box.voxel) == 1.0;
     if (narrows) lanes = nearPoints(leaf, lanes, box, motion, clipped);
     const PoseRanges ranges = rangesOf(lanes, clipped, motion);
-    if (ranges.lanes == 0) return;
-    lanes = ranges.lanes;
+    if ((lanes = ranges.lanes) == 0) return;
     if (narrows && !query_.everything() && !query_.first) {
       // Any pose will do: the one in the middle is nearest.
       for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
@@ -233,7 +232,7 @@ private:
     if (lanes == 0) return;
     ++results_.work.leaf_pairs;
     const BoxLeaf other = pointsIn(box);
-    const double unit = unitOf(box.voxel);
+    const double unit = tree_.unit(box.voxel);
     const AffineMap map = voxel_frame_.mapAt(path_.poses[k], tree_.offset(box.voxel), unit);
     bool certain = (query_.everything() ? query_.nearestDecides() : query_.radii == 0.0) && unit == 1.0 &&
                    voxel_frame_.frame.unit == 1.0;
@@ -265,9 +264,6 @@ private:
     }
     if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, motion);
   }
-
-  /// Of the coordinates that a voxel of the model stores.
-  double unitOf(std::uint32_t voxel) const { return tree_.storage.voxels[voxel].frame.unit; }
 
   /// What follows from the points in `hit`, which collide at pose k.
   void note(LeafVisit& leaf, std::uint32_t hit, const LeafPoints& points, const float* nearest, bool certain,
@@ -318,7 +314,7 @@ private:
   HWY_NOINLINE void compareSegments(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
                                     const ModelBox& box, const VoxelMotion& motion)
   {
-    if (motion.squares && unitOf(box.voxel) == 1.0) lanes = nearPoints(leaf, lanes, box, motion, clipped);
+    if (motion.squares && tree_.unit(box.voxel) == 1.0) lanes = nearPoints(leaf, lanes, box, motion, clipped);
     const BoxLeaf other = pointsIn(box);
     ++results_.work.leaf_pairs;
     const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
