@@ -5,6 +5,7 @@
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/geometry/rounding.h>
 
+#include <pcl/common/io.h>
 #include <pcl/type_traits.h>
 
 #include <algorithm>
