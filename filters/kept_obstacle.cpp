@@ -10,7 +10,7 @@ namespace pcl_bsh {
 namespace {
 
 /// One step of a checksum: for each word a bijection of the sum, so that no change of one word goes unnoticed.
-std::uint64_t withWord(std::uint64_t sum, std::uint64_t word)
+std::uint64_t mixed(std::uint64_t sum, std::uint64_t word)
 {
   constexpr std::uint64_t golden = 0x9e3779b97f4a7c15; // odd
   sum = (sum ^ word) * golden;
@@ -18,7 +18,7 @@ std::uint64_t withWord(std::uint64_t sum, std::uint64_t word)
 }
 
 template <typename Bits>
-std::uint64_t coordinateChecksum(const PointsView& view)
+std::uint64_t checksumOf(const PointsView& view)
 {
   std::uint64_t sum = view.count;
   const auto [x, y, z] = view.offset;
@@ -30,37 +30,58 @@ std::uint64_t coordinateChecksum(const PointsView& view)
       return std::uint64_t{word};
     };
     if constexpr (sizeof(Bits) == 4) {
-      sum = withWord(sum, bits(y) << 32 | bits(x));
+      sum = mixed(sum, bits(y) << 32 | bits(x));
     }
     else {
-      sum = withWord(withWord(sum, bits(x)), bits(y));
+      sum = mixed(mixed(sum, bits(x)), bits(y));
     }
-    sum = withWord(sum, bits(z));
+    sum = mixed(sum, bits(z));
   }
   return sum;
 }
 
-/// Of all coordinates and their order. Bytes between them may change.
-std::uint64_t coordinateChecksum(const PointsView& view)
+/// Of all coordinates, their order and the points' own uncertainties. Bytes between them may change.
+std::uint64_t checksumOf(const PointsView& view)
 {
-  return view.scalar == Scalar::float32 ? coordinateChecksum<std::uint32_t>(view)
-                                        : coordinateChecksum<std::uint64_t>(view);
+  std::uint64_t sum =
+      view.scalar == Scalar::float32 ? checksumOf<std::uint32_t>(view) : checksumOf<std::uint64_t>(view);
+  for (std::size_t i = 0; view.uncertainties && i < view.count; ++i) {
+    std::uint32_t word;
+    std::memcpy(&word, view.uncertainties + i, sizeof word);
+    sum = mixed(sum, word);
+  }
+  return sum;
 }
 
 } // namespace
 
-void KeptObstacle::setView(std::function<PointsView()> view)
+void KeptObstacle::setView(std::function<PointsView()> view, Fields fields)
 {
   view(); // a cloud that cannot be read is refused here, not at the first use
   view_ = std::move(view);
+  fields_ = std::move(fields);
   hierarchy_.reset();
+}
+
+void KeptObstacle::setUncertainty(const Uncertainty& uncertainty)
+{
+  checkUncertainty("obstacle cloud", uncertainty);
+  Uncertainty copy = uncertainty;
+  uncertainty_ = std::move(copy);
+  hierarchy_.reset();
+}
+
+PointsView KeptObstacle::uncertainView() const
+{
+  const auto fields = uncertainty_.field.empty() ? std::vector<pcl::PCLPointField>() : fields_();
+  return withUncertainty(view_(), fields, "obstacle cloud", uncertainty_);
 }
 
 const SphereHierarchy& KeptObstacle::hierarchy(unsigned threads)
 {
   if (!view_) throw std::invalid_argument("obstacle cloud is missing: call setObstacleCloud() before filtering");
-  const PointsView view = view_();
-  const std::uint64_t checksum = coordinateChecksum(view);
+  const PointsView view = uncertainView();
+  const std::uint64_t checksum = checksumOf(view);
   if (!hierarchy_) {
     HierarchyOptions options;
     options.threads = threads;

@@ -3,20 +3,35 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/search/cloud_view.h>
+
+#include <pcl/common/io.h>
 
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <stdexcept>
+#include <vector>
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 class SphereHierarchy;
 
-/// The cloud's points must not change from setCloud() on: every use compares a checksum of their coordinates. That
-/// takes some 20 instructions a point, a tenth or less of what building takes.
+/// The fields of a cloud's records.
+template <typename PointT>
+std::vector<pcl::PCLPointField> fieldsOfRecords(const pcl::PointCloud<PointT>&)
+{
+  return pcl::getFields<PointT>();
+}
+inline std::vector<pcl::PCLPointField> fieldsOfRecords(const pcl::PCLPointCloud2& cloud)
+{
+  return cloud.fields;
+}
+
+/// The cloud's points must not change from setCloud() on: every use compares a checksum of their coordinates and
+/// uncertainties. That takes some 20 instructions a point, a tenth or less of what building takes.
 class KeptObstacle {
 public:
   /// @throws std::invalid_argument when the pointer is null, or as viewOf() does
@@ -24,22 +39,33 @@ public:
   void setCloud(const std::shared_ptr<Cloud>& cloud)
   {
     if (!cloud) throw std::invalid_argument("obstacle cloud is null: give an empty cloud if there is no obstacle");
-    setView([cloud] { return viewOf(*cloud); });
+    setView([cloud] { return viewOf(*cloud); }, [cloud] { return fieldsOfRecords(*cloud); });
   }
 
+  /// Default: none. The hierarchy is built anew, for it holds its points' uncertainties.
+  /// @throws std::invalid_argument for numbers that are not finite and >= 0
+  void setUncertainty(const Uncertainty& uncertainty);
+  const Uncertainty& uncertainty() const { return uncertainty_; }
+
   /// Built on the first use. @param threads that build it
-  /// @throws std::invalid_argument when there is no cloud, or it has changed
+  /// @throws std::invalid_argument when there is no cloud, it has changed, or its uncertainties are not what
+  ///   withUncertainty() asks for
   const SphereHierarchy& hierarchy(unsigned threads);
 
   /// The points of the hierarchy. @pre hierarchy() was called
   const PointsView& view() const;
 
 private:
-  void setView(std::function<PointsView()> view);
+  using Fields = std::function<std::vector<pcl::PCLPointField>()>;
+
+  void setView(std::function<PointsView()> view, Fields fields);
+  PointsView uncertainView() const;
 
   std::function<PointsView()> view_; ///< owns its cloud
+  Fields fields_;                    ///< likewise
+  Uncertainty uncertainty_;
   std::shared_ptr<const SphereHierarchy> hierarchy_;
-  std::uint64_t checksum_ = 0; ///< of the coordinates that the hierarchy was built from
+  std::uint64_t checksum_ = 0; ///< of what the hierarchy was built from
 };
 
 } // namespace pcl_bsh

@@ -10,70 +10,13 @@
 #include <pcl/console/print.h>
 
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 namespace pcl_bsh {
-namespace {
-
-/// One step of a checksum: for each word a bijection of the sum, so that no change of one word goes unnoticed.
-std::uint64_t mixed(std::uint64_t sum, std::uint64_t word)
-{
-  constexpr std::uint64_t golden = 0x9e3779b97f4a7c15; // odd
-  sum = (sum ^ word) * golden;
-  return sum ^ sum >> 32; // products carry upward only: a sign that flips twice would cancel out
-}
-
-template <typename Bits>
-std::uint64_t checksumOf(const PointsView& view)
-{
-  std::uint64_t sum = view.count;
-  const auto [x, y, z] = view.offset;
-  const auto* record = static_cast<const unsigned char*>(view.data);
-  for (std::size_t i = 0; i < view.count; ++i, record += view.stride) {
-    const auto bits = [record](std::size_t offset) {
-      Bits word;
-      std::memcpy(&word, record + offset, sizeof word);
-      return std::uint64_t{word};
-    };
-    if constexpr (sizeof(Bits) == 4) {
-      sum = mixed(sum, bits(y) << 32 | bits(x));
-    }
-    else {
-      sum = mixed(mixed(sum, bits(x)), bits(y));
-    }
-    sum = mixed(sum, bits(z));
-  }
-  return sum;
-}
-
-/// Of all coordinates, their order and the points' own uncertainties. Bytes between them may change.
-std::uint64_t checksumOf(const PointsView& view)
-{
-  std::uint64_t sum =
-      view.scalar == Scalar::float32 ? checksumOf<std::uint32_t>(view) : checksumOf<std::uint64_t>(view);
-  for (std::size_t i = 0; view.uncertainties && i < view.count; ++i) {
-    std::uint32_t word;
-    std::memcpy(&word, view.uncertainties + i, sizeof word);
-    sum = mixed(sum, word);
-  }
-  return sum;
-}
-
-} // namespace
 
 ObstacleQuery& ObstacleQuery::operator=(const ObstacleQuery& other)
 {
   return *this = ObstacleQuery(other); // moving allocates nothing
-}
-
-void ObstacleQuery::setObstacle(std::function<PointsView()> view, Fields fields)
-{
-  view(); // a cloud that cannot be read is refused here, not at the first use
-  obstacle_ = std::move(view);
-  obstacle_fields_ = std::move(fields);
-  hierarchy_.reset();
-  spacings_.reset();
 }
 
 void ObstacleQuery::setInputUncertainty(const Uncertainty& uncertainty)
@@ -81,14 +24,6 @@ void ObstacleQuery::setInputUncertainty(const Uncertainty& uncertainty)
   checkUncertainty("input cloud", uncertainty);
   Uncertainty copy = uncertainty;
   input_uncertainty_ = std::move(copy);
-}
-
-void ObstacleQuery::setObstacleUncertainty(const Uncertainty& uncertainty)
-{
-  checkUncertainty("obstacle cloud", uncertainty);
-  Uncertainty copy = uncertainty;
-  obstacle_uncertainty_ = std::move(copy);
-  hierarchy_.reset(); // it holds its points' uncertainties
 }
 
 void ObstacleQuery::setWidestGap(double widest_gap)
@@ -112,30 +47,6 @@ const float* ObstacleQuery::obstacleSpacings(const SphereHierarchy& obstacle)
   return spacings_->data();
 }
 
-PointsView ObstacleQuery::obstacleView() const
-{
-  const auto fields = obstacle_uncertainty_.field.empty() ? std::vector<pcl::PCLPointField>() : obstacle_fields_();
-  return withUncertainty(obstacle_(), fields, "obstacle cloud", obstacle_uncertainty_);
-}
-
-const SphereHierarchy& ObstacleQuery::obstacleHierarchy()
-{
-  if (!obstacle_) throw std::invalid_argument("obstacle cloud is missing: call setObstacleCloud() before filtering");
-  const PointsView view = obstacleView();
-  const std::uint64_t checksum = checksumOf(view);
-  if (!hierarchy_) {
-    HierarchyOptions options;
-    options.threads = threads_;
-    hierarchy_ = std::make_shared<SphereHierarchy>(view, options);
-    checksum_ = checksum;
-  }
-  // The hierarchy points into the cloud's memory, and its spheres hold the points as they were.
-  if (hierarchy_->view().data != view.data || hierarchy_->view().count != view.count || checksum_ != checksum) {
-    throw std::invalid_argument("obstacle cloud has changed since setObstacleCloud(): call it again");
-  }
-  return *hierarchy_;
-}
-
 void ObstacleQuery::warnOfCoarse(const char* cloud, const SphereHierarchy& hierarchy)
 {
   const double spacing = hierarchy.coordinateSpacing();
@@ -155,7 +66,7 @@ TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& 
   if (trajectory_ && trajectory_->empty()) {
     throw std::invalid_argument("trajectory has no pose: give one at least, or call setPose()");
   }
-  const SphereHierarchy& obstacle = obstacleHierarchy();
+  const SphereHierarchy& obstacle = obstacle_.hierarchy(threads_);
   HierarchyOptions options;
   options.threads = threads_;
   const SphereHierarchy hierarchy(input, options);
@@ -190,7 +101,7 @@ std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input)
     TrajectoryRequest request;
     return run(input, request).flags;
   }
-  const SphereHierarchy& obstacle = obstacleHierarchy();
+  const SphereHierarchy& obstacle = obstacle_.hierarchy(threads_);
   HierarchyOptions options;
   options.threads = threads_;
   const SphereHierarchy hierarchy(input, options);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/filters/kept_obstacle.h>
 #include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/result.h>
@@ -39,7 +40,11 @@ public:
   /// collides with nothing.
   /// @throws std::invalid_argument when the pointer is null, or as viewOf() does.
   template <typename Cloud>
-  void setObstacleCloud(const std::shared_ptr<Cloud>& cloud);
+  void setObstacleCloud(const std::shared_ptr<Cloud>& cloud)
+  {
+    obstacle_.setCloud(cloud);
+    spacings_.reset();
+  }
 
   /// Greatest distance at which two points collide; touching counts. Finite and >= 0 (default 0), or filtering throws.
   void setClearance(double clearance) { clearance_ = clearance; }
@@ -86,9 +91,9 @@ public:
   /// @throws std::invalid_argument for numbers that are not finite and >= 0. Filtering throws where a field is missing,
   ///   or holds such a number for a finite point.
   void setInputUncertainty(const Uncertainty& uncertainty);
-  void setObstacleUncertainty(const Uncertainty& uncertainty);
+  void setObstacleUncertainty(const Uncertainty& uncertainty) { obstacle_.setUncertainty(uncertainty); }
   const Uncertainty& getInputUncertainty() const { return input_uncertainty_; }
-  const Uncertainty& getObstacleUncertainty() const { return obstacle_uncertainty_; }
+  const Uncertainty& getObstacleUncertainty() const { return obstacle_.uncertainty(); }
 
   /// How many points of the input the last query left undecided. 0 unless its accuracy let it stop early, or points are
   /// uncertain.
@@ -149,29 +154,13 @@ protected:
     return withUncertainty(input, fields, "input cloud", input_uncertainty_);
   }
 
-  /// The fields of a cloud's records.
-  template <typename PointT>
-  static std::vector<pcl::PCLPointField> fieldsOfRecords(const pcl::PointCloud<PointT>&)
-  {
-    return pcl::getFields<PointT>();
-  }
-  static std::vector<pcl::PCLPointField> fieldsOfRecords(const pcl::PCLPointCloud2& cloud) { return cloud.fields; }
-
 private:
-  using Fields = std::function<std::vector<pcl::PCLPointField>()>;
-
-  void setObstacle(std::function<PointsView()> view, Fields fields);
-  PointsView obstacleView() const;
   void warnOfCoarse(const char* cloud, const SphereHierarchy& hierarchy);
-  const SphereHierarchy& obstacleHierarchy();
   const float* obstacleSpacings(const SphereHierarchy& obstacle);
   TrajectoryResult run(const PointsView& input, TrajectoryRequest& request);
 
-  std::function<PointsView()> obstacle_; ///< owns its cloud
-  Fields obstacle_fields_;               ///< likewise
-  Uncertainty input_uncertainty_, obstacle_uncertainty_;
-  std::shared_ptr<const SphereHierarchy> hierarchy_;
-  std::uint64_t checksum_ = 0; ///< of the coordinates and uncertainties that the hierarchy was built from
+  KeptObstacle obstacle_;
+  Uncertainty input_uncertainty_;
   std::function<bool(double)> progress_;
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
   std::optional<std::vector<Eigen::Isometry3d>> trajectory_; ///< instead of pose_
@@ -190,13 +179,6 @@ private:
 public:
   PCL_MAKE_ALIGNED_OPERATOR_NEW
 };
-
-template <typename Cloud>
-void ObstacleQuery::setObstacleCloud(const std::shared_ptr<Cloud>& cloud)
-{
-  if (!cloud) throw std::invalid_argument("obstacle cloud is null: give an empty cloud if there is no obstacle");
-  setObstacle([cloud] { return viewOf(*cloud); }, [cloud] { return fieldsOfRecords(*cloud); });
-}
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

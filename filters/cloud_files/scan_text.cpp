@@ -14,8 +14,6 @@ namespace pcl_bsh::io {
 
 namespace {
 
-using Field = pcl::PCLPointField;
-
 /// The words of the line that comes next, which is not taken.
 std::vector<std::string_view> nextWords(TextCursor text)
 {
@@ -34,11 +32,11 @@ struct PointLine {
   {
     for (const char* axis : {"x", "y", "z"}) values.push_back(textValue(axis));
     const std::size_t count = words.size();
-    if (count > 3 && count != 6) values.push_back(textValue("intensity", Field::FLOAT32));
+    if (count > 3 && count != 6) values.push_back(textValue("intensity", pcl::PCLPointField::FLOAT32));
     if (count == 6 || count >= 7) {
       for (std::size_t k = 0; k < 3; ++k) {
         if (words[values.size()].find('.') != std::string_view::npos) shares = true;
-        values.push_back(textValue(ply_channels[k], Field::UINT8));
+        values.push_back(textValue(ply_channels[k], pcl::PCLPointField::UINT8));
       }
     }
     while (values.size() < count) values.push_back(textValue("column_" + std::to_string(values.size() + 1)));
@@ -77,7 +75,7 @@ private:
   void checkColours(const TextCursor& text)
   {
     for (std::size_t i = 3; i < numbers_.size(); ++i) {
-      if (line_.values[i].datatype != Field::UINT8) continue;
+      if (line_.values[i].datatype != pcl::PCLPointField::UINT8) continue;
       if (line_.shares) numbers_[i] = std::round(numbers_[i] * 255);
       if (!(numbers_[i] >= 0 && numbers_[i] <= 255 && std::trunc(numbers_[i]) == numbers_[i])) {
         text.fail("has a colour that is no whole number from 0 to 255");
@@ -207,7 +205,7 @@ struct PtxContents {
   Fields values(bool several) const
   {
     Fields values = line->values;
-    if (several) values.push_back(textValue("scan", Field::UINT16));
+    if (several) values.push_back(textValue("scan", pcl::PCLPointField::UINT16));
     return values;
   }
 };

@@ -42,7 +42,7 @@ void expectLinear(const char* name, const std::function<HardPair(std::size_t)>& 
   const double few = stepsOf(make(n), query), some = stepsOf(make(4 * n), query), many = stepsOf(make(16 * n), query);
   EXPECT_LE(some, 6 * few + 1000) << name;
   EXPECT_LE(many, 6 * some + 1000) << name;
-  EXPECT_LE(many, 26 * few + 1000) << name; // a hair over 5 x 5, where sheets face each other
+  EXPECT_LE(many, 25 * few + 1000) << name;
 }
 
 constexpr auto kOneContact = [](const Placed& a, const Placed& b, double clearance) {
