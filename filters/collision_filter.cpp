@@ -40,5 +40,6 @@ void CollisionFilter<pcl::PCLPointCloud2>::applyFilter(pcl::PCLPointCloud2& outp
 
 } // namespace pcl_bsh
 
+template class pcl_bsh::QueryFilter<pcl::PCLPointCloud2, pcl_bsh::ObstacleQuery>;
 template class pcl_bsh::CollisionFilterBase<pcl::PCLPointCloud2>;
 PCL_INSTANTIATE(CollisionFilter, PCL_XYZ_POINT_TYPES)

@@ -13,16 +13,15 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/obstacle_query.h>
+#include <pcl_bsh/filters/query_filter.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <pcl/PCLPointCloud2.h>
-#include <pcl/filters/filter_indices.h>
 #include <pcl/point_cloud.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <type_traits>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -30,36 +29,19 @@ namespace pcl_bsh {
 
 /// What the typed filter and the one of pcl::PCLPointCloud2 share. Use CollisionFilter.
 ///
-/// PCL's filter() is not virtual. Called through a pointer to pcl::Filter, it leaves the output alone when the input is
-/// missing, and setKeepFlagged() needs an output that is not the input.
+/// filter() keeps the points of the input that do not collide; after setNegative(true), those that do, with those that
+/// are undecided (setAccuracy()). Called through a pointer to pcl::Filter, setKeepFlagged() needs an output that is not
+/// the input.
 template <typename PointT>
-class CollisionFilterBase : public pcl::FilterIndices<PointT>, public ObstacleQuery {
+class CollisionFilterBase : public QueryFilter<PointT, ObstacleQuery> {
 public:
-  using Cloud =
-      std::conditional_t<std::is_same_v<PointT, pcl::PCLPointCloud2>, pcl::PCLPointCloud2, pcl::PointCloud<PointT>>;
-
   /// @param extract_removed_indices keep what getRemovedIndices() returns
   explicit CollisionFilterBase(bool extract_removed_indices = false);
 
-  /// A copy has all settings, and what it finds is its own: copies may filter at the same time. They share the
-  /// obstacle's hierarchy, which is built once. Where memory runs out, a filter that is assigned to stays as it was.
-  CollisionFilterBase(const CollisionFilterBase& other);
-  CollisionFilterBase& operator=(const CollisionFilterBase& other);
-  ~CollisionFilterBase() override = default;
-
-  /// Keeps the points of the input that do not collide; after setNegative(true), those that do, with those that are
-  /// undecided (setAccuracy(), setInputUncertainty()). Points that are not finite are removed either way. `output` may
-  /// be the input; on an error it stays as it was, and getRemovedIndices() is of this call or the one before.
-  /// @throws std::invalid_argument when input or obstacle is missing, or a setting is not what its declaration asks for
-  void filter(Cloud& output);
-
-  /// The same as indices into the input, in its order.
-  void filter(pcl::Indices& indices);
-
   /// One flag per point of the whole input cloud, 1 = collides (also after setNegative(true)), 2 = undecided (only
-  /// where setAccuracy() lets a query stop early, or where points are uncertain), 3 = not scanned
-  /// densely enough (setDensityGuard()); 0 for points outside setIndices() and
-  /// for points that are not finite. Throws as filter() does.
+  /// where setAccuracy() lets a query stop early, or where points are uncertain), 3 = not scanned densely enough
+  /// (setDensityGuard()); 0 for points outside setIndices() and for points that are not finite. Throws as filter()
+  /// does.
   void computeFlags(std::vector<std::uint8_t>& flags);
 
   /// More along the trajectory (or at the one pose) than flags: for each colliding point of the whole input cloud its
@@ -67,15 +49,7 @@ public:
   void computeTrajectory(TrajectoryResult& result);
 
 protected:
-  using pcl::FilterIndices<PointT>::applyFilter;
-  void applyFilter(pcl::Indices& indices) override;
-
-  PointsView inputView() const;
-  void requireInput() const;
-
-private:
-  pcl::IndicesPtr removedOfItsOwn() const;
-  pcl::IndicesPtr indicesOfItsOwn() const;
+  PointsView inputView() const override;
 
 public:
   PCL_MAKE_ALIGNED_OPERATOR_NEW
@@ -98,7 +72,8 @@ public:
   void setIndices(std::size_t row_start, std::size_t col_start, std::size_t nb_rows, std::size_t nb_cols) override;
 };
 
-extern template class PCL_BSH_EXPORT CollisionFilterBase<pcl::PCLPointCloud2>; // which PCL's hidden type would hide
+extern template class PCL_BSH_EXPORT QueryFilter<pcl::PCLPointCloud2, ObstacleQuery>; // PCL's hidden type would hide
+extern template class PCL_BSH_EXPORT CollisionFilterBase<pcl::PCLPointCloud2>;        // both
 
 /// The same for clouds whose fields are known at run time only. Keeps every field; reads float64 coordinates at full
 /// precision; can flag the points instead of removing any.

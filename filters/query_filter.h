@@ -47,7 +47,8 @@ protected:
   using pcl::FilterIndices<PointT>::applyFilter;
   void applyFilter(pcl::Indices& indices) override;
 
-  PointsView inputView() const;
+  /// The points that are asked about.
+  virtual PointsView inputView() const;
   void requireInput() const;
 
   /// Where `set` throws, the indices stay as they were.
