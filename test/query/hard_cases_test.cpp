@@ -4,6 +4,7 @@
 #include <pcl_bsh/collision/brute_force.h>
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/distances/brute_force_distances.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include "../distances/expect_distances.h"
 #include "hard_cases.h"
@@ -13,6 +14,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cfenv>
 #include <cmath>
 #include <limits>
@@ -113,6 +115,33 @@ TEST_P(HardCases, EqualExactArithmetic)
   checks = 0;
   expectTruthEverywhere(GetParam());
   RecordProperty("checks", checks);
+}
+
+/// The same clouds with uncertain places, at a pose and along a path of that pose alone.
+TEST_P(HardCases, UncertainPlacesEqualExactArithmetic)
+{
+  const HardCase& c = GetParam();
+  Cloud a(c.a, {c.scalar}), b(c.b, {c.scalar});
+  Random random(c.a.size() + 7);
+  const double scale = c.clearance > 0.0 ? std::min(c.clearance, 0x1p100) : 0x1p-10; // of floats
+  test::makeUncertain(a, scale, random);
+  test::makeUncertain(b, scale, random);
+  const SphereHierarchy ha(a.view()), hb(b.view());
+  const Placed placed_a(ha, c.pose_a), placed_b(hb, c.pose_b);
+  const FlagsResult truth = brute_force::collisionFlags(placed_a, placed_b, within(c.clearance, 1));
+  TrajectoryRequest along;
+  along.clearance = c.clearance;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    const test::OnTarget on_target(target);
+    for (const unsigned threads : {1u, 2u}) {
+      const FlagsResult found = collisionFlags(placed_a, placed_b, within(c.clearance, threads));
+      EXPECT_EQ(found.a, truth.a);
+      EXPECT_EQ(found.b, truth.b);
+      along.threads = threads;
+      EXPECT_EQ(collideAlong(placed_a, hb, {c.pose_b}, along).flags, truth.a);
+    }
+  }
 }
 
 std::string nameOf(const testing::TestParamInfo<HardCase>& info)
