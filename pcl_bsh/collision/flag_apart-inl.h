@@ -73,8 +73,8 @@ HWY_NOINLINE inline std::uint32_t farApart(const ObstacleVoxel& obstacle, const 
   for (; far != 0; far &= far - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(far));
     const NodeSupport own = nodeSupport(sides.voxel_a, *visit.node, lane, work);
-    ++work.exact_decisions;
-    if (areFarNodesApart(pairs.distance, sides.pose_a, own, sides.pose_b, other, pairs.clearance)) apart |= 1u << lane;
+    if (areFarNodesApart(pairs.distance, sides.pose_a, own, sides.pose_b, other, pairs.clearance, work.exact_decisions))
+      apart |= 1u << lane;
   }
   return apart;
 }

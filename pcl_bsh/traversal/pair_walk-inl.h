@@ -280,9 +280,9 @@ private:
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(far));
       const LanePair child = childOf(pair, opened, out, lane);
       const NodeSupport own = opened == Opened::a ? supportOf(a, child.a) : supportOf(b, child.b);
-      ++work.exact_decisions;
-      if (opened == Opened::a ? areFarNodesApart(distance, a.pose, own, b.pose, other, clearance)
-                              : areFarNodesApart(distance, a.pose, other, b.pose, own, clearance))
+      const bool of_a = opened == Opened::a;
+      if (areFarNodesApart(distance, a.pose, of_a ? own : other, b.pose, of_a ? other : own, clearance,
+                           work.exact_decisions))
         out.near &= ~(1u << lane);
     }
   }
