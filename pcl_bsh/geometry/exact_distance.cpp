@@ -150,6 +150,10 @@ int ExactDistance::compareGaps(const Pair& first, const ExactDistance& other, co
   const double slack = kFewDoubleRoundings * (first_distance.high + second_distance.high + first_radii + second_radii);
   if (first_distance.high - first_radii + slack < second_distance.low - second_radii) return -1;
   if (second_distance.high - second_radii + slack < first_distance.low - first_radii) return 1;
+  // Scans have points twice, and then ties everywhere.
+  if (this == &other && first.p == second.p && first.q == second.q && first.radius_p == second.radius_p &&
+      first.radius_q == second.radius_q)
+    return 0;
 
   Point3 x, y;
   if (first_radii == 0.0 && second_radii == 0.0 && exactDifference(first.p, first.q, x) &&
