@@ -712,7 +712,7 @@ TEST_F(Collide, RefusesClouds)
   folder.write("flat.pcd", "FIELDS x y\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n1 2\n");
   folder.write("many.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2147483648\nDATA binary\n");
   folder.write("image.ply", "\x89PNG\r\n");
-  folder.write("scan.las", "LASF");
+  folder.write("scan.e57", "LASF");
   folder.write("collision.pcd",
                "FIELDS x y z collision\nSIZE 4 4 4 4\nTYPE F F F F\nPOINTS 1\nDATA ascii\n1 2 3 0.5\n");
   const std::string rest = " {out.pcd} --clearance 1";
@@ -723,7 +723,7 @@ TEST_F(Collide, RefusesClouds)
         {"{flat.pcd}", "flat.pcd: field 'z' is missing"},
         {"{many.pcd}", "many.pcd: it has 2147483648 points, more than the 2147483647 that an index can name: split"},
         {"{image.ply}", "image.ply: is not a PLY file"},
-        {"{scan.las}", "scan.las: unknown extension '.las': "}}) {
+        {"{scan.e57}", "scan.e57: unknown extension '.e57': "}}) {
     expectFailure(file + " {obstacle.xyz}" + rest, 1, message);
     expectFailure("{input.ply} " + file + rest, 1, message);
   }
@@ -733,7 +733,7 @@ TEST_F(Collide, RefusesClouds)
 TEST_F(Collide, RefusesOutputs)
 {
   const std::string clouds = "{input.ply} {obstacle.xyz} ";
-  expectFailure(clouds + "{out.las} --clearance 1", 1, "out.las: unknown extension '.las': write a .pcd, .ply, ");
+  expectFailure(clouds + "{out.e57} --clearance 1", 1, "out.e57: unknown extension '.e57': write a .pcd, .ply, ");
   expectFailure(clouds + "{none/out.pcd} --clearance 1", 1, "cannot be written, there is no folder");
   expectFailure(clouds + "{out.pcd} --clearance 1 --report {none/report.json}", 1, "there is no folder");
   expectFailure(clouds + "{out.pcd} --clearance 1 --report {}", 1, ": is a folder: ");
