@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/distance_query.h>
 
+#include <pcl_bsh/filters/parted_records.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/float_environment.h>
 
@@ -98,21 +99,13 @@ void DistanceQuery::part(const PointsView& input, const PointDistances& found, b
 {
   const auto [least, most] = limits_;
   const Comparison distance(input, obstacle_.view(), pose_, found);
-  // `kept` may be the very list the input is seen through: it is replaced only at the end.
-  pcl::Indices keep;
-  pcl::Indices remove;
-  for (std::size_t i = 0; i < input.size(); ++i) {
-    const std::uint32_t record = input.record(i);
-    const auto isWithin = [&] {
-      return distance.compare(record, least) >= 0 && (std::isinf(most) || distance.compare(record, most) <= 0);
-    };
-    if (isFinite(input.point(record)) && isWithin() != negative)
-      keep.push_back(static_cast<pcl::index_t>(record));
-    else if (removed)
-      remove.push_back(static_cast<pcl::index_t>(record));
-  }
-  kept = std::move(keep);
-  if (removed) *removed = std::move(remove);
+  const auto isWithin = [&](std::uint32_t record) {
+    return distance.compare(record, least) >= 0 && (std::isinf(most) || distance.compare(record, most) <= 0);
+  };
+  const auto keeps = [&](std::uint32_t record) {
+    return isFinite(input.point(record)) && isWithin(record) != negative;
+  };
+  partRecords(input, keeps, kept, removed);
 }
 
 void DistanceQuery::select(const PointsView& input, bool negative, pcl::Indices& kept, pcl::Indices* removed)

@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/obstacle_query.h>
 
 #include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/filters/parted_records.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
@@ -125,20 +126,11 @@ std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input)
 void ObstacleQuery::select(const PointsView& input, bool negative, pcl::Indices& kept, pcl::Indices* removed)
 {
   const std::vector<std::uint8_t> collides = collisionFlags(input);
-  // `kept` may be the very list the input is seen through: it is replaced only at the end.
-  pcl::Indices keep;
-  pcl::Indices remove;
-  for (std::size_t i = 0; i < input.size(); ++i) {
-    const std::uint32_t record = input.record(i);
+  const auto keeps = [&](std::uint32_t record) {
     const bool flagged = collides[record] != 0;
-    const bool wanted = negative ? flagged : !flagged && isFinite(input.point(record));
-    if (wanted)
-      keep.push_back(static_cast<pcl::index_t>(record));
-    else if (removed)
-      remove.push_back(static_cast<pcl::index_t>(record));
-  }
-  kept = std::move(keep);
-  if (removed) *removed = std::move(remove);
+    return negative ? flagged : !flagged && isFinite(input.point(record));
+  };
+  partRecords(input, keeps, kept, removed);
 }
 
 } // namespace pcl_bsh

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace pcl_bsh::surface {
 
@@ -134,7 +136,7 @@ double cosineTo(const Plane& plane, const Corners& corners)
 Chart chartOf(const Mesh& mesh, std::uint32_t triangle)
 {
   const Corners corners = mesh.corners(triangle);
-  return {planeOf(corners), {triangle}, areaOf(corners), 1.0};
+  return {planeOf(corners), {triangle}, 1.0};
 }
 
 std::vector<Chart> growCharts(const Mesh& mesh)
@@ -167,7 +169,6 @@ std::vector<Chart> growCharts(const Mesh& mesh)
           if (cosine < kLeastCosine) return;
           taken[t] = true;
           chart.triangles.push_back(t);
-          chart.area += area[t];
           chart.least_cosine = std::min(chart.least_cosine, cosine);
         });
       }

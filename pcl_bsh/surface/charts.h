@@ -22,7 +22,6 @@ struct Plane {
 struct Chart {
   Plane plane;
   std::vector<std::uint32_t> triangles;
-  double area = 0.0;
   /// The least cosine of the angle between the plane and a triangle of it: lengths shrink no further when they are
   /// laid into the plane.
   double least_cosine = 1.0;

@@ -8,9 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <queue>
+#include <tuple>
 #include <unordered_map>
+#include <utility>
 
 namespace pcl_bsh::surface {
 
