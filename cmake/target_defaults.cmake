@@ -11,10 +11,23 @@ function(pcl_bsh_target_defaults target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(${target} PRIVATE -Wno-restrict) # GCC 12 suspects "text" + std::string
   endif()
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    target_compile_options(${target} PRIVATE -fsized-deallocation) # as g++ has it
+  endif()
   if(PCL_BSH_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
 endfunction()
+
+# Clang's sanitizers bring an operator new, and tests have one of their own. AddressSanitizer's is a shared library, where
+# the tests' wins, which fails allocations. ThreadSanitizer's wins over the tests': none that is run there counts them.
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND CMAKE_CXX_FLAGS MATCHES "-fsanitize=address")
+  execute_process(COMMAND "${CMAKE_CXX_COMPILER}" -print-runtime-dir OUTPUT_VARIABLE runtimes
+                  OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  add_link_options(-shared-libsan "LINKER:-rpath,${runtimes}")
+elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND CMAKE_CXX_FLAGS MATCHES "-fsanitize=thread")
+  add_link_options("LINKER:-z,muldefs")
+endif()
 
 # For what takes longer to compile than to run.
 function(pcl_bsh_compile_fast target)

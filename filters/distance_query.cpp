@@ -97,9 +97,9 @@ PointDistances DistanceQuery::distances(const PointsView& input)
 void DistanceQuery::part(const PointsView& input, const PointDistances& found, bool negative, pcl::Indices& kept,
                          pcl::Indices* removed) const
 {
-  const auto [least, most] = limits_;
   const Comparison distance(input, obstacle_.view(), pose_, found);
-  const auto isWithin = [&](std::uint32_t record) {
+  const auto isWithin = [&, limits = limits_](std::uint32_t record) {
+    const auto [least, most] = limits;
     return distance.compare(record, least) >= 0 && (std::isinf(most) || distance.compare(record, most) <= 0);
   };
   const auto keeps = [&](std::uint32_t record) {

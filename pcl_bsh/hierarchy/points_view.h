@@ -39,7 +39,10 @@ struct PointsView {
   std::size_t size() const noexcept { return indices ? index_count : count; }
 
   /// The record of the i-th point, 0 <= i < size().
-  std::uint32_t record(std::size_t i) const noexcept { return static_cast<std::uint32_t>(indices ? indices[i] : i); }
+  std::uint32_t record(std::size_t i) const noexcept
+  {
+    return indices ? static_cast<std::uint32_t>(indices[i]) : static_cast<std::uint32_t>(i);
+  }
 
   /// Coordinates of a record, as given.
   Point3 point(std::uint32_t record) const noexcept

@@ -62,7 +62,8 @@ private:
   {
     const std::int32_t* const indices = view_.indices;
     const std::size_t end = chunkEnd(chunk);
-    for (std::size_t i = chunkBegin(chunk); i < end; ++i) body(i, static_cast<std::uint32_t>(indices ? indices[i] : i));
+    for (std::size_t i = chunkBegin(chunk); i < end; ++i)
+      body(i, indices ? static_cast<std::uint32_t>(indices[i]) : static_cast<std::uint32_t>(i));
   }
 
   std::size_t chunkBegin(std::size_t chunk) const { return chunk * view_.size() / chunk_count_; }
@@ -146,7 +147,7 @@ private:
       const std::int32_t* const indices = view_.indices;
       const std::size_t end = begins_[chunk + 1];
       for (std::size_t i = first; i < end; ++i) {
-        const GivenPoint<T> p = read_(static_cast<std::uint32_t>(indices ? indices[i] : i));
+        const GivenPoint<T> p = read_(indices ? static_cast<std::uint32_t>(indices[i]) : static_cast<std::uint32_t>(i));
         const GivenPoint<T> numbers = cell_of.numbers(p);
         if (sameXyz(numbers, cell_of_run)) {
           low = min(low, p);

@@ -14,14 +14,23 @@
 #include <optional>
 #include <utility>
 
+extern "C" int __asan_address_is_poisoned(void const volatile*) __attribute__((weak));
+
 namespace pcl_bsh::test {
 
+/// Asked of the linker, because these objects are compiled without the sanitizer that watches over the library.
+inline bool underAddressSanitizer()
+{
+  return &__asan_address_is_poisoned != nullptr;
+}
+
 /// The allocations to fail, one after another: the first 200, then fewer and fewer. Fewer from the start where all that
-/// follow fail as well.
+/// follow fail as well, and where each takes twenty times as long.
 inline std::size_t nextFailure(std::size_t k, Shortage shortage)
 {
   if (shortage == Shortage::lasting) return k + 1 + k / 8;
-  return k < 200 ? k + 1 : k + k / 8;
+  const std::size_t all = underAddressSanitizer() ? 40 : 200;
+  return k < all ? k + 1 : k + k / 8;
 }
 
 /// @param make a fresh subject @param ask puts a question to it; the answers can be compared
