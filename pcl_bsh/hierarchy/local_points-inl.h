@@ -15,55 +15,32 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// Reads points of a cloud as a frame has them. All that it gives are finite and within the frame's reach, so that a
-/// cloud which was changed without a word makes answers wrong, but touches no memory of others.
+/// Points of a cloud as a frame has them. All that it gives are finite and within the frame's reach, so that a cloud
+/// which was changed without a word makes answers wrong, but touches no memory of others.
 template <class T>
-class LocalReader {
+class LocalPlace {
 public:
-  LocalReader(const LocalFrame& frame, const PointsView& view)
-  : read_(view),
+  explicit LocalPlace(const LocalFrame& frame)
+  : origin_(GivenPoint<T>::of(0)),
+    reach_(Quad::of(0)),
     plain_(frame.unit == 1.0),
-    inverse_(1.0 / frame.unit),
-    origin_(GivenPoint<T>::of(0)),
-    low_(Quad::of(0)),
-    high_(Quad::of(0))
+    inverse_(1.0 / frame.unit)
   {
     T origin[4] = {};
-    float low[4] = {}, high[4] = {};
+    float reach[4] = {};
     for (std::size_t k = 0; k < 3; ++k) {
       origin[k] = static_cast<T>(frame.origin[k]);
       scaled_[k] = frame.origin[k] * inverse_;
-      high[k] = static_cast<float>(frame.reach[k]);
-      low[k] = -high[k];
+      reach[k] = static_cast<float>(frame.reach[k]);
     }
     origin_ = GivenPoint<T>::load(origin);
-    low_ = Quad::load(low);
-    high_ = Quad::load(high);
+    reach_ = Quad::load(reach);
   }
 
-  void operator()(std::uint32_t record, PointRecord& out) const
-  {
-    max(min(local(read_(record)), high_), low_).store(reinterpret_cast<float*>(&out));
-    out.record = record;
-  }
+  Quad operator()(const GivenPoint<T>& p) const { return max(min(local(p), reach_), Quad::of(0) - reach_); }
 
-  /// Records that follow each other. @return behind the last
-  PointRecord* operator()(const Run& run, PointRecord* out) const
-  {
-    const std::uint32_t end = run.number + run.points;
-    std::uint32_t record = run.number;
-    if constexpr (std::is_same_v<T, float>) {
-      if (plain_) {
-        const Quad origin = origin_, low = low_, high = high_; // in registers
-        for (const std::uint32_t whole = std::min(end, read_.whole()); record < whole; ++record, ++out) {
-          max(min(read_.load(record) - origin, high), low).store(reinterpret_cast<float*>(out));
-          out->record = record;
-        }
-      }
-    }
-    for (; record < end; ++record) (*this)(record, *out++);
-    return out;
-  }
+  /// Whether a point's place is its difference from the origin, in the type that it has.
+  bool isPlain() const { return std::is_same_v<T, float> && plain_; }
 
 private:
   Quad local(const GivenPoint<T>& p) const
@@ -82,12 +59,42 @@ private:
     return roundToFloat(static_cast<double>(value) * inverse_ - scaled_[k]);
   }
 
-  const Reader<T> read_;
+  GivenPoint<T> origin_;
+  Quad reach_;
   bool plain_;
   double inverse_;
   double scaled_[3];
-  GivenPoint<T> origin_;
-  Quad low_, high_;
+};
+
+inline void storePoint(const Quad& place, std::uint32_t record, PointRecord& out)
+{
+  place.store(reinterpret_cast<float*>(&out));
+  out.record = record;
+}
+
+/// Reads points of a cloud as a frame has them.
+template <class T>
+class LocalReader {
+public:
+  LocalReader(const LocalFrame& frame, const PointsView& view) : read_(view), place_(frame) {}
+
+  /// Records that follow each other. @return behind the last
+  PointRecord* operator()(const Run& run, PointRecord* out) const
+  {
+    const std::uint32_t end = run.number + run.points;
+    std::uint32_t record = run.number;
+    if (place_.isPlain()) {
+      const LocalPlace<T> place = place_; // in registers
+      for (const std::uint32_t whole = std::min(end, read_.whole()); record < whole; ++record, ++out)
+        storePoint(place(read_.load(record)), record, *out);
+    }
+    for (; record < end; ++record, ++out) storePoint(place_(read_(record)), record, *out);
+    return out;
+  }
+
+private:
+  const Reader<T> read_;
+  const LocalPlace<T> place_;
 };
 
 constexpr std::size_t kRunsAhead = kListPadding / 2; // each takes two words at most

@@ -17,9 +17,9 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// Points of the same voxel, as one chunk of the cloud has them.
+/// Points of the same voxel, as one chunk of the cloud has them; a line of the caches.
 template <class T>
-struct Bin {
+struct alignas(64) Bin {
   std::uint64_t cell = 0;
   std::uint32_t count = 0;
   std::uint32_t words = 0;       ///< that the chunk's records are stored as
@@ -47,7 +47,8 @@ struct Bin {
   }
 };
 
-/// Finds or adds the bin of a cell: open addressing, doubled when half full.
+/// Finds or adds the bin of a cell: open addressing. A small table is doubled when a sixteenth of it is in use, so that
+/// points in random order hardly ever try a second slot, which no branch predictor foresees; a large one when half is.
 template <class T>
 class BinTable {
 public:
@@ -73,7 +74,7 @@ private:
     bins.emplace_back();
     bins.back().cell = cell;
     slots_[slot] = bin;
-    if (2 * bins.size() > slots_.size()) grow();
+    if ((slots_.size() < kLargeTable ? 16 : 2) * bins.size() > slots_.size()) grow();
     return bin;
   }
 
@@ -86,6 +87,8 @@ private:
       slots_[i] = bin;
     }
   }
+
+  static constexpr std::size_t kLargeTable = 1 << 17;
 
   std::vector<std::uint32_t> slots_;
 };

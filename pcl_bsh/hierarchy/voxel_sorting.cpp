@@ -305,24 +305,27 @@ private:
       targets.reserve(chunks_[chunk].bins.size());
       for (const Bin<T>& bin : chunks_[chunk].bins) {
         const Voxel& voxel = result_.voxels[bin.voxel];
-        targets.push_back(
-            {LocalReader<T>(voxel.frame, view_), reinterpret_cast<PointRecord*>(voxel.block) + bin.first});
+        targets.push_back({reinterpret_cast<PointRecord*>(voxel.block) + bin.first, LocalPlace<T>(voxel.frame)});
       }
       RunReader read_run(runs_.get() + begins_[chunk]);
       for (std::size_t i = begins_[chunk]; i < begins_[chunk + 1];) {
         const Run run = read_run();
         if (run.number != kNoBin) {
           Target& target = targets[run.number];
-          for (std::size_t k = i; k < i + run.points; ++k) target.read(view_.record(k), *target.next++);
+          for (std::size_t k = i; k < i + run.points; ++k) {
+            const std::uint32_t record = view_.record(k);
+            storePoint(target.place(read_(record)), record, *target.next++);
+          }
         }
         i += run.points;
       }
     });
   }
 
-  struct Target {
-    LocalReader<T> read;
+  /// In random order each point takes another: of a float cloud, what it reads is one line of the caches.
+  struct alignas(64) Target {
     PointRecord* next;
+    LocalPlace<T> place;
   };
 
   /// Points stand in the view's order, so that without a subset the first is the lowest.

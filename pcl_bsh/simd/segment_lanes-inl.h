@@ -262,11 +262,12 @@ HWY_INLINE void lowerToFarthestCorner(const float (*places)[kLanes], const float
 ///   largest coordinate
 /// @param clipped becomes when that is: from the first instant for any of the points to the last; of lanes whose bit is
 ///   set
+/// @param near_points becomes which points it may be, as bits; likewise. @pre count <= 32
 template <std::size_t Count>
 HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, std::uint32_t lanes, const float* x,
                                             const float* y, const float* z, std::size_t count, const float* shift,
                                             float steps, float smallest, float rounding,
-                                            ClippedSegments<Count>& clipped)
+                                            ClippedSegments<Count>& clipped, std::uint32_t (&near_points)[Count])
 {
   const LaneTag d;
   const LaneVector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
@@ -295,6 +296,7 @@ HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, std
     const LaneVector slack = hn::Set(d, rounding / length);
     const LaneVector mx = hn::Set(d, way[0]), my = hn::Set(d, way[1]), mz = hn::Set(d, way[2]);
     LaneVector from = one, to = zero;
+    near_points[i] = 0;
     for (std::size_t j = 0; j < count; j += hn::Lanes(d)) {
       const LaneVector wx = hn::Sub(hn::LoadU(d, x + j), hn::Set(d, first[0])),
                        wy = hn::Sub(hn::LoadU(d, y + j), hn::Set(d, first[1])),
@@ -312,6 +314,7 @@ HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, std
       const auto near = hn::And(within, isInsideAtStep(d, {enter, leave}, steps));
       if (hn::AllFalse(d, near)) continue;
       near_lanes |= 1u << i;
+      near_points[i] |= bitsOf(d, near) << j;
       from = hn::Min(from, hn::IfThenElse(near, enter, one));
       to = hn::Max(to, hn::IfThenElse(near, leave, zero));
     }

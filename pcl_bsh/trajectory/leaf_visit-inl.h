@@ -35,7 +35,7 @@ struct LeafVisit {
     segments.set(from, to, bow, motion.smallest);
     std::fill(segments.reach[0], segments.reach[0] + kLeafPoints, motion.reach);
     std::fill(near_squared, near_squared + kLeafPoints, voxel_frame.nearSquared(motion, bound));
-    const float no_extent[3][kLeafPoints] = {};
+    alignas(64) const float no_extent[3][kLeafPoints] = {};
     around = voxel_frame.aroundSegments(motion, from, to, bow, no_extent, points.count);
   }
 

@@ -10,11 +10,9 @@
 
 #include <pcl_bsh/trajectory/leaf_visit-inl.h>
 #include <pcl_bsh/trajectory/model_boxes-inl.h>
-#include <pcl_bsh/trajectory/point_segment.h>
 #include <pcl_bsh/trajectory/pose_ranges-inl.h>
+#include <pcl_bsh/trajectory/swept_leaf-inl.h>
 #include <pcl_bsh/trajectory/voxel_results.h>
-
-#include <tuple>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -34,7 +32,8 @@ public:
     voxel_frame_(voxel_frame),
     model_(model),
     stop_check_(stop_check),
-    results_(results)
+    results_(results),
+    swept_(query, voxel_frame, results)
   {
   }
 
@@ -56,7 +55,7 @@ public:
     leaf.open = all & ~results_.settled[slot];
     leaf.begin(voxel_frame_, motion, bound);
     for (std::uint32_t i = 0; query_.closest && i < points.count; ++i)
-      if (bestBounds(points.begin + i, motion))
+      if (results_.bestBounds(points.begin + i, motion.interval->first))
         leaf.lowerReach(voxel_frame_, i, results_.best[points.begin + i].reach, motion);
     ++results_.work.volumes_carried;
     if (query_.request.pose_summaries) pose_hits_.assign(motion.interval->last - motion.interval->first + 1, 0);
@@ -172,7 +171,7 @@ private:
       return push(leaf, model_.below(box), lanes, motion);
     }
     if (path_.is_swept)
-      compareSegments(leaf, lanes, clipped, box, motion);
+      sweepPast(leaf, lanes, clipped, box, motion);
     else
       comparePoses(leaf, lanes, clipped, box, motion);
   }
@@ -189,7 +188,8 @@ private:
                                const ModelBox& box, const VoxelMotion& motion)
   {
     const bool narrows = motion.squares && tree_.unit(box.voxel) == 1.0;
-    if (narrows) lanes = nearPoints(leaf, lanes, box, motion, clipped);
+    std::uint32_t near_points[kLeafPoints];
+    if (narrows) lanes = nearPoints(leaf, lanes, box, motion, clipped, near_points);
     const PoseRanges ranges = rangesOf(lanes, clipped, motion);
     if ((lanes = ranges.lanes) == 0) return;
     if (narrows && !query_.everything() && !query_.first) {
@@ -212,15 +212,29 @@ private:
     }
   }
 
+  /// Two leaves, at all instants.
+  void sweepPast(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped, const ModelBox& box,
+                 const VoxelMotion& motion)
+  {
+    const BoxLeaf other = pointsIn(box);
+    std::uint32_t near_points[kLeafPoints];
+    if (motion.squares && tree_.unit(box.voxel) == 1.0)
+      lanes = nearPoints(leaf, lanes, box, motion, clipped, near_points);
+    else
+      std::fill(std::begin(near_points), std::end(near_points), firstBits(other.count));
+    if (lanes != 0) swept_.compare(leaf, lanes, clipped, other, near_points, motion);
+  }
+
   /// Bits of the leaf's points whose segments come near to points of the model's leaf, and when.
+  /// @param near_points becomes which points of the model's leaf these are, as bits
   std::uint32_t nearPoints(const LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, const VoxelMotion& motion,
-                           ClippedSegments<kLeafPoints>& clipped) const
+                           ClippedSegments<kLeafPoints>& clipped, std::uint32_t (&near_points)[kLeafPoints]) const
   {
     const BoxLeaf other = pointsIn(box);
     const Point3 at = tree_.offset(box.voxel);
     const float shift[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
     return segmentsNearPoints(leaf.segments, lanes, other.x(), other.y(), other.z(), other.count, shift, motion.steps,
-                              motion.smallest, motion.rounding, clipped);
+                              motion.smallest, motion.rounding, clipped, near_points);
   }
 
   /// Two leaves at pose k: by float bands, and exactly within the bands.
@@ -228,7 +242,10 @@ private:
   {
     const LeafPoints& at = places_.at(voxel_frame_, leaf.points, motion, k);
     const BoxEnds ends(box);
-    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, leaf.near_squared);
+    alignas(64) float near_squared[kLeafPoints];
+    std::copy(leaf.near_squared, leaf.near_squared + kLeafPoints, near_squared);
+    if (query_.request.pose_summaries) boundAtPose(leaf, lanes, k, motion, near_squared);
+    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, near_squared);
     if (lanes == 0) return;
     ++results_.work.leaf_pairs;
     const BoxLeaf other = pointsIn(box);
@@ -263,6 +280,20 @@ private:
       }
     }
     if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, motion);
+  }
+
+  /// A point that is known to collide at pose k matters again only where it may be nearer than the nearest so far, of
+  /// itself or of the pose. Nothing is bounded where the nearest pair does not decide: no reach is known there.
+  void boundAtPose(LeafVisit& leaf, std::uint32_t lanes, std::uint32_t k, const VoxelMotion& motion,
+                   float* near_squared) const
+  {
+    for (std::uint32_t bits = lanes & pose_hits_[k - motion.interval->first]; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      float best = results_.poseReach(k);
+      if (query_.closest) best = std::max(best, results_.best[leaf.points.begin + i].reach);
+      if (motion.at_rest) leaf.lowerReach(voxel_frame_, i, best, motion);
+      near_squared[i] = std::min(near_squared[i], voxel_frame_.nearSquared(motion, best));
+    }
   }
 
   /// What follows from the points in `hit`, which collide at pose k.
@@ -303,69 +334,12 @@ private:
         const double high = voxel_frame_.highOf(nearest[i]);
         best->limit = std::min(best->limit, voxel_frame_.notBeyond(nearest[i]));
         best->reach = std::min(best->reach, roundUp(high));
-        if (bestBounds(leaf.points.begin + i, motion)) leaf.lowerReach(voxel_frame_, i, best->reach, motion);
+        if (results_.bestBounds(leaf.points.begin + i, motion.interval->first))
+          leaf.lowerReach(voxel_frame_, i, best->reach, motion);
       }
-      if (for_pose && certain) results_.lowerPoseLimit(k, voxel_frame_.notBeyond(nearest[i]));
+      if (for_pose && certain)
+        results_.lowerPoseLimit(k, voxel_frame_.notBeyond(nearest[i]), roundUp(voxel_frame_.highOf(nearest[i])));
     }
-  }
-
-  /// Points that move in straight lines against points at rest: all instants at once. In double; what that gets wrong
-  /// is small against the tolerance (checkTolerance()).
-  HWY_NOINLINE void compareSegments(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
-                                    const ModelBox& box, const VoxelMotion& motion)
-  {
-    if (motion.squares && tree_.unit(box.voxel) == 1.0) lanes = nearPoints(leaf, lanes, box, motion, clipped);
-    const BoxLeaf other = pointsIn(box);
-    ++results_.work.leaf_pairs;
-    const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
-    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      double at_first = std::numeric_limits<double>::infinity(); // of a witness alone, not kept
-      double& first = query_.witness ? at_first : results_.first[leaf.points.begin + i];
-      if (!query_.closest && first <= begin + steps * clipped.from[i]) continue;
-      const std::uint32_t record = leaf.points.record(i);
-      const PointSegment segment(query_, record, *motion.interval);
-      for (std::uint32_t j = 0; j < other.count; ++j) {
-        ++results_.work.exact_decisions;
-        const std::uint32_t q = other.record(j);
-        const double near_enough = query_.nearEnough({record, q});
-        if (near_enough < 0.0) continue;
-        const ClosestApproach approach = segment.approachTo(query_, q, near_enough);
-        if (!approach.contact) continue;
-        if (query_.witness) return keepWitness(leaf, {record, q});
-        results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | 1u << i);
-        first = std::min(first, begin + steps * approach.enter);
-        if (!query_.closest) continue;
-        const double radii = query_.scan.hierarchy().view().radius(record) + query_.model.view().radius(q);
-        consider(results_.best[leaf.points.begin + i], approach.distance - radii, begin + steps * approach.at, q);
-      }
-      if (query_.closest && query_.radii == 0.0) {
-        NearestPoint& best = results_.best[leaf.points.begin + i];
-        best.reach = std::min(best.reach, roundUp(best.gap));
-        if (bestBounds(leaf.points.begin + i, motion)) leaf.lowerReach(voxel_frame_, i, best.reach, motion);
-      }
-    }
-  }
-
-  void keepWitness(LeafVisit& leaf, const PointPair& pair)
-  {
-    results_.witness = pair;
-    leaf.open = 0;
-  }
-
-  /// Whether the best so far bounds the search for a point of the voxel from this motion on.
-  bool bestBounds(std::uint32_t point, const VoxelMotion& motion) const
-  {
-    return query_.bestBounds(query_.first ? results_.first[point] : 0.0, motion.interval->first);
-  }
-
-  /// Keeps the nearest; of several the first instant, and there the smallest record.
-  static void consider(NearestPoint& best, double gap, double time, std::uint32_t record)
-  {
-    if (std::tie(gap, time, record) >= std::tie(best.gap, best.time, best.record)) return;
-    best.gap = gap;
-    best.time = time;
-    best.record = record;
   }
 
   void countPoses(const LeafVisit& leaf, const VoxelMotion& motion, std::size_t points)
@@ -385,6 +359,7 @@ private:
   ModelBoxes& model_;
   StopCheck& stop_check_;
   VoxelResults& results_;
+  SweptLeaf swept_;
   std::vector<Siblings> near_; // what the leaf may meet
   std::vector<PointsNearBoxes> stack_;
   ClippedSegments<kLanes> clips_[kLeafPoints]; // of each point, when it is in the boxes it is compared with

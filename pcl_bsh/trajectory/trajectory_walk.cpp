@@ -195,7 +195,7 @@ private:
       visit.near[lane].clear();
       visit.radius[lane] = voxel_frame_.seenRadius(node.r[lane]);
     }
-    float extent[3][kLanes];
+    alignas(64) float extent[3][kLanes];
     oriented_boxes_.see(index, motion, visit.radius, extent);
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::uint32_t lane = 0; lane < kLanes; ++lane)

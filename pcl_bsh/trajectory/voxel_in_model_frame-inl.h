@@ -14,6 +14,8 @@
 #include <pcl_bsh/trajectory/trajectory_query.h>
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 
+#include <array>
+
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
@@ -90,7 +92,13 @@ public:
     return map;
   }
 
-  VoxelMotion motionOf(std::uint32_t index) const { return motionOf(path.intervals[index]); }
+  /// Leaf after leaf of a voxel divides the path into the same intervals: some motions are kept.
+  VoxelMotion motionOf(std::uint32_t index) const
+  {
+    KeptMotion& kept = kept_[index % kKeptMotions];
+    if (kept.interval != index || !kept.known) kept = {motionOf(path.intervals[index]), index, true};
+    return kept.motion;
+  }
 
   /// Of one pose of a path that is not swept. @param interval becomes that pose, and has to outlive the motion.
   VoxelMotion motionAt(std::uint32_t k, PathInterval& interval) const
@@ -172,23 +180,27 @@ public:
     return segment;
   }
 
-  /// Around `count` arcs, each with an extent of its own along the axes.
+  /// Around `count` arcs, each with an extent of its own along the axes; all of them aligned for vectors.
   template <std::size_t Count>
   static Segment aroundSegments(const VoxelMotion& motion, const float (&from)[3][Count], const float (&to)[3][Count],
                                 const float (&bow)[3][Count], const float (&extent)[3][Count], std::size_t count)
   {
+    const LaneTag d;
     float start[3], end[3], bent[3], reach[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       float low[3], high[3];
       const float* ends[3] = {from[axis], to[axis], bow[axis]};
       for (std::size_t k = 0; k < 3; ++k) {
-        low[k] = std::numeric_limits<float>::infinity();
-        high[k] = -low[k];
-        for (std::size_t i = 0; i < count; ++i) {
-          const float around = k < 2 ? extent[axis][i] : 0.0f;
-          low[k] = std::min(low[k], ends[k][i] - around);
-          high[k] = std::max(high[k], ends[k][i] + around);
+        LaneVector least = hn::Set(d, std::numeric_limits<float>::infinity()), most = hn::Neg(least);
+        for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+          const auto some = hn::FirstN(d, count - i);
+          const LaneVector at = hn::Load(d, ends[k] + i);
+          const LaneVector around = k < 2 ? hn::Load(d, extent[axis] + i) : hn::Zero(d);
+          least = hn::Min(least, hn::IfThenElse(some, hn::Sub(at, around), least));
+          most = hn::Max(most, hn::IfThenElse(some, hn::Add(at, around), most));
         }
+        low[k] = hn::GetLane(hn::MinOfLanes(d, least));
+        high[k] = hn::GetLane(hn::MaxOfLanes(d, most));
       }
       start[axis] = 0.5f * (low[0] + high[0]);
       end[axis] = 0.5f * (low[1] + high[1]);
@@ -285,7 +297,16 @@ private:
     return segment;
   }
 
+  static constexpr std::uint32_t kKeptMotions = 16;
+
+  struct KeptMotion {
+    VoxelMotion motion;
+    std::uint32_t interval = 0;
+    bool known = false;
+  };
+
   const TrajectoryQuery& query_;
+  mutable std::array<KeptMotion, kKeptMotions> kept_; // by one thread: a voxel is one task
   double placing_ = 0.0; // what places of points err by, stored as floats and carried in double
 };
 

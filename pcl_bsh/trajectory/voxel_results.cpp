@@ -39,7 +39,7 @@ void VoxelResults::beginPoses(std::uint32_t first_pose, std::uint32_t last_pose)
 {
   first_pose_ = first_pose;
   nearest_at_pose_.resize(last_pose + 1 - first_pose);
-  pose_limit_.assign(nearest_at_pose_.size(), std::numeric_limits<float>::infinity());
+  pose_bounds_.assign(nearest_at_pose_.size(), PoseBound{});
   pose_counts_.assign(nearest_at_pose_.size(), 0);
 }
 
@@ -143,9 +143,11 @@ void VoxelResults::considerPose(PointPair pair, std::uint32_t k)
   nearest = {pair, true};
 }
 
-void VoxelResults::lowerPoseLimit(std::uint32_t k, float limit)
+void VoxelResults::lowerPoseLimit(std::uint32_t k, float limit, float reach)
 {
-  pose_limit_[k - first_pose_] = std::min(pose_limit_[k - first_pose_], limit);
+  PoseBound& bound = pose_bounds_[k - first_pose_];
+  bound.limit = std::min(bound.limit, limit);
+  bound.reach = std::min(bound.reach, reach);
 }
 
 std::int32_t VoxelResults::givenPose(double time) const

@@ -49,16 +49,30 @@ public:
   /// Keeps the nearest for a point; of several the first pose, and there the smallest record.
   void consider(NearestPoint& nearest, PointPair pair, std::uint32_t k);
 
+  /// Whether the best so far bounds the search for a point of the voxel from this pose on.
+  bool bestBounds(std::uint32_t point, double from) const
+  {
+    return query_.bestBounds(query_.first ? first[point] : 0.0, from);
+  }
+
   /// Keeps the nearest for a pose.
   void considerPose(PointPair pair, std::uint32_t k);
 
   /// A larger squared distance, in floats, is not the smallest at the pose.
-  float poseLimit(std::uint32_t k) const { return pose_limit_[k - first_pose_]; }
-  void lowerPoseLimit(std::uint32_t k, float limit);
+  float poseLimit(std::uint32_t k) const { return pose_bounds_[k - first_pose_].limit; }
+  /// The same, as a distance.
+  float poseReach(std::uint32_t k) const { return pose_bounds_[k - first_pose_].reach; }
+  void lowerPoseLimit(std::uint32_t k, float limit, float reach);
 
   void countPose(std::uint32_t k, std::size_t points) { pose_counts_[k - first_pose_] += points; }
 
 private:
+  /// What is nearest at a pose is not farther: a squared distance in floats, and a distance.
+  struct PoseBound {
+    float limit = std::numeric_limits<float>::infinity();
+    float reach = std::numeric_limits<float>::infinity();
+  };
+
   ExactDistance exactAt(std::uint32_t k) const;
   ExactDistance::Pair posed(PointPair pair) const;
   std::int32_t givenPose(double time) const;
@@ -68,7 +82,7 @@ private:
   const TrajectoryQuery& query_;
   std::uint32_t first_pose_ = 0;
   std::vector<NearestAtPose> nearest_at_pose_;
-  std::vector<float> pose_limit_;
+  std::vector<PoseBound> pose_bounds_;
   std::vector<std::size_t> pose_counts_;
   std::vector<Verdict> verdicts_; // per point
 };

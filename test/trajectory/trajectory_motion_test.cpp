@@ -12,6 +12,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -130,8 +131,10 @@ private:
   std::vector<Vector> before_;
 };
 
+/// @param between_bounds becomes how many points come within the clearance and the tolerance, but not within the
+///   clearance: those may be answered either way
 /// @return whether it was refused
-bool expectTrueAtEachInstant(const Run& run)
+bool expectTrueAtEachInstant(const Run& run, std::size_t* between_bounds = nullptr)
 {
   SCOPED_TRACE(run.name);
   const SphereHierarchy scan(run.a.view()), model(run.b.view());
@@ -172,6 +175,10 @@ bool expectTrueAtEachInstant(const Run& run)
       EXPECT_LE(found.first_pose[p], time) << "point " << p;
     }
   }
+  if (between_bounds)
+    *between_bounds = static_cast<std::size_t>(std::count_if(least.begin(), least.end(), [&](Real distance) {
+      return distance > run.clearance && distance <= run.clearance + run.tolerance;
+    }));
   for (std::size_t p = 0; p < least.size(); ++p) {
     EXPECT_LE(at_poses[p], found.flags[p]) << "point " << p << " collides at a pose";
     if (found.flags[p] == 0) continue;
@@ -222,6 +229,47 @@ TEST(TrajectoryMotion, TrueAtEachInstant)
   for (std::uint64_t seed = 0; seed < 250 && !::testing::Test::HasFailure(); ++seed)
     refused += expectTrueAtEachInstant(anyRun(seed)) ? 1 : 0;
   EXPECT_LT(refused, 50);
+}
+
+/// A body 8 m long on a bend, with few poses. Points of the wall are picked where its side passes between them, at
+/// about the clearance.
+Run grazingRun(double bend, double step, double tolerance, std::uint64_t seed)
+{
+  Random random(seed);
+  Poses poses;
+  const auto onBend = [bend](double way) {
+    Eigen::Isometry3d pose(Eigen::AngleAxisd(way / bend, Eigen::Vector3d::UnitZ()));
+    pose.translation() = bend * Eigen::Vector3d(std::sin(way / bend), 1 - std::cos(way / bend), 0);
+    return pose;
+  };
+  constexpr int count = 12;
+  for (int k = 0; k < count; ++k) poses.push_back(onBend(step * k));
+  constexpr double clearance = 0.05;
+  std::vector<Point3> body, wall;
+  for (int i = 0; i < 120; ++i) body.push_back({random.uniform(-4, 4), random.uniform(-0.006, 0.006), -0.02 * (i % 9)});
+  for (int i = 0; i < 90; ++i) {
+    const double gap = clearance + tolerance * random.uniform(-1, 2);
+    const Eigen::Vector3d at = onBend(random.uniform(0, step * (count - 1))) *
+                               Eigen::Vector3d(random.uniform(-4, 4), gap, random.uniform(-0.2, 0.1));
+    wall.push_back({at.x(), at.y(), at.z()});
+  }
+  return {Cloud(wall), Cloud(body),        identity,
+          poses,       {0, 0, 0},          clearance,
+          tolerance,   4 * (2 * bend + 8), "bend " + std::to_string(bend)};
+}
+
+/// Which points between clearance and clearance + tolerance are flagged depends on boxes and leaves. None beyond is,
+/// and all within the clearance are.
+TEST(TrajectoryMotion, TrueWhereSurfacesGraze)
+{
+  std::uint64_t seed = 0;
+  for (const auto& [bend, step] :
+       {std::pair(180.0, 0.05), std::pair(180.0, 1.0), std::pair(20.0, 0.3), std::pair(3.0, 0.3)})
+    for (const double tolerance : {0.01, 0.05}) {
+      std::size_t between_bounds = 0;
+      EXPECT_FALSE(expectTrueAtEachInstant(grazingRun(bend, step, tolerance, ++seed), &between_bounds));
+      EXPECT_GT(between_bounds, 3u) << "bend " << bend << ", tolerance " << tolerance;
+    }
 }
 
 /// A model point at (1, 0, 0), under a pose that shrinks by 2.8e-7, which is accepted.
