@@ -13,6 +13,7 @@
 #include <pcl_bsh/collision/flag_apart-inl.h>
 #include <pcl_bsh/collision/flag_leaf-inl.h>
 #include <pcl_bsh/collision/flag_query.h>
+#include <pcl_bsh/collision/flag_runs-inl.h>
 #include <pcl_bsh/hierarchy/crowded_cell.h>
 #include <pcl_bsh/hierarchy/kept_scratch.h>
 
@@ -20,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// @tparam Sink is called with the result of each point, once in a walk but for few that collide: collide(record);
+/// @tparam Sink is called with the result of each point, once in a walk but for some that collide: collide(record);
 ///   free(record) if takesFree(); leave(record) for undecided points if takesUndecided(); leaveAll() if no point of the
 ///   voxel was tested
 template <class Sink>
@@ -58,10 +59,6 @@ public:
       return;
     }
     if (!mayEnter(voxel)) return leaveAll();
-    voxel_ = voxel;
-    a_voxel_ = &a_.voxel(voxel, found.work);
-    knows_slabs_ = mayUseKnownSlabs() && a_.storage.voxels[voxel].slabs.isFitted();
-
     for (const std::uint32_t other : reached_) {
       const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, rotation_);
       const Node& root = b_.voxel(other, found.work).nodes[0];
@@ -71,6 +68,10 @@ public:
                             frame.acceptReach(pairs_.reach.least), frame.acceptReach(acceptance_.accepted),
                             frame.bluntRadius(), acceptance_.band(frame)});
     }
+    if (readRuns(voxel)) return;
+    voxel_ = voxel;
+    a_voxel_ = &a_.voxel(voxel, found.work);
+    knows_slabs_ = mayUseKnownSlabs() && a_.storage.voxels[voxel].slabs.isFitted();
     descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, spheres_, 0);
   }
 
@@ -85,6 +86,17 @@ private:
     std::size_t points = a_.storage.pointsToBuild(voxel);
     for (const std::uint32_t other : reached_) points += b_.storage.pointsToBuild(other);
     return rule_.leavesTimeToBuild(points);
+  }
+
+  /// Flags a voxel's points without its tree, where that is not built, and may not be needed again: for exact answers,
+  /// as slabs that are known. Within one cloud, the voxels of b are those of a, and the work would depend on which
+  /// thread comes first.
+  bool readRuns(std::uint32_t voxel)
+  {
+    if (!mayUseKnownSlabs() || pairs_.haveRadii() || &a_.storage == &b_.storage) return false;
+    return a_.storage.readOnce(voxel, [this](const Voxel& listed) {
+      return FlagRuns<Sink>(listed, a_.storage.view, obstacles_, pairs_, sink_, found.work).run();
+    });
   }
 
   /// Slabs that earlier queries have fitted are used at once, if for exact answers: these are the same with slabs and
