@@ -310,6 +310,16 @@ private:
   std::size_t collected_ = 0; ///< of them
 };
 
+/// Flags the points of a voxel of a, where it lists them and this was not done before. @return whether all are flagged
+template <class Sink>
+bool flagRuns(const SphereHierarchy::Storage& a, std::uint32_t voxel, const std::vector<ObstacleVoxel>& obstacles,
+              const PointPairs& pairs, Sink& sink, Work& work)
+{
+  if (pairs.haveRadii()) return false;
+  return a.readOnce(
+      voxel, [&](const Voxel& listed) { return FlagRuns<Sink>(listed, a.view, obstacles, pairs, sink, work).run(); });
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh
 HWY_AFTER_NAMESPACE();

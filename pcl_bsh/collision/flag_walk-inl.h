@@ -68,7 +68,10 @@ public:
                             frame.acceptReach(pairs_.reach.least), frame.acceptReach(acceptance_.accepted),
                             frame.bluntRadius(), acceptance_.band(frame)});
     }
-    if (readRuns(voxel)) return;
+    // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
+    if (mayUseKnownSlabs() && &a_.storage != &b_.storage &&
+        flagRuns(a_.storage, voxel, obstacles_, pairs_, sink_, found.work))
+      return;
     voxel_ = voxel;
     a_voxel_ = &a_.voxel(voxel, found.work);
     knows_slabs_ = mayUseKnownSlabs() && a_.storage.voxels[voxel].slabs.isFitted();
@@ -86,17 +89,6 @@ private:
     std::size_t points = a_.storage.pointsToBuild(voxel);
     for (const std::uint32_t other : reached_) points += b_.storage.pointsToBuild(other);
     return rule_.leavesTimeToBuild(points);
-  }
-
-  /// Flags a voxel's points without its tree, where that is not built, and may not be needed again: for exact answers,
-  /// as slabs that are known. Within one cloud, the voxels of b are those of a, and the work would depend on which
-  /// thread comes first.
-  bool readRuns(std::uint32_t voxel)
-  {
-    if (!mayUseKnownSlabs() || pairs_.haveRadii() || &a_.storage == &b_.storage) return false;
-    return a_.storage.readOnce(voxel, [this](const Voxel& listed) {
-      return FlagRuns<Sink>(listed, a_.storage.view, obstacles_, pairs_, sink_, found.work).run();
-    });
   }
 
   /// Slabs that earlier queries have fitted are used at once, if for exact answers: these are the same with slabs and
