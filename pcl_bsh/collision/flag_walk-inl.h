@@ -13,6 +13,7 @@
 #include <pcl_bsh/collision/flag_apart-inl.h>
 #include <pcl_bsh/collision/flag_leaf-inl.h>
 #include <pcl_bsh/collision/flag_query.h>
+#include <pcl_bsh/collision/flag_runs-inl.h>
 #include <pcl_bsh/hierarchy/crowded_cell.h>
 #include <pcl_bsh/hierarchy/kept_scratch.h>
 
@@ -20,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// @tparam Sink is called with the result of each point, once in a walk but for few that collide: collide(record);
+/// @tparam Sink is called with the result of each point, once in a walk but for some that collide: collide(record);
 ///   free(record) if takesFree(); leave(record) for undecided points if takesUndecided(); leaveAll() if no point of the
 ///   voxel was tested
 template <class Sink>
@@ -58,10 +59,6 @@ public:
       return;
     }
     if (!mayEnter(voxel)) return leaveAll();
-    voxel_ = voxel;
-    a_voxel_ = &a_.voxel(voxel, found.work);
-    knows_slabs_ = mayUseKnownSlabs() && a_.storage.voxels[voxel].slabs.isFitted();
-
     for (const std::uint32_t other : reached_) {
       const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, rotation_);
       const Node& root = b_.voxel(other, found.work).nodes[0];
@@ -71,6 +68,13 @@ public:
                             frame.acceptReach(pairs_.reach.least), frame.acceptReach(acceptance_.accepted),
                             frame.bluntRadius(), acceptance_.band(frame)});
     }
+    // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
+    if (mayUseKnownSlabs() && &a_.storage != &b_.storage &&
+        flagRuns(a_.storage, voxel, obstacles_, pairs_, sink_, found.work))
+      return;
+    voxel_ = voxel;
+    a_voxel_ = &a_.voxel(voxel, found.work);
+    knows_slabs_ = mayUseKnownSlabs() && a_.storage.voxels[voxel].slabs.isFitted();
     descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, spheres_, 0);
   }
 

@@ -100,23 +100,35 @@ private:
 constexpr std::size_t kRunsAhead = kListPadding / 2; // each takes two words at most
 constexpr std::size_t kMostAhead = 4096;             // bytes: the rest of a long run comes by itself
 
-/// Reads the points that a voxel lists into its block.
-template <class T>
-void readPointsOf(const Voxel& voxel, const PointsView& view)
+/// Calls visit(run) for the runs of records that a voxel lists, until it returns false.
+template <class Visit>
+void eachListedRun(const Voxel& voxel, const PointsView& view, const Visit& visit)
 {
-  const LocalReader<T> read(voxel.frame, view);
   const auto* const data = static_cast<const unsigned char*>(view.data) + view.offset[0];
-  auto* out = reinterpret_cast<PointRecord*>(voxel.block);
   RunReader runs(voxel.list), ahead(voxel.list);
   for (std::size_t k = 0; k < kRunsAhead; ++k) ahead();
-  for (const PointRecord* const end = out + voxel.count; out != end;) {
+  for (std::uint32_t left = voxel.count; left != 0;) {
     // Runs are short, and far from each other: memory is asked for before its turn.
     const Run soon = ahead();
     const auto* const first = data + view.stride * soon.number;
     const std::size_t bytes = std::min(view.stride * soon.points, kMostAhead);
     for (std::size_t byte = 0; byte < bytes; byte += 64) __builtin_prefetch(first + byte);
-    out = read(runs(), out);
+    const Run run = runs();
+    if (!visit(run)) return;
+    left -= run.points;
   }
+}
+
+/// Reads the points that a voxel lists into its block.
+template <class T>
+void readPointsOf(const Voxel& voxel, const PointsView& view)
+{
+  const LocalReader<T> read(voxel.frame, view);
+  auto* out = reinterpret_cast<PointRecord*>(voxel.block);
+  eachListedRun(voxel, view, [&](const Run& run) {
+    out = read(run, out);
+    return true;
+  });
 }
 
 inline void readPoints(const Voxel& voxel, const PointsView& view)

@@ -68,6 +68,7 @@ struct Voxel {
   std::vector<GivenSphere> given;      ///< see givenSpheres(); empty unless the voxel has crowded cells
   LazySlabs slabs{SlabAxis::least};    ///< of the nodes, once built and asked for
   LazySlabs cross_slabs{SlabAxis::second}; ///< likewise
+  bool was_read = false;                   ///< by Storage::readOnce()
   std::atomic<std::uint8_t> state{sorted};
 
   /// Becomes what the other voxel is. Neither may be visited meanwhile.
@@ -88,6 +89,7 @@ struct Voxel {
     given = std::move(other.given);
     slabs.adopt(other.slabs);
     cross_slabs.adopt(other.cross_slabs);
+    was_read = other.was_read;
     state.store(other.state.load(std::memory_order_relaxed), std::memory_order_relaxed);
   }
 
@@ -162,6 +164,20 @@ public:
     if (!claim(v)) return v.forEachRecord(visit);
     const Claim claimed{v}; // others wait: the visit may throw
     v.forEachRecord(visit);
+  }
+
+  /// Calls read(voxel) where the voxel lists its points, is not built, and was not read like this before: what is
+  /// asked once needs no tree. Threads that want to build it wait meanwhile, so that read() must not wait for a voxel.
+  /// @return what read() returned; false where it was not called
+  template <class Read>
+  bool readOnce(std::size_t voxel, const Read& read) const
+  {
+    Voxel& v = voxels[voxel];
+    if (v.state.load(std::memory_order_acquire) == Voxel::built || !claim(v)) return false;
+    const Claim claimed{v};
+    if (v.was_read || !v.isListed()) return false;
+    v.was_read = true;
+    return read(static_cast<const Voxel&>(v));
   }
 
   PointsView view;

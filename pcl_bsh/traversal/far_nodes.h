@@ -24,6 +24,15 @@ inline bool mayBeFar(float reach, float radius)
   return reach > (kFarNodes - 1.0f) * radius;
 }
 
+/// Of a support, relative to it and to the node's radius. The direction errs by 4 v of its length and, turned into the
+/// cloud's frame, by 6 v; the parts along both normals by 3 v each, what is left across them by 11 v, and the sum of
+/// their products by 3 v: less than 32 v.
+inline constexpr double kSupportError = 32 * kDoubleUnit;
+
+/// Of the vector between two middles, relative to the sum of all terms: a product, the sum of three, the translation
+/// and the difference, 5 roundings.
+inline constexpr double kBetweenError = kFewDoubleRoundings;
+
 /// How far the points of a node are from its sphere's centre at most, along a direction: its support. Two slabs, along
 /// which points vary least, leave the sphere to what is across both.
 class NodeSupport {
@@ -52,7 +61,7 @@ public:
     const double on_normal = direction.dot(normal_), on_cross = direction.dot(cross_);
     const double rest = (direction - on_normal * normal_ - on_cross * cross_).norm();
     const double support = std::abs(on_normal) * h_ + std::abs(on_cross) * cross_h_ + rest * radius_;
-    return support * (1.0 + kDoubleMargin) + kDoubleMargin * radius_ + (sphere_.radius - radius_);
+    return support * (1.0 + kSupportError) + kSupportError * radius_ + (sphere_.radius - radius_);
   }
 
 private:
@@ -69,6 +78,20 @@ inline NodeSupport nodeSupport(Voxel& voxel, const Node& node, std::uint32_t chi
   return {voxel.frame, node, child, voxel.slabs.of(voxel, work)[index], voxel.cross_slabs.of(voxel, work)[index]};
 }
 
+/// From the middle of a to that of b, both posed, and how much of it may be rounding.
+struct Between {
+  Between(const Eigen::Isometry3d& pose_a, const Point3& a, const Eigen::Isometry3d& pose_b, const Point3& b)
+  {
+    const Eigen::Map<const Eigen::Vector3d> in_a(a.data()), in_b(b.data());
+    vector = pose_b * in_b - pose_a * in_a;
+    error = kBetweenError *
+            (in_a.lpNorm<1>() + in_b.lpNorm<1>() + pose_a.translation().lpNorm<1>() + pose_b.translation().lpNorm<1>());
+  }
+
+  Eigen::Vector3d vector;
+  double error;
+};
+
 /// Whether no point of one node is within the clearance of one of the other, by how far both reach towards each other.
 /// The middles are compared in exact arithmetic.
 ///
@@ -80,14 +103,10 @@ inline bool areFarNodesApart(const ExactDistance& distance, const Eigen::Isometr
                              const Eigen::Isometry3d& pose_b, const NodeSupport& b, double clearance,
                              std::uint64_t& exact_decisions)
 {
-  const Eigen::Map<const Eigen::Vector3d> center_a(a.center().data()), center_b(b.center().data());
-  const Eigen::Vector3d between = pose_b * center_b - pose_a * center_a;
-  const double length = between.norm();
-  const double error = 32 * kDoubleUnit *
-                       (center_a.lpNorm<1>() + center_b.lpNorm<1>() + pose_a.translation().lpNorm<1>() +
-                        pose_b.translation().lpNorm<1>());
+  const Between between(pose_a, a.center(), pose_b, b.center());
+  const double length = between.vector.norm(), error = between.error;
   if (!(error < 0x1p-20 * length && length > 0x1p-400 && length < 0x1p400)) return false; // squares are in range
-  const Eigen::Vector3d direction = between / length;
+  const Eigen::Vector3d direction = between.vector / length;
   const double off = error / length * error;
   const double support_a = a.along(pose_a.linear().transpose() * direction) + off;
   const double support_b = b.along(pose_b.linear().transpose() * direction) + off;

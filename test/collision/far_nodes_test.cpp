@@ -6,12 +6,15 @@
 #include <pcl_bsh/hierarchy/update.h>
 #include <pcl_bsh/traversal/far_nodes.h>
 
+#include "../geometry/climb.h"
 #include "../query/adversarial_clouds.h"
 #include "../query/random_clouds.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <string>
 #include <vector>
@@ -105,6 +108,89 @@ TEST(FarNodes, AreNeverApartWithinTheDistanceOfTheirPoints)
   }
   EXPECT_GT(claims, 1000u);
   EXPECT_GT(closest_claim, 1.0 - 1e-9); // some of these bounds are as good as can be
+}
+
+using Real = long double; // its error is 2^-11 of double's
+using Numbers = std::vector<double>;
+using RealVector = Eigen::Matrix<Real, 3, 1>;
+
+Eigen::Vector3d vectorAt(const Numbers& n, std::size_t k)
+{
+  return {n[k], n[k + 1], n[k + 2]};
+}
+
+Eigen::Isometry3d poseAt(const Numbers& n, std::size_t k)
+{
+  Eigen::Quaterniond turn(n[k], n[k + 1], n[k + 2], n[k + 3]);
+  if (!(turn.norm() > 0.1 && turn.norm() < 100)) turn.setIdentity();
+  Eigen::Isometry3d pose(turn.normalized());
+  pose.translation() = vectorAt(n, k + 4);
+  return pose;
+}
+
+/// Two poses and two middles, of 20 numbers: the error of the vector between, as a part of its bound.
+double betweenFraction(const Numbers& n)
+{
+  const Eigen::Isometry3d pose_a = poseAt(n, 0), pose_b = poseAt(n, 7);
+  const Point3 a = {n[14], n[15], n[16]}, b = {n[17], n[18], n[19]};
+  const auto posed = [](const Eigen::Isometry3d& pose, const Point3& p) -> RealVector {
+    const RealVector at(p[0], p[1], p[2]);
+    return pose.linear().cast<Real>() * at + pose.translation().cast<Real>();
+  };
+  const Between between(pose_a, a, pose_b, b);
+  const Real off = (posed(pose_b, b) - posed(pose_a, a) - between.vector.cast<Real>()).norm();
+  return between.error > 0x1p-500 && between.error < 0x1p500 ? static_cast<double>(off / between.error) : 0.0;
+}
+
+/// A direction, a rotation, two normals and three lengths, of 16 numbers: what the support lacks of that of the two
+/// slabs and the sphere, but for its margin, as a part of the margin.
+double supportFraction(const Numbers& n)
+{
+  const auto isPlain = [](double x) { return std::abs(x) < 8.0; };
+  if (!std::all_of(n.begin(), n.end(), isPlain)) return 0.0;
+  const Eigen::Vector3d away = vectorAt(n, 0), own = vectorAt(n, 7), cross = vectorAt(n, 10);
+  if (!(away.norm() > 0.1 && own.norm() > 0.1 && cross.norm() > 0.1)) return 0.0;
+  const Eigen::Matrix3d turn = poseAt({n[3], n[4], n[5], n[6], 0, 0, 0}, 0).linear();
+  LocalFrame frame;
+  frame.unit = 1.0;
+  Node node{};
+  node.count = 1;
+  node.r[0] = static_cast<float>(std::abs(n[13]) + 0.1);
+  Slabs slabs{}, crosses{};
+  const auto set = [&](Slabs& to, const Eigen::Vector3d& normal, double h) {
+    const Eigen::Vector3f unit = normal.normalized().cast<float>();
+    to.x[0] = unit.x(), to.y[0] = unit.y(), to.z[0] = unit.z();
+    to.h[0] = std::min(static_cast<float>(std::abs(h)), node.r[0]);
+    return RealVector(unit.cast<Real>());
+  };
+  const RealVector u = set(slabs, own, n[14]), v = set(crosses, cross, n[15]);
+  const double found = NodeSupport(frame, node, 0, slabs, crosses).along(turn.transpose() * (away / away.norm()));
+  const RealVector direction = turn.cast<Real>().transpose() * away.cast<Real>().normalized();
+  const Real on_u = direction.dot(u), on_v = direction.dot(v), radius = node.r[0];
+  const Real support =
+      std::abs(on_u) * slabs.h[0] + std::abs(on_v) * crosses.h[0] + (direction - on_u * u - on_v * v).norm() * radius;
+  const Real margin = Real{kSupportError} * (support + radius);
+  return static_cast<double>((support + margin - Real{found}) / margin);
+}
+
+/// Climbs towards the worst case of the bounds in double that far nodes are compared with.
+TEST(FarNodes, BoundsHoldUnderAttack)
+{
+  Random random(63);
+  const auto start = [&](std::size_t count) {
+    return [&random, count] {
+      Numbers n(count);
+      for (double& x : n) x = random.uniform(-1, 1) * (random.chance(0.3) ? 1e-3 : 1.0);
+      return n;
+    };
+  };
+  const double between = test::climbFromMany(start(20), betweenFraction, 60, 600, random),
+               support = test::climbFromMany(start(16), supportFraction, 60, 600, random);
+  std::printf("  between: %.4f, support: %.4f of the bound\n", between, support);
+  EXPECT_LE(between, 1.0);
+  EXPECT_GE(between, 0.2);
+  EXPECT_LE(support, 1.0);
+  EXPECT_GE(support, 0.05);
 }
 
 /// All answers at the distance of the nearest pair, a last bit less, and a little less, are those of brute force.
