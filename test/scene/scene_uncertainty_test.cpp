@@ -59,11 +59,12 @@ TEST(SceneUncertainty, SameAsBruteForceInAllStepsWhateverIsRemembered)
   EXPECT_GT(reused, 60u);
 }
 
-/// One point that is off by up to 0.1, another that is off by up to 0.3; one of them moves along x.
+/// Points off by up to 0.1, mostly one, and another that is off by up to 0.3; this one may move along x.
 struct TwoPoints {
-  TwoPoints(double distance, const Effects& effects, double speed = 0.0, double tolerance = 1e-4)
+  TwoPoints(double distance, const Effects& effects, double speed = 0.0, double tolerance = 1e-4,
+            const std::vector<Point3>& at_rest = {{0, 0, 0}})
   {
-    Cloud fixed({{0, 0, 0}}, doubles), moving({{0, 0, 0}}, doubles);
+    Cloud fixed(at_rest, doubles), moving({{0, 0, 0}}, doubles);
     fixed.setUncertainties(0.1, {});
     moving.setUncertainties(0.1, {0.2f});
     SceneOptions options;
@@ -216,6 +217,33 @@ TEST(SceneUncertainty, ResponsesMayCollideAtNoInstant)
   }
   EXPECT_GT(touched, 30);
   EXPECT_GT(stuck, 10);
+}
+
+/// What may collide at the wider clearance that a query of a moving pair looks ahead with is not free at its own.
+TEST(SceneUncertainty, WhatMayCollideFartherAheadIsAskedAgain)
+{
+  Effects effects;
+  effects.any = true;
+  std::uint64_t reused = 0;
+  for (const double speed : {0.003, 0.01, 0.02}) {
+    // Between two points, where boxes are near each other and points are not.
+    TwoPoints points(0.0, effects, speed, 1e-4, {{-1, 0, 0}, {1, 0, 0}});
+    std::size_t free = 0, undecided = 0, colliding = 0;
+    for (double x = -3.0 + speed; x < 3.0; x += speed) {
+      const SceneResult result = points.scene->step(1.0);
+      const double apart = std::abs(1.0 - std::abs((*points.scene)[1].pose.translation().x()));
+      reused += result.cost(Effect::any).reused;
+      colliding += result.any.size();
+      undecided += result.undecided.size();
+      free += result.any.empty() && result.undecided.empty();
+      ASSERT_EQ(result.any.size(), apart <= edge(-1.0) ? 1u : 0u) << apart;
+      ASSERT_EQ(result.undecided.size(), apart > edge(-1.0) && apart <= edge(1.0) ? 1u : 0u) << apart;
+    }
+    EXPECT_GT(free, 10u);
+    EXPECT_GT(undecided, 5u);
+    EXPECT_GT(colliding, 0u);
+  }
+  EXPECT_GT(reused, 5u);
 }
 
 TEST(SceneUncertainty, WhatWasRememberedIsForgottenWithTheUncertainties)
