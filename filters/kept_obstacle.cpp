@@ -3,7 +3,11 @@
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
+#include <pcl/PCLPointField.h>
+#include <pcl/common/io.h>
+
 #include <cstring>
+#include <string>
 #include <utility>
 
 namespace pcl_bsh {
@@ -40,15 +44,23 @@ std::uint64_t checksumOf(const PointsView& view)
   return sum;
 }
 
-/// Of all coordinates, their order and the points' own uncertainties. Bytes between them may change.
-std::uint64_t checksumOf(const PointsView& view)
+/// Of all coordinates, their order and a field, as it is written. Bytes between them may change.
+/// @param field empty: none
+std::uint64_t checksumOf(const PointsView& view, const std::vector<pcl::PCLPointField>& fields,
+                         const std::string& field)
 {
   std::uint64_t sum =
       view.scalar == Scalar::float32 ? checksumOf<std::uint32_t>(view) : checksumOf<std::uint64_t>(view);
-  for (std::size_t i = 0; view.uncertainties && i < view.count; ++i) {
-    std::uint32_t word;
-    std::memcpy(&word, view.uncertainties + i, sizeof word);
-    sum = mixed(sum, word);
+  for (const pcl::PCLPointField& named : fields) {
+    if (field.empty() || named.name != field) continue;
+    const auto bytes = static_cast<std::size_t>(pcl::getFieldSize(named.datatype));
+    if (named.offset + bytes > view.stride) continue; // it is refused where it is read
+    const auto* record = static_cast<const unsigned char*>(view.data) + named.offset;
+    for (std::size_t i = 0; i < view.count; ++i, record += view.stride) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, record, bytes);
+      sum = mixed(sum, word);
+    }
   }
   return sum;
 }
@@ -71,21 +83,17 @@ void KeptObstacle::setUncertainty(const Uncertainty& uncertainty)
   hierarchy_.reset();
 }
 
-PointsView KeptObstacle::uncertainView() const
-{
-  const auto fields = uncertainty_.field.empty() ? std::vector<pcl::PCLPointField>() : fields_();
-  return withUncertainty(view_(), fields, "obstacle cloud", uncertainty_);
-}
-
 const SphereHierarchy& KeptObstacle::hierarchy(unsigned threads)
 {
   if (!view_) throw std::invalid_argument("obstacle cloud is missing: call setObstacleCloud() before filtering");
-  const PointsView view = uncertainView();
-  const std::uint64_t checksum = checksumOf(view);
+  const PointsView view = view_();
+  const auto fields = uncertainty_.field.empty() ? std::vector<pcl::PCLPointField>() : fields_();
+  const std::uint64_t checksum = checksumOf(view, fields, uncertainty_.field);
   if (!hierarchy_) {
     HierarchyOptions options;
     options.threads = threads;
-    hierarchy_ = std::make_shared<SphereHierarchy>(view, options);
+    hierarchy_ =
+        std::make_shared<SphereHierarchy>(withUncertainty(view, fields, "obstacle cloud", uncertainty_), options);
     checksum_ = checksum;
   }
   // The hierarchy points into the cloud's memory, and its spheres hold the points as they were.

@@ -59,7 +59,6 @@ private:
   using Fields = std::function<std::vector<pcl::PCLPointField>()>;
 
   void setView(std::function<PointsView()> view, Fields fields);
-  PointsView uncertainView() const;
 
   std::function<PointsView()> view_; ///< owns its cloud
   Fields fields_;                    ///< likewise

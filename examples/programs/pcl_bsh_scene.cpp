@@ -30,7 +30,8 @@ constexpr auto footer =
     R"(A scene file names clouds, objects with poses and motions, pairs, and effects; see scene.schema.json and the samples
 in examples/scenes. An effect that is not listed is not computed.
 With --out, DIR gets steps.csv (a row a step), steps.jsonl (all results, a line a step), summary.json, and the
-flagged clouds if the scene asks for them.
+flagged clouds if the scene asks for them. Where clouds have an `uncertainty`, what may collide, but does not for
+certain, is undecided, flag 2.
 Exit code: 0 done; 1 failed, the scene file is wrong included; 2 command line not understood.
 
 Example:
@@ -192,7 +193,7 @@ int runScene(const Options& options)
   std::printf("%s: %zu objects, %zu points in %zu clouds\n", options.scene.c_str(), file.objects.size(), world.points(),
               file.clouds.size());
 
-  const cli::SceneTable table(file.options.effects);
+  const cli::SceneTable table(file.options.effects, cli::mayBeUndecided(world.scene()));
   if (files) table.writeHeader(files->csv());
   cli::SceneTotals totals;
   Progress progress(file.steps);

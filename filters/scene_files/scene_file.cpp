@@ -131,9 +131,26 @@ private:
       read(reader, "scale", cloud.scale);
       read(reader, "shift", cloud.shift);
       if (!cloud.shape.empty()) parseShape(reader, cloud);
+      parseUncertainty(reader, cloud);
     }
     file_.clouds.push_back(cloud);
     cloud_names_.push_back(name);
+  }
+
+  static void parseUncertainty(const JsonReader& reader, CloudSource& cloud)
+  {
+    const bool of_field = reader.has("uncertainty") && reader.at("uncertainty").json().is_string();
+    double sigmas = 1.0;
+    read(reader, "sigmas", sigmas);
+    if (!of_field) {
+      if (reader.has("sigmas"))
+        reader.at("sigmas").fail("is given, but the uncertainty is no field", "give the length itself");
+      read(reader, "uncertainty", cloud.uncertainty.length);
+      return;
+    }
+    if (!cloud.shape.empty())
+      reader.at("uncertainty").fail("names a field, which a " + cloud.shape + " does not have", "give a length");
+    cloud.uncertainty = {reader.at("uncertainty").text(), sigmas * cloud.scale};
   }
 
   static void parseShape(const JsonReader& reader, CloudSource& cloud)

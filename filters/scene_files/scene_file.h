@@ -6,6 +6,7 @@
 //   for (std::size_t i = 0; i < file.steps; ++i) report(world.scene().step(file.dt));
 #pragma once
 
+#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include <pcl/PCLPointCloud2.h>
@@ -28,6 +29,7 @@ struct CloudSource {
   double spacing = 0.1;              ///< of a shape's points, about
   double scale = 1.0;                ///< of a file's coordinates, about the origin
   Eigen::Vector3d shift = {0, 0, 0}; ///< afterwards
+  Uncertainty uncertainty;           ///< of its points; sigmas of a field are scaled with the cloud
   std::string place;                 ///< in the document
 };
 

@@ -6,6 +6,7 @@
 #include <pcl_bsh/filters/scene_files/scene_file.h>
 #include <pcl_bsh/filters/scene_files/shape_points.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -112,6 +113,27 @@ void scaleAndShift(pcl::PCLPointCloud2& cloud, const CloudSource& source, const 
   for (std::uint32_t i = 0; i < view.count; ++i) write(cloud, view, i, placed(view.point(i), source));
 }
 
+PointsView uncertainView(const pcl::PCLPointCloud2& cloud, const CloudSource& source, const std::string& file)
+{
+  try {
+    return withUncertainty(viewOf(cloud), cloud.fields, "cloud '" + source.name + "'", source.uncertainty);
+  }
+  catch (const InvalidInput& error) {
+    if (error.input() != Input::uncertainty) throw;
+    throw JsonError(file, source.place + ".uncertainty", error.wrong(), error.remedy());
+  }
+}
+
+/// Points of a cloud that have moved, as uncertain as they were.
+PointsView movedView(const std::vector<double>& now, const PointsView& measured)
+{
+  PointsView view = viewOf(now.data(), now.size() / 3);
+  view.uncertainty = measured.uncertainty;
+  view.uncertainties = measured.uncertainties;
+  view.owner = measured.owner;
+  return view;
+}
+
 std::vector<double> coordinatesOf(const PointsView& view)
 {
   std::vector<double> xyz;
@@ -147,7 +169,8 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
     scaleAndShift(loaded.points, source, file.path.string());
     HierarchyOptions options;
     options.threads = file.options.threads;
-    loaded.hierarchy = std::make_shared<SphereHierarchy>(viewOf(loaded.points), options);
+    loaded.hierarchy =
+        std::make_shared<SphereHierarchy>(uncertainView(loaded.points, source, file.path.string()), options);
   }
 
   scene_ = std::make_unique<Scene>(file.options);
@@ -168,7 +191,7 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
         waving->part = static_cast<std::uint32_t>(object.parts.size());
         waving->wave = *entry.wave;
         waving->rest = waving->now = coordinatesOf(hierarchy->view());
-        hierarchy = std::make_shared<SphereHierarchy>(viewOf(waving->now.data(), waving->now.size() / 3));
+        hierarchy = std::make_shared<SphereHierarchy>(movedView(waving->now, hierarchy->view()));
         waving_.push_back(std::move(waving));
       }
       object.parts.push_back({part.name, std::move(hierarchy), part.pose});
@@ -196,7 +219,8 @@ void SceneWorld::deform(double time)
       for (std::size_t k = 0; k < 3; ++k)
         waving->now[i + k] = waving->rest[i + k] + height * wave.amplitude[static_cast<Eigen::Index>(k)];
     }
-    scene_->deform(waving->object, waving->part, viewOf(waving->now.data(), waving->now.size() / 3));
+    const PointsView& before = (*scene_)[waving->object].parts[waving->part].hierarchy->view();
+    scene_->deform(waving->object, waving->part, movedView(waving->now, before));
   }
 }
 

@@ -83,13 +83,6 @@ AnyResult searchAsFarAsAllowed(const Placed& a, const Placed& b, const AnyReques
   return {found.verdict, colliding ? found.pair : std::nullopt, found.distance, found.work += work};
 }
 
-AnyResult search(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
-{
-  const unsigned threads = threadCount(request.threads);
-  if (threads > 1) return anyCollisionShared(a, b, request, places, threads);
-  return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request, places);
-}
-
 /// Of points that may be elsewhere than they were measured.
 AnyResult searchUncertain(const Placed& a, const Placed& b, const AnyRequest& request)
 {
@@ -100,22 +93,25 @@ AnyResult searchUncertain(const Placed& a, const Placed& b, const AnyRequest& re
     const Verdict verdict = certain ? Verdict::colliding : possible ? Verdict::undecided : Verdict::free;
     return {verdict, certain ? found.pair : std::nullopt, found.distance, found.work};
   }
-  AnyResult possible = search(a, b, request, Places::possible);
-  if (possible.verdict == Verdict::free) return possible;
-  AnyResult certain = search(a, b, request, Places::certain);
-  certain.work += possible.work;
-  if (certain.verdict == Verdict::colliding) return certain;
-  return {Verdict::undecided, std::nullopt, {certain.distance.lower, possible.distance.upper}, certain.work};
+  return anyOfUncertain([&](Places places) { return anyCollisionAt(a, b, request, places); });
 }
 
 } // namespace
+
+AnyResult anyCollisionAt(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
+{
+  const unsigned threads = threadCount(request.threads);
+  if (threads > 1) return anyCollisionShared(a, b, request, places, threads);
+  return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request, places);
+}
 
 AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   if (areUncertain(a, b)) return searchUncertain(a, b, request);
-  return request.accuracy.stopsEarly() ? searchAsFarAsAllowed(a, b, request) : search(a, b, request, Places::measured);
+  return request.accuracy.stopsEarly() ? searchAsFarAsAllowed(a, b, request)
+                                       : anyCollisionAt(a, b, request, Places::measured);
 }
 
 } // namespace pcl_bsh

@@ -139,6 +139,7 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
     const AnyResult found = brute_force::anyCollision(a, {b, T_world_b[i]}, request);
     result.verdicts.push_back(flagOf(found.verdict));
     result.colliding += found.verdict == Verdict::colliding;
+    result.undecided += found.verdict == Verdict::undecided;
     result.work += found.work;
   }
   return result;

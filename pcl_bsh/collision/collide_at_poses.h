@@ -24,8 +24,11 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 struct AnyAtPoses {
-  std::vector<std::uint8_t> verdicts; ///< one per pose, a Verdict as a number: 0 free, 1 colliding
-  std::size_t colliding = 0;          ///< poses that are
+  /// One per pose, a Verdict as a number: 0 free, 1 colliding, 2 undecided; the latter only where points have
+  /// uncertainties: some pair may be within the clearance, but none is wherever its points truly are.
+  std::vector<std::uint8_t> verdicts;
+  std::size_t colliding = 0; ///< poses that are
+  std::size_t undecided = 0;
   Work work;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/collision/check_request.h>
 #include <pcl_bsh/collision/trace.h>
+#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/geometry/invalid_input.h>
-#include <pcl_bsh/query/request_check.h>
 
 #include <map>
 #include <tuple>
@@ -111,7 +111,10 @@ CollisionTrace traceOnTarget(const Placed& a, const Placed& b, const AnyRequest&
 {
   Met met_a(a), met_b(b);
   CollisionTrace trace;
-  trace.result = AnySearch(a, b, request, TraceObserver{&met_a, &met_b}).run();
+  const auto search = [&](Places places) {
+    return AnySearch(a, b, request, TraceObserver{&met_a, &met_b}, places).run();
+  };
+  trace.result = areUncertain(a, b) ? anyOfUncertain(search) : search(Places::measured);
   trace.a = met_a.spheres();
   trace.b = met_b.spheres();
   if (trace.result.verdict == Verdict::free) { // nothing waits any more: what met it was opened, and is out of reach
@@ -134,8 +137,6 @@ HWY_EXPORT(traceOnTarget);
 CollisionTrace traceCollision(const Placed& a, const Placed& b, const AnyRequest& request)
 {
   check(a, b, request);
-  checkNoUncertainty("a", a.hierarchy().view());
-  checkNoUncertainty("b", b.hierarchy().view());
   if (request.accuracy.stopsEarly())
     throw InvalidInput(Input::accuracy, "accuracy", request.accuracy.text() + " stops early, which is not traced",
                        "give exact, float or tolerance");

@@ -2,10 +2,13 @@
 // Points that may be elsewhere than they were measured: one search for what may collide, one for what does for certain.
 #pragma once
 
+#include <pcl_bsh/collision/any_collision.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/query/reach.h>
 #include <pcl_bsh/query/result.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -16,11 +19,42 @@ inline bool areUncertain(const Placed& a, const Placed& b)
   return a.hierarchy().view().isUncertain() || b.hierarchy().view().isUncertain();
 }
 
+/// Where the points of two clouds are that collide for certain, and of those that may.
+inline Places certainPlaces(const Placed& a, const Placed& b)
+{
+  return areUncertain(a, b) ? Places::certain : Places::measured;
+}
+inline Places possiblePlaces(const Placed& a, const Placed& b)
+{
+  return areUncertain(a, b) ? Places::possible : Places::measured;
+}
+
+/// One search, of points that are where `places` says. @param request checked; its accuracy does not stop early
+AnyResult anyCollisionAt(const Placed& a, const Placed& b, const AnyRequest& request, Places places);
+
+/// What search(places) finds of what may collide and of what does for certain, as one answer. @pre the points are
+/// uncertain, and the search ends early only at a witness
+template <class Search>
+AnyResult anyOfUncertain(const Search& search)
+{
+  AnyResult possible = search(Places::possible);
+  if (possible.verdict == Verdict::free) return possible;
+  AnyResult certain = search(Places::certain);
+  certain.work += possible.work;
+  if (certain.verdict == Verdict::colliding) return certain;
+  return {Verdict::undecided, std::nullopt, {certain.distance.lower, possible.distance.upper}, certain.work};
+}
+
 /// What each of the two searches may spend.
 inline Accuracy halfOf(Accuracy accuracy)
 {
   if (accuracy.mode == Accuracy::Mode::node_pairs || accuracy.mode == Accuracy::Mode::time) accuracy.value /= 2;
   return accuracy;
+}
+
+inline std::size_t countOf(const std::vector<std::uint8_t>& verdicts, Verdict verdict)
+{
+  return static_cast<std::size_t>(std::count(verdicts.begin(), verdicts.end(), flagOf(verdict)));
 }
 
 /// Points that may collide are undecided, unless they do for certain.

@@ -27,7 +27,7 @@ class DistanceLeaf {
   static constexpr double kMargin = kSphereMargin; ///< 16 u: above what roots, radii and sums round
 
 public:
-  DistanceLeaf(const DistanceQuery& query, const DistanceSheet& sheet, DistanceScratch& scratch, Work& work)
+  DistanceLeaf(const DistancesQuery& query, const DistanceSheet& sheet, DistanceScratch& scratch, Work& work)
   : query_(query),
     sheet_(sheet),
     obstacles_(scratch.obstacles),
@@ -299,7 +299,7 @@ private:
     return {lower, distance == 0.0 && !query_.pairs.haveRadii() ? 0.0 : std::nextafter(distance, kInfinity)};
   }
 
-  const DistanceQuery& query_;
+  const DistancesQuery& query_;
   const DistanceSheet& sheet_;
   const std::vector<DistanceObstacle>& obstacles_;
   std::vector<CarriedLeaf>& leaves_;

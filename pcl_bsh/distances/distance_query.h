@@ -10,7 +10,7 @@
 namespace pcl_bsh {
 
 /// What the walks through all voxels of a have in common. The greatest distance is the pairs' clearance.
-struct DistanceQuery {
+struct DistancesQuery {
   const Placed& a;
   const Placed& b;
   const PointPairs& pairs;

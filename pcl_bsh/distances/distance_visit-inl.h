@@ -9,6 +9,7 @@
 #define PCL_BSH_DISTANCES_DISTANCE_VISIT_INL_H_
 #endif
 
+#include <pcl_bsh/distances/bound_margin.h>
 #include <pcl_bsh/traversal/obstacle_sphere-inl.h>
 
 #include <deque>
@@ -104,9 +105,8 @@ struct DistanceVisit {
 /// Lower bounds of the distances from each of eight spheres to one other; lowers each `cut` to an upper bound of the
 /// distances from any point of that sphere to its nearest one in the other.
 ///
-/// In the frame, centres are sqrt(s) apart within its error, which prune_reach includes. Relative to the sum of the
-/// lengths, sqrt(s) errs by 3.5 u, the sum of radii (stretched) and reach by 3 u, the last sum by u: kSphereMargin is
-/// 16 u. Squares that overflow stand for lengths above 2^63. NaN bounds nothing.
+/// In the frame, centres are sqrt(s) apart within its error, which prune_reach includes. kBoundMargin covers what
+/// rounding takes (test/proof/distances.g). Squares that overflow stand for lengths above 2^63. NaN bounds nothing.
 /// @param radius of the other, stretched
 HWY_INLINE void boundDistances(const CarriedNode& spheres, const DistanceObstacle& obstacle, const Point& center,
                                float radius, float* lower, float* cut)
@@ -117,7 +117,7 @@ HWY_INLINE void boundDistances(const CarriedNode& spheres, const DistanceObstacl
                                                     hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, center.y)),
                                                     hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, center.z))));
     const LaneVector radii = hn::Add(hn::LoadU(d, spheres.r + i), hn::Set(d, radius + obstacle.prune_reach));
-    const LaneVector margin = hn::Mul(hn::Add(between, radii), hn::Set(d, kSphereMargin));
+    const LaneVector margin = hn::Mul(hn::Add(between, radii), hn::Set(d, kBoundMargin));
     const LaneVector near = hn::Sub(hn::Sub(hn::Min(between, hn::Set(d, 0x1p63f)), radii), margin);
     const LaneVector far = hn::Add(hn::Add(between, radii), margin);
     hn::StoreU(hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most))), d,

@@ -25,7 +25,7 @@ class DistanceWalk {
   static constexpr std::uint32_t kAbove = 0; ///< the obstacle above the voxels of b
 
 public:
-  DistanceWalk(const DistanceQuery& query, const StopRule& rule, const DistanceSheet& sheet, Progress& progress,
+  DistanceWalk(const DistancesQuery& query, const StopRule& rule, const DistanceSheet& sheet, Progress& progress,
                DistanceScratch& scratch)
   : query_(query),
     rule_(rule),
@@ -340,7 +340,7 @@ private:
     return {std::min(low, std::nextafter(max_, 0.0)), high >= max_ ? kInfinity : high};
   }
 
-  const DistanceQuery& query_;
+  const DistancesQuery& query_;
   const StopRule& rule_;
   const DistanceSheet& sheet_;
   Progress& progress_;

@@ -18,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-MeasuredVoxel measureVoxelOnTarget(const DistanceQuery& query, const StopRule& rule, std::uint32_t voxel,
+MeasuredVoxel measureVoxelOnTarget(const DistancesQuery& query, const StopRule& rule, std::uint32_t voxel,
                                    const DistanceSheet& sheet, Progress& progress)
 {
   const ScratchLease<DistanceScratch> scratch;
@@ -96,7 +96,7 @@ public:
 
 private:
   const PointPairs pairs_;
-  const DistanceQuery query_;
+  const DistancesQuery query_;
   const DistanceSheet sheet_;
   Progress& progress_;
   VoxelPasses<std::uint32_t, MeasuredVoxel> voxels_; ///< with points left

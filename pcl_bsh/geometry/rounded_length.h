@@ -10,6 +10,11 @@
 
 namespace pcl_bsh {
 
+/// roundedLengths(): what is of low order is below this share of the square, else nothing is known; and what the length
+/// may then be off by, relative. Proved in test/proof/rounded_lengths.g.
+inline constexpr double kMostLowOrder = 0x1p-50;
+inline constexpr double kLengthDoubt = 0x1p-100;
+
 /// A coordinate: value + tail, within `error`.
 struct LongCoordinate {
   double value = 0.0, tail = 0.0, error = 0.0;

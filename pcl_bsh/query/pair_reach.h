@@ -27,6 +27,14 @@ public:
   /// Whether it is the same for all pairs, but for their radii.
   bool isOne() const { return areMeasured() || !(a_.uncertainties || b_.uncertainties || patches_.spacings); }
 
+  /// Whether a pair is within it. @param distance between points of a and of b
+  bool holds(const ExactDistance& distance, PointPair pair) const
+  {
+    const Point3 p = a_.point(pair.a), q = b_.point(pair.b);
+    if (!areMeasured()) return distance.compare(p, q, of(pair)) <= 0;
+    return distance.compare(p, q, clearance_, a_.radius(pair.a), b_.radius(pair.b)) <= 0;
+  }
+
   /// Before rounding.
   ExactDistance::Sum of(PointPair pair) const
   {

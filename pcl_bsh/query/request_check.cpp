@@ -39,14 +39,6 @@ void checkAccuracy(const Accuracy& accuracy)
       .withValue(accuracy.value);
 }
 
-void checkNoUncertainty(const std::string& name, const PointsView& points)
-{
-  if (!points.isUncertain()) return;
-  throw InvalidInput(
-      Input::uncertainty, name, "its points have uncertainties, which this query does not know",
-      "give a view without, or ask anyCollision(), collisionFlags(), collidingIndices() or collideAlong()");
-}
-
 bool isRigid(const Eigen::Isometry3d& pose)
 {
   return pose.matrix().allFinite() && pose.matrix().row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0) &&

@@ -24,9 +24,6 @@ PCL_BSH_EXPORT_INTERNAL void checkClearance(double clearance);
 /// Refuses a value of the accuracy that is negative or not finite.
 PCL_BSH_EXPORT_INTERNAL void checkAccuracy(const Accuracy& accuracy);
 
-/// Refuses points with uncertainties, for queries whose verdicts would not know them. @param name of the cloud
-PCL_BSH_EXPORT_INTERNAL void checkNoUncertainty(const std::string& name, const PointsView& points);
-
 /// Whether a pose is finite, has the last row 0 0 0 1, does not mirror, and has |R'R - I| <= rigidity_tolerance.
 PCL_BSH_EXPORT_INTERNAL bool isRigid(const Eigen::Isometry3d& pose);
 

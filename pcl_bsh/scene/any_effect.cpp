@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which pairs collide, in the scene and within an object; remembered from step to step.
-#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/collision/uncertain.h>
+#include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/scene/effect.h>
 
 #include <algorithm>
@@ -12,13 +13,12 @@ namespace {
 constexpr unsigned kPatience = 8; // queries after which a wider one that failed is tried again
 constexpr double kAhead = 4.0;    // steps of the present speed that a wider query looks ahead
 
-/// Whether a pair of points found earlier still collides.
+/// Whether a pair of points found earlier still collides for certain.
 bool collides(const Placed& a, const Placed& b, PointPair pair, double clearance, Work& work)
 {
   ++work.exact_decisions;
-  const PointsView &p = a.hierarchy().view(), &q = b.hierarchy().view();
-  return ExactDistance(a.pose, b.pose)
-             .compare(p.point(pair.a), q.point(pair.b), clearance, p.radius(pair.a), q.radius(pair.b)) <= 0;
+  const PairReach reach(a.hierarchy().view(), b.hierarchy().view(), clearance, certainPlaces(a, b));
+  return reach.holds(ExactDistance(a.pose, b.pose), pair);
 }
 
 } // namespace
@@ -73,15 +73,16 @@ void Scene::State::decideAny(BroadPair& pair) const
   if (ahead > 0.0 && std::isfinite(pair.clearance + ahead) && memory.patience == 0) {
     // What is free at a wider clearance need not be asked again until it has moved that far.
     memory.colliding = ask(pair.clearance + ahead);
-    if (!memory.colliding) {
+    if (!memory.colliding && !memory.undecided) {
       memory.apart = pair.clearance + ahead;
       memory.apart_a = a.object.pose;
       memory.apart_b = b.object.pose;
       return;
     }
     memory.patience = kPatience;
-    memory.has_witness = collides(placed(pair.a, memory.witness.part_a), placed(pair.b, memory.witness.part_b),
-                                  memory.witness.witness, pair.clearance, memory.work);
+    memory.has_witness =
+        memory.colliding && collides(placed(pair.a, memory.witness.part_a), placed(pair.b, memory.witness.part_b),
+                                     memory.witness.witness, pair.clearance, memory.work);
     if (memory.has_witness) return;
   }
   else if (memory.patience > 0) {

@@ -32,6 +32,13 @@ Box3 moved(const Box3& box, const Eigen::Isometry3d& pose)
   return result;
 }
 
+double outreach(const SphereHierarchy& hierarchy)
+{
+  const SphereHierarchy::Storage& storage = hierarchy.storage();
+  return storage.uncertainty.most > 0.0 ? (storage.largest_radius + storage.uncertainty.most) * (1.0 + kMargin)
+                                        : storage.largest_radius;
+}
+
 Box3 boxOf(const ScenePart& part)
 {
   const SphereHierarchy::Storage& storage = part.hierarchy->storage();
@@ -43,7 +50,7 @@ Box3 boxOf(const ScenePart& part)
     box.low[k] = storage.frame.origin[axis] - half;
     box.high[k] = storage.frame.origin[axis] + half;
   }
-  box.grow(storage.largest_radius + kMargin * largest(box));
+  box.grow(outreach(*part.hierarchy) + kMargin * largest(box));
   return box;
 }
 

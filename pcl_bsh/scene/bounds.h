@@ -10,6 +10,7 @@ namespace pcl_bsh {
 
 struct SceneObject;
 struct ScenePart;
+class SphereHierarchy;
 
 /// Closed; empty when low > high.
 struct Box3 {
@@ -41,7 +42,10 @@ struct Box3 {
 /// The box of a box under a pose.
 Box3 moved(const Box3& box, const Eigen::Isometry3d& pose);
 
-/// Of a part's points and their radii, in the frame of its cloud.
+/// How far places of a part may be from its points: their radii and uncertainties.
+double outreach(const SphereHierarchy& hierarchy);
+
+/// Of all places that a part's points and their radii may take, in the frame of its cloud.
 Box3 boxOf(const ScenePart& part);
 
 /// Of all parts, in the object's frame.

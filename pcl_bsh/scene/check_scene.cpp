@@ -50,7 +50,6 @@ void check(const SceneObject& object, const std::unordered_map<std::string, Obje
   for (const ScenePart& part : object.parts) {
     if (!part.hierarchy) refuse("object '" + object.name + "', part '" + part.name + "' has no hierarchy");
     checkPose("pose of part '" + part.name + "' of object '" + object.name + "'", part.pose);
-    checkNoUncertainty("part '" + part.name + "' of object '" + object.name + "'", part.hierarchy->view());
   }
   for (const auto& [a, b] : object.adjacent)
     if (a >= object.parts.size() || b >= object.parts.size())

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How near pairs are: smallest distances, contacts, first contacts.
+#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/scene/effect.h>
 
 #include <algorithm>
@@ -79,15 +80,23 @@ void Scene::State::findFirstContacts()
 {
   EffectCost& spent = cost(Effect::first_contact);
   const Timed timed(spent.seconds);
-  std::vector<std::optional<PartFirstContact>> found(grid.pairs().size());
+  using Contacts = std::vector<std::optional<PartFirstContact>>;
+  Contacts possible(grid.pairs().size()), certain(grid.pairs().size());
   eachSweptPair(spent,
                 [&](std::size_t k, BroadPair& pair, const PartPair& parts, const SweptPart& a, const SweptPart& b) {
-                  const auto met = firstContactOf(a, b, pair.clearance, options.tolerance, pair.memory.work);
-                  if (met && (!found[k] || met->s < found[k]->fraction))
-                    found[k] = PartFirstContact{parts, met->s, met->pair};
+                  const auto find = [&](Places places, std::optional<PartFirstContact>& first) {
+                    const auto met = firstContactOf(a, b, pair.clearance, options.tolerance, places, pair.memory.work);
+                    if (met && (!first || met->s < first->fraction)) first = PartFirstContact{parts, met->s, met->pair};
+                    return met.has_value();
+                  };
+                  const bool uncertain = areUncertain({a.hierarchy}, {b.hierarchy});
+                  const bool met = find(uncertain ? Places::possible : Places::measured, possible[k]);
+                  if (met && uncertain) find(Places::certain, certain[k]);
                 });
-  for (const auto& contact : found)
+  for (const auto& contact : possible)
     if (contact) result.first_contact.push_back(*contact);
+  for (const auto& contact : certain)
+    if (contact) result.certain_contact.push_back(*contact);
 }
 
 } // namespace pcl_bsh

@@ -121,7 +121,7 @@ struct FlaggedPart {
   ObjectId object = 0;
   std::uint32_t part = 0;
   std::size_t colliding = 0;
-  std::size_t undecided = 0;       ///< 0 unless the scene's accuracy lets a query stop early
+  std::size_t undecided = 0;       ///< 0 unless the scene's accuracy lets a query stop early, or points are uncertain
   std::vector<std::uint8_t> flags; ///< one per record of the part's view, as in FlagsResult
 };
 
@@ -156,12 +156,14 @@ struct SweptMotion {
 struct SceneResult {
   double time = 0.0; ///< of the scene, seconds
   std::vector<CollidingPair> any;
-  /// Of `any`, or where a == b of `self`: parts that may collide or not, as far as the scene's accuracy goes.
+  /// Of `any`, or where a == b of `self`: parts that may collide or not, as far as the scene's accuracy and the
+  /// uncertainty of their points go.
   std::vector<PartPair> undecided;
   std::vector<FlaggedPart> flags;
   std::vector<DistantPair> distance;
   std::vector<ContactPair> contacts;
   std::vector<PartFirstContact> first_contact;
+  std::vector<PartFirstContact> certain_contact; ///< the same of what collides for certain, where points are uncertain
   std::vector<FlaggedPart> swept;
   std::vector<SweptMotion> swept_motions; ///< by object; with first_contact or swept
   std::vector<SelfCollision> self;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which points collide at the present poses, and during the motion to them.
+#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/scene/effect.h>
 
 #include <algorithm>
@@ -8,6 +9,11 @@
 namespace pcl_bsh {
 namespace {
 
+bool isNotFree(std::uint8_t flag)
+{
+  return flag != flagOf(Verdict::free);
+}
+
 /// Flags of parts, made when the first of their points is flagged.
 class FlagTable {
 public:
@@ -15,7 +21,7 @@ public:
 
   void merge(ObjectId object, std::uint32_t part, const std::vector<std::uint8_t>& flags)
   {
-    if (std::all_of(flags.begin(), flags.end(), isFree)) return;
+    if (std::none_of(flags.begin(), flags.end(), isNotFree)) return;
     FlaggedPart& target = parts_[std::uint64_t{object} << 32 | part];
     if (target.flags.empty()) {
       target.object = object;
@@ -23,7 +29,7 @@ public:
       target.flags.assign(bodies_[object].object.parts[part].hierarchy->view().count, 0);
     }
     for (std::size_t i = 0; i < flags.size(); ++i)
-      if (!isFree(flags[i]) && target.flags[i] != flagOf(Verdict::colliding)) target.flags[i] = flags[i];
+      if (isNotFree(flags[i]) && target.flags[i] != flagOf(Verdict::colliding)) target.flags[i] = flags[i];
   }
 
   std::vector<FlaggedPart> take()
@@ -42,8 +48,6 @@ public:
   }
 
 private:
-  static bool isFree(std::uint8_t flag) { return flag == flagOf(Verdict::free); }
-
   const std::vector<Body>& bodies_;
   std::map<std::uint64_t, FlaggedPart> parts_;
 };
@@ -63,6 +67,19 @@ std::vector<FlaggedPart> mergedFlags(const std::vector<Body>& bodies, const std:
       table.merge(flags.parts.b, flags.parts.part_b, flags.b);
     }
   return table.take();
+}
+
+/// Of the motion; what may collide is undecided, unless it does for certain.
+void flagSwept(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, PairFlags& flags, Work& work)
+{
+  const bool uncertain = areUncertain({a.hierarchy}, {b.hierarchy});
+  flagContacts(a, b, clearance, tolerance, uncertain ? Places::possible : Places::measured, flags.a, flags.b, work);
+  if (!uncertain || std::none_of(flags.a.begin(), flags.a.end(), isNotFree)) return;
+  std::vector<std::uint8_t> certain_a(flags.a.size()), certain_b(flags.b.size());
+  flagContacts(a, b, clearance, tolerance, Places::certain, certain_a, certain_b, work);
+  std::size_t colliding = 0, undecided = 0; // counted once all pairs are known
+  withhold(flags.a, certain_a, colliding, undecided);
+  withhold(flags.b, certain_b, colliding, undecided);
 }
 
 } // namespace
@@ -104,9 +121,8 @@ void Scene::State::findSwept()
                 [&](std::size_t k, BroadPair& pair, const PartPair& parts, const SweptPart& a, const SweptPart& b) {
                   PairFlags flags{parts, std::vector<std::uint8_t>(a.hierarchy.view().count, 0),
                                   std::vector<std::uint8_t>(b.hierarchy.view().count, 0)};
-                  flagContacts(a, b, pair.clearance, options.tolerance, flags.a, flags.b, pair.memory.work);
-                  if (std::find(flags.a.begin(), flags.a.end(), 1) != flags.a.end())
-                    found[k].push_back(std::move(flags));
+                  flagSwept(a, b, pair.clearance, options.tolerance, flags, pair.memory.work);
+                  if (std::any_of(flags.a.begin(), flags.a.end(), isNotFree)) found[k].push_back(std::move(flags));
                 });
   result.swept = mergedFlags(bodies, found);
 }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/scene/mover.h>
 #include <pcl_bsh/scene/sweep.h>
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace pcl_bsh {
 namespace {
@@ -197,11 +200,14 @@ bool Mover::collectMore(Box3 swept, double length, std::size_t most)
 
 bool Mover::collectFrom(ObjectId other, double clearance, double length, std::size_t most)
 {
-  const double reach =
-      clearance + length * (1.0 + kDoubleMargin) + 0.75 * tolerance_; // halts are at half the tolerance
   for (std::uint32_t i = 0; i < body_.world.size(); ++i)
     for (std::uint32_t j = 0; j < state_.bodies[other].world.size(); ++j) {
       const Placed mine = state_.placed(object_, i), others = state_.placed(other, j);
+      const Places places = possiblePlaces(mine, others);
+      const Reach farthest(clearance, mine.hierarchy().storage().uncertainty, others.hierarchy().storage().uncertainty,
+                           places);
+      const double reach =
+          farthest.most + length * (1.0 + kDoubleMargin) + 0.75 * tolerance_; // halts are at half the tolerance
       const PairsWithin found = pairsWithin(mine, others, {reach, most});
       ++cost_.pairs;
       cost_.work += found.work;
@@ -211,13 +217,15 @@ bool Mover::collectFrom(ObjectId other, double clearance, double length, std::si
       }
       const ExactDistance exact(mine.pose, others.pose);
       const PointsView &a = mine.hierarchy().view(), &b = others.hierarchy().view();
+      const PairReach reach_of_pairs(a, b, clearance, places);
       for (const PointPair pair : found.pairs) {
         const Point3 p = a.point(pair.a), q = b.point(pair.b);
-        Encounter e{pair, i, other, j, clearance + a.radius(pair.a) + b.radius(pair.b), clearance, {}};
+        const ExactDistance::Sum terms = reach_of_pairs.of(pair);
+        Encounter e{pair, i, other, j, std::accumulate(terms.begin(), terms.end(), 0.0), clearance, {}};
         e.apart = mine.pose * Eigen::Vector3d(p[0], p[1], p[2]) - others.pose * Eigen::Vector3d(q[0], q[1], q[2]);
         if (e.apart.norm() <= e.reach + 0.125 * tolerance_) {
           ++cost_.work.exact_decisions;
-          if (exact.compare(p, q, clearance, a.radius(pair.a), b.radius(pair.b)) <= 0) {
+          if (reach_of_pairs.holds(exact, pair)) {
             outcome.stuck = true;
             touch(e);
             return true;
@@ -237,14 +245,14 @@ bool Mover::accept(const Eigen::Isometry3d& target)
   for (std::size_t i = 0; i < encounters_.size();) {
     const Encounter& first = encounters_[i];
     const ExactDistance exact(body_.world[first.part], worldOf(first));
-    const PointsView &a = body_.object.parts[first.part].hierarchy->view(), &b = hierarchyOf(first).view();
+    const SphereHierarchy &a = *body_.object.parts[first.part].hierarchy, &b = hierarchyOf(first);
+    const PairReach reach_of_pairs(a.view(), b.view(), first.clearance, possiblePlaces({a}, {b}));
     for (; i < encounters_.size(); ++i) {
       const Encounter& e = encounters_[i];
       if (e.part != first.part || e.other != first.other || e.other_part != first.other_part) break;
       if (distanceOf(e) > e.reach + 0.125 * tolerance_) continue; // far above what rounding takes
       ++cost_.work.exact_decisions;
-      if (exact.compare(a.point(e.pair.a), b.point(e.pair.b), e.clearance, a.radius(e.pair.a), b.radius(e.pair.b)) > 0)
-        continue;
+      if (!reach_of_pairs.holds(exact, e.pair)) continue;
       state_.setPose(object_, before);
       touch(e);
       return false;

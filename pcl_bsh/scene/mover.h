@@ -37,8 +37,8 @@ private:
     std::uint32_t part = 0;
     ObjectId other = 0;
     std::uint32_t other_part = 0;
-    double reach = 0.0;     ///< the pair's clearance and the points' radii
-    double clearance = 0.0; ///< the pair's alone
+    double reach = 0.0;     ///< at most so far apart, the points may collide
+    double clearance = 0.0; ///< of the objects
     Eigen::Vector3d apart;  ///< from the other's point to the mover's, at the pose they were collected at
   };
 

@@ -62,7 +62,8 @@ void Scene::State::place(ObjectId object)
   if (!swept && grid.voxelsOf(boxes_.front()) > kCoarse) {
     boxes_.clear();
     for (std::size_t p = 0; p < body.world.size(); ++p) {
-      const SphereHierarchy::Storage& storage = body.object.parts[p].hierarchy->storage();
+      const SphereHierarchy& hierarchy = *body.object.parts[p].hierarchy;
+      const SphereHierarchy::Storage& storage = hierarchy.storage();
       for (std::size_t v = 0; v < storage.voxel_count; ++v) {
         const LocalFrame& frame = storage.voxels[v].frame;
         Box3 box;
@@ -73,7 +74,7 @@ void Scene::State::place(ObjectId object)
           box.high[k] = frame.origin[axis] + half;
         }
         box = pcl_bsh::moved(box, body.world[p]);
-        box.grow(storage.largest_radius + 0.5 * reach);
+        box.grow(outreach(hierarchy) + 0.5 * reach);
         boxes_.push_back(box);
       }
     }

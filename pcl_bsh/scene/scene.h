@@ -15,6 +15,11 @@
 // that moves updates only the voxels it leaves and enters. Answers are those of the queries in collide.h: exact unless
 // the options ask for less, and the same for any number of threads. What is remembered from step to step changes times,
 // never answers.
+//
+// Where points have uncertainties (PointsView), any, flags, self, first_contact and swept give verdicts that hold
+// wherever the points truly are: what may collide, but does not for certain, is undecided. A first contact is the first
+// that may be, SceneResult::certain_contact the first that is for certain. A response halts before what may collide.
+// Distances and contacts are those of the measured places.
 #pragma once
 
 #include <pcl_bsh/export.h>

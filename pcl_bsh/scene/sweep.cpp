@@ -2,20 +2,27 @@
 // Both questions in the same way: the pairs of points that can meet at all within an interval are collected, and each
 // is followed by itself. Too many of them: the interval is halved, and they get fewer.
 #include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/scene/sweep.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace pcl_bsh {
 namespace {
 
 class Sweep {
 public:
-  Sweep(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, Work& work)
+  Sweep(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, Places places, Work& work)
   : a_(a),
     b_(b),
     clearance_(clearance),
+    places_(places),
+    reach_of_pairs_(a.hierarchy.view(), b.hierarchy.view(), clearance, places),
+    farthest_(Reach(clearance, a.hierarchy.storage().uncertainty, b.hierarchy.storage().uncertainty, places).most),
     tolerance_(tolerance),
     angle_(std::max(a.motion.angle(), b.motion.angle())),
     work_(work)
@@ -24,7 +31,7 @@ public:
 
   std::optional<PairContact> first()
   {
-    const AnyResult start = anyCollision(a_.at(0), b_.at(0), {clearance_, {}});
+    const AnyResult start = anyCollisionAt(a_.at(0), b_.at(0), {clearance_, {}}, places_);
     work_ += start.work;
     if (start.witness) return PairContact{0.0, *start.witness};
     return first(0.0, 1.0);
@@ -41,7 +48,7 @@ private:
   /// What can meet within the interval is within this at its beginning.
   double reach(double length) const
   {
-    return clearance_ + closingReach(a_.motion, b_.motion, length) + 0.5 * tolerance_;
+    return std::max(0.0, farthest_ + closingReach(a_.motion, b_.motion, length) + 0.5 * tolerance_);
   }
   bool isShort(double length) const { return closingReach(a_.motion, b_.motion, length) <= 0.5 * tolerance_; }
   bool isWide(double length, const PairsWithin& found) const
@@ -56,9 +63,14 @@ private:
     return found;
   }
 
-  ContactZone zone(PointPair pair) const
+  /// None where no distance is near enough. What is hardly below 0 may be so by rounding, and is 0: the tolerance
+  /// covers that.
+  std::optional<ContactZone> zone(PointPair pair) const
   {
-    return {clearance_ + a_.hierarchy.view().radius(pair.a) + b_.hierarchy.view().radius(pair.b), tolerance_};
+    const ExactDistance::Sum terms = reach_of_pairs_.of(pair);
+    const double reach = std::accumulate(terms.begin(), terms.end(), 0.0);
+    if (reach < -0.25 * tolerance_) return std::nullopt;
+    return ContactZone{std::max(0.0, reach), tolerance_};
   }
 
   std::optional<PairContact> first(double begin, double end)
@@ -72,7 +84,9 @@ private:
     if (!found.complete) return PairContact{begin, found.pairs.front()};
     std::optional<PairContact> earliest;
     for (const PointPair pair : found.pairs) {
-      const auto s = timeOfContact(a_.motion, a_.point(pair.a), b_.motion, b_.point(pair.b), zone(pair), begin,
+      const std::optional<ContactZone> near = zone(pair);
+      if (!near) continue;
+      const auto s = timeOfContact(a_.motion, a_.point(pair.a), b_.motion, b_.point(pair.b), *near, begin,
                                    earliest ? earliest->s : end);
       if (s && (!earliest || *s < earliest->s || (*s == earliest->s && pair < earliest->pair)))
         earliest = PairContact{*s, pair};
@@ -91,26 +105,40 @@ private:
     }
     if (!found.complete) {
       FlagsRequest wide;
-      wide.clearance = reach(end - begin);
+      wide.clearance = clearance_ + closingReach(a_.motion, b_.motion, end - begin) + 0.5 * tolerance_;
       wide.flagged = Side::both;
       const FlagsResult near = collisionFlags(a_.at(begin), b_.at(begin), wide);
       work_ += near.work;
-      for (std::size_t i = 0; i < near.a.size(); ++i) (*flags_a_)[i] |= near.a[i];
-      for (std::size_t i = 0; i < near.b.size(); ++i) (*flags_b_)[i] |= near.b[i];
+      take(near.a, *flags_a_);
+      take(near.b, *flags_b_);
       return;
     }
     for (const PointPair pair : found.pairs) {
       std::uint8_t &flag_a = (*flags_a_)[pair.a], &flag_b = (*flags_b_)[pair.b];
       if (flag_a != 0 && flag_b != 0) continue;
-      const ContactZone near = zone(pair);
+      const std::optional<ContactZone> near = zone(pair);
+      if (!near) continue;
       const Eigen::Vector3d p = a_.point(pair.a), q = b_.point(pair.b);
       const double now = (a_.motion.at(begin) * p - b_.motion.at(begin) * q).norm();
-      if (now <= near.inner() || timeOfContact(a_.motion, p, b_.motion, q, near, begin, end)) flag_a = flag_b = 1;
+      if (now <= near->inner() || timeOfContact(a_.motion, p, b_.motion, q, *near, begin, end)) flag_a = flag_b = 1;
     }
   }
 
+  /// Adds the verdicts at a pose.
+  void take(const std::vector<std::uint8_t>& verdicts, std::vector<std::uint8_t>& flags) const
+  {
+    for (std::size_t i = 0; i < verdicts.size(); ++i)
+      if (verdicts[i] == flagOf(Verdict::colliding) ||
+          (verdicts[i] == flagOf(Verdict::undecided) && places_ == Places::possible))
+        flags[i] = 1;
+  }
+
   const SweptPart &a_, &b_;
-  const double clearance_, tolerance_, angle_;
+  const double clearance_;
+  const Places places_;
+  const PairReach reach_of_pairs_;
+  const double farthest_; ///< any pair's reach, less its radii
+  const double tolerance_, angle_;
   Work& work_;
   std::vector<std::uint8_t>*flags_a_ = nullptr, *flags_b_ = nullptr;
 };
@@ -124,15 +152,15 @@ double closingReach(const ObjectMotion& a, const ObjectMotion& b, double length)
 }
 
 std::optional<PairContact> firstContactOf(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
-                                          Work& work)
+                                          Places places, Work& work)
 {
-  return Sweep(a, b, clearance, tolerance, work).first();
+  return Sweep(a, b, clearance, tolerance, places, work).first();
 }
 
-void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
+void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, Places places,
                   std::vector<std::uint8_t>& flags_a, std::vector<std::uint8_t>& flags_b, Work& work)
 {
-  Sweep(a, b, clearance, tolerance, work).flag(flags_a, flags_b);
+  Sweep(a, b, clearance, tolerance, places, work).flag(flags_a, flags_b);
 }
 
 } // namespace pcl_bsh

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/query/reach.h>
 #include <pcl_bsh/scene/conservative_advancement.h>
 #include <pcl_bsh/scene/object_motion.h>
 
@@ -42,14 +43,14 @@ inline constexpr std::size_t kFewToTurn = 64;
 /// No distance of a point of one to a point of the other shrinks by more than this within an interval of s.
 double closingReach(const ObjectMotion& a, const ObjectMotion& b, double length);
 
-/// The first s in [0, 1] at which two points are within clearance + tolerance and come nearer; at no smaller s
-/// do any collide.
+/// Of points that are where `places` says: the first s in [0, 1] at which two points are within clearance + tolerance
+/// and come nearer; at no smaller s do any collide.
 std::optional<PairContact> firstContactOf(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
-                                          Work& work);
+                                          Places places, Work& work);
 
-/// Flags, one per record, the points that collide with one of the other part at some s in [0, 1], and none that is
-/// farther than clearance + tolerance at all of them.
-void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
+/// Flags, one per record, the points that, where `places` says they are, collide with one of the other part at some s
+/// in [0, 1], and none that is farther than clearance + tolerance at all of them.
+void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, Places places,
                   std::vector<std::uint8_t>& flags_a, std::vector<std::uint8_t>& flags_b, Work& work);
 
 } // namespace pcl_bsh

@@ -9,8 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <pcl_bsh/collision/any_search-inl.h>
-#include <pcl_bsh/collision/pose_groups-inl.h>
+#include <pcl_bsh/collision/pose_search-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -19,13 +18,14 @@ namespace {
 
 class AnyOfMotions {
 public:
-  AnyOfMotions(const MotionBatch& batch, std::uint8_t* verdicts, Progress& progress)
+  AnyOfMotions(const MotionBatch& batch, bool* collides, Progress& progress)
   : batch_(batch),
     query_(batch.query),
-    verdicts_(verdicts),
-    progress_(progress)
+    collides_(collides),
+    progress_(progress),
+    at_middle_{query_.request.clearance, {}},
+    search_(query_.scan, query_.model, at_middle_, query_.places)
   {
-    at_middle_.clearance = query_.request.clearance;
   }
 
   Work run()
@@ -43,7 +43,7 @@ private:
     bool near = false;
     pairs.findNear(middle, query_.beyond + batch_.middles.extents[i], from,
                    [&near](std::size_t, double) { near = true; });
-    if (near && collides(i, {query_.model, middle}, pairs, from)) verdicts_[i] = flagOf(Verdict::colliding);
+    collides_[i] = near && collides(i, {query_.model, middle}, pairs, from);
   }
 
   /// What collides at an instant, decided exactly, collides on the motion, too. What does not collide at the instants
@@ -52,43 +52,28 @@ private:
   {
     const RigidMotion& motion = batch_.motions[i];
     if (witness_ && collidesDuring(query_, motion, *witness_, work_)) return true;
-    std::optional<PointPair> witness = searchAt(at_middle, pairs, from);
+    std::optional<PointPair> witness = search_.find(at_middle, pairs, from, work_);
     if (!witness) witness = findOnMotion(query_, motion, progress_, work_);
     if (!witness) return false;
     witness_ = witness;
     return true;
   }
 
-  std::optional<PointPair> searchAt(const Placed& model, NodePairs& pairs, std::size_t from)
-  {
-    near_.clear();
-    pairs.findNear(model.pose, at_middle_.clearance, from, [&](std::size_t k, double squared) {
-      near_.push_back(pairs.lanes(k));
-      near_.back().key = static_cast<float>(squared);
-    });
-    if (near_.empty()) return std::nullopt;
-    nearestLast(near_, 0);
-    AnySearch search(query_.scan, model, at_middle_, NoObserver());
-    std::optional<PointPair> witness = search.searchBelow(near_);
-    work_ += search.work();
-    return witness;
-  }
-
   const MotionBatch& batch_;
   const MotionsQuery& query_;
-  std::uint8_t* verdicts_;
+  bool* collides_;
   Progress& progress_;
-  AnyRequest at_middle_;
+  const AnyRequest at_middle_;
+  PoseSearch search_;
   std::optional<PointPair> witness_; ///< of the last motion that collided
-  std::vector<LanePair> near_;
   Work work_;
 };
 
 } // namespace
 
-Work anyOfMotionBatchOnTarget(const MotionBatch& batch, std::uint8_t* verdicts, Progress& progress)
+Work anyOfMotionBatchOnTarget(const MotionBatch& batch, bool* collides, Progress& progress)
 {
-  return AnyOfMotions(batch, verdicts, progress).run();
+  return AnyOfMotions(batch, collides, progress).run();
 }
 
 } // namespace HWY_NAMESPACE
@@ -100,9 +85,9 @@ namespace pcl_bsh {
 
 HWY_EXPORT(anyOfMotionBatchOnTarget);
 
-Work anyOfMotionBatch(const MotionBatch& batch, std::uint8_t* verdicts, Progress& progress)
+Work anyOfMotionBatch(const MotionBatch& batch, bool* collides, Progress& progress)
 {
-  return HWY_DYNAMIC_DISPATCH(anyOfMotionBatchOnTarget)(batch, verdicts, progress);
+  return HWY_DYNAMIC_DISPATCH(anyOfMotionBatchOnTarget)(batch, collides, progress);
 }
 
 } // namespace pcl_bsh

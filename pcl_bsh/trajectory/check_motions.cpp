@@ -6,6 +6,7 @@
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/query/request_check.h>
+#include <pcl_bsh/traversal/point_pairs.h>
 
 #include <algorithm>
 #include <atomic>
@@ -76,8 +77,8 @@ std::size_t firstWrong(std::size_t count, unsigned threads, const IsWrong& isWro
 
 } // namespace
 
-void check(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
-           const std::vector<PoseMotion>& motions, const MotionsRequest& request)
+void check(const Placed& scan, const PoseList& poses, const std::vector<PoseMotion>& motions,
+           const MotionsRequest& request)
 {
   checkClearance(request.clearance);
   if (!(std::isfinite(request.tolerance) && request.tolerance > 0.0))
@@ -88,8 +89,6 @@ void check(const Placed& scan, const SphereHierarchy& model, const PoseList& pos
     if (!std::isfinite(coordinate))
       throw InvalidInput(Input::pivot, "pivot", plainText(coordinate), "give three finite coordinates")
           .withValue(coordinate);
-  checkNoUncertainty("scan", scan.hierarchy().view());
-  checkNoUncertainty("model", model.view());
   checkPose("pose of the scan", scan.pose);
   checkPoses(poses, "the model", request.threads);
   constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
@@ -107,8 +106,8 @@ void check(const Placed& scan, const SphereHierarchy& model, const PoseList& pos
 void checkSwept(const MotionsQuery& query, const PoseList& poses, const std::vector<std::uint32_t>& used,
                 const std::vector<PoseMotion>& motions)
 {
-  const double reach =
-      reachOf(query.scan, query.model, query.swept, Reach(query.swept.clearance, {}, {}, Places::measured));
+  const double reach = reachOf(query.scan, query.model, query.swept,
+                               reachBetween(query.scan, {query.model}, query.request.clearance, query.places));
   double far = 0.0;
   for (const std::uint32_t k : used) far = std::max(far, farthestPlace(poses[k], query.boxes, query.request.pivot));
   checkTolerance(query.scan, query.swept, query.boxes, reach, far);

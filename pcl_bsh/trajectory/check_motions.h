@@ -8,8 +8,8 @@
 namespace pcl_bsh {
 
 /// Refuses values of the request, poses by their index, and motions that name no pose.
-void check(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
-           const std::vector<PoseMotion>& motions, const MotionsRequest& request);
+void check(const Placed& scan, const PoseList& poses, const std::vector<PoseMotion>& motions,
+           const MotionsRequest& request);
 
 /// Refuses motions that cannot be swept, the first one in the list, whatever their verdicts. @pre neither cloud is
 /// empty

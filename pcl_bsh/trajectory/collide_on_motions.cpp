@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/collision/collide_at_poses.h>
 #include <pcl_bsh/collision/pose_tasks.h>
+#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/trajectory/check_motions.h>
@@ -74,12 +75,14 @@ MotionBatch batchOf(const MotionsQuery& query, const PoseList& poses, const std:
   return batch;
 }
 
-/// Decides the motions in `open`, which do not collide at their poses.
+/// Of the motions in `open`, which do not collide at their poses, gives those that do between them a verdict.
+/// @param begin, end of the progress
 Work decideOpen(const MotionsQuery& query, const PoseList& poses, const std::vector<PoseMotion>& motions,
-                const std::vector<std::uint32_t>& open, std::vector<std::uint8_t>& verdicts)
+                const std::vector<std::uint32_t>& open, double begin, double end, Verdict verdict,
+                std::vector<std::uint8_t>& verdicts)
 {
   const std::function<bool(double)> report = [&](double done) {
-    return !query.request.progress || query.request.progress(kAtPoses + (1.0 - kAtPoses) * done);
+    return !query.request.progress || query.request.progress(begin + (end - begin) * done);
   };
   Progress progress(report);
   const BodyBall body(query.model);
@@ -87,15 +90,31 @@ Work decideOpen(const MotionsQuery& query, const PoseList& poses, const std::vec
   const std::vector<std::uint32_t> order = orderOf(RoughMiddles{poses, motions, open}, body, threads);
   const std::size_t batches = (order.size() + kBatchPoses - 1) / kBatchPoses;
   return forEachPart(batches, threads, progress, [&](std::size_t b) {
-    const std::size_t begin = b * kBatchPoses, end = std::min(order.size(), begin + kBatchPoses);
+    const std::size_t first = b * kBatchPoses, last = std::min(order.size(), first + kBatchPoses);
     std::vector<std::uint32_t> some;
-    some.reserve(end - begin);
-    for (std::size_t i = begin; i < end; ++i) some.push_back(open[order[i]]);
-    std::uint8_t found[kBatchPoses] = {};
+    some.reserve(last - first);
+    for (std::size_t i = first; i < last; ++i) some.push_back(open[order[i]]);
+    bool found[kBatchPoses] = {};
     const Work work = anyOfMotionBatch(batchOf(query, poses, motions, some, body), found, progress);
-    for (std::size_t i = 0; i < some.size(); ++i) verdicts[some[i]] = found[i];
+    for (std::size_t i = 0; i < some.size(); ++i)
+      if (found[i]) verdicts[some[i]] = flagOf(verdict);
     return work;
   });
+}
+
+std::vector<std::uint32_t> withVerdict(const std::vector<std::uint8_t>& verdicts, Verdict verdict)
+{
+  std::vector<std::uint32_t> some;
+  for (std::size_t m = 0; m < verdicts.size(); ++m)
+    if (verdicts[m] == flagOf(verdict)) some.push_back(static_cast<std::uint32_t>(m));
+  return some;
+}
+
+/// The verdict of a motion from those at its poses: certainty counts more than a possibility.
+std::uint8_t worse(std::uint8_t one, std::uint8_t other)
+{
+  if (one == flagOf(Verdict::colliding) || other == flagOf(Verdict::colliding)) return flagOf(Verdict::colliding);
+  return std::max(one, other);
 }
 
 } // namespace
@@ -103,12 +122,12 @@ Work decideOpen(const MotionsQuery& query, const PoseList& poses, const std::vec
 AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
                                    const std::vector<PoseMotion>& motions, const MotionsRequest& request)
 {
-  check(scan, model, poses, motions, request);
+  check(scan, poses, motions, request);
   const DefaultFloatEnvironment environment;
   AnyOnMotions result;
   result.verdicts.assign(motions.size(), flagOf(Verdict::free));
   if (scan.hierarchy().empty() || model.empty() || motions.empty()) return result;
-  const MotionsQuery query(scan, model, request);
+  MotionsQuery query(scan, model, request);
   result.work.volumes_built += countChildren(query.boxes.storage.top);
   const UsedPoses used(poses, motions);
   checkSwept(query, poses, used.indices, motions);
@@ -120,15 +139,23 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
       scan, model, used, at_poses, [&](double done) { return !request.progress || request.progress(kAtPoses * done); });
   result.work += found.work;
 
-  std::vector<std::uint32_t> open;
-  for (std::size_t m = 0; m < motions.size(); ++m) {
-    const auto at = [&](std::uint32_t k) { return found.verdicts[used.place[k]]; };
-    result.verdicts[m] = std::max(at(motions[m].from), at(motions[m].to));
-    if (result.verdicts[m] == flagOf(Verdict::free)) open.push_back(static_cast<std::uint32_t>(m));
+  for (std::size_t m = 0; m < motions.size(); ++m)
+    result.verdicts[m] = worse(found.verdicts[used.place[motions[m].from]], found.verdicts[used.place[motions[m].to]]);
+  const auto decide = [&](Verdict open, Verdict verdict, double begin, double end) {
+    const std::vector<std::uint32_t> some = withVerdict(result.verdicts, open);
+    if (!some.empty()) result.work += decideOpen(query, poses, motions, some, begin, end, verdict, result.verdicts);
+  };
+  if (areUncertain(scan, {model})) {
+    constexpr double middle = 0.5 * (kAtPoses + 1.0);
+    decide(Verdict::free, Verdict::undecided, kAtPoses, middle);
+    query.ask(Places::certain);
+    decide(Verdict::undecided, Verdict::colliding, middle, 1.0);
   }
-  if (!open.empty()) result.work += decideOpen(query, poses, motions, open, result.verdicts);
-  result.colliding =
-      static_cast<std::size_t>(std::count(result.verdicts.begin(), result.verdicts.end(), flagOf(Verdict::colliding)));
+  else {
+    decide(Verdict::free, Verdict::colliding, kAtPoses, 1.0);
+  }
+  result.colliding = countOf(result.verdicts, Verdict::colliding);
+  result.undecided = countOf(result.verdicts, Verdict::undecided);
   return result;
 }
 

@@ -13,8 +13,10 @@
 // constant speed about a fixed axis, in the shorter direction. A motion reported free stays farther than the clearance
 // at every instant, at its two poses exactly as they are; one reported colliding comes within clearance + tolerance.
 // A motion has the same verdict in both directions, wherever it stands in the list, whatever else the list holds, and
-// for any number of threads and any processor. In one of its directions it is that of collideAlong(); between clearance
-// and clearance + tolerance those of the two directions may differ.
+// for any number of threads and any processor. Where points have uncertainties (PointsView), a motion is free if no
+// pair can come within the clearance on it, colliding if some pair does, within clearance + tolerance, wherever its
+// points truly are, and else undecided. In one of its directions it is that of collideAlong(); between clearance and
+// clearance + tolerance those of the two directions may differ.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -48,8 +50,11 @@ struct MotionsRequest {
 };
 
 struct AnyOnMotions {
-  std::vector<std::uint8_t> verdicts; ///< one per motion, a Verdict as a number: 0 free, 1 colliding
-  std::size_t colliding = 0;          ///< motions that are
+  /// One per motion, a Verdict as a number: 0 free, 1 colliding, 2 undecided; the latter only where points have
+  /// uncertainties.
+  std::vector<std::uint8_t> verdicts;
+  std::size_t colliding = 0; ///< motions that are
+  std::size_t undecided = 0;
   Work work;
 };
 

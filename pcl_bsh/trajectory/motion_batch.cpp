@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/trajectory/motion_batch.h>
 
+#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/trajectory/closest_approach.h>
 #include <pcl_bsh/trajectory/trajectory_walk.h>
 #include <pcl_bsh/traversal/point_pairs.h>
@@ -41,9 +42,15 @@ MotionsQuery::MotionsQuery(const Placed& scan_at, const SphereHierarchy& model_o
   model(model_of),
   request(asked),
   boxes(model_of.storage(), Travel()), // of motions in all directions
-  swept(requestOfOne(asked)),
-  beyond(asked.clearance + asked.tolerance)
+  swept(requestOfOne(asked))
 {
+  ask(possiblePlaces(scan, {model}));
+}
+
+void MotionsQuery::ask(Places where)
+{
+  places = where;
+  beyond = std::max(0.0, reachBetween(scan, {model}, request.clearance, places).most + request.tolerance);
 }
 
 RigidMotion motionBetween(const Eigen::Isometry3d& one, const Eigen::Isometry3d& other, const Point3& pivot)
@@ -73,7 +80,7 @@ bool collidesDuring(const MotionsQuery& query, const RigidMotion& motion, const 
   const ClosestApproach approach = closestApproach({start[0] - q[0], start[1] - q[1], start[2] - q[2]},
                                                    {way[0], way[1], way[2]}, std::numeric_limits<double>::infinity());
   const Placed model{query.model, motion.at(approach.at)};
-  return PointPairs(query.scan, model, query.request.clearance).collide(pair, work);
+  return PointPairs(query.scan, model, query.request.clearance, query.places).collide(pair, work);
 }
 
 std::optional<PointPair> findOnMotion(const MotionsQuery& query, const RigidMotion& motion, Progress& progress,
@@ -83,7 +90,7 @@ std::optional<PointPair> findOnMotion(const MotionsQuery& query, const RigidMoti
   Progress own(goesOn);
   TrajectoryResult counted;
   const std::vector<Eigen::Isometry3d> ends = {motion.from(), motion.to()};
-  const TrajectoryQuery path(query.scan, query.model, query.boxes, ends, query.swept, counted, own, Places::measured,
+  const TrajectoryQuery path(query.scan, query.model, query.boxes, ends, query.swept, counted, own, query.places,
                              Wanted::witness);
   const StopRule never(Accuracy::exact());
   std::vector<TrajectoryQuery::NearVoxel> near;

@@ -5,6 +5,7 @@
 #include <pcl_bsh/collision/pose_batch.h>
 #include <pcl_bsh/geometry/rigid_motion.h>
 #include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/query/reach.h>
 #include <pcl_bsh/trajectory/collide_on_motions.h>
 #include <pcl_bsh/trajectory/trajectory_query.h>
 
@@ -15,6 +16,7 @@ namespace pcl_bsh {
 
 /// What all motions of a query share.
 struct MotionsQuery {
+  /// Asks at first about what may collide.
   MotionsQuery(const Placed& scan_at, const SphereHierarchy& model_of, const MotionsRequest& asked);
 
   const Placed& scan;
@@ -22,7 +24,12 @@ struct MotionsQuery {
   const MotionsRequest& request;
   const BoxTree boxes;     ///< of the model
   TrajectoryRequest swept; ///< the same, of one motion
-  const double beyond;     ///< pairs farther apart than this never count as colliding
+
+  /// From now on, points are where `where` says.
+  void ask(Places where);
+
+  Places places = Places::measured;
+  double beyond = 0.0; ///< pairs farther apart than this never count as colliding
 };
 
 /// The motion between two poses, the same in both directions.
@@ -46,7 +53,7 @@ struct MotionBatch {
   std::vector<RigidMotion> motions;
 };
 
-/// Sets the verdicts of the batch's motions that collide.
-Work anyOfMotionBatch(const MotionBatch& batch, std::uint8_t* verdicts, Progress& progress);
+/// Marks those of the batch's motions that collide.
+Work anyOfMotionBatch(const MotionBatch& batch, bool* collides, Progress& progress);
 
 } // namespace pcl_bsh

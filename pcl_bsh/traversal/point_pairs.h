@@ -27,8 +27,7 @@ public:
   bool collide(PointPair pair, Work& work) const
   {
     ++work.exact_decisions;
-    if (!of_pairs_.areMeasured()) return distance.compare(a_.point(pair.a), b_.point(pair.b), of_pairs_.of(pair)) <= 0;
-    return distance.compare(a_.point(pair.a), b_.point(pair.b), clearance, a_.radius(pair.a), b_.radius(pair.b)) <= 0;
+    return of_pairs_.holds(distance, pair);
   }
 
   ExactDistance::Pair posed(PointPair pair) const

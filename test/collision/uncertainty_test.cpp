@@ -14,6 +14,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -257,12 +258,59 @@ TEST(Uncertainty, FollowsARefitAndAnUpdate)
 
 TEST(Uncertainty, AtManyPoses)
 {
-  const Scene scene = uncertainScene(8, 200);
-  const SphereHierarchy a(scene.a.view()), b(scene.b.view());
-  const std::vector<Eigen::Isometry3d> poses(20, scene.pose_b);
-  const Placed placed(a, scene.pose_a);
-  EXPECT_EQ(anyCollisionAtPoses(placed, b, poses, {scene.clearance, {}}).verdicts,
-            brute_force::anyCollisionAtPoses(placed, b, poses, {scene.clearance, {}}).verdicts);
+  std::size_t verdicts[3] = {};
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const Scene scene = uncertainScene(seed, 60);
+    SCOPED_TRACE(scene.name);
+    const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+    const Placed placed(a, scene.pose_a);
+    Random random(seed);
+    std::vector<Eigen::Isometry3d> poses(2, scene.pose_b);
+    for (int i = 0; i < 30; ++i)
+      poses.push_back(scene.pose_b * random.pose((scene.clearance + 0.01) * std::pow(10.0, random.integer(-4, 0))));
+    for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.0)}) {
+      AnyRequest request{scene.clearance, accuracy, static_cast<unsigned>(seed % 3) + 1};
+      double done = 0.0;
+      const AnyAtPoses found = anyCollisionAtPoses(placed, b, poses, request, [&](double now) {
+        EXPECT_GE(now, done);
+        done = now;
+        return true;
+      });
+      const AnyAtPoses expected = brute_force::anyCollisionAtPoses(placed, b, poses, request);
+      ASSERT_EQ(found.verdicts, expected.verdicts);
+      EXPECT_EQ(found.colliding, expected.colliding);
+      EXPECT_EQ(found.undecided, expected.undecided);
+      EXPECT_TRUE(done == 1.0 || a.empty() || b.empty());
+      for (const std::uint8_t verdict : found.verdicts) ++verdicts[verdict];
+    }
+  }
+  for (const std::size_t count : verdicts) EXPECT_GT(count, 100u);
+}
+
+TEST(Uncertainty, ATraceTellsBothSearches)
+{
+  std::size_t verdicts[3] = {};
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const Scene scene = uncertainScene(seed, 400);
+    SCOPED_TRACE(scene.name);
+    const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+    const Placed placed_a(a, scene.pose_a), placed_b(b, scene.pose_b);
+    anyCollision(placed_a, placed_b, {scene.clearance, {}}); // voxels are built: the same work from here on
+    const AnyResult any = anyCollision(placed_a, placed_b, {scene.clearance, {}});
+    const CollisionTrace trace = traceCollision(placed_a, placed_b, {scene.clearance, {}});
+    ASSERT_EQ(trace.result.verdict, any.verdict);
+    ASSERT_EQ(trace.result.witness, any.witness);
+    ASSERT_EQ(test::countsOf(trace.result.work), test::countsOf(any.work));
+    std::size_t compared = 0;
+    for (const TracedSphere& sphere : trace.a) compared += sphere.fate == SphereFate::compared;
+    EXPECT_LE(compared, any.work.leaf_pairs);
+    if (any.verdict == Verdict::free) {
+      EXPECT_TRUE(std::none_of(trace.a.begin(), trace.a.end(),
+                               [](const TracedSphere& sphere) { return sphere.fate == SphereFate::kept; }));
+    }
+    ++verdicts[flagOf(any.verdict)];
+  }
+  for (const std::size_t count : verdicts) EXPECT_GT(count, 5u);
 }
 
 /// Free points near patches of the other surface, with and without uncertainties; ties at the patches' edges, too.
@@ -355,16 +403,6 @@ TEST(Uncertainty, RefusesWhatIsNoLength)
       EXPECT_EQ(error.index(), 1u);
     }
   }
-}
-
-TEST(Uncertainty, IsRefusedWhereItIsNotKnown)
-{
-  Cloud cloud({{0, 0, 0}});
-  const SphereHierarchy plain(cloud.view());
-  cloud.setUncertainties(0.1, {});
-  const SphereHierarchy uncertain(cloud.view());
-  EXPECT_THROW(traceCollision({uncertain}, {plain}, {}), InvalidInput);
-  EXPECT_THROW(traceCollision({plain}, {uncertain}, {}), InvalidInput);
 }
 
 } // namespace

@@ -155,6 +155,31 @@ TEST(SceneProgram, SaysWhatLessAccuracyLeavesOpen)
   EXPECT_THAT(wrong.err, HasSubstr("crash.json: accuracy: 'roughly' is no accuracy: give exact, float, "));
 }
 
+TEST(SceneProgram, SaysWhatUncertainPointsLeaveOpen)
+{
+  const io::TemporaryFolder folder;
+  std::string text = crashWith(R"("any": true, "flags": true, "first_contact": true, "swept": true)", "last");
+  text.insert(text.find("\"spacing\""), "\"uncertainty\": 0.1, ");
+  const std::string scene = folder.write("crash.json", text).string(), out = (folder / "out").string();
+  const Outcome done = run("pcl_bsh_scene", scene + " --out " + out);
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  std::istringstream each(io::contentOf(folder / "out" / "steps.jsonl"));
+  std::size_t open = 0, met = 0;
+  for (std::string line; std::getline(each, line);) {
+    const Json step = Json::parse(line);
+    open += step["undecided"].size();
+    EXPECT_TRUE(step["any"].empty()); // twice 0.1 exceeds the clearance
+    EXPECT_TRUE(step["certain_contact"].empty());
+    met += step["first_contact"].size();
+    for (const Json& part : step["flags"]) EXPECT_EQ(part["points"], 0);
+    EXPECT_EQ(step["flags"].empty(), step["undecided"].empty());
+  }
+  EXPECT_GT(open, 0u);
+  EXPECT_GT(met, 0u);
+  EXPECT_THAT(io::contentOf(folder / "out" / "steps.csv"), HasSubstr(",colliding_pairs,undecided_pairs,"));
+  EXPECT_THAT(run("pcl_bsh_scene", scene + " --explain").out, HasSubstr("points of cloud 'ball' may be elsewhere"));
+}
+
 TEST(SceneProgram, ExplainsAndValidatesWithoutRunning)
 {
   const io::TemporaryFolder folder;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The constants that the code uses, as Gappa reads numbers: "name value" in each line.
+#include <pcl_bsh/distances/bound_margin.h>
 #include <pcl_bsh/geometry/local_frame.h>
+#include <pcl_bsh/geometry/rounded_length.h>
 #include <pcl_bsh/simd/roundings.h>
 
 #include <cstdio>
@@ -20,6 +22,9 @@ int main()
   PCL_BSH_PRINT(kStoringError);
   PCL_BSH_PRINT(kFewDoubleRoundings);
   PCL_BSH_PRINT(kTermsError);
+  PCL_BSH_PRINT(kMostLowOrder);
+  PCL_BSH_PRINT(kLengthDoubt);
+  PCL_BSH_PRINT(kBoundMargin);
   PCL_BSH_PRINT(kNeighborShare);
   PCL_BSH_PRINT(kNeighborMargin);
 }

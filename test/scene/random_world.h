@@ -3,6 +3,8 @@
 #pragma once
 
 #include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/collision/uncertain.h>
+#include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include "../query/question.h"
@@ -18,12 +20,15 @@ namespace pcl_bsh::test {
 /// A scene of random objects, some of several parts, some fixed, some in groups, and its rules.
 class RandomWorld {
 public:
-  explicit RandomWorld(std::uint64_t seed) : random_(seed)
+  /// @param uncertain whether points may be elsewhere than they were measured
+  explicit RandomWorld(std::uint64_t seed, bool uncertain = false) : random_(seed)
   {
     const int clouds = random_.integer(2, 5);
     for (int i = 0; i < clouds; ++i) {
       const auto count = static_cast<std::size_t>(random_.integer(i == 0 ? 0 : 1, 60));
-      hierarchies_.push_back(shelf_.add(anyCloud(count, random_.uniform(0.3, 1.5), {0, 0, 0}, random_)));
+      Cloud cloud = anyCloud(count, random_.uniform(0.3, 1.5), {0, 0, 0}, random_);
+      if (uncertain && random_.chance(0.7)) makeUncertain(cloud, 0.15, random_);
+      hierarchies_.push_back(shelf_.add(std::move(cloud)));
     }
     const int objects = random_.integer(2, 14);
     for (int i = 0; i < objects; ++i) {
@@ -143,19 +148,22 @@ using IdPair = std::pair<ObjectId, ObjectId>;
 
 inline void expectAnyAsBruteForce(const RandomWorld& world, const pcl_bsh::Scene& scene, const SceneResult& result)
 {
-  std::set<IdPair> expected, found;
+  std::set<IdPair> expected, found, open, undecided;
   eachPartPair(world, scene, [&](ObjectId a, ObjectId b, std::uint32_t i, std::uint32_t j, double clearance) {
-    if (brute_force::anyCollision(placed(scene, a, i), placed(scene, b, j), within(clearance)).witness)
-      expected.insert({a, b});
+    const Verdict verdict =
+        brute_force::anyCollision(placed(scene, a, i), placed(scene, b, j), within(clearance)).verdict;
+    if (verdict != Verdict::free) (verdict == Verdict::colliding ? expected : open).insert({a, b});
   });
+  for (const IdPair& pair : expected) open.erase(pair);
+  for (const PartPair& pair : result.undecided)
+    if (pair.a != pair.b) undecided.insert({pair.a, pair.b});
+  EXPECT_EQ(undecided, open);
   for (const CollidingPair& pair : result.any) {
     EXPECT_TRUE(found.insert({pair.a, pair.b}).second) << "twice";
-    const PointsView &a = scene[pair.a].parts[pair.part_a].hierarchy->view(),
-                     &b = scene[pair.b].parts[pair.part_b].hierarchy->view();
-    const ExactDistance distance(scene.worldPose(pair.a, pair.part_a), scene.worldPose(pair.b, pair.part_b));
-    EXPECT_LE(distance.compare(a.point(pair.witness.a), b.point(pair.witness.b), *world.clearanceOf(pair.a, pair.b),
-                               a.radius(pair.witness.a), b.radius(pair.witness.b)),
-              0);
+    const Placed a = placed(scene, pair.a, pair.part_a), b = placed(scene, pair.b, pair.part_b);
+    const PairReach reach(a.hierarchy().view(), b.hierarchy().view(), *world.clearanceOf(pair.a, pair.b),
+                          certainPlaces(a, b));
+    EXPECT_TRUE(reach.holds(ExactDistance(a.pose, b.pose), pair.witness));
   }
   EXPECT_EQ(found, expected);
 }
@@ -165,17 +173,19 @@ inline void expectFlagsAsBruteForce(const RandomWorld& world, const pcl_bsh::Sce
   std::map<IdPair, std::vector<std::uint8_t>> expected, found;
   const auto merge = [](std::vector<std::uint8_t>& into, const std::vector<std::uint8_t>& flags) {
     into.resize(flags.size());
-    for (std::size_t i = 0; i < flags.size(); ++i) into[i] |= flags[i];
+    for (std::size_t i = 0; i < flags.size(); ++i)
+      if (into[i] != flagOf(Verdict::colliding) && flags[i] != flagOf(Verdict::free)) into[i] = flags[i];
   };
   eachPartPair(world, scene, [&](ObjectId a, ObjectId b, std::uint32_t i, std::uint32_t j, double clearance) {
     const FlagsResult flags = brute_force::collisionFlags(placed(scene, a, i), placed(scene, b, j), within(clearance));
-    if (flags.colliding_a == 0) return;
+    if (flags.colliding_a + flags.undecided_a == 0) return;
     merge(expected[{a, i}], flags.a);
     merge(expected[{b, j}], flags.b);
   });
   for (const FlaggedPart& part : result.flags) {
     found[{part.object, part.part}] = part.flags;
-    EXPECT_EQ(part.colliding, static_cast<std::size_t>(std::count(part.flags.begin(), part.flags.end(), 1)));
+    EXPECT_EQ(part.colliding, countOf(part.flags, Verdict::colliding));
+    EXPECT_EQ(part.undecided, countOf(part.flags, Verdict::undecided));
   }
   EXPECT_EQ(found, expected);
 }
@@ -196,20 +206,23 @@ inline void expectDistancesAsBruteForce(const RandomWorld& world, const pcl_bsh:
 
 inline void expectSelfAsBruteForce(const pcl_bsh::Scene& scene, const SceneResult& result)
 {
-  std::set<std::pair<ObjectId, IdPair>> expected, found;
+  std::set<std::pair<ObjectId, IdPair>> expected, found, open, undecided;
   for (ObjectId o = 0; o < scene.size(); ++o) {
     const SceneObject& whole = scene[o];
     for (std::uint32_t i = 0; i < whole.parts.size(); ++i)
       for (std::uint32_t j = i + 1; j < whole.parts.size(); ++j) {
         if (i == 0 && j == 1) continue; // adjacent
-        if (brute_force::anyCollision({*whole.parts[i].hierarchy, whole.parts[i].pose},
-                                      {*whole.parts[j].hierarchy, whole.parts[j].pose},
-                                      within(scene.options().clearance))
-                .witness)
-          expected.insert({o, {i, j}});
+        const Verdict verdict = brute_force::anyCollision({*whole.parts[i].hierarchy, whole.parts[i].pose},
+                                                          {*whole.parts[j].hierarchy, whole.parts[j].pose},
+                                                          within(scene.options().clearance))
+                                    .verdict;
+        if (verdict != Verdict::free) (verdict == Verdict::colliding ? expected : open).insert({o, {i, j}});
       }
   }
   for (const SelfCollision& hit : result.self) found.insert({hit.object, {hit.part_a, hit.part_b}});
+  for (const PartPair& pair : result.undecided)
+    if (pair.a == pair.b) undecided.insert({pair.a, {pair.part_a, pair.part_b}});
+  EXPECT_EQ(undecided, open);
   EXPECT_EQ(found, expected);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include <Eigen/Geometry>
@@ -38,7 +39,7 @@ public:
       for (std::size_t i = 0; i < view.size(); ++i) {
         const Point3 p = view.point(view.record(i));
         points_.push_back(parts_.back().pose * Eigen::Vector3d(p[0], p[1], p[2]));
-        radii_.push_back(view.radius(view.record(i)));
+        radii_.push_back(view.radius(view.record(i)) + view.uncertainty + view.ownUncertainty(view.record(i)));
         if (!points_.back().allFinite()) continue;
         low_ = low_.cwiseMin(points_.back());
         high_ = high_.cwiseMax(points_.back());
@@ -47,7 +48,8 @@ public:
     }
   }
 
-  /// Whether a pair of points collides, in exact arithmetic. @param near set to the smallest gap less the clearance
+  /// Whether a pair of points collides, or may where they are uncertain, in exact arithmetic. @param near set to the
+  /// smallest gap less the clearance
   bool collides(const StandingPoints& other, double clearance, double& near) const
   {
     const double reach = clearance + largest_radius_ + other.largest_radius_ + 1e-3;
@@ -64,11 +66,9 @@ public:
                 (p - other.points_[b.first + j]).norm() - radii_[a.first + i] - other.radii_[b.first + j] - clearance;
             near = std::min(near, gap);
             if (!(gap <= rounding)) continue;
-            const std::uint32_t record_a = a.view->record(i), record_b = b.view->record(j);
-            if (ExactDistance(a.pose, b.pose)
-                    .compare(a.view->point(record_a), b.view->point(record_b), clearance, a.view->radius(record_a),
-                             b.view->radius(record_b)) <= 0)
-              return true;
+            const bool uncertain = a.view->isUncertain() || b.view->isUncertain();
+            const PairReach of_pairs(*a.view, *b.view, clearance, uncertain ? Places::possible : Places::measured);
+            if (of_pairs.holds(ExactDistance(a.pose, b.pose), {a.view->record(i), b.view->record(j)})) return true;
           }
       }
     return false;
@@ -83,7 +83,7 @@ private:
 
   std::vector<Part> parts_;
   std::vector<Eigen::Vector3d> points_;
-  std::vector<double> radii_;
+  std::vector<double> radii_; ///< and uncertainties
   double largest_radius_ = 0.0;
   Eigen::Vector3d low_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), high_ = -low_;
 };
@@ -178,6 +178,10 @@ public:
                    ", before " + std::to_string(fractionOf(result, a, b));
         }
     }
+    const auto extent = [&](ObjectId id, std::uint32_t part, std::uint32_t record) {
+      const PointsView& view = scene_[id].parts[part].hierarchy->view();
+      return view.radius(record) + view.uncertainty + view.ownUncertainty(record);
+    };
     for (const PartFirstContact& contact : result.first_contact) {
       const auto point = [&](ObjectId id, std::uint32_t part, std::uint32_t record) {
         const Point3 p = scene_[id].parts[part].hierarchy->view().point(record);
@@ -186,8 +190,7 @@ public:
       };
       const double gap =
           (point(contact.a, contact.part_a, contact.pair.a) - point(contact.b, contact.part_b, contact.pair.b)).norm() -
-          scene_[contact.a].parts[contact.part_a].hierarchy->view().radius(contact.pair.a) -
-          scene_[contact.b].parts[contact.part_b].hierarchy->view().radius(contact.pair.b);
+          extent(contact.a, contact.part_a, contact.pair.a) - extent(contact.b, contact.part_b, contact.pair.b);
       if (gap > *clearances_[contact.a][contact.b] + scene_.options().tolerance)
         return "objects " + std::to_string(contact.a) + " and " + std::to_string(contact.b) + " are " +
                std::to_string(gap) + " apart at their contact";

@@ -165,6 +165,12 @@ TEST(SceneFile, NamesThePlaceOfWhatIsWrong)
   expect("\"steps\": 20, ", "\"steps\": 20, \"steps\": 21, ", "says the key \"steps\" twice in one object: remove one");
   expect("{ \"sphere\": { \"radius\": 0.5 }, \"spacing\": 0.2 }", "\"nowhere.ply\"",
          "clouds.ball: no such file: nowhere.ply: check the name");
+  expect("\"spacing\": 0.2 }", "\"spacing\": 0.2, \"uncertainty\": -1 }",
+         "clouds.ball.uncertainty: -1 is too small: give at least 0");
+  expect("\"spacing\": 0.2 }", "\"spacing\": 0.2, \"uncertainty\": \"sigma\" }",
+         "clouds.ball.uncertainty: names a field, which a sphere does not have: give a length");
+  expect("\"spacing\": 0.2 }", "\"spacing\": 0.2, \"uncertainty\": 0.1, \"sigmas\": 3 }",
+         "clouds.ball.sigmas: is given, but the uncertainty is no field: give the length itself");
   expect("\"dt\": 0.5", "\"dt\" 0.5",
          "is no JSON: line 26, column 98: syntax error while parsing object separator - unexpected number literal; "
          "expected ':': mend what stands there or just before");
@@ -191,6 +197,47 @@ TEST(SceneFile, FindsCloudsBesideItself)
   SceneWorld world(file);
   EXPECT_EQ(world.points(), 2u);
   EXPECT_EQ(world.scene()[0].parts[0].hierarchy->view().point(1), (Point3{3, 4, 6}));
+}
+
+/// A point that may be off by 0.25, and another 1 away that is uncertain as the scene says.
+std::string verdictOf(const TemporaryFolder& folder, const std::string& uncertainty, const std::string& more = "")
+{
+  const auto scene = folder.write("scene.json", R"({"clouds": {
+      "rough": {"file": "rough.csv", "uncertainty": 0.25}, "unsure": {"file": "unsure.csv", )" +
+                                                    uncertainty + R"(}},
+    "objects": [{"name": "a", "cloud": "rough"}, {"name": "b", "cloud": "unsure")" +
+                                                    more + R"(}],
+    "effects": {"any": true, "flags": true, "deform": 2}, "clearance": 0.5, "threads": 1})");
+  try {
+    SceneWorld world(readSceneFile(scene));
+    const SceneResult result = world.scene().query();
+    EXPECT_EQ(result.flags.size(), 2 * (result.any.size() + result.undecided.size()));
+    return !result.any.empty() ? "colliding" : !result.undecided.empty() ? "undecided" : "free";
+  }
+  catch (const JsonError& error) {
+    return error.what();
+  }
+}
+
+TEST(SceneFile, CloudsMayBeUncertain)
+{
+  const TemporaryFolder folder;
+  folder.write("rough.csv", "x,y,z\n0,0,0\n");
+  folder.write("unsure.csv", "x,y,z,sigma\n1,0,0,0.125\n");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.25)"), "undecided");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.2499)"), "free");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": "sigma", "sigmas": 2)"), "undecided");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": "sigma")"), "free");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": "sigma", "scale": 0.125)"), "colliding"); // 0.5 - 0.25 - 0.125 / 8
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.125, "scale": 0.125)"), "colliding");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.126, "scale": 0.125)"), "undecided");
+  const std::string wave = R"(, "wave": {"amplitude": [0, 0, 0], "length": 1, "period": 1})";
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": "sigma", "sigmas": 2)", wave), "undecided");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.25)", wave), "undecided");
+  EXPECT_THAT(verdictOf(folder, R"("uncertainty": "sigm")"),
+              HasSubstr("scene.json: clouds.unsure.uncertainty: field 'sigm' of its points' sigmas is missing"));
+  EXPECT_THAT(verdictOf(folder, R"("uncertainty": "y", "shift": [0, -1, 0])"),
+              HasSubstr("clouds.unsure.uncertainty: field 'y' of point 0 is -1"));
 }
 
 /// The view of a cloud of one file, scaled and shifted.

@@ -38,7 +38,8 @@ std::uint8_t verdictAlone(const Placed& scan, const SphereHierarchy& model, cons
   TrajectoryRequest alone = flagsOnly(request.clearance);
   alone.swept = request.tolerance;
   alone.pivot = request.pivot;
-  return collideAlong(scan, model, {motion.from(), motion.to()}, alone).colliding > 0 ? 1 : 0;
+  const TrajectoryResult found = collideAlong(scan, model, {motion.from(), motion.to()}, alone);
+  return flagOf(found.colliding > 0 ? Verdict::colliding : found.undecided > 0 ? Verdict::undecided : Verdict::free);
 }
 
 /// What the definition says at many instants of a motion, in exact arithmetic at each.
@@ -180,6 +181,80 @@ TEST(OnMotions, EachIsThatOfTheMotionAloneForRandomCloudsAndThreads)
   EXPECT_GT(colliding, 200u);
 }
 
+TEST(OnMotions, OfUncertainPointsEachIsThatOfTheMotionAlone)
+{
+  Random random(34);
+  std::size_t verdicts[3] = {};
+  for (std::uint64_t seed = 840; seed < 856; ++seed) {
+    Scene scene = test::anyScene(seed, 40);
+    SCOPED_TRACE(scene.name);
+    const double scale = scene.clearance > 0.0 ? scene.clearance : 0.01;
+    if (random.chance(0.7)) test::makeUncertain(scene.a, scale, random);
+    test::makeUncertain(scene.b, scale, random);
+    const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+    const Placed scan{a, scene.pose_a};
+    Asked asked = anyQuestion(scene, 8, 12, random);
+    asked.request.threads = static_cast<unsigned>(seed % 3) + 1;
+    double done = 0.0;
+    asked.request.progress = [&](double now) {
+      EXPECT_GE(now, done);
+      done = now;
+      return true;
+    };
+    const AnyOnMotions found = anyCollisionOnMotions(scan, b, asked.poses, asked.motions, asked.request);
+    asked.request.progress = {};
+    std::size_t counts[3] = {};
+    for (std::size_t m = 0; m < asked.motions.size(); ++m) {
+      const Eigen::Isometry3d &from = asked.poses[asked.motions[m].from], &to = asked.poses[asked.motions[m].to];
+      ASSERT_EQ(found.verdicts[m], verdictAlone(scan, b, from, to, asked.request)) << "motion " << m;
+      ++counts[found.verdicts[m]];
+    }
+    EXPECT_EQ(found.colliding, counts[1]);
+    EXPECT_EQ(found.undecided, counts[2]);
+    for (int i = 0; i < 3; ++i) verdicts[i] += counts[i];
+  }
+  for (const std::size_t count : verdicts) EXPECT_GT(count, 10u);
+}
+
+Eigen::Isometry3d at(double x, double y = 0.0, double angle = 0.0)
+{
+  Eigen::Isometry3d pose(Eigen::Translation3d(x, y, 0.0));
+  pose.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return pose;
+}
+
+TEST(OnMotions, OfUncertainPointsBothEdgesHold)
+{
+  // 0.5 + 0.375 and 0.5 - 0.375, passed by on a straight way at both poses' height
+  Cloud still({{0, 0, 0}}, {Scalar::float64}), moving({{0, 0, 0}}, {Scalar::float64});
+  still.setUncertainties(0.125, {});
+  moving.setUncertainties(0.125, {0.125f});
+  const SphereHierarchy scan(still.view()), model(moving.view());
+  MotionsRequest request;
+  request.clearance = 0.5;
+  request.tolerance = 1e-6;
+  const auto pass = [&](double distance) {
+    const Poses poses = {at(-2, distance, 0), at(2, distance, 0)};
+    const AnyOnMotions found = anyCollisionOnMotions({scan}, model, poses, {{0, 1}, {1, 0}}, request);
+    const AnyOnMotions brute = brute_force::anyCollisionOnMotions({scan}, model, poses, {{0, 1}, {1, 0}}, request);
+    EXPECT_EQ(found.verdicts, brute.verdicts) << distance;
+    EXPECT_EQ(found.verdicts[0], found.verdicts[1]);
+    return static_cast<Verdict>(found.verdicts[0]);
+  };
+  EXPECT_EQ(pass(0.125), Verdict::colliding);
+  EXPECT_EQ(pass(0.125 + 1.1e-6), Verdict::undecided);
+  EXPECT_EQ(pass(0.875), Verdict::undecided);
+  EXPECT_EQ(pass(0.875 + 1.1e-6), Verdict::free);
+  // What collides at a pose alone, to the last bit.
+  const auto rest = [&](double distance) {
+    const Poses poses = {at(0, distance, 0)};
+    request.tolerance = 1e-12;
+    return static_cast<Verdict>(anyCollisionOnMotions({scan}, model, poses, {{0, 0}}, request).verdicts[0]);
+  };
+  EXPECT_EQ(rest(0.125), Verdict::colliding);
+  EXPECT_EQ(rest(0.875), Verdict::undecided);
+}
+
 TEST(OnMotions, HoldsAtEachInstantAsBruteForceDoes)
 {
   Random random(32);
@@ -284,13 +359,6 @@ TEST(OnMotions, ShareWhatTheyHaveInCommon)
     alone += collideAlong({map.hall}, map.body, {map.poses[motion.from], map.poses[motion.to]}, request).work;
   }
   EXPECT_LT(4 * together.node_pairs, alone.node_pairs);
-}
-
-Eigen::Isometry3d at(double x, double y = 0.0, double angle = 0.0)
-{
-  Eigen::Isometry3d pose(Eigen::Translation3d(x, y, 0.0));
-  pose.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  return pose;
 }
 
 /// Free at both ends and in the middle, and a single point is met on the way.

@@ -51,6 +51,9 @@ void explain(const io::SceneFile& file, std::ostream& out)
   }
   if (!file.options.accuracy.isExact())
     out << "  accuracy of any, flags, distance and self: " << file.options.accuracy.text() << '\n';
+  for (const io::CloudSource& cloud : file.clouds)
+    if (!cloud.uncertainty.isZero())
+      out << "  points of cloud '" << cloud.name << "' may be elsewhere: each verdict about them takes two searches\n";
   if (effects.none()) out << "  none: objects move, nothing is tested and no voxel is built\n";
   out << "\nEffects that are off (no code runs for them, nothing is allocated or built):\n ";
   for (std::size_t e = 0; e < kEffects; ++e)

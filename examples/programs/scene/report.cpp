@@ -8,11 +8,18 @@
 namespace pcl_bsh::cli {
 namespace {
 
-std::size_t flaggedPoints(const std::vector<FlaggedPart>& parts)
+std::size_t sumOf(const std::vector<FlaggedPart>& parts, std::size_t FlaggedPart::*value)
 {
-  std::size_t count = 0;
-  for (const FlaggedPart& part : parts) count += part.colliding;
-  return count;
+  std::size_t sum = 0;
+  for (const FlaggedPart& part : parts) sum += part.*value;
+  return sum;
+}
+
+/// Of different objects, or of parts of one.
+std::size_t undecidedPairs(const SceneResult& result, bool of_one)
+{
+  return static_cast<std::size_t>(std::count_if(result.undecided.begin(), result.undecided.end(),
+                                                [&](const PartPair& pair) { return (pair.a == pair.b) == of_one; }));
 }
 
 /// A number as text that reads as the same number, with no more digits than that takes.
@@ -41,6 +48,15 @@ nlohmann::ordered_json toJson(const Work& work)
 }
 
 } // namespace
+
+bool mayBeUndecided(const Scene& scene)
+{
+  if (scene.options().accuracy.stopsEarly()) return true;
+  for (ObjectId id = 0; id < scene.size(); ++id)
+    for (const ScenePart& part : scene[id].parts)
+      if (part.hierarchy->view().isUncertain()) return true;
+  return false;
+}
 
 void SceneTotals::add(const SceneResult& result, double seconds)
 {
@@ -73,13 +89,13 @@ void SceneTable::writeHeader(std::ostream& out) const
     const auto effect = static_cast<Effect>(e);
     if (!effects_.has(effect)) continue;
     const std::string name = nameOf(effect);
-    if (effect == Effect::any) out << ",colliding_pairs";
-    if (effect == Effect::flags) out << ",flagged_points";
+    if (effect == Effect::any) out << (undecided_ ? ",colliding_pairs,undecided_pairs" : ",colliding_pairs");
+    if (effect == Effect::flags) out << (undecided_ ? ",flagged_points,undecided_points" : ",flagged_points");
     if (effect == Effect::distance) out << ",near_pairs,smallest_distance";
     if (effect == Effect::contacts) out << ",contacts";
     if (effect == Effect::first_contact) out << ",first_contacts,earliest_fraction";
-    if (effect == Effect::swept) out << ",swept_points";
-    if (effect == Effect::self) out << ",self_collisions";
+    if (effect == Effect::swept) out << (undecided_ ? ",swept_points,undecided_swept_points" : ",swept_points");
+    if (effect == Effect::self) out << (undecided_ ? ",self_collisions,undecided_self_collisions" : ",self_collisions");
     out << ',' << name << "_queries," << name << "_reused," << name << "_node_pairs," << name << "_updates," << name
         << "_seconds";
   }
@@ -94,8 +110,15 @@ void SceneTable::writeRow(std::ostream& out, std::size_t step, const SceneResult
   for (std::size_t e = 0; e < kEffects; ++e) {
     const auto effect = static_cast<Effect>(e);
     if (!effects_.has(effect)) continue;
-    if (effect == Effect::any) out << ',' << result.any.size();
-    if (effect == Effect::flags) out << ',' << flaggedPoints(result.flags);
+    const auto counts = [&](std::size_t colliding, std::size_t undecided) {
+      out << ',' << colliding;
+      if (undecided_) out << ',' << undecided;
+    };
+    const auto points = [&](const std::vector<FlaggedPart>& parts) {
+      counts(sumOf(parts, &FlaggedPart::colliding), sumOf(parts, &FlaggedPart::undecided));
+    };
+    if (effect == Effect::any) counts(result.any.size(), undecidedPairs(result, false));
+    if (effect == Effect::flags) points(result.flags);
     if (effect == Effect::distance) writeSmallest(out, result.distance, &DistantPair::distance);
     if (effect == Effect::contacts) {
       std::size_t count = 0;
@@ -103,8 +126,8 @@ void SceneTable::writeRow(std::ostream& out, std::size_t step, const SceneResult
       out << ',' << count;
     }
     if (effect == Effect::first_contact) writeSmallest(out, result.first_contact, &PartFirstContact::fraction);
-    if (effect == Effect::swept) out << ',' << flaggedPoints(result.swept);
-    if (effect == Effect::self) out << ',' << result.self.size();
+    if (effect == Effect::swept) points(result.swept);
+    if (effect == Effect::self) counts(result.self.size(), undecidedPairs(result, true));
     const EffectCost& cost = result.cost(effect);
     out << ',' << cost.pairs << ',' << cost.reused << ',' << cost.work.node_pairs << ',' << cost.work.updates() << ','
         << shortest(cost.seconds);
@@ -134,7 +157,7 @@ nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const
   using Json = nlohmann::ordered_json;
   const Effects& effects = scene.options().effects;
   const Accuracy& accuracy = scene.options().accuracy;
-  const bool early = accuracy.stopsEarly();
+  const bool open = mayBeUndecided(scene);
   const auto names = [&](const PartPair& pair) {
     Json json = {{"a", scene[pair.a].name}, {"b", scene[pair.b].name}};
     if (scene[pair.a].parts.size() > 1) json["part_a"] = scene[pair.a].parts[pair.part_a].name;
@@ -148,7 +171,7 @@ nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const
       list.push_back({{"object", scene[part.object].name},
                       {"part", scene[part.object].parts[part.part].name},
                       {"points", part.colliding}});
-    for (std::size_t i = 0; early && i < parts.size(); ++i) list[i]["undecided"] = parts[i].undecided;
+    for (std::size_t i = 0; open && i < parts.size(); ++i) list[i]["undecided"] = parts[i].undecided;
     return list;
   };
   Json json = {{"step", step}, {"time", result.time}};
@@ -162,7 +185,7 @@ nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const
   };
   if (effects.any)
     list("any", result.any, [&](Json& e, const CollidingPair& pair) { e["witness"] = points(pair.witness); });
-  if (early && (effects.any || effects.self)) list("undecided", result.undecided, [](Json&, const PartPair&) {});
+  if (open && (effects.any || effects.self)) list("undecided", result.undecided, [](Json&, const PartPair&) {});
   if (effects.flags) json["flags"] = flagged(result.flags);
   if (effects.distance)
     list("distance", result.distance, [&](Json& e, const DistantPair& pair) {
@@ -179,11 +202,14 @@ nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const
                                {"distance", contact.distance},
                                {"normal", {contact.normal[0], contact.normal[1], contact.normal[2]}}});
     });
-  if (effects.first_contact)
-    list("first_contact", result.first_contact, [&](Json& e, const PartFirstContact& contact) {
+  if (effects.first_contact) {
+    const auto contact_of = [&](Json& e, const PartFirstContact& contact) {
       e["fraction"] = contact.fraction;
       e["pair"] = points(contact.pair);
-    });
+    };
+    list("first_contact", result.first_contact, contact_of);
+    if (open) list("certain_contact", result.certain_contact, contact_of);
+  }
   if (effects.swept) json["swept"] = flagged(result.swept);
   if (effects.self) {
     json["self"] = Json::array();

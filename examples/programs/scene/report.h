@@ -29,7 +29,8 @@ struct SceneTotals {
 /// Counts of a step: a row of the CSV. Columns of effects that are not listed are left out.
 class SceneTable {
 public:
-  explicit SceneTable(const Effects& effects) : effects_(effects) {}
+  /// @param undecided whether results may be: they have columns then
+  SceneTable(const Effects& effects, bool undecided) : effects_(effects), undecided_(undecided) {}
 
   void writeHeader(std::ostream& out) const;
 
@@ -40,7 +41,11 @@ private:
   bool moves() const { return effects_.response != Response::none || effects_.gravity.has_value(); }
 
   const Effects& effects_;
+  bool undecided_;
 };
+
+/// Whether a verdict of the scene may be undecided, for its accuracy or the uncertainty of points.
+bool mayBeUndecided(const Scene& scene);
 
 nlohmann::ordered_json toJson(const EffectCost& cost);
 

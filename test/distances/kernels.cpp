@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kernels.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "test/distances/kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/distances/distance_visit-inl.h>
+#include <pcl_bsh/distances/rounded_lengths-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+void longLengthOnTarget(const std::array<double, 3>& p, const std::array<double, 3>& q,
+                        const std::array<WithError, 3>& shift, test::LongLength& out)
+{
+  GivenPairs pairs;
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::fill(std::begin(pairs.p[k]), std::end(pairs.p[k]), p[k]);
+    std::fill(std::begin(pairs.q[k]), std::end(pairs.q[k]), q[k]);
+  }
+  out = {};
+#if HWY_NATIVE_FMA
+  const LongLengths found = longLengths(pairs, 0, shift);
+  out = {hn::GetLane(found.root), hn::GetLane(found.correction), hn::FindFirstTrue(DoubleTag(), found.known) == 0, 0.0};
+#endif
+  double lengths[kLeafPoints];
+  roundedLengths(pairs, 1, shift, lengths);
+  out.rounded = lengths[0];
+}
+
+void boundDistanceOnTarget(const float* center, float radius, const float* other, float other_radius,
+                           const test::FrameBounds& frame, test::DistanceBounds& out)
+{
+  CarriedNode spheres;
+  std::fill(std::begin(spheres.x), std::end(spheres.x), center[0]);
+  std::fill(std::begin(spheres.y), std::end(spheres.y), center[1]);
+  std::fill(std::begin(spheres.z), std::end(spheres.z), center[2]);
+  std::fill(std::begin(spheres.r), std::end(spheres.r), radius);
+  DistanceObstacle obstacle(nullptr, LocalFrame(), RelativeFrame(), 1.0);
+  obstacle.prune_reach = frame.prune_reach;
+  obstacle.least = frame.least;
+  obstacle.most = frame.most;
+  float lower[kLanes], cut[kLanes];
+  std::fill(std::begin(cut), std::end(cut), std::numeric_limits<float>::infinity());
+  boundDistances(spheres, obstacle, {other[0], other[1], other[2]}, other_radius, lower, cut);
+  out = {lower[0], cut[0]};
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+namespace {
+HWY_EXPORT(longLengthOnTarget);
+HWY_EXPORT(boundDistanceOnTarget);
+} // namespace
+
+namespace test {
+
+LongLength longLength(const std::array<double, 3>& p, const std::array<double, 3>& q,
+                      const std::array<WithError, 3>& shift)
+{
+  LongLength found;
+  HWY_DYNAMIC_DISPATCH(longLengthOnTarget)(p, q, shift, found);
+  return found;
+}
+
+DistanceBounds boundDistance(const float (&center)[3], float radius, const float (&other)[3], float other_radius,
+                             const FrameBounds& frame)
+{
+  DistanceBounds found;
+  HWY_DYNAMIC_DISPATCH(boundDistanceOnTarget)(center, radius, other, other_radius, frame, found);
+  return found;
+}
+
+} // namespace test
+} // namespace pcl_bsh
+#endif

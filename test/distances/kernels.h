@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels of distances as they are compiled for the instruction set in use: for tests that judge their rounding.
+#pragma once
+
+#include <pcl_bsh/geometry/rounding.h>
+
+#include <array>
+
+namespace pcl_bsh::test {
+
+/// longLengths() and roundedLengths() of one pair. Not known: also where the instruction set has no such arithmetic.
+struct LongLength {
+  double root, correction;
+  bool known;
+  double rounded;
+};
+LongLength longLength(const std::array<double, 3>& p, const std::array<double, 3>& q,
+                      const std::array<WithError, 3>& shift);
+
+/// boundDistances() of one sphere to another, in a frame whose unit is between `least` and `most` of the walk's.
+struct FrameBounds {
+  float prune_reach, least, most;
+};
+struct DistanceBounds {
+  float lower, upper;
+};
+DistanceBounds boundDistance(const float (&center)[3], float radius, const float (&other)[3], float other_radius,
+                             const FrameBounds& frame);
+
+} // namespace pcl_bsh::test
