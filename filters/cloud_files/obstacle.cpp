@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/cloud_files/obstacle.h>
 
 #include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/filters/text_files/number_text.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -15,8 +16,9 @@
 namespace pcl_bsh::io {
 namespace {
 
-/// Some 300 MB while the cover is made.
-constexpr double most_usual_balls = 5e6;
+/// With a clearance, queries visit what is near: some 400 MB while the cover is made. Without one, as for distances,
+/// they may compare every point with every ball.
+constexpr double most_usual_balls = 7e6, most_without_clearance = 1e6;
 /// Of the best cover of a plane: what a cover takes beyond it.
 constexpr double usual_excess = 1.3;
 /// In shares of a coordinate and of the diagonal: well above what coverSurface() refuses.
@@ -64,7 +66,8 @@ UsualTolerance usualTolerance(const PointsView& vertices, const std::vector<Tria
   SurfaceCover best;
   best.area = area;
   best.tolerance = 1.0;
-  usual.tolerance = std::max({usual.wanted, std::sqrt(usual_excess * best.hexagonalOptimum() / most_usual_balls),
+  const double most_balls = clearance > 0.0 ? most_usual_balls : most_without_clearance;
+  usual.tolerance = std::max({usual.wanted, std::sqrt(usual_excess * best.hexagonalOptimum() / most_balls),
                               least_of_coordinate * magnitude + least_of_diagonal * diagonal});
   // A mesh that is one place, the origin: any length will do.
   if (usual.tolerance == 0.0) usual.tolerance = usual.wanted = 1e-6;
@@ -108,6 +111,16 @@ PointsView Obstacle::view() const
   else
     view.owner = points_;
   return view;
+}
+
+std::string promiseOf(const Obstacle& surface, const std::string& beside)
+{
+  const std::string tolerance = numberText(surface.tolerance(), std::chars_format::general, 6);
+  return "the obstacle is a surface of " + std::to_string(surface.triangles()->size()) +
+         " triangles, to a tolerance of " + tolerance +
+         ": free is farther than the clearance from it for certain, colliding is within the clearance + " + tolerance +
+         ", and a distance is too small by at most " + tolerance +
+         (beside.empty() ? "" : "; the tolerance of " + beside + " comes on top");
 }
 
 Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& settings, double clearance,

@@ -41,7 +41,8 @@ using TrianglesPtr = std::shared_ptr<const std::vector<Triangle>>;
 struct UsualTolerance {
   double tolerance = 0.0;
   /// A tenth of the clearance or, where that is 0, a 10,000th of the diagonal of the triangles' box; `tolerance` is
-  /// greater where the cover would take more than some five million balls, or the coordinates round too much.
+  /// greater where the cover would take more than some seven million balls (one million where the clearance is 0), or
+  /// the coordinates round too much.
   double wanted = 0.0;
 };
 
@@ -85,6 +86,10 @@ private:
   std::shared_ptr<const SurfaceCover> cover_;
   std::vector<std::string> remarks_;
 };
+
+/// What verdicts and distances mean where the obstacle is a surface, in one sentence.
+/// @param beside whose tolerance comes on top; empty: none
+std::string promiseOf(const Obstacle& surface, const std::string& beside = "");
 
 /// Reads any file that readCloud() reads.
 /// @throws files::FileError as readMesh() does, and where its faces cannot be covered. Cancelled
