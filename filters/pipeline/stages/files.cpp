@@ -188,9 +188,12 @@ StageType offReader()
 
 StageType meshReader()
 {
-  return reader("readers.mesh", {".stl", ".obj", ".off", ".ply"},
-                "A mesh: its vertices, and its faces, cut into triangles. As the obstacle of a stage it is a surface. "
-                "Faces go on through stages that keep all points; no file is written with them.");
+  StageType type =
+      reader("readers.mesh", {".stl", ".obj", ".off", ".ply"},
+             "A mesh, .stl, .obj, .off or .ply: its vertices, and its faces, cut into triangles. As the obstacle of a "
+             "stage it is a surface. Faces go on through stages that keep all points; no file is written with them.");
+  type.extensions = {".stl"}; // the others have readers of their own
+  return type;
 }
 
 StageType lasReader()
