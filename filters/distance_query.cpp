@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/distance_query.h>
 
 #include <pcl_bsh/filters/parted_records.h>
+#include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/float_environment.h>
 
@@ -14,7 +15,7 @@ namespace pcl_bsh {
 namespace {
 
 /// A record without a distance is farther than all that was asked for. A distance that equals the length was rounded:
-/// the coordinates decide.
+/// the coordinates decide. Within a ball of a surface, distances are 0.
 class Comparison {
 public:
   Comparison(const PointsView& input, const PointsView& obstacle, const Eigen::Isometry3d& pose,
@@ -32,7 +33,10 @@ public:
     const double distance = found_.distance[record];
     if (std::isnan(distance)) return 1;
     if (distance != length) return distance < length ? -1 : 1;
-    return exact_.compare(input_.point(record), obstacle_.point(found_.nearest[record]), length);
+    const std::uint32_t nearest = found_.nearest[record];
+    const int sign = exact_.compare(input_.point(record), obstacle_.point(nearest), length, input_.radius(record),
+                                    obstacle_.radius(nearest));
+    return length == 0.0 ? std::max(sign, 0) : sign;
   }
 
 private:
@@ -79,6 +83,7 @@ PointDistances DistanceQuery::within(const PointsView& input, double max_distanc
   request.threads = threads_;
   request.progress = progress_;
   PointDistances found = pointDistances({hierarchy}, {obstacle, pose_}, request);
+  if (obstacle_.surface()) tellOfSurface(obstacle_.surface()->tolerance, found);
   work_ = found.work;
   return found;
 }

@@ -34,6 +34,24 @@ public:
     obstacle_.setCloud(cloud);
   }
 
+  /// The surface that distances lead to, instead of a cloud: the mesh's polygons. Each distance d then means that the
+  /// true one is in [d, d + tolerance], up to the rounding of d; limits are compared with d. What a closed surface
+  /// encloses is not part of it. The mesh is covered by balls here and now, and not kept.
+  /// @param tolerance by how much balls may reach beyond the surface, in the clouds' unit; finite and > 0
+  /// @throws std::invalid_argument as coverOf() does
+  void setObstacleSurface(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance)
+  {
+    setObstacleSurface(coverOf(mesh, tolerance));
+  }
+
+  /// The same, of a surface that is covered already: of coverSurface().
+  /// @throws std::invalid_argument when the pointer is null
+  void setObstacleSurface(const std::shared_ptr<const SurfaceCover>& cover) { obstacle_.setSurface(cover); }
+
+  /// Null where the obstacle is a cloud. Its records are those that results name: `triangles` of each says which
+  /// triangle it stands for.
+  const std::shared_ptr<const SurfaceCover>& getObstacleSurface() const { return obstacle_.surface(); }
+
   /// Pose of the obstacle in the input's frame, T_input_obstacle. Rigid within 1e-6 (default: identity), or filtering
   /// throws. Takes any of Eigen's transforms, and 4x4 matrices as PCL's registration returns them; float or double.
   template <typename Scalar, int Mode, int Options>

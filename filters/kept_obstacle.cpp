@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/kept_obstacle.h>
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/surface/polygon_triangles.h>
 
 #include <pcl/PCLPointField.h>
 #include <pcl/common/io.h>
@@ -67,11 +68,36 @@ std::uint64_t checksumOf(const PointsView& view, const std::vector<pcl::PCLPoint
 
 } // namespace
 
+std::shared_ptr<const SurfaceCover> coverOf(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance)
+{
+  if (!mesh) throw std::invalid_argument("obstacle surface is null: give a mesh without polygons if there is none");
+  const PointsView vertices = viewOf(mesh->cloud);
+  std::vector<Triangle> triangles;
+  triangles.reserve(mesh->polygons.size());
+  std::vector<std::uint32_t> corners;
+  for (const pcl::Vertices& polygon : mesh->polygons) {
+    corners.clear(); // a negative index becomes one that is not there
+    for (const pcl::index_t vertex : polygon.vertices) corners.push_back(static_cast<std::uint32_t>(vertex));
+    addTriangles(vertices, corners.data(), corners.size(), triangles);
+  }
+  SurfaceRequest request;
+  request.tolerance = tolerance;
+  return std::make_shared<SurfaceCover>(coverSurface(vertices, triangles, request));
+}
+
+void KeptObstacle::setSurface(const std::shared_ptr<const SurfaceCover>& cover)
+{
+  if (!cover) throw std::invalid_argument("obstacle surface is null: give the cover of no triangles if there is none");
+  setView([cover] { return cover->view(); }, [] { return std::vector<pcl::PCLPointField>(); });
+  surface_ = cover;
+}
+
 void KeptObstacle::setView(std::function<PointsView()> view, Fields fields)
 {
   view(); // a cloud that cannot be read is refused here, not at the first use
   view_ = std::move(view);
   fields_ = std::move(fields);
+  surface_.reset();
   hierarchy_.reset();
 }
 

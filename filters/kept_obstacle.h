@@ -5,7 +5,9 @@
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/surface/surface_cover.h>
 
+#include <pcl/PolygonMesh.h>
 #include <pcl/common/io.h>
 
 #include <cstdint>
@@ -30,6 +32,10 @@ inline std::vector<pcl::PCLPointField> fieldsOfRecords(const pcl::PCLPointCloud2
   return cloud.fields;
 }
 
+/// Covers a mesh of PCL, whose polygons may have any number of corners.
+/// @throws std::invalid_argument when the pointer is null, or as viewOf(), addTriangles() and coverSurface() do
+std::shared_ptr<const SurfaceCover> coverOf(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance);
+
 /// The cloud's points must not change from setCloud() on: every use compares a checksum of their coordinates and
 /// uncertainties. That takes some 20 instructions a point, a tenth or less of what building takes.
 class KeptObstacle {
@@ -41,6 +47,12 @@ public:
     if (!cloud) throw std::invalid_argument("obstacle cloud is null: give an empty cloud if there is no obstacle");
     setView([cloud] { return viewOf(*cloud); }, [cloud] { return fieldsOfRecords(*cloud); });
   }
+
+  /// A surface, as balls that cover it. @throws std::invalid_argument when the pointer is null
+  void setSurface(const std::shared_ptr<const SurfaceCover>& cover);
+
+  /// Null where the obstacle is a cloud.
+  const std::shared_ptr<const SurfaceCover>& surface() const { return surface_; }
 
   /// Default: none. The hierarchy is built anew, for it holds its points' uncertainties.
   /// @throws std::invalid_argument for numbers that are not finite and >= 0
@@ -61,7 +73,8 @@ private:
   void setView(std::function<PointsView()> view, Fields fields);
 
   std::function<PointsView()> view_; ///< owns its cloud
-  Fields fields_;                    ///< likewise
+  std::shared_ptr<const SurfaceCover> surface_;
+  Fields fields_; ///< likewise
   Uncertainty uncertainty_;
   std::shared_ptr<const SphereHierarchy> hierarchy_;
   std::uint64_t checksum_ = 0; ///< of what the hierarchy was built from

@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/filters/parted_records.h>
+#include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
@@ -35,7 +36,7 @@ void ObstacleQuery::setWidestGap(double widest_gap)
 
 const float* ObstacleQuery::obstacleSpacings(const SphereHierarchy& obstacle)
 {
-  if (!density_guard_) return nullptr;
+  if (!density_guard_ || obstacle_.surface()) return nullptr;
   if (!(std::isfinite(widest_gap_) && widest_gap_ >= 0.0)) {
     throw InvalidInput(Input::density, "widest gap", plainText(widest_gap_), "give a finite length >= 0")
         .withValue(widest_gap_);
@@ -82,6 +83,7 @@ TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& 
   request.progress = progress_;
   TrajectoryResult result =
       collideAlong({hierarchy}, obstacle, trajectory_ ? *trajectory_ : std::vector{pose_}, request);
+  if (obstacle_.surface()) tellOfSurface(result);
   work_ = result.work;
   undecided_ = result.undecided;
   sparse_ = 0;

@@ -46,6 +46,29 @@ public:
     spacings_.reset();
   }
 
+  /// The surface to collide with, instead of a cloud: the mesh's polygons. Then free is farther than the clearance from
+  /// the surface, for certain, and colliding is within clearance + tolerance (with setSwept(), its tolerance comes on
+  /// top); a distance d means that the true one is in [d, d + tolerance]. What a closed surface encloses is not part of
+  /// it. The mesh is covered by balls here and now, and not kept.
+  /// @param tolerance by how much balls may reach beyond the surface, in the clouds' unit; finite and > 0
+  /// @throws std::invalid_argument as coverOf() does
+  void setObstacleSurface(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance)
+  {
+    setObstacleSurface(coverOf(mesh, tolerance));
+  }
+
+  /// The same, of a surface that is covered already: of coverSurface().
+  /// @throws std::invalid_argument when the pointer is null
+  void setObstacleSurface(const std::shared_ptr<const SurfaceCover>& cover)
+  {
+    obstacle_.setSurface(cover);
+    spacings_.reset();
+  }
+
+  /// Null where the obstacle is a cloud. Its records are those that results name: `triangles` of each says which
+  /// triangle it stands for.
+  const std::shared_ptr<const SurfaceCover>& getObstacleSurface() const { return obstacle_.surface(); }
+
   /// Greatest distance at which two points collide; touching counts. Finite and >= 0 (default 0), or filtering throws.
   void setClearance(double clearance) { clearance_ = clearance; }
   double getClearance() const { return clearance_; }
@@ -106,7 +129,7 @@ public:
   /// undecided with the reason *not scanned densely enough*: its flag is 3, and it counts as colliding wherever points
   /// are kept or removed. FlagsRequest::spacings_of_b says what is promised and what not, patchSpacings() how wide the
   /// holes between the obstacle's points are taken to be. These are measured once for an obstacle. At one pose: along a
-  /// trajectory, filtering throws. Default: false.
+  /// trajectory, filtering throws. A surface has no holes, and nothing to guard. Default: false.
   void setDensityGuard(bool density_guard) { density_guard_ = density_guard; }
   bool getDensityGuard() const { return density_guard_; }
 

@@ -8,12 +8,13 @@
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
 #include <pcl_bsh/filters/reports/distance_report.h>
 #include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/search/cloud_view.h>
@@ -114,10 +115,36 @@ Scan load(const fs::path& path, double& seconds)
   return scan;
 }
 
-SphereHierarchy build(const Scan& scan, const fs::path& path, const Uncertainty& uncertainty, unsigned threads,
-                      double& seconds)
+/// Its cloud or, where the file has faces, its surface.
+io::Obstacle loadObstacle(const Options& options, double& seconds)
 {
-  const PointsView view = withUncertainty(viewOf(scan.cloud), scan.cloud.fields, path.string(), uncertainty);
+  cli::Step step("Loading " + options.obstacle.string());
+  io::Obstacle obstacle = io::readObstacle(options.obstacle, options.surface, options.clearance, [&](double fraction) {
+    step.share(fraction);
+    return true;
+  });
+  const pcl::PCLPointCloud2& points = obstacle.points();
+  std::string result = std::to_string(std::size_t{points.width} * points.height) + " points";
+  if (obstacle.isSurface()) {
+    result += ", " + std::to_string(obstacle.triangles()->size()) + " triangles in " +
+              std::to_string(obstacle.cover()->centers.size()) + " balls";
+  }
+  seconds += step.done(result);
+  return obstacle;
+}
+
+/// A field of sigmas is one of points.
+void requireLength(const io::Obstacle& obstacle, const fs::path& path, const Uncertainty& uncertainty)
+{
+  if (!obstacle.isSurface() || uncertainty.field.empty()) return;
+  throw std::invalid_argument("--obstacle-uncertainty: " + uncertainty.field + ": " + path.string() +
+                              " is a surface, which has no field: give a length, or --vertices-only");
+}
+
+SphereHierarchy build(const PointsView& points, const std::vector<pcl::PCLPointField>& fields, const fs::path& path,
+                      const Uncertainty& uncertainty, unsigned threads, double& seconds)
+{
+  const PointsView view = withUncertainty(points, fields, path.string(), uncertainty);
   cli::Step step("Sorting " + path.string() + " into voxels");
   HierarchyOptions options;
   options.threads = threads;
@@ -235,7 +262,8 @@ void summarise(const Options& options, const cli::CollisionReport& report, const
   if (report.widest_gap > 0) out << ", " << report.sparse << " are not scanned densely enough";
   if (report.closest.pair) {
     out << "; smallest distance " << distanceText(report) << ", between point " << report.closest.pair->a
-        << " of the input and point " << report.closest.pair->b << " of the obstacle";
+        << " of the input and " << (report.surface ? report.surface->partName() : "point") << ' '
+        << report.closest.pair->b << " of the obstacle";
   }
   if (report.path) out << "; " << report.path->poses << " poses";
   if (report.path && report.path->first_contact) {
@@ -249,6 +277,7 @@ void summarise(const Options& options, const cli::CollisionReport& report, const
     if (options.previous) out << ", " << resolved << " resolved";
   }
   if (distances) out << distanceSummary(*distances);
+  if (report.surface) out << "; " << io::promiseOf(*report.surface, report.besideSurface());
   out << "; wrote " << options.output.string() << '\n';
 }
 
@@ -257,8 +286,18 @@ std::vector<float> guardedSpacings(const Options& options, const SphereHierarchy
                                    cli::CollisionReport& report)
 {
   if (!options.density) return {};
+  if (report.surface) {
+    report.warnings.push_back(report.obstacle.file + ": is a surface, which has no holes: --density guards nothing");
+    return {};
+  }
   report.widest_gap = options.widest_gap > 0 ? options.widest_gap : usualGap(obstacle);
   return report.widest_gap > 0 ? patchSpacings(obstacle, report.widest_gap, options.threads) : std::vector<float>();
+}
+
+/// From the records of a query to what users know of the obstacle.
+void nameParts(cli::CollisionReport& report)
+{
+  if (report.surface && report.closest.pair) report.closest.pair->b = report.surface->partOf(report.closest.pair->b);
 }
 
 /// At one pose, without a list of clashes: flags, and the smallest distance however large.
@@ -274,6 +313,8 @@ TrajectoryResult atPose(const Options& options, const SphereHierarchy& a, const 
   if (!spacings.empty()) request.spacings_of_b = spacings.data();
   FlagsResult flags = collisionFlags({a}, {b, options.pose}, request);
   report.closest = closestPair({a}, {b, options.pose}, {options.accuracy});
+  if (report.surface) tellOfSurface(report.surface->tolerance(), report.closest);
+  nameParts(report);
   report.seconds.query = query.done(std::to_string(flags.colliding_a) + " colliding");
   report.work = flags.work;
   report.work += report.closest.work;
@@ -318,7 +359,9 @@ TrajectoryResult alongPath(const Options& options, const std::vector<Eigen::Isom
   report.seconds.query = query.done(std::to_string(found.colliding) + " colliding");
   report.work = found.work;
   report.undecided = found.undecided;
+  if (report.surface) tellOfSurface(found);
   report.closest = closestOf(found);
+  nameParts(report);
   if (options.moves()) report.path = cli::PathReport{poses.size(), options.swept, found.poses, found.first_contact};
   return found;
 }
@@ -327,10 +370,16 @@ void warnOfHoles(cli::CollisionReport& report)
 {
   if (!report.density.couldHide(report.clearance)) return;
   std::ostringstream warning;
-  warning << "points lie " << report.density.input.median << " apart in the input and "
-          << report.density.obstacle.median << " in the obstacle: surfaces may touch with no two points within the "
-          << "clearance of " << report.clearance << ": scan more densely, or give a clearance of "
-          << report.density.blind() << " at least";
+  warning << "points lie " << report.density.input.median << " apart in the input";
+  if (report.density.obstacle) {
+    warning << " and " << report.density.obstacle->median
+            << " in the obstacle: surfaces may touch with no two points within the clearance of ";
+  }
+  else {
+    warning << ": what was scanned may touch the obstacle with no point within the clearance of ";
+  }
+  warning << report.clearance << ": scan more densely, or give a clearance of " << report.density.blind()
+          << " at least";
   report.warnings.push_back(warning.str());
 }
 
@@ -352,7 +401,8 @@ std::vector<Clash> listClashes(const Options& options, const std::vector<Eigen::
                        b.view(),
                        poses,
                        found,
-                       options.swept};
+                       options.swept,
+                       report.surface ? &*report.surface : nullptr};
   if (options.previous) {
     list.previous = options.previous->string();
     compareWithEarlier(list.clashes, earlier, distance);
@@ -399,6 +449,7 @@ Distances measure(const Options& options, const SphereHierarchy& a, const Sphere
   };
   Distances distances;
   distances.found = symmetricDistances({a}, {b, options.pose}, request);
+  if (report.surface) tellOfSurface(report.surface->tolerance(), distances.found);
   distances.field.assign(distances.found.a.distance.begin(), distances.found.a.distance.end());
   report.work += distances.found.a.work;
   report.work += distances.found.b.work;
@@ -407,11 +458,16 @@ Distances measure(const Options& options, const SphereHierarchy& a, const Sphere
 }
 
 std::optional<io::DistanceReport> reportDistances(const Options& options, const SphereHierarchy& a,
-                                                  const SphereHierarchy& b, const Distances& distances)
+                                                  const SphereHierarchy& b, const Distances& distances,
+                                                  const io::Obstacle* surface)
 {
   if (!options.distances) return std::nullopt;
-  const io::DistanceQuestion question = {options.input.string(), options.obstacle.string(), options.distances->unit,
-                                         distancesRequest(options), std::nullopt};
+  const io::DistanceQuestion question = {options.input.string(),
+                                         options.obstacle.string(),
+                                         options.distances->unit,
+                                         distancesRequest(options),
+                                         std::nullopt,
+                                         surface};
   io::DistanceReport report = io::reportOf(question, {a}, {b, options.pose}, distances.found);
   if (options.distances->page) io::writeDistances(*options.distances->page, report);
   return report;
@@ -432,26 +488,36 @@ int collide(const Options& options)
   const Scan input = load(options.input, report.seconds.load);
   if (options.keep == Keep::flagged || options.distances)
     marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
-  const Scan obstacle = load(options.obstacle, report.seconds.load);
-  const auto a = build(input, options.input, options.input_uncertainty, options.threads, report.seconds.build);
-  const auto b = build(obstacle, options.obstacle, options.obstacle_uncertainty, options.threads, report.seconds.build);
+  const io::Obstacle obstacle = loadObstacle(options, report.seconds.load);
+  requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
+  const auto a = build(viewOf(input.cloud), input.cloud.fields, options.input, options.input_uncertainty,
+                       options.threads, report.seconds.build);
+  const auto b = build(obstacle.view(), obstacle.points().fields, options.obstacle, options.obstacle_uncertainty,
+                       options.threads, report.seconds.build);
+  const SphereHierarchy vertices(obstacle.isSurface() ? viewOf(obstacle.points()) : PointsView());
+  const SphereHierarchy& given = obstacle.isSurface() ? vertices : b; // whose coordinates may be coarse
+  report.input = {options.input.string(), a.view().count, a.size()};
+  report.obstacle = {options.obstacle.string(), given.view().count, given.size()};
+  if (obstacle.isSurface()) report.surface = obstacle;
 
   const bool by_place = options.moves() || !options.clashes.empty();
   const TrajectoryResult found = by_place ? alongPath(options, poses, a, b, report) : atPose(options, a, b, report);
   const Distances distances = options.distances ? measure(options, a, b, report) : Distances();
-  report.density = {spacingOf(a), spacingOf(b)};
+  report.density.input = spacingOf(a);
+  if (!report.surface) report.density.obstacle = spacingOf(b);
   report.colliding = found.colliding;
   report.voxels_total = a.statistics().voxels + b.statistics().voxels;
-  report.input = {options.input.string(), a.view().count, a.size()};
-  report.obstacle = {options.obstacle.string(), b.view().count, b.size()};
   warnOf(report.input, a, report.clearance, report.warnings);
-  warnOf(report.obstacle, b, report.clearance, report.warnings);
+  warnOf(report.obstacle, given, report.clearance, report.warnings);
+  for (const std::string& remark : obstacle.remarks())
+    report.warnings.push_back(options.obstacle.string() + ": " + remark);
   if (options.asks_collisions) warnOfHoles(report);
 
   write(options, input, found, distances, report.seconds.write);
   std::vector<Clash> clashes;
   if (!options.clashes.empty()) clashes = listClashes(options, poses, a, b, found, earlier, report);
-  const std::optional<io::DistanceReport> measured = reportDistances(options, a, b, distances);
+  const std::optional<io::DistanceReport> measured =
+      reportDistances(options, a, b, distances, report.surface ? &*report.surface : nullptr);
   if (measured) report.distances = io::distanceJson(*measured);
   if (options.report) cli::writeReport(*options.report, report);
   summarise(options, report, clashes, measured);

@@ -214,11 +214,11 @@ pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t s
   });
 }
 
-Mesh readMesh(const std::filesystem::path& path)
+Mesh readMesh(const std::filesystem::path& path, Viewpoint* viewpoint, LasHeaderPtr* las)
 {
   Mesh mesh;
   if (isLasFile(path)) {
-    mesh.vertices = readCloud(path);
+    mesh.vertices = readCloud(path, viewpoint, las);
     return mesh;
   }
   const FileBytes file(path);
@@ -234,7 +234,7 @@ Mesh readMesh(const std::filesystem::path& path)
       contents = parse(extension, file.view());
     if (extension == ".obj") faces = parseObjFaces(file.view());
     if (extension == ".off") faces = parseOffFaces(file.view());
-    mesh.vertices = checked(std::move(contents), nullptr, nullptr);
+    mesh.vertices = checked(std::move(contents), viewpoint, las);
     for (const Triangle& triangle : trianglesOf(faces, viewOf(mesh.vertices))) mesh.triangles.push_back(triangle);
     return std::move(mesh);
   });

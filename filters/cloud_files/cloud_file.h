@@ -76,7 +76,7 @@ struct Mesh {
 
 /// Reads the faces, too, of .obj, .off, .ply and .stl; of others the points alone. Polygons are cut into triangles.
 /// Throws as readCloud() does, and where a face names a vertex that is not there.
-Mesh readMesh(const std::filesystem::path& path);
+Mesh readMesh(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr, LasHeaderPtr* las = nullptr);
 
 /// The fields of a file's cloud and, where its header says so, the number of its points; the points are not read.
 /// Throws as readCloud() does for what a header can tell, and for a pipe.

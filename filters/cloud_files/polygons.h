@@ -30,9 +30,7 @@ private:
   std::vector<std::size_t> ends_;
 };
 
-/// Convex polygons as fans, others by clipping ears (Meisters, Polygons Have Ears, 1975) in the plane of their vector
-/// area. A polygon that crosses itself is a fan of its first corner: that covers all of it, and more. Faces of one or
-/// two corners have no surface, and are left out.
+/// Those of addTriangles().
 /// @throws FormatError when a polygon names a vertex that is not there, or has more than 4096 corners and is not convex
 std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& vertices);
 

@@ -38,6 +38,7 @@ struct Cost {
   std::size_t bytes_out = 0;
   std::size_t resident_before = 0;
   std::size_t resident_after = 0;
+  bool lost_faces = false;
 };
 
 class Run {
@@ -120,7 +121,10 @@ private:
     const Node& node = graph_.nodes[position];
     StageClouds inputs = takeInputs(position);
     Cost& cost = costs_[position];
-    for (const StageCloudPtr& input : inputs) cost.points_in += pointsOf(*input);
+    for (const StageCloudPtr& input : inputs) {
+      cost.points_in += pointsOf(*input);
+      if (input->triangles) cost.lost_faces = true;
+    }
     report(node, cost, false);
     if (isStopped()) return;
     lock.unlock();
@@ -131,6 +135,7 @@ private:
     // While a stage waits for its own parallel loops, its thread must not begin another stage.
     tbb::this_task_arena::isolate([&] { output = outputOf(position, std::move(inputs)); });
     cost.points_out = pointsOf(*output);
+    if (output->triangles) cost.lost_faces = false;
     cost.bytes_out = output->cloud.data.size();
     releaseClouds(position);
     cost.seconds = secondsSince(start);
@@ -223,7 +228,8 @@ private:
     for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
       const Node& node = graph_.nodes[i];
       if (clouds_[i]) result.clouds.emplace(node.tag, std::move(clouds_[i]));
-      const std::vector<std::string> warnings = stages_[i] ? stages_[i]->warnings() : std::vector<std::string>();
+      std::vector<std::string> warnings = stages_[i] ? stages_[i]->warnings() : std::vector<std::string>();
+      if (costs_[i].lost_faces) warnings.emplace_back("does not keep the faces of its input: points alone go on");
       for (const std::string& warning : warnings) result.warnings.push_back(node.tag + ": " + warning);
       stages.push_back({{"tag", node.tag},
                         {"type", node.type->name},

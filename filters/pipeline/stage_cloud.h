@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/surface/surface_cover.h>
 
 #include <pcl/PCLPointCloud2.h>
 
@@ -18,11 +19,13 @@ struct LasHeader;
 namespace pcl_bsh::pipeline {
 
 /// A cloud with all its fields, and what its file said beside them: where the sensor stood, tx ty tz qw qx qy qz, as a
-/// PCD file has it; of a LAS file all but its points (scale, offset, coordinate system), which writers.las keeps.
+/// PCD file has it; of a LAS file all but its points (scale, offset, coordinate system), which writers.las keeps; of a
+/// mesh its triangles. A stage that removes, adds or reorders records leaves the triangles out, and the pipeline warns.
 struct StageCloud {
   pcl::PCLPointCloud2 cloud;
   std::array<float, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};
   std::shared_ptr<const io::LasHeader> las_header = nullptr;
+  std::shared_ptr<const std::vector<Triangle>> triangles = nullptr; ///< by records of `cloud`; null where it is no mesh
 };
 
 /// Several stages may read one cloud, so it does not change.
@@ -35,7 +38,7 @@ using CloudHeader = pcl::PCLPointCloud2;
 /// The cloud itself, to be changed in place, when this is the only pointer to it; otherwise a copy.
 std::shared_ptr<StageCloud> ownCloud(StageCloudPtr&& cloud);
 
-/// A cloud with all that this one has but its points.
+/// A cloud with all that this one has but its points and triangles.
 std::shared_ptr<StageCloud> emptyLike(const StageCloud& cloud);
 
 } // namespace pcl_bsh::pipeline

@@ -71,6 +71,9 @@ private:
                    {"cluster_distance", number(report_.cluster_distance)},
                    {"compared", false},
                    {"previous", false},
+                   {"promise", report_.surface != nullptr
+                                   ? Data(promiseOf(*report_.surface, report_.swept ? "swept motion" : ""))
+                                   : Data(false)},
                    {"path", path()},
                    {"table", table()},
                    {"one_by_one", cards()}};
@@ -184,7 +187,7 @@ private:
     Object card = factsOf(clash);
     card["scan_point"] = std::to_string(clash.scan_point);
     card["scan_place"] = coordinate(p.x()) + ", " + coordinate(p.y()) + ", " + coordinate(p.z());
-    card["model_point"] = std::to_string(clash.model_point);
+    card["model_part"] = report_.partName() + (' ' + std::to_string(report_.modelPart(clash)));
     card["top_view"] = topView(clash);
     card["approach"] = approach(clash);
     return card;

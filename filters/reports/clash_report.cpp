@@ -24,11 +24,11 @@ Json toJson(const ClashReport& report, const Clash& clash)
                {"first_pose", clash.first_pose},
                {"closest_pose", clash.closest_pose}};
   if (clash.status == ClashStatus::resolved) return json;
-  const auto side = [](std::uint32_t point, const Eigen::Vector3d& at) {
-    return Json{{"point", point}, {"at", {at.x(), at.y(), at.z()}}};
+  const auto side = [](const char* part, std::uint32_t number, const Eigen::Vector3d& at) {
+    return Json{{part, number}, {"at", {at.x(), at.y(), at.z()}}};
   };
-  json["closest_pair"] = {{"input", side(clash.scan_point, report.scanPoint(clash))},
-                          {"obstacle", side(clash.model_point, report.modelPoint(clash))}};
+  json["closest_pair"] = {{"input", side("point", clash.scan_point, report.scanPoint(clash))},
+                          {"obstacle", side(report.partName(), report.modelPart(clash), report.modelPoint(clash))}};
   return json;
 }
 
@@ -76,10 +76,20 @@ Format formatOf(const std::filesystem::path& path)
 
 } // namespace
 
+Json surfaceJson(const Obstacle* surface, const std::string& beside)
+{
+  if (surface == nullptr) return nullptr;
+  return {{"triangles", surface->triangles()->size()},
+          {"balls", surface->cover()->centers.size()},
+          {"tolerance", surface->tolerance()},
+          {"promise", promiseOf(*surface, beside)}};
+}
+
 std::string clashJson(const ClashReport& report)
 {
   Json json = {{"input", report.input},
                {"obstacle", report.obstacle},
+               {"surface", surfaceJson(report.surface, report.swept ? "swept motion" : "")},
                {"clearance", report.clearance},
                {"cluster_distance", report.cluster_distance},
                {"poses", report.poses.size()},
@@ -93,7 +103,8 @@ std::string clashJson(const ClashReport& report)
 std::string clashCsv(const ClashReport& report)
 {
   std::string csv = "id,status,points,distance,first_pose,closest_pose,min_x,min_y,min_z,max_x,max_y,max_z,"
-                    "input_point,input_x,input_y,input_z,obstacle_point,obstacle_x,obstacle_y,obstacle_z\n";
+                    "input_point,input_x,input_y,input_z,obstacle_" +
+                    std::string(report.partName()) + ",obstacle_x,obstacle_y,obstacle_z\n";
   const auto cell = [&](const std::string& text) { csv += (csv.back() == '\n' ? "" : ",") + text; };
   for (const Clash& clash : report.clashes) {
     cell(csvText(clash.id));
@@ -113,7 +124,7 @@ std::string clashCsv(const ClashReport& report)
       for (const double coordinate : at) cell(numberText(coordinate));
     };
     side(clash.scan_point, report.scanPoint(clash));
-    side(clash.model_point, report.modelPoint(clash));
+    side(report.modelPart(clash), report.modelPoint(clash));
     csv += '\n';
   }
   return csv;

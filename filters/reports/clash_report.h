@@ -2,6 +2,8 @@
 // Clashes as lists for programs (.json, .csv), read back to compare with, and as a page for people (.html).
 #pragma once
 
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
+#include <pcl_bsh/filters/json/json_document.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/report/clashes.h>
 
@@ -30,6 +32,14 @@ struct ClashReport {
   const std::vector<Eigen::Isometry3d>& poses;
   const TrajectoryResult& found;
   std::optional<double> swept;
+  const Obstacle* surface = nullptr; ///< the obstacle, where it is one; `model` are its balls
+
+  /// Of the obstacle: a point, or a triangle.
+  std::uint32_t modelPart(const Clash& clash) const
+  {
+    return surface != nullptr ? surface->partOf(clash.model_point) : clash.model_point;
+  }
+  const char* partName() const { return surface != nullptr ? surface->partName() : "point"; }
 
   std::size_t count(ClashStatus status) const
   {
@@ -40,6 +50,7 @@ struct ClashReport {
   Eigen::Vector3d scanPoint(const Clash& clash) const { return vectorOf(scan.point(clash.scan_point)); }
 
   /// Where the obstacle's point of the closest pair is at the closest pose (swept: when the motion from there begins).
+  /// Of a surface, the middle of the ball that is closest.
   Eigen::Vector3d modelPoint(const Clash& clash) const
   {
     return poses[static_cast<std::size_t>(clash.closest_pose)] * vectorOf(model.point(clash.model_point));
@@ -55,6 +66,10 @@ inline const char* nameOf(ClashStatus status)
 {
   return status_names[static_cast<std::size_t>(status)].second;
 }
+
+/// What an obstacle is compared as: null where that is its points.
+/// @param beside as promiseOf() takes it
+Json surfaceJson(const Obstacle* surface, const std::string& beside = "");
 
 /// One object per clash, with its closest pair unless it is resolved.
 std::string clashJson(const ClashReport& report);

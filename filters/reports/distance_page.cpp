@@ -71,10 +71,14 @@ private:
                    {"pair", false},
                    {"max_distance", std::isfinite(most) ? Data(number(most)) : Data(false)},
                    {"accuracy", report_.question.request.accuracy.text()},
+                   {"promise", report_.question.surface != nullptr
+                                   ? Data(report_.question.surfaceToTell()["promise"].get<std::string>())
+                                   : Data(false)},
+                   {"part", report_.question.partName()},
                    {"farther", farther > 0 ? Data(std::to_string(farther)) : Data(false)}};
     if (report_.hausdorff_pair) {
-      page["pair"] =
-          Object{{"a", std::to_string(report_.hausdorff_pair->a)}, {"b", std::to_string(report_.hausdorff_pair->b)}};
+      page["pair"] = Object{{"a", std::to_string(report_.hausdorff_pair->a)},
+                            {"b", std::to_string(report_.question.partOf(report_.hausdorff_pair->b))}};
     }
     page["statistics"] = statistics();
     page["sides"] = List{side(report_.input, report_.obstacle.name), side(report_.obstacle, report_.input.name)};
@@ -90,8 +94,9 @@ private:
     };
     const auto addLength = [&](const std::string& name, double x, double y) { add(name, unit_, length(x), length(y)); };
     const DistanceStatistics &s = a.statistics, &t = b.statistics;
-    add("points", "", std::to_string(a.points), std::to_string(b.points));
-    add("points with a distance", "", std::to_string(s.count), std::to_string(t.count));
+    const std::string points = report_.question.surface != nullptr ? "points, balls on the surface" : "points";
+    add(points, "", std::to_string(a.points), std::to_string(b.points));
+    add(points + " with a distance", "", std::to_string(s.count), std::to_string(t.count));
     addLength("mean", s.mean, t.mean);
     addLength("RMS", s.rms, t.rms);
     addLength("median", s.median, t.median);
@@ -240,6 +245,10 @@ private:
   Data places(const DistanceSide& from) const
   {
     if (from.places.empty()) return false;
+    const bool of_input = &from == &report_.input;
+    const auto part = [&](std::uint32_t record, bool is_input) {
+      return std::to_string(is_input ? record : report_.question.partOf(record));
+    };
     List rows;
     for (std::size_t i = 0; i < std::min(from.places.size(), most_far_places); ++i) {
       const FarPlace& place = from.places[i];
@@ -252,8 +261,8 @@ private:
                             {"distance", distanceText(place.distance)},
                             {"points", std::to_string(place.records.size())},
                             {"size", number(size, 3)},
-                            {"point", std::to_string(place.point)},
-                            {"nearest", known ? std::to_string(place.nearest) : std::string("none")}});
+                            {"point", part(place.point, of_input)},
+                            {"nearest", known ? part(place.nearest, !of_input) : std::string("none")}});
     }
     const std::size_t more = from.places.size() - std::min(from.places.size(), most_far_places);
     return Object{{"rows", rows}, {"more", more > 0 ? Data(std::to_string(more)) : Data(false)}};

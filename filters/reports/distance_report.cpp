@@ -16,9 +16,10 @@ Json lengthJson(double length)
   return std::isfinite(length) ? Json(length) : Json();
 }
 
-Json pairJson(const std::optional<PointPair>& pair)
+/// A point of the input, and a point or a triangle of the obstacle.
+Json pairJson(const DistanceQuestion& question, const std::optional<PointPair>& pair)
 {
-  return pair ? Json{pair->a, pair->b} : Json();
+  return pair ? Json{pair->a, question.partOf(pair->b)} : Json();
 }
 
 DistanceSide sideOf(const std::string& name, const Placed& cloud, const PointDistances& found,
@@ -32,7 +33,7 @@ DistanceSide sideOf(const std::string& name, const Placed& cloud, const PointDis
   return side;
 }
 
-Json toJson(const DistanceSide& side, bool is_input)
+Json toJson(const DistanceQuestion& question, const DistanceSide& side, bool is_input)
 {
   const DistanceStatistics& statistics = side.statistics;
   Json percentiles;
@@ -48,17 +49,18 @@ Json toJson(const DistanceSide& side, bool is_input)
                {"median", lengthJson(statistics.median)},
                {"percentiles", percentiles},
                {"maximum", lengthJson(statistics.maximum)},
-               {"farthest_pair", pairJson(farthest)},
+               {"farthest_pair", pairJson(question, farthest)},
                {"places_beyond", lengthJson(side.beyond)},
                {"places", Json::array()}};
+  const auto part = [&](std::uint32_t record, bool of_input) { return of_input ? record : question.partOf(record); };
   for (std::size_t i = 0; i < std::min(side.places.size(), most_far_places); ++i) {
     const FarPlace& place = side.places[i];
     const Eigen::Vector3d at = side.placeOf(place.point);
     const bool known = place.nearest != PointDistances::kNoPoint;
     json["places"].push_back({{"points", place.records.size()},
                               {"distance", lengthJson(place.distance)},
-                              {"point", place.point},
-                              {"nearest", known ? Json(place.nearest) : Json()},
+                              {is_input ? "point" : question.partName(), part(place.point, is_input)},
+                              {"nearest", known ? Json(part(place.nearest, !is_input)) : Json()},
                               {"at", {lengthJson(at.x()), lengthJson(at.y()), lengthJson(at.z())}}});
   }
   return json;
@@ -76,6 +78,16 @@ DistanceFormat distanceFormatOf(const std::filesystem::path& path)
 
 } // namespace
 
+Json DistanceQuestion::surfaceToTell() const
+{
+  Json json = surfaceJson(surface, request.accuracy.isExact() ? "" : "the accuracy");
+  if (surface != nullptr) {
+    json["promise"] = json["promise"].get<std::string>() +
+                      "; distances from its balls, and so the Hausdorff distance, by " + "at most twice as much";
+  }
+  return json;
+}
+
 DistanceReport reportOf(const DistanceQuestion& question, const Placed& input, const Placed& obstacle,
                         const SymmetricDistances& found)
 {
@@ -88,13 +100,14 @@ Json distanceJson(const DistanceReport& report)
   const DistanceQuestion& question = report.question;
   return {{"input", question.input},
           {"obstacle", question.obstacle},
+          {"surface", question.surfaceToTell()},
           {"unit", question.unit.empty() ? Json() : Json(question.unit)},
           {"max_distance", lengthJson(question.request.max_distance)},
           {"accuracy", question.request.accuracy.text()},
-          {"input_to_obstacle", toJson(report.input, true)},
-          {"obstacle_to_input", toJson(report.obstacle, false)},
+          {"input_to_obstacle", toJson(question, report.input, true)},
+          {"obstacle_to_input", toJson(question, report.obstacle, false)},
           {"hausdorff", lengthJson(report.hausdorff)},
-          {"hausdorff_pair", pairJson(report.hausdorff_pair)}};
+          {"hausdorff_pair", pairJson(question, report.hausdorff_pair)}};
 }
 
 void writeDistances(const std::filesystem::path& path, const DistanceReport& report)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/filters/json/json_document.h>
 #include <pcl_bsh/report/distance_statistics.h>
 #include <pcl_bsh/report/far_places.h>
@@ -20,7 +21,15 @@ struct DistanceQuestion {
   std::string input, obstacle; ///< file names
   std::string unit;            ///< of the clouds' lengths; empty: not known
   PointDistancesRequest request;
-  std::optional<double> beyond; ///< places have points farther than this; none: than 95 of 100 points
+  std::optional<double> beyond;      ///< places have points farther than this; none: than 95 of 100 points
+  const Obstacle* surface = nullptr; ///< the obstacle, where it is one; its balls stand for it
+
+  /// Of the obstacle: a point, or a triangle.
+  std::uint32_t partOf(std::uint32_t record) const { return surface != nullptr ? surface->partOf(record) : record; }
+  /// What the numbers mean where the obstacle is a surface: null unless it is one. A ball reaches as far on its far
+  /// side.
+  Json surfaceToTell() const;
+  const char* partName() const { return surface != nullptr ? surface->partName() : "point"; }
 };
 
 /// From each point of one cloud to the nearest of the other. Cloud and distances are borrowed.

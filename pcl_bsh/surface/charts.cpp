@@ -139,16 +139,14 @@ Chart chartOf(const Mesh& mesh, std::uint32_t triangle)
   return {planeOf(corners), {triangle}, 1.0};
 }
 
-std::vector<Chart> growCharts(const Mesh& mesh)
+std::vector<Chart> growCharts(const Mesh& mesh, const std::vector<double>& areas)
 {
   const std::size_t count = mesh.triangles.size();
   const Neighbours neighbours(mesh);
-  std::vector<double> area(count);
   std::vector<std::uint32_t> seeds(count);
   std::iota(seeds.begin(), seeds.end(), 0u);
-  for (const std::uint32_t t : seeds) area[t] = areaOf(mesh.corners(t));
   std::sort(seeds.begin(), seeds.end(),
-            [&](std::uint32_t s, std::uint32_t t) { return area[s] != area[t] ? area[s] > area[t] : s < t; });
+            [&](std::uint32_t s, std::uint32_t t) { return areas[s] != areas[t] ? areas[s] > areas[t] : s < t; });
 
   std::vector<Chart> charts;
   std::vector<bool> taken(count, false);

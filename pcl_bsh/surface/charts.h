@@ -36,7 +36,8 @@ Plane planeOf(const Corners& corners);
 double cosineTo(const Plane& plane, const Corners& corners);
 
 /// Each triangle in one chart, large ones first. Neighbours share an edge, by coordinates.
-std::vector<Chart> growCharts(const Mesh& mesh);
+/// @param areas of the triangles
+std::vector<Chart> growCharts(const Mesh& mesh, const std::vector<double>& areas);
 
 /// A chart of one triangle.
 Chart chartOf(const Mesh& mesh, std::uint32_t triangle);

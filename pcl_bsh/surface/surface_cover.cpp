@@ -112,7 +112,8 @@ public:
 
   SurfaceCover operator()()
   {
-    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) cover_.area += areaOf(mesh_.corners(t));
+    std::vector<double> areas(mesh_.triangles.size());
+    for (std::uint32_t t = 0; t < areas.size(); ++t) cover_.area += areas[t] = areaOf(mesh_.corners(t));
     checkCount(mesh_, cover_.area, request_.tolerance);
     progress_.begin(0.9, mesh_.triangles.size());
     if (request_.triangles_apart) {
@@ -122,7 +123,7 @@ public:
       }
     }
     else {
-      for (const Chart& chart : growCharts(mesh_)) addChart(chart);
+      for (const Chart& chart : growCharts(mesh_, areas)) addChart(chart);
       unite(mesh_, corners_, patches_);
       addPatches();
     }

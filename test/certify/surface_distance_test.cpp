@@ -15,7 +15,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
 #include <vector>
+
+#ifdef PCL_BSH_PROGRAM_DIR
+#include "../files/temporary_folder.h"
+#endif
 
 namespace pcl_bsh {
 namespace {
@@ -44,6 +54,22 @@ Point3 near(const test::TestMesh& mesh, double reach, test::Random& random)
   return p;
 }
 
+/// As CGAL's tree takes triangles: it takes none without area, which test/surface has.
+void dropFlat(test::TestMesh& mesh)
+{
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return CGAL::collinear(exact(mesh.vertices[t[0]]), exact(mesh.vertices[t[1]]), exact(mesh.vertices[t[2]]));
+  });
+}
+
+Triangles trianglesOf(const test::TestMesh& mesh)
+{
+  Triangles triangles;
+  for (const Triangle& t : mesh.triangles)
+    triangles.emplace_back(exact(mesh.vertices[t[0]]), exact(mesh.vertices[t[1]]), exact(mesh.vertices[t[2]]));
+  return triangles;
+}
+
 /// Free only farther than the clearance, colliding only within clearance + tolerance: of the mesh, in exact arithmetic.
 void expectTrueVerdicts(test::TestMesh mesh, std::uint64_t seed)
 {
@@ -51,10 +77,7 @@ void expectTrueVerdicts(test::TestMesh mesh, std::uint64_t seed)
   Eigen::Isometry3d frame = random.pose(1.0);
   if (seed % 3 == 0) frame.translation() += Eigen::Vector3d(513449.7, 5402650.2, 300.1);
   mesh.move(frame);
-  // CGAL's tree takes none without area; test/surface has those.
-  std::erase_if(mesh.triangles, [&](const Triangle& t) {
-    return CGAL::collinear(exact(mesh.vertices[t[0]]), exact(mesh.vertices[t[1]]), exact(mesh.vertices[t[2]]));
-  });
+  dropFlat(mesh);
   SurfaceRequest request;
   request.tolerance = std::pow(10.0, random.uniform(-2, -0.5));
   request.triangles_apart = seed % 2 == 0;
@@ -67,10 +90,7 @@ void expectTrueVerdicts(test::TestMesh mesh, std::uint64_t seed)
   question.clearance = clearance;
   const FlagsResult flags = collisionFlags({points}, {surface}, question);
 
-  Triangles triangles;
-  for (const Triangle& t : mesh.triangles) {
-    triangles.emplace_back(exact(mesh.vertices[t[0]]), exact(mesh.vertices[t[1]]), exact(mesh.vertices[t[2]]));
-  }
+  const Triangles triangles = trianglesOf(mesh);
   const Tree tree(triangles.begin(), triangles.end());
   const Kernel::FT least = Kernel::FT(clearance) * clearance;
   const Kernel::FT most = CGAL::square(Kernel::FT(clearance) + request.tolerance);
@@ -111,6 +131,87 @@ TEST(SurfaceDistance, OfBoxesSpheresAndWaves)
                                     }),
                      24);
 }
+
+#ifdef PCL_BSH_PROGRAM_DIR
+
+std::string textOf(const Point3& p)
+{
+  char text[96];
+  std::snprintf(text, sizeof text, "%.17g %.17g %.17g\n", p[0], p[1], p[2]);
+  return text;
+}
+
+/// What pcl_bsh_collide writes of a mesh and points near it, in files.
+void expectTrueOutput(test::TestMesh mesh, double tolerance, double clearance, std::uint64_t seed)
+{
+  dropFlat(mesh);
+  test::Random random(seed);
+  std::vector<Point3> scan;
+  for (int i = 0; i < 300; ++i) scan.push_back(near(mesh, 1.2 * (clearance + tolerance), random));
+  std::string points, file;
+  for (const Point3& p : scan) points += textOf(p);
+  for (const Point3& p : mesh.vertices) file += "v " + textOf(p);
+  for (const Triangle& t : mesh.triangles) {
+    for (const char* separator = "f "; const std::uint32_t vertex : t) {
+      file += separator + std::to_string(vertex + 1);
+      separator = " ";
+    }
+    file += '\n';
+  }
+  const files::TemporaryFolder folder;
+  folder.write("scan.xyz", points);
+  folder.write("mesh.obj", file);
+  std::ostringstream command;
+  command << "cd " << folder.path().string() << " && " << PCL_BSH_PROGRAM_DIR
+          << "/pcl_bsh_collide scan.xyz mesh.obj out.csv --distances --clearance " << clearance
+          << " --surface-tolerance " << tolerance << " >said 2>&1";
+  ASSERT_EQ(std::system(command.str().c_str()), 0) << files::contentOf(folder / "said");
+  std::ifstream out(folder / "out.csv");
+  std::string line;
+  std::getline(out, line);
+  ASSERT_EQ(line, "x,y,z,collision,distance");
+
+  const Triangles triangles = trianglesOf(mesh);
+  const Tree tree(triangles.begin(), triangles.end());
+  const Kernel::FT least = Kernel::FT(clearance) * clearance;
+  const Kernel::FT most = CGAL::square(Kernel::FT(clearance) + tolerance);
+  constexpr double rounding = 1e-7; // of a float
+  int colliding = 0, free = 0;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    ASSERT_TRUE(std::getline(out, line));
+    const std::string results = line.substr(line.rfind(',', line.rfind(',') - 1) + 1);
+    const bool collides = results[0] == '1';
+    const double distance = std::stod(results.substr(2));
+    const Kernel::FT squared = tree.squared_distance(exact(scan[i]));
+    ASSERT_FALSE(collides ? squared > most : squared <= least) << i;
+    const double truth = std::sqrt(CGAL::to_double(squared));
+    ASSERT_GE(distance, 0.0) << i;
+    ASSERT_LE(distance, truth * (1 + rounding) + 1e-300) << i;
+    ASSERT_GE(distance + tolerance, truth * (1 - rounding)) << i;
+    ++(collides ? colliding : free);
+  }
+  EXPECT_GT(colliding, 10);
+  EXPECT_GT(free, 10);
+}
+
+TEST(SurfaceDistance, OfFilesThatTheProgramReads)
+{
+  Eigen::Isometry3d utm = Eigen::Isometry3d::Identity();
+  utm.translation() << 513449.7, 5402650.2, 300.1;
+  test::TestMesh far = test::boxMesh(2, 2, 2);
+  far.move(utm);
+  test::TestMesh far_soup = test::soup(5, 25, 1.0, 0.5);
+  far_soup.move(utm);
+  expectTrueOutput(test::boxMesh(2, 2, 2), 0.01, 0.1, 1);
+  expectTrueOutput(far, 0.03, 0.02, 2);
+  expectTrueOutput(test::boxMesh(3, 1, 0.0001), 0.02, 0.05, 3);
+  expectTrueOutput(test::boxMesh(1e-6, 2e-6, 1e-6), 2e-8, 1e-7, 4);
+  expectTrueOutput(test::soup(4, 25, 1.0, 0.5), 0.05, 0.1, 5);
+  expectTrueOutput(far_soup, 0.05, 0.1, 6);
+  expectTrueOutput(test::sphereMesh(0.7, 16), 0.02, 0.0625, 7);
+}
+
+#endif
 
 } // namespace
 } // namespace pcl_bsh

@@ -16,6 +16,9 @@ namespace {
 constexpr auto collide_footer =
     R"(Point p of INPUT and q of OBSTACLE collide iff |p - POSE q| <= D, decided exactly, or as --accuracy says. With
 --uncertainty a point collides, or is free, only if it is so wherever the points truly are; else it is undecided.
+An OBSTACLE with faces (.obj .off .ply .stl) is a surface, to a tolerance T: what is free is farther than D from it
+for certain, what collides is within D + T, and a distance d says that the true one is in [d, d + T]. What a closed
+surface encloses is not part of it. Reports name its triangles, from 0; polygons are cut into triangles.
 Reads .pcd .ply .las .obj .off .stl .pts .ptx .csv .xyz .txt, writes all of these but .off .stl .pts .ptx. Files may be
 pipes; - is standard input (PCD, PLY, LAS, OFF or columns), or standard output for OUTPUT (PCD) and --report.
 Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
@@ -27,7 +30,9 @@ Example: does a wagon keep 5 cm from a tunnel on its way, and where does it not?
 Example: the same hall, whose scanner is off by up to 4 mm: what surely keeps 5 cm?
   pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708 --uncertainty 0.004
 Example: how far has each point of a scan moved away from an earlier scan?
-  pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html)";
+  pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html
+Example: which points of a hall are within 5 cm of a machine's surface, to a millimetre?
+  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05 --surface-tolerance 0.001)";
 
 Accuracy parseAccuracy(const std::string& text)
 {
@@ -136,6 +141,19 @@ void addDensityOptions(CLI::App& app, CollideOptions& options)
       ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
 }
 
+void addSurfaceOptions(CLI::App& app, io::SurfaceSettings& surface)
+{
+  CLI::Option* const tolerance =
+      app.add_option("--surface-tolerance", surface.tolerance,
+                     "where OBSTACLE has faces, it is a surface: free is farther than D from\n"
+                     "it, for certain, and colliding is within D + T; less takes more time\n"
+                     "and memory (default: a tenth of D; of 0, the size / 10,000)")
+          ->type_name("T")
+          ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
+  app.add_flag("--vertices-only", surface.vertices_only, "OBSTACLE is its vertices alone, even where it has faces")
+      ->excludes(tolerance);
+}
+
 /// Checks that involve several options.
 void requireConsistent(const CollideOptions& options)
 {
@@ -164,7 +182,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   CLI::App app("Flags, keeps or removes the points of a cloud that collide with an obstacle.", collide_program);
   app.footer(collide_footer);
   app.add_option("INPUT", options.input, "the cloud whose points are tested")->type_name("")->required();
-  app.add_option("OBSTACLE", options.obstacle, "cloud to collide with")->type_name("")->required();
+  app.add_option("OBSTACLE", options.obstacle, "cloud or mesh to collide with")->type_name("")->required();
   app.add_option("OUTPUT", options.output, "INPUT's points with all their fields")->type_name("")->required();
   CLI::Option* const clearance = app.add_option("--clearance", options.clearance,
                                                 "greatest distance that counts as collision, in the clouds' unit\n"
@@ -196,6 +214,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   distances.addTo(app);
   UncertaintyTexts uncertainties;
   uncertainties.addTo(app);
+  addSurfaceOptions(app, options.surface);
   addDensityOptions(app, options);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--threads", options.threads, "0: all of the machine's (default); any number gives the same result")

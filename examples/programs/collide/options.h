@@ -4,6 +4,7 @@
 
 #include "cli/used_files.h"
 
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -46,6 +47,7 @@ struct CollideOptions {
   unsigned threads = 0;        ///< all of the machine's
   Accuracy accuracy;
   Uncertainty input_uncertainty, obstacle_uncertainty;
+  io::SurfaceSettings surface;
   bool density = false;
   double widest_gap = 0;             ///< 0: as the obstacle's spacing suggests
   std::vector<std::string> warnings; ///< of the options themselves

@@ -2,6 +2,7 @@
 #include "report.h"
 
 #include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/filters/reports/clash_report.h>
 
 namespace pcl_bsh::cli {
 namespace {
@@ -53,6 +54,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   nlohmann::ordered_json json;
   json["input"] = toJson(report.input);
   json["obstacle"] = toJson(report.obstacle);
+  json["surface"] = io::surfaceJson(report.surface ? &*report.surface : nullptr, report.besideSurface());
   json["clearance"] = report.clearance;
   json["colliding"] = report.colliding;
   json["undecided"] = report.undecided;
@@ -73,7 +75,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   json["accuracy"] = report.path && report.path->swept ? "swept" : report.accuracy.text();
   json["proven"] = report.accuracy.isProven();
   json["density"] = {{"input", toJson(report.density.input)},
-                     {"obstacle", toJson(report.density.obstacle)},
+                     {"obstacle", report.density.obstacle ? toJson(*report.density.obstacle) : nullptr},
                      {"blind", report.density.blind()},
                      {"widest_gap", report.widest_gap > 0 ? nlohmann::ordered_json(report.widest_gap) : nullptr},
                      {"could_hide_collisions", report.density.couldHide(report.clearance)}};

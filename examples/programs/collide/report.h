@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/collision/closest_pair.h>
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/trajectory/trajectory.h>
@@ -27,15 +28,17 @@ struct CloudReport {
 
 /// How wide the holes are that a collision may hide in.
 struct Density {
-  Spacing input, obstacle;
+  Spacing input;
+  std::optional<Spacing> obstacle; ///< none of a surface, which has no holes
 
   /// Half a hole each: where two surfaces touch, a point of one may be this far from the nearest of the other.
-  double blind() const { return (input.median + obstacle.median) / std::sqrt(2.0); }
+  double blind() const { return (input.median + (obstacle ? obstacle->median : 0.0)) / std::sqrt(2.0); }
 
   /// Clouds of less than a hundred points are no scans, and have no density.
   bool couldHide(double clearance) const
   {
-    return std::min(input.samples, obstacle.samples) >= 100 && blind() > clearance;
+    const std::size_t samples = obstacle ? std::min(input.samples, obstacle->samples) : input.samples;
+    return samples >= 100 && blind() > clearance;
   }
 };
 
@@ -58,7 +61,8 @@ struct Seconds {
 
 struct CollisionReport {
   CloudReport input;
-  CloudReport obstacle;
+  CloudReport obstacle;                ///< of a surface, its vertices
+  std::optional<io::Obstacle> surface; ///< the obstacle, where it is one
   double clearance = 0;
   Accuracy accuracy;
   Uncertainty input_uncertainty, obstacle_uncertainty;
@@ -66,7 +70,8 @@ struct CollisionReport {
   std::size_t undecided = 0; ///< likewise
   std::size_t sparse = 0;    ///< likewise, and not among the undecided
   double widest_gap = 0;     ///< of the density guard; 0: not guarded
-  DistanceResult closest;    ///< a: the input, b: the obstacle; along a path within the clearance only
+  DistanceResult closest;    ///< a: the input, b: the obstacle (a point, or a triangle of its surface); along a path
+                             ///< within the clearance only
   Density density;
   std::optional<PathReport> path;
   std::optional<nlohmann::ordered_json> distances; ///< where every point's was asked for
@@ -75,12 +80,21 @@ struct CollisionReport {
   Seconds seconds;
   std::vector<std::string> warnings;
 
+  /// Whose tolerance comes on top of the surface's.
+  std::string besideSurface() const
+  {
+    if (path && path->swept) return "swept motion";
+    if (!accuracy.isProven()) return "--accuracy float (without proof)";
+    return accuracy.isExact() || accuracy.stopsEarly() ? "" : "--accuracy " + accuracy.text();
+  }
+
   bool mayLeaveUndecided() const
   {
     return accuracy.stopsEarly() || !input_uncertainty.isZero() || !obstacle_uncertainty.isZero();
   }
 };
 
+/// Where `surface` is not null, the obstacle's numbers are those of triangles.
 /// `distance` and `closest_pair` are null when a cloud has no finite point, or nothing collides along a path;
 /// `distance_interval` along a path, and each of its ends where it is not known.
 nlohmann::ordered_json toJson(const CollisionReport& report);

@@ -21,8 +21,9 @@ struct BshFlag : Stage, CollisionQuestion {
     auto output = std::make_shared<StageCloud>();
     output->viewpoint = inputs[0]->viewpoint;
     output->las_header = inputs[0]->las_header;
+    output->triangles = inputs[0]->triangles;
     Filter filter;
-    setUp(filter, inputs[0], *this);
+    for (std::string& line : setUp(filter, inputs[0], *this)) warn(std::move(line));
     filter.setKeepFlagged(true);
     filter.filter(output->cloud);
     if (const std::string warning = undecidedWarning(filter); !warning.empty()) warn(warning);
@@ -43,7 +44,7 @@ protected:
   std::vector<std::uint8_t> passing(const StageCloudPtr& cloud) override
   {
     Filter filter;
-    setUp(filter, cloud, *this);
+    for (std::string& line : setUp(filter, cloud, *this)) warn(std::move(line));
     std::vector<std::uint8_t> flags;
     filter.computeFlags(flags);
     if (const std::string warning = undecidedWarning(filter); !warning.empty()) warn(warning);

@@ -28,7 +28,13 @@ struct BshDistance : Stage, DistanceQuestion, SelectionOptions {
   {
     DistanceFilter<pcl::PCLPointCloud2> filter;
     filter.setInputCloud(pointsOf(inputs[0]));
-    filter.setObstacleCloud(pointsOf(obstacle.cloud));
+    std::vector<std::string> told;
+    const io::Obstacle other = comparedObstacle(*this, told);
+    for (std::string& line : told) warn(std::move(line));
+    if (other.isSurface())
+      filter.setObstacleSurface(other.cover());
+    else
+      filter.setObstacleCloud(pointsOf(obstacle.cloud));
     filter.setPose(obstaclePose());
     filter.setFilterLimits(limitOf(filter_limits.least, 0.0),
                            limitOf(filter_limits.most, std::numeric_limits<double>::infinity()));
@@ -42,6 +48,7 @@ struct BshDistance : Stage, DistanceQuestion, SelectionOptions {
     filter.setUserFilterValue(filterValue());
     auto output = std::make_shared<StageCloud>();
     output->viewpoint = inputs[0]->viewpoint;
+    output->las_header = inputs[0]->las_header;
     filter.filter(output->cloud);
     return output;
   }

@@ -9,6 +9,7 @@ std::deque<StageType> builtInStages()
           plyReader(),
           objReader(),
           offReader(),
+          meshReader(),
           lasReader(),
           ptsReader(),
           ptxReader(),

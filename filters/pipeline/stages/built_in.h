@@ -13,6 +13,7 @@ StageType pcdReader();
 StageType plyReader();
 StageType objReader();
 StageType offReader();
+StageType meshReader();
 StageType lasReader();
 StageType ptsReader();
 StageType ptxReader();

@@ -28,7 +28,7 @@ struct ClashWriter : Stage, CollisionQuestion {
   StageCloudPtr run(StageClouds&& inputs) override
   {
     Filter filter;
-    setUp(filter, inputs[0], *this);
+    for (std::string& line : setUp(filter, inputs[0], *this)) warn(std::move(line));
     TrajectoryResult found;
     filter.computeTrajectory(found);
     write(viewOf(inputs[0]->cloud), found);
@@ -74,7 +74,7 @@ private:
   void write(const PointsView& scan, const TrajectoryResult& found) const
   {
     const double distance = clusterDistance(scan);
-    const PointsView model = viewOf(obstacle.cloud->cloud);
+    const PointsView model = comparedObstacle().view();
     io::ClashReport report{input_name,
                            obstacle.name,
                            clearance,
@@ -85,7 +85,8 @@ private:
                            model,
                            poses(),
                            found,
-                           swept > 0 ? std::optional(swept) : std::nullopt};
+                           swept > 0 ? std::optional(swept) : std::nullopt,
+                           comparedObstacle().isSurface() ? &comparedObstacle() : nullptr};
     if (previous) {
       report.previous = previous->path;
       compareWithEarlier(report.clashes, earlier_, distance);

@@ -88,15 +88,26 @@ std::vector<std::string> CollisionQuestion::check(const CloudHeader& input, bool
   checkUncertainties(input);
   if (density && (trajectory || distances))
     throw OptionError("density", "is for flags at one pose: leave out the trajectory, or `density`");
+  checkSurface();
   if (widest_gap && !density) throw OptionError("widest_gap", "is given, but not `density`: give `density`: true, too");
   return warnings;
 }
 
-void CollisionQuestion::setUp(Filter& filter, const StageCloudPtr& input, const Stage& stage) const
+std::vector<std::string> CollisionQuestion::setUp(Filter& filter, const StageCloudPtr& input, const Stage& stage)
 {
+  std::vector<std::string> told;
+  compared_ = obstacleOf(obstacle, clearance, Accuracy::parse(accuracy), swept > 0, stage, told);
+  if (compared_.isSurface() && !obstacle_uncertainty.field.empty()) {
+    throw OptionError("obstacle_uncertainty", "is a field, which the surface " + obstacle.name +
+                                                  " does not have: give a length, or `vertices_only`: true");
+  }
+  if (compared_.isSurface() && density) told.emplace_back("a surface has no holes: `density` guards nothing");
   filter.setProgress([&stage](double) { return !stage.isCancelled(); });
   filter.setInputCloud(pointsOf(input));
-  filter.setObstacleCloud(pointsOf(obstacle.cloud));
+  if (compared_.isSurface())
+    filter.setObstacleSurface(compared_.cover());
+  else
+    filter.setObstacleCloud(pointsOf(obstacle.cloud));
   filter.setClearance(clearance);
   filter.setPose(poses_.front());
   if (trajectory) filter.setTrajectory(poses_);
@@ -107,6 +118,7 @@ void CollisionQuestion::setUp(Filter& filter, const StageCloudPtr& input, const 
   filter.setInputUncertainty(given(uncertainty));
   filter.setObstacleUncertainty(given(obstacle_uncertainty));
   filter.setNumberOfThreads(number_of_threads);
+  return told;
 }
 
 std::string CollisionQuestion::undecidedWarning(const Filter& filter) const

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/filters/collision_filter.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
+#include <pcl_bsh/filters/pipeline/stages/surface_options.h>
 
 #include <Eigen/Geometry>
 
@@ -14,7 +15,7 @@
 namespace pcl_bsh::pipeline {
 
 /// The options of a stage that derives from it, beside Stage.
-struct CollisionQuestion {
+struct CollisionQuestion : SurfaceOptions {
   OtherCloud obstacle;
   double clearance = 0;
   std::optional<Pose> pose;
@@ -39,7 +40,11 @@ protected:
   std::vector<std::string> check(const CloudHeader& input, bool distances);
 
   /// For run(). Along a trajectory, the filter stops when the stage is cancelled.
-  void setUp(Filter& filter, const StageCloudPtr& input, const Stage& stage) const;
+  /// @return what to tell the user, a line each
+  std::vector<std::string> setUp(Filter& filter, const StageCloudPtr& input, const Stage& stage);
+
+  /// After setUp(): what the obstacle is compared as.
+  const io::Obstacle& comparedObstacle() const noexcept { return compared_; }
 
   /// What to tell the user after a query; empty when every point is decided.
   std::string undecidedWarning(const Filter& filter) const;
@@ -53,56 +58,63 @@ private:
   void checkUncertainties(const CloudHeader& input) const;
 
   std::vector<Eigen::Isometry3d> poses_;
+  io::Obstacle compared_;
 };
 
 template <typename S>
 StageDescription<S>& withCollisionOptions(StageDescription<S>& description)
 {
-  return description.option(&S::obstacle, "obstacle", "the cloud to collide with")
-      .required()
-      .option(&S::clearance, "clearance", "greatest distance that counts as collision, touching included")
-      .unit("m")
-      .atLeast(0)
-      .option(
-          &S::pose, "pose",
-          "of the obstacle in the input's frame; rigid, where a matrix of few printed digits stands for its nearest "
-          "rotation; null: the frames are one")
-      .option(&S::trajectory, "trajectory",
+  return withSurfaceOptions(
+      description.option(&S::obstacle, "obstacle", "the cloud or mesh to collide with")
+          .required()
+          .option(&S::clearance, "clearance", "greatest distance that counts as collision, touching included")
+          .unit("m")
+          .atLeast(0)
+          .option(&S::pose, "pose",
+                  "of the obstacle in the input's frame; rigid, where a matrix of few printed digits stands for its "
+                  "nearest "
+                  "rotation; null: the frames are one")
+          .option(
+              &S::trajectory, "trajectory",
               "instead of `pose`, a file of poses, one a line: a point collides if it does at any; 12 or 16 numbers of "
               "a matrix, row by row, or time tx ty tz qx qy qz qw")
-      .option(&S::swept, "swept",
+          .option(
+              &S::swept, "swept",
               "above 0, points collide with the motion between poses, too, to this tolerance; 0: with the poses alone")
-      .unit("m")
-      .atLeast(0)
-      .option(&S::accuracy, "accuracy",
+          .unit("m")
+          .atLeast(0)
+          .option(
+              &S::accuracy, "accuracy",
               "how sure the answer is; less sure is faster: `exact`; `tolerance=LENGTH`: distances in (clearance, "
               "clearance + LENGTH] may count, too; `level=N`, `pairs=N`, `time=SECONDS`: stops early, and what stays "
               "undecided is not free; `float`: without proof. With `swept` `exact`")
-      .option(&S::uncertainty, "uncertainty",
+          .option(
+              &S::uncertainty, "uncertainty",
               "how far the input's points may truly be from where they were measured: a length, or the field that "
               "holds each point's sigma, of which `sigmas` count. A point then collides only if it does wherever the "
               "points truly are, it is free if it cannot, and else undecided, which is not free; distances are those "
               "of the measured places")
-      .unit("m")
-      .atLeast(0)
-      .option(&S::obstacle_uncertainty, "obstacle_uncertainty", "the same for the obstacle's points")
-      .unit("m")
-      .atLeast(0)
-      .option(&S::sigmas, "sigmas", "by how many sigmas a point may be off, where an uncertainty is a field")
-      .atLeast(0)
-      .option(&S::density, "density",
+          .unit("m")
+          .atLeast(0)
+          .option(&S::obstacle_uncertainty, "obstacle_uncertainty", "the same for the obstacle's points")
+          .unit("m")
+          .atLeast(0)
+          .option(&S::sigmas, "sigmas", "by how many sigmas a point may be off, where an uncertainty is a field")
+          .atLeast(0)
+          .option(
+              &S::density, "density",
               "true: a point that is free of the obstacle's points, but within `clearance` of the surface in a hole "
               "between "
               "them, is undecided: not scanned densely enough. At one pose")
-      .option(
-          &S::widest_gap, "widest_gap",
-          "with `density`: what gapes wider in the obstacle is an opening, not a surface; null: eight times the median "
-          "distance between its neighbouring points, too little where lines of a scan are farther apart")
-      .unit("m")
-      .above(0)
-      .option(&S::number_of_threads, "number_of_threads",
-              "0: all of the machine's; the result is the same for any number")
-      .atMost(1024);
+          .option(&S::widest_gap, "widest_gap",
+                  "with `density`: what gapes wider in the obstacle is an opening, not a surface; null: eight times "
+                  "the median "
+                  "distance between its neighbouring points, too little where lines of a scan are farther apart")
+          .unit("m")
+          .above(0)
+          .option(&S::number_of_threads, "number_of_threads",
+                  "0: all of the machine's; the result is the same for any number")
+          .atMost(1024));
 }
 
 } // namespace pcl_bsh::pipeline

@@ -8,6 +8,7 @@ namespace pcl_bsh::pipeline {
 std::vector<std::string> DistanceQuestion::check()
 {
   std::vector<std::string> warnings;
+  checkSurface();
   obstacle_pose_ = rigidPoseOf(pose, warnings);
   try {
     PointDistancesRequest request;

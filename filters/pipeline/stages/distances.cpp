@@ -5,6 +5,7 @@
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/distance_question.h>
 #include <pcl_bsh/filters/reports/distance_report.h>
+#include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 namespace pcl_bsh::pipeline {
@@ -29,10 +30,15 @@ struct DistanceWriter : Stage, DistanceQuestion {
   {
     HierarchyOptions options;
     options.threads = number_of_threads;
-    const SphereHierarchy a(viewOf(inputs[0]->cloud), options), b(viewOf(obstacle.cloud->cloud), options);
+    std::vector<std::string> told;
+    const io::Obstacle compared = comparedObstacle(*this, told);
+    for (std::string& line : told) warn(std::move(line));
+    const SphereHierarchy a(viewOf(inputs[0]->cloud), options), b(compared.view(), options);
     const Placed input(a), other(b, obstaclePose());
-    const io::DistanceQuestion question = {input_name, obstacle.name, unit, request(*this), places_beyond};
-    const SymmetricDistances found = symmetricDistances(input, other, question.request);
+    const io::DistanceQuestion question = {input_name,     obstacle.name, unit,
+                                           request(*this), places_beyond, compared.isSurface() ? &compared : nullptr};
+    SymmetricDistances found = symmetricDistances(input, other, question.request);
+    if (compared.isSurface()) tellOfSurface(compared.tolerance(), found);
     const io::DistanceReport report = io::reportOf(question, input, other, found);
     io::writeDistances(filename.path, report);
     if (also) io::writeDistances(also->path, report);

@@ -37,7 +37,10 @@ struct FileReader : Stage {
   StageCloudPtr run(StageClouds&&) override
   {
     auto cloud = std::make_shared<StageCloud>();
-    cloud->cloud = io::readCloud(filename.path, &cloud->viewpoint, &cloud->las_header);
+    io::Mesh mesh = io::readMesh(filename.path, &cloud->viewpoint, &cloud->las_header);
+    cloud->cloud = std::move(mesh.vertices);
+    if (!mesh.triangles.empty())
+      cloud->triangles = std::make_shared<const std::vector<Triangle>>(std::move(mesh.triangles));
     return cloud;
   }
 };
@@ -74,6 +77,7 @@ struct FileWriter : Stage {
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
+    if (inputs[0]->triangles) warn("faces are not written: " + filename.path + " holds their vertices alone");
     write(*inputs[0]);
     return inputs[0];
   }
@@ -160,24 +164,36 @@ StageType pcdReader()
 
 StageType plyReader()
 {
-  return reader(
-      "readers.ply", {".ply"},
-      "The vertices of a PLY file, every property in its type: nx ny nz as normal_x normal_y normal_z, uchar red "
-      "green blue [alpha] packed as rgb or rgba, the sensor's viewpoint where it has an element camera.");
+  return reader("readers.ply", {".ply"},
+                "The vertices of a PLY file and its faces, every property in its type: nx ny nz as normal_x normal_y "
+                "normal_z, uchar red "
+                "green blue [alpha] packed as rgb or rgba, the sensor's viewpoint where it has an element camera.");
 }
 
 StageType objReader()
 {
   return reader(
       "readers.obj", {".obj"},
-      "The vertices of a Wavefront OBJ file, as float64, with their colours packed as rgb, and their normals.");
+      "The vertices of a Wavefront OBJ file, as float64, with their colours packed as rgb and their normals, and its "
+      "faces.");
 }
 
 StageType offReader()
 {
   return reader(
       "readers.off", {".off"},
-      "The vertices of an OFF file, as float64, with their normals, and their colours packed as rgba or rgb.");
+      "The vertices of an OFF file, as float64, with their normals, and their colours packed as rgba or rgb, and its "
+      "faces.");
+}
+
+StageType meshReader()
+{
+  StageType type =
+      reader("readers.mesh", {".stl", ".obj", ".off", ".ply"},
+             "A mesh, .stl, .obj, .off or .ply: its vertices, and its faces, cut into triangles. As the obstacle of a "
+             "stage it is a surface. Faces go on through stages that keep all points; no file is written with them.");
+  type.extensions = {".stl"}; // the others have readers of their own
+  return type;
 }
 
 StageType lasReader()

@@ -32,6 +32,7 @@ StageCloudPtr SelectingStage::run(StageClouds&& inputs)
         StageCloud{selectedRecords(input->cloud, kept), input->viewpoint, input->las_header});
   }
   const auto output = ownCloud(std::move(input));
+  output->triangles.reset(); // whose corners may go
   overwritePoints(output->cloud, removed, filterValue());
   return output;
 }

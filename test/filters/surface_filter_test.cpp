@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Both filters where the obstacle is a mesh of PCL.
+#include <pcl_bsh/filters/collision_filter.h>
+#include <pcl_bsh/filters/distance_filter.h>
+
+#include "clouds.h"
+
+#include <pcl/PolygonMesh.h>
+#include <pcl/conversions.h>
+#include <pcl/point_types.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+using Points = pcl::PointCloud<pcl::PointXYZ>;
+
+/// A crate from the origin to (2, 2, 2), of eight corners and six squares.
+pcl::PolygonMesh::Ptr crate()
+{
+  Points corners;
+  for (int k = 0; k < 8; ++k)
+    corners.emplace_back(2.f * static_cast<float>(k & 1), 2.f * static_cast<float>(k >> 1 & 1),
+                         2.f * static_cast<float>(k >> 2));
+  auto mesh = std::make_shared<pcl::PolygonMesh>();
+  pcl::toPCLPointCloud2(corners, mesh->cloud);
+  for (const auto& square :
+       std::vector<pcl::Indices>{{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}) {
+    mesh->polygons.emplace_back();
+    mesh->polygons.back().vertices = square;
+  }
+  return mesh;
+}
+
+double distanceToCrate(const pcl::PointXYZ& p)
+{
+  const Eigen::Vector3d outside =
+      (p.getVector3fMap().cast<double>().array() - 1).abs().matrix() - Eigen::Vector3d::Ones();
+  return outside.maxCoeff() > 0 ? outside.cwiseMax(0).norm() : -outside.maxCoeff();
+}
+
+Points::Ptr scanAround(unsigned seed, int count)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> place(-0.5f, 2.5f);
+  auto scan = std::make_shared<Points>();
+  for (int i = 0; i < count; ++i) scan->emplace_back(place(random), place(random), place(random));
+  return scan;
+}
+
+TEST(SurfaceFilter, FlagsWhatIsNearTheFaces)
+{
+  constexpr double clearance = 0.1, tolerance = 0.02;
+  const Points::Ptr scan = scanAround(1, 4000);
+  CollisionFilter<pcl::PointXYZ> filter;
+  filter.setInputCloud(scan);
+  filter.setObstacleSurface(crate(), tolerance);
+  filter.setClearance(clearance);
+  std::vector<std::uint8_t> flags;
+  filter.computeFlags(flags);
+  int between = 0;
+  for (std::size_t i = 0; i < scan->size(); ++i) {
+    const double distance = distanceToCrate((*scan)[i]);
+    if (distance <= clearance) {
+      ASSERT_EQ(flags[i], 1) << i;
+    }
+    if (distance > clearance + tolerance) {
+      ASSERT_EQ(flags[i], 0) << i;
+    }
+    if (distance > clearance && flags[i] == 1) ++between;
+  }
+  EXPECT_GT(between, 5);
+  ASSERT_NE(filter.getObstacleSurface(), nullptr);
+  EXPECT_EQ(filter.getObstacleSurface()->tolerance, tolerance);
+
+  // Each copy keeps it; a cloud replaces it.
+  CollisionFilter<pcl::PointXYZ> copy(filter);
+  std::vector<std::uint8_t> again;
+  copy.computeFlags(again);
+  EXPECT_EQ(again, flags);
+  auto corners = std::make_shared<pcl::PCLPointCloud2>(crate()->cloud);
+  filter.setObstacleCloud(corners);
+  EXPECT_EQ(filter.getObstacleSurface(), nullptr);
+  filter.computeFlags(flags);
+  EXPECT_LT(std::count(flags.begin(), flags.end(), 1), 40);
+}
+
+TEST(SurfaceFilter, FollowsAPathAndNamesTriangles)
+{
+  auto scan = std::make_shared<Points>();
+  scan->emplace_back(1.f, 1.f, 5.05f);
+  scan->emplace_back(1.f, 1.f, 3.f);
+  CollisionFilter<pcl::PointXYZ> filter;
+  filter.setInputCloud(scan);
+  filter.setObstacleSurface(crate(), 0.01);
+  filter.setClearance(0.1);
+  Eigen::Isometry3d up = Eigen::Isometry3d::Identity();
+  std::vector<Eigen::Isometry3d> poses;
+  for (int k = 0; k < 4; ++k) {
+    poses.push_back(up);
+    up.translation().z() += 1;
+  }
+  filter.setTrajectory(poses);
+  TrajectoryResult result;
+  filter.computeTrajectory(result);
+  EXPECT_THAT(result.flags, ElementsAre(1, 1));
+  EXPECT_THAT(result.first_pose, ElementsAre(3, 1));
+  EXPECT_GE(result.distance[0], 0.04f);
+  EXPECT_LE(result.distance[0], 0.0501f);
+  EXPECT_EQ(result.distance[1], 0.f) << "not negative, though the point lies in a ball";
+  EXPECT_EQ(result.poses[1].distance, 0.0);
+  // The squares on top of the crate.
+  const std::uint32_t triangle = filter.getObstacleSurface()->triangles[result.closest_point[0]];
+  EXPECT_TRUE(triangle == 2 || triangle == 3) << triangle;
+}
+
+TEST(SurfaceFilter, TellsDistances)
+{
+  constexpr double tolerance = 0.03;
+  const Points::Ptr scan = scanAround(2, 3000);
+  scan->emplace_back(1.f, 1.f, 2.f);
+  scan->emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.f, 0.f);
+  DistanceFilter<pcl::PointXYZ> filter;
+  filter.setInputCloud(scan);
+  filter.setObstacleSurface(crate(), tolerance);
+  PointDistances found;
+  filter.computeDistances(found);
+  for (std::size_t i = 0; i + 1 < scan->size(); ++i) {
+    const double distance = distanceToCrate((*scan)[i]);
+    ASSERT_GE(found.distance[i], 0.0);
+    ASSERT_LE(found.distance[i], distance * (1 + 1e-15)) << i;
+    ASSERT_GE(found.distance[i] + tolerance, distance) << i;
+  }
+  // Limits are compared with these distances, both ends inclusive; what lies in a ball is at 0.
+  for (const auto& [least, most] : {std::pair{0.0, 0.0}, std::pair{0.0, 0.2}, std::pair{0.1, 0.2}}) {
+    filter.setFilterLimits(least, most);
+    pcl::Indices kept, expected;
+    filter.filter(kept);
+    for (std::size_t i = 0; i + 1 < scan->size(); ++i)
+      if (found.distance[i] >= least && found.distance[i] <= most) expected.push_back(static_cast<pcl::index_t>(i));
+    EXPECT_EQ(kept, expected) << least << ' ' << most;
+    EXPECT_FALSE(kept.empty());
+  }
+  filter.setAccuracy(Accuracy::tolerance(0.05));
+  filter.computeDistances(found);
+  for (std::size_t i = 0; i + 1 < scan->size(); ++i) {
+    const double distance = distanceToCrate((*scan)[i]);
+    ASSERT_LE(found.interval[i].lower, distance) << i;
+    ASSERT_GE(found.interval[i].upper, distance) << i;
+  }
+}
+
+TEST(SurfaceFilter, HasNoHolesToGuard)
+{
+  const Points::Ptr scan = scanAround(3, 500);
+  CollisionFilter<pcl::PointXYZ> filter;
+  filter.setInputCloud(scan);
+  filter.setObstacleSurface(crate(), 0.05);
+  filter.setClearance(0.1);
+  std::vector<std::uint8_t> plain, guarded;
+  filter.computeFlags(plain);
+  filter.setDensityGuard(true);
+  filter.computeFlags(guarded);
+  EXPECT_EQ(plain, guarded);
+  EXPECT_EQ(filter.getSparseCount(), 0u);
+  filter.setDensityGuard(false);
+  filter.setObstacleUncertainty(0.01); // of the surface as a whole
+  filter.computeFlags(guarded);
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    const double distance = distanceToCrate((*scan)[i]);
+    if (distance <= 0.09) {
+      ASSERT_EQ(guarded[i], 1);
+    }
+    if (distance <= 0.11) {
+      ASSERT_NE(guarded[i], 0);
+    }
+  }
+}
+
+TEST(SurfaceFilter, RefusesWhatIsNoSurface)
+{
+  CollisionFilter<pcl::PointXYZ> filter;
+  const auto refused = [&](const pcl::PolygonMesh::ConstPtr& mesh, double tolerance, const std::string& text) {
+    EXPECT_THAT([&] { filter.setObstacleSurface(mesh, tolerance); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr(text)));
+  };
+  refused(nullptr, 0.1, "obstacle surface is null");
+  refused(crate(), 0.0, "tolerance 0 is not a length above 0");
+  auto mesh = crate();
+  mesh->polygons[2].vertices[1] = 8;
+  refused(mesh, 0.1, "a face names vertex 8 (from 0), of 8");
+  mesh->polygons[2].vertices[1] = -1;
+  refused(mesh, 0.1, "a face names vertex 4294967295 (from 0), of 8");
+  mesh = crate();
+  Points corners;
+  pcl::fromPCLPointCloud2(mesh->cloud, corners);
+  corners[3].x = std::numeric_limits<float>::quiet_NaN();
+  pcl::toPCLPointCloud2(corners, mesh->cloud);
+  refused(mesh, 0.1, "is not finite");
+  DistanceFilter<pcl::PointXYZ> distance;
+  EXPECT_THAT([&] { distance.setObstacleSurface(std::shared_ptr<const SurfaceCover>()); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("obstacle surface is null")));
+  // Nothing is near no surface.
+  auto nothing = std::make_shared<pcl::PolygonMesh>();
+  pcl::toPCLPointCloud2(corners, nothing->cloud);
+  filter.setObstacleSurface(nothing, 0.1);
+  filter.setInputCloud(scanAround(4, 10));
+  pcl::Indices free;
+  filter.filter(free);
+  EXPECT_EQ(free.size(), 10u);
+}
+
+} // namespace
+} // namespace pcl_bsh

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes in pipelines: their faces go from the reader to the stage that has them as an obstacle, or a warning says so.
+#include "../files/temporary_folder.h"
+#include "run_stage.h"
+
+#include <pcl/point_types.h>
+
+#include <nlohmann/json.hpp>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+using files::TemporaryFolder;
+using testing::Contains;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+using Points = pcl::PointCloud<pcl::PointXYZ>;
+
+constexpr auto crate = "OFF\n8 6 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n0 0 2\n2 0 2\n2 2 2\n0 2 2\n"
+                       "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
+
+/// In the middle of a face, 5 cm from it, a metre inside, far away.
+StageCloudPtr scan()
+{
+  Points points;
+  points.emplace_back(1.f, 1.f, 2.f);
+  points.emplace_back(1.f, 1.f, 2.05f);
+  points.emplace_back(1.f, 1.f, 1.f);
+  points.emplace_back(9.f, 9.f, 9.f);
+  return stageCloud(points);
+}
+
+class SurfaceStages : public testing::Test {
+protected:
+  SurfaceStages() { folder_.write("crate.off", crate); }
+
+  /// Of stages in a document, whose clouds are `scan` and a crate.
+  PipelineResult runAll(const std::string& stages) const
+  {
+    Pipeline pipeline = Pipeline::parse(
+        R"({"pipeline": [{"type": "readers.mesh", "tag": "crate", "filename": ")" + (folder_ / "crate.off").string() +
+        R"("}, {"type": "readers.pcd", "tag": "scan", "filename": "scan.pcd"}, )" + stages + "]}");
+    pipeline.setCloud("scan", scan());
+    return pipeline.run();
+  }
+
+  static std::vector<int> flagsOf(const PipelineResult& result, const std::string& tag)
+  {
+    const pcl::PCLPointCloud2& cloud = result.clouds.at(tag)->cloud;
+    std::vector<int> flags;
+    for (std::size_t i = 0; i < cloud.width; ++i)
+      flags.push_back(cloud.data[i * cloud.point_step + cloud.fields.back().offset]);
+    return flags;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(SurfaceStages, FlagWhatIsNearTheFaces)
+{
+  const PipelineResult surface = runAll(R"({"type": "filters.bsh_flag", "tag": "f", "inputs": ["scan"],
+      "obstacle": "crate", "clearance": 0.1})");
+  EXPECT_THAT(flagsOf(surface, "f"), ElementsAre(1, 1, 0, 0));
+  EXPECT_THAT(surface.warnings, ElementsAre(HasSubstr("f: the obstacle is a surface of 12 triangles, to a tolerance of "
+                                                      "0.01: free is farther")));
+  const PipelineResult corners = runAll(R"({"type": "filters.bsh_flag", "tag": "f", "inputs": ["scan"],
+      "obstacle": "crate", "clearance": 0.1, "vertices_only": true})");
+  EXPECT_THAT(flagsOf(corners, "f"), ElementsAre(0, 0, 0, 0));
+  EXPECT_THAT(corners.warnings, IsEmpty());
+  const PipelineResult coarse = runAll(R"({"type": "filters.bsh_collision", "tag": "f", "inputs": ["scan"],
+      "obstacle": "crate", "clearance": 0.1, "surface_tolerance": 0.05, "keep": "colliding"})");
+  EXPECT_EQ(coarse.clouds.at("f")->cloud.width, 2u);
+  EXPECT_THAT(coarse.warnings, ElementsAre(HasSubstr("to a tolerance of 0.05")));
+}
+
+TEST_F(SurfaceStages, TellDistancesToTheFaces)
+{
+  const std::string file = (folder_ / "distances.json").string();
+  const PipelineResult result =
+      runAll(R"({"type": "writers.distances", "tag": "w", "inputs": ["scan"], "obstacle": "crate",
+      "surface_tolerance": 0.02, "filename": ")" +
+             file + R"("}, {"type": "filters.bsh_distance", "tag": "d", "inputs": ["w"],
+      "obstacle": "crate", "surface_tolerance": 0.02, "filter_limits": [null, 1.5]})");
+  const pcl::PCLPointCloud2& cloud = result.clouds.at("d")->cloud;
+  ASSERT_EQ(cloud.width, 3u);
+  const std::vector<float> truth = {0, 0.05f, 1};
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    float distance;
+    std::memcpy(&distance, &cloud.data[i * cloud.point_step + cloud.fields.back().offset], sizeof distance);
+    EXPECT_GE(distance, std::max(0.f, truth[i] - 0.0200001f)) << i;
+    EXPECT_LE(distance, truth[i] + 1e-6f) << i;
+  }
+  const auto json = nlohmann::json::parse(files::contentOf(file));
+  EXPECT_EQ(json["surface"]["triangles"], 12);
+  EXPECT_GE(json["input_to_obstacle"]["maximum"], 0.0);
+  EXPECT_LT(json["hausdorff_pair"][1], 12);
+}
+
+TEST_F(SurfaceStages, ListClashesByTriangles)
+{
+  const std::string file = (folder_ / "clashes.json").string();
+  runAll(R"({"type": "writers.clashes", "inputs": ["scan"], "obstacle": "crate", "clearance": 0.1, "filename": ")" +
+         file + R"("})");
+  const auto json = nlohmann::json::parse(files::contentOf(file));
+  ASSERT_EQ(json["clashes"].size(), 1u);
+  EXPECT_EQ(json["clashes"][0]["points"], 2);
+  EXPECT_EQ(json["clashes"][0]["distance"], 0.0);
+  EXPECT_LT(json["clashes"][0]["closest_pair"]["obstacle"]["triangle"], 12);
+}
+
+TEST_F(SurfaceStages, FacesGoOnWherePointsStay)
+{
+  const std::string flag = R"({"type": "filters.bsh_flag", "tag": "f", "inputs": ["scan"], "obstacle": "moved",
+      "clearance": 0.1})";
+  const PipelineResult moved = runAll(R"({"type": "filters.transform", "tag": "moved", "inputs": ["crate"],
+      "transform": [8, 8, 7, 0, 0, 0]}, )" +
+                                      flag);
+  EXPECT_THAT(flagsOf(moved, "f"), ElementsAre(0, 0, 0, 1)) << "9 9 9 is in the middle of its top";
+  const PipelineResult cropped = runAll(R"({"type": "filters.crop_box", "tag": "moved", "inputs": ["crate"],
+      "min": [0, 0, 0], "max": [2, 2, 1]}, )" +
+                                        flag);
+  EXPECT_THAT(flagsOf(cropped, "f"), Each(0));
+  EXPECT_THAT(cropped.warnings, Contains(HasSubstr("moved: does not keep the faces of its input")));
+  const PipelineResult organized = runAll(R"({"type": "filters.crop_box", "tag": "moved", "inputs": ["crate"],
+      "min": [0, 0, 0], "max": [2, 2, 1], "keep_organized": true}, )" +
+                                          flag);
+  EXPECT_THAT(organized.warnings, Contains(HasSubstr("moved: does not keep the faces of its input")));
+}
+
+TEST_F(SurfaceStages, SayWhereFacesEnd)
+{
+  const PipelineResult written =
+      Pipeline::parse("[\"" + (folder_ / "crate.off").string() + "\", {\"type\": \"writers.ply\", \"tag\": \"w\", " +
+                      "\"filename\": \"" + (folder_ / "out.ply").string() + "\"}]")
+          .run();
+  EXPECT_THAT(written.warnings, ElementsAre(HasSubstr("w: faces are not written")));
+}
+
+TEST_F(SurfaceStages, RefuseWhatCannotBe)
+{
+  const auto refusal = [&](const std::string& options) {
+    return errorOf([&] {
+      runAll(R"({"type": "filters.bsh_flag", "inputs": ["scan"], "obstacle": "crate", "clearance": 0.1, )" + options +
+             "}");
+    });
+  };
+  EXPECT_THAT(refusal(R"("surface_tolerance": 0.1, "vertices_only": true)"), HasSubstr("vertices_only"));
+  EXPECT_THAT(refusal(R"("surface_tolerance": 1e-14)"), HasSubstr("is too small for coordinates up to"));
+  EXPECT_THAT(refusal(R"("surface_tolerance": 0)"), HasSubstr("surface_tolerance"));
+  EXPECT_THAT(refusal(R"("obstacle_uncertainty": "x")"), HasSubstr("is a field, which the surface crate does not"));
+}
+
+} // namespace
+} // namespace pcl_bsh::pipeline
