@@ -19,7 +19,7 @@ constexpr auto collide_footer =
 An OBSTACLE with faces (.obj .off .ply .stl) is a surface, to a tolerance T: what is free is farther than D from it
 for certain, what collides is within D + T, and a distance d says that the true one is in [d, d + T]. What a closed
 surface encloses is not part of it. Reports name its triangles, from 0; polygons are cut into triangles.
-Reads .pcd .ply .las .obj .off .stl .pts .ptx .csv .xyz .txt, writes all of these but .off .stl .pts .ptx. Files may be
+Reads .pcd .ply .las .obj .off .stl .pts .ptx .csv .xyz .txt, writes all of these but .off .stl. Files may be
 pipes; - is standard input (PCD, PLY, LAS, OFF or columns), or standard output for OUTPUT (PCD) and --report.
 Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
