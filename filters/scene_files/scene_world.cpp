@@ -6,6 +6,7 @@
 #include <pcl_bsh/filters/scene_files/scene_file.h>
 #include <pcl_bsh/filters/scene_files/shape_points.h>
 
+#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -121,6 +122,42 @@ std::vector<double> coordinatesOf(const PointsView& view)
   return xyz;
 }
 
+Obstacle surfaceOf(Mesh mesh, const CloudSource& source, const SceneFile& file)
+{
+  const auto vertices = std::make_shared<const pcl::PCLPointCloud2>(std::move(mesh.vertices));
+  const auto triangles = std::make_shared<const std::vector<Triangle>>(std::move(mesh.triangles));
+  try {
+    return Obstacle(vertices, triangles, source.surface, file.options.clearance);
+  }
+  catch (const InvalidInput& error) {
+    throw JsonError(file.path.string(), source.place, error.wrong(), error.remedy());
+  }
+}
+
+/// x y z, radius, triangle.
+pcl::PCLPointCloud2 ballsOf(const SurfaceCover& cover)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* axis : {"x", "y", "z"}) addField(cloud, axis, pcl::PCLPointField::FLOAT64);
+  addField(cloud, "radius", pcl::PCLPointField::FLOAT32);
+  addField(cloud, "triangle", pcl::PCLPointField::UINT32);
+  allocate(cloud, static_cast<std::uint32_t>(cover.centers.size()));
+  for (std::size_t i = 0; i < cover.centers.size(); ++i) {
+    std::uint8_t* const record = cloud.data.data() + i * cloud.point_step;
+    std::memcpy(record, cover.centers[i].data(), sizeof(Point3));
+    std::memcpy(record + cloud.fields[3].offset, &cover.radii[i], sizeof(float));
+    std::memcpy(record + cloud.fields[4].offset, &cover.triangles[i], sizeof(std::uint32_t));
+  }
+  cloud.is_dense = 1;
+  return cloud;
+}
+
+const std::string& placeOf(const std::string& cloud, const SceneFile& file)
+{
+  return std::find_if(file.clouds.begin(), file.clouds.end(), [&](const auto& source) { return source.name == cloud; })
+      ->place;
+}
+
 } // namespace
 
 void setRules(Scene& scene, const std::vector<RuleEntry>& rules)
@@ -141,13 +178,7 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
   for (const CloudSource& source : file.clouds) {
     if (used.count(source.name) == 0) continue;
     if (reading) reading(source);
-    Loaded& loaded = clouds_[source.name];
-    loaded.points =
-        source.shape.empty() ? readCloud(source.file) : cloudOf(shapePoints(source.shape, source.size, source.spacing));
-    scaleAndShift(loaded.points, source, file.path.string());
-    HierarchyOptions options;
-    options.threads = file.options.threads;
-    loaded.hierarchy = std::make_shared<SphereHierarchy>(viewOf(loaded.points), options);
+    load(source, file, clouds_[source.name]);
   }
 
   scene_ = std::make_unique<Scene>(file.options);
@@ -162,6 +193,11 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
     const auto id = static_cast<ObjectId>(scene_->size());
     for (const PartEntry& part : entry.parts) {
       std::shared_ptr<SphereHierarchy> hierarchy = clouds_.at(part.cloud).hierarchy;
+      if (entry.wave && clouds_.at(part.cloud).surface) {
+        throw JsonError(file.path.string(), placeOf(part.cloud, file),
+                        "is a surface, and the wave of '" + entry.name + "' moves points",
+                        "give 'vertices_only': true");
+      }
       if (entry.wave) {
         auto waving = std::make_unique<Waving>();
         waving->object = id;
@@ -177,6 +213,29 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
   }
   setRules(*scene_, file.rules);
   deform(0.0);
+}
+
+void SceneWorld::load(const CloudSource& source, const SceneFile& file, Loaded& loaded)
+{
+  Mesh mesh;
+  if (!source.shape.empty())
+    mesh.vertices = cloudOf(shapePoints(source.shape, source.size, source.spacing));
+  else if (source.surface.vertices_only)
+    mesh.vertices = readCloud(source.file);
+  else
+    mesh = readMesh(source.file);
+  scaleAndShift(mesh.vertices, source, file.path.string());
+  HierarchyOptions options;
+  options.threads = file.options.threads;
+  if (mesh.triangles.empty()) {
+    loaded.points = std::move(mesh.vertices);
+    loaded.hierarchy = std::make_shared<SphereHierarchy>(viewOf(loaded.points), options);
+    return;
+  }
+  loaded.surface = surfaceOf(std::move(mesh), source, file);
+  for (const std::string& remark : loaded.surface->remarks()) warnings_.push_back(source.file.string() + ": " + remark);
+  loaded.points = ballsOf(*loaded.surface->cover());
+  loaded.hierarchy = std::make_shared<SphereHierarchy>(loaded.surface->view(), options);
 }
 
 std::size_t SceneWorld::points() const
