@@ -4,6 +4,7 @@
 #include "cli/step.h"
 #include "collide/options.h"
 #include "collide/report.h"
+#include "collide/surface_input.h"
 
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
@@ -22,6 +23,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -39,6 +41,7 @@ constexpr auto program = cli::collide_program;
 
 struct Scan {
   pcl::PCLPointCloud2 cloud;
+  std::vector<Triangle> triangles; ///< where the input has faces: these are asked about
   io::Viewpoint viewpoint = io::no_viewpoint;
   io::LasHeaderPtr las;
 };
@@ -106,13 +109,50 @@ void check(const Options& options)
   if (options.distances && options.distances->page) requireDistancePage(*options.distances->page);
 }
 
-Scan load(const fs::path& path, double& seconds)
+Scan loadInput(const Options& options, double& seconds)
 {
-  cli::Step step("Loading " + path.string());
+  cli::Step step("Loading " + options.input.string());
   Scan scan;
-  scan.cloud = io::readCloud(path, &scan.viewpoint, &scan.las);
-  seconds += step.done(std::to_string(std::size_t{scan.cloud.width} * scan.cloud.height) + " points");
+  if (options.surface.vertices_only) {
+    scan.cloud = io::readCloud(options.input, &scan.viewpoint, &scan.las);
+  }
+  else {
+    io::Mesh mesh = io::readMesh(options.input, &scan.viewpoint, &scan.las);
+    scan.cloud = std::move(mesh.vertices);
+    scan.triangles = std::move(mesh.triangles);
+  }
+  const std::string triangles =
+      scan.triangles.empty() ? "" : ", " + std::to_string(scan.triangles.size()) + " triangles";
+  seconds += step.done(std::to_string(std::size_t{scan.cloud.width} * scan.cloud.height) + " points" + triangles);
   return scan;
+}
+
+/// The balls of the input's surface; none where it is points.
+std::shared_ptr<const SurfaceCover> coverOf(const Options& options, const Scan& input, double& seconds)
+{
+  if (input.triangles.empty()) return nullptr;
+  cli::requireForSurface(options);
+  cli::Step step("Covering " + options.input.string());
+  auto cover = std::make_shared<const SurfaceCover>(cli::coverInput(
+      options.input, {input.cloud, input.triangles}, options.surface, options.clearance, [&](double fraction) {
+        step.share(fraction);
+        return true;
+      }));
+  seconds += step.done(std::to_string(cover->centers.size()) + " balls");
+  return cover;
+}
+
+/// From a query about the balls to what users asked: about the triangles.
+TrajectoryResult ofInput(const SurfaceCover* cover, TrajectoryResult found, cli::CollisionReport& report)
+{
+  if (!cover) return found;
+  found = cli::ofTriangles(*cover, std::move(found));
+  report.input_surface = cover->tolerance;
+  report.undecided = found.undecided;
+  tellOfSurface(cover->tolerance, report.closest);
+  if (report.closest.pair) report.closest.pair->a = cover->triangles[report.closest.pair->a];
+  if (report.path) report.path->table.clear(); // it counts balls
+  return found;
 }
 
 /// Its cloud or, where the file has faces, its surface.
@@ -216,6 +256,11 @@ void write(const Options& options, const Scan& input, const TrajectoryResult& fo
            double& seconds)
 {
   cli::Step step("Writing " + options.output.string());
+  if (!input.triangles.empty()) {
+    const std::size_t written = cli::writeSurface(options, {input.cloud, input.triangles}, input.viewpoint, found);
+    seconds += step.done(std::to_string(written) + " triangles");
+    return;
+  }
   pcl::PCLPointCloud2 cloud;
   if (options.keep == Keep::flagged || options.distances)
     cloud = marked(options.input, input.cloud, newFields(options, found, distances));
@@ -257,13 +302,15 @@ void summarise(const Options& options, const cli::CollisionReport& report, const
 {
   cli::warn(program, report.warnings);
   std::ostream& out = options.files.summary();
-  out << report.colliding << " of " << report.input.points << " points collide";
+  out << report.colliding << " of " << report.input.points << (report.input_surface ? " triangles" : " points")
+      << " collide";
   if (report.mayLeaveUndecided()) out << ", " << report.undecided << " are undecided";
   if (report.widest_gap > 0) out << ", " << report.sparse << " are not scanned densely enough";
   if (report.closest.pair) {
-    out << "; smallest distance " << distanceText(report) << ", between point " << report.closest.pair->a
-        << " of the input and " << (report.surface ? report.surface->partName() : "point") << ' '
-        << report.closest.pair->b << " of the obstacle";
+    out << "; smallest distance " << distanceText(report) << ", between "
+        << (report.input_surface ? "triangle " : "point ") << report.closest.pair->a << " of the input and "
+        << (report.surface ? report.surface->partName() : "point") << ' ' << report.closest.pair->b
+        << " of the obstacle";
   }
   if (report.path) out << "; " << report.path->poses << " poses";
   if (report.path && report.path->first_contact) {
@@ -485,25 +532,28 @@ int collide(const Options& options)
   report.input_uncertainty = options.input_uncertainty;
   report.obstacle_uncertainty = options.obstacle_uncertainty;
 
-  const Scan input = load(options.input, report.seconds.load);
-  if (options.keep == Keep::flagged || options.distances)
+  const Scan input = loadInput(options, report.seconds.load);
+  const std::shared_ptr<const SurfaceCover> cover = coverOf(options, input, report.seconds.load);
+  if (!cover && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
   const io::Obstacle obstacle = loadObstacle(options, report.seconds.load);
   requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
-  const auto a = build(viewOf(input.cloud), input.cloud.fields, options.input, options.input_uncertainty,
-                       options.threads, report.seconds.build);
+  const auto a = build(cover ? cover->view() : viewOf(input.cloud), input.cloud.fields, options.input,
+                       options.input_uncertainty, options.threads, report.seconds.build);
   const auto b = build(obstacle.view(), obstacle.points().fields, options.obstacle, options.obstacle_uncertainty,
                        options.threads, report.seconds.build);
   const SphereHierarchy vertices(obstacle.isSurface() ? viewOf(obstacle.points()) : PointsView());
   const SphereHierarchy& given = obstacle.isSurface() ? vertices : b; // whose coordinates may be coarse
   report.input = {options.input.string(), a.view().count, a.size()};
+  if (cover) report.input.points = report.input.finite = input.triangles.size();
   report.obstacle = {options.obstacle.string(), given.view().count, given.size()};
   if (obstacle.isSurface()) report.surface = obstacle;
 
   const bool by_place = options.moves() || !options.clashes.empty();
-  const TrajectoryResult found = by_place ? alongPath(options, poses, a, b, report) : atPose(options, a, b, report);
+  const TrajectoryResult found =
+      ofInput(cover.get(), by_place ? alongPath(options, poses, a, b, report) : atPose(options, a, b, report), report);
   const Distances distances = options.distances ? measure(options, a, b, report) : Distances();
-  report.density.input = spacingOf(a);
+  if (!cover) report.density.input = spacingOf(a);
   if (!report.surface) report.density.obstacle = spacingOf(b);
   report.colliding = found.colliding;
   report.voxels_total = a.statistics().voxels + b.statistics().voxels;

@@ -189,6 +189,7 @@ int runScene(const Options& options)
   cli::Step loading("Loading clouds");
   io::SceneWorld world(file);
   loading.done(std::to_string(world.points()) + " points");
+  cli::warn(program, world.warnings());
   const double load_seconds = seconds(start);
   std::printf("%s: %zu objects, %zu points in %zu clouds\n", options.scene.c_str(), file.objects.size(), world.points(),
               file.clouds.size());

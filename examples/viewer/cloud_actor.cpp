@@ -3,6 +3,7 @@
 
 #include "actors.h"
 #include "far_points.h"
+#include "surface_actor.h"
 
 #include <pcl_bsh/vtk/cloud_data.h>
 
@@ -32,12 +33,15 @@ vtkSmartPointer<vtkPolyData> noPoints()
 
 } // namespace
 
-CloudActor::CloudActor(const PointsView& points, vtkRenderer& renderer, const Color& marked)
-: points_(renderer, sizeFor(points.size()), false),
+CloudActor::CloudActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color, const Color& marked)
+: points_(renderer, sizeFor(viewed.points().size()), false),
   marks_(renderer, 6.0f, true)
 {
   setColor(marks_.actor(), marked);
-  setPoints(points);
+  setPoints(viewed.points());
+  if (!viewed.surface) return;
+  surface_ = addSurface(viewed, renderer, color);
+  points_.hide();
 }
 
 void CloudActor::setPoints(const PointsView& points)
@@ -87,6 +91,7 @@ void CloudActor::place(const Eigen::Isometry3d& pose)
 {
   points_.place(pose);
   marks_.place(pose);
+  if (surface_) surface_->SetUserMatrix(matrixOf(pose));
 }
 
 void CloudActor::setMoving(bool moving)

@@ -4,6 +4,7 @@
 #include "options.h"
 #include "palette.h"
 #include "point_layer.h"
+#include "viewed_cloud.h"
 
 #include <pcl_bsh/hierarchy/points_view.h>
 
@@ -13,10 +14,11 @@
 
 namespace pcl_bsh::view {
 
-/// A cloud as points, with those that collide once more, larger.
+/// A cloud as points, with those that collide once more, larger. A surface is drawn as such, with the balls of its
+/// cover that collide.
 class CloudActor {
 public:
-  CloudActor(const PointsView& points, vtkRenderer& renderer, const Color& marked);
+  CloudActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color, const Color& marked);
 
   /// Takes the points as they are now; paint and mark them anew. For points that move in their own frame.
   void setPoints(const PointsView& points);
@@ -45,6 +47,7 @@ public:
 private:
   vtkSmartPointer<vtkPolyData> all_;
   PointLayer points_, marks_;
+  vtkSmartPointer<vtkActor> surface_; ///< null where the cloud is points
 };
 
 } // namespace pcl_bsh::view

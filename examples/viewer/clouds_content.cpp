@@ -17,19 +17,27 @@
 namespace pcl_bsh::view {
 namespace {
 
-ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, unsigned threads)
+/// The scan is points, whose fields are shown; an obstacle with faces is a surface.
+ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, const Options& options)
 {
   ViewedCloud viewed;
   viewed.name = viewed.legend = file.filename().string();
   viewed.role = role;
   viewed.file = file;
   cli::Step step("Loading " + file.string());
-  const auto cloud = std::make_shared<pcl::PCLPointCloud2>(io::readCloud(file));
+  io::SurfaceSettings settings = options.surface;
+  settings.vertices_only |= role == ViewedCloud::Role::scan;
+  const io::Obstacle read = io::readObstacle(file, settings, options.clearance.value_or(0.0));
   HierarchyOptions how;
-  how.threads = threads;
-  viewed.hierarchy = std::make_shared<SphereHierarchy>(viewOf(*cloud), how);
-  viewed.cloud = cloud;
-  step.done(std::to_string(viewed.points().count) + " points");
+  how.threads = options.threads;
+  viewed.hierarchy = std::make_shared<SphereHierarchy>(read.view(), how);
+  if (read.isSurface())
+    viewed.surface = read;
+  else
+    viewed.cloud = std::shared_ptr<const pcl::PCLPointCloud2>(viewed.points().owner, &read.points());
+  step.done(read.isSurface() ? std::to_string(read.triangles()->size()) + " triangles"
+                             : std::to_string(viewed.points().count) + " points");
+  for (const std::string& remark : read.remarks()) cli::warn(program, {file.string() + ": " + remark});
   return viewed;
 }
 
@@ -55,10 +63,10 @@ CloudsContent::CloudsContent(const Options& options) : ViewContent(options), pos
                           std::to_string(poses_.size()) + " poses, counted from 0");
   for (const std::filesystem::path& file : options.clouds)
     viewed_clouds_.push_back(
-        load(file, viewed_clouds_.empty() ? ViewedCloud::Role::scan : ViewedCloud::Role::obstacle, options.threads));
+        load(file, viewed_clouds_.empty() ? ViewedCloud::Role::scan : ViewedCloud::Role::obstacle, options));
   if (options.model) {
     model_ = viewed_clouds_.size();
-    viewed_clouds_.push_back(load(*options.model, ViewedCloud::Role::obstacle, options.threads));
+    viewed_clouds_.push_back(load(*options.model, ViewedCloud::Role::obstacle, options));
   }
   if (scan().hierarchy->empty()) throw std::invalid_argument(scan().file.string() + ": has no finite point to show");
 }

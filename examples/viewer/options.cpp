@@ -15,7 +15,9 @@ namespace pcl_bsh::view {
 namespace {
 
 constexpr auto footer = R"(Points of the first CLOUD within D of another CLOUD or of the MODEL collide, decided exactly;
-they are drawn larger and in orange, all others dimmed. A cloud that holds the fields collision,
+they are drawn larger and in orange, all others dimmed. Another CLOUD or a MODEL with faces is a
+surface, drawn as one: what is free is farther than D from it, what collides within D and the
+surface tolerance. A cloud that holds the fields collision,
 distance or first_pose shows these as they are.
 A scene's objects are drawn at their poses of one step, responses included: fixed ones in grey, moving ones in blue,
 and points within the scene's clearance, or D, in orange and yellow.
@@ -191,6 +193,15 @@ std::optional<Options> parseOptions(int argc, char** argv)
                  "greatest distance that counts as collision, in the clouds' unit\n(default for a scene: its own)")
       ->type_name("D")
       ->transform(cli::number<double>(cli::give_length));
+  CLI::Option* const tolerance =
+      app.add_option("--surface-tolerance", options.surface.tolerance,
+                     "how far from the surface of an obstacle with faces what collides\nmay be beyond D (default: a "
+                     "tenth of D, else its size / 10,000)")
+          ->type_name("T")
+          ->transform(
+              cli::number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
+  app.add_flag("--vertices-only", options.surface.vertices_only, "of obstacles with faces, take the vertices alone")
+      ->excludes(tolerance);
   app.add_option("--color", options.color,
                  "collision (default where known), distance, first_pose, height,\nrgb or intensity; distance without "
                  "--clearance is of all points,\nwith a histogram")

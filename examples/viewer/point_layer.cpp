@@ -70,8 +70,14 @@ void PointLayer::setMoving(bool moving)
     setData(*few_, few);
     few_is_old_ = false;
   }
-  all_->SetVisibility(!moving);
-  few_->SetVisibility(moving);
+  all_->SetVisibility(!moving && !hidden_);
+  few_->SetVisibility(moving && !hidden_);
+}
+
+void PointLayer::hide()
+{
+  hidden_ = true;
+  setMoving(false);
 }
 
 } // namespace pcl_bsh::view

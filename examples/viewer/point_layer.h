@@ -25,6 +25,7 @@ public:
   vtkActor& actor() { return *all_; }
   void place(const Eigen::Isometry3d& pose);
   void setMoving(bool moving);
+  void hide(); ///< for good
   void cut(const Cut& plane);
   bool owns(const vtkProp* prop) const { return prop == all_.Get(); } ///< one picks while nothing moves
 
@@ -32,6 +33,7 @@ private:
   vtkSmartPointer<vtkPolyData> data_;
   vtkSmartPointer<vtkActor> all_, few_;
   bool few_is_old_ = true;
+  bool hidden_ = false;
 };
 
 } // namespace pcl_bsh::view

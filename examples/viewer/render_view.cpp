@@ -32,7 +32,7 @@ RenderView::RenderView(const ViewContent& content, vtkRenderer& renderer)
   const std::array<double, 3> c = fractions(ground);
   renderer.SetBackground(c[0], c[1], c[2]);
   for (const ViewedCloud& viewed : content.viewedClouds())
-    clouds_.emplace_back(viewed.points(), renderer,
+    clouds_.emplace_back(viewed, renderer, viewed.role == ViewedCloud::Role::scan ? scan_color : obstacle_color,
                          viewed.role == ViewedCloud::Role::scan ? colliding_color : obstacle_colliding_color);
   if (options.cut) clouds_[0].cut(*options.cut);
   extras_ = {options.level, options.voxels, options.cells, options.trace};

@@ -92,6 +92,7 @@ SceneContent::SceneContent(const Options& options) : ViewContent(options), file_
   cli::Step step("Loading the clouds of " + name());
   running_scene_ = std::make_unique<io::SceneWorld>(file_);
   step.done(std::to_string(running_scene_->points()) + " points");
+  cli::warn(program, running_scene_->warnings());
   addClouds();
   if (points_ == 0) throw std::invalid_argument(file_.path.string() + ": has no finite point to show");
   makeQueryScene();
@@ -110,6 +111,8 @@ void SceneContent::addClouds()
       viewed.legend = has.fixed ? "fixed objects" : "moving objects";
       viewed.role = has.fixed ? ViewedCloud::Role::scan : ViewedCloud::Role::obstacle;
       viewed.hierarchy = has.parts[part].hierarchy;
+      if (const io::Obstacle* const surface = running_scene_->surface(file_.objects[object].parts[part].cloud))
+        viewed.surface = *surface;
       points_ += viewed.hierarchy->size();
       viewed_clouds_.push_back(std::move(viewed));
       places_.push_back({object, part});

@@ -2,6 +2,7 @@
 // One cloud that the viewer shows, with its hierarchy.
 #pragma once
 
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
 #include <pcl/PCLPointCloud2.h>
@@ -24,6 +25,7 @@ struct ViewedCloud {
   Role role = Role::scan;
   std::filesystem::path file;
   std::shared_ptr<const pcl::PCLPointCloud2> cloud; ///< as it was read; none where fields are not shown
+  std::optional<io::Obstacle> surface; ///< where it has faces: these are drawn, and queries are asked of its balls
   std::shared_ptr<SphereHierarchy> hierarchy;
 
   const PointsView& points() const { return hierarchy->view(); }

@@ -109,6 +109,8 @@ void print(const std::string& extension, std::ostream& out, const pcl::PCLPointC
   if (extension == ".ply") return writePly(out, cloud, viewpoint);
   if (extension == ".las") return writeLas(out, cloud, las);
   if (extension == ".obj") return writeObj(out, cloud);
+  if (extension == ".pts") return writePts(out, cloud);
+  if (extension == ".ptx") return writePtx(out, cloud, viewpoint);
   writeColumns(out, cloud, extension == ".csv" ? ',' : ' ');
 }
 
@@ -269,12 +271,13 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path)
 void requireWritableCloud(const std::filesystem::path& path)
 {
   const std::string extension = writtenExtension(path);
-  constexpr std::array writable = {".pcd", ".ply", ".las", ".obj", ".csv", ".xyz", ".txt"};
+  constexpr std::array writable = {".pcd", ".ply", ".las", ".obj", ".pts", ".ptx", ".csv", ".xyz", ".txt"};
   if (extension == ".laz") {
     throw files::FileError(path, "is the name of a compressed file, which is not written", "write a .las file");
   }
   if (std::find(writable.begin(), writable.end(), extension) == writable.end()) {
-    throw files::FileError(path, unknown(extension), "write a .pcd, .ply, .las, .obj, .csv, .xyz or .txt file");
+    throw files::FileError(path, unknown(extension),
+                           "write a .pcd, .ply, .las, .obj, .pts, .ptx, .csv, .xyz or .txt file");
   }
   files::requireWritable(path);
 }
@@ -296,6 +299,21 @@ void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cl
     files::replaceFile(path,
                        [&](std::ostream& out) { print(writtenExtension(path), out, cloud, viewpoint, las.get()); });
   });
+}
+
+void requireWritableMesh(const std::filesystem::path& path)
+{
+  if (writtenExtension(path) != ".ply")
+    throw files::FileError(path, "has no place for what is known of triangles", "write a .ply file");
+  files::requireWritable(path);
+}
+
+void writeMesh(const std::filesystem::path& path, const Mesh& mesh, const std::vector<FaceField>& fields,
+               const Viewpoint& viewpoint)
+{
+  requireWritableMesh(path);
+  naming(path,
+         [&] { files::replaceFile(path, [&](std::ostream& out) { writePlyMesh(out, mesh, fields, viewpoint); }); });
 }
 
 } // namespace pcl_bsh::io

@@ -15,9 +15,11 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace pcl_bsh::io {
@@ -83,15 +85,30 @@ Mesh readMesh(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr,
 pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path);
 
 /// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .las (las.h), .xyz, .txt and .csv (named columns)
-/// or .obj (vertices), with the names that readers of the format expect: nx ny nz, and a number per channel of a
-/// colour. rgb has no opacity: its fourth byte is kept by PCD alone. `-` is standard output, as PCD. The file appears
-/// complete or not at all; what `path` held before is replaced only then. PCD and PLY hold a viewpoint. PLY holds no
-/// 64-bit integers, text no field with a count, OBJ x y z, a packed colour and normals. LAS has no place for points
-/// without finite coordinates, and leaves them out.
+/// or .obj (vertices), .pts or .ptx (scan_text.h), with the names that readers of the format expect: nx ny nz, and a
+/// number per channel of a colour. rgb has no opacity: its fourth byte is kept by PCD alone. `-` is standard output, as
+/// PCD. The file appears complete or not at all; what `path` held before is replaced only then. PCD, PLY and PTX hold a
+/// viewpoint. PLY holds no 64-bit integers, text no field with a count, OBJ x y z, a packed colour and normals. LAS and
+/// PTS have no place for points without finite coordinates, and leave them out.
 /// @param las what the file of these points said, if it was LAS: kept in a .las
 /// @throws files::FileError when the extension is unknown, a field cannot be held, or the disk says no
 void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
                 const Viewpoint& viewpoint = no_viewpoint, const LasHeaderPtr& las = nullptr);
+
+/// A value per triangle.
+struct FaceField {
+  std::string name;
+  std::variant<const std::vector<std::uint8_t>*, const std::vector<std::int32_t>*, const std::vector<float>*> values;
+};
+
+/// Writes a mesh as .ply (binary): vertices with all their fields, and triangles with properties beside their corners.
+/// Otherwise as writeCloud(). @pre one value per triangle
+/// @throws files::FileError as writeCloud() does, and for a name of another format
+void writeMesh(const std::filesystem::path& path, const Mesh& mesh, const std::vector<FaceField>& fields = {},
+               const Viewpoint& viewpoint = no_viewpoint);
+
+/// Fails early where writeMesh() would for the path's sake. @throws files::FileError
+void requireWritableMesh(const std::filesystem::path& path);
 
 /// Fails early, before hours of work, where writeCloud() would for the path's sake.
 /// @throws files::FileError

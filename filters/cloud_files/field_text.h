@@ -6,8 +6,11 @@
 #include <pcl_bsh/filters/text_files/parse_number.h>
 #include <pcl_bsh/filters/text_files/text_cursor.h>
 
+#include <array>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
 
 namespace pcl_bsh::io {
@@ -26,6 +29,16 @@ inline void parseNumber(std::string_view word, std::uint8_t datatype, std::uint8
 inline void readNumber(TextCursor& text, std::uint8_t datatype, std::uint8_t* out)
 {
   text.parseWord([&](std::string_view word) { parseNumber(word, datatype, out); });
+}
+
+/// Appends the number of that type that begins at `bytes`, with as few digits as tell it from others of its type.
+inline void appendNumber(std::string& text, std::uint8_t datatype, const char* bytes)
+{
+  withFieldType(datatype, [&](auto value) {
+    std::memcpy(&value, bytes, sizeof value);
+    std::array<char, 32> digits;
+    text.append(digits.begin(), std::to_chars(digits.begin(), digits.end(), value).ptr);
+  });
 }
 
 } // namespace pcl_bsh::io

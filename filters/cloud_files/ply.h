@@ -25,4 +25,9 @@ pcl::PCLPointCloud2 parsePlyHeader(std::string_view file);
 /// @throws FormatError when a field cannot be held
 void writePly(std::ostream& out, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint);
 
+/// The same with an element `face` of triangles, whose fields are properties beside the list `vertex_indices`.
+/// @pre one value per triangle
+void writePlyMesh(std::ostream& out, const Mesh& mesh, const std::vector<FaceField>& fields,
+                  const Viewpoint& viewpoint);
+
 } // namespace pcl_bsh::io

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <ostream>
 #include <string_view>
 
 namespace pcl_bsh::io {
@@ -37,5 +38,18 @@ pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::o
 
 /// Only the fields that parsePtx() makes; looks how many scans there are.
 pcl::PCLPointCloud2 parsePtxHeader(std::string_view file, std::optional<std::size_t> scan = {});
+
+/// A line with the number of points, then a line for each: x y z, intensity, r g b, where the cloud has them; columns
+/// that parsePts() could not name, as it numbers them. Points without finite coordinates are left out.
+/// @throws FormatError when there is a field but those
+void writePts(std::ostream& out, const pcl::PCLPointCloud2& cloud);
+
+/// One scan, or one for each run of points with the same value of a field `scan`. Points that are not finite are "no
+/// return". Of an organised cloud, its columns and rows; else a column for each point.
+/// @param viewpoint the scanner's pose: points are written as it sees them, which rounds their coordinates a few times
+///   in float64. no_viewpoint: as they are
+/// @throws FormatError when there is a field but those of writePts() and `scan`; for a point that PTX takes for no
+///   return
+void writePtx(std::ostream& out, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint);
 
 } // namespace pcl_bsh::io

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/cloud_files/field_text.h>
 #include <pcl_bsh/filters/cloud_files/pcl_names.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
@@ -25,15 +26,6 @@ void appendShare(std::string& text, std::uint8_t byte)
   constexpr int enough = 6; // digits, to tell 255ths apart
   const auto end = std::to_chars(digits.begin(), digits.end(), byte / 255.0, std::chars_format::general, enough).ptr;
   text.append(digits.begin(), end);
-}
-
-void appendNumber(std::string& text, std::uint8_t datatype, const char* bytes)
-{
-  withFieldType(datatype, [&](auto value) {
-    std::memcpy(&value, bytes, sizeof value);
-    std::array<char, 32> digits;
-    text.append(digits.begin(), std::to_chars(digits.begin(), digits.end(), value).ptr);
-  });
 }
 
 void writeRows(std::ostream& out, const pcl::PCLPointCloud2& cloud, const std::vector<TextValue>& values)

@@ -130,6 +130,7 @@ private:
       if (reader.has("file")) cloud.file = existing(reader.at("file"));
       read(reader, "scale", cloud.scale);
       read(reader, "shift", cloud.shift);
+      parseSurface(reader, cloud);
       if (!cloud.shape.empty()) parseShape(reader, cloud);
       parseUncertainty(reader, cloud);
     }
@@ -151,6 +152,18 @@ private:
     if (!cloud.shape.empty())
       reader.at("uncertainty").fail("names a field, which a " + cloud.shape + " does not have", "give a length");
     cloud.uncertainty = {reader.at("uncertainty").text(), sigmas * cloud.scale};
+  }
+
+  static void parseSurface(const JsonReader& reader, CloudSource& cloud)
+  {
+    for (const char* key : {"surface_tolerance", "vertices_only"}) {
+      if (reader.has(key) && !cloud.shape.empty())
+        reader.at(key).fail("is about faces, and a " + cloud.shape + " is points", "leave it out");
+    }
+    if (reader.has("surface_tolerance")) cloud.surface.tolerance = reader.at("surface_tolerance").number();
+    read(reader, "vertices_only", cloud.surface.vertices_only);
+    if (cloud.surface.tolerance && cloud.surface.vertices_only)
+      reader.at("surface_tolerance").fail("is about faces, and 'vertices_only' drops them", "give one of the two");
   }
 
   static void parseShape(const JsonReader& reader, CloudSource& cloud)

@@ -6,6 +6,7 @@
 //   for (std::size_t i = 0; i < file.steps; ++i) report(world.scene().step(file.dt));
 #pragma once
 
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/scene/scene.h>
 
@@ -30,6 +31,7 @@ struct CloudSource {
   double scale = 1.0;                ///< of a file's coordinates, about the origin
   Eigen::Vector3d shift = {0, 0, 0}; ///< afterwards
   Uncertainty uncertainty;           ///< of its points; sigmas of a field are scaled with the cloud
+  SurfaceSettings surface;           ///< of a file with faces
   std::string place;                 ///< in the document
 };
 
@@ -97,9 +99,17 @@ public:
   Scene& scene() { return *scene_; }
 
   /// A cloud's points as they were read, scaled and shifted; of a shape, x y z. float32 coordinates have become float64
-  /// where float32 cannot hold what scale and shift make of them.
+  /// where float32 cannot hold what scale and shift make of them. Of a surface, the balls that cover it: x y z, radius,
+  /// and the number of the triangle.
   const pcl::PCLPointCloud2& cloud(const std::string& name) const { return clouds_.at(name).points; }
-  std::size_t points() const; ///< of all clouds
+  /// What a cloud with faces is; null where it is points.
+  const Obstacle* surface(const std::string& name) const
+  {
+    const std::optional<Obstacle>& found = clouds_.at(name).surface;
+    return found ? &*found : nullptr;
+  }
+  std::size_t points() const;                                            ///< of all clouds; of surfaces, balls
+  const std::vector<std::string>& warnings() const { return warnings_; } ///< of surfaces, a line each
 
   /// Puts the points of waving objects where they are at this time; at first they are where they are at 0.
   void deform(double time);
@@ -107,6 +117,7 @@ public:
 private:
   struct Loaded {
     pcl::PCLPointCloud2 points;
+    std::optional<Obstacle> surface;
     std::shared_ptr<SphereHierarchy> hierarchy;
   };
   struct Waving {
@@ -116,7 +127,10 @@ private:
     std::vector<double> rest, now;
   };
 
+  void load(const CloudSource& source, const SceneFile& file, Loaded& loaded);
+
   std::map<std::string, Loaded> clouds_;
+  std::vector<std::string> warnings_;
   std::vector<std::unique_ptr<Waving>> waving_;
   std::unique_ptr<Scene> scene_;
 };

@@ -113,10 +113,11 @@ void scaleAndShift(pcl::PCLPointCloud2& cloud, const CloudSource& source, const 
   for (std::uint32_t i = 0; i < view.count; ++i) write(cloud, view, i, placed(view.point(i), source));
 }
 
-PointsView uncertainView(const pcl::PCLPointCloud2& cloud, const CloudSource& source, const std::string& file)
+PointsView uncertainView(const PointsView& view, const std::vector<pcl::PCLPointField>& fields,
+                         const CloudSource& source, const std::string& file)
 {
   try {
-    return withUncertainty(viewOf(cloud), cloud.fields, "cloud '" + source.name + "'", source.uncertainty);
+    return withUncertainty(view, fields, "cloud '" + source.name + "'", source.uncertainty);
   }
   catch (const InvalidInput& error) {
     if (error.input() != Input::uncertainty) throw;
@@ -143,6 +144,42 @@ std::vector<double> coordinatesOf(const PointsView& view)
   return xyz;
 }
 
+Obstacle surfaceOf(Mesh mesh, const CloudSource& source, const SceneFile& file)
+{
+  const auto vertices = std::make_shared<const pcl::PCLPointCloud2>(std::move(mesh.vertices));
+  const auto triangles = std::make_shared<const std::vector<Triangle>>(std::move(mesh.triangles));
+  try {
+    return Obstacle(vertices, triangles, source.surface, file.options.clearance);
+  }
+  catch (const InvalidInput& error) {
+    throw JsonError(file.path.string(), source.place, error.wrong(), error.remedy());
+  }
+}
+
+/// x y z, radius, triangle.
+pcl::PCLPointCloud2 ballsOf(const SurfaceCover& cover)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* axis : {"x", "y", "z"}) addField(cloud, axis, pcl::PCLPointField::FLOAT64);
+  addField(cloud, "radius", pcl::PCLPointField::FLOAT32);
+  addField(cloud, "triangle", pcl::PCLPointField::UINT32);
+  allocate(cloud, static_cast<std::uint32_t>(cover.centers.size()));
+  for (std::size_t i = 0; i < cover.centers.size(); ++i) {
+    std::uint8_t* const record = cloud.data.data() + i * cloud.point_step;
+    std::memcpy(record, cover.centers[i].data(), sizeof(Point3));
+    std::memcpy(record + cloud.fields[3].offset, &cover.radii[i], sizeof(float));
+    std::memcpy(record + cloud.fields[4].offset, &cover.triangles[i], sizeof(std::uint32_t));
+  }
+  cloud.is_dense = 1;
+  return cloud;
+}
+
+const std::string& placeOf(const std::string& cloud, const SceneFile& file)
+{
+  return std::find_if(file.clouds.begin(), file.clouds.end(), [&](const auto& source) { return source.name == cloud; })
+      ->place;
+}
+
 } // namespace
 
 void setRules(Scene& scene, const std::vector<RuleEntry>& rules)
@@ -163,14 +200,7 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
   for (const CloudSource& source : file.clouds) {
     if (used.count(source.name) == 0) continue;
     if (reading) reading(source);
-    Loaded& loaded = clouds_[source.name];
-    loaded.points =
-        source.shape.empty() ? readCloud(source.file) : cloudOf(shapePoints(source.shape, source.size, source.spacing));
-    scaleAndShift(loaded.points, source, file.path.string());
-    HierarchyOptions options;
-    options.threads = file.options.threads;
-    loaded.hierarchy =
-        std::make_shared<SphereHierarchy>(uncertainView(loaded.points, source, file.path.string()), options);
+    load(source, file, clouds_[source.name]);
   }
 
   scene_ = std::make_unique<Scene>(file.options);
@@ -185,6 +215,11 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
     const auto id = static_cast<ObjectId>(scene_->size());
     for (const PartEntry& part : entry.parts) {
       std::shared_ptr<SphereHierarchy> hierarchy = clouds_.at(part.cloud).hierarchy;
+      if (entry.wave && clouds_.at(part.cloud).surface) {
+        throw JsonError(file.path.string(), placeOf(part.cloud, file),
+                        "is a surface, and the wave of '" + entry.name + "' moves points",
+                        "give 'vertices_only': true");
+      }
       if (entry.wave) {
         auto waving = std::make_unique<Waving>();
         waving->object = id;
@@ -200,6 +235,31 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
   }
   setRules(*scene_, file.rules);
   deform(0.0);
+}
+
+void SceneWorld::load(const CloudSource& source, const SceneFile& file, Loaded& loaded)
+{
+  Mesh mesh;
+  if (!source.shape.empty())
+    mesh.vertices = cloudOf(shapePoints(source.shape, source.size, source.spacing));
+  else if (source.surface.vertices_only)
+    mesh.vertices = readCloud(source.file);
+  else
+    mesh = readMesh(source.file);
+  scaleAndShift(mesh.vertices, source, file.path.string());
+  HierarchyOptions options;
+  options.threads = file.options.threads;
+  if (mesh.triangles.empty()) {
+    loaded.points = std::move(mesh.vertices);
+    const PointsView view = uncertainView(viewOf(loaded.points), loaded.points.fields, source, file.path.string());
+    loaded.hierarchy = std::make_shared<SphereHierarchy>(view, options);
+    return;
+  }
+  loaded.surface = surfaceOf(std::move(mesh), source, file);
+  for (const std::string& remark : loaded.surface->remarks()) warnings_.push_back(source.file.string() + ": " + remark);
+  loaded.points = ballsOf(*loaded.surface->cover());
+  const PointsView view = uncertainView(loaded.surface->view(), {}, source, file.path.string()); // no field: balls
+  loaded.hierarchy = std::make_shared<SphereHierarchy>(view, options);
 }
 
 std::size_t SceneWorld::points() const

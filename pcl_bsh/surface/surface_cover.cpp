@@ -108,6 +108,8 @@ public:
     progress_(request.progress)
   {
     cover_.tolerance = request.tolerance;
+    cover_.triangle_count = mesh.triangles.size();
+    cover_.triangles_apart = request.triangles_apart;
   }
 
   SurfaceCover operator()()

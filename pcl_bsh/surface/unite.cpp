@@ -21,6 +21,9 @@ constexpr std::size_t kPartners = 8; ///< of a patch, the nearest, are tried
 
 using Cube = std::array<std::int64_t, 3>;
 
+/// In rooms: no patch has more leeway. Beyond what leewayOf() adds, for rounding.
+constexpr double kMostLeeway = 1.00001;
+
 /// How far another centre may be for one ball of radius `room` to hold this, too. From any place, the farthest point of
 /// a set is at least as far as its smallest ball's radius and the place's distance from that ball's centre have it by
 /// Pythagoras; so centres of sets that one ball holds are no farther apart than both leeways together.
@@ -56,8 +59,12 @@ public:
   {
     const Cube middle = cubeOf(patch);
     const double leeway = leewayOf(patch, room_);
+    const double farthest =
+        leeway + kMostLeeway * room_; // most cubes are farther away: what is in them is not looked up
     for (std::int64_t k = 0; k < 27; ++k) {
-      const auto found = entries_.find({middle[0] + k % 3 - 1, middle[1] + k / 3 % 3 - 1, middle[2] + k / 9 - 1});
+      const Cube cube = {middle[0] + k % 3 - 1, middle[1] + k / 3 % 3 - 1, middle[2] + k / 9 - 1};
+      if (squaredDistance(cube, patch.middle) > farthest * farthest) continue;
+      const auto found = entries_.find(cube);
       if (found == entries_.end()) continue;
       for (const Entry& entry : found->second) {
         const double squared = (entry.middle - patch.middle).squaredNorm(), most = leeway + entry.leeway;
@@ -73,6 +80,17 @@ private:
     for (std::size_t k = 0; k < 3; ++k)
       cube[k] = static_cast<std::int64_t>(std::floor(patch.middle[static_cast<Eigen::Index>(k)] / edge_));
     return cube;
+  }
+
+  double squaredDistance(const Cube& cube, const Vector3d& p) const
+  {
+    double squared = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double low = edge_ * static_cast<double>(cube[k]), at = p[static_cast<Eigen::Index>(k)];
+      const double beside = std::max({low - at, at - low - edge_, 0.0});
+      squared += beside * beside;
+    }
+    return squared;
   }
 
   double room_, edge_;
@@ -138,12 +156,28 @@ private:
     return patch;
   }
 
+  /// Whether no ball in the room holds both, told by the corner of one that is farthest from the middle of the other. A
+  /// centre that is t nearer to that corner than the middle is, at most, has by Pythagoras (see leewayOf()) a point of
+  /// the other at least as far as the root of least^2 + t^2, and the corner at d - t: together never below
+  /// (d^2 + least^2) / 2d.
+  bool isTooFar(const Patch& patch, const Patch& from) const
+  {
+    double squared = 0.0;
+    for (const Piece& piece : patch.pieces) {
+      for (std::size_t k = piece.first; k < piece.first + piece.count; ++k)
+        squared = std::max(squared, (corners_[k] - from.middle).squaredNorm());
+    }
+    const double least = from.least * from.least;
+    return squared > least && squared + least > 2.000002 * room_ * std::sqrt(squared);
+  }
+
   /// Takes in the partner that leaves the least room; the partner is then empty.
   bool joinBestOf(std::size_t i)
   {
     Patch best;
     std::size_t partner = i;
     for (const Partner& near : partnersOf(i, patches_[i])) {
+      if (isTooFar(patches_[near.patch], patches_[i]) || isTooFar(patches_[i], patches_[near.patch])) continue;
       Patch both = united(patches_[i], patches_[near.patch].pieces);
       if (both.radius > room_ || (partner != i && both.radius <= best.radius)) continue;
       best = std::move(both);

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace pcl_bsh::io {
 namespace {
@@ -225,6 +227,38 @@ TEST(MeshFile, ReadsRealFiles)
   EXPECT_NEAR(areaOf(cube), 6 * 0.4 * 0.4, 1e-5); // whatever its name says
   EXPECT_EQ(readMesh(shared / "stylus_tool.stl").triangles.size(), 7028u);
   for (const char* name : {"cabinet.STL", "shelf.STL"}) EXPECT_GE(readMesh(shared / name).triangles.size(), 12u);
+}
+
+TEST(Mesh, WrittenWithValuesOfTriangles)
+{
+  const TemporaryFolder folder;
+  Mesh mesh = readMesh(folder.write("a.off", "OFF\n5 2 0\n0 0 0\n0.1 0 0\n0 1 0\n1 1 1\n7 7 7\n4 0 1 3 2\n3 0 1 3\n"));
+  const std::vector<std::uint8_t> collision = {0, 1, 2};
+  const std::vector<float> distance = {0.5F, NAN, -1.0F};
+  const std::vector<std::int32_t> pose = {-1, 70000, 0};
+  const fs::path path = folder / "b.ply";
+  writeMesh(path, mesh, {{"collision", &collision}, {"distance", &distance}, {"first_pose", &pose}},
+            {1, 2, 3, 1, 0, 0, 0});
+  const Mesh same = readMesh(path);
+  EXPECT_EQ(same.triangles, mesh.triangles);
+  EXPECT_EQ(same.vertices.data, mesh.vertices.data);
+  Viewpoint viewpoint;
+  readCloud(path, &viewpoint);
+  EXPECT_EQ(viewpoint[1], 2.0F);
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_THAT(bytes, HasSubstr("element face 3\nproperty list uchar int vertex_indices\nproperty uchar collision\n"
+                               "property float distance\nproperty int first_pose\nelement camera 1\n"));
+  mesh.triangles.clear();
+  writeMesh(path, mesh);
+  EXPECT_TRUE(readMesh(path).triangles.empty());
+  try {
+    requireWritableMesh("b.obj");
+    ADD_FAILURE() << "accepted";
+  }
+  catch (const files::FileError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("write a .ply file"));
+  }
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include <pcl_bsh/filters/cloud_files/scan_text.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -141,6 +142,70 @@ TEST(Ptx, Damage)
       defectOf([] { readPtx("1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n1 2 3\n"); }),
       testing::HasSubstr("line 10"));
   EXPECT_THAT(defectOf([] { readPtx("1\n2\n" + identity + "1 2 3 4\n5 6 7\n"); }), testing::HasSubstr("line 12"));
+}
+
+std::string printedPts(const pcl::PCLPointCloud2& cloud)
+{
+  std::ostringstream out;
+  writePts(out, cloud);
+  return out.str();
+}
+
+std::string printedPtx(const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint = no_viewpoint)
+{
+  std::ostringstream out;
+  writePtx(out, cloud, viewpoint);
+  return out.str();
+}
+
+TEST(Pts, WrittenAsItWasRead)
+{
+  for (const std::string points : {"0.1 2 3\n-4.25 5e+22 6\n", "0.1 2 3 -17\n4 5 6 0.5\n", "0.1 2 3 10 20 255\n",
+                                   "1 2 3 0.5 10 20 30\n", "1 2 3 0.5 10 20 30 40 50.5\n", "1 2 3 0.5 7\n"}) {
+    const std::string file = std::to_string(std::count(points.begin(), points.end(), '\n')) + '\n' + points;
+    EXPECT_EQ(printedPts(parsePts(file)), file);
+  }
+  EXPECT_EQ(printedPts(parsePts("0\n")), "0\n");
+  const pcl::PCLPointCloud2 holes = readPtx("3\n1\n" + identity + "1 1 1 0.25\n0 0 0 0\n2 2 2 0.125\n");
+  EXPECT_EQ(printedPts(holes), "2\n1 1 1 0.25\n2 2 2 0.125\n") << "without points that nobody saw";
+}
+
+TEST(Pts, RefusesWhatReadersWouldTakeForSomethingElse)
+{
+  // Seven values are an intensity and colours; a field of another name has no place.
+  for (const std::string header : {"x,y,z,rings", "x,y,z,intensity,column_5,column_6", "x,y,z,column_4"}) {
+    const pcl::PCLPointCloud2 cloud = parseColumns(header + "\n1,2,3,4" + (header.size() > 15 ? ",5,6\n" : "\n"));
+    EXPECT_THAT(defectOf([&] { printedPts(cloud); }), testing::HasSubstr("has no place in a .pts")) << header;
+  }
+}
+
+TEST(Ptx, WrittenAsItWasRead)
+{
+  for (const std::string& body :
+       std::vector<std::string>{"2\n3\n" + identity + "1 1 0 0.1\n1 2 0 0.2\n0 0 0 0\n2 1 0 0.3\n0 0 0 0\n0 0 0 0.25\n",
+                                "1\n2\n" + identity + "0.1 2 3 0.5 255 0 1\n0 0 0 0 0 0 0\n",
+                                "2\n1\n" + identity + "1 1 1 0.1\n2 2 2 0.2\n" + "1\n1\n" + identity + "3 3 3 0.3\n"}) {
+    EXPECT_EQ(printedPtx(readPtx(body)), body);
+  }
+}
+
+TEST(Ptx, KeepsTheScannersPose)
+{
+  const std::string turned = "9 9 9\n1 0 0\n0 1 0\n0 0 1\n0.8 0.6 0 0\n-0.6 0.8 0 0\n0 0 1 0\n10 20 30 1\n";
+  Viewpoint viewpoint, again;
+  const auto cloud = parsePtx("1\n2\n" + turned + "1 2 3 0.25\n0 0 0 0.5\n", viewpoint);
+  const auto same = parsePtx(printedPtx(cloud, viewpoint), again);
+  for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(again[k], viewpoint[k], 1e-6) << k;
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(placeOf(same, 0)[k], placeOf(cloud, 0)[k], 1e-13) << k;
+  EXPECT_TRUE(std::isnan(valueOf(same, 1, "x")));
+  EXPECT_EQ(same.height, 2U);
+}
+
+TEST(Ptx, RefusesAPointThatReadersWouldNotSee)
+{
+  EXPECT_THAT(defectOf([] { printedPtx(parsePts("1 2 3\n0 0 0\n")); }),
+              testing::HasSubstr("point 1 is at the scanner"));
+  EXPECT_THAT(printedPtx(parsePts("1 2 3 0.1\n0 0 0 0.1\n")), testing::HasSubstr("\n0 0 0 0.1\n"));
 }
 
 TEST(Csv, NamesDecideTheColumns)

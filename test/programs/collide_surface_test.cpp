@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace pcl_bsh {
@@ -166,6 +167,67 @@ TEST_F(CollideSurface, RefusesInOneLine)
   expectRefused(job + "--surface-tolerance 0", 2, "--surface-tolerance: ");
   expectRefused(job + "--surface-tolerance 0.1 --vertices-only", 2, "--vertices-only");
   expectRefused(job + "--obstacle-uncertainty sigma", 1, "crate.off is a surface, which has no field");
+}
+
+/// The property `collision` of each face of a .ply that has no other beside its corners.
+std::vector<int> faceFlags(const std::filesystem::path& path)
+{
+  const std::string bytes = io::contentOf(path);
+  const std::string end = "property uchar collision\nend_header\n";
+  const std::size_t at = bytes.find(end);
+  EXPECT_NE(at, std::string::npos) << bytes.substr(0, 500);
+  if (at == std::string::npos) return {};
+  constexpr std::size_t row = 1 + 3 * 4 + 1;
+  std::vector<int> flags;
+  for (std::size_t i = bytes.size() - 12 * row; i < bytes.size(); i += row) flags.push_back(bytes[i + row - 1]);
+  return flags;
+}
+
+TEST_F(CollideSurface, AnInputWithFacesFlagsItsTriangles)
+{
+  folder.write("point.xyz", "1.5 1 2.1\n9 9 9\n"); // over one of the two triangles of the top
+  const std::string job = "crate.off point.xyz out.ply --clearance 0.1 --surface-tolerance 0.01";
+  const std::string said = collideOutput(job + " --report report.json");
+  EXPECT_THAT(said, HasSubstr("1 of 12 triangles collide; smallest distance"));
+  EXPECT_THAT(said, HasSubstr("between triangle "));
+  const std::vector<int> flags = faceFlags(folder / "out.ply");
+  EXPECT_EQ(std::count(flags.begin(), flags.end(), 1), 1);
+  const Json report = json("report.json");
+  EXPECT_EQ(report["input_surface"]["tolerance"], 0.01);
+  EXPECT_EQ(report["input"]["points"], 12);
+  EXPECT_EQ(report["colliding"], 1);
+  EXPECT_EQ(flags.at(report["closest_pair"][0]), 1);
+  EXPECT_LE(report["distance"], 0.1);
+  EXPECT_GE(report["distance_interval"][1], 0.1);
+
+  collideOutput(job + " --keep colliding");
+  EXPECT_EQ(io::readMesh(folder / "out.ply").triangles.size(), 1u);
+  collideOutput(job + " --keep free");
+  EXPECT_EQ(io::readMesh(folder / "out.ply").triangles.size(), 11u);
+  const std::string before = collideOutput("crate.off point.xyz out.pcd --clearance 0.1 --vertices-only");
+  EXPECT_THAT(before, HasSubstr("0 of 8 points collide"));
+}
+
+TEST_F(CollideSurface, ItsTrianglesAreFlaggedAlongAPath)
+{
+  folder.write("point.xyz", "1.5 1 0\n");
+  const std::string job =
+      "crate.off point.xyz out.ply --clearance 0.1 --from=0,0,4,0,0,0 --to=0,0,2.05,0,0,0 --steps 4";
+  EXPECT_THAT(collideOutput(job), HasSubstr("1 of 12 triangles collide"));
+  EXPECT_THAT(io::contentOf(folder / "out.ply"),
+              HasSubstr("property uchar collision\nproperty float distance\nproperty int first_pose\n"
+                        "property int closest_pose\nend_header\n"));
+}
+
+TEST_F(CollideSurface, AnInputWithFacesRefusesWhatIsAboutPoints)
+{
+  for (const std::string job : {"out.pcd --clearance 0.1", "out.ply --clearance 0.1 --clashes list.json",
+                                "out.ply --distances", "out.ply --clearance 0.1 --uncertainty sigma"}) {
+    const Outcome done = collide("crate.off scan.xyz " + job);
+    EXPECT_EQ(done.exit_code, 1) << job;
+    EXPECT_THAT(done.err, testing::AnyOf(HasSubstr("give --vertices-only"), HasSubstr("write a .ply file"))) << job;
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.ply")) << job;
+  }
 }
 
 } // namespace

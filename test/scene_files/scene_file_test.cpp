@@ -293,6 +293,65 @@ TEST(SceneFile, RefusesShiftsBeyondAllNumbers)
       testing::ThrowsMessage<JsonError>(HasSubstr("clouds.a: scale and shift take point 0 beyond all numbers")));
 }
 
+constexpr auto square = "OFF\n4 1 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n4 0 1 2 3\n";
+
+/// A point that stands over the middle of a square at a height.
+std::string pointOver(const TemporaryFolder& folder, const std::string& height, const std::string& square_options,
+                      const std::string& of_object = "")
+{
+  folder.write("square.off", square);
+  folder.write("point.xyz", "1 1 " + height + "\n");
+  return R"({"clouds": {"square": {"file": ")" + (folder / "square.off").string() + '"' + square_options +
+         R"(}, "point": ")" + (folder / "point.xyz").string() +
+         R"("}, "objects": [{"name": "square", "cloud": "square")" + of_object +
+         R"(}, {"name": "point", "cloud": "point"}], "clearance": 0.1,
+             "effects": {"any": true, "flags": true, "distance": "all", "deform": 1}})";
+}
+
+TEST(SceneFile, FilesWithFacesAreSurfaces)
+{
+  const TemporaryFolder folder;
+  const auto collides = [&](const std::string& height, const std::string& square_options) {
+    SceneWorld world(parseScene(pointOver(folder, height, square_options), "scene.json"));
+    const SceneResult result = world.scene().query();
+    return !result.flags.empty();
+  };
+  EXPECT_TRUE(collides("0.1", ""));
+  EXPECT_FALSE(collides("0.1101", "")) << "beyond clearance and a tenth of it";
+  EXPECT_TRUE(collides("0.1", R"(, "surface_tolerance": 0.001)"));
+  EXPECT_FALSE(collides("0.1011", R"(, "surface_tolerance": 0.001)"));
+  EXPECT_FALSE(collides("0", R"(, "vertices_only": true)"));
+  EXPECT_TRUE(collides("3.1", R"(, "shift": [0, 0, 3])")) << "shifted as the vertices are";
+
+  const SceneWorld world(parseScene(pointOver(folder, "0", ""), "scene.json"));
+  const Obstacle* const surface = world.surface("square");
+  ASSERT_NE(surface, nullptr);
+  EXPECT_EQ(world.surface("point"), nullptr);
+  const pcl::PCLPointCloud2& balls = world.cloud("square");
+  ASSERT_EQ(balls.width, surface->cover()->centers.size());
+  EXPECT_EQ(viewOf(balls).point(5), surface->cover()->centers[5]);
+  EXPECT_EQ(valueOf(balls, 5, "radius"), double{surface->cover()->radii[5]});
+  EXPECT_EQ(valueOf(balls, 5, "triangle"), surface->cover()->triangles[5]);
+}
+
+TEST(SceneFile, RefusesWhatSurfacesCannotDo)
+{
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::string& square_options, const std::string& of_object, const char* words) {
+    EXPECT_THAT([&] { SceneWorld(parseScene(pointOver(folder, "0", square_options, of_object), "scene.json")); },
+                testing::ThrowsMessage<JsonError>(HasSubstr(words)));
+  };
+  const std::string wave = R"(, "wave": {"amplitude": [0, 0, 0.1], "length": 2, "period": 1})";
+  expect("", wave, "clouds.square: is a surface, and the wave of 'square' moves points: give 'vertices_only': true");
+  expect(R"(, "surface_tolerance": 1e-14)", "", "too small for coordinates");
+  expect(R"(, "surface_tolerance": 0.1, "vertices_only": true)", "", "give one of the two");
+  SceneWorld(parseScene(pointOver(folder, "0", R"(, "vertices_only": true)", wave), "scene.json"));
+  std::string ball = whole;
+  ball.replace(ball.find("\"spacing\": 0.2"), 0, "\"vertices_only\": true, ");
+  EXPECT_THAT([&] { parseScene(ball, "scene.json"); },
+              testing::ThrowsMessage<JsonError>(HasSubstr("is about faces, and a sphere is points")));
+}
+
 TEST(SceneFile, WhatTheCallbackThrowsComesOutUnchanged)
 {
   const SceneFile file = parseScene(whole, "scene.json");

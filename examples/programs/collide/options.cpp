@@ -19,7 +19,8 @@ constexpr auto collide_footer =
 An OBSTACLE with faces (.obj .off .ply .stl) is a surface, to a tolerance T: what is free is farther than D from it
 for certain, what collides is within D + T, and a distance d says that the true one is in [d, d + T]. What a closed
 surface encloses is not part of it. Reports name its triangles, from 0; polygons are cut into triangles.
-Reads .pcd .ply .las .obj .off .stl .pts .ptx .csv .xyz .txt, writes all of these but .off .stl .pts .ptx. Files may be
+An INPUT with faces is a surface, too: its triangles are flagged, and OUTPUT is a .ply with a property of its faces.
+Reads .pcd .ply .las .obj .off .stl .pts .ptx .csv .xyz .txt, writes all of these but .off .stl. Files may be
 pipes; - is standard input (PCD, PLY, LAS, OFF or columns), or standard output for OUTPUT (PCD) and --report.
 Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
@@ -150,7 +151,8 @@ void addSurfaceOptions(CLI::App& app, io::SurfaceSettings& surface)
                      "and memory (default: a tenth of D; of 0, the size / 10,000)")
           ->type_name("T")
           ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-  app.add_flag("--vertices-only", surface.vertices_only, "OBSTACLE is its vertices alone, even where it has faces")
+  app.add_flag("--vertices-only", surface.vertices_only,
+               "INPUT and OBSTACLE are their vertices alone, even where they have faces")
       ->excludes(tolerance);
 }
 

@@ -54,6 +54,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   nlohmann::ordered_json json;
   json["input"] = toJson(report.input);
   json["obstacle"] = toJson(report.obstacle);
+  json["input_surface"] = report.input_surface ? nlohmann::ordered_json{{"tolerance", *report.input_surface}} : nullptr;
   json["surface"] = io::surfaceJson(report.surface ? &*report.surface : nullptr, report.besideSurface());
   json["clearance"] = report.clearance;
   json["colliding"] = report.colliding;

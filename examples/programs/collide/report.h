@@ -63,6 +63,7 @@ struct CollisionReport {
   CloudReport input;
   CloudReport obstacle;                ///< of a surface, its vertices
   std::optional<io::Obstacle> surface; ///< the obstacle, where it is one
+  std::optional<double> input_surface; ///< the tolerance, where the input is one: its numbers are those of triangles
   double clearance = 0;
   Accuracy accuracy;
   Uncertainty input_uncertainty, obstacle_uncertainty;

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An input with faces: what is compared are balls that cover its triangles, and what is flagged are the triangles.
+#pragma once
+
+#include "options.h"
+
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
+#include <pcl_bsh/surface/triangle_answers.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <functional>
+
+namespace pcl_bsh::cli {
+
+/// The cover of a mesh, triangles apart, to the tolerance of the settings or the usual one for this clearance.
+/// @param progress as SurfaceRequest has it
+/// @throws files::FileError naming the file where it cannot be covered
+SurfaceCover coverInput(const std::filesystem::path& file, const io::Mesh& mesh, const io::SurfaceSettings& settings,
+                        double clearance, const std::function<bool(double)>& progress);
+
+/// Refuses what is told of points alone: lists of clashes, distances of all, fields of sigmas; and outputs that cannot
+/// hold triangles. @throws std::invalid_argument, files::FileError
+void requireForSurface(const CollideOptions& options);
+
+/// From a result about the balls to one about the triangles: flags, counts, distances, poses. A distance within a ball
+/// is 0. Summaries of poses, which count balls, are left out.
+TrajectoryResult ofTriangles(const SurfaceCover& cover, TrajectoryResult balls);
+
+/// The mesh with what was found as properties of its faces, or the triangles that are kept.
+/// @return how many triangles were written
+std::size_t writeSurface(const CollideOptions& options, io::Mesh mesh, const io::Viewpoint& viewpoint,
+                         const TrajectoryResult& found);
+
+} // namespace pcl_bsh::cli
