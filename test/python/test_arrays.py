@@ -104,6 +104,7 @@ def test_arrays_are_read_only_while_a_hierarchy_lives():
     base = cloud("random", 1)
     view = base[10:]
     first = pcl_bsh.SphereHierarchy(view)
+    assert not view.flags.writeable and not base.flags.writeable
     second = pcl_bsh.SphereHierarchy(base)
     assert not view.flags.writeable and not base.flags.writeable
     with pytest.raises(ValueError):

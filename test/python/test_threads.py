@@ -63,6 +63,7 @@ def test_hierarchies_come_and_go_in_many_threads():
 def test_the_interpreter_goes_on_meanwhile():
     a, b = cloud("random", 1, 20000), cloud("random", 2, 20000)
     A, B = pcl_bsh.SphereHierarchy(a), pcl_bsh.SphereHierarchy(b)
+    pose = turned(1)
     interval = sys.getswitchinterval()
     sys.setswitchinterval(1000)  # a thread gives the interpreter's lock away only by itself
     try:
@@ -71,7 +72,7 @@ def test_the_interpreter_goes_on_meanwhile():
 
             def work():
                 began.set()
-                pcl_bsh.symmetric_distances(A, B, pose_b=turned(1))
+                pcl_bsh.symmetric_distances(A, B, pose_b=pose)
                 done.set()
 
             thread = threading.Thread(target=work)
