@@ -109,7 +109,7 @@ bool isOnePoint(const py::object& queries)
          py::array::ensure(queries) && py::array::ensure(queries).ndim() == 1;
 }
 
-py::tuple tupleOf(Neighbors&& found)
+py::tuple arraysOf(Neighbors&& found)
 {
   return py::make_tuple(arrayFrom(std::move(found.indices)), arrayFrom(std::move(found.squared_distances)));
 }
@@ -122,7 +122,7 @@ py::object radiusSearchOf(const SphereHierarchy& cloud, const py::object& querie
     const Point3 query = point3Of("queries", queries);
     Neighbors found;
     unlocked([&] { return radiusSearch(cloud, query, radius, found, options); });
-    return tupleOf(std::move(found));
+    return arraysOf(std::move(found));
   }
   py::array kept;
   const PointsView view = viewForCall("queries", queries, kept);
@@ -139,7 +139,7 @@ py::object nearestSearchOf(const SphereHierarchy& cloud, const py::object& queri
     const Point3 query = point3Of("queries", queries);
     Neighbors found;
     unlocked([&] { return nearestKSearch(cloud, query, k, found); });
-    return tupleOf(std::move(found));
+    return arraysOf(std::move(found));
   }
   py::array kept;
   const PointsView view = viewForCall("queries", queries, kept);

@@ -116,7 +116,7 @@ py::array poseBetweenOf(const py::object& start, const py::object& end, double f
   return arrayOf(pose);
 }
 
-py::object tupleOf(const std::optional<FirstContact>& contact)
+py::object contactOf(const std::optional<FirstContact>& contact)
 {
   if (!contact) return py::none();
   return py::make_tuple(contact->pose, contact->fraction);
@@ -168,10 +168,10 @@ void bindTrajectory(py::module_& module)
       .def_property_readonly("colliding", [](const TrajectoryRun& run) { return run.result.colliding; })
       .def_property_readonly("undecided", [](const TrajectoryRun& run) { return run.result.undecided; })
       .def_property_readonly(
-          "first_contact", [](const TrajectoryRun& run) { return tupleOf(run.result.first_contact); },
+          "first_contact", [](const TrajectoryRun& run) { return contactOf(run.result.first_contact); },
           "Swept: (pose, fraction of the motion to the next); None when free.")
       .def_property_readonly(
-          "certain_contact", [](const TrajectoryRun& run) { return tupleOf(run.result.certain_contact); },
+          "certain_contact", [](const TrajectoryRun& run) { return contactOf(run.result.certain_contact); },
           "The same of what collides for certain, where points are uncertain.")
       .def_property_readonly("work", [](const TrajectoryRun& run) { return run.result.work; })
       .def("__repr__", [](const TrajectoryRun& run) {
