@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # For find_package(pcl_bsh). Components: libs, dev (headers, CMake package), with the programs tools, with VTK vtk, its
-# library and headers, and with CGAL certify, which is all that falls under the GPL.
+# library and headers, with CGAL certify, which is all that falls under the GPL, and python (pcl_bsh/python).
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pcl_bsh")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Three .deb packages, with VTK and with CGAL one more each, by `cmake --workflow --preset package` or, from any build,
+# Three .deb packages, with VTK, CGAL and Python one more each, by `cmake --workflow --preset package` or, from any build,
 # by `cpack -G DEB`.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The pcl_bsh authors")
@@ -17,6 +17,9 @@ if(PCL_BSH_BUILD_CERTIFY)
 endif()
 if(TARGET pcl_bsh_vtk)
   list(APPEND CPACK_COMPONENTS_ALL vtk)
+endif()
+if(TARGET pcl_bsh_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -49,6 +52,12 @@ set(CPACK_COMPONENT_VTK_DEPENDS libs)
 if(TARGET pcl_bsh_vtk) # for the programs that draw
   set(CPACK_COMPONENT_TOOLS_DEPENDS libs vtk)
 endif()
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-pcl-bsh)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${PCL_BSH_PYTHON_DEPENDS}")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Where point clouds collide, for NumPy's arrays.")
+set(CPACK_COMPONENT_PYTHON_DEPENDS libs)
 
 # What the binaries link to becomes what the packages depend on; our own libraries are found where they were built.
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian packages that are missing, configures and builds. Does no more than is left to do.
 #   bash cmake/setup.sh [PRESET [TARGET...]]     default: release, all targets; into build/PRESET
-# For the targets `demonstration` and `programs` it installs the sections of packages.txt down to theirs, for others all.
+# For the targets `demonstration`, `programs` and `python` it installs the sections of packages.txt that these need, for
+# others all but [python].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -12,15 +13,17 @@ die() { printf 'setup.sh: %s\n' "$*" >&2; exit 1; }
 preset="${1:-release}"
 targets=("${@:2}")
 case "${targets[*]}" in
-  demonstration | programs) last_section="${targets[0]}" ;;
-  *) last_section="" ;;
+  demonstration) sections="core demonstration" ;;
+  programs) sections="core demonstration programs" ;;
+  python) sections="core demonstration python" ;;
+  *) sections="core demonstration programs tests" ;;
 esac
 
-# The packages that are not installed, down to the end of a section; without one, all.
+# The packages of some sections that are not installed.
 missing_packages() {
-  sed -e 's/#.*//' -e 's/[[:space:]]*$//' cmake/packages.txt | awk -v last="$1" '
-    /^\[/ { if (done) exit; done = last != "" && $0 == "[" last "]"; next }
-    NF { print }' | while read -r package; do
+  sed -e 's/#.*//' -e 's/[[:space:]]*$//' cmake/packages.txt | awk -v sections=" $* " '
+    /^\[/ { wanted = index(sections, " " substr($0, 2, length($0) - 2) " "); next }
+    NF && wanted { print }' | while read -r package; do
     dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed ||
       printf '%s\n' "$package"
   done
@@ -66,7 +69,7 @@ download_and_install() { # FOLDER OF DOWNLOADS, PACKAGES TO DOWNLOAD..., --, PAC
 install_all_and_build_core() {
   local core rest others log="$PWD/build/apt.log"
   mapfile -t core < <(missing_packages core)
-  mapfile -t rest < <(missing_packages "$last_section")
+  mapfile -t rest < <(missing_packages $sections)
   mapfile -t others < <(comm -13 <(with_dependencies "${core[@]}") <(with_dependencies "${rest[@]}"))
   mkdir -p build/packages/partial
   say "installing ${#others[@]} packages in the background; what apt-get says of them is in $log"
@@ -81,7 +84,7 @@ install_all_and_build_core() {
 }
 
 if command -v apt-get >/dev/null; then
-  mapfile -t missing < <(missing_packages "$last_section")
+  mapfile -t missing < <(missing_packages $sections)
   if ((${#missing[@]})); then
     if [[ "$(id -u)" != 0 ]] && ! command -v sudo >/dev/null; then
       die "not root and no sudo: as root, run: apt-get install --no-install-recommends ${missing[*]}"

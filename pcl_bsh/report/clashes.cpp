@@ -162,6 +162,7 @@ void compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& e
     if (there_still[j]) continue;
     clashes.push_back(earlier[j]);
     clashes.back().status = ClashStatus::resolved;
+    clashes.back().records.clear(); // of an earlier scan
   }
 }
 

@@ -104,6 +104,7 @@ TEST(Clashes, AgainstEarlierOnes)
   EXPECT_EQ(clashes[3].status, ClashStatus::fresh);
   EXPECT_EQ(clashes[4].status, ClashStatus::resolved);
   EXPECT_EQ(clashes[4].id, gone);
+  EXPECT_TRUE(clashes[4].records.empty()) << "they were of the earlier scan";
 
   std::vector<Clash> later = Scan({{50, 0, 0, 0.1f}}).clashes();
   compareWithEarlier(later, clashes, 1.0);

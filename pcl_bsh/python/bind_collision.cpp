@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/collision/any_collision.h>
+#include <pcl_bsh/collision/closest_pair.h>
+#include <pcl_bsh/collision/colliding_indices.h>
+#include <pcl_bsh/collision/collision_flags.h>
+#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/python/array_input.h>
+#include <pcl_bsh/python/array_output.h>
+#include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/verdict.h>
+
+#include <string>
+
+namespace pcl_bsh::python {
+namespace {
+
+constexpr auto kCollisionFlags =
+    R"(collision_flags(a, b, clearance=0.0, *, pose_a=None, pose_b=None, side="a", accuracy=None, threads=1, spacings_of_b=None)
+--
+
+Which points collide with something of the other cloud?
+
+Parameters
+----------
+a, b : SphereHierarchy
+clearance : float, default 0
+    In the clouds' unit; inclusive.
+pose_a, pose_b : array_like, (4, 4) or (3, 4), optional
+    Rigid transforms from the cloud to the world.
+side : {"a", "b", "both"}
+    Whose points are flagged.
+accuracy : Accuracy or str, default exact
+threads : int, default 1
+    0: all of the machine's.
+spacings_of_b : ndarray of float32, (records of b,), optional
+    How far the samples of b's surface are apart (`patch_spacings`): what is free of points, but not of a patch of this
+    width, is `Verdict.SPARSE`.
+
+Returns
+-------
+ndarray of uint8, (records,)
+    A `Verdict` for each point: 0 free, 1 colliding, 2 undecided (where the accuracy stops early or places are
+    uncertain), 3 sparse. With ``side="both"`` a tuple of both arrays.
+
+Raises
+------
+ValueError
+    A clearance that is negative or not finite, a pose that is not rigid within 1e-6, an accuracy that is none.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> a = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 0], [1, 0, 0]]))
+>>> b = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 0.5]]))
+>>> pcl_bsh.collision_flags(a, b, clearance=0.5)
+array([1, 0], dtype=uint8)
+>>> move = np.eye(4); move[0, 3] = 1
+>>> pcl_bsh.collision_flags(a, b, clearance=0.5, pose_b=move)
+array([0, 1], dtype=uint8)
+)";
+
+constexpr auto kCollidingIndices =
+    R"(colliding_indices(a, b, clearance=0.0, *, pose_a=None, pose_b=None, side="a", accuracy=None, threads=1)
+--
+
+The rows that collide, ascending: for large clouds of which few points do.
+
+Parameters are those of `collision_flags`.
+
+Returns
+-------
+ndarray of int32
+    With ``side="both"`` a tuple of both arrays. Undecided points are not among them: see `collision_flags`.
+
+Raises
+------
+ValueError
+    As `collision_flags`; where points stay undecided, too, for then a list of those that collide would say they are
+    free.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> a = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 0], [1, 0, 0]]))
+>>> pcl_bsh.colliding_indices(a, pcl_bsh.SphereHierarchy(np.array([[1.0, 0, 0.5]])), 0.5)
+array([1], dtype=int32)
+)";
+
+constexpr auto kAnyCollision =
+    R"(any_collision(a, b, clearance=0.0, *, pose_a=None, pose_b=None, accuracy=None, threads=1)
+--
+
+Does any pair of points collide? Ends at the first one.
+
+Parameters are those of `collision_flags`.
+
+Returns
+-------
+AnyCollision
+    True where a condition is asked for and a pair collides. An undecided one is neither, and raises.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> a = pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
+>>> b = pcl_bsh.SphereHierarchy(np.array([[0.0, 3, 4]]))
+>>> bool(pcl_bsh.any_collision(a, b, 5.0)), bool(pcl_bsh.any_collision(a, b, 4.9))
+(True, False)
+>>> pcl_bsh.any_collision(a, b, 5.0).witness
+(0, 0)
+)";
+
+constexpr auto kClosestPair = R"(closest_pair(a, b, *, pose_a=None, pose_b=None, accuracy=None, threads=1)
+--
+
+The smallest distance of two clouds, and the pair of points that realises it.
+
+Parameters are those of `collision_flags`.
+
+Returns
+-------
+ClosestPair
+    `distance` (less the points' radii; infinity when a cloud is empty), rows `a` and `b` (None when there is no pair; of
+    several pairs the smallest), and the `interval` that holds the distance for certain.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> a = pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
+>>> b = pcl_bsh.SphereHierarchy(np.array([[0.0, 30, 40], [0, 3, 4]]))
+>>> pair = pcl_bsh.closest_pair(a, b)
+>>> pair.distance, pair.a, pair.b
+(5.0, 0, 1)
+)";
+
+Side sideOf(const std::string& text)
+{
+  if (text == "a") return Side::a;
+  if (text == "b") return Side::b;
+  if (text == "both") return Side::both;
+  throw InvalidInput(Input::result, "side", "`" + text + "` is none", "give \"a\", \"b\" or \"both\"");
+}
+
+py::object collisionFlagsOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance,
+                            const py::object& pose_a, const py::object& pose_b, const std::string& side,
+                            const py::object& accuracy, unsigned threads, const py::object& spacings_of_b)
+{
+  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  FlagsRequest request;
+  request.clearance = clearance;
+  request.flagged = sideOf(side);
+  request.threads = threads;
+  request.accuracy = accuracyOf(accuracy);
+  py::array_t<float> spacings;
+  if (!spacings_of_b.is_none()) {
+    spacings = floatsOf("spacings_of_b", spacings_of_b, b.view().count);
+    request.spacings_of_b = spacings.data();
+  }
+  FlagsResult found = unlocked([&] { return collisionFlags(placed_a, placed_b, request); });
+  if (request.flagged == Side::a) return arrayFrom(std::move(found.a));
+  if (request.flagged == Side::b) return arrayFrom(std::move(found.b));
+  return py::make_tuple(arrayFrom(std::move(found.a)), arrayFrom(std::move(found.b)));
+}
+
+py::object collidingIndicesOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance,
+                              const py::object& pose_a, const py::object& pose_b, const std::string& side,
+                              const py::object& accuracy, unsigned threads)
+{
+  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  FlagsRequest request;
+  request.clearance = clearance;
+  request.flagged = sideOf(side);
+  request.threads = threads;
+  request.accuracy = accuracyOf(accuracy);
+  CollidingIndices found = unlocked([&] { return collidingIndices(placed_a, placed_b, request); });
+  const std::size_t undecided = found.undecided_a.size() + found.undecided_b.size();
+  if (undecided > 0)
+    throw InvalidInput(Input::accuracy, "colliding_indices", std::to_string(undecided) + " points are undecided",
+                       "ask collision_flags(), whose answer says which");
+  if (request.flagged == Side::a) return arrayFrom(std::move(found.a));
+  if (request.flagged == Side::b) return arrayFrom(std::move(found.b));
+  return py::make_tuple(arrayFrom(std::move(found.a)), arrayFrom(std::move(found.b)));
+}
+
+AnyResult anyCollisionOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance, const py::object& pose_a,
+                         const py::object& pose_b, const py::object& accuracy, unsigned threads)
+{
+  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  AnyRequest request;
+  request.clearance = clearance;
+  request.accuracy = accuracyOf(accuracy);
+  request.threads = threads;
+  return unlocked([&] { return anyCollision(placed_a, placed_b, request); });
+}
+
+bool isColliding(const AnyResult& result)
+{
+  if (result.verdict == Verdict::undecided)
+    throw InvalidInput(Input::result, "any_collision", "undecided is neither colliding nor free",
+                       "look at `verdict`, or ask more exactly");
+  return result.verdict == Verdict::colliding;
+}
+
+DistanceResult closestPairOf(const SphereHierarchy& a, const SphereHierarchy& b, const py::object& pose_a,
+                             const py::object& pose_b, const py::object& accuracy, unsigned threads)
+{
+  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  DistanceRequest request;
+  request.accuracy = accuracyOf(accuracy);
+  request.threads = threads;
+  return unlocked([&] { return closestPair(placed_a, placed_b, request); });
+}
+
+std::string textOf(const AnyResult& result)
+{
+  const char* const names[] = {"FREE", "COLLIDING", "UNDECIDED", "SPARSE"};
+  std::string text = std::string("AnyCollision(") + names[flagOf(result.verdict)];
+  if (result.witness) text += ", witness " + std::string(py::str(tupleOf(result.witness)));
+  return text + ")";
+}
+
+std::string textOf(const DistanceResult& result)
+{
+  std::string text = "ClosestPair(" + std::string(py::str(py::float_(result.distance)));
+  if (result.pair) text += ", rows " + std::string(py::str(tupleOf(result.pair)));
+  return text + ")";
+}
+
+} // namespace
+
+void bindCollision(py::module_& module)
+{
+  const auto none = py::none();
+  py::class_<AnyResult>(module, "AnyCollision", "The answer of `any_collision`.")
+      .def_property_readonly("verdict", [](const AnyResult& result) { return verdictOf(result.verdict); })
+      .def_property_readonly(
+          "witness", [](const AnyResult& result) { return tupleOf(result.witness); },
+          "A colliding pair of rows (a, b), the first that the search met; or None.")
+      .def_property_readonly(
+          "interval", [](const AnyResult& result) { return tupleOf(result.distance); },
+          "(lower, upper): holds the distance of the clouds, as far as the search had to learn it.")
+      .def_readonly("work", &AnyResult::work)
+      .def("__bool__", &isColliding)
+      .def("__repr__", [](const AnyResult& result) { return textOf(result); });
+  py::class_<DistanceResult>(module, "ClosestPair", "The answer of `closest_pair`.")
+      .def_readonly("distance", &DistanceResult::distance)
+      .def_property_readonly("a",
+                             [](const DistanceResult& result) -> py::object {
+                               if (!result.pair) return py::none();
+                               return py::int_(result.pair->a);
+                             })
+      .def_property_readonly("b",
+                             [](const DistanceResult& result) -> py::object {
+                               if (!result.pair) return py::none();
+                               return py::int_(result.pair->b);
+                             })
+      .def_property_readonly(
+          "interval", [](const DistanceResult& result) { return tupleOf(result.interval); },
+          "(lower, upper): holds the distance for certain.")
+      .def_readonly("work", &DistanceResult::work)
+      .def("__repr__", [](const DistanceResult& result) { return textOf(result); });
+
+  module.def("collision_flags", &collisionFlagsOf, kCollisionFlags, py::arg("a"), py::arg("b"),
+             py::arg("clearance") = 0.0, py::kw_only(), py::arg("pose_a") = none, py::arg("pose_b") = none,
+             py::arg("side") = "a", py::arg("accuracy") = none, py::arg("threads") = 1,
+             py::arg("spacings_of_b") = none);
+  module.def("colliding_indices", &collidingIndicesOf, kCollidingIndices, py::arg("a"), py::arg("b"),
+             py::arg("clearance") = 0.0, py::kw_only(), py::arg("pose_a") = none, py::arg("pose_b") = none,
+             py::arg("side") = "a", py::arg("accuracy") = none, py::arg("threads") = 1);
+  module.def("any_collision", &anyCollisionOf, kAnyCollision, py::arg("a"), py::arg("b"), py::arg("clearance") = 0.0,
+             py::kw_only(), py::arg("pose_a") = none, py::arg("pose_b") = none, py::arg("accuracy") = none,
+             py::arg("threads") = 1);
+  module.def("closest_pair", &closestPairOf, kClosestPair, py::arg("a"), py::arg("b"), py::kw_only(),
+             py::arg("pose_a") = none, py::arg("pose_b") = none, py::arg("accuracy") = none, py::arg("threads") = 1);
+}
+
+} // namespace pcl_bsh::python

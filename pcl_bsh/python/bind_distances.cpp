@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/python/array_input.h>
+#include <pcl_bsh/python/array_output.h>
+#include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/callback.h>
+
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <string>
+
+namespace pcl_bsh::python {
+namespace {
+
+constexpr auto kPointDistances =
+    R"(point_distances(a, b, max_distance=None, *, pose_a=None, pose_b=None, accuracy=None, threads=1, progress=None)
+--
+
+How far each point of a is from b, and from which of its points.
+
+Parameters
+----------
+a, b : SphereHierarchy
+max_distance : float, optional
+    Points of a that have no point of b within it get no distance; inclusive. None: no limit.
+pose_a, pose_b : array_like, (4, 4) or (3, 4), optional
+    Rigid transforms from the cloud to the world.
+accuracy : Accuracy or str, default exact
+    A tolerance, or a budget: then `interval` has what is certain of each point.
+threads : int, default 1
+    0: all of the machine's.
+progress : callable, optional
+    Called now and then with the fraction done; by returning False it stops the query, which raises `Cancelled`.
+
+Returns
+-------
+PointDistances
+    Unpacks as ``distance, nearest``. `distance` (records of a,) is float64, NaN where there is none; `nearest` is
+    uint32, of several rows the smallest, `NO_POINT` where there is none.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> a = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 0], [9, 0, 0]]))
+>>> b = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 7], [0, 0, 2]]))
+>>> distance, nearest = pcl_bsh.point_distances(a, b, max_distance=5.0)
+>>> distance
+array([ 2., nan])
+>>> nearest == pcl_bsh.NO_POINT
+array([False,  True])
+)";
+
+constexpr auto kSymmetricDistances =
+    R"(symmetric_distances(a, b, max_distance=None, *, pose_a=None, pose_b=None, accuracy=None, threads=1, progress=None)
+--
+
+Distances in both directions, and the Hausdorff distance.
+
+Parameters are those of `point_distances`.
+
+Returns
+-------
+SymmetricDistances
+    `a` and `b` are `PointDistances`; `hausdorff` is the greatest of all, NaN where a point has no distance.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> a = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 0]]))
+>>> b = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 1], [0, 0, 2]]))
+>>> both = pcl_bsh.symmetric_distances(a, b)
+>>> both.hausdorff, both.hausdorff_pair
+(2.0, (0, 1))
+)";
+
+PointDistancesRequest requestOf(std::optional<double> max_distance, const py::object& accuracy, unsigned threads,
+                                const py::object& progress)
+{
+  PointDistancesRequest request;
+  if (max_distance) request.max_distance = *max_distance;
+  request.accuracy = accuracyOf(accuracy);
+  request.threads = threads;
+  request.progress = progressOf(progress);
+  return request;
+}
+
+PointDistances pointDistancesOf(const SphereHierarchy& a, const SphereHierarchy& b, std::optional<double> max_distance,
+                                const py::object& pose_a, const py::object& pose_b, const py::object& accuracy,
+                                unsigned threads, const py::object& progress)
+{
+  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  const PointDistancesRequest request = requestOf(max_distance, accuracy, threads, progress);
+  return unlocked([&] { return pointDistances(placed_a, placed_b, request); });
+}
+
+SymmetricDistances symmetricDistancesOf(const SphereHierarchy& a, const SphereHierarchy& b,
+                                        std::optional<double> max_distance, const py::object& pose_a,
+                                        const py::object& pose_b, const py::object& accuracy, unsigned threads,
+                                        const py::object& progress)
+{
+  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  const PointDistancesRequest request = requestOf(max_distance, accuracy, threads, progress);
+  return unlocked([&] { return symmetricDistances(placed_a, placed_b, request); });
+}
+
+py::object distanceArray(const py::object& self)
+{
+  return arrayIn(self, self.cast<const PointDistances&>().distance);
+}
+
+py::object nearestArray(const py::object& self)
+{
+  return arrayIn(self, self.cast<const PointDistances&>().nearest);
+}
+
+py::object intervalArray(const py::object& self)
+{
+  static_assert(sizeof(Interval) == 2 * sizeof(double));
+  const auto& interval = self.cast<const PointDistances&>().interval;
+  if (interval.empty()) return py::none();
+  return arrayIn(self, &interval.front().lower, {static_cast<py::ssize_t>(interval.size()), 2});
+}
+
+} // namespace
+
+void bindDistances(py::module_& module)
+{
+  py::class_<PointDistances>(module, "PointDistances", "The answer of `point_distances`; unpacks as distance, nearest.")
+      .def_property_readonly("distance", &distanceArray, "(records,) float64; NaN: none.")
+      .def_property_readonly("nearest", &nearestArray, "(records,) uint32; NO_POINT: none.")
+      .def_property_readonly("interval", &intervalArray,
+                             "(records, 2) float64: holds each distance for certain, where the accuracy is less than "
+                             "exact; else None.")
+      .def_readonly("measured", &PointDistances::measured, "Points that have a distance.")
+      .def_readonly("undecided", &PointDistances::undecided, "Points that were left when the search stopped.")
+      .def_readonly("greatest", &PointDistances::greatest, "The greatest of all distances; NaN where there is none.")
+      .def_property_readonly("greatest_pair", [](const PointDistances& found) { return tupleOf(found.greatest_pair); })
+      .def_readonly("work", &PointDistances::work)
+      .def("__len__", [](const PointDistances&) { return 2; })
+      .def("__iter__",
+           [](const py::object& self) -> py::object {
+             return py::iter(py::make_tuple(distanceArray(self), nearestArray(self)));
+           })
+      .def("__repr__", [](const PointDistances& found) {
+        return "PointDistances(" + std::to_string(found.measured) + " of " + std::to_string(found.distance.size()) +
+               " measured" + (found.undecided ? ", " + std::to_string(found.undecided) + " undecided" : "") + ")";
+      });
+  py::class_<SymmetricDistances>(module, "SymmetricDistances", "The answer of `symmetric_distances`.")
+      .def_readonly("a", &SymmetricDistances::a, "From each point of a to b.")
+      .def_readonly("b", &SymmetricDistances::b, "From each point of b to a.")
+      .def_readonly("hausdorff", &SymmetricDistances::hausdorff)
+      .def_property_readonly("hausdorff_pair",
+                             [](const SymmetricDistances& found) { return tupleOf(found.hausdorff_pair); })
+      .def("__repr__", [](const SymmetricDistances& found) {
+        return "SymmetricDistances(hausdorff=" + std::string(py::str(py::float_(found.hausdorff))) + ")";
+      });
+  const auto define = [&](const char* name, auto function, const char* text) {
+    module.def(name, function, text, py::arg("a"), py::arg("b"), py::arg("max_distance") = py::none(), py::kw_only(),
+               py::arg("pose_a") = py::none(), py::arg("pose_b") = py::none(), py::arg("accuracy") = py::none(),
+               py::arg("threads") = 1, py::arg("progress") = py::none());
+  };
+  define("point_distances", &pointDistancesOf, kPointDistances);
+  define("symmetric_distances", &symmetricDistancesOf, kSymmetricDistances);
+}
+
+} // namespace pcl_bsh::python

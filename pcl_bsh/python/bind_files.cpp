@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/python/array_input.h>
+#include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/record_array.h>
+
+#include <pybind11/stl.h>
+
+#include <string>
+#include <tuple>
+
+namespace pcl_bsh::python {
+namespace {
+
+constexpr auto kRead = R"(read(path)
+--
+
+The points of a file as a structured array, every field in its type.
+
+Parameters
+----------
+path : str or path-like
+    .pcd, .ply, .las, .pts, .ptx, .csv, .xyz, .txt, .obj, .off or .stl.
+
+Returns
+-------
+ndarray, (n,), of an organised cloud (height, width)
+    Fields x, y, z (float32 or float64), and others by PCL's names: normal_x, intensity, rgb (packed) ...
+    `SphereHierarchy` takes it as it is.
+
+Raises
+------
+FileError
+    A ValueError and an OSError: missing, unreadable, malformed, truncated, without x y z.
+
+See Also
+--------
+read_with_header : the viewpoint, and what a LAS file says beside its points, too.
+)";
+
+constexpr auto kReadWithHeader = R"(read_with_header(path)
+--
+
+As `read`, and what the file says beside its points.
+
+Returns
+-------
+records : ndarray
+header : FileHeader
+    `viewpoint` (tx, ty, tz, qw, qx, qy, qz); of LAS files scale, offset, coordinate system and all other records, which
+    `write` keeps.
+)";
+
+constexpr auto kWrite = R"(write(path, records, header=None)
+--
+
+Writes a cloud; the file appears complete or not at all.
+
+Parameters
+----------
+path : str or path-like
+    .pcd, .ply, .las, .csv, .xyz, .txt or .obj.
+records : ndarray
+    Structured with fields x, y, z: (n,), or (height, width) for an organised cloud. Or (n, 3).
+header : FileHeader, optional
+    Of `read_with_header`.
+
+Raises
+------
+FileError
+    Where the disk says no, or the format cannot hold a field.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh, tempfile, os
+>>> cloud = np.zeros(2, dtype=[("x", "f4"), ("y", "f4"), ("z", "f4"), ("hit", "u1")])
+>>> cloud["hit"] = [0, 1]
+>>> with tempfile.TemporaryDirectory() as folder:
+...     pcl_bsh.write(os.path.join(folder, "cloud.ply"), cloud)
+...     pcl_bsh.read(os.path.join(folder, "cloud.ply"))["hit"]
+array([0, 1], dtype=uint8)
+)";
+
+constexpr auto kReadMesh = R"(read_mesh(path)
+--
+
+The vertices and faces of a mesh, for `cover_surface`.
+
+Parameters
+----------
+path : str or path-like
+    .obj, .off, .ply or .stl; polygons are cut into triangles. Of other formats there are no triangles.
+
+Returns
+-------
+vertices : ndarray
+    Structured, as `read`.
+triangles : ndarray of uint32, (t, 3)
+)";
+
+struct FileHeader {
+  io::Viewpoint viewpoint = io::no_viewpoint;
+  io::LasHeaderPtr las;
+};
+
+std::string pathOf(const py::object& path)
+{
+  return py::module_::import("os").attr("fsdecode")(path).cast<std::string>();
+}
+
+py::tuple readWithHeader(const py::object& path)
+{
+  const std::string file = pathOf(path);
+  FileHeader header;
+  pcl::PCLPointCloud2 cloud = unlocked([&] { return io::readCloud(file, &header.viewpoint, &header.las); });
+  return py::make_tuple(recordsFrom(std::move(cloud)), std::move(header));
+}
+
+void writeRecords(const py::object& path, const py::object& records, const FileHeader* header)
+{
+  const std::string file = pathOf(path);
+  const pcl::PCLPointCloud2 cloud = cloudFrom("records", records);
+  const FileHeader none;
+  const FileHeader& kept = header ? *header : none;
+  unlocked([&] { io::writeCloud(file, cloud, kept.viewpoint, kept.las); });
+}
+
+py::tuple readMeshOf(const py::object& path)
+{
+  const std::string file = pathOf(path);
+  io::Mesh mesh = unlocked([&] { return io::readMesh(file); });
+  py::array_t<std::uint32_t> triangles({static_cast<py::ssize_t>(mesh.triangles.size()), py::ssize_t{3}});
+  std::uint32_t* corner = triangles.mutable_data();
+  for (const Triangle& triangle : mesh.triangles) corner = std::copy(triangle.begin(), triangle.end(), corner);
+  return py::make_tuple(recordsFrom(std::move(mesh.vertices)), triangles);
+}
+
+} // namespace
+
+void bindFiles(py::module_& module)
+{
+  const py::tuple bases = py::make_tuple(py::handle(PyExc_OSError), py::handle(PyExc_ValueError));
+  py::register_exception<files::FileError>(module, "FileError", bases).attr("__doc__") =
+      "A file that cannot be read or written, in one line: path, what is wrong, what to do.";
+  py::class_<FileHeader>(module, "FileHeader", "What a file says beside its points.")
+      .def_property_readonly(
+          "viewpoint", [](const FileHeader& header) { return py::tuple(py::cast(header.viewpoint)); },
+          "Where the sensor stood: tx, ty, tz, qw, qx, qy, qz.")
+      .def_property_readonly("is_las", [](const FileHeader& header) { return header.las != nullptr; })
+      .def("__repr__", [](const FileHeader& header) { return header.las ? "FileHeader(las)" : "FileHeader()"; });
+  module.def(
+      "read", [](const py::object& path) { return py::object(readWithHeader(path)[0]); }, kRead, py::arg("path"));
+  module.def("read_with_header", &readWithHeader, kReadWithHeader, py::arg("path"));
+  module.def("read_mesh", &readMeshOf, kReadMesh, py::arg("path"));
+  module.def("write", &writeRecords, kWrite, py::arg("path"), py::arg("records"), py::arg("header") = py::none());
+}
+
+} // namespace pcl_bsh::python

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/python/array_input.h>
+#include <pcl_bsh/python/array_output.h>
+#include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/callback.h>
+
+#include <pybind11/stl.h>
+
+#include <string>
+
+namespace pcl_bsh::python {
+namespace {
+
+constexpr auto kHierarchy = R"(The bounding-sphere hierarchy of one cloud, in the cloud's own frame.
+
+Points are sorted when it is made; spheres are built where queries come. Points that are not finite are left out. One
+hierarchy may be asked by several threads at once.
+
+Parameters
+----------
+xyz : array_like, (n, 3) or records with fields x, y, z
+    float32 or float64 in this machine's byte order; other types are refused. It is read where it is, whatever its
+    strides, and kept alive. Only rows that run backwards or lie over each other are copied.
+radii : array_like of float32, (n,), optional
+    Each point is a ball; finite, >= 0.
+indices : array_like of int, (k,), optional
+    Only these rows are points.
+uncertainty : float, default 0
+    How far each point may truly be from where it was measured, in the cloud's unit. Verdicts then hold wherever the
+    points are.
+uncertainties : array_like of float32, (n,), optional
+    Added to `uncertainty`, for each point.
+copy : bool, default False
+    Keep a copy, and leave the arrays as they are.
+voxel_edge : float, default 0
+    Edge of a voxel; 0: from the density of the points.
+threads : int, default 1
+    For sorting; 0: all of the machine's.
+
+Raises
+------
+ValueError
+    Another shape or type; radii or uncertainties that are negative or not finite; indices outside the array.
+
+Notes
+-----
+The points must not change while the hierarchy lives, so the arrays that it reads, and those they are views of, are
+read-only meanwhile (``flags.writeable`` is False, and True again when the last hierarchy is gone). Other views that were
+made before can still write: do not use them, or give ``copy=True``.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> hall = pcl_bsh.SphereHierarchy(np.random.default_rng(1).random((1000, 3)))
+>>> hall
+SphereHierarchy(1000 points, float64)
+)";
+
+const KeptArrays* arraysOf(const SphereHierarchy& hierarchy)
+{
+  return dynamic_cast<const KeptArrays*>(static_cast<const Owner*>(hierarchy.view().owner.get()));
+}
+
+std::string textOf(const SphereHierarchy& hierarchy)
+{
+  const PointsView& view = hierarchy.view();
+  std::string text = "SphereHierarchy(" + std::to_string(hierarchy.size()) + " points";
+  if (hierarchy.size() != view.size()) text += " of " + std::to_string(view.size());
+  text += view.scalar == Scalar::float32 ? ", float32" : ", float64";
+  if (view.radii) text += ", with radii";
+  if (view.isUncertain()) text += ", uncertain";
+  return text + ")";
+}
+
+py::dict statisticsOf(const SphereHierarchy& hierarchy)
+{
+  const HierarchyStatistics statistics = unlocked([&] { return hierarchy.statistics(); });
+  py::dict named;
+  named["points"] = statistics.points;
+  named["voxels"] = statistics.voxels;
+  named["voxels_built"] = statistics.voxels_built;
+  named["nodes"] = statistics.nodes;
+  named["leaves"] = statistics.leaves;
+  named["depth"] = statistics.depth;
+  named["bytes"] = statistics.bytes;
+  named["voxel_edge"] = statistics.voxel_edge;
+  named["requested_voxel_edge"] = statistics.requested_voxel_edge;
+  named["mean_leaf_points"] = statistics.mean_leaf_points;
+  named["mean_leaf_radius"] = statistics.mean_leaf_radius;
+  return named;
+}
+
+std::shared_ptr<SphereHierarchy> make(const py::object& xyz, const py::object& radii, const py::object& indices,
+                                      double uncertainty, const py::object& uncertainties, bool copy, double voxel_edge,
+                                      unsigned threads)
+{
+  const PointsView view = viewOfPoints("points", {xyz, radii, indices, uncertainty, uncertainties, copy});
+  HierarchyOptions options;
+  options.voxel_edge = voxel_edge;
+  options.threads = threads;
+  return unlocked([&] { return std::make_shared<SphereHierarchy>(view, options); });
+}
+
+} // namespace
+
+void bindHierarchy(py::module_& module)
+{
+  py::class_<SphereHierarchy, std::shared_ptr<SphereHierarchy>>(module, "SphereHierarchy", kHierarchy)
+      .def(py::init(&make), py::arg("xyz"), py::kw_only(), py::arg("radii") = py::none(),
+           py::arg("indices") = py::none(), py::arg("uncertainty") = 0.0, py::arg("uncertainties") = py::none(),
+           py::arg("copy") = false, py::arg("voxel_edge") = 0.0, py::arg("threads") = 1)
+      .def("__len__", &SphereHierarchy::size)
+      .def("__repr__", &textOf)
+      .def_property_readonly(
+          "array",
+          [](const SphereHierarchy& hierarchy) -> py::object {
+            const KeptArrays* kept = arraysOf(hierarchy);
+            if (!kept) return py::none();
+            return kept->points;
+          },
+          "The array that it reads; None for the cover of a surface.")
+      .def_property_readonly(
+          "in_place",
+          [](const SphereHierarchy& hierarchy) {
+            const KeptArrays* kept = arraysOf(hierarchy);
+            return kept && kept->in_place;
+          },
+          "Whether it reads the caller's own memory.")
+      .def_property_readonly(
+          "records", [](const SphereHierarchy& hierarchy) { return hierarchy.view().count; },
+          "Rows of the array: the length of arrays with a value for each point.")
+      .def_property_readonly("coordinate_spacing", &SphereHierarchy::coordinateSpacing,
+                             "The distance of neighbouring float32 numbers at the largest coordinate; 0 of float64.")
+      .def("build_all", &SphereHierarchy::buildAll, py::arg("threads") = 1, py::call_guard<py::gil_scoped_release>(),
+           "Builds every sphere now. threads=0: all of the machine's.")
+      .def(
+          "validate",
+          [](const SphereHierarchy& hierarchy) { return unlocked([&] { return hierarchy.validate(); }).lines; },
+          "Checks in exact arithmetic that every sphere holds its points; a list of defects, empty where there is "
+          "none.")
+      .def("statistics", &statisticsOf,
+           "What it holds, as a dict. Lengths in the cloud's unit; of the voxels built so far.");
+}
+
+} // namespace pcl_bsh::python

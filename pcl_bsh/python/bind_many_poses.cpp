@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/collision/collide_at_poses.h>
+#include <pcl_bsh/python/array_input.h>
+#include <pcl_bsh/python/array_output.h>
+#include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/trajectory/collide_on_motions.h>
+
+#include <algorithm>
+
+namespace pcl_bsh::python {
+namespace {
+
+constexpr auto kAnyAtPoses =
+    R"(any_collision_at_poses(a, b, poses, clearance=0.0, *, pose_a=None, accuracy=None, threads=1, progress=None)
+--
+
+Does any pair of points collide, b at each of many poses? Neighbouring poses share the search.
+
+Parameters
+----------
+a, b : SphereHierarchy
+poses : array_like, (m, 4, 4) or (m, 3, 4)
+    Of b in the world.
+clearance : float, default 0
+    In the clouds' unit; inclusive.
+pose_a : array_like, (4, 4) or (3, 4), optional
+accuracy : Accuracy or str, default exact
+    None that stops early.
+threads : int, default 1
+    0: all of the machine's.
+progress : callable, optional
+    Called now and then with the fraction done; False stops the query, which raises `Cancelled`.
+
+Returns
+-------
+ndarray of uint8, (m,)
+    1 where colliding, 0 where free: a `Verdict`.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> a, b = pcl_bsh.SphereHierarchy(np.zeros((1, 3))), pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
+>>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 1, 2]
+>>> pcl_bsh.any_collision_at_poses(a, b, poses, clearance=1.0)
+array([1, 1, 0], dtype=uint8)
+)";
+
+constexpr auto kClosestAtPoses = R"(closest_pair_at_poses(a, b, poses, *, pose_a=None, threads=1, progress=None)
+--
+
+The smallest distance, b at each of many poses.
+
+Parameters are those of `any_collision_at_poses`.
+
+Returns
+-------
+distances : ndarray of float64, (m,)
+pairs : ndarray of uint32, (m, 2)
+    Rows of a and b; `NO_POINT` when a cloud is empty.
+)";
+
+constexpr auto kFlagsAtPoses =
+    R"(collision_flags_at_poses(a, b, poses, clearance=0.0, *, pose_a=None, accuracy=None, threads=1)
+--
+
+Which points of a collide, b at each of many poses.
+
+Parameters are those of `any_collision_at_poses`.
+
+Returns
+-------
+ndarray of uint8, (m, records of a)
+    A `Verdict` for each pose and point.
+)";
+
+constexpr auto kOnMotions =
+    R"(any_collision_on_motions(scan, model, poses, motions, clearance=0.0, *, tolerance, pose_scan=None, pivot=None, threads=1, progress=None)
+--
+
+Does any pair of points collide on each of many motions: the edges of a planner's roadmap.
+
+Parameters
+----------
+scan, model : SphereHierarchy
+poses : array_like, (m, 4, 4) or (m, 3, 4)
+    Of the model in the world: vertices that motions share.
+motions : array_like of int, (k, 2)
+    From one pose of the list to another.
+clearance : float, default 0
+tolerance : float
+    Free is farther than the clearance at every instant, colliding comes within clearance + tolerance; > 0.
+pose_scan : array_like, (4, 4) or (3, 4), optional
+pivot : array_like, (3,), optional
+    The point of the model that moves in straight lines; default its origin.
+threads : int, default 1
+progress : callable, optional
+
+Returns
+-------
+ndarray of uint8, (k,)
+    1 where colliding, 0 where free.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> wall = pcl_bsh.SphereHierarchy(np.array([[5.0, 0, 0]]))
+>>> drone = pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
+>>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 4, 9]
+>>> pcl_bsh.any_collision_on_motions(wall, drone, poses, [[0, 1], [1, 2]], 0.5, tolerance=0.01)
+array([0, 1], dtype=uint8)
+)";
+
+py::object anyAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, const py::object& poses, double clearance,
+                        const py::object& pose_a, const py::object& accuracy, unsigned threads,
+                        const py::object& progress)
+{
+  const Placed placed(a, poseOf("pose_a", pose_a));
+  const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
+  AnyRequest request;
+  request.clearance = clearance;
+  request.accuracy = accuracyOf(accuracy);
+  request.threads = threads;
+  const auto report = progressOf(progress);
+  AnyAtPoses found = unlocked([&] { return anyCollisionAtPoses(placed, b, list, request, report); });
+  return arrayFrom(std::move(found.verdicts));
+}
+
+py::tuple closestAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, const py::object& poses,
+                           const py::object& pose_a, unsigned threads, const py::object& progress)
+{
+  const Placed placed(a, poseOf("pose_a", pose_a));
+  const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
+  DistanceRequest request;
+  request.threads = threads;
+  const auto report = progressOf(progress);
+  DistancesAtPoses found = unlocked([&] { return closestPairAtPoses(placed, b, list, request, report); });
+  constexpr std::uint32_t kNoPoint = 0xffffffffu;
+  py::array_t<std::uint32_t> pairs({static_cast<py::ssize_t>(list.size()), py::ssize_t{2}});
+  std::fill_n(pairs.mutable_data(), pairs.size(), kNoPoint);
+  std::uint32_t* record = pairs.mutable_data();
+  for (const PointPair& pair : found.pairs) {
+    *record++ = pair.a;
+    *record++ = pair.b;
+  }
+  return py::make_tuple(arrayFrom(std::move(found.distances)), pairs);
+}
+
+py::object flagsAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, const py::object& poses, double clearance,
+                          const py::object& pose_a, const py::object& accuracy, unsigned threads)
+{
+  const Placed placed(a, poseOf("pose_a", pose_a));
+  const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
+  FlagsRequest request;
+  request.clearance = clearance;
+  request.accuracy = accuracyOf(accuracy);
+  request.threads = threads;
+  const std::size_t records = a.view().count;
+  py::array_t<std::uint8_t> flags({static_cast<py::ssize_t>(list.size()), static_cast<py::ssize_t>(records)});
+  std::uint8_t* const rows = flags.mutable_data();
+  unlocked([&] {
+    collisionFlagsAtPoses(placed, b, list, request, [&](std::size_t pose, const FlagsResult& found) {
+      std::copy(found.a.begin(), found.a.end(), rows + pose * records);
+    });
+  });
+  return flags;
+}
+
+py::object onMotionsOf(const SphereHierarchy& scan, const SphereHierarchy& model, const py::object& poses,
+                       const py::object& motions, double clearance, double tolerance, const py::object& pose_scan,
+                       const py::object& pivot, unsigned threads, const py::object& progress)
+{
+  const Placed placed(scan, poseOf("pose_scan", pose_scan));
+  const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
+  const std::vector<std::uint32_t> ends = recordsOf("motions", motions, 2);
+  std::vector<PoseMotion> edges;
+  for (std::size_t i = 0; i + 1 < ends.size(); i += 2) edges.push_back({ends[i], ends[i + 1]});
+  MotionsRequest request;
+  request.clearance = clearance;
+  request.tolerance = tolerance;
+  if (!pivot.is_none()) request.pivot = point3Of("pivot", pivot);
+  request.threads = threads;
+  request.progress = progressOf(progress);
+  AnyOnMotions found = unlocked([&] { return anyCollisionOnMotions(placed, model, list, edges, request); });
+  return arrayFrom(std::move(found.verdicts));
+}
+
+} // namespace
+
+void bindManyPoses(py::module_& module)
+{
+  module.def("any_collision_at_poses", &anyAtPosesOf, kAnyAtPoses, py::arg("a"), py::arg("b"), py::arg("poses"),
+             py::arg("clearance") = 0.0, py::kw_only(), py::arg("pose_a") = py::none(),
+             py::arg("accuracy") = py::none(), py::arg("threads") = 1, py::arg("progress") = py::none());
+  module.def("closest_pair_at_poses", &closestAtPosesOf, kClosestAtPoses, py::arg("a"), py::arg("b"), py::arg("poses"),
+             py::kw_only(), py::arg("pose_a") = py::none(), py::arg("threads") = 1, py::arg("progress") = py::none());
+  module.def("collision_flags_at_poses", &flagsAtPosesOf, kFlagsAtPoses, py::arg("a"), py::arg("b"), py::arg("poses"),
+             py::arg("clearance") = 0.0, py::kw_only(), py::arg("pose_a") = py::none(),
+             py::arg("accuracy") = py::none(), py::arg("threads") = 1);
+  module.def("any_collision_on_motions", &onMotionsOf, kOnMotions, py::arg("scan"), py::arg("model"), py::arg("poses"),
+             py::arg("motions"), py::arg("clearance") = 0.0, py::kw_only(), py::arg("tolerance"),
+             py::arg("pose_scan") = py::none(), py::arg("pivot") = py::none(), py::arg("threads") = 1,
+             py::arg("progress") = py::none());
+}
+
+} // namespace pcl_bsh::python

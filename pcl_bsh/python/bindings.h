@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The parts of the module, each in the file of its name. Those that others' signatures name come first.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace pcl_bsh::python {
+
+void bindWords(pybind11::module_& module);     ///< verdicts, work, accuracy, Cancelled
+void bindHierarchy(pybind11::module_& module); ///< SphereHierarchy
+void bindCollision(pybind11::module_& module); ///< flags, any collision, smallest distance
+void bindContacts(pybind11::module_& module);
+void bindDistances(pybind11::module_& module);
+void bindNeighbors(pybind11::module_& module);
+void bindClusters(pybind11::module_& module); ///< clusters and spacings of one cloud
+void bindTrajectory(pybind11::module_& module);
+void bindClashes(pybind11::module_& module);
+void bindManyPoses(pybind11::module_& module); ///< many poses, many motions
+void bindSurface(pybind11::module_& module);
+void bindScene(pybind11::module_& module);
+void bindFiles(pybind11::module_& module);
+void bindPipeline(pybind11::module_& module);
+
+} // namespace pcl_bsh::python

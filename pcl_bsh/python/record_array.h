@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// PCL's clouds of any fields as NumPy's structured arrays, and back.
+#pragma once
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <pybind11/numpy.h>
+
+#include <string>
+
+namespace pcl_bsh::python {
+
+/// A structured array that owns the cloud's records: (n,), of an organised cloud (height, width). Nothing is copied.
+pybind11::array recordsFrom(pcl::PCLPointCloud2&& cloud);
+
+/// A structured array, or (n, 3) of float32 or float64, as a cloud; copies.
+/// @param name how errors call it
+/// @throws std::invalid_argument for fields that PCL has no type for
+pcl::PCLPointCloud2 cloudFrom(const std::string& name, const pybind11::object& records);
+
+} // namespace pcl_bsh::python

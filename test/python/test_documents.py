@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What users read: docstrings whose examples run, signatures, stubs, the time of a call."""
+
+import ast
+import doctest
+import enum
+import importlib.util
+import inspect
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+import pcl_bsh
+
+PACKAGE = pathlib.Path(pcl_bsh.__file__).parent
+
+
+def documented():
+    for name in pcl_bsh.__all__:
+        value = getattr(pcl_bsh, name)
+        if callable(value):
+            yield name, value
+            if inspect.isclass(value) and value.__module__ == "pcl_bsh":
+                for part, member in vars(value).items():
+                    if not part.startswith("_") and callable(member):
+                        yield f"{name}.{part}", member
+
+
+def test_all_have_docstrings_whose_examples_run():
+    runner = doctest.DocTestRunner(verbose=False, optionflags=doctest.NORMALIZE_WHITESPACE)
+    said = []
+    for name, value in [("pcl_bsh", pcl_bsh), *documented()]:
+        text = value.__doc__ or ""
+        if name.split(".")[0] not in ("Verdict", "Cancelled", "FileError", "PipelineError"):
+            assert text.strip(), name
+        if ">>>" in text:
+            runner.run(doctest.DocTestParser().get_doctest(text, {}, name, None, None), out=said.append)
+    assert runner.tries > 80 and runner.failures == 0, "".join(said)
+
+
+def test_signatures_are_those_of_the_docstrings():
+    for name in pcl_bsh.__all__:
+        value = getattr(pcl_bsh, name)
+        if inspect.isbuiltin(value):
+            assert list(inspect.signature(value).parameters), name
+            with pytest.raises(TypeError):
+                value(no_such_argument=1)
+    for name, wanted in {"collision_flags": 9, "collide_along": 15, "run_pipeline": 5}.items():
+        assert len(inspect.signature(getattr(pcl_bsh, name)).parameters) == wanted
+
+
+def test_a_call_takes_less_than_five_microseconds():
+    a = pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
+    b = pcl_bsh.SphereHierarchy(np.ones((1, 3)))
+    pose = np.eye(4)
+    calls = [
+        lambda: pcl_bsh.any_collision(a, b, 0.1, pose_b=pose),
+        lambda: pcl_bsh.collision_flags(a, b, 0.1, pose_b=pose),
+        lambda: pcl_bsh.closest_pair(a, b, pose_b=pose),
+        lambda: pcl_bsh.any_in_radius(a, (0.0, 0.0, 0.0), 1.0),
+    ]
+    for call in calls:
+        best = np.inf
+        for _ in range(20):
+            begin = time.thread_time()
+            for _ in range(200):
+                call()
+            best = min(best, (time.thread_time() - begin) / 200)
+        print(f"{best * 1e6:.1f} microseconds")
+        if "PCL_BSH_TIMED" in os.environ:  # times are no test where other programs run
+            assert best < 5e-6
+
+
+def test_stubs(tmp_path):
+    use = tmp_path / "use.py"
+    use.write_text(
+        "import numpy as np\n"
+        "import pcl_bsh\n"
+        "hall = pcl_bsh.SphereHierarchy(np.zeros((3, 3)))\n"
+        "hits: int = int(pcl_bsh.collision_flags(hall, hall, 0.1).sum())\n"
+        "near = pcl_bsh.closest_pair(hall, hall).distance + 1.0\n"
+        "d, nearest = pcl_bsh.point_distances(hall, hall)\n"
+        "pcl_bsh.collision_flags(hall, 3)  # error\n"
+        "pcl_bsh.closest_pair(hall, hall).distanc  # error\n"
+        "pcl_bsh.collision_flags(hall, hall, side='c')  # error\n")
+    if importlib.util.find_spec("mypy") is None:
+        pytest.skip("mypy is not found: install mypy")
+    env = dict(os.environ, MYPYPATH=str(PACKAGE.parent))
+    result = subprocess.run([sys.executable, "-m", "mypy", f"--cache-dir={tmp_path}", str(use)], env=env,
+                            capture_output=True, text=True)
+    lines = [line for line in result.stdout.splitlines() if "error:" in line]
+    assert sorted({int(line.split(":")[1]) for line in lines}) == [7, 8, 9], result.stdout + result.stderr
+
+
+def test_stubs_name_what_the_module_has():
+    stub = ast.parse((PACKAGE / "__init__.pyi").read_text())
+    named = {node.name: node for node in stub.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+    constants = {node.target.id for node in stub.body if isinstance(node, ast.AnnAssign)} - {"__version__", "__all__"}
+    assert set(named) | constants == set(pcl_bsh.__all__)
+    for name, node in named.items():
+        value = getattr(pcl_bsh, name)
+        if isinstance(node, ast.FunctionDef):
+            arguments = [argument.arg for argument in node.args.args + node.args.kwonlyargs]
+            assert arguments == list(inspect.signature(value).parameters), name
+            optional = {p.name for p in inspect.signature(value).parameters.values() if p.default is not p.empty}
+            positional = [a.arg for a in node.args.args][len(node.args.args) - len(node.args.defaults):]
+            keywords = [a.arg for a, d in zip(node.args.kwonlyargs, node.args.kw_defaults) if d is not None]
+            if name not in ("collision_flags", "colliding_indices"):  # of two overloads, one needs `side`
+                assert optional == {*positional, *keywords}, name
+        elif not issubclass(value, (BaseException, enum.IntEnum)):
+            members = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
+            assert {m for m in members if not m.startswith("_")} == {m for m in vars(value) if not m.startswith("_")}, name
+            assert all(hasattr(value, member) for member in members), name

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every query of two clouds against brute force."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import pcl_bsh
+from clouds import KINDS, cloud, distances, rigid, turned
+
+PAIRS = list(itertools.product(KINDS, ("random", "lattice", "holes", "empty"), (0, 1)))
+CLEARANCES = {"far": 0.25, "lattice": 1.0, "line": 1.0, "one_place": 0.0}
+
+
+def clouds_of(kind_a, kind_b, pose):
+    a, b = cloud(kind_a, 1), cloud(kind_b, 2, 60)
+    exact = kind_a in ("lattice", "line", "one_place") and kind_b == "lattice"
+    pose_b = rigid(pose) if exact else (np.eye(4) if pose == 0 else turned(pose))
+    if kind_a == "far" and len(b):
+        pose_b[:3, 3] += [500000.0, 5400000.0, 300.0]
+    return a, b, pose_b, CLEARANCES.get(kind_a, 0.15), exact
+
+
+@pytest.mark.parametrize("kind_a, kind_b, pose", PAIRS)
+def test_two_clouds(kind_a, kind_b, pose):
+    a, b, pose_b, clearance, exact = clouds_of(kind_a, kind_b, pose)
+    d = distances(a, b, pose_b=pose_b)
+    near = d <= clearance
+    A, B = pcl_bsh.SphereHierarchy(a), pcl_bsh.SphereHierarchy(b)
+    both = pcl_bsh.collision_flags(A, B, clearance, pose_b=pose_b, side="both")
+    np.testing.assert_array_equal(both[0], near.any(axis=1))
+    np.testing.assert_array_equal(both[1], near.any(axis=0))
+    np.testing.assert_array_equal(pcl_bsh.collision_flags(A, B, clearance, pose_b=pose_b), both[0])
+    np.testing.assert_array_equal(pcl_bsh.collision_flags(A, B, clearance, pose_b=pose_b, side="b", threads=2), both[1])
+    assert both[0].dtype == np.uint8 and both[0].flags.writeable
+    rows = pcl_bsh.colliding_indices(A, B, clearance, pose_b=pose_b, side="both")
+    np.testing.assert_array_equal(rows[0], np.flatnonzero(both[0]))
+    np.testing.assert_array_equal(rows[1], np.flatnonzero(both[1]))
+
+    found = pcl_bsh.any_collision(A, B, clearance, pose_b=pose_b)
+    assert bool(found) == near.any() == (found.verdict == pcl_bsh.Verdict.COLLIDING)
+    if near.any():
+        assert near[found.witness]
+    else:
+        assert found.witness is None and found.verdict is pcl_bsh.Verdict.FREE
+
+    closest = pcl_bsh.closest_pair(A, B, pose_b=pose_b)
+    if np.isfinite(d).any():
+        assert closest.distance == pytest.approx(d.min(), rel=1e-9, abs=1e-9)
+        assert d[closest.a, closest.b] == pytest.approx(d.min(), rel=1e-9, abs=1e-9)
+        assert closest.interval[0] <= closest.distance <= closest.interval[1]
+        if exact:
+            assert (closest.a, closest.b) == np.unravel_index(np.argmin(d), d.shape)
+    else:
+        assert (closest.distance, closest.a, closest.b) == (np.inf, None, None)
+
+    pairs = pcl_bsh.pairs_within(A, B, clearance, pose_b=pose_b)
+    assert sorted(map(tuple, pairs.tolist())) == sorted(map(tuple, np.argwhere(near).tolist()))
+    contacts = pcl_bsh.contacts(A, B, clearance, pose_b=pose_b)
+    assert contacts.complete and len(contacts) == near.sum()
+    np.testing.assert_allclose(contacts.distance, np.sort(d[near]), atol=1e-9)
+    assert set(zip(contacts.a.tolist(), contacts.b.tolist())) == set(map(tuple, np.argwhere(near).tolist()))
+    apart = contacts.distance > 0
+    np.testing.assert_allclose(np.linalg.norm(contacts.normal, axis=1), apart, atol=1e-12)
+
+
+@pytest.mark.parametrize("kind_a, kind_b, pose", PAIRS)
+def test_distances_of_points(kind_a, kind_b, pose):
+    a, b, pose_b, _, exact = clouds_of(kind_a, kind_b, pose)
+    d = distances(a, b, pose_b=pose_b)
+    least = d.min(axis=1, initial=np.inf)
+    for limit in (None, 0.5):
+        A, B = pcl_bsh.SphereHierarchy(a), pcl_bsh.SphereHierarchy(b)
+        found = pcl_bsh.point_distances(A, B, limit, pose_b=pose_b)
+        distance, nearest = found
+        has = np.isfinite(least) & (least <= (np.inf if limit is None else limit))
+        np.testing.assert_array_equal(np.isfinite(distance), has)
+        np.testing.assert_array_equal(nearest == pcl_bsh.NO_POINT, ~has)
+        np.testing.assert_allclose(distance[has], least[has], rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(d[has, nearest[has]], least[has], rtol=1e-9, atol=1e-9)
+        if exact:
+            np.testing.assert_array_equal(nearest[has], d.argmin(axis=1)[has])
+        assert found.measured == has.sum() and found.undecided == 0 and found.interval is None
+        if has.any():
+            assert found.greatest == distance[has].max() == distance[found.greatest_pair[0]]
+        else:
+            assert np.isnan(found.greatest) and found.greatest_pair is None
+    both = pcl_bsh.symmetric_distances(A, B, pose_b=pose_b, threads=2)
+    finite_a, finite_b = np.isfinite(a).all(axis=1), np.isfinite(b).all(axis=1)
+    if finite_a.any() and finite_b.any():
+        d = d[finite_a][:, finite_b]
+        hausdorff = max(d.min(axis=1).max(), d.min(axis=0).max())
+        assert both.hausdorff == pytest.approx(hausdorff, rel=1e-9)
+        assert both.hausdorff == max(both.a.greatest, both.b.greatest)
+        np.testing.assert_allclose(both.b.distance[finite_b], d.min(axis=0), rtol=1e-9, atol=1e-9)
+    elif finite_a.any() or finite_b.any():
+        assert np.isnan(both.hausdorff) and both.hausdorff_pair is None
+
+
+def test_contacts_of_which_only_the_nearest_are_wanted():
+    a, b = cloud("lattice", 1), cloud("lattice", 2)
+    A, B = pcl_bsh.SphereHierarchy(a), pcl_bsh.SphereHierarchy(b)
+    every, few = pcl_bsh.contacts(A, B, 2.0), pcl_bsh.contacts(A, B, 2.0, most=17)
+    assert not few.complete and len(few) == 17
+    np.testing.assert_array_equal(few.distance, every.distance[:17])
+    np.testing.assert_array_equal(few.a, every.a[:17])
+    np.testing.assert_allclose(every.normal[-1] * every.distance[-1], a[every.a[-1]] - b[every.b[-1]], atol=1e-12)
+    with pytest.raises(ValueError, match="more than 17 pairs"):
+        pcl_bsh.pairs_within(A, B, 2.0, most=17)
+
+
+def test_radii():
+    rng = np.random.default_rng(4)
+    a, b = cloud("random", 1), cloud("random", 2)
+    ra, rb = (rng.random(150).astype(np.float32) * np.float32(0.1) for _ in range(2))
+    A, B = pcl_bsh.SphereHierarchy(a, radii=ra), pcl_bsh.SphereHierarchy(b, radii=rb)
+    d = distances(a, b) - ra.astype(float)[:, None] - rb.astype(float)[None, :]
+    np.testing.assert_array_equal(pcl_bsh.collision_flags(A, B, 0.02), (d <= 0.02).any(axis=1))
+    assert pcl_bsh.closest_pair(A, B).distance == pytest.approx(d.min(), abs=1e-12) and d.min() < 0
+    np.testing.assert_allclose(pcl_bsh.point_distances(A, B).distance, d.min(axis=1), atol=1e-12)
+
+
+def test_uncertain_places():
+    rng = np.random.default_rng(5)
+    a, b = cloud("random", 1), cloud("random", 2)
+    own = rng.random(150).astype(np.float32) * np.float32(0.03)
+    A = pcl_bsh.SphereHierarchy(a, uncertainty=0.01, uncertainties=own)
+    B = pcl_bsh.SphereHierarchy(b)
+    reach = 0.01 + own.astype(float)[:, None]
+    d = distances(a, b)
+    certain, possible = (d + reach <= 0.06).any(axis=1), (d - reach <= 0.06).any(axis=1)
+    expected = np.where(certain, pcl_bsh.Verdict.COLLIDING, np.where(possible, pcl_bsh.Verdict.UNDECIDED, 0))
+    np.testing.assert_array_equal(pcl_bsh.collision_flags(A, B, 0.06), expected)
+    assert set(expected) == {0, 1, 2}
+    with pytest.raises(ValueError, match="undecided: ask collision_flags"):
+        pcl_bsh.colliding_indices(A, B, 0.06)
+    lone = pcl_bsh.SphereHierarchy([[0.0, 0, 0]], uncertainty=0.5)
+    maybe = pcl_bsh.any_collision(lone, pcl_bsh.SphereHierarchy([[0.0, 0, 1]]), 0.9)
+    assert maybe.verdict is pcl_bsh.Verdict.UNDECIDED and "UNDECIDED" in repr(maybe)
+    with pytest.raises(ValueError, match="undecided is neither"):
+        bool(maybe)
+
+
+def test_density_guard():
+    x, y = np.meshgrid(np.arange(0, 2, 0.1), np.arange(0, 2, 0.1))
+    wall = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
+    probe = np.array([[1.05, 1.05, 0.06], [1.0, 1.0, 0.02], [1.0, 1.0, 1.0]])
+    W = pcl_bsh.SphereHierarchy(wall)
+    spacings = pcl_bsh.patch_spacings(W, 0.3)
+    assert spacings.dtype == np.float32 and spacings.shape == (400,)
+    assert np.median(spacings) == pytest.approx(0.1 * np.sqrt(2), rel=1e-5)
+    np.testing.assert_array_equal(pcl_bsh.patch_spacings(W), pcl_bsh.patch_spacings(W, 8 * pcl_bsh.spacing_of(W)["median"]))
+    P = pcl_bsh.SphereHierarchy(probe)
+    free, collides, sparse = pcl_bsh.Verdict.FREE, pcl_bsh.Verdict.COLLIDING, pcl_bsh.Verdict.SPARSE
+    assert pcl_bsh.collision_flags(P, W, 0.05).tolist() == [free, collides, free]
+    assert pcl_bsh.collision_flags(P, W, 0.05, spacings_of_b=spacings).tolist() == [sparse, collides, free]
+    with pytest.raises(ValueError, match="spacings_of_b"):
+        pcl_bsh.collision_flags(P, W, 0.05, spacings_of_b=spacings[:3])
+
+
+@pytest.mark.parametrize("text", ["exact", "float", "tolerance=0.05", "level=0", "level=3", "pairs=20", "time=0.001"])
+def test_accuracy_keeps_its_promises(text):
+    a, b = cloud("random", 1, 400), cloud("random", 2, 300)
+    pose_b = turned(3)
+    A, B = pcl_bsh.SphereHierarchy(a), pcl_bsh.SphereHierarchy(b)
+    d = distances(a, b, pose_b=pose_b)
+    accuracy = pcl_bsh.Accuracy(text)
+    assert str(accuracy) == text and accuracy == pcl_bsh.Accuracy(str(accuracy))
+    slack = 0.05 if text.startswith("tolerance") else 1e-6 if text == "float" else 0.0
+    flags = pcl_bsh.collision_flags(A, B, 0.05, pose_b=pose_b, accuracy=accuracy)
+    surely, maybe = (d <= 0.05).any(axis=1), (d <= 0.05 + slack).any(axis=1)
+    assert not flags[~maybe & (flags != 2)].any() and (flags[surely] != 0).all()
+    assert accuracy.stops_early or not (flags == 2).any()
+    pair = pcl_bsh.closest_pair(A, B, pose_b=pose_b, accuracy=text)
+    assert pair.interval[0] <= d.min() * (1 + 1e-12) and pair.interval[1] >= d.min() * (1 - 1e-12)
+    found = pcl_bsh.any_collision(A, B, 0.05, pose_b=pose_b, accuracy=text)
+    assert found.verdict in (pcl_bsh.Verdict.UNDECIDED, pcl_bsh.Verdict.COLLIDING) and surely.any()
+    measured = pcl_bsh.point_distances(A, B, pose_b=pose_b, accuracy=text)
+    if measured.interval is not None:
+        assert measured.interval.shape == (400, 2)
+        least = d.min(axis=1)
+        assert (measured.interval[:, 0] <= least + 1e-9).all() and (measured.interval[:, 1] >= least - 1e-9).all()
+    assert (measured.undecided == 0) or accuracy.stops_early
+
+
+@pytest.mark.parametrize(
+    "call, words",
+    [
+        (lambda A: pcl_bsh.collision_flags(A, A, -1.0), "clearance"),
+        (lambda A: pcl_bsh.collision_flags(A, A, np.nan), "clearance"),
+        (lambda A: pcl_bsh.collision_flags(A, A, 0.1, side="c"), "side: `c` is none"),
+        (lambda A: pcl_bsh.any_collision(A, A, np.inf), "clearance"),
+        (lambda A: pcl_bsh.any_collision(A, A, 0.1, accuracy="fine"), "fine"),
+        (lambda A: pcl_bsh.closest_pair(A, A, accuracy=pcl_bsh.Accuracy.tolerance(-1)), "tolerance|length|-1"),
+        (lambda A: pcl_bsh.contacts(A, A, -1.0), "clearance"),
+        (lambda A: pcl_bsh.point_distances(A, A, -1.0), "max_distance|distance"),
+        (lambda A: pcl_bsh.radius_search(A, [0.0, 0, 0], -1.0), "radius"),
+        (lambda A: pcl_bsh.radius_search(A, np.zeros((2, 2)), 1.0), r"queries: have shape \(2, 2\)"),
+        (lambda A: pcl_bsh.box_search(A, [np.nan, 0, 0], [1, 1, 1]), "NaN|nan|box"),
+        (lambda A: pcl_bsh.euclidean_clusters(A, -1.0), "distance"),
+        (lambda A: pcl_bsh.patch_spacings(A, 0.0), "gap"),
+        (lambda A: pcl_bsh.collide_along(A, A, np.zeros((2, 4, 4)), 0.1), "poses|rigid|last row"),
+        (lambda A: pcl_bsh.collide_along(A, A, np.eye(4), 0.1), r"\(m, 4, 4\)"),
+        (lambda A: pcl_bsh.any_collision_on_motions(A, A, [np.eye(4)], [[0, 1]], 0.1, tolerance=0.1), "motion|pose"),
+        (lambda A: pcl_bsh.any_collision_on_motions(A, A, [np.eye(4)], [[0, 0]], 0.1, tolerance=0.0), "tolerance"),
+        (lambda A: pcl_bsh.cover_surface(np.zeros((3, 3)), [[0, 1, 3]], 0.1), "3"),
+        (lambda A: pcl_bsh.cover_surface(np.zeros((3, 3)), [[0, 1]], 0.1), r"triangles: have shape \(1, 2\)"),
+        (lambda A: pcl_bsh.Accuracy("level=x"), "level=x"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_line(call, words):
+    with pytest.raises(ValueError, match=words) as error:
+        call(pcl_bsh.SphereHierarchy(cloud("random")))
+    assert "\n" not in str(error.value) and ": " in str(error.value)
+
+
+def test_arguments_of_another_type():
+    A = pcl_bsh.SphereHierarchy(cloud("random"))
+    for call in (lambda: pcl_bsh.collision_flags(A, cloud("random"), 0.1), lambda: pcl_bsh.collision_flags(A),
+                 lambda: pcl_bsh.collision_flags(A, A, "0.1"), lambda: pcl_bsh.collision_flags(A, A, 0.1, np.eye(4)),
+                 lambda: pcl_bsh.collision_flags(A, A, threads=-1), lambda: pcl_bsh.collision_flags(None, A),
+                 lambda: pcl_bsh.collision_flags(A, A, accuracy=3), lambda: pcl_bsh.contacts(A, A, most=-1),
+                 lambda: pcl_bsh.collide_along(A, A, [np.eye(4)], swept="far"),
+                 lambda: pcl_bsh.Scene().add("a", [("b", "c")]), lambda: pcl_bsh.Scene().add("a", A, motion=3),
+                 lambda: pcl_bsh.any_collision_on_motions(A, A, [np.eye(4)], [[0, 0]], 0.1)):
+        with pytest.raises(TypeError):
+            call()
+
+
+def test_work_is_counted():
+    A, B = pcl_bsh.SphereHierarchy(cloud("random", 1, 2000)), pcl_bsh.SphereHierarchy(cloud("random", 2, 2000))
+    work = pcl_bsh.closest_pair(A, B).work
+    assert work.node_pairs > 0 and work.voxels_built > 0 and work.updates >= work.volumes_carried
+    assert repr(work).startswith("Work(node_pairs=")
