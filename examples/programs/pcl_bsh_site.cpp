@@ -2,6 +2,7 @@
 // Clouds that are larger than memory: makes a folder of tiles of them, checks it, and writes clouds again.
 #include "cli/program.h"
 #include "cli/step.h"
+#include "site/collide.h"
 #include "site/options.h"
 
 #include <pcl_bsh/files/file_error.h>
@@ -183,6 +184,8 @@ int run(const Options& options)
     return validate(options);
   case SiteCommand::write:
     return write(options);
+  case SiteCommand::collide:
+    return cli::collideSite(options);
   }
   return 1;
 }

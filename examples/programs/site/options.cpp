@@ -2,6 +2,7 @@
 #include "options.h"
 
 #include "cli/command_line.h"
+#include "cli/pose.h"
 
 #include <array>
 #include <string>
@@ -18,7 +19,10 @@ Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-
 Example: two scans become one site, and a file with the points of both
   pcl_bsh_site make north.las south.las --out valley --memory 2G
   pcl_bsh_site validate valley
-  pcl_bsh_site export valley all.pcd)";
+  pcl_bsh_site export valley all.pcd
+Example: where does a machine come within 5 cm of it on its way? On one process, or on four:
+  pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
+  mpirun -n 4 pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json)";
 
 /// For transform(): a number with K, M or G behind it, each `unit` times the last.
 CLI::Validator amount(std::uint64_t unit, std::uint64_t least, std::string remedy)
@@ -49,6 +53,59 @@ void addMemory(CLI::App& app, SiteOptions& options)
       ->type_name("BYTES")
       ->transform(amount(1024, std::uint64_t{64} << 20, "give 64M or more"));
 }
+
+#ifdef PCL_BSH_SITE_QUERIES
+/// The options of `collide` as they are written.
+struct CollideTexts {
+  bool any = false, closest = false, distances = false;
+  std::string pose;
+  CLI::Option *clearance = nullptr, *max_distance = nullptr;
+
+  void addTo(CLI::App& app, SiteOptions& options)
+  {
+    app.add_option("OBSTACLE", options.obstacle, "cloud to collide with, which must fit into memory")
+        ->type_name("")
+        ->required();
+    app.add_option("--report", options.report, "JSON file for the answer; -: standard output")
+        ->type_name("FILE")
+        ->required();
+    clearance = app.add_option("--clearance", options.clearance,
+                               "greatest distance that counts as collision, in the clouds' unit")
+                    ->type_name("D")
+                    ->transform(number<double>(give_length));
+    app.add_option("--pose", pose, "of OBSTACLE in SITE's frame: x,y,z,roll,pitch,yaw or a file")->type_name("POSE");
+    app.add_option("--trajectory", options.trajectory, "poses of OBSTACLE, one a line, instead of --pose")
+        ->type_name("FILE");
+    app.add_flag("--any", any, "only whether any point collides");
+    app.add_flag("--closest", closest, "the smallest distance, and the points that have it");
+    app.add_flag("--distances", distances, "how many points have a distance, and the greatest");
+    max_distance = app.add_option("--max-distance", options.max_distance, "of --distances: greater ones do not count")
+                       ->type_name("M")
+                       ->transform(number<double>("give a length >= 0", [](double d) { return d >= 0; }));
+    app.add_option("--threads", options.threads, "of each process (default: 1); 0: all of the machine's")
+        ->type_name("N")
+        ->transform(number<unsigned>(give_threads));
+  }
+
+  /// @throws UsageError where they do not fit each other
+  void read(SiteOptions& options) const
+  {
+    const bool moves = !options.trajectory.empty();
+    if (any + closest + distances + moves > 1)
+      throw UsageError("--any, --closest, --distances, --trajectory: more than one is given: give one");
+    options.question = any         ? SiteQuestion::any
+                       : closest   ? SiteQuestion::closest
+                       : distances ? SiteQuestion::distances
+                       : moves     ? SiteQuestion::path
+                                   : SiteQuestion::flags;
+    const bool needs_clearance = !closest && !distances;
+    if (needs_clearance && clearance->count() == 0) throw UsageError("--clearance: is missing: give a length");
+    if (max_distance->count() > 0 && !distances) throw UsageError("--max-distance: goes with --distances: add it");
+    if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
+    if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
+  }
+};
+#endif
 
 } // namespace
 
@@ -86,7 +143,18 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
       ->type_name("")
       ->required();
   addMemory(*write, options);
+#ifdef PCL_BSH_SITE_QUERIES
+  CLI::App* const collide =
+      command("collide", "ask where an obstacle comes near the points of a site", SiteCommand::collide);
+  add_site(collide);
+  CollideTexts texts;
+  texts.addTo(*collide, options);
+  addMemory(*collide, options);
+#endif
   if (!understood(app, site_program, argc, argv)) return std::nullopt;
+#ifdef PCL_BSH_SITE_QUERIES
+  if (options.command == SiteCommand::collide) texts.read(options);
+#endif
   return options;
 }
 
