@@ -4,7 +4,8 @@
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pcl_bsh")
-set(libraries pcl_bsh_core pcl_bsh_files pcl_bsh_search pcl_bsh_filters pcl_bsh_documents pcl_bsh_io pcl_bsh_pipeline)
+set(libraries pcl_bsh_core pcl_bsh_files pcl_bsh_search pcl_bsh_filters pcl_bsh_documents pcl_bsh_io pcl_bsh_pipeline
+              pcl_bsh_sites)
 install(
   TARGETS ${libraries}
   EXPORT pcl_bsh

@@ -7,9 +7,12 @@
 #include <pcl_bsh/files/output_folder.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
@@ -40,16 +43,51 @@ void write(const fs::path& path, const std::vector<Eigen::Vector3f>& points)
   step.done(std::to_string(points.size()) + " points");
 }
 
-int makeTunnel(const fs::path& folder, double scale, bool tight)
+/// The names of the scan's files: one PLY, or so many PCD.
+std::vector<fs::path> scanFiles(const fs::path& folder, unsigned pieces)
+{
+  if (pieces == 0) return {folder / "scan.ply"};
+  std::vector<fs::path> names;
+  for (unsigned i = 0; i < pieces; ++i) {
+    char name[32];
+    std::snprintf(name, sizeof name, "scan_%04u.pcd", i);
+    names.push_back(folder / name);
+  }
+  return names;
+}
+
+/// The points in binary PCD files, which pcl_bsh_site reads in batches.
+void writePieces(const std::vector<fs::path>& names, const std::vector<Eigen::Vector3f>& points)
+{
+  cli::Step step("Writing pieces");
+  pcl::PCLPointCloud2 layout;
+  for (const char* axis : {"x", "y", "z"}) io::addField(layout, axis, pcl::PCLPointField::FLOAT32);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::size_t begin = points.size() * i / names.size(), end = points.size() * (i + 1) / names.size();
+    files::replaceFile(names[i], [&](std::ostream& out) {
+      out << io::binaryPcdHeader(layout.fields, static_cast<std::uint32_t>(end - begin));
+      out.write(reinterpret_cast<const char*>(points.data() + begin),
+                static_cast<std::streamsize>((end - begin) * sizeof points[0]));
+    });
+  }
+  step.done(std::to_string(points.size()) + " points");
+}
+
+int makeTunnel(const fs::path& folder, double scale, bool tight, unsigned pieces)
 {
   const tunnel::Size size = tunnel::Size::atScale(scale);
   const files::OutputFolder made(folder);
-  for (const char* name : {"scan.ply", "wagon.ply", "poses.txt"}) files::requireWritable(folder / name);
+  const std::vector<fs::path> scan = scanFiles(folder, pieces);
+  for (const fs::path& name : scan) files::requireWritable(name);
+  for (const char* name : {"wagon.ply", "poses.txt"}) files::requireWritable(folder / name);
 
   cli::Step step("Making tunnel and wagon");
   const tunnel::Passage run = tunnel::makePassage(size, tight ? tunnel::Course::tight : tunnel::Course::winding);
   step.done(std::to_string(run.poses.size()) + " poses");
-  write(folder / "scan.ply", run.scan);
+  if (pieces > 0)
+    writePieces(scan, run.scan);
+  else
+    write(scan.front(), run.scan);
   write(folder / "wagon.ply", run.wagon);
   io::writePoses(folder / "poses.txt", run.poses);
   std::cout << "wrote a tunnel of " << run.scan.size() << " points, a wagon of " << run.wagon.size() << " and "
@@ -65,6 +103,7 @@ int main(int argc, char** argv)
     std::string folder;
     double scale = 0.1;
     bool tight = false;
+    unsigned pieces = 0;
     CLI::App app("Makes a scanned railway tunnel, a wagon, and the wagon's way through.", program);
     app.footer(footer);
     app.add_option("FOLDER", folder, "where the three files go; made if it is not there")->type_name("")->required();
@@ -72,7 +111,12 @@ int main(int argc, char** argv)
         ->type_name("S")
         ->capture_default_str();
     app.add_flag("--tight", tight, "one long bend in which the vault grazes the wagon; points in random order");
+    app.add_option("--pieces", pieces,
+                   "write the scan as N files scan_0000.pcd ..., for pcl_bsh_site (default: scan.ply)")
+        ->type_name("N")
+        ->transform(
+            cli::number<unsigned>("give a number from 1 to 9999", [](unsigned n) { return n > 0 && n < 10000; }));
     if (!cli::understood(app, program, argc, argv)) return 0;
-    return makeTunnel(folder, scale, tight);
+    return makeTunnel(folder, scale, tight, pieces);
   });
 }

@@ -200,10 +200,16 @@ pcl::PCLPointCloud2 promised(const PcdHeader& header)
 
 } // namespace
 
+PcdBody findPcdBody(std::string_view beginning)
+{
+  TextCursor text(beginning, '#');
+  const PcdHeader header = readPcdHeader(text);
+  return {promised(header), header.storage, beginning.size() - text.rest().size()};
+}
+
 pcl::PCLPointCloud2 parsePcdHeader(std::string_view file)
 {
-  TextCursor text(file, '#');
-  return promised(readPcdHeader(text));
+  return findPcdBody(file).header;
 }
 
 pcl::PCLPointCloud2 parsePcd(std::string_view file, Viewpoint& viewpoint)

@@ -14,6 +14,8 @@ namespace {
 
 using Fields = std::vector<pcl::PCLPointField>;
 
+constexpr std::string_view first_line = "# .PCD v0.7 - Point Cloud Data file format";
+
 /// One header line: its key and a value for each of a range.
 template <typename Range, typename Value>
 void writeLine(std::ostream& out, const char* key, const Range& range, Value&& value)
@@ -23,22 +25,22 @@ void writeLine(std::ostream& out, const char* key, const Range& range, Value&& v
   out << '\n';
 }
 
-void writeHeader(std::ostream& out, const pcl::PCLPointCloud2& cloud, const Fields& fields, const Viewpoint& viewpoint,
-                 const char* storage)
+std::string headerText(const Fields& fields, std::uint32_t width, std::uint32_t height, const Viewpoint& viewpoint,
+                       const char* storage)
 {
   using Field = pcl::PCLPointField;
   std::ostringstream header;
   header.imbue(std::locale::classic());
   header.precision(std::numeric_limits<float>::max_digits10);
-  header << "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n";
+  header << first_line << "\nVERSION 0.7\n";
   writeLine(header, "FIELDS", fields, [](const Field& field) { return field.name; });
   writeLine(header, "SIZE", fields, [](const Field& field) { return sizeOf(field.datatype); });
   writeLine(header, "TYPE", fields, [](const Field& field) { return pcl::getFieldType(field.datatype); });
   writeLine(header, "COUNT", fields, [](const Field& field) { return field.count; });
-  header << "WIDTH " << cloud.width << "\nHEIGHT " << cloud.height << '\n';
+  header << "WIDTH " << width << "\nHEIGHT " << height << '\n';
   writeLine(header, "VIEWPOINT", viewpoint, [](float value) { return value; });
-  header << "POINTS " << std::uint64_t{cloud.width} * cloud.height << "\nDATA " << storage << '\n';
-  out << header.str();
+  header << "POINTS " << std::uint64_t{width} * height << "\nDATA " << storage << '\n';
+  return header.str();
 }
 
 /// All values of the first field, of the second, ...: alike values side by side compress better.
@@ -72,6 +74,13 @@ void writeCompressed(std::ostream& out, const std::vector<std::uint8_t>& columns
 
 } // namespace
 
+std::string binaryPcdHeader(const Fields& fields, std::uint32_t points, std::size_t padded)
+{
+  std::string text = headerText(fields, points, 1, no_viewpoint, "binary");
+  if (text.size() < padded) text.insert(first_line.size(), padded - text.size(), ' ');
+  return text;
+}
+
 void writePcd(std::ostream& out, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint)
 {
   const Fields fields = namedFields(cloud);
@@ -79,11 +88,11 @@ void writePcd(std::ostream& out, const pcl::PCLPointCloud2& cloud, const Viewpoi
   for (const pcl::PCLPointField& field : fields) bytes += std::uint64_t{cloud.width} * cloud.height * sizeOf(field);
 
   if (bytes < std::uint64_t{1} << 31) {
-    writeHeader(out, cloud, fields, viewpoint, "binary_compressed");
+    out << headerText(fields, cloud.width, cloud.height, viewpoint, "binary_compressed");
     writeCompressed(out, columnsOf(cloud, fields, bytes));
   }
   else {
-    writeHeader(out, cloud, fields, viewpoint, "binary");
+    out << headerText(fields, cloud.width, cloud.height, viewpoint, "binary");
     forEachPackedBlock(cloud, fields, Lists::bare, [&](std::string_view block) { out << block; });
   }
 }

@@ -3,6 +3,7 @@
 #include <pcl_bsh/files/file_identity.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/files/unfinished.h>
+#include <pcl_bsh/files/write_error.h>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -18,13 +19,6 @@ namespace pcl_bsh::files {
 namespace fs = std::filesystem;
 
 namespace {
-
-[[noreturn]] void failToWrite(const fs::path& path, int error)
-{
-  const std::string reason = error != 0 ? " (" + std::generic_category().message(error) + ")" : "";
-  throw FileError(path == standard_stream ? "standard output" : path, "cannot be written" + reason,
-                  "choose a folder with room that you may write to");
-}
 
 /// Whether the output is written to directly, because there is no file to replace.
 bool isDirect(const fs::path& path)

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clouds that are larger than memory: makes a folder of tiles of them, checks it, and writes clouds again.
+#include "cli/program.h"
+#include "cli/step.h"
+#include "site/collide.h"
+#include "site/options.h"
+
+#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/files/output_folder.h>
+#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/filters/text_files/small_letters.h>
+#include <pcl_bsh/site/check_site.h>
+#include <pcl_bsh/site/export_site.h>
+#include <pcl_bsh/site/make_site.h>
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <optional>
+#include <set>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pcl_bsh;
+using cli::SiteCommand;
+using Options = cli::SiteOptions;
+
+double shareOf(std::uint64_t done, std::uint64_t all)
+{
+  return all == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(all);
+}
+
+std::string rated(std::uint64_t points, double seconds)
+{
+  const double millions = static_cast<double>(points) / std::max(seconds, 1e-3) / 1e6;
+  return std::to_string(points) + " points, " + std::to_string(static_cast<long>(millions * 10) / 10.0).substr(0, 5) +
+         " million a second";
+}
+
+/// Shows each step of a making as one of the program's.
+class MakeSteps {
+public:
+  bool operator()(sites::MakeStep step, std::uint64_t done, std::uint64_t all)
+  {
+    static constexpr std::array names = {"Counting points", "Dealing points to tiles", "Measuring tiles"};
+    if (!shown_ || step != step_) {
+      shown_.emplace(names[static_cast<std::size_t>(step)]);
+      step_ = step;
+      begin_ = std::chrono::steady_clock::now();
+    }
+    shown_->share(shareOf(done, all));
+    if (done == all) {
+      const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
+      shown_->done(rated(all, seconds.count()));
+    }
+    return true;
+  }
+
+private:
+  std::optional<cli::Step> shown_;
+  sites::MakeStep step_ = sites::MakeStep::count;
+  std::chrono::steady_clock::time_point begin_;
+};
+
+int make(const Options& options)
+{
+  MakeSteps steps;
+  sites::MakeOptions wanted;
+  wanted.memory = options.memory;
+  wanted.tile_points = options.tile_points;
+  wanted.progress = [&](sites::MakeStep step, std::uint64_t done, std::uint64_t all) { return steps(step, done, all); };
+  const sites::Site site = sites::makeSite(options.clouds, options.site, wanted);
+  std::cout << "wrote a site of " << site.points << " points in " << site.tiles.size() << " tiles to "
+            << options.site.string() << '\n';
+  return 0;
+}
+
+std::string texted(const Point3& point)
+{
+  std::string text;
+  for (const double number : point) text += (text.empty() ? "" : " ") + std::to_string(number);
+  return text;
+}
+
+int info(const Options& options)
+{
+  const sites::Site site = sites::readSite(options.site);
+  std::uint64_t most = 0, least = site.points;
+  double finest = 0.0, coarsest = 0.0;
+  for (const sites::Tile& tile : site.tiles) {
+    most = std::max(most, tile.points);
+    least = std::min(least, tile.points);
+    if (tile.spacing > 0) {
+      finest = finest > 0 ? std::min(finest, tile.spacing) : tile.spacing;
+      coarsest = std::max(coarsest, tile.spacing);
+    }
+  }
+  std::cout << "points:  " << site.points << '\n'
+            << "tiles:   " << site.tiles.size() << ", of " << least << " to " << most << " points\n"
+            << "spacing: " << finest << " to " << coarsest << " (medians of tiles)\n";
+  if (site.bounds) std::cout << "bounds:  " << texted(site.bounds->low) << " to " << texted(site.bounds->high) << '\n';
+  std::cout << "fields: ";
+  for (const auto& field : site.fields) std::cout << ' ' << field.name;
+  std::cout << "\nsources:\n";
+  for (const sites::Source& source : site.sources) std::cout << "  " << source.file << ": " << source.points << '\n';
+  return 0;
+}
+
+int validate(const Options& options)
+{
+  const sites::Site site = sites::readSite(options.site);
+  cli::Step step("Checking tiles");
+  sites::checkSite(site, [&](std::uint64_t done, std::uint64_t all) {
+    step.share(shareOf(done, all));
+    return true;
+  });
+  step.done(std::to_string(site.tiles.size()) + " tiles");
+  std::cout << "sound: each of " << site.points << " points is there once, in its tile\n";
+  return 0;
+}
+
+/// A file for each source, named as it: NAME.pcd, and with its number where several have one name.
+std::vector<fs::path> filesOfSources(const sites::Site& site, const fs::path& folder)
+{
+  std::vector<fs::path> names;
+  std::set<std::string> used;
+  for (std::size_t i = 0; i < site.sources.size(); ++i) {
+    std::string name = fs::path(site.sources[i].file).stem().string();
+    if (name.empty()) name = "source";
+    if (!used.insert(io::inSmallLetters(name)).second) {
+      name += "_" + std::to_string(i);
+      used.insert(io::inSmallLetters(name));
+    }
+    names.push_back(folder / (name + ".pcd"));
+  }
+  return names;
+}
+
+void requireNew(const fs::path& path)
+{
+  std::error_code error;
+  if (fs::exists(path, error)) throw files::FileError(path, "is there already", "name a new one");
+}
+
+int write(const Options& options)
+{
+  const sites::Site site = sites::readSite(options.site);
+  const bool one_cloud = io::extensionOf(options.out) == ".pcd";
+  std::optional<files::OutputFolder> folder;
+  std::vector<fs::path> names = {options.out};
+  if (!one_cloud) {
+    folder.emplace(options.out);
+    names = filesOfSources(site, options.out);
+  }
+  for (const fs::path& name : names) requireNew(name);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    cli::Step step("Writing " + names[i].string());
+    sites::ExportOptions wanted;
+    wanted.memory = options.memory;
+    wanted.progress = [&](std::uint64_t done, std::uint64_t all) {
+      step.share(shareOf(done, all));
+      return true;
+    };
+    if (one_cloud)
+      sites::exportCloud(site, names[i], wanted);
+    else
+      sites::exportSource(site, i, names[i], wanted);
+    step.done(std::to_string(one_cloud ? site.points : site.sources[i].points) + " points");
+    std::cout << "wrote " << names[i].string() << '\n';
+  }
+  return 0;
+}
+
+int run(const Options& options)
+{
+  switch (options.command) {
+  case SiteCommand::make:
+    return make(options);
+  case SiteCommand::info:
+    return info(options);
+  case SiteCommand::validate:
+    return validate(options);
+  case SiteCommand::write:
+    return write(options);
+  case SiteCommand::collide:
+    return cli::collideSite(options);
+  }
+  return 1;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(cli::site_program, [&] {
+    const std::optional<Options> options = cli::parseSiteOptions(argc, argv);
+    return options ? run(*options) : 0;
+  });
+}

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line of pcl_bsh_site.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+inline constexpr auto site_program = "pcl_bsh_site";
+
+enum class SiteCommand : std::uint8_t { make, info, validate, write, collide };
+
+/// What `collide` asks.
+enum class SiteQuestion : std::uint8_t { any, flags, closest, distances, path };
+
+struct SiteOptions {
+  SiteCommand command = SiteCommand::info;
+  std::vector<std::filesystem::path> clouds; ///< to make a site of
+  std::filesystem::path site;
+  std::filesystem::path out; ///< of `write`: a .pcd file, or a folder for the sources
+  std::uint64_t memory = std::uint64_t{2} << 30;
+  std::uint64_t tile_points = 4'000'000;
+
+  // of `collide`
+  SiteQuestion question = SiteQuestion::flags;
+  std::filesystem::path obstacle, trajectory, report;
+  double clearance = 0.0;
+  double max_distance = std::numeric_limits<double>::infinity();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  unsigned threads = 1;
+  std::vector<std::string> warnings;
+};
+
+/// The options, checked; none when only help was asked for. @throws UsageError
+std::optional<SiteOptions> parseSiteOptions(int argc, char** argv);
+
+} // namespace pcl_bsh::cli

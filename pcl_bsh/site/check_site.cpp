@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/check_site.h>
+#include <pcl_bsh/site/records.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh::sites {
+
+namespace {
+
+class Checker {
+public:
+  explicit Checker(const Site& site) : site_(site)
+  {
+    for (const Source& source : site.sources) seen_.emplace_back(source.points, false);
+  }
+
+  void check(const Tile& tile)
+  {
+    tile_ = &tile;
+    const pcl::PCLPointCloud2 cloud = readTile(site_, tile);
+    checkBounds(cloud);
+    checkRecords(cloud);
+  }
+
+  /// Of the site, as the union of what its tiles have.
+  void checkAll() const
+  {
+    const auto same = [](const std::optional<Bounds>& a, const std::optional<Bounds>& b) {
+      return a.has_value() == b.has_value() && (!a || (a->low == b->low && a->high == b->high));
+    };
+    if (!same(all_, site_.bounds))
+      throw files::FileError(site_.folder / site_file_name, "its bounds are not those of its tiles",
+                             "make the site again");
+  }
+
+private:
+  [[noreturn]] void fail(const std::string& wrong) const
+  {
+    throw files::FileError(site_.folder / tile_->file, wrong, "make the site again");
+  }
+
+  static std::string named(const std::pair<std::uint32_t, std::uint32_t>& name)
+  {
+    return "has record " + std::to_string(name.second) + " of source " + std::to_string(name.first);
+  }
+
+  void checkBounds(const pcl::PCLPointCloud2& cloud)
+  {
+    const PointsView view = viewOf(cloud);
+    std::optional<Bounds> bounds;
+    for (std::uint32_t i = 0; i < view.count; ++i) {
+      const Point3 point = view.point(i);
+      if (!isFinite(point)) continue;
+      extend(bounds, point);
+      extend(all_, point);
+    }
+    if (bounds.has_value() != tile_->bounds.has_value() ||
+        (bounds && (bounds->low != tile_->bounds->low || bounds->high != tile_->bounds->high)))
+      fail("its points have other bounds than site.json says");
+  }
+
+  void checkRecords(const pcl::PCLPointCloud2& cloud)
+  {
+    const std::size_t source_at = offsetOf(cloud, source_field_name), record_at = offsetOf(cloud, record_field_name);
+    std::pair<std::uint32_t, std::uint32_t> last;
+    for (std::size_t i = 0; i < cloud.width; ++i) {
+      const std::uint8_t* const bytes = cloud.data.data() + i * cloud.point_step;
+      const std::pair<std::uint32_t, std::uint32_t> name = {numberAt(bytes + source_at), numberAt(bytes + record_at)};
+      const auto [source, record] = name;
+      if (source >= seen_.size() || record >= seen_[source].size()) fail(named(name) + ", which there is not");
+      if (seen_[source][record]) fail(named(name) + ", which is there twice");
+      if (i > 0 && name < last) fail("its points are not in the order of their sources and records");
+      seen_[source][record] = true;
+      last = name;
+    }
+  }
+
+  const Site& site_;
+  const Tile* tile_ = nullptr;
+  std::vector<std::vector<bool>> seen_;
+  std::optional<Bounds> all_;
+};
+
+} // namespace
+
+void checkSite(const Site& site, const std::function<bool(std::uint64_t, std::uint64_t)>& progress)
+{
+  Checker checker(site);
+  std::uint64_t done = 0;
+  for (const Tile& tile : site.tiles) {
+    checker.check(tile);
+    if (progress && !progress(done += tile.points, site.points)) throw Cancelled();
+  }
+  checker.checkAll();
+}
+
+} // namespace pcl_bsh::sites

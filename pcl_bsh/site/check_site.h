@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Is a site whole: each point in its tile, each record of each source there once?
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/site/site.h>
+
+#include <cstdint>
+#include <functional>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh::sites {
+
+/// Reads all tiles. Holds one of them, and a bit for each point of the site.
+/// @param progress called after each tile with the points done and all points; false: stop. May be null
+/// @throws files::FileError naming the first tile that is not what site.json says: fields, number of points, checksum,
+///   a point outside the bounds, bounds that are too large, records not in order, a record that is there twice or that
+///   no source has; Cancelled
+void checkSite(const Site& site, const std::function<bool(std::uint64_t, std::uint64_t)>& progress = nullptr);
+
+} // namespace pcl_bsh::sites
+PCL_BSH_EXPORT_END

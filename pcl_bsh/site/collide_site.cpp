@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/collision/any_collision.h>
+#include <pcl_bsh/collision/closest_pair.h>
+#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/needed_tiles.h>
+#include <pcl_bsh/site/records.h>
+#include <pcl_bsh/site/tile_visitor.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_bsh::sites {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+HierarchyOptions optionsOf(const SiteRequest& request)
+{
+  HierarchyOptions options;
+  options.threads = request.threads;
+  return options;
+}
+
+/// The tiles of which a ball is flagged, in their order.
+std::vector<std::uint32_t> tilesOf(const TileBalls& balls, const std::vector<std::uint8_t>& flags)
+{
+  std::vector<std::uint32_t> tiles;
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    if (flags[i] != 0 && (tiles.empty() || tiles.back() != balls.tile(i))) tiles.push_back(balls.tile(i));
+  return tiles;
+}
+
+/// Tiles that may have a point within the distance of b.
+std::vector<std::uint32_t> tilesWithin(const Site& site, const Placed& b, double distance, const SiteRequest& request)
+{
+  const TileBalls balls(site);
+  const SphereHierarchy hierarchy(balls.view(), optionsOf(request));
+  FlagsRequest flags;
+  flags.clearance = distance;
+  flags.threads = request.threads;
+  return tilesOf(balls, pcl_bsh::collisionFlags({hierarchy}, b, flags).a);
+}
+
+/// All tiles with points, those first that may be nearest to b, each with a lower bound of its distance.
+std::vector<std::pair<double, std::uint32_t>> tilesByDistance(const Site& site, const Placed& b,
+                                                              const SiteRequest& request)
+{
+  const TileBalls balls(site);
+  const SphereHierarchy hierarchy(balls.view(), optionsOf(request));
+  PointDistancesRequest wanted;
+  wanted.threads = request.threads;
+  const std::vector<double> distance = pcl_bsh::pointDistances({hierarchy}, b, wanted).distance;
+  std::vector<std::pair<double, std::uint32_t>> tiles;
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    if (std::isnan(distance[i])) continue; // b has no points
+    if (tiles.empty() || tiles.back().second != balls.tile(i)) tiles.emplace_back(infinity, balls.tile(i));
+    // Rounded to the nearest double; the one below is less than the distance.
+    tiles.back().first = std::min(tiles.back().first, std::nextafter(distance[i], -infinity));
+  }
+  std::sort(tiles.begin(), tiles.end());
+  return tiles;
+}
+
+/// Asks one question about tiles.
+class Inquiry {
+public:
+  Inquiry(const Site& site, const SiteRequest& request) : site_(site), request_(request), visitor_(site, request.memory)
+  {
+    found_.tiles = site.tiles.size();
+  }
+
+  /// Calls ask(tile, cloud, its hierarchy).
+  template <typename Ask>
+  TilesRead visit(const std::vector<std::uint32_t>& tiles, const Ask& ask,
+                  const std::function<bool(std::size_t)>& go_on = nullptr)
+  {
+    found_.needed = tiles.size();
+    const auto use = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
+      ask(tile, cloud, SphereHierarchy(viewOf(cloud), optionsOf(request_)));
+      if (request_.progress && !request_.progress(visitor_.read())) throw Cancelled();
+    };
+    visitor_.visit(tiles, use, go_on);
+    found_.read = sumOfAllRanks(visitor_.read());
+    return found_;
+  }
+
+private:
+  const Site& site_;
+  const SiteRequest& request_;
+  TileVisitor visitor_;
+  TilesRead found_;
+};
+
+/// A point of the site that may be nearest.
+struct Candidate {
+  Point3 place;
+  SitePoint point;
+  double distance;
+};
+
+/// Of all ranks. Numbers of 32 bits are exact as doubles.
+std::vector<Candidate> gathered(const std::vector<Candidate>& own)
+{
+  std::vector<double> numbers;
+  for (const Candidate& c : own) {
+    numbers.insert(numbers.end(), {c.place[0], c.place[1], c.place[2], static_cast<double>(c.point.source),
+                                   static_cast<double>(c.point.record), c.distance});
+  }
+  const std::vector<double> all = gatheredFromAllRanks(numbers);
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < all.size(); i += 6) {
+    candidates.push_back({{all[i], all[i + 1], all[i + 2]},
+                          {static_cast<std::uint32_t>(all[i + 3]), static_cast<std::uint32_t>(all[i + 4])},
+                          all[i + 5]});
+  }
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate& c, const Candidate& d) { return c.point < d.point; });
+  return candidates;
+}
+
+} // namespace
+
+SiteAny anyCollision(const Site& site, const Placed& b, const SiteRequest& request)
+{
+  SiteAny result;
+  AnyRequest wanted;
+  wanted.clearance = request.clearance;
+  wanted.threads = request.threads;
+  bool collides = false;
+  Inquiry inquiry(site, request);
+  const auto ask = [&](const Tile&, const pcl::PCLPointCloud2&, const SphereHierarchy& hierarchy) {
+    collides = pcl_bsh::anyCollision({hierarchy}, b, wanted).verdict == Verdict::colliding;
+  };
+  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request), ask,
+                               [&](std::size_t) { return !(collides = sumOfAllRanks(collides ? 1 : 0) > 0); });
+  if (collides) result.verdict = Verdict::colliding;
+  return result;
+}
+
+SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const SiteRequest& request,
+                         const FlagsSink& sink)
+{
+  SiteFlags result;
+  const bool of_b = flagged != Side::a;
+  FlagsRequest wanted;
+  wanted.clearance = request.clearance;
+  wanted.flagged = of_b ? Side::both : Side::a;
+  wanted.threads = request.threads;
+  if (of_b) result.b.assign(b.hierarchy().view().count, 0);
+  Inquiry inquiry(site, request);
+  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+    const FlagsResult flags = pcl_bsh::collisionFlags({hierarchy}, b, wanted);
+    result.colliding += flags.colliding_a;
+    for (std::size_t i = 0; i < result.b.size(); ++i) result.b[i] |= flags.b[i];
+    if (sink) sink(tile, cloud, flags);
+  };
+  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request), ask);
+  result.colliding = sumOfAllRanks(result.colliding);
+  if (ranks() > 1 && of_b) {
+    std::vector<double> own;
+    for (std::size_t i = 0; i < result.b.size(); ++i)
+      if (result.b[i] != 0) own.push_back(static_cast<double>(i));
+    for (const double i : gatheredFromAllRanks(own)) result.b[static_cast<std::size_t>(i)] = 1;
+  }
+  result.colliding_b = static_cast<std::uint64_t>(std::count(result.b.begin(), result.b.end(), 1));
+  return result;
+}
+
+SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request)
+{
+  const auto by_distance = tilesByDistance(site, b, request);
+  std::vector<std::uint32_t> tiles;
+  for (const auto& [lower, tile] : by_distance) tiles.push_back(tile);
+  DistanceRequest wanted;
+  wanted.threads = request.threads;
+  double least = infinity;
+  std::vector<Candidate> candidates;
+  Inquiry inquiry(site, request);
+  const auto ask = [&](const Tile&, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+    const DistanceResult found = pcl_bsh::closestPair({hierarchy}, b, wanted);
+    if (!found.pair || found.distance > least) return;
+    least = found.distance;
+    const std::uint8_t* const record = cloud.data.data() + std::size_t{found.pair->a} * cloud.point_step;
+    candidates.push_back(
+        {hierarchy.view().point(found.pair->a),
+         {numberAt(record + offsetOf(cloud, source_field_name)), numberAt(record + offsetOf(cloud, record_field_name))},
+         found.distance});
+  };
+  const auto go_on = [&](std::size_t visited) {
+    least = leastOfAllRanks(least);
+    return visited < tiles.size() && by_distance[visited].first <= least;
+  };
+  SiteClosest result;
+  result.tiles = inquiry.visit(tiles, ask, go_on);
+
+  // Distances that round to the same double may differ: the nearest of each tile are compared once more, exactly.
+  candidates = gathered(candidates);
+  std::vector<Point3> places;
+  std::vector<SitePoint> points;
+  for (const Candidate& candidate : candidates) {
+    if (candidate.distance != least) continue;
+    places.push_back(candidate.place);
+    points.push_back(candidate.point);
+  }
+  if (places.empty()) return result;
+  const SphereHierarchy last(viewOf(places.front().data(), places.size()));
+  const DistanceResult nearest = pcl_bsh::closestPair({last}, b, wanted);
+  result.distance = nearest.distance;
+  result.point = points[nearest.pair->a];
+  result.b = nearest.pair->b;
+  return result;
+}
+
+SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& request,
+                             const DistancesSink& sink)
+{
+  SiteDistances result;
+  PointDistancesRequest wanted;
+  wanted.max_distance = max_distance;
+  wanted.threads = request.threads;
+  double greatest = -infinity;
+  Inquiry inquiry(site, request);
+  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+    const PointDistances found = pcl_bsh::pointDistances({hierarchy}, b, wanted);
+    result.measured += found.measured;
+    if (found.measured > 0) greatest = std::max(greatest, found.greatest);
+    if (sink) sink(tile, cloud, found);
+  };
+  std::vector<std::uint32_t> tiles;
+  if (max_distance < infinity)
+    tiles = tilesWithin(site, b, max_distance, request);
+  else
+    for (const auto& [lower, tile] : tilesByDistance(site, b, request)) tiles.push_back(tile);
+  result.tiles = inquiry.visit(tiles, ask);
+  result.measured = sumOfAllRanks(result.measured);
+  greatest = -leastOfAllRanks(-greatest);
+  if (result.measured > 0) result.greatest = greatest;
+  return result;
+}
+
+SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
+                         const SiteRequest& request, const PassageSink& sink)
+{
+  TrajectoryRequest wanted;
+  wanted.clearance = request.clearance;
+  wanted.threads = request.threads;
+  const TileBalls balls(site);
+  const SphereHierarchy of_balls(balls.view(), optionsOf(request));
+  const std::vector<std::uint32_t> tiles =
+      tilesOf(balls, pcl_bsh::collideAlong({of_balls}, model, poses, wanted).flags);
+
+  wanted.distances = wanted.first_poses = wanted.closest_poses = true;
+  SitePassage result;
+  double least = infinity, first = infinity;
+  Inquiry inquiry(site, request);
+  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+    const TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
+    result.colliding += found.colliding;
+    for (std::size_t i = 0; i < found.flags.size(); ++i) {
+      if (found.flags[i] == 0) continue;
+      least = std::min(least, double{found.distance[i]});
+      first = std::min(first, static_cast<double>(found.first_pose[i]));
+    }
+    if (sink) sink(tile, cloud, found);
+  };
+  result.tiles = inquiry.visit(tiles, ask);
+  result.colliding = sumOfAllRanks(result.colliding);
+  least = leastOfAllRanks(least);
+  first = leastOfAllRanks(first);
+  if (result.colliding > 0) {
+    result.distance = static_cast<float>(least);
+    result.first_pose = static_cast<std::int32_t>(first);
+  }
+  return result;
+}
+
+} // namespace pcl_bsh::sites

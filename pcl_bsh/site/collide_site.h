@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Questions about a site and a cloud in memory, with the answers of one hierarchy over all points of the site.
+//
+//   sites::Site valley = sites::readSite("valley");
+//   SphereHierarchy robot(viewOf(robot_xyz, n));
+//   sites::SiteRequest request;
+//   request.clearance = 0.05;
+//   sites::SiteClosest nearest = sites::closestPair(valley, {robot, T_valley_robot}, request);
+//
+// Only tiles that can matter are read, one at a time. Which, the hierarchy of the cloud tells: the box of each tile is
+// covered by balls, and these are points with radii, about which the same question is asked first.
+//
+// In an MPI job (mpirun -n 4 ...), all ranks call the same function with the same input: the tiles are dealt to them,
+// and each gets the whole answer. Sinks are called on the rank that has the tile. Points have no uncertainties here,
+// and answers are exact.
+#pragma once
+
+#include <pcl_bsh/collision/collision_flags.h>
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/query/result.h>
+#include <pcl_bsh/site/site.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh::sites {
+
+struct SiteRequest {
+  double clearance = 0.0;                        ///< finite, >= 0; inclusive
+  unsigned threads = 1;                          ///< of each process; 0: all of the machine's
+  std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
+  /// Called now and then by each rank, with the tiles that it has done. False: stop, the query throws Cancelled.
+  std::function<bool(std::uint64_t)> progress;
+};
+
+/// What a question has read.
+struct TilesRead {
+  std::uint64_t tiles = 0;  ///< of the site
+  std::uint64_t needed = 0; ///< those that could matter before any was read
+  std::uint64_t read = 0;   ///< by all ranks
+};
+
+/// A point of a site.
+struct SitePoint {
+  std::uint32_t source = 0, record = 0;
+  bool operator<(const SitePoint& other) const noexcept
+  {
+    return source != other.source ? source < other.source : record < other.record;
+  }
+  bool operator==(const SitePoint& other) const noexcept { return source == other.source && record == other.record; }
+};
+
+struct SiteAny {
+  Verdict verdict = Verdict::free; ///< free or colliding
+  TilesRead tiles;
+};
+
+struct SiteFlags {
+  std::uint64_t colliding = 0; ///< points of the site
+  std::vector<std::uint8_t> b; ///< one per record of b's view, where asked for: 1 = collides
+  std::uint64_t colliding_b = 0;
+  TilesRead tiles;
+};
+
+struct SiteClosest {
+  double distance = std::numeric_limits<double>::infinity(); ///< as closestPair() has it
+  /// That realise it; of several the smallest (source, record), and for it the smallest record of b.
+  std::optional<SitePoint> point;
+  std::uint32_t b = 0;
+  TilesRead tiles;
+};
+
+struct SiteDistances {
+  std::uint64_t measured = 0; ///< points that have a distance
+  double greatest = std::numeric_limits<double>::quiet_NaN();
+  TilesRead tiles;
+};
+
+struct SitePassage {
+  std::uint64_t colliding = 0; ///< points of the site that collide at any pose
+  /// The smallest distance of colliding points and the first pose at which any collides; NaN and -1: none does.
+  float distance = std::numeric_limits<float>::quiet_NaN();
+  std::int32_t first_pose = -1;
+  TilesRead tiles;
+};
+
+/// Called for each tile that was read, with its points and what was found of them: vectors have an entry per point.
+using FlagsSink = std::function<void(const Tile&, const pcl::PCLPointCloud2&, const FlagsResult&)>;
+using DistancesSink = std::function<void(const Tile&, const pcl::PCLPointCloud2&, const PointDistances&)>;
+using PassageSink = std::function<void(const Tile&, const pcl::PCLPointCloud2&, const TrajectoryResult&)>;
+
+/// The number of this process among those of an MPI job, from 0, and how many there are; 0 and 1 without mpirun. MPI is
+/// begun where the process has not done so, and ends with it.
+int rankHere();
+int ranks();
+
+/// Ends all processes of the MPI job with exit code 1: where one has failed, the others would wait for it.
+[[noreturn]] void endAllRanks();
+
+/// Does any point of the site collide with b? Ends with the first tile that has one.
+/// @throws std::invalid_argument as the query of the same name does; files::FileError for a tile that is not what the
+///   site says; Cancelled
+SiteAny anyCollision(const Site& site, const Placed& b, const SiteRequest& request);
+
+/// Which points do? Those of tiles that are not read are free.
+SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const SiteRequest& request,
+                         const FlagsSink& sink = nullptr);
+
+/// The smallest distance. Tiles come in the order of their lower bounds, and end where these exceed the smallest
+/// distance of any rank. The clearance is not used.
+SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request);
+
+/// The distance of each point to b, up to max_distance; those of tiles that are not read are farther. The clearance is
+/// not used.
+SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& request,
+                             const DistancesSink& sink = nullptr);
+
+/// The model along its poses, in the site's frame: flags, distances, first and closest poses of each point.
+SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
+                         const SiteRequest& request, const PassageSink& sink = nullptr);
+
+} // namespace pcl_bsh::sites
+PCL_BSH_EXPORT_END

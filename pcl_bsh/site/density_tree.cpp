@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/site/density_tree.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_bsh::sites {
+
+namespace {
+
+constexpr std::uint64_t cells_in_tile = 64;
+constexpr int least_exponent = -1000; ///< of an octree's edge
+constexpr double farthest = 0x1p1000; ///< what lies farther out is counted there
+
+bool holds(const Point3& corner, double edge, const Point3& point)
+{
+  for (std::size_t k = 0; k < 3; ++k)
+    if (point[k] < corner[k] || point[k] - corner[k] >= edge) return false;
+  return true;
+}
+
+} // namespace
+
+DensityTree::DensityTree(std::uint64_t tile_points)
+: tile_points_(tile_points),
+  most_in_cell_(std::max<std::uint64_t>(tile_points / cells_in_tile, 1))
+{
+}
+
+std::uint32_t DensityTree::addCell()
+{
+  cells_.emplace_back();
+  return static_cast<std::uint32_t>(cells_.size() - 1);
+}
+
+DensityTree::Octree& DensityTree::octreeOf(const Point3& point, Point3& magnitudes)
+{
+  std::size_t octant = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (point[k] < 0.0) octant |= std::size_t{1} << k;
+    magnitudes[k] = std::min(std::abs(point[k]), farthest);
+  }
+  return octrees_[octant];
+}
+
+/// Makes the root so large that it holds the point.
+void DensityTree::grow(Octree& tree, const Point3& magnitudes)
+{
+  int exponent = least_exponent;
+  for (const double coordinate : magnitudes) {
+    int needed = 0;
+    std::frexp(coordinate, &needed); // coordinate < 2^needed
+    if (coordinate > 0.0) exponent = std::max(exponent, needed);
+  }
+  if (tree.root == none) {
+    tree.root = addCell();
+    tree.exponent = exponent;
+  }
+  for (; tree.exponent < exponent; ++tree.exponent) {
+    const std::uint32_t root = addCell();
+    cells_[root].part[0] = tree.root;
+    cells_[root].is_divided = true;
+    tree.root = root;
+  }
+}
+
+std::size_t DensityTree::partOf(const Place& place, const Point3& magnitudes)
+{
+  std::size_t part = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (magnitudes[k] >= place.corner[k] + place.edge / 2) part |= std::size_t{1} << k;
+  return part;
+}
+
+DensityTree::Place DensityTree::step(const Place& place, std::size_t part)
+{
+  Place below = {cells_[place.cell].part[part], place.corner, place.edge / 2};
+  for (std::size_t k = 0; k < 3; ++k)
+    if ((part >> k & 1) != 0) below.corner[k] += below.edge;
+  return below;
+}
+
+/// Points that all lie in one part were counted there; of others nobody knows any more where they lay.
+void DensityTree::divide(const Place& place)
+{
+  cells_[place.cell].is_divided = true;
+  const std::size_t part = partOf(place, cells_[place.cell].low);
+  if (part != partOf(place, cells_[place.cell].high)) return;
+  const std::uint32_t below = addCell();
+  Cell& cell = cells_[place.cell];
+  cells_[below].own = cell.own;
+  cells_[below].low = cell.low;
+  cells_[below].high = cell.high;
+  cell.own = 0;
+  cell.part[part] = below;
+}
+
+void DensityTree::add(const Point3& point)
+{
+  Point3 p;
+  Octree& tree = octreeOf(point, p);
+  Place place = tree.last;
+  if (place.cell == none || cells_[place.cell].is_divided || !holds(place.corner, place.edge, p)) {
+    grow(tree, p);
+    place = {tree.root, {}, std::ldexp(1.0, tree.exponent)};
+  }
+  for (;;) {
+    if (!cells_[place.cell].is_divided) {
+      Cell& cell = cells_[place.cell];
+      const bool at_one_place = cell.own > 0 && cell.low == cell.high && cell.low == p;
+      if (cell.own < most_in_cell_ || at_one_place || place.edge < std::ldexp(1.0, tree.exponent - 50)) {
+        if (cell.own == 0) cell.low = cell.high = p;
+        for (std::size_t k = 0; k < 3; ++k) {
+          cell.low[k] = std::min(cell.low[k], p[k]);
+          cell.high[k] = std::max(cell.high[k], p[k]);
+        }
+        ++cell.own;
+        tree.last = place;
+        return;
+      }
+      divide(place);
+    }
+    const std::size_t part = partOf(place, p);
+    if (cells_[place.cell].part[part] == none) {
+      const std::uint32_t below = addCell();
+      cells_[place.cell].part[part] = below;
+    }
+    place = step(place, part);
+  }
+}
+
+std::uint64_t DensityTree::sumUp(std::uint32_t cell)
+{
+  std::uint64_t total = cells_[cell].own;
+  for (const std::uint32_t part : cells_[cell].part)
+    if (part != none) total += sumUp(part);
+  return cells_[cell].total = total;
+}
+
+/// Adds a cell to the last tile, or to a new one. Points counted above the cell may lie in it: each tile that has cells
+/// below must have room for them.
+void DensityTree::place(std::uint32_t cell, const std::vector<std::uint32_t>& above)
+{
+  const auto room_for = [&] {
+    std::uint64_t room = cells_[cell].total;
+    for (const std::uint32_t other : above)
+      if (cells_[other].tile != tiles_ - 1) room += cells_[other].own;
+    return room;
+  };
+  if (tiles_ == 0 || in_tile_ + room_for() > tile_points_) {
+    ++tiles_;
+    in_tile_ = 0;
+  }
+  in_tile_ += room_for();
+  for (const std::uint32_t other : above) cells_[other].tile = tiles_ - 1;
+  cells_[cell].tile = tiles_ - 1;
+}
+
+/// Deals cells to tiles in their order along the Morton curve, the largest ones that fit.
+void DensityTree::assign(std::uint32_t cell, std::vector<std::uint32_t>& above)
+{
+  std::uint64_t most = cells_[cell].total;
+  for (const std::uint32_t other : above) most += cells_[other].own;
+  if (most <= tile_points_ || !cells_[cell].is_divided) {
+    place(cell, above);
+    cells_[cell].is_divided = false;
+    return;
+  }
+  above.push_back(cell);
+  for (std::size_t part = 0; part < 8; ++part) {
+    if (cells_[cell].part[part] == none) { // one of the points counted above may lie there
+      const std::uint32_t below = addCell();
+      cells_[cell].part[part] = below;
+    }
+    assign(cells_[cell].part[part], above);
+  }
+  above.pop_back();
+}
+
+std::uint32_t DensityTree::plan()
+{
+  std::vector<std::uint32_t> above;
+  for (Octree& tree : octrees_) {
+    tree.last = {none, {}, 0.0};
+    if (tree.root == none) continue;
+    sumUp(tree.root);
+    assign(tree.root, above);
+  }
+  return tiles_;
+}
+
+std::uint32_t DensityTree::tileOf(const Point3& point)
+{
+  Point3 p;
+  Octree& tree = octreeOf(point, p);
+  Place place = tree.last;
+  if (place.cell == none || !holds(place.corner, place.edge, p)) {
+    if (tree.root == none) return 0; // was not counted
+    place = {tree.root, {}, std::ldexp(1.0, tree.exponent)};
+    while (cells_[place.cell].is_divided) place = step(place, partOf(place, p));
+    tree.last = place;
+  }
+  return cells_[place.cell].tile;
+}
+
+} // namespace pcl_bsh::sites

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the points of a stream lie, counted finely where they are dense; and from that, tiles of at most so many
+// points.
+#pragma once
+
+#include <pcl_bsh/geometry/point3.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pcl_bsh::sites {
+
+/// Eight octrees, one for each combination of signs, whose cells are the voxels of one grid: of edges that are powers
+/// of two, with a corner in the origin. Points are counted, not held: a cell is divided once it has counted 1/64 of a
+/// tile's points, and counts only those in its parts from then on. So a few ten thousand cells describe any cloud.
+class DensityTree {
+public:
+  explicit DensityTree(std::uint64_t tile_points);
+
+  /// Counts a finite point.
+  void add(const Point3& point);
+
+  /// Divides the space into tiles of neighbouring cells, none of which can have more than tile_points of the points
+  /// counted, except a cell in which all points are at (almost) one place. To be called once.
+  /// @return how many
+  std::uint32_t plan();
+
+  /// After plan(): the tile of a point, counted or not. Takes about no time for a point near the last one.
+  std::uint32_t tileOf(const Point3& point);
+
+  /// Memory that it takes.
+  std::size_t bytes() const noexcept { return cells_.capacity() * sizeof(Cell); }
+
+private:
+  static constexpr std::uint32_t none = 0xffffffffu;
+
+  /// Coordinates are magnitudes: the signs chose the octree.
+  struct Cell {
+    std::array<std::uint32_t, 8> part = {none, none, none, none, none, none, none, none};
+    std::uint64_t own = 0;   ///< counted here
+    std::uint64_t total = 0; ///< counted here and in its parts
+    Point3 low = {}, high = {};
+    std::uint32_t tile = none; ///< of a cell above tiles: the last tile that has room for its own points
+    bool is_divided = false;   ///< after plan(): is above tiles
+  };
+
+  struct Place {
+    std::uint32_t cell;
+    Point3 corner; ///< the one next to the origin
+    double edge;
+  };
+
+  struct Octree {
+    std::uint32_t root = none;
+    int exponent = 0; ///< the root's edge is 2 to that
+    Place last = {none, {}, 0.0};
+  };
+
+  std::uint32_t addCell();
+  Octree& octreeOf(const Point3& point, Point3& magnitudes);
+  void grow(Octree& tree, const Point3& magnitudes);
+  static std::size_t partOf(const Place& place, const Point3& magnitudes);
+  Place step(const Place& place, std::size_t part);
+  void divide(const Place& place);
+  std::uint64_t sumUp(std::uint32_t cell);
+  void place(std::uint32_t cell, const std::vector<std::uint32_t>& above);
+  void assign(std::uint32_t cell, std::vector<std::uint32_t>& above);
+
+  std::uint64_t tile_points_, most_in_cell_;
+  std::vector<Cell> cells_;
+  std::array<Octree, 8> octrees_;
+  std::uint32_t tiles_ = 0;
+  std::uint64_t in_tile_ = 0; ///< points that the last tile may get
+};
+
+} // namespace pcl_bsh::sites

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/site/tile_visitor.h>
+
+#include <stdexcept> // which DIY does not include
+#include <vtk_diy2.h>
+// clang-format off
+#include VTK_DIY2(diy/assigner.hpp)
+#include VTK_DIY2(diy/master.hpp)
+#include VTK_DIY2(diy/mpi.hpp)
+// clang-format on
+
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+
+namespace pcl_bsh::sites {
+
+namespace {
+
+void beginMpi()
+{
+  int begun = 0;
+  MPI_Initialized(&begun);
+  if (begun != 0) return;
+  MPI_Init(nullptr, nullptr);
+  std::atexit([] {
+    int ended = 0;
+    MPI_Finalized(&ended);
+    if (ended == 0) MPI_Finalize();
+  });
+}
+
+diy::mpi::communicator world()
+{
+  beginMpi();
+  return {};
+}
+
+/// What DIY holds of a tile. Its points are in memory only while it is visited, so DIY need not put blocks away.
+struct Block {
+  std::uint32_t tile = 0;
+};
+
+void* makeBlock()
+{
+  return new Block;
+}
+
+void destroyBlock(void* block)
+{
+  delete static_cast<Block*>(block);
+}
+
+} // namespace
+
+int rankHere()
+{
+  return world().rank();
+}
+
+int ranks()
+{
+  return world().size();
+}
+
+void endAllRanks()
+{
+  MPI_Abort(world(), 1);
+  std::abort();
+}
+
+double leastOfAllRanks(double value)
+{
+  double least = value;
+  diy::mpi::all_reduce(world(), value, least, diy::mpi::minimum<double>());
+  return least;
+}
+
+std::uint64_t sumOfAllRanks(std::uint64_t value)
+{
+  std::uint64_t sum = value;
+  diy::mpi::all_reduce(world(), value, sum, std::plus<std::uint64_t>());
+  return sum;
+}
+
+std::vector<double> gatheredFromAllRanks(const std::vector<double>& values)
+{
+  std::vector<std::vector<double>> parts;
+  diy::mpi::all_gather(world(), values, parts);
+  std::vector<double> all;
+  for (const std::vector<double>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+TileVisitor::TileVisitor(const Site& site, std::uint64_t memory) : site_(site)
+{
+  // A tile and its hierarchy, which takes at most twice 32 bytes for each point.
+  std::uint64_t most = 0;
+  for (const Tile& tile : site.tiles) most = std::max(most, tile.points * (recordBytes(site) + 64));
+  if (most > memory) {
+    throw std::invalid_argument("memory: the largest tile needs " + std::to_string(most) +
+                                " bytes: give more, or make the site again with smaller tiles");
+  }
+}
+
+void TileVisitor::visit(const std::vector<std::uint32_t>& tiles, const Use& use,
+                        const std::function<bool(std::size_t)>& go_on)
+{
+  const diy::mpi::communicator comm = world();
+  diy::Master master(comm, 1, -1, makeBlock, destroyBlock);
+  const diy::RoundRobinAssigner assigner(comm.size(), static_cast<int>(tiles.size()));
+  std::vector<int> mine;
+  assigner.local_gids(comm.rank(), mine);
+  for (const int gid : mine) master.add(gid, new Block{tiles[static_cast<std::size_t>(gid)]}, new diy::Link);
+
+  std::exception_ptr failure;
+  const auto visit = [&](Block* block, const diy::Master::ProxyWithLink&) {
+    if (block == nullptr) return; // DIY calls for blocks that are skipped, too
+    try {
+      const Tile& tile = site_.tiles[block->tile];
+      const pcl::PCLPointCloud2 cloud = readTile(site_, tile);
+      ++read_;
+      use(tile, cloud);
+    }
+    catch (...) {
+      failure = std::current_exception();
+    }
+  };
+  const auto per_rank = static_cast<std::size_t>(comm.size());
+  const std::size_t rounds = go_on ? (tiles.size() + per_rank - 1) / per_rank : 1;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    master.foreach (
+        visit, [&](int i, const diy::Master&) { return failure || (go_on && static_cast<std::size_t>(i) != round); });
+    const std::uint64_t failures = sumOfAllRanks(failure ? 1 : 0);
+    if (failure) std::rethrow_exception(failure);
+    if (failures > 0) throw std::runtime_error("another rank has failed: its line says why");
+    if (go_on && !go_on(std::min((round + 1) * per_rank, tiles.size()))) return;
+  }
+}
+
+} // namespace pcl_bsh::sites

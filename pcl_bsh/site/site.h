@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A cloud of any size on disk, cut into tiles: a folder with `site.json` and a binary PCD file for each tile.
+//
+//   sites::Site site = sites::readSite("valley");
+//   for (const sites::Tile& tile : site.tiles) pcl::PCLPointCloud2 points = sites::readTile(site, tile);
+//
+// Each point has all fields of its source, and two more: `source` and `record`, UINT32, which say which record of which
+// source it was, both counted from 0. In a tile points are in the order of (source, record).
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/geometry/point3.h>
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh::sites {
+
+inline constexpr const char* site_file_name = "site.json";
+inline constexpr const char* overview_file_name = "overview.pcd";
+inline constexpr const char* tiles_folder_name = "tiles";
+inline constexpr const char* source_field_name = "source";
+inline constexpr const char* record_field_name = "record";
+inline constexpr int site_version = 1; ///< of the folder's format
+
+/// Both corners inclusive, in the clouds' unit.
+struct Bounds {
+  Point3 low, high;
+
+  void add(const Point3& point)
+  {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (point[k] < low[k]) low[k] = point[k];
+      if (point[k] > high[k]) high[k] = point[k];
+    }
+  }
+};
+
+/// Lets `bounds` hold the point, too.
+inline void extend(std::optional<Bounds>& bounds, const Point3& point)
+{
+  if (!bounds) bounds = Bounds{point, point};
+  bounds->add(point);
+}
+
+/// A file that the site was made of.
+struct Source {
+  std::string file;
+  std::uint64_t points = 0;
+  std::vector<pcl::PCLPointField> fields; ///< side by side, without padding
+};
+
+struct Tile {
+  std::string file; ///< relative to the site's folder
+  std::uint64_t points = 0;
+  std::optional<Bounds> bounds; ///< of its finite points
+  double spacing = 0.0;         ///< median distance of a sample of its points to the nearest other
+  std::uint32_t crc32 = 0;      ///< of its records
+};
+
+struct Site {
+  std::filesystem::path folder;
+  std::uint64_t points = 0;
+  std::optional<Bounds> bounds;
+  std::vector<pcl::PCLPointField> fields; ///< of the records of all tiles, side by side
+  std::vector<Source> sources;
+  std::vector<Tile> tiles;
+};
+
+/// Reads a folder's site.json; of the tiles, only whether their files are there.
+/// @throws std::runtime_error (io::JsonError, files::FileError): a folder that is no site or is not complete, another
+///   version, a document that the schema does not allow, numbers of points that disagree, a tile's file that is missing
+///   or lies outside the folder
+Site readSite(const std::filesystem::path& folder);
+
+/// The site as the text of its site.json.
+std::string siteText(const Site& site);
+
+/// The points of a tile. @throws files::FileError when its file is not what the site says of it
+pcl::PCLPointCloud2 readTile(const Site& site, const Tile& tile);
+
+/// Bytes of a record of the site.
+std::size_t recordBytes(const Site& site);
+
+} // namespace pcl_bsh::sites
+PCL_BSH_EXPORT_END

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/filters/cloud_files/cloud_stream.h>
+#include <pcl_bsh/filters/cloud_files/pcd.h>
+#include <pcl_bsh/filters/text_files/format_error.h>
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/neighbors/spacing.h>
+#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/tile_file.h>
+
+#include <boost/crc.hpp>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace pcl_bsh::sites {
+
+namespace {
+
+constexpr auto site_remedy = "copy the tile back, or make the site again";
+
+bool isSame(const Fields& a, const Fields& b)
+{
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& f, const auto& g) {
+    return f.name == g.name && f.datatype == g.datatype && f.count == g.count && f.offset == g.offset;
+  });
+}
+
+std::uint32_t crcOf(const pcl::PCLPointCloud2& cloud)
+{
+  boost::crc_32_type crc;
+  crc.process_bytes(cloud.data.data(), cloud.data.size());
+  return crc.checksum();
+}
+
+} // namespace
+
+TileFile::TileFile(files::NewFile& file, const Fields& fields, std::size_t buffer)
+: file_(&file),
+  fields_(fields),
+  limit_(buffer)
+{
+  const std::string head = io::binaryPcdHeader(fields_, static_cast<std::uint32_t>(io::max_points));
+  head_bytes_ = head.size();
+  file_->append(head);
+}
+
+void TileFile::add(const std::uint8_t* record, std::size_t bytes)
+{
+  if (buffer_.size() + bytes > limit_) {
+    file_->append(buffer_);
+    buffer_.clear();
+  }
+  if (buffer_.capacity() < limit_) buffer_.reserve(limit_);
+  buffer_.append(reinterpret_cast<const char*>(record), bytes);
+  ++points_;
+}
+
+void TileFile::finish()
+{
+  file_->append(buffer_);
+  buffer_ = std::string();
+  file_->replaceHead(io::binaryPcdHeader(fields_, static_cast<std::uint32_t>(points_), head_bytes_));
+}
+
+std::string tileFileName(std::size_t tile)
+{
+  char name[32];
+  std::snprintf(name, sizeof name, "/tile_%06zu.pcd", tile);
+  return std::string(tiles_folder_name) + name;
+}
+
+pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points)
+{
+  const auto stream = io::openCloud(path, 0);
+  if (!isSame(stream->header().fields, fields))
+    throw files::FileError(path, "has other fields than the site says", site_remedy);
+  if (stream->size() != points) {
+    throw files::FileError(path,
+                           "has " + std::to_string(stream->size()) + " points, the site says " + std::to_string(points),
+                           site_remedy);
+  }
+  pcl::PCLPointCloud2 cloud = stream->header();
+  io::allocate(cloud, static_cast<std::uint32_t>(points));
+  stream->read(cloud.data.data(), cloud.width);
+  return cloud;
+}
+
+pcl::PCLPointCloud2 readTile(const Site& site, const Tile& tile)
+{
+  pcl::PCLPointCloud2 cloud = loadTile(site.folder / tile.file, site.fields, tile.points);
+  if (crcOf(cloud) != tile.crc32)
+    throw files::FileError(site.folder / tile.file, "its points are not those that the site was made with",
+                           site_remedy);
+  return cloud;
+}
+
+std::size_t recordBytes(const Site& site)
+{
+  return layoutOf(site.fields).point_step;
+}
+
+void measure(const pcl::PCLPointCloud2& cloud, Tile& tile)
+{
+  const PointsView view = viewOf(cloud);
+  tile.bounds.reset();
+  for (std::uint32_t i = 0; i < view.count; ++i) {
+    const Point3 point = view.point(i);
+    if (isFinite(point)) extend(tile.bounds, point);
+  }
+  tile.spacing = spacingOf(SphereHierarchy(view)).median;
+  tile.crc32 = crcOf(cloud);
+}
+
+} // namespace pcl_bsh::sites

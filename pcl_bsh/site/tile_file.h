@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The binary PCD files of a site, written piece by piece.
+#pragma once
+
+#include <pcl_bsh/files/new_file.h>
+#include <pcl_bsh/site/records.h>
+#include <pcl_bsh/site/site.h>
+
+#include <cstdint>
+#include <string>
+
+namespace pcl_bsh::sites {
+
+/// A binary PCD file whose number of points is known when all are written.
+class TileFile {
+public:
+  /// @param buffer bytes that are collected before they are written
+  TileFile(files::NewFile& file, const Fields& fields, std::size_t buffer);
+
+  /// @param record of these fields, `bytes` long
+  void add(const std::uint8_t* record, std::size_t bytes);
+
+  /// Writes what is left, and the header. The buffer is given back.
+  void finish();
+
+  std::uint64_t points() const noexcept { return points_; }
+  const std::filesystem::path& path() const noexcept { return file_->path(); }
+
+private:
+  files::NewFile* file_;
+  Fields fields_;
+  std::size_t limit_, head_bytes_;
+  std::uint64_t points_ = 0;
+  std::string buffer_;
+};
+
+/// The name of a tile's file in the site's folder.
+std::string tileFileName(std::size_t tile);
+
+/// The points of a file of a site. @throws files::FileError when it has other fields or another number of points
+pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points);
+
+/// Sets bounds, spacing and checksum of a tile from its points.
+void measure(const pcl::PCLPointCloud2& cloud, Tile& tile);
+
+} // namespace pcl_bsh::sites

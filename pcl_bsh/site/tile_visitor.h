@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tiles of a site, one after the other, on one process or dealt to all ranks of an MPI job. DIY is the engine: a block
+// is a tile.
+#pragma once
+
+#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/site.h>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace pcl_bsh::sites {
+
+double leastOfAllRanks(double value);
+std::uint64_t sumOfAllRanks(std::uint64_t value);
+
+/// The values of all ranks, one after the other, on all of them.
+std::vector<double> gatheredFromAllRanks(const std::vector<double>& values);
+
+class TileVisitor {
+public:
+  /// @param memory bytes for the points of a tile and their hierarchy
+  /// @throws std::invalid_argument when the largest tile needs more
+  TileVisitor(const Site& site, std::uint64_t memory);
+
+  using Use = std::function<void(const Tile&, const pcl::PCLPointCloud2&)>;
+
+  /// Calls `use` with each of these tiles, on one of the ranks. To be called by all ranks with the same list.
+  /// @param go_on if not null, asked by all ranks whenever each has had a tile more, with the number of tiles visited
+  /// by
+  ///   all: false ends the visit on all ranks, so it must be the same on all
+  /// @throws what reading or `use` throws; where another rank has failed, std::runtime_error
+  void visit(const std::vector<std::uint32_t>& tiles, const Use& use,
+             const std::function<bool(std::size_t)>& go_on = nullptr);
+
+  /// Tiles that this rank has read.
+  std::uint64_t read() const noexcept { return read_; }
+
+private:
+  const Site& site_;
+  std::uint64_t read_ = 0;
+};
+
+} // namespace pcl_bsh::sites
