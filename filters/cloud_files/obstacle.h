@@ -41,7 +41,7 @@ using TrianglesPtr = std::shared_ptr<const std::vector<Triangle>>;
 struct UsualTolerance {
   double tolerance = 0.0;
   /// A tenth of the clearance or, where that is 0, a 10,000th of the diagonal of the triangles' box; `tolerance` is
-  /// greater where the cover would take more than some seven million balls (200,000 where the clearance is 0), or
+  /// greater where the cover would take more than some seven million balls (50,000 where the clearance is 0), or
   /// the coordinates round too much.
   double wanted = 0.0;
 };

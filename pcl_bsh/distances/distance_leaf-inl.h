@@ -221,6 +221,9 @@ private:
       most = std::min(most, far - radii + kFewDoubleRoundings * (far + radii));
     };
     if (best.voxel) take(best, posed(i, best));
+    std::uint32_t band_of = kNoVoxel; // the obstacle that `miss` is of
+    float miss = 0.0f;
+    double within = 0.0;
     for (const NearSphere& candidate : near) {
       if (double{candidate.lower} * unit_ > most) continue;
       const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
@@ -228,8 +231,12 @@ private:
       const LeafPoints& points = carried(candidate.sphere.obstacle).points;
       alignas(64) float squared[kLeafPoints];
       leafSquaredDistances(other.x(), other.y(), other.z(), points.x[i], points.y[i], points.z[i], squared);
-      const double within = (most + own_radius + largest_radius_) * (1.0 + kDoubleMargin);
-      const float miss = obstacle.frame.band(std::isnan(within) ? kInfinity : std::max(within, 0.0)).miss;
+      const double reach = (most + own_radius + largest_radius_) * (1.0 + kDoubleMargin);
+      if (band_of != candidate.sphere.obstacle || !(within == reach)) {
+        band_of = candidate.sphere.obstacle;
+        within = reach;
+        miss = obstacle.frame.band(std::isnan(reach) ? kInfinity : std::max(reach, 0.0)).miss;
+      }
       for (std::uint32_t bits = firstBits(other.count) & ~above(squared, miss); bits != 0; bits &= bits - 1) {
         const Found found{other.voxel, other.begin + static_cast<std::uint32_t>(std::countr_zero(bits))};
         if (found.voxel == best.voxel && found.point == best.point) continue;

@@ -67,6 +67,7 @@ struct DistanceRow {
   ObstacleSphere sphere;
   std::uint32_t lanes; ///< children that it matters to
   float lower[kLanes];
+  std::uint32_t as_given = 0; ///< children whose bound was sharpened about another centre
 };
 
 /// The same for one child.
@@ -82,6 +83,8 @@ struct DistanceVisit {
   BoundingSphere around;   ///< holds them all; in the frame of a's voxel
   std::uint32_t leaves = 0;
   float cut[kLanes];                ///< what is farther than this is not the nearest of any point of the child
+  float limit[kLanes];              ///< spheres with a lower bound above it are outdone; infinite where none are
+  float turn[kLanes];               ///< Outdoing::turnOf() of the children
   std::vector<DistanceRow> rows;    ///< of what the node itself was near to
   std::vector<DistanceRow> kept;    ///< of what its children are to be compared with
   std::vector<CarriedNode> carried; ///< by obstacle
@@ -96,6 +99,7 @@ struct DistanceVisit {
     for (std::uint32_t lane = 0; lane < entered.count; ++lane)
       if (entered.isLeaf(lane)) leaves |= 1u << lane;
     for (float& value : cut) value = upper;
+    for (float& value : limit) value = std::numeric_limits<float>::infinity();
     rows.clear();
     kept.clear();
     for (auto& list : near) list.clear();
@@ -135,6 +139,20 @@ HWY_INLINE std::uint32_t notAbove(const float* values, const float* limits)
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
     bits |= bitsOf(d, hn::Gt(hn::LoadU(d, values + i), hn::LoadU(d, limits + i))) << i;
   return bits ^ ((1u << kLanes) - 1);
+}
+
+/// Lowers `cut` to upper bounds, and `limit` to what they make of spheres that are outdone (outdoing.h).
+HWY_INLINE void lowerCuts(DistanceVisit& visit, const float* upper)
+{
+  const LaneTag d;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const LaneVector far = hn::LoadU(d, upper + i), cut = hn::LoadU(d, visit.cut + i),
+                     limit = hn::LoadU(d, visit.limit + i);
+    hn::StoreU(hn::IfThenElse(hn::Lt(far, cut), far, cut), d, visit.cut + i);
+    // What is added is above what the product and the difference round off.
+    const LaneVector now = hn::Sub(hn::Mul(far, hn::Set(d, 1.0f + 0x1p-22f)), hn::LoadU(d, visit.turn + i));
+    hn::StoreU(hn::IfThenElse(hn::Lt(now, limit), now, limit), d, visit.limit + i);
+  }
 }
 
 /// Memory of one walk after another, to be had by a ScratchLease.

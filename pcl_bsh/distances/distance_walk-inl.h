@@ -12,6 +12,7 @@
 #endif
 
 #include <pcl_bsh/distances/distance_leaf-inl.h>
+#include <pcl_bsh/distances/outdoing.h>
 #include <pcl_bsh/hierarchy/crowded_cell.h>
 #include <pcl_bsh/hierarchy/kept_scratch.h>
 #include <pcl_bsh/query/progress.h>
@@ -52,8 +53,8 @@ public:
     voxel_ = voxel;
     addObstacle(kAboveVoxels, nullptr);
     const float cut = roundUp(max_ / unit_ * (1.0 + kDoubleMargin));
+    const Bounds whole = boundVoxel(cut);
     if (max_ < kInfinity || rule_.mayStop()) {
-      const Bounds whole = boundVoxel(cut);
       if (double{whole.lower} * unit_ > max_) return forAll([this](std::uint32_t record) { setBeyond(record); });
       if (!mayEnter()) {
         const Interval interval = certain(whole.lower, whole.upper);
@@ -62,6 +63,9 @@ public:
     }
     a_voxel_ = &a_.voxel(voxel, found.work);
     const Node& root = b_.storage.top[0];
+    constexpr double stretch = 1.0 + 2 * kPoseStretch; // of what a pose does to a length
+    outdoing_ = Outdoing(extentBelow(root) * b_.frame(kAboveVoxels).unit / unit_ * stretch * stretch, whole.lower);
+    radius_unit_ = a_.frame(voxel).unit / unit_ / stretch;
     scratch_.roots.clear();
     for (std::uint32_t lane = 0; lane < root.count; ++lane)
       scratch_.roots.push_back({{&root, static_cast<std::uint16_t>(lane), 0, kAbove}, 0.0f});
@@ -130,10 +134,12 @@ private:
     if (scratch_.visits.size() == depth) scratch_.visits.emplace_back();
     DistanceVisit& visit = scratch_.visits[depth];
     visit.begin(node, around, cut, ++scratch_.stamp);
+    for (std::uint32_t lane = 0; outdoing_.isPossible() && lane < kLanes; ++lane)
+      visit.turn[lane] = outdoing_.turnOf(node.r[lane] * radius_unit_);
     for (const NearSphere& near : list) visit.rows.push_back(compare(visit, near.sphere, firstBits(node.count)));
     for (const DistanceRow& row : visit.rows) take(visit, row);
     for (const DistanceRow& row : visit.kept)
-      for (std::uint32_t bits = row.lanes & notAbove(row.lower, visit.cut); bits != 0; bits &= bits - 1) {
+      for (std::uint32_t bits = nearLanes(visit, row); bits != 0; bits &= bits - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
         visit.near[lane].push_back({row.sphere, orNone(row.lower[lane])});
       }
@@ -168,9 +174,17 @@ private:
     const DistanceObstacle& obstacle = obstacles_[sphere.obstacle];
     const Node& node = *sphere.node;
     const float radius = node.r[sphere.lane] * obstacle.frame.stretch_b;
-    DistanceRow row{sphere, lanes, {}};
-    boundDistances(own, obstacle, {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]}, radius, row.lower,
-                   visit.cut);
+    DistanceRow row{sphere, lanes, {}, 0};
+    const Point center = {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]};
+    if (outdoing_.isPossible()) {
+      float upper[kLanes];
+      std::fill(std::begin(upper), std::end(upper), std::numeric_limits<float>::infinity());
+      boundDistances(own, obstacle, center, radius, row.lower, upper);
+      lowerCuts(visit, upper);
+    }
+    else {
+      boundDistances(own, obstacle, center, radius, row.lower, visit.cut);
+    }
     found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
     if (radius <= obstacle.blunt_radius && obstacle.voxel) compareAsGiven(visit, own, row);
     return row;
@@ -192,16 +206,24 @@ private:
       const double lower = (between.low - radii - kFewDoubleRoundings * (between.high + radii)) / unit_;
       const double upper = (between.high + radii) * (1.0 + kFewDoubleRoundings) / unit_;
       if (!(std::isfinite(lower) && std::isfinite(upper))) continue;
+      row.as_given |= 1u << lane;
       row.lower[lane] = std::max(orNone(row.lower[lane]), roundDown(lower));
       visit.cut[lane] = std::min(visit.cut[lane], roundUp(upper));
     }
+  }
+
+  /// The children that a sphere of b may hold a nearest point for.
+  std::uint32_t nearLanes(const DistanceVisit& visit, const DistanceRow& row) const
+  {
+    const std::uint32_t near = row.lanes & notAbove(row.lower, visit.cut);
+    return outdoing_.isPossible() ? near & (notAbove(row.lower, visit.limit) | row.as_given) : near;
   }
 
   /// Keeps a sphere of b for those children that it matters to, or opens it: where it is larger than they are, and for
   /// leaves.
   void take(DistanceVisit& visit, const DistanceRow& row)
   {
-    const std::uint32_t near = row.lanes & notAbove(row.lower, visit.cut);
+    const std::uint32_t near = nearLanes(visit, row);
     if (near == 0) return;
     const std::uint32_t opening =
         isOpened(row.sphere) ? near & (visit.leaves | smallerLanes(visit, row.sphere, near & ~visit.leaves)) : 0;
@@ -350,6 +372,8 @@ private:
   const double unit_; ///< of bounds, in the clouds' unit
   const double max_;
   DistanceLeaf leaf_;
+  Outdoing outdoing_;              ///< of the voxel of a
+  double radius_unit_ = 0.0;       ///< at most what a length of 1 in it is, in the walk's unit
   std::uint32_t voxel_ = kNoVoxel; ///< of a
   const Voxel* a_voxel_ = nullptr;
   std::uint32_t steps_ = 0;

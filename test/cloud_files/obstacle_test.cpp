@@ -91,7 +91,7 @@ TEST(Obstacle, TakesMoreWhereThatWouldTakeTooManyBalls)
   const Mesh mesh = readMesh(folder.write("crate.off", crate));
   const UsualTolerance usual = usualTolerance(viewOf(mesh.vertices), mesh.triangles, 0.0);
   EXPECT_DOUBLE_EQ(usual.wanted, std::sqrt(12.0) / 10000);
-  EXPECT_NEAR(24 / (1.5 * std::sqrt(3.0) * usual.tolerance * usual.tolerance), 2e5 / 1.3, 1.0);
+  EXPECT_NEAR(24 / (1.5 * std::sqrt(3.0) * usual.tolerance * usual.tolerance), 5e4 / 1.3, 1.0);
   const auto far = folder.write("far.obj", "v 513449.7 5402650.2 300\nv 513449.71 5402650.2 300\n"
                                            "v 513449.7 5402650.2 300\nf 1 2 3\n");
   EXPECT_THAT(readObstacle(far, {}, 1e-10).remarks(), ElementsAre(HasSubstr("since one of 1e-11 would take")));
