@@ -2,8 +2,11 @@
 // Which points of a cloud collide with an obstacle, at a pose or along a path? From two files to a third, with reports.
 #include "cli/program.h"
 #include "cli/step.h"
+#include "collide/checks.h"
+#include "collide/loading.h"
 #include "collide/options.h"
 #include "collide/report.h"
+#include "collide/summary.h"
 #include "collide/surface_input.h"
 
 #include <pcl_bsh/collision/collide.h>
@@ -34,113 +37,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace pcl_bsh;
-using cli::Keep, cli::UsageError;
+using cli::Keep, cli::Scan;
 using Options = cli::CollideOptions;
 
 constexpr auto program = cli::collide_program;
-
-struct Scan {
-  pcl::PCLPointCloud2 cloud;
-  std::vector<Triangle> triangles; ///< where the input has faces: these are asked about
-  io::Viewpoint viewpoint = io::no_viewpoint;
-  io::LasHeaderPtr las;
-};
-
-/// The core names what is wrong with a request; users know it by the option.
-template <typename Ask>
-void requireAccepted(const char* option, const Ask& ask)
-{
-  try {
-    ask(SphereHierarchy{PointsView{}});
-  }
-  catch (const InvalidInput& error) {
-    throw std::invalid_argument(std::string(option) + ": " + error.advice());
-  }
-}
-
-void requireClashFormat(const fs::path& list)
-{
-  try {
-    io::requireClashFormat(list);
-  }
-  catch (const files::FileError& error) {
-    throw UsageError(std::string("--clashes: ") + error.what());
-  }
-}
-
-void requireDistancePage(const fs::path& page)
-{
-  if (page.extension() != ".html")
-    throw UsageError("--distance-page: " + page.string() + ": is no page for browsers: name a .html file");
-  files::requireWritable(page);
-}
-
-/// Checks all that can be checked before the first cloud is loaded.
-void check(const Options& options)
-{
-  options.files.requireApart();
-  requireAccepted("--clearance", [&](const SphereHierarchy& nothing) {
-    anyCollision({nothing}, {nothing}, {options.clearance, options.accuracy});
-  });
-  requireAccepted("--pose", [&](const SphereHierarchy& nothing) {
-    anyCollision({nothing}, {nothing, options.pose}, {});
-  });
-  if (!options.path.empty()) {
-    requireAccepted("--from", [&](const SphereHierarchy& nothing) {
-      anyCollision({nothing}, {nothing, options.path.front()}, {});
-    });
-    requireAccepted("--to", [&](const SphereHierarchy& nothing) {
-      anyCollision({nothing}, {nothing, options.path.back()}, {});
-    });
-  }
-  if (options.swept) {
-    requireAccepted("--swept", [&](const SphereHierarchy& nothing) {
-      TrajectoryRequest request;
-      request.swept = options.swept;
-      collideAlong({nothing}, nothing, {Eigen::Isometry3d::Identity()}, request);
-    });
-  }
-  io::requireWritableCloud(options.output);
-  if (options.report) files::requireWritable(*options.report);
-  for (const fs::path& list : options.clashes) {
-    requireClashFormat(list);
-    files::requireWritable(list);
-  }
-  if (options.distances && options.distances->page) requireDistancePage(*options.distances->page);
-}
-
-Scan loadInput(const Options& options, double& seconds)
-{
-  cli::Step step("Loading " + options.input.string());
-  Scan scan;
-  if (options.surface.vertices_only) {
-    scan.cloud = io::readCloud(options.input, &scan.viewpoint, &scan.las);
-  }
-  else {
-    io::Mesh mesh = io::readMesh(options.input, &scan.viewpoint, &scan.las);
-    scan.cloud = std::move(mesh.vertices);
-    scan.triangles = std::move(mesh.triangles);
-  }
-  const std::string triangles =
-      scan.triangles.empty() ? "" : ", " + std::to_string(scan.triangles.size()) + " triangles";
-  seconds += step.done(std::to_string(std::size_t{scan.cloud.width} * scan.cloud.height) + " points" + triangles);
-  return scan;
-}
-
-/// The balls of the input's surface; none where it is points.
-std::shared_ptr<const SurfaceCover> coverOf(const Options& options, const Scan& input, double& seconds)
-{
-  if (input.triangles.empty()) return nullptr;
-  cli::requireForSurface(options);
-  cli::Step step("Covering " + options.input.string());
-  auto cover = std::make_shared<const SurfaceCover>(cli::coverInput(
-      options.input, {input.cloud, input.triangles}, options.surface, options.clearance, [&](double fraction) {
-        step.share(fraction);
-        return true;
-      }));
-  seconds += step.done(std::to_string(cover->centers.size()) + " balls");
-  return cover;
-}
 
 /// From a query about the balls to what users asked: about the triangles.
 TrajectoryResult ofInput(const SurfaceCover* cover, TrajectoryResult found, cli::CollisionReport& report)
@@ -153,44 +53,6 @@ TrajectoryResult ofInput(const SurfaceCover* cover, TrajectoryResult found, cli:
   if (report.closest.pair) report.closest.pair->a = cover->triangles[report.closest.pair->a];
   if (report.path) report.path->table.clear(); // it counts balls
   return found;
-}
-
-/// Its cloud or, where the file has faces, its surface.
-io::Obstacle loadObstacle(const Options& options, double& seconds)
-{
-  cli::Step step("Loading " + options.obstacle.string());
-  io::Obstacle obstacle = io::readObstacle(options.obstacle, options.surface, options.clearance, [&](double fraction) {
-    step.share(fraction);
-    return true;
-  });
-  const pcl::PCLPointCloud2& points = obstacle.points();
-  std::string result = std::to_string(std::size_t{points.width} * points.height) + " points";
-  if (obstacle.isSurface()) {
-    result += ", " + std::to_string(obstacle.triangles()->size()) + " triangles in " +
-              std::to_string(obstacle.cover()->centers.size()) + " balls";
-  }
-  seconds += step.done(result);
-  return obstacle;
-}
-
-/// A field of sigmas is one of points.
-void requireLength(const io::Obstacle& obstacle, const fs::path& path, const Uncertainty& uncertainty)
-{
-  if (!obstacle.isSurface() || uncertainty.field.empty()) return;
-  throw std::invalid_argument("--obstacle-uncertainty: " + uncertainty.field + ": " + path.string() +
-                              " is a surface, which has no field: give a length, or --vertices-only");
-}
-
-SphereHierarchy build(const PointsView& points, const std::vector<pcl::PCLPointField>& fields, const fs::path& path,
-                      const Uncertainty& uncertainty, unsigned threads, double& seconds)
-{
-  const PointsView view = withUncertainty(points, fields, path.string(), uncertainty);
-  cli::Step step("Sorting " + path.string() + " into voxels");
-  HierarchyOptions options;
-  options.threads = threads;
-  SphereHierarchy hierarchy(view, options);
-  seconds += step.done(std::to_string(hierarchy.statistics().voxels) + " voxels");
-  return hierarchy;
 }
 
 void warnOf(const cli::CloudReport& cloud, const SphereHierarchy& hierarchy, double clearance,
@@ -268,64 +130,6 @@ void write(const Options& options, const Scan& input, const TrajectoryResult& fo
     cloud = select(options.distances ? cloud : input.cloud, viewOf(input.cloud), found.flags, options.keep);
   io::writeCloud(options.output, cloud, input.viewpoint, input.las);
   seconds += step.done(std::to_string(std::size_t{cloud.width} * cloud.height) + " points");
-}
-
-/// As sure as it is.
-std::string distanceText(const cli::CollisionReport& report)
-{
-  std::ostringstream text;
-  text << report.closest.distance;
-  if (!report.accuracy.isProven()) return text.str() + " without proof";
-  if (report.accuracy.isExact()) return text.str();
-  if (report.path) return text.str() + " within the tolerance";
-  text << " or less, certainly in [" << report.closest.interval.lower << ", " << report.closest.interval.upper << "]";
-  return text.str();
-}
-
-/// With the unit, where it is known.
-std::string distanceSummary(const io::DistanceReport& report)
-{
-  const auto length = [&](double value) {
-    std::ostringstream text;
-    if (std::isnan(value)) return std::string("unknown");
-    text << value << (report.question.unit.empty() ? "" : " ") << report.question.unit;
-    return text.str();
-  };
-  const DistanceStatistics& statistics = report.input.statistics;
-  return "; distances of " + std::to_string(statistics.count) + " points: mean " + length(statistics.mean) + ", RMS " +
-         length(statistics.rms) + ", median " + length(statistics.median) + ", greatest " + length(statistics.maximum) +
-         "; Hausdorff distance " + length(report.hausdorff);
-}
-
-void summarise(const Options& options, const cli::CollisionReport& report, const std::vector<Clash>& clashes,
-               const std::optional<io::DistanceReport>& distances)
-{
-  cli::warn(program, report.warnings);
-  std::ostream& out = options.files.summary();
-  out << report.colliding << " of " << report.input.points << (report.input_surface ? " triangles" : " points")
-      << " collide";
-  if (report.mayLeaveUndecided()) out << ", " << report.undecided << " are undecided";
-  if (report.widest_gap > 0) out << ", " << report.sparse << " are not scanned densely enough";
-  if (report.closest.pair) {
-    out << "; smallest distance " << distanceText(report) << ", between "
-        << (report.input_surface ? "triangle " : "point ") << report.closest.pair->a << " of the input and "
-        << (report.surface ? report.surface->partName() : "point") << ' ' << report.closest.pair->b
-        << " of the obstacle";
-  }
-  if (report.path) out << "; " << report.path->poses << " poses";
-  if (report.path && report.path->first_contact) {
-    out << "; first contact at pose "
-        << static_cast<double>(report.path->first_contact->pose) + report.path->first_contact->fraction;
-  }
-  if (!options.clashes.empty()) {
-    const auto resolved = std::count_if(clashes.begin(), clashes.end(),
-                                        [](const Clash& clash) { return clash.status == ClashStatus::resolved; });
-    out << "; " << clashes.size() - static_cast<std::size_t>(resolved) << " clashes";
-    if (options.previous) out << ", " << resolved << " resolved";
-  }
-  if (distances) out << distanceSummary(*distances);
-  if (report.surface) out << "; " << io::promiseOf(*report.surface, report.besideSurface());
-  out << "; wrote " << options.output.string() << '\n';
 }
 
 /// Of the density guard; none where it is not asked for, or the obstacle has no two places.
@@ -537,11 +341,11 @@ int collide(const Options& options)
   if (!cover && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
   const io::Obstacle obstacle = loadObstacle(options, report.seconds.load);
-  requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
-  const auto a = build(cover ? cover->view() : viewOf(input.cloud), input.cloud.fields, options.input,
-                       options.input_uncertainty, options.threads, report.seconds.build);
-  const auto b = build(obstacle.view(), obstacle.points().fields, options.obstacle, options.obstacle_uncertainty,
-                       options.threads, report.seconds.build);
+  cli::requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
+  const auto a = cli::build(cover ? cover->view() : viewOf(input.cloud), input.cloud.fields, options.input,
+                            options.input_uncertainty, options.threads, report.seconds.build);
+  const auto b = cli::build(obstacle.view(), obstacle.points().fields, options.obstacle, options.obstacle_uncertainty,
+                            options.threads, report.seconds.build);
   const SphereHierarchy vertices(obstacle.isSurface() ? viewOf(obstacle.points()) : PointsView());
   const SphereHierarchy& given = obstacle.isSurface() ? vertices : b; // whose coordinates may be coarse
   report.input = {options.input.string(), a.view().count, a.size()};

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "loading.h"
+#include "cli/step.h"
+#include "surface_input.h"
+
+#include <pcl_bsh/filters/uncertainty.h>
+
+#include <string>
+#include <utility>
+
+namespace pcl_bsh::cli {
+
+Scan loadInput(const CollideOptions& options, double& seconds)
+{
+  Step step("Loading " + options.input.string());
+  Scan scan;
+  if (options.surface.vertices_only) {
+    scan.cloud = io::readCloud(options.input, &scan.viewpoint, &scan.las);
+  }
+  else {
+    io::Mesh mesh = io::readMesh(options.input, &scan.viewpoint, &scan.las);
+    scan.cloud = std::move(mesh.vertices);
+    scan.triangles = std::move(mesh.triangles);
+  }
+  const std::string triangles =
+      scan.triangles.empty() ? "" : ", " + std::to_string(scan.triangles.size()) + " triangles";
+  seconds += step.done(std::to_string(std::size_t{scan.cloud.width} * scan.cloud.height) + " points" + triangles);
+  return scan;
+}
+
+std::shared_ptr<const SurfaceCover> coverOf(const CollideOptions& options, const Scan& input, double& seconds)
+{
+  if (input.triangles.empty()) return nullptr;
+  requireForSurface(options);
+  Step step("Covering " + options.input.string());
+  auto cover = std::make_shared<const SurfaceCover>(coverInput(
+      options.input, {input.cloud, input.triangles}, options.surface, options.clearance, [&](double fraction) {
+        step.share(fraction);
+        return true;
+      }));
+  seconds += step.done(std::to_string(cover->centers.size()) + " balls");
+  return cover;
+}
+
+io::Obstacle loadObstacle(const CollideOptions& options, double& seconds)
+{
+  Step step("Loading " + options.obstacle.string());
+  io::Obstacle obstacle = io::readObstacle(options.obstacle, options.surface, options.clearance, [&](double fraction) {
+    step.share(fraction);
+    return true;
+  });
+  const pcl::PCLPointCloud2& points = obstacle.points();
+  std::string result = std::to_string(std::size_t{points.width} * points.height) + " points";
+  if (obstacle.isSurface()) {
+    result += ", " + std::to_string(obstacle.triangles()->size()) + " triangles in " +
+              std::to_string(obstacle.cover()->centers.size()) + " balls";
+  }
+  seconds += step.done(result);
+  return obstacle;
+}
+
+void requireLength(const io::Obstacle& obstacle, const std::filesystem::path& path, const Uncertainty& uncertainty)
+{
+  if (!obstacle.isSurface() || uncertainty.field.empty()) return;
+  throw std::invalid_argument("--obstacle-uncertainty: " + uncertainty.field + ": " + path.string() +
+                              " is a surface, which has no field: give a length, or --vertices-only");
+}
+
+SphereHierarchy build(const PointsView& points, const std::vector<pcl::PCLPointField>& fields,
+                      const std::filesystem::path& path, const Uncertainty& uncertainty, unsigned threads,
+                      double& seconds)
+{
+  const PointsView view = withUncertainty(points, fields, path.string(), uncertainty);
+  Step step("Sorting " + path.string() + " into voxels");
+  HierarchyOptions options;
+  options.threads = threads;
+  SphereHierarchy hierarchy(view, options);
+  seconds += step.done(std::to_string(hierarchy.statistics().voxels) + " voxels");
+  return hierarchy;
+}
+
+} // namespace pcl_bsh::cli

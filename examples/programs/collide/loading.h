@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The clouds and surfaces of a question, and their hierarchies. Each step adds its seconds.
+#pragma once
+
+#include "options.h"
+
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+
+#include <memory>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+struct Scan {
+  pcl::PCLPointCloud2 cloud;
+  std::vector<Triangle> triangles; ///< where the input has faces: these are asked about
+  io::Viewpoint viewpoint = io::no_viewpoint;
+  io::LasHeaderPtr las;
+};
+
+/// @throws files::FileError
+Scan loadInput(const CollideOptions& options, double& seconds);
+
+/// The balls of the input's surface; none where it is points.
+/// @throws std::invalid_argument, files::FileError as requireForSurface() and coverInput() do
+std::shared_ptr<const SurfaceCover> coverOf(const CollideOptions& options, const Scan& input, double& seconds);
+
+/// Its cloud or, where the file has faces, its surface. @throws files::FileError
+io::Obstacle loadObstacle(const CollideOptions& options, double& seconds);
+
+/// A field of sigmas is one of points. @throws std::invalid_argument for one of a surface
+void requireLength(const io::Obstacle& obstacle, const std::filesystem::path& path, const Uncertainty& uncertainty);
+
+/// @throws InvalidInput as withUncertainty() does
+SphereHierarchy build(const PointsView& points, const std::vector<pcl::PCLPointField>& fields,
+                      const std::filesystem::path& path, const Uncertainty& uncertainty, unsigned threads,
+                      double& seconds);
+
+} // namespace pcl_bsh::cli
