@@ -17,7 +17,7 @@ namespace pcl_bsh::io {
 namespace {
 
 /// With a clearance, queries visit what is near: some 400 MB while the cover is made. Without one, as for distances,
-/// they may compare every point with every ball.
+/// they may compare points with many of the balls.
 constexpr double most_usual_balls = 7e6, most_without_clearance = 5e4;
 /// Of the best cover of a plane: what a cover takes beyond it.
 constexpr double usual_excess = 1.3;

@@ -4,8 +4,8 @@
 
 #include "options.h"
 
+#include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/filters/cloud_files/obstacle.h>
-#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
 #include <memory>
 #include <vector>

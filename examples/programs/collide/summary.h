@@ -4,8 +4,8 @@
 #include "options.h"
 #include "report.h"
 
+#include <pcl_bsh/filters/reports/clash_report.h>
 #include <pcl_bsh/filters/reports/distance_report.h>
-#include <pcl_bsh/report/clashes.h>
 
 #include <optional>
 #include <vector>
