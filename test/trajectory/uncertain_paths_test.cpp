@@ -251,17 +251,5 @@ TEST(UncertainPaths, ProgressNeverFalls)
   EXPECT_THROW(collideAlong({scan, run.scene.pose_a}, model, poses, request), Cancelled);
 }
 
-TEST(UncertainPaths, ManyMotionsRefuseThem)
-{
-  Cloud cloud({{0, 0, 0}});
-  const SphereHierarchy plain(cloud.view());
-  cloud.setUncertainties(0.1, {});
-  const SphereHierarchy uncertain(cloud.view());
-  MotionsRequest request;
-  request.tolerance = 0.1;
-  EXPECT_THROW(anyCollisionOnMotions({uncertain}, plain, Poses(2, identity), {{0, 1}}, request), InvalidInput);
-  EXPECT_THROW(anyCollisionOnMotions({plain}, uncertain, Poses(2, identity), {{0, 1}}, request), InvalidInput);
-}
-
 } // namespace
 } // namespace pcl_bsh
