@@ -53,8 +53,8 @@ public:
     voxel_ = voxel;
     addObstacle(kAboveVoxels, nullptr);
     const float cut = roundUp(max_ / unit_ * (1.0 + kDoubleMargin));
-    const Bounds whole = boundVoxel(cut);
     if (max_ < kInfinity || rule_.mayStop()) {
+      const Bounds whole = boundVoxel(cut);
       if (double{whole.lower} * unit_ > max_) return forAll([this](std::uint32_t record) { setBeyond(record); });
       if (!mayEnter()) {
         const Interval interval = certain(whole.lower, whole.upper);
@@ -64,7 +64,8 @@ public:
     a_voxel_ = &a_.voxel(voxel, found.work);
     const Node& root = b_.storage.top[0];
     constexpr double stretch = 1.0 + 2 * kPoseStretch; // of what a pose does to a length
-    outdoing_ = Outdoing(extentBelow(root) * b_.frame(kAboveVoxels).unit / unit_ * stretch * stretch, whole.lower);
+    if (const float least = leastDistance(obstacles_[kAbove], root); least > 0.0f)
+      outdoing_ = Outdoing(extentBelow(root) * b_.frame(kAboveVoxels).unit / unit_ * stretch * stretch, least);
     radius_unit_ = a_.frame(voxel).unit / unit_ / stretch;
     scratch_.roots.clear();
     for (std::uint32_t lane = 0; lane < root.count; ++lane)
@@ -92,13 +93,13 @@ private:
   {
     const DistanceObstacle& above = obstacles_[kAbove];
     ++found.work.volumes_carried;
-    Bounds bounds;
-    bounds.upper = cut;
+    Bounds bounds{std::numeric_limits<float>::infinity(), cut};
     boundBelow(above, b_.storage.top[0], a_.storage.voxels[voxel_].radius * above.frame.stretch_a, bounds);
     return bounds;
   }
 
-  void boundBelow(const DistanceObstacle& above, const Node& node, float radius, Bounds& bounds)
+  /// How near at least the voxel of a is to the children of a node above the voxels of b.
+  void boundChildren(const DistanceObstacle& above, const Node& node, float radius, float* lower, float* upper)
   {
     CarriedNode spheres;
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
@@ -107,11 +108,24 @@ private:
       spheres.z[lane] = node.z[lane];
       spheres.r[lane] = node.r[lane] * above.frame.stretch_b;
     }
+    boundDistances(spheres, above, {above.frame.g[0], above.frame.g[1], above.frame.g[2]}, radius, lower, upper);
+    found.work.node_pairs += node.count;
+  }
+
+  /// Of a point of the voxel of a from any of b, or less.
+  float leastDistance(const DistanceObstacle& above, const Node& root)
+  {
+    float lower[kLanes], upper[kLanes] = {}, least = std::numeric_limits<float>::infinity();
+    boundChildren(above, root, a_voxel_->radius * above.frame.stretch_a, lower, upper);
+    for (std::uint32_t lane = 0; lane < root.count; ++lane) least = std::min(least, orNone(lower[lane]));
+    return least;
+  }
+
+  void boundBelow(const DistanceObstacle& above, const Node& node, float radius, Bounds& bounds)
+  {
     float lower[kLanes], upper[kLanes];
     std::fill(std::begin(upper), std::end(upper), bounds.upper);
-    const auto& g = above.frame.g;
-    boundDistances(spheres, above, {g[0], g[1], g[2]}, radius, lower, upper);
-    found.work.node_pairs += node.count;
+    boundChildren(above, node, radius, lower, upper);
     for (std::uint32_t lane = 0; lane < node.count; ++lane) bounds.upper = std::min(bounds.upper, upper[lane]);
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
       if (lower[lane] > bounds.upper) continue;
@@ -176,14 +190,14 @@ private:
     const float radius = node.r[sphere.lane] * obstacle.frame.stretch_b;
     DistanceRow row{sphere, lanes, {}, 0};
     const Point center = {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]};
-    if (outdoing_.isPossible()) {
+    if (!outdoing_.isPossible()) {
+      boundDistances(own, obstacle, center, radius, row.lower, visit.cut);
+    }
+    else {
       float upper[kLanes];
       std::fill(std::begin(upper), std::end(upper), std::numeric_limits<float>::infinity());
       boundDistances(own, obstacle, center, radius, row.lower, upper);
       lowerCuts(visit, upper);
-    }
-    else {
-      boundDistances(own, obstacle, center, radius, row.lower, visit.cut);
     }
     found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
     if (radius <= obstacle.blunt_radius && obstacle.voxel) compareAsGiven(visit, own, row);
