@@ -63,13 +63,13 @@ public:
     }
     a_voxel_ = &a_.voxel(voxel, found.work);
     const Node& root = b_.storage.top[0];
-    constexpr double stretch = 1.0 + 2 * kPoseStretch; // of what a pose does to a length
+    constexpr double stretch = 1.0 + 2 * kPoseStretch;
     if (const float least = leastDistance(obstacles_[kAbove], root); least > 0.0f)
       outdoing_ = Outdoing(extentBelow(root) * b_.frame(kAboveVoxels).unit / unit_ * stretch * stretch, least);
     radius_unit_ = a_.frame(voxel).unit / unit_ / stretch;
     scratch_.roots.clear();
-    for (std::uint32_t lane = 0; lane < root.count; ++lane)
-      scratch_.roots.push_back({{&root, static_cast<std::uint16_t>(lane), 0, kAbove}, 0.0f});
+    const float least = query_.pairs.haveRadii() ? -std::numeric_limits<float>::infinity() : 0.0f;
+    for (std::uint16_t lane = 0; lane < root.count; ++lane) scratch_.roots.push_back({{&root, lane, 0, kAbove}, least});
     descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, scratch_.roots, cut, 0);
   }
 
