@@ -142,16 +142,22 @@ Side sideOf(const std::string& text)
   throw InvalidInput(Input::result, "side", "`" + text + "` is none", "give \"a\", \"b\" or \"both\"");
 }
 
-py::object collisionFlagsOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance,
-                            const py::object& pose_a, const py::object& pose_b, const std::string& side,
-                            const py::object& accuracy, unsigned threads, const py::object& spacings_of_b)
+FlagsRequest flagsRequest(double clearance, const std::string& side, const py::object& accuracy, unsigned threads)
 {
-  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
   FlagsRequest request;
   request.clearance = clearance;
   request.flagged = sideOf(side);
   request.threads = threads;
   request.accuracy = accuracyOf(accuracy);
+  return request;
+}
+
+py::object collisionFlagsOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance,
+                            const py::object& pose_a, const py::object& pose_b, const std::string& side,
+                            const py::object& accuracy, unsigned threads, const py::object& spacings_of_b)
+{
+  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  FlagsRequest request = flagsRequest(clearance, side, accuracy, threads);
   py::array_t<float> spacings;
   if (!spacings_of_b.is_none()) {
     spacings = floatsOf("spacings_of_b", spacings_of_b, b.view().count);
@@ -168,11 +174,7 @@ py::object collidingIndicesOf(const SphereHierarchy& a, const SphereHierarchy& b
                               const py::object& accuracy, unsigned threads)
 {
   const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
-  FlagsRequest request;
-  request.clearance = clearance;
-  request.flagged = sideOf(side);
-  request.threads = threads;
-  request.accuracy = accuracyOf(accuracy);
+  const FlagsRequest request = flagsRequest(clearance, side, accuracy, threads);
   CollidingIndices found = unlocked([&] { return collidingIndices(placed_a, placed_b, request); });
   const std::size_t undecided = found.undecided_a.size() + found.undecided_b.size();
   if (undecided > 0)

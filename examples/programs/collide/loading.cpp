@@ -4,6 +4,7 @@
 #include "surface_input.h"
 
 #include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/search/cloud_view.h>
 
 #include <string>
 #include <utility>
@@ -34,7 +35,7 @@ std::shared_ptr<const SurfaceCover> coverOf(const CollideOptions& options, const
   requireForSurface(options);
   Step step("Covering " + options.input.string());
   auto cover = std::make_shared<const SurfaceCover>(coverInput(
-      options.input, {input.cloud, input.triangles}, options.surface, options.clearance, [&](double fraction) {
+      options.input, viewOf(input.cloud), input.triangles, options.surface, options.clearance, [&](double fraction) {
         step.share(fraction);
         return true;
       }));

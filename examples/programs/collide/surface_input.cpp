@@ -30,17 +30,17 @@ std::vector<Value> keptOf(const std::vector<Value>& values, const std::vector<st
 
 } // namespace
 
-SurfaceCover coverInput(const std::filesystem::path& file, const io::Mesh& mesh, const io::SurfaceSettings& settings,
-                        double clearance, const std::function<bool(double)>& progress)
+SurfaceCover coverInput(const std::filesystem::path& file, const PointsView& vertices,
+                        const std::vector<Triangle>& triangles, const io::SurfaceSettings& settings, double clearance,
+                        const std::function<bool(double)>& progress)
 {
-  const PointsView vertices = viewOf(mesh.vertices);
   SurfaceRequest request;
   request.tolerance =
-      settings.tolerance ? *settings.tolerance : io::usualTolerance(vertices, mesh.triangles, clearance).tolerance;
+      settings.tolerance ? *settings.tolerance : io::usualTolerance(vertices, triangles, clearance).tolerance;
   request.triangles_apart = true;
   request.progress = progress;
   try {
-    return coverSurface(vertices, mesh.triangles, request);
+    return coverSurface(vertices, triangles, request);
   }
   catch (const InvalidInput& error) {
     throw files::FileError(file, error.wrong(), error.remedy());

@@ -15,8 +15,9 @@ namespace pcl_bsh::cli {
 /// The cover of a mesh, triangles apart, to the tolerance of the settings or the usual one for this clearance.
 /// @param progress as SurfaceRequest has it
 /// @throws files::FileError naming the file where it cannot be covered
-SurfaceCover coverInput(const std::filesystem::path& file, const io::Mesh& mesh, const io::SurfaceSettings& settings,
-                        double clearance, const std::function<bool(double)>& progress);
+SurfaceCover coverInput(const std::filesystem::path& file, const PointsView& vertices,
+                        const std::vector<Triangle>& triangles, const io::SurfaceSettings& settings, double clearance,
+                        const std::function<bool(double)>& progress);
 
 /// Refuses what is told of points alone: lists of clashes, distances of all, fields of sigmas; and outputs that cannot
 /// hold triangles. @throws std::invalid_argument, files::FileError
