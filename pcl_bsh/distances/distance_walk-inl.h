@@ -112,7 +112,8 @@ private:
     found.work.node_pairs += node.count;
   }
 
-  /// Of a point of the voxel of a from any of b, or less.
+  /// Of a point of the voxel of a from any of b, or less; and of the centre of any node of the voxel: its sphere holds
+  /// the box around its points, in which centres lie. The smallest sphere of the points would not do.
   float leastDistance(const DistanceObstacle& above, const Node& root)
   {
     float lower[kLanes], upper[kLanes] = {}, least = std::numeric_limits<float>::infinity();
