@@ -145,7 +145,9 @@ private:
     };
     if (pairs_.haveRadii()) {
       eachBallPairNear(frame, points, lanes, a, b, pairs_.clearance,
-                       [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, -1.0f); });
+                       [&](std::uint32_t i, std::uint32_t j, float squared) {
+                         return found(i, j, squared, ballHit(frame, pairs_.reach.least, a.radius(i), b.radius(j)));
+                       });
     }
     else {
       const DistanceBand band = acceptance_.band(frame);

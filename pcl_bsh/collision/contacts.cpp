@@ -96,8 +96,9 @@ private:
       return !going;
     };
     if (pairs_.haveRadii()) {
-      eachBallPairNear(frame, points, lanes, a, b, sink_.reach(),
-                       [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, -1.0f); });
+      eachBallPairNear(frame, points, lanes, a, b, sink_.reach(), [&](std::uint32_t i, std::uint32_t j, float squared) {
+        return found(i, j, squared, ballHit(frame, pairs_.reach.least, a.radius(i), b.radius(j)));
+      });
       return going;
     }
     const float hit = frame.band(pairs_.clearance).hit;

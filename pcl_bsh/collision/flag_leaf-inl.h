@@ -56,9 +56,10 @@ inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, const FlagVisit& vi
     ++work.leaf_pairs;
     const LeafRange other = candidate.leaf(*obstacle.voxel);
     eachBallPairNear(obstacle.frame, points, open, leaf, other, pairs.clearance,
-                     [&](std::uint32_t i, std::uint32_t j, float) {
-                       if ((hit >> i & 1) == 0 && pairs.collide({leaf.record(i), other.record(j)}, work))
-                         hit |= 1u << i;
+                     [&](std::uint32_t i, std::uint32_t j, float squared) {
+                       if ((hit >> i & 1) != 0) return false;
+                       const float surely = ballHit(obstacle.frame, pairs.reach.least, leaf.radius(i), other.radius(j));
+                       if (squared <= surely || pairs.collide({leaf.record(i), other.record(j)}, work)) hit |= 1u << i;
                        return hit == open;
                      });
   }

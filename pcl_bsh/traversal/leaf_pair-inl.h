@@ -100,6 +100,15 @@ void eachPairMaybeNearest(const RelativeFrame& frame, const LeafPoints& points, 
   if (lanes != 0) eachPairNotBeyond(points, lanes, b, miss, found);
 }
 
+/// Of two balls whose squared float distance is at most this, the gap is at most `least`, for certain.
+/// @param least as Reach has it; may be below 0
+HWY_INLINE float ballHit(const RelativeFrame& frame, double least, double radius_a, double radius_b)
+{
+  // Two sums, each of which errs by a rounding of its terms at most.
+  const double surely = least + radius_a + radius_b - kDoubleMargin * (std::abs(least) + radius_a + radius_b);
+  return surely > 0.0 ? frame.band(surely).hit : -1.0f;
+}
+
 /// The same as eachPairNotBeyond() where points have radii: pairs of balls that the clearance may join.
 template <class Found>
 bool eachBallPairNear(const RelativeFrame& frame, const LeafPoints& points, std::uint32_t lanes, const LeafRange& a,
