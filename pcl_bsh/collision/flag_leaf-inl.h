@@ -55,11 +55,10 @@ inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, const FlagVisit& vi
     if (hit == open) break;
     ++work.leaf_pairs;
     const LeafRange other = candidate.leaf(*obstacle.voxel);
-    eachBallPairNear(obstacle.frame, points, open, leaf, other, pairs.clearance,
-                     [&](std::uint32_t i, std::uint32_t j, float squared) {
-                       if ((hit >> i & 1) != 0) return false;
-                       const float surely = ballHit(obstacle.frame, pairs.reach.least, leaf.radius(i), other.radius(j));
-                       if (squared <= surely || pairs.collide({leaf.record(i), other.record(j)}, work)) hit |= 1u << i;
+    eachBallPairNear(obstacle.frame, points, open, leaf, other, pairs.clearance, pairs.reach.least,
+                     [&](std::uint32_t i, std::uint32_t j, float, bool surely) {
+                       if ((hit >> i & 1) == 0 && (surely || pairs.collide({leaf.record(i), other.record(j)}, work)))
+                         hit |= 1u << i;
                        return hit == open;
                      });
   }
