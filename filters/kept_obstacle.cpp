@@ -68,21 +68,31 @@ std::uint64_t checksumOf(const PointsView& view, const std::vector<pcl::PCLPoint
 
 } // namespace
 
-std::shared_ptr<const SurfaceCover> coverOf(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance)
+std::shared_ptr<const SurfaceCover> coverOf(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance,
+                                            bool polygons_apart)
 {
   if (!mesh) throw std::invalid_argument("obstacle surface is null: give a mesh without polygons if there is none");
   const PointsView vertices = viewOf(mesh->cloud);
   std::vector<Triangle> triangles;
   triangles.reserve(mesh->polygons.size());
+  std::vector<std::uint32_t> polygon_of; // a triangle
   std::vector<std::uint32_t> corners;
   for (const pcl::Vertices& polygon : mesh->polygons) {
     corners.clear(); // a negative index becomes one that is not there
     for (const pcl::index_t vertex : polygon.vertices) corners.push_back(static_cast<std::uint32_t>(vertex));
     addTriangles(vertices, corners.data(), corners.size(), triangles);
+    if (polygons_apart)
+      polygon_of.resize(triangles.size(), static_cast<std::uint32_t>(&polygon - mesh->polygons.data()));
   }
   SurfaceRequest request;
   request.tolerance = tolerance;
-  return std::make_shared<SurfaceCover>(coverSurface(vertices, triangles, request));
+  request.triangles_apart = polygons_apart;
+  auto cover = std::make_shared<SurfaceCover>(coverSurface(vertices, triangles, request));
+  if (polygons_apart) {
+    for (std::uint32_t& part : cover->triangles) part = polygon_of[part];
+    cover->triangle_count = mesh->polygons.size();
+  }
+  return cover;
 }
 
 void KeptObstacle::setSurface(const std::shared_ptr<const SurfaceCover>& cover)

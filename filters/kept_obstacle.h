@@ -34,7 +34,10 @@ inline std::vector<pcl::PCLPointField> fieldsOfRecords(const pcl::PCLPointCloud2
 
 /// Covers a mesh of PCL, whose polygons may have any number of corners.
 /// @throws std::invalid_argument when the pointer is null, or as viewOf(), addTriangles() and coverSurface() do
-std::shared_ptr<const SurfaceCover> coverOf(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance);
+/// @param polygons_apart for a mesh that is asked about: each ball holds parts of one polygon, and what the cover calls
+///   its triangles are the mesh's polygons
+std::shared_ptr<const SurfaceCover> coverOf(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance,
+                                            bool polygons_apart = false);
 
 /// The cloud's points must not change from setCloud() on: every use compares a checksum of their coordinates and
 /// uncertainties. That takes some 20 instructions a point, a tenth or less of what building takes.

@@ -7,10 +7,12 @@
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
+#include <pcl_bsh/surface/triangle_answers.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <pcl/console/print.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -59,7 +61,7 @@ void ObstacleQuery::warnOfCoarse(const char* cloud, const SphereHierarchy& hiera
            cloud, spacing, clearance_);
 }
 
-TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& request)
+TrajectoryResult ObstacleQuery::run(const PointsView& input, const SurfaceCover* surface, TrajectoryRequest& request)
 {
   if (density_guard_) {
     throw InvalidInput(Input::density, "density guard", "knows flags at one pose, neither paths nor distances",
@@ -84,25 +86,26 @@ TrajectoryResult ObstacleQuery::run(const PointsView& input, TrajectoryRequest& 
   TrajectoryResult result =
       collideAlong({hierarchy}, obstacle, trajectory_ ? *trajectory_ : std::vector{pose_}, request);
   if (obstacle_.surface()) tellOfSurface(result);
+  if (surface) result = ofTriangles(*surface, std::move(result));
   work_ = result.work;
   undecided_ = result.undecided;
   sparse_ = 0;
   return result;
 }
 
-TrajectoryResult ObstacleQuery::alongTrajectory(const PointsView& input)
+TrajectoryResult ObstacleQuery::alongTrajectory(const PointsView& input, const SurfaceCover* surface)
 {
   TrajectoryRequest request;
   request.distances = request.first_poses = request.closest_poses = true;
   request.pose_summaries = swept_ == 0.0;
-  return run(input, request);
+  return run(input, surface, request);
 }
 
-std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input)
+std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input, const SurfaceCover* surface)
 {
   if (trajectory_) {
     TrajectoryRequest request;
-    return run(input, request).flags;
+    return run(input, surface, request).flags;
   }
   const SphereHierarchy& obstacle = obstacle_.hierarchy(threads_);
   HierarchyOptions options;
@@ -117,12 +120,19 @@ std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input)
   request.flagged = Side::a;
   request.threads = threads_;
   request.accuracy = accuracy_;
+  if (surface && density_guard_) {
+    throw InvalidInput(Input::density, "density guard", "is about points, and the input is a surface",
+                       "call setDensityGuard(false)");
+  }
   request.spacings_of_b = obstacleSpacings(obstacle);
   FlagsResult result = pcl_bsh::collisionFlags({hierarchy}, {obstacle, pose_}, request);
   work_ = result.work;
   undecided_ = result.undecided_a + result.sparse_a;
   sparse_ = result.sparse_a;
-  return std::move(result.a);
+  if (!surface) return std::move(result.a);
+  std::vector<std::uint8_t> flags = triangleVerdicts(*surface, result.a);
+  undecided_ = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flagOf(Verdict::undecided)));
+  return flags;
 }
 
 void ObstacleQuery::select(const PointsView& input, bool negative, pcl::Indices& kept, pcl::Indices* removed)

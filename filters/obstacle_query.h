@@ -159,12 +159,13 @@ protected:
   ObstacleQuery& operator=(ObstacleQuery&&) = default;
 
   /// One per record of the input: 1 collides, 2 is undecided, 0 is free.
+  /// @param surface null, or what the input's records are the balls of; then there is one per triangle instead
   /// @throws std::invalid_argument when a setting is missing or not what its declaration asks for.
-  std::vector<std::uint8_t> collisionFlags(const PointsView& input);
+  std::vector<std::uint8_t> collisionFlags(const PointsView& input, const SurfaceCover* surface = nullptr);
 
-  /// Everything that is known of each point along the trajectory, or at the one pose.
+  /// Everything that is known of each point (of a surface: each triangle) along the trajectory, or at the one pose.
   /// Throws as collisionFlags() does.
-  TrajectoryResult alongTrajectory(const PointsView& input);
+  TrajectoryResult alongTrajectory(const PointsView& input, const SurfaceCover* surface = nullptr);
 
   /// Parts the input's points, in their order, into those that are free (if `negative`: that are not) and the rest.
   /// Points that are not finite are always of the rest. Throws as collisionFlags() does.
@@ -180,7 +181,7 @@ protected:
 private:
   void warnOfCoarse(const char* cloud, const SphereHierarchy& hierarchy);
   const float* obstacleSpacings(const SphereHierarchy& obstacle);
-  TrajectoryResult run(const PointsView& input, TrajectoryRequest& request);
+  TrajectoryResult run(const PointsView& input, const SurfaceCover* surface, TrajectoryRequest& request);
 
   KeptObstacle obstacle_;
   Uncertainty input_uncertainty_;

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/surface_distances.h>
 
+#include <pcl_bsh/surface/triangle_answers.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace pcl_bsh {
 namespace {
@@ -19,6 +23,11 @@ void widen(double tolerance, Interval& interval)
   raise(interval.lower);
   raise(interval.upper);
   interval.upper = std::nextafter(interval.upper + tolerance, std::numeric_limits<double>::infinity());
+}
+
+std::size_t count(const std::vector<std::uint8_t>& flags, Verdict verdict)
+{
+  return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flagOf(verdict)));
 }
 
 } // namespace
@@ -47,6 +56,28 @@ void tellOfSurface(TrajectoryResult& found)
 {
   for (float& distance : found.distance) raise(distance);
   for (PoseSummary& pose : found.poses) raise(pose.distance);
+}
+
+TrajectoryResult ofTriangles(const SurfaceCover& cover, TrajectoryResult balls)
+{
+  TrajectoryResult found;
+  found.flags = triangleVerdicts(cover, balls.flags);
+  found.colliding = count(found.flags, Verdict::colliding);
+  found.undecided = count(found.flags, Verdict::undecided);
+  if (!balls.distance.empty()) {
+    const std::vector<std::uint32_t> nearest = nearestBalls(cover, balls.distance, balls.closest_pose);
+    found.distance = ofBalls(nearest, balls.distance, std::numeric_limits<float>::quiet_NaN());
+    for (float& distance : found.distance) raise(distance);
+    if (!balls.closest_pose.empty()) found.closest_pose = ofBalls(nearest, balls.closest_pose, -1);
+    if (!balls.closest_point.empty())
+      found.closest_point = ofBalls(nearest, balls.closest_point, TrajectoryResult::kNoPoint);
+  }
+  if (!balls.first_pose.empty()) found.first_pose = triangleFirstPoses(cover, balls.first_pose);
+  if (!balls.certain_pose.empty()) found.certain_pose = triangleFirstPoses(cover, balls.certain_pose);
+  found.first_contact = balls.first_contact;
+  found.certain_contact = balls.certain_contact;
+  found.work = balls.work;
+  return found;
 }
 
 } // namespace pcl_bsh

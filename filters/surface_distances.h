@@ -9,6 +9,7 @@
 #include <pcl_bsh/collision/closest_pair.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/surface/surface_cover.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 PCL_BSH_EXPORT_BEGIN
@@ -19,6 +20,11 @@ void tellOfSurface(double tolerance, DistanceResult& found);
 void tellOfSurface(double tolerance, PointDistances& found);
 void tellOfSurface(double tolerance, SymmetricDistances& found); ///< of b, too, which is the surface
 void tellOfSurface(TrajectoryResult& found);
+
+/// From a result about the balls of a surface that is asked about to one about its triangles: flags, counts, distances,
+/// poses. Summaries of poses, which count balls, are left out.
+/// @throws std::invalid_argument as triangleVerdicts() does
+TrajectoryResult ofTriangles(const SurfaceCover& cover, TrajectoryResult balls);
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

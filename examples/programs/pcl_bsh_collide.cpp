@@ -46,7 +46,7 @@ constexpr auto program = cli::collide_program;
 TrajectoryResult ofInput(const SurfaceCover* cover, TrajectoryResult found, cli::CollisionReport& report)
 {
   if (!cover) return found;
-  found = cli::ofTriangles(*cover, std::move(found));
+  found = ofTriangles(*cover, std::move(found));
   report.input_surface = cover->tolerance;
   report.undecided = found.undecided;
   tellOfSurface(cover->tolerance, report.closest);
@@ -337,7 +337,7 @@ int collide(const Options& options)
   report.obstacle_uncertainty = options.obstacle_uncertainty;
 
   const Scan input = loadInput(options, report.seconds.load);
-  const std::shared_ptr<const SurfaceCover> cover = coverOf(options, input, report.seconds.load);
+  const std::shared_ptr<const SurfaceCover> cover = coverOf(options, input, report.seconds.load, report.warnings);
   if (!cover && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
   const io::Obstacle obstacle = loadObstacle(options, report.seconds.load);

@@ -308,12 +308,13 @@ void requireWritableMesh(const std::filesystem::path& path)
   files::requireWritable(path);
 }
 
-void writeMesh(const std::filesystem::path& path, const Mesh& mesh, const std::vector<FaceField>& fields,
-               const Viewpoint& viewpoint)
+void writeMesh(const std::filesystem::path& path, const pcl::PCLPointCloud2& vertices,
+               const std::vector<Triangle>& triangles, const std::vector<FaceField>& fields, const Viewpoint& viewpoint)
 {
   requireWritableMesh(path);
-  naming(path,
-         [&] { files::replaceFile(path, [&](std::ostream& out) { writePlyMesh(out, mesh, fields, viewpoint); }); });
+  naming(path, [&] {
+    files::replaceFile(path, [&](std::ostream& out) { writePlyMesh(out, vertices, triangles, fields, viewpoint); });
+  });
 }
 
 } // namespace pcl_bsh::io

@@ -104,7 +104,8 @@ struct FaceField {
 /// Writes a mesh as .ply (binary): vertices with all their fields, and triangles with properties beside their corners.
 /// Otherwise as writeCloud(). @pre one value per triangle
 /// @throws files::FileError as writeCloud() does, and for a name of another format
-void writeMesh(const std::filesystem::path& path, const Mesh& mesh, const std::vector<FaceField>& fields = {},
+void writeMesh(const std::filesystem::path& path, const pcl::PCLPointCloud2& vertices,
+               const std::vector<Triangle>& triangles, const std::vector<FaceField>& fields = {},
                const Viewpoint& viewpoint = no_viewpoint);
 
 /// Fails early where writeMesh() would for the path's sake. @throws files::FileError

@@ -74,32 +74,40 @@ UsualTolerance usualTolerance(const PointsView& vertices, const std::vector<Tria
   return usual;
 }
 
-Obstacle::Obstacle(CloudPtr vertices, const TrianglesPtr& triangles, const SurfaceSettings& settings, double clearance,
-                   const std::function<bool(double)>& progress)
-: points_(std::move(vertices))
+SurfaceCover coverMesh(const PointsView& vertices, const std::vector<Triangle>& triangles,
+                       const SurfaceSettings& settings, double clearance, bool triangles_apart,
+                       const std::function<bool(double)>& progress, std::vector<std::string>& remarks)
 {
-  if (settings.vertices_only || !triangles || triangles->empty()) return;
-  const PointsView view = viewOf(*points_);
   SurfaceRequest request;
+  request.triangles_apart = triangles_apart;
   request.progress = progress;
   if (settings.tolerance) {
     request.tolerance = *settings.tolerance;
   }
   else {
-    const UsualTolerance usual = usualTolerance(view, *triangles, clearance);
+    const UsualTolerance usual = usualTolerance(vertices, triangles, clearance);
     request.tolerance = usual.tolerance;
     if (usual.tolerance > usual.wanted) {
       std::ostringstream remark;
       remark << "its surface is taken to a tolerance of " << usual.tolerance << ", since one of " << usual.wanted
              << " would take too many balls, or is too fine for its coordinates: give a surface tolerance to choose";
-      remarks_.push_back(remark.str());
+      remarks.push_back(remark.str());
     }
   }
-  if (const std::size_t loose = looseVertices(view, *triangles); loose > 0) {
-    remarks_.push_back(std::to_string(loose) +
-                       " of its vertices belong to no face: they are no part of the surface that is compared");
+  if (const std::size_t loose = looseVertices(vertices, triangles); loose > 0) {
+    remarks.push_back(std::to_string(loose) +
+                      " of its vertices belong to no face: they are no part of the surface that is compared");
   }
-  cover_ = std::make_shared<SurfaceCover>(coverSurface(view, *triangles, request));
+  return coverSurface(vertices, triangles, request);
+}
+
+Obstacle::Obstacle(CloudPtr vertices, const TrianglesPtr& triangles, const SurfaceSettings& settings, double clearance,
+                   const std::function<bool(double)>& progress)
+: points_(std::move(vertices))
+{
+  if (settings.vertices_only || !triangles || triangles->empty()) return;
+  cover_ = std::make_shared<SurfaceCover>(
+      coverMesh(viewOf(*points_), *triangles, settings, clearance, false, progress, remarks_));
   triangles_ = triangles;
 }
 

@@ -48,6 +48,16 @@ struct UsualTolerance {
 
 UsualTolerance usualTolerance(const PointsView& vertices, const std::vector<Triangle>& triangles, double clearance);
 
+/// Covers a mesh to the tolerance of the settings, or to the usual one.
+/// @param clearance of the query, for the usual tolerance
+/// @param triangles_apart for a mesh that is asked about (SurfaceRequest::triangles_apart)
+/// @param progress as SurfaceRequest has it
+/// @param remarks what users should know of the cover is appended, a line each, without the file's name
+/// @throws InvalidInput as coverSurface() does. Cancelled
+SurfaceCover coverMesh(const PointsView& vertices, const std::vector<Triangle>& triangles,
+                       const SurfaceSettings& settings, double clearance, bool triangles_apart,
+                       const std::function<bool(double)>& progress, std::vector<std::string>& remarks);
+
 /// Shares what it holds with its copies.
 class Obstacle {
 public:

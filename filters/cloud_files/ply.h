@@ -27,7 +27,7 @@ void writePly(std::ostream& out, const pcl::PCLPointCloud2& cloud, const Viewpoi
 
 /// The same with an element `face` of triangles, whose fields are properties beside the list `vertex_indices`.
 /// @pre one value per triangle
-void writePlyMesh(std::ostream& out, const Mesh& mesh, const std::vector<FaceField>& fields,
-                  const Viewpoint& viewpoint);
+void writePlyMesh(std::ostream& out, const pcl::PCLPointCloud2& vertices, const std::vector<Triangle>& triangles,
+                  const std::vector<FaceField>& fields, const Viewpoint& viewpoint);
 
 } // namespace pcl_bsh::io

@@ -101,10 +101,10 @@ void writePly(std::ostream& out, const pcl::PCLPointCloud2& cloud, const Viewpoi
   write(out, cloud, "", viewpoint, [] {});
 }
 
-void writePlyMesh(std::ostream& out, const Mesh& mesh, const std::vector<FaceField>& fields, const Viewpoint& viewpoint)
+void writePlyMesh(std::ostream& out, const pcl::PCLPointCloud2& vertices, const std::vector<Triangle>& triangles,
+                  const std::vector<FaceField>& fields, const Viewpoint& viewpoint)
 {
-  write(out, mesh.vertices, facesHeader(mesh.triangles.size(), fields), viewpoint,
-        [&] { writeFaces(out, mesh.triangles, fields); });
+  write(out, vertices, facesHeader(triangles.size(), fields), viewpoint, [&] { writeFaces(out, triangles, fields); });
 }
 
 } // namespace pcl_bsh::io

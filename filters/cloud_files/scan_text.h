@@ -10,6 +10,7 @@
 #include <optional>
 #include <ostream>
 #include <string_view>
+#include <vector>
 
 namespace pcl_bsh::io {
 
@@ -38,6 +39,9 @@ pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::o
 
 /// Only the fields that parsePtx() makes; looks how many scans there are.
 pcl::PCLPointCloud2 parsePtxHeader(std::string_view file, std::optional<std::size_t> scan = {});
+
+/// The fields that scans have a place for: x y z, intensity, rgb, columns that readers number; of PTX also `scan`.
+std::vector<pcl::PCLPointField> fieldsForScans(const pcl::PCLPointCloud2& cloud, bool several_scans);
 
 /// A line with the number of points, then a line for each: x y z, intensity, r g b, where the cloud has them; columns
 /// that parsePts() could not name, as it numbers them. Points without finite coordinates are left out.

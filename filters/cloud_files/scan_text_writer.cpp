@@ -142,6 +142,18 @@ std::vector<ScanRange> scansOf(const pcl::PCLPointCloud2& cloud, const std::opti
 
 } // namespace
 
+Fields fieldsForScans(const pcl::PCLPointCloud2& cloud, bool several_scans)
+{
+  Fields held;
+  for (const pcl::PCLPointField& field : cloud.fields) {
+    const bool coordinate = field.name == "x" || field.name == "y" || field.name == "z";
+    if (coordinate || field.name == "intensity" || field.name == "rgb" || field.name.starts_with("column_") ||
+        (several_scans && field.name == "scan"))
+      held.push_back(field);
+  }
+  return held;
+}
+
 void writePts(std::ostream& out, const pcl::PCLPointCloud2& cloud)
 {
   const LineFields fields(cloud, ".pts", false);

@@ -8,7 +8,10 @@
 #include <pcl/PCLPointCloud2.h>
 
 #include <array>
+#include <cstdint>
 #include <memory>
+#include <string>
+#include <variant>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -18,6 +21,12 @@ struct LasHeader;
 
 namespace pcl_bsh::pipeline {
 
+/// What was found out about each triangle of a mesh.
+struct FaceProperty {
+  std::string name;
+  std::variant<std::vector<std::uint8_t>, std::vector<std::int32_t>, std::vector<float>> values; ///< one per triangle
+};
+
 /// A cloud with all its fields, and what its file said beside them: where the sensor stood, tx ty tz qw qx qy qz, as a
 /// PCD file has it; of a LAS file all but its points (scale, offset, coordinate system), which writers.las keeps; of a
 /// mesh its triangles. A stage that removes, adds or reorders records leaves the triangles out, and the pipeline warns.
@@ -26,6 +35,7 @@ struct StageCloud {
   std::array<float, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};
   std::shared_ptr<const io::LasHeader> las_header = nullptr;
   std::shared_ptr<const std::vector<Triangle>> triangles = nullptr; ///< by records of `cloud`; null where it is no mesh
+  std::vector<FaceProperty> face_properties = {};                   ///< empty where it is no mesh
 };
 
 /// Several stages may read one cloud, so it does not change.

@@ -138,14 +138,14 @@ private:
     if (lanes == 0) return std::nullopt;
 
     std::optional<PointPair> witness;
-    const auto found = [&](std::uint32_t i, std::uint32_t j, float squared, float hit) {
+    const auto found = [&](std::uint32_t i, std::uint32_t j, bool surely) {
       const PointPair candidate{a.record(i), b.record(j)};
-      if (squared <= hit || pairs_.collide(candidate, walk_.work)) witness = candidate;
+      if (surely || pairs_.collide(candidate, walk_.work)) witness = candidate;
       return witness.has_value();
     };
     if (pairs_.haveRadii()) {
-      eachBallPairNear(frame, points, lanes, a, b, pairs_.clearance,
-                       [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, -1.0f); });
+      eachBallPairNear(frame, points, lanes, a, b, pairs_.clearance, pairs_.reach.least,
+                       [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
     }
     else {
       const DistanceBand band = acceptance_.band(frame);
@@ -154,7 +154,7 @@ private:
       nearestSquared(points, b.x(), b.y(), b.z(), firstBits(b.count), nearest);
       eachPairNotBeyond(
           points, lanes & ~above(nearest, band.miss), b, band.miss,
-          [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, band.hit); });
+          [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared <= band.hit); });
     }
     return witness;
   }

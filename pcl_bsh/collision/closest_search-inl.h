@@ -184,7 +184,8 @@ private:
       return false;
     };
     if (pairs_.haveRadii()) {
-      eachBallPairNear(frame, points, firstBits(a.count), a, b, best_.to_beat, found);
+      eachBallPairNear(frame, points, firstBits(a.count), a, b, best_.to_beat, -kInfinity,
+                       [&](std::uint32_t i, std::uint32_t j, float squared, bool) { return found(i, j, squared); });
       return;
     }
     eachPairMaybeNearest(frame, points, a, b, unit, clearanceToBeat(), found);

@@ -90,14 +90,14 @@ private:
     if (lanes == 0) return true;
 
     bool going = true;
-    const auto found = [&](std::uint32_t i, std::uint32_t j, float squared, float hit) {
-      if (squared <= hit || pairs_.collide({a.record(i), b.record(j)}, walk_.work))
+    const auto found = [&](std::uint32_t i, std::uint32_t j, bool surely) {
+      if (surely || pairs_.collide({a.record(i), b.record(j)}, walk_.work))
         going = addAll({a.voxel, a.begin + i, places_a}, {b.voxel, b.begin + j, places_b});
       return !going;
     };
     if (pairs_.haveRadii()) {
-      eachBallPairNear(frame, points, lanes, a, b, sink_.reach(),
-                       [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared, -1.0f); });
+      eachBallPairNear(frame, points, lanes, a, b, sink_.reach(), pairs_.reach.least,
+                       [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
       return going;
     }
     const float hit = frame.band(pairs_.clearance).hit;
@@ -108,7 +108,7 @@ private:
         reach = sink_.reach();
         miss = frame.band(reach).miss;
       }
-      return !(squared > miss) && found(i, j, squared, hit);
+      return !(squared > miss) && found(i, j, squared <= hit);
     });
     return going;
   }

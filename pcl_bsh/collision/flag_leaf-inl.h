@@ -55,9 +55,9 @@ inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, const FlagVisit& vi
     if (hit == open) break;
     ++work.leaf_pairs;
     const LeafRange other = candidate.leaf(*obstacle.voxel);
-    eachBallPairNear(obstacle.frame, points, open, leaf, other, pairs.clearance,
-                     [&](std::uint32_t i, std::uint32_t j, float) {
-                       if ((hit >> i & 1) == 0 && pairs.collide({leaf.record(i), other.record(j)}, work))
+    eachBallPairNear(obstacle.frame, points, open, leaf, other, pairs.clearance, pairs.reach.least,
+                     [&](std::uint32_t i, std::uint32_t j, float, bool surely) {
+                       if ((hit >> i & 1) == 0 && (surely || pairs.collide({leaf.record(i), other.record(j)}, work)))
                          hit |= 1u << i;
                        return hit == open;
                      });

@@ -217,7 +217,8 @@ private:
       return isSettled();
     };
     if (pairs_.haveRadii()) {
-      eachBallPairNear(frame, points, firstBits(a.count), a, b, asked, found);
+      eachBallPairNear(frame, points, firstBits(a.count), a, b, asked, -kInfinity,
+                       [&](std::uint32_t i, std::uint32_t j, float squared, bool) { return found(i, j, squared); });
       return;
     }
     eachPairMaybeNearest(frame, points, a, b, walk_.b.frame(open.pair.b.space).unit, std::max(asked, 0.0), found);

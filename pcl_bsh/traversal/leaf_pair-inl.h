@@ -41,6 +41,10 @@ struct LeafRange {
   const float* z() const { return voxel->z() + begin; }
   std::uint32_t record(std::uint32_t i) const { return voxel->records()[begin + i]; }
   double radius(std::uint32_t i) const { return voxel->radii ? voxel->radii[begin + i] : 0.0; }
+  double smallestRadius() const
+  {
+    return voxel->radii ? *std::min_element(voxel->radii + begin, voxel->radii + begin + count) : 0.0;
+  }
   double largestRadius() const
   {
     return voxel->radii ? *std::max_element(voxel->radii + begin, voxel->radii + begin + count) : 0.0;
@@ -100,18 +104,40 @@ void eachPairMaybeNearest(const RelativeFrame& frame, const LeafPoints& points, 
   if (lanes != 0) eachPairNotBeyond(points, lanes, b, miss, found);
 }
 
-/// The same as eachPairNotBeyond() where points have radii: pairs of balls that the clearance may join.
+/// Of two balls whose squared float distance is at most this, the gap is at most `least`, for certain.
+/// @param least as Reach has it; may be below 0
+HWY_INLINE float ballHit(const RelativeFrame& frame, double least, double radius_a, double radius_b)
+{
+  // Two sums, each of which errs by a rounding of its terms at most.
+  const double surely = least + radius_a + radius_b - kDoubleMargin * (std::abs(least) + radius_a + radius_b);
+  return surely > 0.0 ? frame.band(surely).hit : -1.0f;
+}
+
+/// The same as eachPairNotBeyond() where points have radii: pairs of balls that the clearance may join. Calls found(i,
+/// j, squared, surely), where `surely` says that their gap is at most `least`, for certain.
+/// @param least as Reach has it; minus infinity where nobody asks
 template <class Found>
 bool eachBallPairNear(const RelativeFrame& frame, const LeafPoints& points, std::uint32_t lanes, const LeafRange& a,
-                      const LeafRange& b, double clearance, const Found& found)
+                      const LeafRange& b, double clearance, double least, const Found& found)
 {
+  const auto farthest = [&](double radius_a, double radius_b) {
+    const float reach = std::max(0.0f, frame.pruneReach(clearance + radius_a + radius_b));
+    return reach * reach * (1.0f + kSphereMargin);
+  };
+  // What the largest and the smallest balls say of all decides most pairs.
+  const float farthest_of_all = farthest(a.largestRadius(), b.largestRadius());
+  const float surely_of_all = ballHit(frame, least, a.smallestRadius(), b.smallestRadius());
   alignas(64) float squared[kLeafPoints];
   for (std::uint32_t j = 0; j < b.count; ++j) {
     squaredDistances(points, b.x()[j], b.y()[j], b.z()[j], squared);
-    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+    for (std::uint32_t bits = lanes & ~above(squared, farthest_of_all); bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      const float reach = std::max(0.0f, frame.pruneReach(clearance + a.radius(i) + b.radius(j)));
-      if (!(squared[i] > reach * reach * (1.0f + kSphereMargin)) && found(i, j, squared[i])) return true;
+      bool surely = squared[i] <= surely_of_all;
+      if (!surely) {
+        if (squared[i] > farthest(a.radius(i), b.radius(j))) continue;
+        surely = squared[i] <= ballHit(frame, least, a.radius(i), b.radius(j));
+      }
+      if (found(i, j, squared[i], surely)) return true;
     }
   }
   return false;

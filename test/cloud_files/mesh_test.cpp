@@ -237,8 +237,8 @@ TEST(Mesh, WrittenWithValuesOfTriangles)
   const std::vector<float> distance = {0.5F, NAN, -1.0F};
   const std::vector<std::int32_t> pose = {-1, 70000, 0};
   const fs::path path = folder / "b.ply";
-  writeMesh(path, mesh, {{"collision", &collision}, {"distance", &distance}, {"first_pose", &pose}},
-            {1, 2, 3, 1, 0, 0, 0});
+  writeMesh(path, mesh.vertices, mesh.triangles,
+            {{"collision", &collision}, {"distance", &distance}, {"first_pose", &pose}}, {1, 2, 3, 1, 0, 0, 0});
   const Mesh same = readMesh(path);
   EXPECT_EQ(same.triangles, mesh.triangles);
   EXPECT_EQ(same.vertices.data, mesh.vertices.data);
@@ -250,7 +250,7 @@ TEST(Mesh, WrittenWithValuesOfTriangles)
   EXPECT_THAT(bytes, HasSubstr("element face 3\nproperty list uchar int vertex_indices\nproperty uchar collision\n"
                                "property float distance\nproperty int first_pose\nelement camera 1\n"));
   mesh.triangles.clear();
-  writeMesh(path, mesh);
+  writeMesh(path, mesh.vertices, mesh.triangles);
   EXPECT_TRUE(readMesh(path).triangles.empty());
   try {
     requireWritableMesh("b.obj");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/collision/contacts.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 
@@ -105,6 +106,58 @@ TEST(Contacts, NormalsPointFromTheOtherToTheFirst)
   ASSERT_EQ(result.contacts.size(), 1u);
   EXPECT_EQ(result.contacts[0].distance, 0.5);
   EXPECT_EQ(result.contacts[0].normal, Eigen::Vector3d(0, 0, 1));
+}
+
+/// Where points have radii, too, float arithmetic decides all but those at the very reach.
+TEST(Contacts, BallsNeedHardlyAnExactDecision)
+{
+  Random random(7);
+  const auto sheet = [&](double height) {
+    std::vector<Point3> points;
+    std::vector<float> radii;
+    for (int i = 0; i < 40; ++i)
+      for (int j = 0; j < 40; ++j) {
+        points.push_back({0.1 * i + random.uniform(0, 0.05), 0.1 * j + random.uniform(0, 0.05), height});
+        radii.push_back(static_cast<float>(random.uniform(0.001, 0.05)));
+      }
+    Cloud cloud(points);
+    cloud.setRadii(radii);
+    return cloud;
+  };
+  const Cloud low = sheet(0), high = sheet(0.31);
+  const SphereHierarchy a(low.view()), b(high.view());
+  const PairsWithin all = pairsWithin({a}, {b}, within(0.4, ~std::size_t{0}));
+  EXPECT_GT(all.pairs.size(), 20000u);
+  EXPECT_LT(all.work.exact_decisions, 10u);
+  EXPECT_LT(anyCollision({a}, {b}, {0.4, {}}).work.exact_decisions, 10u);
+  FlagsRequest request;
+  request.clearance = 0.4;
+  request.flagged = Side::both;
+  EXPECT_LT(collisionFlags({a}, {b}, request).work.exact_decisions, 10u);
+  expectSameAsOracle({low, high, identity, identity, 0.27, "sheets of balls"});
+}
+
+/// The least double clearance that joins two balls, and the next below it: at places that floats hardly hold, turned.
+TEST(Contacts, BallsAtTheirVeryReach)
+{
+  Random random(8);
+  for (int i = 0; i < 300; ++i) {
+    const double far = random.chance(0.5) ? 4e5 : 0.0;
+    const auto any_place = [&] {
+      return Point3{far + random.uniform(-1, 1), 10 * far + random.uniform(-1, 1), random.uniform(-1, 1)};
+    };
+    Cloud one({any_place(), any_place()}), other({any_place()});
+    one.setRadii({static_cast<float>(random.uniform(0, 0.2)), 0.0f});
+    other.setRadii({static_cast<float>(random.uniform(0, 0.2))});
+    Eigen::Isometry3d pose = identity;
+    pose.linear() = Eigen::AngleAxisd(random.uniform(0, 0.1) / (1 + far), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const ExactDistance distance(pose, identity);
+    const double gap =
+        distance.gap({one.view().point(0), other.view().point(0), one.view().radius(0), other.view().radius(0)});
+    if (!(gap > 0.0)) continue;
+    for (const double clearance : {std::nextafter(gap, 0.0), gap, std::nextafter(gap, 9.0)})
+      expectSameAsOracle({one, other, pose, identity, clearance, "two balls"});
+  }
 }
 
 TEST(Contacts, RefusesWhatTheOthersRefuse)

@@ -2,6 +2,7 @@
 // Both filters where the obstacle is a mesh of PCL.
 #include <pcl_bsh/filters/collision_filter.h>
 #include <pcl_bsh/filters/distance_filter.h>
+#include <pcl_bsh/filters/mesh_collision_filter.h>
 
 #include "clouds.h"
 
@@ -158,6 +159,103 @@ TEST(SurfaceFilter, TellsDistances)
     ASSERT_LE(found.interval[i].lower, distance) << i;
     ASSERT_GE(found.interval[i].upper, distance) << i;
   }
+}
+
+/// Polygons that are asked about, against the crate; brute force over points that lie densely on each.
+TEST(MeshFilter, FlagsPolygonsAndKeepsThem)
+{
+  constexpr double clearance = 0.1, tolerance = 0.01, step = 0.005;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> place(-1.f, 3.f), side(-0.2f, 0.2f);
+  Points corners;
+  auto mesh = std::make_shared<pcl::PolygonMesh>();
+  for (int p = 0; p < 300; ++p) { // parallelograms, of four corners each
+    const Eigen::Vector3f at(place(random), place(random), place(random));
+    const Eigen::Vector3f u(side(random), side(random), side(random)), v(side(random), side(random), side(random));
+    mesh->polygons.emplace_back();
+    for (const Eigen::Vector3f& corner :
+         {at, Eigen::Vector3f(at + u), Eigen::Vector3f(at + u + v), Eigen::Vector3f(at + v)}) {
+      mesh->polygons.back().vertices.push_back(static_cast<pcl::index_t>(corners.size()));
+      corners.emplace_back(corner.x(), corner.y(), corner.z());
+    }
+  }
+  pcl::toPCLPointCloud2(corners, mesh->cloud);
+  MeshCollisionFilter filter;
+  filter.setInputMesh(mesh, tolerance);
+  filter.setObstacleSurface(crate(), tolerance);
+  filter.setClearance(clearance);
+  std::vector<std::uint8_t> flags;
+  filter.computeFlags(flags);
+  ASSERT_EQ(flags.size(), 300u);
+  TrajectoryResult found;
+  filter.computeTrajectory(found);
+  EXPECT_EQ(found.flags, flags);
+  std::size_t colliding = 0;
+  for (std::size_t p = 0; p < flags.size(); ++p) {
+    const Eigen::Vector3f at = corners[4 * p].getVector3fMap();
+    const Eigen::Vector3f u = corners[4 * p + 1].getVector3fMap() - at, v = corners[4 * p + 3].getVector3fMap() - at;
+    double least = 10;
+    for (float s = 0; s <= 1; s += 0.05f)
+      for (float t = 0; t <= 1; t += 0.05f) {
+        const Eigen::Vector3f q = at + s * u + t * v;
+        least = std::min(least, distanceToCrate({q.x(), q.y(), q.z()}));
+      }
+    if (least <= clearance) {
+      ASSERT_EQ(flags[p], 1) << p;
+    }
+    if (least > clearance + 2 * tolerance + 4 * step) {
+      ASSERT_EQ(flags[p], 0) << p;
+    }
+    colliding += flags[p];
+  }
+  EXPECT_GT(colliding, 20u);
+  EXPECT_LT(colliding, 280u);
+  for (const bool negative : {false, true}) {
+    filter.setNegative(negative);
+    pcl::PolygonMesh kept;
+    filter.filter(kept);
+    ASSERT_EQ(kept.polygons.size(), negative ? colliding : 300 - colliding);
+    EXPECT_EQ(kept.cloud.width, 4 * kept.polygons.size());
+    Points left;
+    pcl::fromPCLPointCloud2(kept.cloud, left);
+    std::size_t next = 0;
+    for (std::size_t p = 0; p < flags.size(); ++p) {
+      if ((flags[p] != 0) != negative) continue;
+      const pcl::Vertices& polygon = kept.polygons[next++];
+      for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_EQ(left[static_cast<std::size_t>(polygon.vertices[k])].x, corners[4 * p + k].x);
+    }
+  }
+}
+
+TEST(MeshFilter, RefusesWhatIsNoInput)
+{
+  MeshCollisionFilter filter;
+  std::vector<std::uint8_t> flags;
+  pcl::PolygonMesh kept;
+  const auto refused = [](const auto& call, const std::string& text) {
+    EXPECT_THAT(call, ThrowsMessage<std::invalid_argument>(HasSubstr(text)));
+  };
+  filter.setObstacleCloud(scanAround(6, 100));
+  refused([&] { filter.computeFlags(flags); }, "input mesh is missing");
+  refused([&] { filter.setInputMesh(nullptr, 0.1); }, "input mesh is null");
+  refused([&] { filter.setInputSurface(nullptr); }, "input surface is null");
+  refused([&] { filter.setInputSurface(coverOf(crate(), 0.1)); }, "parts of several triangles");
+  filter.setInputSurface(coverOf(crate(), 0.1, true));
+  filter.computeFlags(flags);
+  EXPECT_EQ(flags.size(), 6u) << "squares";
+  refused([&] { filter.filter(kept); }, "call setInputMesh()");
+  filter.setInputMesh(crate(), 0.1);
+  filter.setDensityGuard(true);
+  refused([&] { filter.filter(kept); }, "density guard");
+  filter.setDensityGuard(false);
+  filter.setInputUncertainty(Uncertainty("sigma", 1));
+  refused([&] { filter.filter(kept); }, "sigma");
+  filter.setInputUncertainty(0.01);
+  filter.filter(kept);
+  MeshCollisionFilter bare;
+  bare.setInputMesh(crate(), 0.1);
+  refused([&] { bare.computeFlags(flags); }, "obstacle cloud is missing");
 }
 
 TEST(SurfaceFilter, HasNoHolesToGuard)

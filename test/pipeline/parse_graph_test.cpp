@@ -148,7 +148,7 @@ TEST(ParseGraph, RefusesUnknownTypes)
                                               ".pcd .ply .obj .off .stl .las .pts .ptx .txt .xyz .csv, or a "
                                               "type");
   EXPECT_THAT(refusal(R"(["a.pcd", "b.off"])"),
-              HasSubstr("can be written: give .pcd .ply .las .obj .txt .xyz .csv, or a type"));
+              HasSubstr("can be written: give .pcd .ply .las .pts .ptx .obj .txt .xyz .csv, or a type"));
 }
 
 TEST(ParseGraph, RefusesUnknownKeysAndWrongValues)

@@ -3,6 +3,8 @@
 #include "../files/temporary_folder.h"
 #include "run_stage.h"
 
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+
 #include <pcl/point_types.h>
 
 #include <nlohmann/json.hpp>
@@ -136,7 +138,120 @@ TEST_F(SurfaceStages, SayWhereFacesEnd)
       Pipeline::parse("[\"" + (folder_ / "crate.off").string() + "\", {\"type\": \"writers.ply\", \"tag\": \"w\", " +
                       "\"filename\": \"" + (folder_ / "out.ply").string() + "\"}]")
           .run();
-  EXPECT_THAT(written.warnings, ElementsAre(HasSubstr("w: faces are not written")));
+  EXPECT_THAT(written.warnings, IsEmpty());
+  const io::Mesh mesh = io::readMesh(folder_ / "out.ply");
+  EXPECT_EQ(mesh.triangles.size(), 12u);
+  EXPECT_EQ(mesh.vertices.width, 8u);
+  const PipelineResult lost =
+      Pipeline::parse("[\"" + (folder_ / "crate.off").string() + "\", {\"type\": \"writers.pcd\", \"tag\": \"w\", " +
+                      "\"filename\": \"" + (folder_ / "out.pcd").string() + "\"}]")
+          .run();
+  EXPECT_THAT(lost.warnings, ElementsAre(HasSubstr("w: faces are not written")));
+}
+
+/// Four triangles in a row, the first of which is near the scan's only point; two vertices have no face.
+class SurfaceInput : public SurfaceStages {
+protected:
+  SurfaceInput()
+  {
+    folder_.write("strip.off", "OFF\n9 4 0\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n0 1 0\n1 1 0\n2 1 0\n3 1 0\n7 7 7\n"
+                               "3 0 1 4\n3 1 5 4\n3 1 2 5\n3 2 3 6\n");
+    Points points;
+    points.emplace_back(0.2f, 0.2f, 0.05f);
+    point_ = stageCloud(points);
+  }
+
+  PipelineResult runStrip(const std::string& stages) const
+  {
+    Pipeline pipeline = Pipeline::parse(
+        R"({"pipeline": [{"type": "readers.pcd", "tag": "scan", "filename": "scan.pcd"},
+           {"type": "readers.mesh", "tag": "strip", "filename": ")" +
+        (folder_ / "strip.off").string() + R"("}, )" + stages + "]}");
+    pipeline.setCloud("scan", point_);
+    return pipeline.run();
+  }
+
+  static std::vector<int> faceFlags(const StageCloud& mesh)
+  {
+    const auto& flags = std::get<std::vector<std::uint8_t>>(mesh.face_properties.at(0).values);
+    return {flags.begin(), flags.end()};
+  }
+
+  StageCloudPtr point_;
+};
+
+TEST_F(SurfaceInput, FlagsTriangles)
+{
+  const std::string flag = R"({"type": "filters.bsh_flag", "tag": "f", "obstacle": "scan", "clearance": 0.1})";
+  const std::string file = (folder_ / "flagged.ply").string();
+  const PipelineResult result = runStrip(flag);
+  runStrip(flag + R"(, {"type": "writers.ply", "filename": ")" + file + R"("})");
+  const StageCloud& mesh = *result.clouds.at("f");
+  EXPECT_EQ(mesh.face_properties.at(0).name, "collision");
+  EXPECT_THAT(faceFlags(mesh), ElementsAre(1, 0, 0, 0));
+  EXPECT_THAT(flagsOf(result, "f"), ElementsAre(1, 1, 0, 0, 1, 0, 0, 0, 0)) << "a vertex is what its triangles are";
+  EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("input: 2 of its vertices belong to no face"),
+                                           HasSubstr("the input is a surface of 4 triangles, to a tolerance of 0.01")));
+  EXPECT_THAT(files::contentOf(file), HasSubstr("property list uchar int vertex_indices\nproperty uchar collision\n"));
+  EXPECT_EQ(io::readMesh(file).triangles.size(), 4u);
+  const PipelineResult corners = runStrip(R"({"type": "filters.bsh_flag", "tag": "f", "obstacle": "scan",
+      "clearance": 0.1, "vertices_only": true})");
+  EXPECT_THAT(flagsOf(corners, "f"), Each(0));
+  EXPECT_TRUE(corners.clouds.at("f")->triangles) << "they go on";
+}
+
+TEST_F(SurfaceInput, FlagsTrianglesAlongAPath)
+{
+  folder_.write("path.txt", "1 0 0 1.72  0 1 0 0  0 0 1 0\n1 0 0 0  0 1 0 0  0 0 1 -0.05\n");
+  const PipelineResult result = runStrip(R"({"type": "filters.bsh_flag", "tag": "f", "obstacle": "scan",
+      "clearance": 0.1, "trajectory": ")" +
+                                         (folder_ / "path.txt").string() + R"("})");
+  const StageCloud& mesh = *result.clouds.at("f");
+  EXPECT_THAT(faceFlags(mesh), ElementsAre(1, 0, 1, 1)) << "1.92 0.2 is within 10 cm of both";
+  ASSERT_EQ(mesh.face_properties.size(), 4u);
+  EXPECT_THAT(std::get<std::vector<std::int32_t>>(mesh.face_properties[2].values), ElementsAre(1, -1, 0, 0));
+  EXPECT_EQ(std::get<std::vector<float>>(mesh.face_properties[1].values)[0], 0.f);
+  EXPECT_TRUE(std::isnan(std::get<std::vector<float>>(mesh.face_properties[1].values)[1]));
+  EXPECT_EQ(mesh.cloud.fields.back().name, "closest_pose");
+}
+
+TEST_F(SurfaceInput, KeepsTrianglesAndTheirVertices)
+{
+  const auto kept = [&](const std::string& options) {
+    const PipelineResult result = runStrip(
+        R"({"type": "filters.bsh_collision", "tag": "k", "obstacle": "scan", "clearance": 0.1)" + options + "}");
+    const StageCloud& mesh = *result.clouds.at("k");
+    for (const Triangle& triangle : *mesh.triangles)
+      for (const std::uint32_t corner : triangle) EXPECT_LT(corner, mesh.cloud.width);
+    return std::pair(mesh.triangles->size(), mesh.cloud.width);
+  };
+  EXPECT_EQ(kept(""), std::pair(std::size_t{3}, 6u));
+  EXPECT_EQ(kept(R"(, "keep": "colliding")"), std::pair(std::size_t{1}, 3u));
+  EXPECT_EQ(kept(R"(, "negative": true)"), std::pair(std::size_t{1}, 3u));
+  // What was known of triangles goes with them, and they are asked again.
+  const PipelineResult twice = runStrip(R"({"type": "filters.bsh_flag", "obstacle": "scan", "clearance": 0.1},
+      {"type": "filters.bsh_collision", "obstacle": "scan", "clearance": 0.01},
+      {"type": "filters.bsh_collision", "tag": "k", "keep": "colliding", "obstacle": "scan", "clearance": 0.1})");
+  EXPECT_THAT(faceFlags(*twice.clouds.at("k")), ElementsAre(1));
+}
+
+TEST_F(SurfaceInput, IsRefusedWherePointsAreAsked)
+{
+  const auto refusal = [&](const std::string& stage) {
+    return errorOf([&] { runStrip(R"({"tag": "s", "obstacle": "scan", )" + stage + "}"); });
+  };
+  const std::string file = (folder_ / "list.json").string();
+  for (const std::string& stage : {R"("type": "writers.clashes", "clearance": 0.1, "filename": ")" + file + '"',
+                                   R"("type": "writers.distances", "filename": ")" + file + '"',
+                                   std::string(R"("type": "filters.bsh_distance")")}) {
+    EXPECT_THAT(refusal(stage), HasSubstr("the input has faces: the stage knows points alone")) << stage;
+    EXPECT_NO_THROW(runStrip(R"({"tag": "s", "obstacle": "scan", "vertices_only": true, )" + stage + "}")) << stage;
+  }
+  const std::string collide = R"("type": "filters.bsh_collision", "clearance": 0.1, )";
+  EXPECT_THAT(refusal(collide + R"("keep_organized": true)"), HasSubstr("keep_organized"));
+  EXPECT_THAT(refusal(collide + R"("density": true)"), HasSubstr("density"));
+  EXPECT_THAT(refusal(collide + R"("uncertainty": "x")"), HasSubstr("is a field, which the input, a surface"));
+  EXPECT_THAT(refusal(collide + R"("surface_tolerance": 1e-17)"), HasSubstr("surface_tolerance"));
 }
 
 TEST_F(SurfaceStages, RefuseWhatCannotBe)

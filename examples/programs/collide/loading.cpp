@@ -29,16 +29,19 @@ Scan loadInput(const CollideOptions& options, double& seconds)
   return scan;
 }
 
-std::shared_ptr<const SurfaceCover> coverOf(const CollideOptions& options, const Scan& input, double& seconds)
+std::shared_ptr<const SurfaceCover> coverOf(const CollideOptions& options, const Scan& input, double& seconds,
+                                            std::vector<std::string>& warnings)
 {
   if (input.triangles.empty()) return nullptr;
   requireForSurface(options);
   Step step("Covering " + options.input.string());
   auto cover = std::make_shared<const SurfaceCover>(coverInput(
-      options.input, viewOf(input.cloud), input.triangles, options.surface, options.clearance, [&](double fraction) {
+      options.input, viewOf(input.cloud), input.triangles, options.surface, options.clearance,
+      [&](double fraction) {
         step.share(fraction);
         return true;
-      }));
+      },
+      warnings));
   seconds += step.done(std::to_string(cover->centers.size()) + " balls");
   return cover;
 }

@@ -23,8 +23,10 @@ struct Scan {
 Scan loadInput(const CollideOptions& options, double& seconds);
 
 /// The balls of the input's surface; none where it is points.
+/// @param warnings what users should know of the cover is appended, a line each
 /// @throws std::invalid_argument, files::FileError as requireForSurface() and coverInput() do
-std::shared_ptr<const SurfaceCover> coverOf(const CollideOptions& options, const Scan& input, double& seconds);
+std::shared_ptr<const SurfaceCover> coverOf(const CollideOptions& options, const Scan& input, double& seconds,
+                                            std::vector<std::string>& warnings);
 
 /// Its cloud or, where the file has faces, its surface. @throws files::FileError
 io::Obstacle loadObstacle(const CollideOptions& options, double& seconds);

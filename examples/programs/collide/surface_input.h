@@ -14,18 +14,15 @@ namespace pcl_bsh::cli {
 
 /// The cover of a mesh, triangles apart, to the tolerance of the settings or the usual one for this clearance.
 /// @param progress as SurfaceRequest has it
+/// @param warnings what users should know of the cover is appended, a line each
 /// @throws files::FileError naming the file where it cannot be covered
 SurfaceCover coverInput(const std::filesystem::path& file, const PointsView& vertices,
                         const std::vector<Triangle>& triangles, const io::SurfaceSettings& settings, double clearance,
-                        const std::function<bool(double)>& progress);
+                        const std::function<bool(double)>& progress, std::vector<std::string>& warnings);
 
 /// Refuses what is told of points alone: lists of clashes, distances of all, fields of sigmas; and outputs that cannot
 /// hold triangles. @throws std::invalid_argument, files::FileError
 void requireForSurface(const CollideOptions& options);
-
-/// From a result about the balls to one about the triangles: flags, counts, distances, poses. A distance within a ball
-/// is 0. Summaries of poses, which count balls, are left out.
-TrajectoryResult ofTriangles(const SurfaceCover& cover, TrajectoryResult balls);
 
 /// The mesh with what was found as properties of its faces, or the triangles that are kept.
 /// @return how many triangles were written

@@ -26,6 +26,7 @@ struct BshDistance : Stage, DistanceQuestion, SelectionOptions {
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
+    requirePoints(*inputs[0]);
     DistanceFilter<pcl::PCLPointCloud2> filter;
     filter.setInputCloud(pointsOf(inputs[0]));
     std::vector<std::string> told;

@@ -31,6 +31,8 @@ std::deque<StageType> builtInStages()
           pcdWriter(),
           plyWriter(),
           lasWriter(),
+          ptsWriter(),
+          ptxWriter(),
           objWriter(),
           textWriter(),
           clashWriter(),

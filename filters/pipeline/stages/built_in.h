@@ -36,6 +36,8 @@ StageType pcdWriter();
 StageType plyWriter();
 StageType lasWriter();
 StageType objWriter();
+StageType ptsWriter();
+StageType ptxWriter();
 StageType textWriter();
 StageType clashWriter();
 StageType distanceWriter();

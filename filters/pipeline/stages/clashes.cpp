@@ -4,6 +4,7 @@
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/collision_question.h>
+#include <pcl_bsh/filters/pipeline/stages/other_cloud.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
 
 namespace pcl_bsh::pipeline {
@@ -27,8 +28,10 @@ struct ClashWriter : Stage, CollisionQuestion {
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
+    requirePoints(*inputs[0]);
     Filter filter;
-    for (std::string& line : setUp(filter, inputs[0], *this)) warn(std::move(line));
+    for (std::string& line : setUp(filter, *this)) warn(std::move(line));
+    filter.setInputCloud(pointsOf(inputs[0]));
     TrajectoryResult found;
     filter.computeTrajectory(found);
     write(viewOf(inputs[0]->cloud), found);

@@ -93,7 +93,7 @@ std::vector<std::string> CollisionQuestion::check(const CloudHeader& input, bool
   return warnings;
 }
 
-std::vector<std::string> CollisionQuestion::setUp(Filter& filter, const StageCloudPtr& input, const Stage& stage)
+std::vector<std::string> CollisionQuestion::setUp(ObstacleQuery& filter, const Stage& stage)
 {
   std::vector<std::string> told;
   compared_ = obstacleOf(obstacle, clearance, Accuracy::parse(accuracy), swept > 0, stage, told);
@@ -103,7 +103,6 @@ std::vector<std::string> CollisionQuestion::setUp(Filter& filter, const StageClo
   }
   if (compared_.isSurface() && density) told.emplace_back("a surface has no holes: `density` guards nothing");
   filter.setProgress([&stage](double) { return !stage.isCancelled(); });
-  filter.setInputCloud(pointsOf(input));
   if (compared_.isSurface())
     filter.setObstacleSurface(compared_.cover());
   else
@@ -121,17 +120,29 @@ std::vector<std::string> CollisionQuestion::setUp(Filter& filter, const StageClo
   return told;
 }
 
-std::string CollisionQuestion::undecidedWarning(const Filter& filter) const
+std::vector<std::string> CollisionQuestion::setUp(MeshCollisionFilter& filter, const StageCloud& input,
+                                                  const Stage& stage)
+{
+  if (!uncertainty.field.empty())
+    throw OptionError("uncertainty", "is a field, which the input, a surface, does not have: give a length, or "
+                                     "`vertices_only`: true");
+  if (density) throw OptionError("density", "is about points, and the input is a surface: give `vertices_only`: true");
+  std::vector<std::string> told = setUp(filter, stage);
+  filter.setInputSurface(coverOfInput(input, clearance, stage, told));
+  return told;
+}
+
+std::string CollisionQuestion::undecidedWarning(const ObstacleQuery& filter, const char* parts) const
 {
   const std::size_t undecided = filter.getUndecidedCount();
   if (undecided == 0) return {};
-  const char* const why = isUncertain() ? " points stay undecided where places are as uncertain"
-                                        : " points stay undecided with this accuracy";
+  const std::string stay = std::to_string(undecided) + ' ' + parts + " stay undecided";
   if (const std::size_t sparse = filter.getSparseCount(); sparse > 0) {
-    return std::to_string(undecided) + " points stay undecided, of which " + std::to_string(sparse) +
+    return stay + ", of which " + std::to_string(sparse) +
            " where the obstacle is not scanned densely enough: they are not taken for free";
   }
-  return std::to_string(undecided) + why + ": they are not taken for free";
+  const char* const why = isUncertain() ? " where places are as uncertain" : " with this accuracy";
+  return stay + why + ": they are not taken for free";
 }
 
 } // namespace pcl_bsh::pipeline

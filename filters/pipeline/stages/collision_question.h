@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/filters/collision_filter.h>
+#include <pcl_bsh/filters/mesh_collision_filter.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 #include <pcl_bsh/filters/pipeline/stages/surface_options.h>
 
@@ -39,15 +40,18 @@ protected:
   /// @throws OptionError
   std::vector<std::string> check(const CloudHeader& input, bool distances);
 
-  /// For run(). Along a trajectory, the filter stops when the stage is cancelled.
+  /// For run(): all of a filter but its input. Along a trajectory, it stops when the stage is cancelled.
   /// @return what to tell the user, a line each
-  std::vector<std::string> setUp(Filter& filter, const StageCloudPtr& input, const Stage& stage);
+  std::vector<std::string> setUp(ObstacleQuery& filter, const Stage& stage);
+
+  /// For run(), where the input has faces that are asked about: covers it, too.
+  std::vector<std::string> setUp(MeshCollisionFilter& filter, const StageCloud& input, const Stage& stage);
 
   /// After setUp(): what the obstacle is compared as.
   const io::Obstacle& comparedObstacle() const noexcept { return compared_; }
 
   /// What to tell the user after a query; empty when every point is decided.
-  std::string undecidedWarning(const Filter& filter) const;
+  std::string undecidedWarning(const ObstacleQuery& filter, const char* parts = "points") const;
 
   /// After check(): at least one.
   const std::vector<Eigen::Isometry3d>& poses() const noexcept { return poses_; }

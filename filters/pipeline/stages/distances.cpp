@@ -28,6 +28,7 @@ struct DistanceWriter : Stage, DistanceQuestion {
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
+    requirePoints(*inputs[0]);
     HierarchyOptions options;
     options.threads = number_of_threads;
     std::vector<std::string> told;

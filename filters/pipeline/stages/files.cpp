@@ -2,6 +2,7 @@
 // Readers and writers of all formats that filters/cloud_files reads and writes.
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/cloud_files/pcl_names.h>
+#include <pcl_bsh/filters/cloud_files/scan_text.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/text_files/small_letters.h>
@@ -77,7 +78,8 @@ struct FileWriter : Stage {
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
-    if (inputs[0]->triangles) warn("faces are not written: " + filename.path + " holds their vertices alone");
+    if (inputs[0]->triangles)
+      warn("faces are not written, but to a .ply: " + filename.path + " holds their vertices alone");
     write(*inputs[0]);
     return inputs[0];
   }
@@ -90,42 +92,52 @@ protected:
   }
 };
 
-/// LAS stores coordinates as integers.
-struct LasWriter : FileWriter {
-protected:
-  void write(const StageCloud& cloud) override
+/// With faces, if the cloud has them, and what was found out about them.
+struct PlyWriter : FileWriter {
+  StageCloudPtr run(StageClouds&& inputs) override
   {
-    const PointsView points = viewOf(cloud.cloud);
-    std::size_t left_out = 0;
-    for (std::uint32_t i = 0; i < points.count; ++i)
-      if (!isFinite(points.point(i))) ++left_out;
-    if (left_out > 0)
-      warn("a .las has no place for points that are not finite: " + std::to_string(left_out) + " are left out");
-    FileWriter::write(cloud);
+    const StageCloud& mesh = *inputs[0];
+    if (!mesh.triangles) return FileWriter::run(std::move(inputs));
+    std::vector<io::FaceField> fields;
+    for (const FaceProperty& property : mesh.face_properties)
+      std::visit([&](const auto& values) { fields.push_back({property.name, &values}); }, property.values);
+    io::writeMesh(filename.path, mesh.cloud, *mesh.triangles, fields, mesh.viewpoint);
+    return inputs[0];
   }
 };
 
-/// OBJ has room for x y z, a colour and normals alone.
-struct ObjWriter : FileWriter {
+/// Formats without a place for some fields, or for points that are not finite.
+struct NarrowWriter : FileWriter {
 protected:
   CloudHeader written(const CloudHeader& cloud) const override
   {
-    CloudHeader vertices = cloud;
-    vertices.fields = io::fieldsForObj(cloud);
-    return vertices;
+    CloudHeader narrow = cloud;
+    const std::string extension = io::extensionOf(filename.path);
+    if (extension == ".obj") narrow.fields = io::fieldsForObj(cloud);
+    if (extension == ".pts" || extension == ".ptx") narrow.fields = io::fieldsForScans(cloud, extension == ".ptx");
+    return narrow;
   }
 
   void write(const StageCloud& cloud) override
   {
-    const CloudHeader vertices = written(cloud.cloud);
+    const CloudHeader narrow = written(cloud.cloud);
+    const std::string extension = io::extensionOf(filename.path);
     std::string lost;
     for (const pcl::PCLPointField& field : cloud.cloud.fields) {
       const auto is_it = [&](const pcl::PCLPointField& other) { return other.name == field.name; };
-      const bool kept = std::any_of(vertices.fields.begin(), vertices.fields.end(), is_it);
+      const bool kept = std::any_of(narrow.fields.begin(), narrow.fields.end(), is_it);
       if (!kept && field.name != "_") lost += " " + field.name;
     }
-    if (!lost.empty()) warn("an .obj has no place for the fields" + lost + ": they are left out");
-    io::writeCloud(filename.path, vertices);
+    const std::string no_place = (extension == ".obj" ? "an " : "a ") + extension + " has no place for ";
+    if (!lost.empty()) warn(no_place + "the fields" + lost + ": they are left out");
+    if (extension == ".las" || extension == ".pts") {
+      const PointsView points = viewOf(cloud.cloud);
+      std::size_t left_out = 0;
+      for (std::uint32_t i = 0; i < points.count; ++i)
+        if (!isFinite(points.point(i))) ++left_out;
+      if (left_out > 0) warn(no_place + "points that are not finite: " + std::to_string(left_out) + " are left out");
+    }
+    io::writeCloud(filename.path, narrow, cloud.viewpoint, cloud.las_header);
   }
 };
 
@@ -188,10 +200,11 @@ StageType offReader()
 
 StageType meshReader()
 {
-  StageType type =
-      reader("readers.mesh", {".stl", ".obj", ".off", ".ply"},
-             "A mesh, .stl, .obj, .off or .ply: its vertices, and its faces, cut into triangles. As the obstacle of a "
-             "stage it is a surface. Faces go on through stages that keep all points; no file is written with them.");
+  StageType type = reader(
+      "readers.mesh", {".stl", ".obj", ".off", ".ply"},
+      "A mesh, .stl, .obj, .off or .ply: its vertices, and its faces, cut into triangles. As the obstacle of a "
+      "stage it is a surface, and as the input of filters.bsh_flag and filters.bsh_collision, which ask about its "
+      "triangles. Faces go on through stages that keep all points; writers.ply writes them.");
   type.extensions = {".stl"}; // the others have readers of their own
   return type;
 }
@@ -233,28 +246,46 @@ StageType pcdWriter()
 
 StageType plyWriter()
 {
-  return ofFiles<FileWriter>(
+  return ofFiles<PlyWriter>(
       "writers.ply", {".ply"},
-      "Binary PLY, with every field but 64-bit integers; normals are nx ny nz, colours uchar red green blue.",
+      "Binary PLY, with every field but 64-bit integers; normals are nx ny nz, colours uchar red green blue. A mesh is "
+      "written with its faces, as triangles, and what filters.bsh_flag found of them.",
       to_write);
 }
 
 StageType lasWriter()
 {
-  return ofFiles<LasWriter>("writers.las", {".las"},
-                            "LAS as its input file was: version, point format, scale, offset and all records; without "
-                            "one LAS 1.4, the scale by "
-                            "the cloud's extent. Other fields, as `collision`, are extra bytes with a description. "
-                            "Points that are not finite "
-                            "are left out, with a warning.",
-                            to_write);
+  return ofFiles<NarrowWriter>(
+      "writers.las", {".las"},
+      "LAS as its input file was: version, point format, scale, offset and all records; without "
+      "one LAS 1.4, the scale by "
+      "the cloud's extent. Other fields, as `collision`, are extra bytes with a description. "
+      "Points that are not finite "
+      "are left out, with a warning.",
+      to_write);
 }
 
 StageType objWriter()
 {
-  return ofFiles<ObjWriter>("writers.obj", {".obj"},
-                            "Wavefront OBJ: vertices with their colours and normals; a warning names lost fields.",
-                            to_write);
+  return ofFiles<NarrowWriter>("writers.obj", {".obj"},
+                               "Wavefront OBJ: vertices with their colours and normals; a warning names lost fields.",
+                               to_write);
+}
+
+StageType ptsWriter()
+{
+  return ofFiles<NarrowWriter>("writers.pts", {".pts"},
+                               "Leica's PTS: x y z, intensity, rgb. Points that are not finite are left out; warnings "
+                               "name lost points and fields.",
+                               to_write);
+}
+
+StageType ptxWriter()
+{
+  return ofFiles<NarrowWriter>("writers.ptx", {".ptx"},
+                               "Leica's PTX: x y z, intensity, rgb, the viewpoint as the scanner's pose; NaN is no "
+                               "return, a field `scan` parts several scans. A warning names lost fields.",
+                               to_write);
 }
 
 StageType textWriter()

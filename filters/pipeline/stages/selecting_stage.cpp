@@ -33,6 +33,7 @@ StageCloudPtr SelectingStage::run(StageClouds&& inputs)
   }
   const auto output = ownCloud(std::move(input));
   output->triangles.reset(); // whose corners may go
+  output->face_properties.clear();
   overwritePoints(output->cloud, removed, filterValue());
   return output;
 }

@@ -30,6 +30,17 @@ protected:
   /// @param told what the user should know is appended, a line each
   io::Obstacle obstacleOf(const OtherCloud& other, double clearance, const Accuracy& accuracy, bool swept,
                           const Stage& stage, std::vector<std::string>& told) const;
+
+  /// Whether the triangles of the input are asked about, not its points.
+  bool asksAboutFaces(const StageCloud& input) const { return input.triangles && !vertices_only; }
+
+  /// For run() of a stage that knows points alone. @throws OptionError where faces are asked about
+  void requirePoints(const StageCloud& input) const;
+
+  /// For run(): the cover of an input that is asked about, triangles apart. Stops when the stage is cancelled.
+  /// @param clearance of the query. @param told as obstacleOf() has it
+  std::shared_ptr<const SurfaceCover> coverOfInput(const StageCloud& input, double clearance, const Stage& stage,
+                                                   std::vector<std::string>& told) const;
 };
 
 template <typename S>
@@ -40,10 +51,12 @@ StageDescription<S>& withSurfaceOptions(StageDescription<S>& description)
           &S::surface_tolerance, "surface_tolerance",
           "an obstacle with faces is a surface: what is free is farther than the clearance from it for certain, what "
           "collides is within clearance + this tolerance, and the true distance is in [d, d + tolerance]; null: a "
-          "tenth of the clearance, else a 10,000th of the obstacle's size")
+          "tenth of the clearance, else a 10,000th of the obstacle's size. So is an input with faces, whose triangles "
+          "are "
+          "asked about; its tolerance comes on top")
       .unit("m")
       .above(0)
-      .option(&S::vertices_only, "vertices_only", "true: an obstacle with faces is its vertices alone");
+      .option(&S::vertices_only, "vertices_only", "true: meshes, the obstacle and the input, are their vertices alone");
 }
 
 } // namespace pcl_bsh::pipeline

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/mesh_collision_filter.h>
+
+#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/filters/used_vertices.h>
+#include <pcl_bsh/geometry/invalid_input.h>
+
+#include <stdexcept>
+#include <utility>
+
+namespace pcl_bsh {
+
+void MeshCollisionFilter::setInputMesh(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance)
+{
+  if (!mesh) throw std::invalid_argument("input mesh is null: give a mesh without polygons if there is none");
+  cover_ = coverOf(mesh, tolerance, true);
+  mesh_ = mesh;
+}
+
+void MeshCollisionFilter::setInputSurface(const std::shared_ptr<const SurfaceCover>& cover)
+{
+  if (!cover) throw std::invalid_argument("input surface is null: give the cover of no triangles if there is none");
+  if (!cover->triangles_apart) {
+    throw InvalidInput(Input::surface, "input surface", "its balls hold parts of several triangles each",
+                       "cover it with triangles_apart");
+  }
+  cover_ = cover;
+  mesh_.reset();
+}
+
+const SurfaceCover& MeshCollisionFilter::requiredInput() const
+{
+  if (!cover_) throw std::invalid_argument("input mesh is missing: call setInputMesh() before filtering");
+  return *cover_;
+}
+
+PointsView MeshCollisionFilter::inputView() const
+{
+  return asUncertainInput(requiredInput().view(), {});
+}
+
+void MeshCollisionFilter::computeFlags(std::vector<std::uint8_t>& flags)
+{
+  const PointsView balls = inputView();
+  flags = collisionFlags(balls, cover_.get());
+}
+
+void MeshCollisionFilter::computeTrajectory(TrajectoryResult& result)
+{
+  const PointsView balls = inputView();
+  result = alongTrajectory(balls, cover_.get());
+}
+
+void MeshCollisionFilter::filter(pcl::PolygonMesh& output)
+{
+  requiredInput();
+  if (!mesh_)
+    throw std::invalid_argument("input mesh is missing: a cover has no polygons to keep: call setInputMesh()");
+  std::vector<std::uint8_t> flags;
+  computeFlags(flags);
+  pcl::PolygonMesh kept;
+  kept.header = mesh_->header;
+  for (std::size_t p = 0; p < flags.size(); ++p)
+    if ((flags[p] != 0) == negative_) kept.polygons.push_back(mesh_->polygons.at(p));
+  const pcl::Indices vertices = keepUsedVertices(
+      viewOf(mesh_->cloud).count, kept.polygons, [](pcl::Vertices & polygon) -> auto& { return polygon.vertices; });
+  kept.cloud = selectedRecords(mesh_->cloud, vertices);
+  output = std::move(kept);
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A filter that removes the polygons of a mesh that collide with an obstacle, keeps only those, or flags them.
+//
+//   pcl_bsh::MeshCollisionFilter filter;
+//   filter.setInputMesh(machine, 0.002);  // a pcl::PolygonMesh, to 2 mm
+//   filter.setObstacleCloud(scan);        // or setObstacleSurface()
+//   filter.setClearance(0.05);
+//   filter.filter(free);                  // the machine without the polygons that come near the scan
+//
+// Of a polygon, free means farther from the obstacle than the clearance, for certain; colliding means within clearance
+// + tolerance. Where the obstacle is a surface too, its tolerance comes on top.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/filters/obstacle_query.h>
+#include <pcl_bsh/surface/surface_cover.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <pcl/PolygonMesh.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// The obstacle, its pose and all other settings are those of CollisionFilter (ObstacleQuery). The counts of undecided
+/// points are those of undecided polygons. A density guard is refused, and so is an uncertainty of the input that is a
+/// field: both are about points. What a closed mesh encloses is not part of it.
+class MeshCollisionFilter : public ObstacleQuery {
+public:
+  /// The mesh that is asked about. It is covered by balls here and now; it must not change until filter().
+  /// @param tolerance by how much balls may reach beyond the surface, in the mesh's unit; finite and > 0
+  /// @throws std::invalid_argument when the pointer is null, or as coverOf() does; then the former input stays
+  void setInputMesh(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance);
+
+  /// A surface that is covered already, with SurfaceRequest::triangles_apart: its triangles are asked about. filter()
+  /// needs a mesh, and throws.
+  /// @throws std::invalid_argument when the pointer is null, or triangles are not apart
+  void setInputSurface(const std::shared_ptr<const SurfaceCover>& cover);
+
+  /// The cover whose balls stand for the input; of a mesh, `triangles` are its polygons.
+  const std::shared_ptr<const SurfaceCover>& getInputSurface() const { return cover_; }
+
+  /// false (default): filter() keeps the polygons that do not collide; true: those that do, or are undecided.
+  void setNegative(bool negative) { negative_ = negative; }
+  bool getNegative() const { return negative_; }
+
+  /// One flag per polygon of the input: 1 = collides, 2 = undecided, 0 = free. A polygon of fewer than three corners
+  /// has no surface: it is free.
+  /// @throws std::invalid_argument when input or obstacle is missing, or a setting is not what its declaration asks for
+  void computeFlags(std::vector<std::uint8_t>& flags);
+
+  /// More along the trajectory, or at the one pose: for each colliding polygon its smallest distance, the first pose
+  /// and the closest. Summaries of poses stay empty. Throws as computeFlags() does.
+  void computeTrajectory(TrajectoryResult& result);
+
+  /// The polygons that are kept, in their order, and the vertices that they use, with all their fields. `output` may be
+  /// the input mesh; on an error it stays as it was. Throws as computeFlags() does.
+  void filter(pcl::PolygonMesh& output);
+
+private:
+  const SurfaceCover& requiredInput() const;
+  PointsView inputView() const;
+
+  std::shared_ptr<const SurfaceCover> cover_;
+  pcl::PolygonMesh::ConstPtr mesh_;
+  bool negative_ = false;
+};
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/pipeline/stages/faces.h>
+#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/filters/used_vertices.h>
+#include <pcl_bsh/query/result.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <limits>
+#include <memory>
+#include <tuple>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+template <typename Value>
+std::vector<Value> chosen(const std::vector<Value>& values, const std::vector<std::uint8_t>& kept)
+{
+  std::vector<Value> result;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (kept[i] != 0) result.push_back(values[i]);
+  return result;
+}
+
+/// 1, 2 and 3 from the gravest on; 0 is free.
+bool isGraver(std::uint8_t flag, std::uint8_t than)
+{
+  return flag != flagOf(Verdict::free) && (than == flagOf(Verdict::free) || flag < than);
+}
+
+} // namespace
+
+TrajectoryResult ofVertices(const std::vector<Triangle>& triangles, std::size_t vertices,
+                            const TrajectoryResult& of_triangles)
+{
+  TrajectoryResult found;
+  found.flags.resize(vertices, flagOf(Verdict::free));
+  const bool measured = !of_triangles.distance.empty();
+  if (measured) {
+    found.distance.resize(vertices, std::numeric_limits<float>::quiet_NaN());
+    found.first_pose.resize(vertices, -1);
+    found.closest_pose.resize(vertices, -1);
+  }
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const std::uint8_t flag = of_triangles.flags[t];
+    for (const std::uint32_t vertex : triangles[t]) {
+      if (isGraver(flag, found.flags[vertex])) found.flags[vertex] = flag;
+      if (!measured || of_triangles.first_pose[t] < 0) continue;
+      std::int32_t& first = found.first_pose[vertex];
+      const bool is_first = first < 0;
+      if (is_first || of_triangles.first_pose[t] < first) first = of_triangles.first_pose[t];
+      const auto near = std::tuple(of_triangles.distance[t], of_triangles.closest_pose[t]);
+      if (is_first || near < std::tuple(found.distance[vertex], found.closest_pose[vertex]))
+        std::tie(found.distance[vertex], found.closest_pose[vertex]) = near;
+    }
+  }
+  return found;
+}
+
+StageCloudPtr keptFaces(const StageCloud& mesh, const std::vector<std::uint8_t>& kept)
+{
+  auto triangles = std::make_shared<std::vector<Triangle>>(chosen(*mesh.triangles, kept));
+  const pcl::Indices vertices =
+      keepUsedVertices(viewOf(mesh.cloud).count, *triangles, [](Triangle& triangle) -> Triangle& { return triangle; });
+  auto output =
+      std::make_shared<StageCloud>(StageCloud{selectedRecords(mesh.cloud, vertices), mesh.viewpoint, mesh.las_header});
+  output->triangles = std::move(triangles);
+  for (const FaceProperty& property : mesh.face_properties) {
+    std::visit(
+        [&](const auto& values) {
+          output->face_properties.push_back({property.name, chosen(values, kept)});
+        },
+        property.values);
+  }
+  return output;
+}
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The triangles of a cloud in a pipeline: what is found out about them, and some of them alone.
+#pragma once
+
+#include <pcl_bsh/filters/pipeline/stage_cloud.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh::pipeline {
+
+/// Adds a property, or replaces the one of that name.
+template <typename Value>
+void setFaceProperty(StageCloud& mesh, const std::string& name, std::vector<Value>&& values)
+{
+  for (FaceProperty& property : mesh.face_properties) {
+    if (property.name != name) continue;
+    property.values = std::move(values);
+    return;
+  }
+  mesh.face_properties.push_back({name, std::move(values)});
+}
+
+/// Of each vertex the gravest of what its triangles have: colliding before undecided before free, the smallest distance
+/// and its pose, the first pose. A vertex of no triangle is free. What the result does not have stays empty.
+TrajectoryResult ofVertices(const std::vector<Triangle>& triangles, std::size_t vertices,
+                            const TrajectoryResult& of_triangles);
+
+/// The triangles whose flag is not 0, their properties, and the vertices that they use, in the order they had.
+/// @pre the mesh has triangles, and there is one flag each
+StageCloudPtr keptFaces(const StageCloud& mesh, const std::vector<std::uint8_t>& kept);
+
+} // namespace pcl_bsh::pipeline
