@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/kept_obstacle.h>
 
+#include <pcl_bsh/hierarchy/points_checksum.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/surface/polygon_triangles.h>
 
@@ -14,44 +15,12 @@
 namespace pcl_bsh {
 namespace {
 
-/// One step of a checksum: for each word a bijection of the sum, so that no change of one word goes unnoticed.
-std::uint64_t mixed(std::uint64_t sum, std::uint64_t word)
-{
-  constexpr std::uint64_t golden = 0x9e3779b97f4a7c15; // odd
-  sum = (sum ^ word) * golden;
-  return sum ^ sum >> 32; // products carry upward only: a sign that flips twice would cancel out
-}
-
-template <typename Bits>
-std::uint64_t checksumOf(const PointsView& view)
-{
-  std::uint64_t sum = view.count;
-  const auto [x, y, z] = view.offset;
-  const auto* record = static_cast<const unsigned char*>(view.data);
-  for (std::size_t i = 0; i < view.count; ++i, record += view.stride) {
-    const auto bits = [record](std::size_t offset) {
-      Bits word;
-      std::memcpy(&word, record + offset, sizeof word);
-      return std::uint64_t{word};
-    };
-    if constexpr (sizeof(Bits) == 4) {
-      sum = mixed(sum, bits(y) << 32 | bits(x));
-    }
-    else {
-      sum = mixed(mixed(sum, bits(x)), bits(y));
-    }
-    sum = mixed(sum, bits(z));
-  }
-  return sum;
-}
-
 /// Of all coordinates, their order and a field, as it is written. Bytes between them may change.
 /// @param field empty: none
 std::uint64_t checksumOf(const PointsView& view, const std::vector<pcl::PCLPointField>& fields,
                          const std::string& field)
 {
-  std::uint64_t sum =
-      view.scalar == Scalar::float32 ? checksumOf<std::uint32_t>(view) : checksumOf<std::uint64_t>(view);
+  std::uint64_t sum = checksumOf(view);
   for (const pcl::PCLPointField& named : fields) {
     if (field.empty() || named.name != field) continue;
     const auto bytes = static_cast<std::size_t>(pcl::getFieldSize(named.datatype));

@@ -253,7 +253,8 @@ private:
 /// The charts and their legend.
 class Picture : public vtkContextItem {
 public:
-  vtkTypeMacro(Picture, vtkContextItem) static Picture* New() { VTK_STANDARD_NEW_BODY(Picture); }
+  vtkTypeMacro(Picture, vtkContextItem)
+  static Picture* New() { VTK_STANDARD_NEW_BODY(Picture); }
 
   const std::vector<Chart>* charts = nullptr;
   double width = 0.0, height = 0.0;

@@ -31,9 +31,12 @@ void fill(files::FileReplacement& file, vtkPolyData& data, const fs::path& path)
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
   writer->SetCompressorTypeToNone();
-  writer->SetGlobalWarningDisplay(0);
+  const int displayed = vtkObject::GetGlobalWarningDisplay(); // of the whole process
+  vtkObject::GlobalWarningDisplayOff();
+  const int written = writer->Write();
+  vtkObject::SetGlobalWarningDisplay(displayed);
   std::error_code error; // VTK removes what it could not write to the end
-  if (writer->Write() != 1 || writer->GetErrorCode() != 0 || !fs::exists(file.name(), error))
+  if (written != 1 || writer->GetErrorCode() != 0 || !fs::exists(file.name(), error))
     throw files::FileError(path, "cannot be written", "choose a folder with room that you may write to");
 }
 

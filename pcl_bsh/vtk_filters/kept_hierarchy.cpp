@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/vtk_filters/kept_hierarchy.h>
+
+#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/hierarchy/points_checksum.h>
+#include <pcl_bsh/surface/polygon_triangles.h>
+
+#include <vtkCellArray.h>
+#include <vtkCellArrayIterator.h>
+#include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
+#include <vtkPoints.h>
+
+#include <string>
+#include <utility>
+
+namespace pcl_bsh::vtk {
+namespace {
+
+/// Triangles of all cells, and the cell of each.
+struct CellTriangles {
+  std::vector<Triangle> triangles;
+  std::vector<vtkIdType> cells;
+};
+
+/// Visits each cell in the order in which vtkPolyData numbers them: vertices, lines, polygons, strips.
+/// @param visit gets the kind (0 to 3), the number of the cell, its corners and how many they are
+template <class Visit>
+void visitCells(vtkPolyData& data, const Visit& visit)
+{
+  vtkIdType number = 0;
+  vtkCellArray* const kinds[] = {data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips()};
+  for (int kind = 0; kind < 4; ++kind) {
+    if (!kinds[kind]) continue;
+    const auto each = vtkSmartPointer<vtkCellArrayIterator>::Take(kinds[kind]->NewIterator());
+    for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell()) {
+      vtkIdType count = 0;
+      const vtkIdType* corners = nullptr;
+      each->GetCurrentCell(count, corners);
+      visit(kind, number++, corners, count);
+    }
+  }
+}
+
+std::uint32_t recordOf(vtkIdType corner, vtkIdType cell, std::size_t points)
+{
+  if (corner < 0 || static_cast<std::size_t>(corner) >= points)
+    throw InvalidInput(Input::surface, "cell " + std::to_string(cell),
+                       "names point " + std::to_string(corner) + " of " + std::to_string(points),
+                       "leave the cell out, or mend the mesh");
+  return static_cast<std::uint32_t>(corner);
+}
+
+std::uint64_t checksumOfCells(vtkPolyData& data)
+{
+  std::uint64_t sum = 0;
+  visitCells(data, [&](int kind, vtkIdType, const vtkIdType* corners, vtkIdType count) {
+    sum = mixed(sum, static_cast<std::uint64_t>(count) << 2 | static_cast<std::uint64_t>(kind));
+    for (vtkIdType i = 0; i < count; ++i) sum = mixed(sum, static_cast<std::uint64_t>(corners[i]));
+  });
+  return sum;
+}
+
+CellTriangles trianglesOf(vtkPolyData& data, const PointsView& view)
+{
+  CellTriangles found;
+  std::vector<std::uint32_t> records;
+  visitCells(data, [&](int kind, vtkIdType cell, const vtkIdType* corners, vtkIdType count) {
+    records.clear();
+    for (vtkIdType i = 0; i < count; ++i) records.push_back(recordOf(corners[i], cell, view.count));
+    const std::size_t n = records.size();
+    switch (kind) {
+    case 0: // a point is a triangle without extent
+      for (const std::uint32_t p : records) found.triangles.push_back({p, p, p});
+      break;
+    case 1: // likewise a segment
+      for (std::size_t i = 0; i + 1 < n; ++i) found.triangles.push_back({records[i], records[i + 1], records[i + 1]});
+      break;
+    case 2: // PCL's and VTK's polygons may have any number of corners
+      if (n == 1) found.triangles.push_back({records[0], records[0], records[0]});
+      if (n == 2) found.triangles.push_back({records[0], records[1], records[1]});
+      if (n > 2) addTriangles(view, records.data(), n, found.triangles);
+      break;
+    default:
+      for (std::size_t i = 0; i + 2 < n; ++i) found.triangles.push_back({records[i], records[i + 1], records[i + 2]});
+    }
+    found.cells.resize(found.triangles.size(), cell);
+  });
+  return found;
+}
+
+} // namespace
+
+PointsView viewOf(vtkPolyData& data, bool& copied)
+{
+  copied = false;
+  vtkPoints* const points = data.GetPoints();
+  const auto count = static_cast<std::size_t>(points ? points->GetNumberOfPoints() : 0);
+  if (count == 0) return {};
+  vtkSmartPointer<vtkDataArray> array = points->GetData();
+  if (!vtkFloatArray::SafeDownCast(array) && !vtkDoubleArray::SafeDownCast(array)) {
+    const auto copy = vtkSmartPointer<vtkDoubleArray>::New();
+    copy->DeepCopy(array);
+    array = copy;
+    copied = true;
+  }
+  PointsView view;
+  if (auto* const floats = vtkFloatArray::SafeDownCast(array))
+    view = pcl_bsh::viewOf(floats->GetPointer(0), count);
+  else
+    view = pcl_bsh::viewOf(vtkDoubleArray::SafeDownCast(array)->GetPointer(0), count);
+  view.owner = std::shared_ptr<const void>(array.GetPointer(), [array](const void*) {});
+  return view;
+}
+
+bool isSurface(vtkPolyData& data)
+{
+  return data.GetNumberOfLines() + data.GetNumberOfPolys() + data.GetNumberOfStrips() > 0;
+}
+
+bool KeptHierarchy::isOf(const PointsView& view, bool copied, std::uint64_t checksum, double tolerance)
+{
+  // A hierarchy of points looks into their memory: where that is the caller's, the same numbers elsewhere are others.
+  const bool same_memory = view.data == points_.data || (copied && copied_) || tolerance >= 0.0;
+  const bool same_points = view.count == points_.count && view.scalar == points_.scalar && same_memory;
+  if (hierarchy_ && same_points && checksum == checksum_ && tolerance == tolerance_) return true;
+  hierarchy_.reset();
+  cover_.reset();
+  cell_of_triangle_.clear();
+  points_ = view;
+  copied_ = copied;
+  checksum_ = checksum;
+  tolerance_ = tolerance;
+  return false;
+}
+
+const SphereHierarchy& KeptHierarchy::build(const PointsView& view, unsigned threads)
+{
+  HierarchyOptions options;
+  options.threads = threads;
+  hierarchy_ = std::make_unique<SphereHierarchy>(view, options);
+  ++built_;
+  return *hierarchy_;
+}
+
+const SphereHierarchy& KeptHierarchy::ofPoints(vtkPolyData& data, unsigned threads)
+{
+  bool copied = false;
+  const PointsView view = viewOf(data, copied);
+  return isOf(view, copied, checksumOf(view), -1.0) ? *hierarchy_ : build(view, threads);
+}
+
+const SphereHierarchy& KeptHierarchy::ofSurface(vtkPolyData& data, double tolerance, unsigned threads,
+                                                const std::function<bool(double)>& progress)
+{
+  if (!(tolerance >= 0.0)) throw InvalidInput(Input::surface, "tolerance", "is negative or no number", "give a length");
+  bool copied = false;
+  const PointsView view = viewOf(data, copied);
+  if (isOf(view, copied, mixed(checksumOf(view), checksumOfCells(data)), tolerance)) return *hierarchy_;
+  CellTriangles cells = trianglesOf(data, view);
+  SurfaceRequest request;
+  request.tolerance = tolerance;
+  request.progress = progress;
+  cover_ = std::make_shared<SurfaceCover>(coverSurface(view, cells.triangles, request));
+  cell_of_triangle_ = std::move(cells.cells);
+  return build(cover_->view(), threads);
+}
+
+} // namespace pcl_bsh::vtk

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @class vtkBSHCollisionFilter
+/// @brief which points of a cloud come within the clearance of an obstacle, at a pose or along a path
+///
+/// Adds the point array `collision`: 1 collides, 0 free. Two points collide if and only if their distance is at most
+/// the clearance, as exact arithmetic decides it. With poses (port 2), `collision` is that of any of them, and three
+/// arrays more tell about points which collide: `distance` (float, the smallest over all poses; NaN where free),
+/// `first_pose` and `closest_pose` (int, from 0; -1 where free).
+///
+///     vtkNew<vtkBSHCollisionFilter> collision;
+///     collision->SetInputData(scan);
+///     collision->SetObstacleData(robot);
+///     collision->SetClearance(0.05);
+///     collision->Update();
+///
+/// vtkBSHFilter has the inputs, what they mean, and what happens where something fails.
+#pragma once
+
+#include <pcl_bsh/vtk_filters/vtkBSHFilter.h>
+
+class PCL_BSH_EXPORT vtkBSHCollisionFilter : public vtkBSHFilter {
+public:
+  static vtkBSHCollisionFilter* New();
+  vtkTypeMacro(vtkBSHCollisionFilter, vtkBSHFilter)
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// Points collide up to this distance, inclusive, in the clouds' unit; finite and >= 0. Default 0.
+  vtkSetMacro(Clearance, double);
+  vtkGetMacro(Clearance, double);
+  ///@}
+
+  ///@{
+  /// > 0: the motion between consecutive poses counts too, to this tolerance: what is free stays farther than the
+  /// clearance, what collides comes within clearance + tolerance. 0 (default): the poses alone. Needs poses.
+  vtkSetMacro(Swept, double);
+  vtkGetMacro(Swept, double);
+  ///@}
+
+  /// How many points collide, of the last execution; 0 where that failed.
+  vtkGetMacro(NumberOfCollidingPoints, vtkIdType);
+
+protected:
+  vtkBSHCollisionFilter() = default;
+  ~vtkBSHCollisionFilter() override = default;
+
+  void Answer(const Question& question, vtkPolyData* output) override;
+  double UsualTolerance() const override { return this->Clearance / 10.0; }
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+  double Clearance = 0.0;
+  double Swept = 0.0;
+  vtkIdType NumberOfCollidingPoints = 0;
+
+private:
+  vtkBSHCollisionFilter(const vtkBSHCollisionFilter&) = delete;
+  void operator=(const vtkBSHCollisionFilter&) = delete;
+};

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @class vtkBSHDistanceFilter
+/// @brief how far each point of a cloud is from an obstacle, at a pose or along a path
+///
+/// Adds the point arrays `distance` (double; NaN where it is more than MaximumDistance) and, at a single pose,
+/// `nearest` (vtkIdType: the nearest point of the obstacle, of several the smallest; of a surface, the cell; -1 where
+/// there is none). With poses (port 2), `distance` is the smallest over all of them, rounded to float, and
+/// `closest_pose` (int, from 0; -1 where none) the first that has it; MaximumDistance must then be finite.
+///
+/// Of points, a distance is exact, rounded to the nearest double. Of a surface it is too small by at most the
+/// tolerance.
+///
+/// vtkBSHFilter has the inputs, what they mean, and what happens where something fails.
+#pragma once
+
+#include <pcl_bsh/vtk_filters/vtkBSHFilter.h>
+
+class PCL_BSH_EXPORT vtkBSHDistanceFilter : public vtkBSHFilter {
+public:
+  static vtkBSHDistanceFilter* New();
+  vtkTypeMacro(vtkBSHDistanceFilter, vtkBSHFilter)
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// Points farther than this from the obstacle get no distance; inclusive, >= 0, in the clouds' unit. VTK_DOUBLE_MAX
+  /// (default) or infinity: no limit.
+  vtkSetMacro(MaximumDistance, double);
+  vtkGetMacro(MaximumDistance, double);
+  ///@}
+
+protected:
+  vtkBSHDistanceFilter() = default;
+  ~vtkBSHDistanceFilter() override = default;
+
+  void Answer(const Question& question, vtkPolyData* output) override;
+  double UsualTolerance() const override { return 0.0; }
+
+  double MaximumDistance = VTK_DOUBLE_MAX;
+
+private:
+  vtkBSHDistanceFilter(const vtkBSHDistanceFilter&) = delete;
+  void operator=(const vtkBSHDistanceFilter&) = delete;
+};

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/vtk_filters/vtkBSHFilter.h>
+
+#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/vtk_filters/bsh_question.h>
+#include <pcl_bsh/vtk_filters/pose_table.h>
+
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkLinearTransform.h>
+#include <vtkMultiProcessController.h>
+#include <vtkObjectFactory.h>
+#include <vtkPolyData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkTable.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+struct vtkBSHFilter::Kept {
+  pcl_bsh::vtk::KeptHierarchy cloud, obstacle;
+};
+
+vtkCxxSetObjectMacro(vtkBSHFilter, Transform, vtkLinearTransform);
+
+vtkBSHFilter::vtkBSHFilter() : Inputs(std::make_unique<Kept>())
+{
+  this->SetNumberOfInputPorts(3);
+}
+
+vtkBSHFilter::~vtkBSHFilter()
+{
+  this->SetTransform(nullptr);
+}
+
+void vtkBSHFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Transform: " << static_cast<void*>(this->Transform) << '\n'
+     << indent << "SurfaceTolerance: " << this->SurfaceTolerance << '\n'
+     << indent << "NumberOfThreads: " << this->NumberOfThreads << '\n'
+     << indent << "HierarchiesBuilt: " << this->GetHierarchiesBuilt() << '\n';
+}
+
+void vtkBSHFilter::SetObstacleData(vtkPolyData* obstacle)
+{
+  this->SetInputData(1, obstacle);
+}
+
+void vtkBSHFilter::SetObstacleConnection(vtkAlgorithmOutput* obstacle)
+{
+  this->SetInputConnection(1, obstacle);
+}
+
+void vtkBSHFilter::SetPosesData(vtkTable* poses)
+{
+  this->SetInputData(2, poses);
+}
+
+void vtkBSHFilter::SetPosesConnection(vtkAlgorithmOutput* poses)
+{
+  this->SetInputConnection(2, poses);
+}
+
+vtkIdType vtkBSHFilter::GetHierarchiesBuilt()
+{
+  return static_cast<vtkIdType>(this->Inputs->cloud.built() + this->Inputs->obstacle.built());
+}
+
+vtkMTimeType vtkBSHFilter::GetMTime()
+{
+  if (this->Failed) this->Modified(); // VTK takes the empty output for an up-to-date one: the next Update() fails again
+  const vtkMTimeType own = this->Superclass::GetMTime();
+  return this->Transform ? std::max(own, this->Transform->GetMTime()) : own;
+}
+
+int vtkBSHFilter::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 2 ? "vtkTable" : "vtkPolyData");
+  if (port == 2) info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+// Of the cloud one piece after another, of the obstacle and its poses all: else what is near would be missed.
+int vtkBSHFilter::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  for (int port = 1; port < 3; ++port) {
+    vtkInformation* const info = inputs[port]->GetInformationObject(0);
+    if (!info) continue;
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  }
+  return 1;
+}
+
+int vtkBSHFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkPolyData* const output = vtkPolyData::GetData(outputs);
+  output->Initialize();
+  this->Failed = true;
+  try {
+    auto* const controller = vtkMultiProcessController::GetGlobalController();
+    if (controller && controller->GetNumberOfProcesses() > 1)
+      throw std::invalid_argument(std::to_string(controller->GetNumberOfProcesses()) +
+                                  " processes share the data, and none sees all of the obstacle: use one process");
+    vtkPolyData* const cloud = vtkPolyData::GetData(inputs[0]);
+    vtkPolyData* const obstacle = vtkPolyData::GetData(inputs[1]);
+    if (!cloud || !obstacle) throw std::invalid_argument("an input is missing: connect a cloud and an obstacle");
+    vtkTable* const table = vtkTable::GetData(inputs[2]);
+
+    double done = 0.0; // progress of the cover first, then of the query: together they never fall
+    const auto report = [this, &done](double from, double to, double fraction) {
+      done = std::max(done, from + (to - from) * fraction);
+      this->UpdateProgress(done);
+      return this->GetAbortExecute() == 0;
+    };
+    std::vector<std::string> warnings;
+    const Eigen::Isometry3d pose =
+        pcl_bsh::vtk::poseOf(this->Transform ? this->Transform->GetMatrix() : nullptr, warnings);
+    std::optional<std::vector<Eigen::Isometry3d>> poses;
+    if (table) {
+      poses = pcl_bsh::vtk::posesOf(*table, warnings);
+      for (Eigen::Isometry3d& placed : *poses) placed.matrix() = pose.matrix() * placed.matrix();
+    }
+    for (const std::string& warning : warnings) vtkWarningMacro(<< warning);
+
+    const auto threads = static_cast<unsigned>(this->NumberOfThreads);
+    const bool is_surface = pcl_bsh::vtk::isSurface(*obstacle);
+    const double cover_share = is_surface ? 0.3 : 0.0;
+    const auto hierarchyOfObstacle = [&]() -> const pcl_bsh::SphereHierarchy& {
+      if (!is_surface) return this->Inputs->obstacle.ofPoints(*obstacle, threads);
+      const double tolerance = this->SurfaceTolerance == 0.0 ? this->UsualTolerance() : this->SurfaceTolerance;
+      if (!(tolerance > 0.0))
+        throw std::invalid_argument("the obstacle has faces, and nothing says how exactly to cover them: give a "
+                                    "SurfaceTolerance, a length > 0");
+      return this->Inputs->obstacle.ofSurface(*obstacle, tolerance, threads,
+                                              [&](double fraction) { return report(0.0, cover_share, fraction); });
+    };
+    const pcl_bsh::SphereHierarchy& obstacle_hierarchy = hierarchyOfObstacle();
+    const pcl_bsh::SphereHierarchy& cloud_hierarchy = this->Inputs->cloud.ofPoints(*cloud, threads);
+    if (!report(0.0, cover_share, 1.0)) throw pcl_bsh::Cancelled();
+    output->ShallowCopy(cloud);
+    this->Answer({cloud_hierarchy, obstacle_hierarchy, this->Inputs->obstacle, is_surface, pose, std::move(poses),
+                  [&](double fraction) { return report(cover_share, 1.0, fraction); }},
+                 output);
+    this->Failed = false;
+    return 1;
+  }
+  catch (const pcl_bsh::Cancelled&) {
+    vtkDebugMacro(<< "aborted");
+  }
+  catch (const std::exception& error) {
+    vtkErrorMacro(<< error.what());
+  }
+  output->Initialize();
+  return 0; // whoever depends on this output does not execute either
+}

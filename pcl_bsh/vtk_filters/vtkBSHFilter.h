@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @class vtkBSHFilter
+/// @brief what the filters share that compare a cloud with an obstacle
+///
+/// Port 0 is the cloud: all points of a vtkPolyData; its cells are not looked at. Port 1 is the obstacle: the points of
+/// a vtkPolyData, or, where that has lines, polygons or strips, all of its cells, as a surface (SurfaceTolerance). Port
+/// 2, optional, is a vtkTable of poses of the obstacle, a row each: 12 or 16 numbers of its matrix, row by row, or time
+/// tx ty tz qx qy qz qw.
+///
+/// The output is the cloud with all its arrays and those that the filter adds. What fails is told by vtkErrorMacro in
+/// one line; then, and after an abort, the output is empty and the execution failed, so that nothing looks like an
+/// answer. Points that are not finite are no points: they have the values of free points.
+///
+/// The hierarchies of cloud and obstacle are kept: nothing is built again when only settings, the transform or the
+/// poses change, nor when the input has other arrays at the same points. All calls by one thread at a time, as VTK has
+/// it. Processes that share the data are refused: none of them would see all of the obstacle.
+#pragma once
+
+#include <pcl_bsh/export.h>
+
+#include <vtkPolyDataAlgorithm.h>
+
+#include <memory>
+
+class vtkLinearTransform;
+class vtkTable;
+
+class PCL_BSH_EXPORT vtkBSHFilter : public vtkPolyDataAlgorithm {
+public:
+  vtkAbstractTypeMacro(vtkBSHFilter, vtkPolyDataAlgorithm)
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// The obstacle: port 1.
+  void SetObstacleData(vtkPolyData* obstacle);
+  void SetObstacleConnection(vtkAlgorithmOutput* obstacle);
+  ///@}
+
+  ///@{
+  /// The obstacle's poses: port 2. Null: none, the obstacle stands at the transform alone.
+  void SetPosesData(vtkTable* poses);
+  void SetPosesConnection(vtkAlgorithmOutput* poses);
+  ///@}
+
+  ///@{
+  /// From the obstacle's frame to that of the cloud; of a path, from the frame of its poses. Rigid within 1e-6; a
+  /// matrix that few printed digits have left within 1e-4 stands for its nearest rotation, with a warning. Default:
+  /// null, the identity.
+  virtual void SetTransform(vtkLinearTransform* transform);
+  vtkGetObjectMacro(Transform, vtkLinearTransform);
+  ///@}
+
+  ///@{
+  /// How far the balls that cover a surface may reach beyond it, in the clouds' unit. What is free is beyond the
+  /// clearance for certain, what collides is within clearance + tolerance, a distance is too small by at most the
+  /// tolerance. 0 (default): a tenth of the clearance.
+  vtkSetMacro(SurfaceTolerance, double);
+  vtkGetMacro(SurfaceTolerance, double);
+  ///@}
+
+  ///@{
+  /// Default 1; 0: all of the machine's. The answer is the same for any number.
+  vtkSetClampMacro(NumberOfThreads, int, 0, VTK_INT_MAX);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+  /// How many hierarchies this filter has built, of both inputs.
+  vtkIdType GetHierarchiesBuilt();
+
+  /// With that of the transform. Now, where the last execution failed: nothing that asks again gets an old answer.
+  vtkMTimeType GetMTime() override;
+
+protected:
+  vtkBSHFilter();
+  ~vtkBSHFilter() override;
+
+  struct Question; ///< both inputs as the core sees them (bsh_question.h)
+
+  /// Fills the output, which has the cloud's points and arrays. Whatever it throws is told in one line.
+  virtual void Answer(const Question& question, vtkPolyData* output) = 0;
+
+  /// Of a surface, where SurfaceTolerance is 0; 0: there is none.
+  virtual double UsualTolerance() const = 0;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputs,
+                          vtkInformationVector* outputs) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+  vtkLinearTransform* Transform = nullptr;
+  double SurfaceTolerance = 0.0;
+  int NumberOfThreads = 1;
+
+private:
+  vtkBSHFilter(const vtkBSHFilter&) = delete;
+  void operator=(const vtkBSHFilter&) = delete;
+
+  struct Kept;
+  std::unique_ptr<Kept> Inputs;
+  bool Failed = false; ///< the last execution
+};

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/vtk_filters/vtkBSHSphereSource.h>
+
+#include <pcl_bsh/vtk/hierarchy_data.h>
+#include <pcl_bsh/vtk_filters/kept_hierarchy.h>
+
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkObjectFactory.h>
+#include <vtkPolyData.h>
+
+#include <stdexcept>
+
+struct vtkBSHSphereSource::Kept {
+  pcl_bsh::vtk::KeptHierarchy hierarchy;
+};
+
+vtkStandardNewMacro(vtkBSHSphereSource);
+
+vtkBSHSphereSource::vtkBSHSphereSource() : Cloud(std::make_unique<Kept>())
+{
+}
+vtkBSHSphereSource::~vtkBSHSphereSource() = default;
+
+void vtkBSHSphereSource::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Level: " << this->Level << '\n'
+     << indent << "GenerateGlyphs: " << this->GenerateGlyphs << '\n'
+     << indent << "Resolution: " << this->Resolution << '\n'
+     << indent << "DeepestLevel: " << this->DeepestLevel << '\n'
+     << indent << "HierarchiesBuilt: " << this->GetHierarchiesBuilt() << '\n';
+}
+
+vtkIdType vtkBSHSphereSource::GetHierarchiesBuilt()
+{
+  return static_cast<vtkIdType>(this->Cloud->hierarchy.built());
+}
+
+int vtkBSHSphereSource::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  return 1;
+}
+
+int vtkBSHSphereSource::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkPolyData* const output = vtkPolyData::GetData(outputs);
+  output->Initialize();
+  this->DeepestLevel = 0;
+  try {
+    vtkPolyData* const cloud = vtkPolyData::GetData(inputs[0]);
+    if (!cloud) throw std::invalid_argument("the input is missing: connect a cloud");
+    const pcl_bsh::SphereHierarchy& hierarchy = this->Cloud->hierarchy.ofPoints(*cloud, 1);
+    vtkSmartPointer<vtkPolyData> spheres = pcl_bsh::vtk::sphereData(hierarchy, static_cast<unsigned>(this->Level));
+    if (this->GenerateGlyphs) spheres = pcl_bsh::vtk::sphereGlyphs(*spheres, this->Resolution);
+    output->ShallowCopy(spheres);
+    this->DeepestLevel = static_cast<int>(pcl_bsh::vtk::deepestLevel(hierarchy));
+    return 1;
+  }
+  catch (const std::exception& error) {
+    vtkErrorMacro(<< error.what());
+  }
+  output->Initialize();
+  return 0;
+}

@@ -1,0 +1,659 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/surface/surface_cover.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+#include <pcl_bsh/vtk/cloud_data.h>
+#include <pcl_bsh/vtk_filters/vtkBSHCollisionFilter.h>
+#include <pcl_bsh/vtk_filters/vtkBSHDistanceFilter.h>
+#include <pcl_bsh/vtk_filters/vtkBSHSphereSource.h>
+
+#include "../query/random_clouds.h"
+
+#include <gmock/gmock.h>
+
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkCommand.h>
+#include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkDummyCommunicator.h>
+#include <vtkDummyController.h>
+#include <vtkExecutive.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkSOADataArrayTemplate.h>
+#include <vtkSphereSource.h>
+#include <vtkTable.h>
+#include <vtkTransform.h>
+#include <vtkTrivialProducer.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::vtk {
+namespace {
+
+using test::makePoints;
+using test::Random;
+using test::Shape;
+using testing::HasSubstr;
+
+vtkSmartPointer<vtkPolyData> dataOf(const std::vector<Point3>& points, int type)
+{
+  vtkNew<vtkPoints> made;
+  made->SetDataType(type);
+  for (const Point3& p : points) made->InsertNextPoint(p.data());
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(made);
+  return data;
+}
+
+PointsView viewOfData(vtkPolyData& data)
+{
+  vtkDataArray* const array = data.GetPoints()->GetData();
+  const auto count = static_cast<std::size_t>(array->GetNumberOfTuples());
+  if (auto* const floats = vtkFloatArray::SafeDownCast(array)) return pcl_bsh::viewOf(floats->GetPointer(0), count);
+  return pcl_bsh::viewOf(vtkDoubleArray::SafeDownCast(array)->GetPointer(0), count);
+}
+
+vtkSmartPointer<vtkTable> tableOf(const std::vector<Eigen::Isometry3d>& poses)
+{
+  auto table = vtkSmartPointer<vtkTable>::New();
+  for (int k = 0; k < 12; ++k) {
+    vtkNew<vtkDoubleArray> column;
+    column->SetName(("Field " + std::to_string(k)).c_str());
+    for (const Eigen::Isometry3d& pose : poses) column->InsertNextValue(pose.matrix()(k / 4, k % 4));
+    table->AddColumn(column);
+  }
+  return table;
+}
+
+std::vector<double> values(vtkPolyData& data, const char* name)
+{
+  vtkDataArray* const array = data.GetPointData()->GetArray(name);
+  EXPECT_NE(array, nullptr) << name;
+  std::vector<double> found;
+  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i) found.push_back(array->GetTuple1(i));
+  return found;
+}
+
+/// As doubles, with NaN equal to NaN.
+template <class Values>
+void expectSame(const std::vector<double>& found, const Values& wanted)
+{
+  ASSERT_EQ(found.size(), wanted.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const auto value = static_cast<double>(wanted[i]);
+    ASSERT_TRUE(found[i] == value || (std::isnan(found[i]) && std::isnan(value))) << i << ": " << found[i];
+  }
+}
+
+/// What an algorithm and its executive tell by vtkErrorMacro or vtkWarningMacro.
+class Told {
+public:
+  explicit Told(vtkAlgorithm& algorithm, unsigned long event = vtkCommand::ErrorEvent)
+  {
+    command_->SetClientData(&texts);
+    command_->SetCallback([](vtkObject*, unsigned long, void* heard, void* text) {
+      static_cast<std::vector<std::string>*>(heard)->push_back(static_cast<const char*>(text));
+    });
+    algorithm.AddObserver(event, command_);
+    if (event == vtkCommand::ErrorEvent) algorithm.GetExecutive()->AddObserver(event, command_);
+  }
+  std::vector<std::string> texts;
+
+private:
+  vtkNew<vtkCallbackCommand> command_;
+};
+
+/// The filter fails with one line of its own that holds the text, and its output has nothing.
+void expectFailure(vtkBSHFilter& filter, const std::string& text)
+{
+  SCOPED_TRACE(text);
+  Told told(filter);
+  filter.Update();
+  ASSERT_FALSE(told.texts.empty());
+  EXPECT_THAT(told.texts.front(), HasSubstr(text));
+  EXPECT_EQ(filter.GetOutput()->GetNumberOfPoints(), 0);
+  EXPECT_EQ(filter.GetOutput()->GetPointData()->GetNumberOfArrays(), 0);
+  filter.RemoveObservers(vtkCommand::ErrorEvent);
+  filter.GetExecutive()->RemoveObservers(vtkCommand::ErrorEvent);
+}
+
+class Filters : public testing::TestWithParam<int> {
+protected:
+  Random random{17};
+  vtkSmartPointer<vtkPolyData> cloud = dataOf(makePoints(Shape::uniform, 900, 1.0, random), GetParam());
+  vtkSmartPointer<vtkPolyData> obstacle = dataOf(makePoints(Shape::clusters, 300, 1.0, random), GetParam());
+  Eigen::Isometry3d pose = [] {
+    Eigen::Isometry3d made(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized()));
+    made.translation() << 0.1, -0.2, 0.05;
+    return made;
+  }();
+  std::vector<Eigen::Isometry3d> path = [] {
+    std::vector<Eigen::Isometry3d> poses;
+    for (int k = 0; k < 7; ++k) {
+      Eigen::Isometry3d made(Eigen::AngleAxisd(0.1 * k, Eigen::Vector3d::UnitZ()));
+      made.translation() << 0.3 * k - 1.0, 0.1, 0.0;
+      poses.push_back(made);
+    }
+    return poses;
+  }();
+
+  static vtkSmartPointer<vtkTransform> transformOf(const Eigen::Isometry3d& pose)
+  {
+    double elements[16];
+    for (int k = 0; k < 16; ++k) elements[k] = pose.matrix()(k / 4, k % 4);
+    auto made = vtkSmartPointer<vtkTransform>::New();
+    made->SetMatrix(elements);
+    return made;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Scalars, Filters, testing::Values(VTK_FLOAT, VTK_DOUBLE),
+                         [](const auto& scalar) { return scalar.param == VTK_FLOAT ? "Float" : "Double"; });
+
+TEST_P(Filters, CollisionsAreThoseOfBruteForce)
+{
+  cloud->GetPoints()->SetPoint(5, std::numeric_limits<double>::quiet_NaN(), 0, 0);
+  obstacle->GetPoints()->SetPoint(7, 0, std::numeric_limits<double>::infinity(), 0);
+  vtkNew<vtkIntArray> other;
+  other->SetName("other");
+  other->SetNumberOfTuples(cloud->GetNumberOfPoints());
+  cloud->GetPointData()->AddArray(other);
+  const SphereHierarchy a(viewOfData(*cloud)), b(viewOfData(*obstacle));
+  FlagsRequest request;
+  request.clearance = 0.3;
+  const FlagsResult wanted = brute_force::collisionFlags({a}, {b, pose}, request);
+  ASSERT_GT(wanted.colliding_a, 20u);
+
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(cloud);
+  filter->SetObstacleData(obstacle);
+  filter->SetTransform(transformOf(pose));
+  filter->SetClearance(0.3);
+  for (const int threads : {1, 2}) {
+    filter->SetNumberOfThreads(threads);
+    filter->Update();
+    expectSame(values(*filter->GetOutput(), "collision"), wanted.a);
+    EXPECT_EQ(filter->GetNumberOfCollidingPoints(), static_cast<vtkIdType>(wanted.colliding_a));
+  }
+  EXPECT_NE(filter->GetOutput()->GetPointData()->GetArray("other"), nullptr);
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetArray("first_pose"), nullptr);
+  EXPECT_EQ(cloud->GetPointData()->GetArray("collision"), nullptr); // the input stays as it was
+}
+
+TEST_P(Filters, PathsAreThoseOfBruteForce)
+{
+  const SphereHierarchy a(viewOfData(*cloud)), b(viewOfData(*obstacle));
+  std::vector<Eigen::Isometry3d> placed = path;
+  for (Eigen::Isometry3d& each : placed) each.matrix() = pose.matrix() * each.matrix();
+  TrajectoryRequest request;
+  request.clearance = 0.15;
+  request.distances = request.first_poses = request.closest_poses = true;
+  const TrajectoryResult wanted = brute_force::collideAlong({a}, b, placed, request);
+  ASSERT_GT(wanted.colliding, 20u);
+
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(cloud);
+  filter->SetObstacleData(obstacle);
+  filter->SetPosesData(tableOf(path));
+  filter->SetTransform(transformOf(pose));
+  filter->SetClearance(0.15);
+  filter->Update();
+  vtkPolyData& output = *filter->GetOutput();
+  expectSame(values(output, "collision"), wanted.flags);
+  expectSame(values(output, "distance"), wanted.distance);
+  expectSame(values(output, "first_pose"), wanted.first_pose);
+  expectSame(values(output, "closest_pose"), wanted.closest_pose);
+
+  request.swept = 0.01;
+  const TrajectoryResult swept = collideAlong({a}, b, placed, request);
+  ASSERT_GT(swept.colliding, wanted.colliding);
+  filter->SetSwept(0.01);
+  filter->Update();
+  expectSame(values(*filter->GetOutput(), "collision"), swept.flags);
+
+  filter->SetPosesData(nullptr);
+  expectFailure(*filter, "Swept is set, and there are no poses");
+  filter->SetSwept(0.0);
+  filter->Update(); // and without a path no array of one
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetArray("first_pose"), nullptr);
+
+  vtkNew<vtkBSHDistanceFilter> distances;
+  distances->SetInputData(cloud);
+  distances->SetObstacleData(obstacle);
+  distances->SetPosesData(tableOf(path));
+  distances->SetTransform(transformOf(pose));
+  expectFailure(*distances, "give a finite one");
+  distances->SetMaximumDistance(0.15);
+  distances->Update();
+  expectSame(values(*distances->GetOutput(), "distance"), wanted.distance);
+  expectSame(values(*distances->GetOutput(), "closest_pose"), wanted.closest_pose);
+}
+
+TEST_P(Filters, DistancesAreThoseOfTheCore)
+{
+  cloud->GetPoints()->SetPoint(5, std::numeric_limits<double>::quiet_NaN(), 0, 0);
+  const SphereHierarchy a(viewOfData(*cloud)), b(viewOfData(*obstacle));
+  vtkNew<vtkBSHDistanceFilter> filter;
+  filter->SetInputData(cloud);
+  filter->SetObstacleData(obstacle);
+  filter->SetTransform(transformOf(pose));
+  for (const double limit : {VTK_DOUBLE_MAX, std::numeric_limits<double>::infinity(), 0.2}) {
+    PointDistancesRequest request;
+    if (limit < 1.0) request.max_distance = limit;
+    const PointDistances wanted = pointDistances({a}, {b, pose}, request);
+    filter->SetMaximumDistance(limit);
+    filter->Update();
+    expectSame(values(*filter->GetOutput(), "distance"), wanted.distance);
+    const std::vector<double> nearest = values(*filter->GetOutput(), "nearest");
+    for (std::size_t i = 0; i < nearest.size(); ++i)
+      EXPECT_EQ(nearest[i], wanted.nearest[i] == PointDistances::kNoPoint ? -1.0 : wanted.nearest[i]);
+  }
+}
+
+TEST_P(Filters, BuildOnlyWhatHasChanged)
+{
+  const auto transform = transformOf(pose);
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(cloud);
+  filter->SetObstacleData(obstacle);
+  filter->SetTransform(transform);
+  filter->SetClearance(0.1);
+  filter->Update();
+  EXPECT_EQ(filter->GetHierarchiesBuilt(), 2);
+  const auto expectFresh = [&](vtkIdType built) {
+    vtkNew<vtkBSHCollisionFilter> fresh;
+    fresh->SetInputData(cloud);
+    fresh->SetObstacleData(obstacle);
+    fresh->SetTransform(transform);
+    fresh->SetClearance(filter->GetClearance());
+    fresh->Update();
+    filter->Update();
+    EXPECT_EQ(values(*filter->GetOutput(), "collision"), values(*fresh->GetOutput(), "collision"));
+    EXPECT_EQ(filter->GetHierarchiesBuilt(), built);
+  };
+
+  const vtkMTimeType executed = filter->GetOutput()->GetMTime();
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetMTime(), executed); // nothing has changed
+  transform->Translate(0.05, 0, 0);
+  expectFresh(2);
+  EXPECT_GT(filter->GetOutput()->GetMTime(), executed);
+  filter->SetClearance(0.12);
+  expectFresh(2);
+  vtkNew<vtkIntArray> other; // an array more, at the same points
+  other->SetName("other");
+  other->SetNumberOfTuples(cloud->GetNumberOfPoints());
+  cloud->GetPointData()->AddArray(other);
+  expectFresh(2);
+
+  cloud->GetPoints()->SetPoint(0, 0.1, 0.2, 0.3); // in place
+  cloud->GetPoints()->Modified();
+  expectFresh(3);
+  cloud->GetPoints()->SetPoint(0, 0.3, 0.2, 0.1);
+  cloud->Modified(); // the points say nothing
+  expectFresh(4);
+  obstacle->GetPoints()->SetPoint(3, 0.1, 0.2, 0.3); // nobody says anything until the pose changes
+  transform->Translate(0.01, 0, 0);
+  expectFresh(5);
+  vtkNew<vtkPolyData> copy; // the same numbers, elsewhere
+  copy->DeepCopy(cloud);
+  filter->SetInputData(copy);
+  filter->Update();
+  EXPECT_EQ(filter->GetHierarchiesBuilt(), 6);
+  copy->GetPoints()->SetPoint(1, 0, 0, 0);
+  cloud->GetPoints()->SetPoint(1, 0, 0, 0);
+  copy->Modified();
+  expectFresh(7);
+}
+
+TEST_P(Filters, OtherArraysOfPointsAreCopiedAndBuiltOnce)
+{
+  vtkNew<vtkSOADataArrayTemplate<double>> apart;
+  apart->SetNumberOfComponents(3);
+  apart->SetNumberOfTuples(cloud->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i) apart->SetTuple(i, cloud->GetPoint(i));
+  vtkNew<vtkPoints> points;
+  points->SetData(apart);
+  vtkNew<vtkPolyData> same;
+  same->SetPoints(points);
+  vtkNew<vtkBSHCollisionFilter> filter, other;
+  for (vtkBSHCollisionFilter* each : {filter.Get(), other.Get()}) {
+    each->SetObstacleData(obstacle);
+    each->SetClearance(0.1);
+  }
+  filter->SetInputData(same);
+  other->SetInputData(cloud);
+  filter->Update();
+  other->Update();
+  EXPECT_EQ(values(*filter->GetOutput(), "collision"), values(*other->GetOutput(), "collision"));
+  filter->SetClearance(0.11);
+  filter->Update();
+  EXPECT_EQ(filter->GetHierarchiesBuilt(), 2);
+}
+
+TEST_P(Filters, ObstaclesWithCellsAreSurfaces)
+{
+  vtkNew<vtkSphereSource> ball;
+  ball->SetRadius(0.6);
+  ball->Update();
+  vtkPolyData& mesh = *ball->GetOutput(); // triangles
+  std::vector<Triangle> triangles;
+  for (vtkIdType t = 0; t < mesh.GetNumberOfPolys(); ++t) {
+    vtkNew<vtkIdList> corners;
+    mesh.GetCellPoints(t, corners);
+    triangles.push_back({static_cast<std::uint32_t>(corners->GetId(0)), static_cast<std::uint32_t>(corners->GetId(1)),
+                         static_cast<std::uint32_t>(corners->GetId(2))});
+  }
+  SurfaceRequest covered;
+  covered.tolerance = 0.01;
+  const SurfaceCover cover = coverSurface(viewOfData(mesh), triangles, covered);
+  const SphereHierarchy a(viewOfData(*cloud)), b(cover.view());
+  FlagsRequest request;
+  request.clearance = 0.1;
+
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(cloud);
+  filter->SetObstacleConnection(ball->GetOutputPort());
+  filter->SetClearance(0.1); // a tenth of it is the tolerance
+  filter->Update();
+  expectSame(values(*filter->GetOutput(), "collision"), collisionFlags({a}, {b}, request).a);
+  EXPECT_EQ(filter->GetHierarchiesBuilt(), 2);
+  filter->SetTransform(transformOf(pose));
+  filter->Update();
+  EXPECT_EQ(filter->GetHierarchiesBuilt(), 2);
+  filter->SetClearance(0.2);
+  filter->SetSurfaceTolerance(0.01);
+  filter->Update();
+  EXPECT_EQ(filter->GetHierarchiesBuilt(), 2); // the same tolerance
+  filter->SetSurfaceTolerance(0.02);
+  filter->Update();
+  EXPECT_EQ(filter->GetHierarchiesBuilt(), 3);
+  filter->SetSurfaceTolerance(0.0);
+  filter->SetClearance(0.0);
+  expectFailure(*filter, "give a SurfaceTolerance");
+  filter->SetSurfaceTolerance(-1.0);
+  expectFailure(*filter, "give a SurfaceTolerance");
+
+  vtkNew<vtkBSHDistanceFilter> distances;
+  distances->SetInputData(cloud);
+  distances->SetObstacleConnection(ball->GetOutputPort());
+  expectFailure(*distances, "give a SurfaceTolerance");
+  distances->SetSurfaceTolerance(0.01);
+  distances->Update();
+  const PointDistances wanted = pointDistances({a}, {b});
+  const std::vector<double> distance = values(*distances->GetOutput(), "distance");
+  const std::vector<double> cells = values(*distances->GetOutput(), "nearest");
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    EXPECT_EQ(distance[i], std::max(0.0, wanted.distance[i]));
+    EXPECT_EQ(cells[i], cover.triangles[wanted.nearest[i]]);
+  }
+}
+
+TEST_P(Filters, CellsOfAllKindsAreCovered)
+{
+  // A square, a segment, a strip and a point: each is near one point of the cloud, far from all corners but the
+  // point's.
+  const auto things = dataOf({{0, 0, 0},
+                              {8, 0, 0},
+                              {8, 8, 0},
+                              {0, 8, 0},
+                              {20, 0, 0},
+                              {28, 0, 0},
+                              {40, 0, 0},
+                              {40, 8, 0},
+                              {48, 0, 0},
+                              {48, 8, 0},
+                              {60, 0, 0},
+                              {80, 0, 0}},
+                             GetParam());
+  vtkNew<vtkCellArray> points, lines, polygons, strips;
+  points->InsertNextCell({10});
+  lines->InsertNextCell({4, 5});
+  polygons->InsertNextCell({0, 1, 2, 3});
+  strips->InsertNextCell({6, 7, 8, 9});
+  things->SetVerts(points);
+  things->SetLines(lines);
+  things->SetPolys(polygons);
+  things->SetStrips(strips);
+  const auto probes = dataOf({{5, 4, 0.1},
+                              {3, 4, 0.1},
+                              {24, 0.1, 0},
+                              {42, 2, 0.1},
+                              {46, 6, 0.1},
+                              {60, 0.1, 0},
+                              {80, 0.1, 0},
+                              {5, 4, 0.3}}, // the last but one is near a corner of no cell
+                             GetParam());
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(probes);
+  filter->SetObstacleData(things);
+  filter->SetClearance(0.2);
+  filter->SetSurfaceTolerance(0.05);
+  filter->Update();
+  expectSame(values(*filter->GetOutput(), "collision"), std::vector<int>{1, 1, 1, 1, 1, 1, 0, 0});
+  vtkNew<vtkBSHDistanceFilter> distances;
+  distances->SetInputData(probes);
+  distances->SetObstacleData(things);
+  distances->SetSurfaceTolerance(0.05);
+  distances->Update();
+  // vtkPolyData numbers vertices first, then lines, polygons, strips
+  expectSame(values(*distances->GetOutput(), "nearest"), std::vector<int>{2, 2, 1, 3, 3, 0, 0, 2});
+
+  vtkNew<vtkCellArray> wrong;
+  wrong->InsertNextCell({0, 1, 77});
+  things->SetPolys(wrong);
+  expectFailure(*filter, "cell 2: names point 77 of 12");
+}
+
+TEST_P(Filters, EmptyInputs)
+{
+  vtkNew<vtkPolyData> nothing; // not even vtkPoints
+  const auto no_points = dataOf({}, GetParam());
+  for (vtkPolyData* empty : {nothing.Get(), no_points.Get()}) {
+    vtkNew<vtkBSHCollisionFilter> filter;
+    filter->SetInputData(cloud);
+    filter->SetObstacleData(empty);
+    filter->SetClearance(5.0);
+    filter->Update();
+    expectSame(values(*filter->GetOutput(), "collision"), std::vector<int>(900, 0));
+    filter->SetInputData(empty);
+    filter->SetObstacleData(obstacle);
+    filter->Update();
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 0);
+    EXPECT_NE(filter->GetOutput()->GetPointData()->GetArray("collision"), nullptr);
+  }
+}
+
+TEST_P(Filters, FailuresLeaveNothingThatLooksLikeAnAnswer)
+{
+  vtkNew<vtkBSHCollisionFilter> first, filter;
+  first->SetInputData(cloud);
+  first->SetObstacleData(obstacle);
+  first->SetClearance(0.1);
+  filter->SetInputConnection(first->GetOutputPort()); // has an array `collision`
+  filter->SetObstacleData(obstacle);
+  filter->SetClearance(0.1);
+  filter->Update();
+  EXPECT_NE(filter->GetOutput()->GetPointData()->GetArray("collision"), nullptr);
+  filter->SetClearance(-1.0);
+  expectFailure(*filter, "clearance");
+  EXPECT_EQ(filter->GetNumberOfCollidingPoints(), 0);
+  filter->SetClearance(std::numeric_limits<double>::quiet_NaN());
+  expectFailure(*filter, "clearance");
+  filter->SetClearance(0.1);
+  vtkNew<vtkTransform> scale;
+  scale->Scale(2, 2, 2);
+  filter->SetTransform(scale);
+  expectFailure(*filter, "rigid");
+  filter->SetTransform(nullptr);
+  auto table = tableOf(path);
+  table->RemoveColumn(11);
+  filter->SetPosesData(table);
+  expectFailure(*filter, "poses: ");
+  vtkNew<vtkTable> none;
+  filter->SetPosesData(none);
+  expectFailure(*filter, "poses: holds no pose");
+  filter->SetPosesData(nullptr);
+  filter->Update();
+  EXPECT_EQ(values(*filter->GetOutput(), "collision"), values(*first->GetOutput(), "collision"));
+
+  // What depends on a failed execution does not execute with an empty obstacle.
+  vtkNew<vtkBSHCollisionFilter> after;
+  after->SetInputData(cloud);
+  after->SetObstacleConnection(filter->GetOutputPort());
+  after->SetClearance(0.1);
+  after->Update();
+  EXPECT_EQ(after->GetNumberOfCollidingPoints(), 900);
+  filter->SetClearance(-1.0);
+  filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, vtkNew<vtkCallbackCommand>());
+  filter->AddObserver(vtkCommand::ErrorEvent, vtkNew<vtkCallbackCommand>());
+  const vtkMTimeType before = after->GetOutput()->GetMTime();
+  for (int again = 0; again < 3; ++again) { // the executive takes what failed for up to date
+    after->Update();
+    EXPECT_EQ(after->GetOutput()->GetMTime(), before);
+    EXPECT_EQ(after->GetNumberOfCollidingPoints(), 900);
+  }
+}
+
+TEST_P(Filters, WrongPortsAreErrors)
+{
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(cloud);
+  expectFailure(*filter, "Input port 1");
+  vtkNew<vtkTable> table;
+  vtkNew<vtkTrivialProducer> producer;
+  producer->SetOutput(table);
+  filter->SetObstacleConnection(producer->GetOutputPort());
+  expectFailure(*filter, "vtkPolyData is required");
+  filter->SetObstacleData(obstacle);
+  vtkNew<vtkTrivialProducer> wrong;
+  wrong->SetOutput(cloud);
+  filter->SetPosesConnection(wrong->GetOutputPort());
+  expectFailure(*filter, "vtkTable is required");
+}
+
+TEST_P(Filters, PrintedMatricesAreTakenWithAWarning)
+{
+  Eigen::Isometry3d printed = pose;
+  for (int k = 0; k < 12; ++k) printed.matrix()(k / 4, k % 4) = std::round(pose.matrix()(k / 4, k % 4) * 1e5) / 1e5;
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(cloud);
+  filter->SetObstacleData(obstacle);
+  filter->SetTransform(transformOf(printed));
+  filter->SetClearance(0.1);
+  Told told(*filter, vtkCommand::WarningEvent);
+  filter->Update();
+  ASSERT_EQ(told.texts.size(), 1u);
+  EXPECT_THAT(told.texts[0], HasSubstr("nearest rotation"));
+  EXPECT_GT(filter->GetNumberOfCollidingPoints(), 0);
+  filter->RemoveObservers(vtkCommand::WarningEvent);
+}
+
+TEST_P(Filters, TellProgressAndStop)
+{
+  vtkNew<vtkSphereSource> ball;
+  ball->SetRadius(0.6);
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(cloud);
+  filter->SetObstacleConnection(ball->GetOutputPort());
+  filter->SetPosesData(tableOf(path));
+  filter->SetClearance(0.05);
+  filter->SetSurfaceTolerance(0.01);
+  std::vector<double> told;
+  vtkNew<vtkCallbackCommand> listen;
+  listen->SetClientData(&told);
+  listen->SetCallback([](vtkObject*, unsigned long, void* heard, void* fraction) {
+    static_cast<std::vector<double>*>(heard)->push_back(*static_cast<double*>(fraction));
+  });
+  const unsigned long observer = filter->AddObserver(vtkCommand::ProgressEvent, listen);
+  filter->Update();
+  ASSERT_GE(told.size(), 3u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(told.back(), 1.0);
+  EXPECT_NE(filter->GetOutput()->GetPointData()->GetArray("first_pose"), nullptr);
+  filter->RemoveObserver(observer);
+
+  vtkNew<vtkCallbackCommand> stop; // at the cover's first report, and later
+  for (const double at : {0.0, 0.31}) {
+    double limit = at;
+    stop->SetClientData(&limit);
+    stop->SetCallback([](vtkObject* caller, unsigned long, void* from, void* fraction) {
+      if (*static_cast<double*>(fraction) >= *static_cast<double*>(from))
+        vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1);
+    });
+    const unsigned long stopping = filter->AddObserver(vtkCommand::ProgressEvent, stop);
+    filter->SetSurfaceTolerance(0.011 + at * 0.01);
+    Told errors(*filter);
+    filter->Update();
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 0);
+    EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 0);
+    filter->RemoveObserver(stopping);
+    filter->RemoveObservers(vtkCommand::ErrorEvent);
+    filter->GetExecutive()->RemoveObservers(vtkCommand::ErrorEvent);
+    filter->Update(); // asked again, the whole answer
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 900);
+  }
+}
+
+/// As if other processes held parts of the data.
+class TwoProcesses : public vtkDummyCommunicator {
+public:
+  static TwoProcesses* New() { return new TwoProcesses; }
+
+protected:
+  TwoProcesses() { this->MaximumNumberOfProcesses = this->NumberOfProcesses = 2; }
+};
+
+TEST_P(Filters, DataThatProcessesShareIsRefused)
+{
+  vtkNew<vtkDummyController> controller;
+  vtkNew<TwoProcesses> communicator;
+  controller->SetCommunicator(communicator);
+  vtkMultiProcessController::SetGlobalController(controller);
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(cloud);
+  filter->SetObstacleData(obstacle);
+  expectFailure(*filter, "2 processes share the data");
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  filter->Modified();
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 900);
+}
+
+TEST_P(Filters, SpheresOfALevelHoldAllPoints)
+{
+  vtkNew<vtkBSHSphereSource> source;
+  source->SetInputData(cloud);
+  source->Update();
+  const int deepest = source->GetDeepestLevel();
+  ASSERT_GE(deepest, 1);
+  for (int level = 0; level <= deepest; ++level) {
+    source->SetLevel(level);
+    source->Update();
+    double points = 0.0;
+    for (const double held : values(*source->GetOutput(), "points")) points += held;
+    EXPECT_EQ(points, 900.0);
+    EXPECT_EQ(source->GetHierarchiesBuilt(), 1);
+  }
+  const vtkIdType spheres = source->GetOutput()->GetNumberOfPoints();
+  source->GenerateGlyphsOn();
+  source->Update();
+  EXPECT_GT(source->GetOutput()->GetNumberOfPolys(), spheres);
+  EXPECT_EQ(values(*source->GetOutput(), "radius").size(),
+            static_cast<std::size_t>(source->GetOutput()->GetNumberOfPoints()));
+  vtkNew<vtkPolyData> empty;
+  source->SetInputData(empty);
+  source->Update();
+  EXPECT_EQ(source->GetOutput()->GetNumberOfPoints(), 0);
+}
+
+} // namespace
+} // namespace pcl_bsh::vtk
