@@ -5,6 +5,7 @@
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/needed_tiles.h>
+#include <pcl_bsh/site/path_boxes.h>
 #include <pcl_bsh/site/records.h>
 #include <pcl_bsh/site/tile_visitor.h>
 
@@ -44,23 +45,42 @@ std::vector<std::uint32_t> tilesWithin(const Site& site, const Placed& b, double
   return tilesOf(balls, pcl_bsh::collisionFlags({hierarchy}, b, flags).a);
 }
 
-/// All tiles with points, those first that may be nearest to b, each with a lower bound of its distance.
-std::vector<std::pair<double, std::uint32_t>> tilesByDistance(const Site& site, const Placed& b,
-                                                              const SiteRequest& request)
+/// All tiles with points where b has any, too.
+std::vector<std::uint32_t> tilesWithPoints(const Site& site, const Placed& b)
 {
-  const TileBalls balls(site);
-  const SphereHierarchy hierarchy(balls.view(), optionsOf(request));
-  PointDistancesRequest wanted;
-  wanted.threads = request.threads;
-  const std::vector<double> distance = pcl_bsh::pointDistances({hierarchy}, b, wanted).distance;
+  std::vector<std::uint32_t> tiles;
+  for (std::uint32_t i = 0; i < site.tiles.size() && !b.hierarchy().empty(); ++i)
+    if (site.tiles[i].bounds) tiles.push_back(i);
+  return tiles;
+}
+
+/// The same, those first that may be nearest to b, each with a lower bound of its distance: that of its box to boxes
+/// about parts of b. Two steps of rounding are paid for by each of both.
+std::vector<std::pair<double, std::uint32_t>> tilesByDistance(const Site& site, const Placed& b)
+{
+  const CloudBoxes boxes(b.hierarchy().view());
+  std::vector<Bounds> parts;
+  for (const Bounds& part : boxes.parts()) parts.push_back(moved(part, b.pose, 0.0));
   std::vector<std::pair<double, std::uint32_t>> tiles;
-  for (std::size_t i = 0; i < distance.size(); ++i) {
-    if (std::isnan(distance[i])) continue; // b has no points
-    if (tiles.empty() || tiles.back().second != balls.tile(i)) tiles.emplace_back(infinity, balls.tile(i));
-    // Rounded to the nearest double; the one below is less than the distance.
-    tiles.back().first = std::min(tiles.back().first, std::nextafter(distance[i], -infinity));
+  for (const std::uint32_t i : tilesWithPoints(site, b)) {
+    double least = infinity;
+    for (const Bounds& part : parts) least = std::min(least, leastDistance(*site.tiles[i].bounds, part));
+    // Where boxes overlap, a point may be inside a ball of b.
+    tiles.emplace_back(least > 0.0 ? least : -boxes.largestRadius(), i);
   }
   std::sort(tiles.begin(), tiles.end());
+  return tiles;
+}
+
+/// Tiles that the model may come near to on its way.
+std::vector<std::uint32_t> tilesAlong(const Site& site, const SphereHierarchy& model,
+                                      const std::vector<Eigen::Isometry3d>& poses, const PathReach& reach)
+{
+  const CloudBoxes boxes(model.view());
+  const PathBoxes path(boxes, poses, reach);
+  std::vector<std::uint32_t> tiles;
+  for (std::uint32_t i = 0; i < site.tiles.size(); ++i)
+    if (site.tiles[i].bounds && path.mayReach(*site.tiles[i].bounds)) tiles.push_back(i);
   return tiles;
 }
 
@@ -171,7 +191,7 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
 
 SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request)
 {
-  const auto by_distance = tilesByDistance(site, b, request);
+  const auto by_distance = tilesByDistance(site, b);
   std::vector<std::uint32_t> tiles;
   for (const auto& [lower, tile] : by_distance) tiles.push_back(tile);
   DistanceRequest wanted;
@@ -233,7 +253,7 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
   if (max_distance < infinity)
     tiles = tilesWithin(site, b, max_distance, request);
   else
-    for (const auto& [lower, tile] : tilesByDistance(site, b, request)) tiles.push_back(tile);
+    tiles = tilesWithPoints(site, b);
   result.tiles = inquiry.visit(tiles, ask);
   result.measured = sumOfAllRanks(result.measured);
   greatest = -leastOfAllRanks(-greatest);
@@ -247,12 +267,11 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   TrajectoryRequest wanted;
   wanted.clearance = request.clearance;
   wanted.threads = request.threads;
-  const TileBalls balls(site);
-  const SphereHierarchy of_balls(balls.view(), optionsOf(request));
-  const std::vector<std::uint32_t> tiles =
-      tilesOf(balls, pcl_bsh::collideAlong({of_balls}, model, poses, wanted).flags);
-
   wanted.distances = wanted.first_poses = wanted.closest_poses = true;
+  pcl_bsh::collideAlong({SphereHierarchy(PointsView{})}, model, poses, wanted); // refuses what no tile may be asked
+
+  PathReach reach;
+  reach.distance = request.clearance;
   SitePassage result;
   double least = infinity, first = infinity;
   Inquiry inquiry(site, request);
@@ -266,7 +285,7 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
     }
     if (sink) sink(tile, cloud, found);
   };
-  result.tiles = inquiry.visit(tiles, ask);
+  result.tiles = inquiry.visit(tilesAlong(site, model, poses, reach), ask);
   result.colliding = sumOfAllRanks(result.colliding);
   least = leastOfAllRanks(least);
   first = leastOfAllRanks(first);
