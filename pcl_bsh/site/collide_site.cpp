@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pcl_bsh::sites {
 
@@ -82,6 +83,31 @@ std::vector<std::uint32_t> tilesAlong(const Site& site, const SphereHierarchy& m
   for (std::uint32_t i = 0; i < site.tiles.size(); ++i)
     if (site.tiles[i].bounds && path.mayReach(*site.tiles[i].bounds)) tiles.push_back(i);
   return tiles;
+}
+
+/// Refuses what the query would refuse of the whole site, although no tile may be asked: the site's corners are.
+void refuse(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
+            const TrajectoryRequest& request)
+{
+  std::vector<Point3> corners;
+  if (site.bounds) corners = {site.bounds->low, site.bounds->high};
+  const SphereHierarchy scan(viewOf(corners.empty() ? nullptr : corners.front().data(), corners.size()));
+  pcl_bsh::collideAlong({scan}, model, poses, request);
+}
+
+constexpr FirstContact no_contact = {std::numeric_limits<std::size_t>::max(), 1.0};
+
+FirstContact earlier(const FirstContact& a, const FirstContact& b)
+{
+  return std::pair(b.pose, b.fraction) < std::pair(a.pose, a.fraction) ? b : a;
+}
+
+/// @pre one of them is a contact. Numbers of poses are exact as doubles.
+FirstContact earliestOfAllRanks(const FirstContact& own)
+{
+  const double pose = leastOfAllRanks(static_cast<double>(own.pose));
+  const bool mine = static_cast<double>(own.pose) == pose;
+  return {static_cast<std::size_t>(pose), leastOfAllRanks(mine ? own.fraction : 1.0)};
 }
 
 /// Asks one question about tiles.
@@ -268,16 +294,23 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   wanted.clearance = request.clearance;
   wanted.threads = request.threads;
   wanted.distances = wanted.first_poses = wanted.closest_poses = true;
-  pcl_bsh::collideAlong({SphereHierarchy(PointsView{})}, model, poses, wanted); // refuses what no tile may be asked
+  wanted.swept = request.swept;
+  wanted.pivot = request.pivot;
+  refuse(site, model, poses, wanted);
 
   PathReach reach;
-  reach.distance = request.clearance;
+  // Colliding is what comes within clearance + tolerance.
+  reach.distance = request.clearance + request.swept.value_or(0.0);
+  reach.moves = request.swept.has_value();
+  reach.pivot = request.pivot;
   SitePassage result;
   double least = infinity, first = infinity;
+  FirstContact contact = no_contact;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
     result.colliding += found.colliding;
+    if (found.first_contact) contact = earlier(contact, *found.first_contact);
     for (std::size_t i = 0; i < found.flags.size(); ++i) {
       if (found.flags[i] == 0) continue;
       least = std::min(least, double{found.distance[i]});
@@ -292,6 +325,7 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   if (result.colliding > 0) {
     result.distance = static_cast<float>(least);
     result.first_pose = static_cast<std::int32_t>(first);
+    if (request.swept) result.first_contact = earliestOfAllRanks(contact);
   }
   return result;
 }
