@@ -217,11 +217,12 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
 
 SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request)
 {
+  DistanceRequest wanted;
+  wanted.threads = request.threads;
+  pcl_bsh::closestPair({SphereHierarchy(PointsView{})}, b, wanted); // refuses a pose that no tile may be asked about
   const auto by_distance = tilesByDistance(site, b);
   std::vector<std::uint32_t> tiles;
   for (const auto& [lower, tile] : by_distance) tiles.push_back(tile);
-  DistanceRequest wanted;
-  wanted.threads = request.threads;
   double least = infinity;
   std::vector<Candidate> candidates;
   Inquiry inquiry(site, request);
@@ -267,6 +268,7 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
   PointDistancesRequest wanted;
   wanted.max_distance = max_distance;
   wanted.threads = request.threads;
+  pcl_bsh::pointDistances({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
   double greatest = -infinity;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {

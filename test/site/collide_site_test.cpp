@@ -339,6 +339,24 @@ TEST_F(CollideSite, APathReadsOnlyTilesBesideIt)
   EXPECT_THROW(collideAlong(site, other, poses, request), std::invalid_argument);
 }
 
+TEST_F(CollideSite, RefusesWithoutATileToAsk)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  io::writeCloud(folder / "a.pcd", cloudOf({{nan, 0, 0}, {0, nan, 0}}));
+  const Site site = makeSite({folder / "a.pcd"}, folder / "site", {});
+  const Point3 point = {0, 0, 0};
+  const SphereHierarchy other(viewOf(point.data(), 1));
+  EXPECT_FALSE(closestPair(site, {other}, {}).point);
+  EXPECT_EQ(pointDistances(site, {other}, 1.0, {}).measured, 0U);
+  EXPECT_EQ(collideAlong(site, other, {Eigen::Isometry3d::Identity()}, {}).colliding, 0U);
+  Placed bad(other);
+  bad.pose.linear() *= 2;
+  EXPECT_THROW(closestPair(site, bad, {}), std::invalid_argument);
+  EXPECT_THROW(pointDistances(site, bad, std::numeric_limits<double>::infinity(), {}), std::invalid_argument);
+  EXPECT_THROW(pointDistances(site, {other}, nan, {}), std::invalid_argument);
+  EXPECT_THROW(collideAlong(site, other, {bad.pose}, {}), std::invalid_argument);
+}
+
 /// From far away, one tile is enough.
 TEST_F(CollideSite, FarSmallestDistanceReadsFewTiles)
 {
