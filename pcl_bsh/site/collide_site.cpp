@@ -5,11 +5,13 @@
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/needed_tiles.h>
+#include <pcl_bsh/site/path_boxes.h>
 #include <pcl_bsh/site/records.h>
 #include <pcl_bsh/site/tile_visitor.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pcl_bsh::sites {
 
@@ -44,24 +46,68 @@ std::vector<std::uint32_t> tilesWithin(const Site& site, const Placed& b, double
   return tilesOf(balls, pcl_bsh::collisionFlags({hierarchy}, b, flags).a);
 }
 
-/// All tiles with points, those first that may be nearest to b, each with a lower bound of its distance.
-std::vector<std::pair<double, std::uint32_t>> tilesByDistance(const Site& site, const Placed& b,
-                                                              const SiteRequest& request)
+/// All tiles with points where b has any, too.
+std::vector<std::uint32_t> tilesWithPoints(const Site& site, const Placed& b)
 {
-  const TileBalls balls(site);
-  const SphereHierarchy hierarchy(balls.view(), optionsOf(request));
-  PointDistancesRequest wanted;
-  wanted.threads = request.threads;
-  const std::vector<double> distance = pcl_bsh::pointDistances({hierarchy}, b, wanted).distance;
+  std::vector<std::uint32_t> tiles;
+  for (std::uint32_t i = 0; i < site.tiles.size() && !b.hierarchy().empty(); ++i)
+    if (site.tiles[i].bounds) tiles.push_back(i);
+  return tiles;
+}
+
+/// The same, those first that may be nearest to b, each with a lower bound of its distance: that of its box to boxes
+/// about parts of b. Two steps of rounding are paid for by each of both.
+std::vector<std::pair<double, std::uint32_t>> tilesByDistance(const Site& site, const Placed& b)
+{
+  const CloudBoxes boxes(b.hierarchy().view());
+  std::vector<Bounds> parts;
+  for (const Bounds& part : boxes.parts()) parts.push_back(moved(part, b.pose, 0.0));
   std::vector<std::pair<double, std::uint32_t>> tiles;
-  for (std::size_t i = 0; i < distance.size(); ++i) {
-    if (std::isnan(distance[i])) continue; // b has no points
-    if (tiles.empty() || tiles.back().second != balls.tile(i)) tiles.emplace_back(infinity, balls.tile(i));
-    // Rounded to the nearest double; the one below is less than the distance.
-    tiles.back().first = std::min(tiles.back().first, std::nextafter(distance[i], -infinity));
+  for (const std::uint32_t i : tilesWithPoints(site, b)) {
+    double least = infinity;
+    for (const Bounds& part : parts) least = std::min(least, leastDistance(*site.tiles[i].bounds, part));
+    // Where boxes overlap, a point may be inside a ball of b.
+    tiles.emplace_back(least > 0.0 ? least : -boxes.largestRadius(), i);
   }
   std::sort(tiles.begin(), tiles.end());
   return tiles;
+}
+
+/// Tiles that the model may come near to on its way.
+std::vector<std::uint32_t> tilesAlong(const Site& site, const SphereHierarchy& model,
+                                      const std::vector<Eigen::Isometry3d>& poses, const PathReach& reach)
+{
+  const CloudBoxes boxes(model.view());
+  const PathBoxes path(boxes, poses, reach);
+  std::vector<std::uint32_t> tiles;
+  for (std::uint32_t i = 0; i < site.tiles.size(); ++i)
+    if (site.tiles[i].bounds && path.mayReach(*site.tiles[i].bounds)) tiles.push_back(i);
+  return tiles;
+}
+
+/// Refuses what the query would refuse of the whole site, although no tile may be asked: the site's corners are.
+void refuse(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
+            const TrajectoryRequest& request)
+{
+  std::vector<Point3> corners;
+  if (site.bounds) corners = {site.bounds->low, site.bounds->high};
+  const SphereHierarchy scan(viewOf(corners.empty() ? nullptr : corners.front().data(), corners.size()));
+  pcl_bsh::collideAlong({scan}, model, poses, request);
+}
+
+constexpr FirstContact no_contact = {std::numeric_limits<std::size_t>::max(), 1.0};
+
+FirstContact earlier(const FirstContact& a, const FirstContact& b)
+{
+  return std::pair(b.pose, b.fraction) < std::pair(a.pose, a.fraction) ? b : a;
+}
+
+/// @pre one of them is a contact. Numbers of poses are exact as doubles.
+FirstContact earliestOfAllRanks(const FirstContact& own)
+{
+  const double pose = leastOfAllRanks(static_cast<double>(own.pose));
+  const bool mine = static_cast<double>(own.pose) == pose;
+  return {static_cast<std::size_t>(pose), leastOfAllRanks(mine ? own.fraction : 1.0)};
 }
 
 /// Asks one question about tiles.
@@ -171,11 +217,12 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
 
 SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request)
 {
-  const auto by_distance = tilesByDistance(site, b, request);
-  std::vector<std::uint32_t> tiles;
-  for (const auto& [lower, tile] : by_distance) tiles.push_back(tile);
   DistanceRequest wanted;
   wanted.threads = request.threads;
+  pcl_bsh::closestPair({SphereHierarchy(PointsView{})}, b, wanted); // refuses a pose that no tile may be asked about
+  const auto by_distance = tilesByDistance(site, b);
+  std::vector<std::uint32_t> tiles;
+  for (const auto& [lower, tile] : by_distance) tiles.push_back(tile);
   double least = infinity;
   std::vector<Candidate> candidates;
   Inquiry inquiry(site, request);
@@ -221,6 +268,7 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
   PointDistancesRequest wanted;
   wanted.max_distance = max_distance;
   wanted.threads = request.threads;
+  pcl_bsh::pointDistances({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
   double greatest = -infinity;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
@@ -233,7 +281,7 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
   if (max_distance < infinity)
     tiles = tilesWithin(site, b, max_distance, request);
   else
-    for (const auto& [lower, tile] : tilesByDistance(site, b, request)) tiles.push_back(tile);
+    tiles = tilesWithPoints(site, b);
   result.tiles = inquiry.visit(tiles, ask);
   result.measured = sumOfAllRanks(result.measured);
   greatest = -leastOfAllRanks(-greatest);
@@ -247,18 +295,24 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   TrajectoryRequest wanted;
   wanted.clearance = request.clearance;
   wanted.threads = request.threads;
-  const TileBalls balls(site);
-  const SphereHierarchy of_balls(balls.view(), optionsOf(request));
-  const std::vector<std::uint32_t> tiles =
-      tilesOf(balls, pcl_bsh::collideAlong({of_balls}, model, poses, wanted).flags);
-
   wanted.distances = wanted.first_poses = wanted.closest_poses = true;
+  wanted.swept = request.swept;
+  wanted.pivot = request.pivot;
+  refuse(site, model, poses, wanted);
+
+  PathReach reach;
+  // Colliding is what comes within clearance + tolerance.
+  reach.distance = request.clearance + request.swept.value_or(0.0);
+  reach.moves = request.swept.has_value();
+  reach.pivot = request.pivot;
   SitePassage result;
   double least = infinity, first = infinity;
+  FirstContact contact = no_contact;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
     result.colliding += found.colliding;
+    if (found.first_contact) contact = earlier(contact, *found.first_contact);
     for (std::size_t i = 0; i < found.flags.size(); ++i) {
       if (found.flags[i] == 0) continue;
       least = std::min(least, double{found.distance[i]});
@@ -266,13 +320,14 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
     }
     if (sink) sink(tile, cloud, found);
   };
-  result.tiles = inquiry.visit(tiles, ask);
+  result.tiles = inquiry.visit(tilesAlong(site, model, poses, reach), ask);
   result.colliding = sumOfAllRanks(result.colliding);
   least = leastOfAllRanks(least);
   first = leastOfAllRanks(first);
   if (result.colliding > 0) {
     result.distance = static_cast<float>(least);
     result.first_pose = static_cast<std::int32_t>(first);
+    if (request.swept) result.first_contact = earliestOfAllRanks(contact);
   }
   return result;
 }

@@ -7,8 +7,8 @@
 //   request.clearance = 0.05;
 //   sites::SiteClosest nearest = sites::closestPair(valley, {robot, T_valley_robot}, request);
 //
-// Only tiles that can matter are read, one at a time. Which, the hierarchy of the cloud tells: the box of each tile is
-// covered by balls, and these are points with radii, about which the same question is asked first.
+// Only tiles that can matter are read, one at a time. Which, their boxes tell: compared with boxes about parts of the
+// cloud, along its path if it moves; or covered by balls, about which the same question is asked first.
 //
 // In an MPI job (mpirun -n 4 ...), all ranks call the same function with the same input: the tiles are dealt to them,
 // and each gets the whole answer. Sinks are called on the rank that has the tile. Points have no uncertainties here,
@@ -33,8 +33,10 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::sites {
 
 struct SiteRequest {
-  double clearance = 0.0;                        ///< finite, >= 0; inclusive
-  unsigned threads = 1;                          ///< of each process; 0: all of the machine's
+  double clearance = 0.0;      ///< finite, >= 0; inclusive
+  std::optional<double> swept; ///< of collideAlong(): the motion between poses too, to this tolerance, as there
+  Point3 pivot = {0, 0, 0};    ///< of that motion, as there
+  unsigned threads = 1;        ///< of each process; 0: all of the machine's
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
   /// Called now and then by each rank, with the tiles that it has done. False: stop, the query throws Cancelled.
   std::function<bool(std::uint64_t)> progress;
@@ -88,6 +90,7 @@ struct SitePassage {
   /// The smallest distance of colliding points and the first pose at which any collides; NaN and -1: none does.
   float distance = std::numeric_limits<float>::quiet_NaN();
   std::int32_t first_pose = -1;
+  std::optional<FirstContact> first_contact; ///< of swept motion, where anything collides
   TilesRead tiles;
 };
 
@@ -123,6 +126,7 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
                              const DistancesSink& sink = nullptr);
 
 /// The model along its poses, in the site's frame: flags, distances, first and closest poses of each point.
+/// @throws std::invalid_argument also for poses and a tolerance that no tile is asked about
 SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
                          const SiteRequest& request, const PassageSink& sink = nullptr);
 

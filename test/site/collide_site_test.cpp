@@ -226,6 +226,161 @@ TEST_F(CollideSite, ReadsOnlyTilesThatMatter)
   EXPECT_THROW(collisionFlags(site, {other, scene.pose}, Side::a, request), std::runtime_error);
 }
 
+/// Along a path, at its poses or swept, on tiles of very different sizes.
+void expectSamePassage(const std::vector<Point3>& points, const SphereHierarchy& model,
+                       const std::vector<Eigen::Isometry3d>& poses, double clearance, const fs::path& folder)
+{
+  fs::create_directory(folder);
+  io::writeCloud(folder / "points.pcd", cloudOf(points));
+  const SphereHierarchy all(viewOf(points.front().data(), points.size()));
+  for (const std::optional<double> swept : {std::optional<double>(), std::optional<double>(0.01)}) {
+    TrajectoryRequest wanted;
+    wanted.clearance = clearance;
+    wanted.swept = swept;
+    wanted.distances = wanted.first_poses = wanted.closest_poses = true;
+    const TrajectoryResult path = pcl_bsh::collideAlong({all}, model, poses, wanted);
+    for (const std::uint64_t tile_points : {100000, 300, 9}) {
+      SCOPED_TRACE(std::to_string(tile_points) + (swept ? " swept" : ""));
+      MakeOptions options;
+      options.tile_points = tile_points;
+      const fs::path place = folder / ("site" + std::to_string(tile_points) + (swept ? "s" : ""));
+      const Site site = makeSite({folder / "points.pcd"}, place, options);
+      SiteRequest request;
+      request.clearance = clearance;
+      request.swept = swept;
+      std::size_t seen = 0;
+      const SitePassage found = collideAlong(
+          site, model, poses, request, [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
+            for (std::uint32_t i = 0; i < cloud.width; ++i) {
+              const auto p = static_cast<std::uint32_t>(io::valueOf(cloud, i, "record"));
+              ASSERT_EQ(result.flags[i], path.flags[p]) << p;
+              if (path.flags[p] == 0) continue;
+              ++seen;
+              EXPECT_EQ(result.distance[i], path.distance[p]) << p;
+              EXPECT_EQ(result.first_pose[i], path.first_pose[p]) << p;
+              EXPECT_EQ(result.closest_pose[i], path.closest_pose[p]) << p;
+            }
+          });
+      EXPECT_EQ(seen, path.colliding);
+      EXPECT_EQ(found.colliding, path.colliding);
+      ASSERT_EQ(found.first_contact.has_value(), path.first_contact.has_value());
+      if (!path.first_contact) continue;
+      EXPECT_EQ(found.first_contact->pose, path.first_contact->pose);
+      EXPECT_EQ(found.first_contact->fraction, path.first_contact->fraction);
+    }
+  }
+}
+
+/// The model is a rod which is longer than tiles. It turns, leaves the points and comes back to where it was.
+TEST_F(CollideSite, AlongAPathThatTurnsAndReturns)
+{
+  std::vector<Point3> rod;
+  for (int i = 0; i <= 400; ++i) rod.push_back({0.02 * i - 4, 0.1 * std::sin(i), 0.1 * std::cos(i)});
+  const SphereHierarchy model(viewOf(rod.front().data(), rod.size()));
+  std::vector<Eigen::Isometry3d> poses;
+  for (int k = 0; k < 40; ++k) {
+    const Eigen::Translation3d at(k < 20 ? -8 + k : 31 - k, k % 20 > 12 ? 100 : 0.2 * k, 0.4);
+    poses.push_back(at * Eigen::AngleAxisd(0.9 * k, Eigen::Vector3d(0.1, 0.2, 1).normalized()));
+  }
+  std::vector<Point3> points = randomScene(4).a;
+  points.resize(3000);
+  for (std::size_t i = 0; i < 300; ++i) points.push_back(points[7 * i]); // twice
+  for (std::size_t i = 0; i < 20; ++i) points.push_back({std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  expectSamePassage(points, model, poses, 0.1, folder / "rod");
+}
+
+/// Two poses are far apart, so that nothing is near to either, and what is between is found by the motion alone.
+TEST_F(CollideSite, BetweenFarPoses)
+{
+  const std::vector<Point3> arm = {{10, 0, 0}};
+  const SphereHierarchy model(viewOf(arm.front().data(), arm.size()));
+  std::vector<Eigen::Isometry3d> poses(2, Eigen::Isometry3d::Identity());
+  poses[1].rotate(Eigen::AngleAxisd(3.0, Eigen::Vector3d::UnitZ())); // by way of (0, 10, 0), which no chord comes near
+  std::vector<Point3> points;
+  for (int i = 0; i < 40; ++i) points.push_back({0.2 * i - 4, 10, 0});
+  expectSamePassage(points, model, poses, 0.05, folder / "arm");
+}
+
+/// Points lie exactly at the clearance on both sides of where tiles may end, and one unit in the last place beyond.
+TEST_F(CollideSite, AtExactlyTheClearance)
+{
+  std::vector<Point3> points, body = {{0, 0, 0}};
+  for (int i = 0; i < 64; ++i)
+    for (const double height : {0.25, std::nextafter(0.25, 1.0), -0.25, 40.0}) points.push_back({0.5 * i, 0, height});
+  const SphereHierarchy model(viewOf(body.front().data(), body.size()));
+  std::vector<Eigen::Isometry3d> poses;
+  for (int k = 0; k < 64; ++k) poses.emplace_back(Eigen::Translation3d(0.5 * k, 0, 0));
+  expectSamePassage(points, model, poses, 0.25, folder / "exact");
+}
+
+TEST_F(CollideSite, APathReadsOnlyTilesBesideIt)
+{
+  const Scene scene = randomScene(2);
+  io::writeCloud(folder / "a.pcd", cloudOf(scene.a));
+  MakeOptions options;
+  options.tile_points = 40;
+  const Site site = makeSite({folder / "a.pcd"}, folder / "site", options);
+  const SphereHierarchy other(viewOf(scene.b.front().data(), scene.b.size()));
+  std::vector<Eigen::Isometry3d> poses;
+  for (int k = 0; k < 1000; ++k) poses.emplace_back(Eigen::Translation3d(-20 + 0.04 * k, 10, 0));
+  SiteRequest request;
+  request.clearance = 0.05;
+  const TilesRead along = collideAlong(site, other, poses, request).tiles;
+  EXPECT_GT(along.needed, 0U);
+  EXPECT_LT(along.needed, along.tiles / 3);
+  // What no tile is asked about is refused all the same.
+  poses = {poses[0], poses[0]};
+  for (Eigen::Isometry3d& pose : poses) pose.translation().z() = 1000;
+  EXPECT_EQ(collideAlong(site, other, poses, request).tiles.needed, 0U);
+  request.swept = 0.01;
+  poses[1].rotate(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
+  EXPECT_THROW(collideAlong(site, other, poses, request), std::invalid_argument);
+  request.swept = -1;
+  EXPECT_THROW(collideAlong(site, other, poses, request), std::invalid_argument);
+}
+
+TEST_F(CollideSite, RefusesWithoutATileToAsk)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  io::writeCloud(folder / "a.pcd", cloudOf({{nan, 0, 0}, {0, nan, 0}}));
+  const Site site = makeSite({folder / "a.pcd"}, folder / "site", {});
+  const Point3 point = {0, 0, 0};
+  const SphereHierarchy other(viewOf(point.data(), 1));
+  EXPECT_FALSE(closestPair(site, {other}, {}).point);
+  EXPECT_EQ(pointDistances(site, {other}, 1.0, {}).measured, 0U);
+  EXPECT_EQ(collideAlong(site, other, {Eigen::Isometry3d::Identity()}, {}).colliding, 0U);
+  Placed bad(other);
+  bad.pose.linear() *= 2;
+  EXPECT_THROW(closestPair(site, bad, {}), std::invalid_argument);
+  EXPECT_THROW(pointDistances(site, bad, std::numeric_limits<double>::infinity(), {}), std::invalid_argument);
+  EXPECT_THROW(pointDistances(site, {other}, nan, {}), std::invalid_argument);
+  EXPECT_THROW(collideAlong(site, other, {bad.pose}, {}), std::invalid_argument);
+}
+
+/// From far away, one tile is enough.
+TEST_F(CollideSite, FarSmallestDistanceReadsFewTiles)
+{
+  const Scene scene = randomScene(2);
+  io::writeCloud(folder / "a.pcd", cloudOf(scene.a));
+  MakeOptions options;
+  options.tile_points = 40;
+  const Site site = makeSite({folder / "a.pcd"}, folder / "site", options);
+  const SphereHierarchy all(viewOf(scene.a.front().data(), scene.a.size()));
+  const SphereHierarchy other(viewOf(scene.b.front().data(), scene.b.size()));
+  for (const Point3& from : {Point3{1000, 20, 3}, Point3{-300, -500, 90}, Point3{0, 0, 1e7}}) {
+    const Placed b(other, Eigen::Isometry3d(Eigen::Translation3d(from[0], from[1], from[2])));
+    const SiteClosest found = closestPair(site, b, {});
+    const DistanceResult nearest = pcl_bsh::closestPair({all}, b);
+    EXPECT_EQ(found.distance, nearest.distance);
+    ASSERT_TRUE(found.point);
+    EXPECT_EQ(found.point->record, nearest.pair->a);
+    EXPECT_EQ(found.b, nearest.pair->b);
+    if (from[2] < 1e6) {
+      EXPECT_LT(found.tiles.read, 20U);
+    }
+  }
+}
+
 TEST_F(CollideSite, OnTwoRanks)
 {
   if (std::system("mpirun --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no mpirun";
@@ -243,9 +398,12 @@ TEST_F(CollideSite, OnTwoRanks)
                                 " && env -i PATH=\"$PATH\" OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
                                 "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR "/pcl_bsh_site ";
   const std::string pose = " --pose=3,-2,0.7,0.1,0.2,0.3";
-  const std::vector<std::string> questions = {" --clearance 0.2" + pose, " --any --clearance 0.2" + pose,
-                                              " --closest" + pose, " --distances" + pose,
-                                              std::string(" --clearance 0.2 --trajectory poses.txt")};
+  const std::vector<std::string> questions = {" --clearance 0.2" + pose,
+                                              " --any --clearance 0.2" + pose,
+                                              " --closest" + pose,
+                                              " --distances" + pose,
+                                              std::string(" --clearance 0.2 --trajectory poses.txt"),
+                                              std::string(" --clearance 0.2 --swept 0.01 --trajectory poses.txt")};
   for (const std::string& question : questions) {
     SCOPED_TRACE(question);
     const Outcome one = run("pcl_bsh_site", "collide site b.pcd --report one.json" + question, folder.path());

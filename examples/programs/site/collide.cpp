@@ -80,11 +80,15 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
   }
   case SiteQuestion::path: {
     const auto poses = io::readPoses(options.trajectory);
+    request.swept = options.swept;
     const sites::SitePassage found = sites::collideAlong(site, obstacle.hierarchy(), poses, request);
     report["poses"] = poses.size();
     report["colliding"] = found.colliding;
     report["distance"] = orNull(double{found.distance});
     report["first_pose"] = found.first_pose < 0 ? Json(nullptr) : Json(found.first_pose);
+    if (options.swept) report["swept"] = *options.swept;
+    if (found.first_contact)
+      report["first_contact"] = {{"pose", found.first_contact->pose}, {"fraction", found.first_contact->fraction}};
     put(report, found.tiles);
     break;
   }

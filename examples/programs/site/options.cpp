@@ -76,6 +76,9 @@ struct CollideTexts {
     app.add_option("--pose", pose, "of OBSTACLE in SITE's frame: x,y,z,roll,pitch,yaw or a file")->type_name("POSE");
     app.add_option("--trajectory", options.trajectory, "poses of OBSTACLE, one a line, instead of --pose")
         ->type_name("FILE");
+    app.add_option("--swept", options.swept, "of --trajectory: the motion between poses counts, to this tolerance")
+        ->type_name("TOL")
+        ->transform(number<double>("give a length > 0", [](double d) { return d > 0; }));
     app.add_flag("--any", any, "only whether any point collides");
     app.add_flag("--closest", closest, "the smallest distance, and the points that have it");
     app.add_flag("--distances", distances, "how many points have a distance, and the greatest");
@@ -101,6 +104,7 @@ struct CollideTexts {
     const bool needs_clearance = !closest && !distances;
     if (needs_clearance && clearance->count() == 0) throw UsageError("--clearance: is missing: give a length");
     if (max_distance->count() > 0 && !distances) throw UsageError("--max-distance: goes with --distances: add it");
+    if (options.swept && !moves) throw UsageError("--swept: goes with --trajectory: add it");
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
     if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
   }

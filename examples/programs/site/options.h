@@ -32,6 +32,7 @@ struct SiteOptions {
   SiteQuestion question = SiteQuestion::flags;
   std::filesystem::path obstacle, trajectory, report;
   double clearance = 0.0;
+  std::optional<double> swept;
   double max_distance = std::numeric_limits<double>::infinity();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   unsigned threads = 1;
