@@ -57,6 +57,7 @@ public:
     std::uint32_t undecided = firstBits(leaf_.count);
     const bool by_float = largest_radius_ > 0.0 ? findNearest<true>(visit, lane, near, undecided)
                                                 : findNearest<false>(visit, lane, near, undecided);
+    if (by_float && exceeds(limit_)) return;
     for (std::uint32_t i = 0; i < leaf_.count; ++i) {
       Found& found = found_[i];
       found = (undecided >> i & 1) != 0 ? decide(i, near, visit.cut[lane], by_float) : named(i, near);
@@ -84,6 +85,7 @@ private:
     two_.clear();
     for (std::uint32_t i = leaf_.count; i < kLeafPoints; ++i) two_.first[i] = -std::numeric_limits<float>::infinity();
     error_ = kSmallestLength;
+    limit_ = std::numeric_limits<float>::infinity();
     float limit = visit.cut[lane], farthest = std::numeric_limits<float>::infinity();
     for (std::size_t n = 0; n < near.size(); ++n) {
       if (n < kNearestFirst) bringNearest(near, n);
@@ -112,7 +114,8 @@ private:
       const float now = largestOf(two_.first, kLeafPoints);
       if (now < farthest) {
         farthest = now;
-        limit = std::min(limit, beyond(mostOf<kBalls>(farthest)));
+        limit_ = limit = std::min(limit, beyond(mostOf<kBalls>(farthest)));
+        if (exceeds(limit)) return true;
       }
     }
     undecided = query_.proven ? ambiguous<kBalls>() : 0;
@@ -155,6 +158,9 @@ private:
     const bool all_within = found * unit_ * (1.0 + kMargin) <= max_;
     return roundUp(all_within ? found - query_.tolerance / unit_ * (1.0 - kDoubleMargin) : found);
   }
+
+  /// Whether a greater distance than the bound has been measured, where only the greatest is asked for.
+  bool exceeds(float upper) const { return query_.reached && query_.reached->exceeds(upper, unit_); }
 
   /// The points whose second nearest may be the nearest.
   template <bool kBalls>
@@ -291,6 +297,7 @@ private:
         distance = lengths_only_ ? lengths_[i] : kNotKnown;
         if (by_float) distance = (found.least + found.most) / 2 - pair.radius_p;
         if (std::isnan(distance)) distance = query_.pairs.distance.gap(pair);
+        if (query_.reached) query_.reached->raise(distance);
         if (sheet_.interval) interval = intervalOf(distance);
       }
     }
@@ -326,6 +333,7 @@ private:
   GivenPairs given_ = {};
   alignas(64) double lengths_[kLeafPoints];
   NearestTwo two_;
+  float limit_ = 0.0f; ///< no point of the leaf is farther than this from its nearest, in the walk's unit
   double error_ = 0.0; ///< of the float distances, in the walk's unit
   double skew_ = 0.0;  ///< of the poses
 };

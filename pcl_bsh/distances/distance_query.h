@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/distances/reached_distance.h>
 #include <pcl_bsh/query/stop_rule.h>
 #include <pcl_bsh/traversal/point_pairs.h>
 
@@ -17,6 +18,9 @@ struct DistancesQuery {
   RelativeRotation rotation;
   double tolerance = 0.0; ///< how much farther than the nearest a point may be
   bool proven = true;     ///< whether more than float has to decide
+  /// Where only the greatest distance is asked for: what is nearer than this one need not be measured. Null: all are.
+  /// @pre not null: no greatest distance, the accuracy exact; else bounds are not those of the nearest
+  ReachedDistance* reached = nullptr;
 };
 
 /// Where the answers of one walk go: arrays with an entry for each record of a. No interval: null.

@@ -12,6 +12,7 @@
 #include <pcl_bsh/distances/bound_margin.h>
 #include <pcl_bsh/traversal/obstacle_sphere-inl.h>
 
+#include <array>
 #include <deque>
 #include <vector>
 
@@ -82,12 +83,13 @@ struct DistanceVisit {
   std::uint64_t stamp = 0; ///< a number that no other visit or leaf has had
   BoundingSphere around;   ///< holds them all; in the frame of a's voxel
   std::uint32_t leaves = 0;
-  float cut[kLanes];                ///< what is farther than this is not the nearest of any point of the child
-  float limit[kLanes];              ///< spheres with a lower bound above it are outdone; infinite where none are
-  float turn[kLanes];               ///< Outdoing::turnOf() of the children
-  std::vector<DistanceRow> rows;    ///< of what the node itself was near to
-  std::vector<DistanceRow> kept;    ///< of what its children are to be compared with
-  std::vector<CarriedNode> carried; ///< by obstacle
+  float cut[kLanes];                      ///< what is farther than this is not the nearest of any point of the child
+  float limit[kLanes];                    ///< spheres with a lower bound above it are outdone; infinite where none are
+  float turn[kLanes];                     ///< Outdoing::turnOf() of the children
+  std::array<std::uint8_t, kLanes> order; ///< in which the children are measured
+  std::vector<DistanceRow> rows;          ///< of what the node itself was near to
+  std::vector<DistanceRow> kept;          ///< of what its children are to be compared with
+  std::vector<CarriedNode> carried;       ///< by obstacle
   std::vector<NearSphere> near[kLanes];
 
   void begin(const Node& entered, const BoundingSphere& holding_all, float upper, std::uint64_t number)
@@ -99,6 +101,7 @@ struct DistanceVisit {
     for (std::uint32_t lane = 0; lane < entered.count; ++lane)
       if (entered.isLeaf(lane)) leaves |= 1u << lane;
     for (float& value : cut) value = upper;
+    for (std::uint8_t lane = 0; lane < kLanes; ++lane) order[lane] = lane;
     for (float& value : limit) value = std::numeric_limits<float>::infinity();
     rows.clear();
     kept.clear();

@@ -13,6 +13,7 @@
 
 #include <pcl_bsh/distances/distance_leaf-inl.h>
 #include <pcl_bsh/distances/outdoing.h>
+#include <pcl_bsh/distances/voxel_bounds-inl.h>
 #include <pcl_bsh/hierarchy/crowded_cell.h>
 #include <pcl_bsh/hierarchy/kept_scratch.h>
 #include <pcl_bsh/query/progress.h>
@@ -54,17 +55,18 @@ public:
     addObstacle(kAboveVoxels, nullptr);
     const float cut = roundUp(max_ / unit_ * (1.0 + kDoubleMargin));
     if (max_ < kInfinity || rule_.mayStop()) {
-      const Bounds whole = boundVoxel(cut);
+      const VoxelBounds::Range whole = boundVoxel(cut);
       if (double{whole.lower} * unit_ > max_) return forAll([this](std::uint32_t record) { setBeyond(record); });
       if (!mayEnter()) {
         const Interval interval = certain(whole.lower, whole.upper);
         return forAll([&](std::uint32_t record) { leave(record, interval); });
       }
     }
+    if (query_.reached && exceeds(boundVoxel(cut).upper)) return;
     a_voxel_ = &a_.voxel(voxel, found.work);
     const Node& root = b_.storage.top[0];
     constexpr double stretch = 1.0 + 2 * kPoseStretch;
-    if (const float least = leastDistance(obstacles_[kAbove], root); least > 0.0f)
+    if (const float least = bounds().least(a_voxel_->radius); least > 0.0f)
       outdoing_ = Outdoing(extentBelow(root) * b_.frame(kAboveVoxels).unit / unit_ * stretch * stretch, least);
     radius_unit_ = a_.frame(voxel).unit / unit_ / stretch;
     scratch_.roots.clear();
@@ -73,14 +75,17 @@ public:
     descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, scratch_.roots, cut, 0);
   }
 
+  /// No point of the voxel is farther from b than this, in the clouds' unit. @pre neither cloud is empty
+  double farthest(std::uint32_t voxel)
+  {
+    voxel_ = voxel;
+    addObstacle(kAboveVoxels, nullptr);
+    return double{boundVoxel(std::numeric_limits<float>::infinity()).upper} * unit_;
+  }
+
   MeasuredVoxel found;
 
 private:
-  struct Bounds {
-    float lower = std::numeric_limits<float>::infinity();
-    float upper;
-  };
-
   /// Whether the walk may go below the voxel of a, and has the time to build it.
   bool mayEnter() const
   {
@@ -88,56 +93,15 @@ private:
            rule_.leavesTimeToBuild(a_.storage.pointsToBuild(voxel_));
   }
 
-  /// How near and how far the voxels of b are from the sphere of the whole voxel of a.
-  Bounds boundVoxel(float cut)
+  /// Of the voxels of b, from the voxel of a.
+  VoxelBounds bounds() { return {obstacles_[kAbove], b_, found.work}; }
+
+  /// How near and how far they are from the sphere of the whole voxel of a.
+  VoxelBounds::Range boundVoxel(float cut)
   {
-    const DistanceObstacle& above = obstacles_[kAbove];
     ++found.work.volumes_carried;
-    Bounds bounds{std::numeric_limits<float>::infinity(), cut};
-    boundBelow(above, b_.storage.top[0], a_.storage.voxels[voxel_].radius * above.frame.stretch_a, bounds);
-    return bounds;
+    return bounds().range(a_.storage.voxels[voxel_].radius, cut);
   }
-
-  /// How near at least the voxel of a is to the children of a node above the voxels of b.
-  void boundChildren(const DistanceObstacle& above, const Node& node, float radius, float* lower, float* upper)
-  {
-    CarriedNode spheres;
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      spheres.x[lane] = node.x[lane];
-      spheres.y[lane] = node.y[lane];
-      spheres.z[lane] = node.z[lane];
-      spheres.r[lane] = node.r[lane] * above.frame.stretch_b;
-    }
-    boundDistances(spheres, above, {above.frame.g[0], above.frame.g[1], above.frame.g[2]}, radius, lower, upper);
-    found.work.node_pairs += node.count;
-  }
-
-  /// Of a point of the voxel of a from any of b, or less; and of the centre of any node of the voxel: its sphere holds
-  /// the box around its points, in which centres lie. The smallest sphere of the points would not do.
-  float leastDistance(const DistanceObstacle& above, const Node& root)
-  {
-    float lower[kLanes], upper[kLanes] = {}, least = std::numeric_limits<float>::infinity();
-    boundChildren(above, root, a_voxel_->radius * above.frame.stretch_a, lower, upper);
-    for (std::uint32_t lane = 0; lane < root.count; ++lane) least = std::min(least, orNone(lower[lane]));
-    return least;
-  }
-
-  void boundBelow(const DistanceObstacle& above, const Node& node, float radius, Bounds& bounds)
-  {
-    float lower[kLanes], upper[kLanes];
-    std::fill(std::begin(upper), std::end(upper), bounds.upper);
-    boundChildren(above, node, radius, lower, upper);
-    for (std::uint32_t lane = 0; lane < node.count; ++lane) bounds.upper = std::min(bounds.upper, upper[lane]);
-    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
-      if (lower[lane] > bounds.upper) continue;
-      if (node.isLeaf(lane))
-        bounds.lower = std::min(bounds.lower, orNone(lower[lane]));
-      else
-        boundBelow(above, b_.storage.top[node.child[lane]], radius, bounds);
-    }
-  }
-
-  static float orNone(float lower) { return std::isnan(lower) ? -std::numeric_limits<float>::infinity() : lower; }
 
   /// Takes a node of a, all its children at once, through the list; then each child through its own.
   void descend(const Node& node, const BoundingSphere& around, const std::vector<NearSphere>& list, float cut,
@@ -152,13 +116,15 @@ private:
     for (std::uint32_t lane = 0; outdoing_.isPossible() && lane < kLanes; ++lane)
       visit.turn[lane] = outdoing_.turnOf(node.r[lane] * radius_unit_);
     for (const NearSphere& near : list) visit.rows.push_back(compare(visit, near.sphere, firstBits(node.count)));
+    if (query_.reached) leaveNearer(visit);
     for (const DistanceRow& row : visit.rows) take(visit, row);
     for (const DistanceRow& row : visit.kept)
       for (std::uint32_t bits = nearLanes(visit, row); bits != 0; bits &= bits - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
         visit.near[lane].push_back({row.sphere, orNone(row.lower[lane])});
       }
-    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+    for (const std::uint8_t lane : visit.order) {
+      if (lane >= node.count || exceeds(visit.cut[lane])) continue;
       std::vector<NearSphere>& near = visit.near[lane];
       const std::uint32_t begin = node.begin[lane], end = node.begin[lane + 1];
       if (near.empty())
@@ -171,6 +137,21 @@ private:
         descend(a_voxel_->nodes[node.child[lane]], {{node.x[lane], node.y[lane], node.z[lane]}, node.r[lane]}, near,
                 visit.cut[lane], depth + 1);
     }
+  }
+
+  /// Whether a greater distance than the bound has been measured, where only the greatest is asked for.
+  bool exceeds(float upper) const { return query_.reached && query_.reached->exceeds(upper, unit_); }
+
+  /// Leaves out the children that a greater distance is known for. The farthest are measured first.
+  void leaveNearer(DistanceVisit& visit) const
+  {
+    std::sort(visit.order.begin(), visit.order.begin() + visit.node->count, [&](std::uint8_t x, std::uint8_t y) {
+      return visit.cut[x] > visit.cut[y] || (visit.cut[x] == visit.cut[y] && x < y);
+    });
+    std::uint32_t wanted = 0;
+    for (std::uint32_t lane = 0; lane < visit.node->count; ++lane)
+      wanted |= (exceeds(visit.cut[lane]) ? 0u : 1u) << lane;
+    for (DistanceRow& row : visit.rows) row.lanes &= wanted;
   }
 
   /// Whether a child ends here undecided: the level does not go further down in one of the clouds.

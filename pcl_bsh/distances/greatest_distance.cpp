@@ -30,19 +30,28 @@ void findGreatest(const Placed& a, const Placed& b, PointDistances& result)
   result.greatest_pair = PointPair{static_cast<std::uint32_t>(greatest), result.nearest[greatest]};
 }
 
+void findGreatestOfBoth(const Placed& a, const Placed& b, SymmetricDistances& result)
+{
+  const std::optional<PointPair>& of_a = result.a.greatest_pair;
+  std::optional<PointPair> of_b;
+  if (result.b.greatest_pair) of_b = {result.b.greatest_pair->b, result.b.greatest_pair->a};
+  const PointPairs pairs(a, b, 0.0);
+  const auto isFromA = [&] {
+    if (!of_a || !of_b) return of_a.has_value();
+    const int sign = pairs.distance.compareGaps(pairs.posed(*of_a), pairs.posed(*of_b));
+    return sign > 0 || (sign == 0 && *of_a < *of_b);
+  };
+  const bool takes_a = isFromA();
+  result.hausdorff_pair = takes_a ? of_a : of_b;
+  result.hausdorff = takes_a ? result.a.greatest : result.b.greatest;
+}
+
 void findHausdorff(const Placed& a, const Placed& b, SymmetricDistances& result)
 {
   result.hausdorff = std::numeric_limits<double>::quiet_NaN();
   result.hausdorff_pair.reset();
   const bool all = result.a.measured == a.hierarchy().size() && result.b.measured == b.hierarchy().size();
-  if (!all || !result.a.greatest_pair || !result.b.greatest_pair) return;
-  const PointPair from_a = *result.a.greatest_pair;
-  const PointPair from_b = {result.b.greatest_pair->b, result.b.greatest_pair->a};
-  const PointPairs pairs(a, b, 0.0);
-  const int sign = pairs.distance.compareGaps(pairs.posed(from_a), pairs.posed(from_b));
-  const bool takes_a = sign > 0 || (sign == 0 && from_a < from_b);
-  result.hausdorff_pair = takes_a ? from_a : from_b;
-  result.hausdorff = takes_a ? result.a.greatest : result.b.greatest;
+  if (all && result.a.greatest_pair && result.b.greatest_pair) findGreatestOfBoth(a, b, result);
 }
 
 } // namespace pcl_bsh

@@ -10,7 +10,10 @@ namespace pcl_bsh {
 /// @pre `distance` and `nearest` are set
 void findGreatest(const Placed& a, const Placed& b, PointDistances& result);
 
-/// Sets what is said of both directions together from what is said of each.
+/// Sets the greatest of both directions and its pair from those of each, of which one may be missing.
+void findGreatestOfBoth(const Placed& a, const Placed& b, SymmetricDistances& result);
+
+/// The same where every point has a distance; otherwise it is not known.
 void findHausdorff(const Placed& a, const Placed& b, SymmetricDistances& result);
 
 } // namespace pcl_bsh

@@ -5,6 +5,7 @@
 #include <pcl_bsh/distances/greatest_distance.h>
 #include <pcl_bsh/traversal/voxel_passes.h>
 
+#include <algorithm>
 #include <numeric>
 
 #undef HWY_TARGET_INCLUDE
@@ -27,6 +28,13 @@ MeasuredVoxel measureVoxelOnTarget(const DistancesQuery& query, const StopRule& 
   return walk.found;
 }
 
+double farthestOfVoxelOnTarget(const DistancesQuery& query, const StopRule& rule, std::uint32_t voxel,
+                               const DistanceSheet& sheet, Progress& progress)
+{
+  const ScratchLease<DistanceScratch> scratch;
+  return DistanceWalk(query, rule, sheet, progress, *scratch).farthest(voxel);
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh
 HWY_AFTER_NAMESPACE();
@@ -36,6 +44,7 @@ namespace pcl_bsh {
 namespace {
 
 HWY_EXPORT(measureVoxelOnTarget);
+HWY_EXPORT(farthestOfVoxelOnTarget);
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNoDistance = std::numeric_limits<double>::quiet_NaN();
@@ -64,20 +73,33 @@ void clear(PointDistances& result, const Placed& a, const PointDistancesRequest&
 class Direction {
 public:
   Direction(const Placed& a, const Placed& b, const PointDistancesRequest& request, Progress& progress,
-            PointDistances& result)
+            PointDistances& result, ReachedDistance* reached = nullptr)
   : pairs_(a, b, request.max_distance),
     query_{a,
            b,
            pairs_,
            RelativeRotation(a.pose, b.pose),
            request.accuracy.mode == Accuracy::Mode::tolerance ? request.accuracy.value : 0.0,
-           request.accuracy.isProven()},
+           request.accuracy.isProven(),
+           reached},
     sheet_{result.distance.data(), result.nearest.data(), result.interval.empty() ? nullptr : result.interval.data()},
     progress_(progress),
     voxels_(threadCount(request.threads), result.work)
   {
     voxels_.places.resize(a.hierarchy().storage().voxel_count);
     std::iota(voxels_.places.begin(), voxels_.places.end(), 0u);
+  }
+
+  /// Orders the walks: first through the voxels whose points may be the farthest.
+  /// @return no point is farther from b than this
+  double sortFarthestFirst(const StopRule& rule)
+  {
+    std::vector<double> farthest(voxels_.places.size());
+    for (const std::uint32_t voxel : voxels_.places)
+      farthest[voxel] = HWY_DYNAMIC_DISPATCH(farthestOfVoxelOnTarget)(query_, rule, voxel, sheet_, progress_);
+    std::stable_sort(voxels_.places.begin(), voxels_.places.end(),
+                     [&](std::uint32_t x, std::uint32_t y) { return farthest[x] > farthest[y]; });
+    return farthest[voxels_.places.front()];
   }
 
   /// As VoxelPasses has them.
@@ -175,6 +197,37 @@ SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const Po
   finish(a, b, request, result.a);
   finish(b, a, request, result.b);
   findHausdorff(a, b, result);
+  return result;
+}
+
+HausdorffDistance hausdorffDistance(const Placed& a, const Placed& b, const HausdorffRequest& hausdorff)
+{
+  PointDistancesRequest request;
+  request.threads = hausdorff.threads;
+  request.progress = hausdorff.progress;
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  const StopRule rule(request.accuracy);
+  Progress progress(request.progress);
+  HausdorffDistance result;
+  if (!haveAnswers(a, b)) return result;
+  SymmetricDistances found;
+  clear(found.a, a, request);
+  clear(found.b, b, request);
+  ReachedDistance reached;
+  progress.begin(1.0, stepsOf(a, rule) + stepsOf(b, rule));
+  Direction from_a(a, b, request, progress, found.a, &reached), from_b(b, a, request, progress, found.b, &reached);
+  const bool a_first = from_a.sortFarthestFirst(rule) >= from_b.sortFarthestFirst(rule);
+  (a_first ? from_a : from_b).passes(rule, StopRule::kNever);
+  (a_first ? from_b : from_a).passes(rule, StopRule::kNever);
+  progress.end();
+  findGreatest(a, b, found.a);
+  findGreatest(b, a, found.b);
+  findGreatestOfBoth(a, b, found);
+  result.distance = found.hausdorff;
+  result.pair = found.hausdorff_pair;
+  result.work = found.a.work;
+  result.work += found.b.work;
   return result;
 }
 

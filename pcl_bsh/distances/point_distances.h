@@ -84,5 +84,24 @@ struct SymmetricDistances {
 /// @throws as pointDistances() does
 SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request = {});
 
+struct HausdorffRequest {
+  unsigned threads = 1;                 ///< 0: all of the machine's
+  std::function<bool(double)> progress; ///< as that of PointDistancesRequest
+};
+
+struct HausdorffDistance {
+  /// The greatest distance from a point of either cloud to the other cloud, in the clouds' unit, rounded to the nearest
+  /// double. NaN where a cloud is empty.
+  double distance = std::numeric_limits<double>::quiet_NaN();
+  std::optional<PointPair> pair; ///< that realises it, of several the smallest (a, b)
+  Work work; ///< with several threads it depends on which of them is the first to measure a great distance
+};
+
+/// The symmetric Hausdorff distance alone: what symmetricDistances() says of it without a limit, bit for bit, for less.
+/// Points that are certainly nearer than one that was measured are left out (Taha and Hanbury, "An efficient algorithm
+/// for calculating the exact Hausdorff distance", IEEE TPAMI 37(11), 2015), and so are whole nodes.
+/// @throws std::invalid_argument when a pose is not what its declaration asks for. Cancelled.
+HausdorffDistance hausdorffDistance(const Placed& a, const Placed& b, const HausdorffRequest& request = {});
+
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

@@ -10,12 +10,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 using namespace pcl_bsh::bench;
 
 namespace {
 
-const std::vector<std::string> kRacers = {"pcl_bsh", "pcl_bsh_query", "pcl_bsh_both", "nanoflann", "pcl_kdtree"};
+const std::vector<std::string> kRacers = {"pcl_bsh",           "pcl_bsh_query", "pcl_bsh_both",
+                                          "pcl_bsh_hausdorff", "nanoflann",     "pcl_kdtree"};
 
 struct Options : ProgramOptions {
   std::vector<std::string> scenes = {"terrain", "lion", "autzen"};
@@ -27,10 +30,11 @@ struct Options : ProgramOptions {
   std::string folder = PCL_BSH_SHARED_DIR "/data";
 };
 
-/// What all racers find alike, but for rounding.
+/// Of one direction, what racers find alike but for rounding; of both, what is the same double.
 struct Answer {
-  std::size_t measured = 0;
+  std::optional<std::size_t> measured;
   double squared_distances = 0.0;
+  std::optional<double> hausdorff; ///< NaN where a limit hides it
 };
 
 struct Entry {
@@ -60,13 +64,24 @@ public:
       pcl_bsh::pointDistances(a, b, request_); // which builds what a query visits
       watch.emplace();
     }
+    if (entry.name == "pcl_bsh_hausdorff") {
+      pcl_bsh::HausdorffRequest request;
+      request.threads = request_.threads;
+      entry.answer.hausdorff = pcl_bsh::hausdorffDistance(a, b, request).distance;
+      entry.seconds.push_back(watch->seconds());
+      return;
+    }
     pcl_bsh::PointDistances found;
-    if (entry.name == "pcl_bsh_both")
-      found = pcl_bsh::symmetricDistances(a, b, request_).a;
+    std::optional<double> hausdorff;
+    if (entry.name == "pcl_bsh_both") {
+      pcl_bsh::SymmetricDistances both = pcl_bsh::symmetricDistances(a, b, request_);
+      found = std::move(both.a);
+      hausdorff = both.hausdorff;
+    }
     else
       pcl_bsh::pointDistances(a, b, request_, found);
     entry.seconds.push_back(watch->seconds());
-    entry.answer = {found.measured, 0.0};
+    entry.answer = {found.measured, 0.0, hausdorff};
     for (const double distance : found.distance)
       if (!std::isnan(distance)) entry.answer.squared_distances += distance * distance;
   }
@@ -81,7 +96,7 @@ private:
     const std::optional<SearchAnswer> found =
         std::isinf(limit_) ? racer->nearest(pair_.a, 1) : racer->radius(pair_.a, static_cast<float>(limit_), 1);
     entry.seconds.push_back(watch.seconds());
-    entry.answer = {found->found, found->squared_distances.value_or(0.0)};
+    entry.answer = {found->found, found->squared_distances.value_or(0.0), {}};
   }
 
   const Options& options_;
@@ -93,8 +108,12 @@ private:
 bool agree(const Answer& x, const Answer& y)
 {
   const auto near = [](double p, double q) { return std::abs(p - q) <= 1e-4 * std::max(p, q); };
-  return near(static_cast<double>(x.measured), static_cast<double>(y.measured)) &&
-         near(x.squared_distances, y.squared_distances);
+  const bool direction = !x.measured || !y.measured ||
+                         (near(static_cast<double>(*x.measured), static_cast<double>(*y.measured)) &&
+                          near(x.squared_distances, y.squared_distances));
+  const bool both = !x.hausdorff || !y.hausdorff || std::isnan(*x.hausdorff) || std::isnan(*y.hausdorff) ||
+                    *x.hausdorff == *y.hausdorff;
+  return direction && both;
 }
 
 bool raceAll(const Options& options, Table& table)
@@ -122,13 +141,14 @@ bool raceAll(const Options& options, Table& table)
           }
         }
         for (const Entry& entry : entries) {
-          const bool same = agree(entry.answer, entries.front().answer);
+          const bool same = std::all_of(entries.begin(), entries.end(),
+                                        [&](const Entry& other) { return agree(entry.answer, other.answer); });
           sound = sound && same;
           const double least = quantile(entry.seconds, 0.0);
           table.add({name, std::to_string(pair.a.size()), order, spacings > 0.0 ? text(spacings) : "none", entry.name,
                      text(1e3 * least, 4), text(1e3 * median(entry.seconds), 4),
-                     text(least / quantile(entries.front().seconds, 0.0)), std::to_string(entry.answer.measured),
-                     same ? "yes" : "NO"});
+                     text(least / quantile(entries.front().seconds, 0.0)),
+                     entry.answer.measured ? std::to_string(*entry.answer.measured) : "-", same ? "yes" : "NO"});
         }
       }
     }
@@ -164,7 +184,7 @@ int main(int argc, char** argv)
   app.add_option(
          "--racers", options.racers,
          "who runs; the first is the one the others are compared with. pcl_bsh_query: hierarchies built before; "
-         "pcl_bsh_both: both directions")
+         "pcl_bsh_both: both directions; pcl_bsh_hausdorff: the greatest of both directions alone, without a limit")
       ->delimiter(',')
       ->check(CLI::IsMember(kRacers))
       ->capture_default_str();

@@ -6,6 +6,7 @@
 namespace pcl_bsh {
 namespace {
 
+using test::Cloud;
 using test::Scene;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -118,6 +119,30 @@ TEST_F(DistancesAccuracy, BudgetsGiveCertainIntervalsAndInTheEndAllDistances)
       EXPECT_TRUE(seconds < 1.0 || found.undecided == 0);
     }
   });
+}
+
+/// What finds out how near the voxels are may spend all that was left before the first node is opened: the points are
+/// then left with what the walk begins with. Budgets that do so are about what the coarse pass takes, and a little
+/// more.
+TEST_F(DistancesAccuracy, BudgetsSpentBeforeTheFirstStepLeaveIntervalsOfOverlappingBallsBelowZero)
+{
+  test::Random random(9);
+  Cloud one(test::makePoints(test::Shape::sphere, 200, 0.1, random));
+  one.setRadii(std::vector<float>(200, 1.0f));
+  const SphereHierarchy whole(one.view());
+  const PointDistances truth = brute_force::pointDistances(whole, whole);
+  ASSERT_EQ(truth.greatest, -2.0);
+  std::size_t begun = 0; // budgets that ended between a voxel of a and those of b
+  for (std::uint64_t count = 0; count < 150; ++count) {
+    SCOPED_TRACE(count);
+    const SphereHierarchy a(one.view()), b(one.view());
+    PointDistancesRequest request;
+    request.accuracy = Accuracy::nodePairs(count);
+    const PointDistances found = pointDistances(a, b, request);
+    expectCertain(found, truth, truth, kInfinity);
+    begun += found.work.voxels_built == 1;
+  }
+  EXPECT_GT(begun, 0u) << "else nothing is tested";
 }
 
 TEST_F(DistancesAccuracy, FloatAloneIsNearlyRight)
