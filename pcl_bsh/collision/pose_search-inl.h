@@ -13,6 +13,7 @@
 #include <pcl_bsh/traversal/point_pairs.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -40,9 +41,10 @@ public:
   std::optional<PointPair> find(const Placed& b, NodePairs& pairs, std::size_t from, Work& work)
   {
     near_.clear();
+    work.node_pairs += pairs.size() - from;
     pairs.findNear(b.pose, reach, from, [&](std::size_t k, double squared) {
       near_.push_back(pairs.lanes(k));
-      near_.back().key = static_cast<float>(squared);
+      near_.back().key = static_cast<float>(std::sqrt(squared) - pairs.radius(k)); // the deepest overlap first
     });
     if (near_.empty()) return std::nullopt;
     nearestLast(near_, 0);
