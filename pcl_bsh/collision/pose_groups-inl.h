@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,9 @@ public:
 
   std::size_t size() const { return lanes_.size(); }
   const LanePair& lanes(std::size_t i) const { return lanes_[i]; }
+
+  /// The sum of both radii, and what roundings add.
+  double radius(std::size_t i) const { return columns_[kRadius][i]; }
 
   /// Of the larger node that can be opened; 0 where both are leaves.
   double larger(std::size_t i) const { return larger_[i]; }
@@ -136,6 +140,10 @@ inline constexpr std::size_t mostPairs(std::size_t poses)
   return 32 + 8 * poses;
 }
 
+/// A group that moves by more than this share of the larger body's radius opens no nodes: it would leave out few of
+/// them, and each of its poses would have to test them all.
+inline constexpr double kWidestMotion = 0.5;
+
 /// Divides the poses of a batch into smaller and smaller groups, and hands on from each to its parts the pairs of nodes
 /// that may still meet.
 /// @tparam Decide decide(i, pairs, from) is called for the poses at which pairs are left, those from `from` on; at
@@ -148,6 +156,7 @@ public:
   : batch_(batch),
     pairs_(batch.a.pose),
     clearance_(clearance),
+    widest_(kWidestMotion * std::max(batch.body.radius, BodyBall(batch.a.hierarchy()).radius)),
     decide_(std::move(decide))
   {
   }
@@ -158,7 +167,7 @@ public:
     const Placed b{batch_.b, batch_.poses[middle]};
     {
       PairWalk walk(batch_.a, b);
-      walk.seed(clearance_ + motionAround(middle, 0, count),
+      walk.seed(clearance_ + motionAround(middle, 0, count, std::numeric_limits<double>::infinity()),
                 [&](const LanePair& pair, const PairWalk::Step&, std::uint32_t) { pairs_.add(walk, pair); });
       work_ += walk.work;
     }
@@ -167,10 +176,11 @@ public:
   }
 
 private:
-  double motionAround(std::size_t middle, std::size_t begin, std::size_t end) const
+  /// @return as far as it is known where it exceeds `most`
+  double motionAround(std::size_t middle, std::size_t begin, std::size_t end, double most) const
   {
     double motion = 0.0;
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t i = begin; i < end && !(motion > most); ++i)
       motion = std::max(motion, motionBound(batch_.body, batch_.poses[middle], batch_.poses[i]) +
                                     (batch_.extents.empty() ? 0.0 : batch_.extents[i]));
     return motion;
@@ -180,23 +190,27 @@ private:
   void visit(std::size_t begin, std::size_t end, std::size_t from)
   {
     if (end - begin == 1) return decide_(begin, pairs_, from);
-    const std::size_t own = pairs_.size();
-    refine(begin, end, from);
-    if (pairs_.size() != own) {
+    const std::size_t own = pairs_.size(), middle = begin + (end - begin) / 2;
+    const double motion = motionAround(middle, begin, end, widest_);
+    const bool opens = motion <= widest_;
+    if (opens) refine(begin, end, from, motion);
+    const std::size_t first = opens ? own : from;
+    if (pairs_.size() != first) {
       const std::size_t part = (end - begin + kPartsOfGroup - 1) / kPartsOfGroup;
-      for (std::size_t i = begin; i < end; i += part) visit(i, std::min(end, i + part), own);
+      for (std::size_t i = begin; i < end; i += part) visit(i, std::min(end, i + part), first);
     }
     pairs_.resize(own);
   }
 
   /// Appends the pairs, of those from `from` on or below them, which may meet at any of these poses. A node much
   /// smaller than the motion is not opened: its children are as near as it is.
-  void refine(std::size_t begin, std::size_t end, std::size_t from)
+  void refine(std::size_t begin, std::size_t end, std::size_t from, double motion)
   {
     const std::size_t middle = begin + (end - begin) / 2, own = pairs_.size();
-    const double motion = motionAround(middle, begin, end), reach = clearance_ + motion;
+    const double reach = clearance_ + motion;
     const Placed b{batch_.b, batch_.poses[middle]};
     bool opens = false;
+    work_.node_pairs += own - from;
     pairs_.findNear(b.pose, reach, from, [&](std::size_t i, double) {
       opens = opens || pairs_.larger(i) > motion;
       pairs_.addCopy(i);
@@ -223,6 +237,7 @@ private:
   const PoseBatch& batch_;
   NodePairs pairs_; ///< of the groups from the batch down to the present one, after each other
   const double clearance_;
+  const double widest_; ///< motion of a group that opens nodes
   Decide decide_;
   Work work_;
 };

@@ -13,6 +13,7 @@
 #include <pcl_bsh/traversal/point_pairs.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -39,10 +40,13 @@ public:
   /// @param from where the pairs begin that may meet at the pose of b
   std::optional<PointPair> find(const Placed& b, NodePairs& pairs, std::size_t from, Work& work)
   {
+    // The deepest overlap first where no group has opened nodes; of nodes of many sizes that is the largest one, and
+    // the nearest centres come first.
     near_.clear();
+    work.node_pairs += pairs.size() - from;
     pairs.findNear(b.pose, reach, from, [&](std::size_t k, double squared) {
       near_.push_back(pairs.lanes(k));
-      near_.back().key = static_cast<float>(squared);
+      near_.back().key = static_cast<float>(from == 0 ? std::sqrt(squared) - pairs.radius(k) : squared);
     });
     if (near_.empty()) return std::nullopt;
     nearestLast(near_, 0);

@@ -209,6 +209,34 @@ TEST(AtPoses, NeighboursShareTheDescent)
   EXPECT_LT(2 * together.node_pairs, alone.node_pairs);
 }
 
+/// Poses that are far from each other share little: then a list costs what single queries do.
+TEST(AtPoses, StrangersCostNoMoreThanSingleQueries)
+{
+  Random random(31);
+  const Bodies bodies(20000, 0, 0.0);
+  bodies.a.buildAll();
+  bodies.b.buildAll();
+  for (const double farthest : {2.1, 2.5}) {
+    Poses poses;
+    for (int i = 0; i < 2000; ++i) {
+      Eigen::Isometry3d pose = random.pose(1.0);
+      pose.translation() = pose.translation().normalized() * random.uniform(1.7, farthest);
+      poses.push_back(pose);
+    }
+    const AnyRequest request{0.01, {}};
+    const AnyAtPoses together = anyCollisionAtPoses({bodies.a}, bodies.b, poses, request);
+    EXPECT_GT(together.colliding, 100u);
+    EXPECT_LT(together.colliding, 1900u);
+    Work alone;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const AnyResult single = anyCollision({bodies.a}, {bodies.b, poses[i]}, request);
+      ASSERT_EQ(together.verdicts[i], flagOf(single.verdict)) << i;
+      alone += single.work;
+    }
+    EXPECT_LT(static_cast<double>(together.work.node_pairs), 1.02 * static_cast<double>(alone.node_pairs));
+  }
+}
+
 TEST(AtPoses, MotionBoundHoldsForEveryPoint)
 {
   Random random(24);
