@@ -227,6 +227,7 @@ private:
         field.at = plan_.record_length;
         if (!take(field, false)) {
           changed = true;
+          addNewInPlaceOf(field, descriptors);
           continue;
         }
         const std::size_t bytes = sizeOf(field.stored) * field.count;
@@ -239,9 +240,8 @@ private:
     }
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       if (taken_[i]) continue;
-      const pcl::PCLPointField& field = points_.fields()[i];
       changed = true;
-      for (std::uint32_t k = 0; k < field.count; ++k) addNew(field, k, descriptors);
+      addNew(i, descriptors);
     }
     constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
     if (plan_.record_length > most) throw FormatError("a point takes more than 65535 bytes", "write a .pcd instead");
@@ -260,6 +260,20 @@ private:
       descriptor.replace(4, 11, "extra_bytes");
       descriptors += descriptor;
     }
+  }
+
+  /// A field of the file whose type and scale the cloud's values do not fit gets others, where it was.
+  void addNewInPlaceOf(const LasField& field, std::string& descriptors)
+  {
+    const auto found = places_.find(field.name);
+    if (found != places_.end() && !taken_[found->second]) addNew(found->second, descriptors);
+  }
+
+  void addNew(std::size_t position, std::string& descriptors)
+  {
+    const pcl::PCLPointField& field = points_.fields()[position];
+    for (std::uint32_t k = 0; k < field.count; ++k) addNew(field, k, descriptors);
+    taken_[position] = true;
   }
 
   void addNew(const pcl::PCLPointField& field, std::uint32_t k, std::string& descriptors)
