@@ -9,9 +9,23 @@
 #include <unistd.h>
 
 #include <iostream>
+#include <mutex>
 #include <thread>
 
 namespace pcl_bsh::cli {
+
+namespace {
+
+std::mutex what_stays_mutex;
+std::string what_stays = "nothing unfinished was left behind";
+
+} // namespace
+
+void setWhatStays(const std::string& what)
+{
+  const std::lock_guard lock(what_stays_mutex);
+  what_stays = what;
+}
 
 void stopCleanlyOnSignals(const std::string& program)
 {
@@ -29,7 +43,8 @@ void stopCleanlyOnSignals(const std::string& program)
     int signal = 0;
     sigwait(&signals, &signal);
     const auto lock = files::discardUnfinished();
-    std::cerr << '\n' << program << ": stopped on request: nothing unfinished was left behind" << std::endl;
+    const std::lock_guard text_lock(what_stays_mutex);
+    std::cerr << '\n' << program << ": stopped on request: " << what_stays << std::endl;
     _exit(128 + signal);
   }).detach();
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clouds that are larger than memory: makes a folder of tiles of them, checks it, and writes clouds again.
+#include "cli/interruption.h"
 #include "cli/program.h"
 #include "cli/step.h"
 #include "site/collide.h"
@@ -11,6 +12,7 @@
 #include <pcl_bsh/filters/text_files/small_letters.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/export_site.h>
+#include <pcl_bsh/site/export_vtk.h>
 #include <pcl_bsh/site/make_site.h>
 
 #include <algorithm>
@@ -70,8 +72,20 @@ int make(const Options& options)
   sites::MakeOptions wanted;
   wanted.memory = options.memory;
   wanted.tile_points = options.tile_points;
-  wanted.progress = [&](sites::MakeStep step, std::uint64_t done, std::uint64_t all) { return steps(step, done, all); };
-  const sites::Site site = sites::makeSite(options.clouds, options.site, wanted);
+  constexpr auto goes_on = "what is done was noted, and the same command goes on";
+  wanted.progress = [&](sites::MakeStep step, std::uint64_t done, std::uint64_t all) {
+    if (step != sites::MakeStep::count && all >= wanted.save_points) cli::setWhatStays(goes_on);
+    return steps(step, done, all);
+  };
+  const sites::Site site = [&] {
+    try {
+      return sites::makeSite(options.clouds, options.site, wanted);
+    }
+    catch (const files::FileError& error) {
+      if (!sites::isBegun(options.site)) throw;
+      throw std::runtime_error(std::string(error.what()) + "; " + goes_on);
+    }
+  }();
   std::cout << "wrote a site of " << site.points << " points in " << site.tiles.size() << " tiles to "
             << options.site.string() << '\n';
   return 0;
@@ -144,9 +158,23 @@ void requireNew(const fs::path& path)
   if (fs::exists(path, error)) throw files::FileError(path, "is there already", "name a new one");
 }
 
+int writePieces(const sites::Site& site, const fs::path& file)
+{
+  requireNew(file);
+  cli::Step step("Writing " + file.string());
+  sites::exportPieces(site, file, [&](std::uint64_t done, std::uint64_t all) {
+    step.share(shareOf(done, all));
+    return true;
+  });
+  step.done(std::to_string(site.tiles.size()) + " pieces");
+  std::cout << "wrote " << file.string() << " in " << site.tiles.size() << " pieces\n";
+  return 0;
+}
+
 int write(const Options& options)
 {
   const sites::Site site = sites::readSite(options.site);
+  if (io::extensionOf(options.out) == ".pvtp") return writePieces(site, options.out);
   const bool one_cloud = io::extensionOf(options.out) == ".pcd";
   std::optional<files::OutputFolder> folder;
   std::vector<fs::path> names = {options.out};

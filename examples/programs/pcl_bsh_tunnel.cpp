@@ -16,6 +16,8 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <optional>
+#include <utility>
 
 namespace {
 
@@ -26,6 +28,7 @@ constexpr auto program = "pcl_bsh_tunnel";
 constexpr auto footer =
     R"(Writes scan.ply, wagon.ply and poses.txt (one 3x4 matrix a line, of the wagon in the tunnel) into FOLDER.
 At scale 1: 18.92 M points, 2.5 M points and 19,392 poses over 1144 m; lengths are the same at any scale.
+Above scale 1 only the scan grows. In pieces, it may be larger than memory.
 Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example: where does the wagon come within 5 cm of the wall?
@@ -57,26 +60,63 @@ std::vector<fs::path> scanFiles(const fs::path& folder, unsigned pieces)
   return names;
 }
 
-/// The points in binary PCD files, which pcl_bsh_site reads in batches.
-void writePieces(const std::vector<fs::path>& names, const std::vector<Eigen::Vector3f>& points)
-{
-  cli::Step step("Writing pieces");
-  pcl::PCLPointCloud2 layout;
-  for (const char* axis : {"x", "y", "z"}) io::addField(layout, axis, pcl::PCLPointField::FLOAT32);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::size_t begin = points.size() * i / names.size(), end = points.size() * (i + 1) / names.size();
-    files::replaceFile(names[i], [&](std::ostream& out) {
-      out << io::binaryPcdHeader(layout.fields, static_cast<std::uint32_t>(end - begin));
-      out.write(reinterpret_cast<const char*>(points.data() + begin),
-                static_cast<std::streamsize>((end - begin) * sizeof points[0]));
-    });
+/// The scan in binary PCD files, which pcl_bsh_site reads in batches.
+class Pieces {
+public:
+  Pieces(std::vector<fs::path> names, std::size_t points) : names_(std::move(names)), points_(points)
+  {
+    for (const char* axis : {"x", "y", "z"}) io::addField(layout_, axis, pcl::PCLPointField::FLOAT32);
   }
-  step.done(std::to_string(points.size()) + " points");
+
+  void add(const Eigen::Vector3f& point)
+  {
+    while (done_ == end_) next();
+    file_->stream().write(reinterpret_cast<const char*>(point.data()), sizeof point);
+    if (++done_ % 65536 == 0) step_.share(static_cast<double>(done_) / static_cast<double>(points_));
+  }
+
+  void finish()
+  {
+    while (piece_ < names_.size()) next();
+    file_->commit();
+    step_.done(std::to_string(points_) + " points");
+  }
+
+private:
+  void next()
+  {
+    if (file_) file_->commit();
+    file_.emplace(names_[piece_++]);
+    end_ = points_ * piece_ / names_.size();
+    file_->stream() << io::binaryPcdHeader(layout_.fields, static_cast<std::uint32_t>(end_ - done_));
+  }
+
+  std::vector<fs::path> names_;
+  std::size_t points_, piece_ = 0;
+  std::size_t done_ = 0, end_ = 0; ///< points written, and those that are when this piece is full
+  pcl::PCLPointCloud2 layout_;
+  std::optional<files::FileReplacement> file_;
+  cli::Step step_{"Writing pieces"};
+};
+
+/// Without holding the scan where its points come in the scanner's order.
+void writePieces(const std::vector<fs::path>& names, std::size_t count, const std::vector<Eigen::Vector3f>* points)
+{
+  Pieces pieces(names, count);
+  const auto add = [&](const Eigen::Vector3f& point) { pieces.add(point); };
+  if (points)
+    std::for_each(points->begin(), points->end(), add);
+  else
+    tunnel::forEachScanPoint(count, add);
+  pieces.finish();
 }
 
 int makeTunnel(const fs::path& folder, double scale, bool tight, unsigned pieces)
 {
-  const tunnel::Size size = tunnel::Size::atScale(scale);
+  tunnel::Size size = tunnel::Size::atScale(scale);
+  const std::size_t scan_points = size.scan;
+  const bool streams = pieces > 0 && !tight;
+  if (streams) size.scan = 0; // made as it is written
   const files::OutputFolder made(folder);
   const std::vector<fs::path> scan = scanFiles(folder, pieces);
   for (const fs::path& name : scan) files::requireWritable(name);
@@ -86,12 +126,12 @@ int makeTunnel(const fs::path& folder, double scale, bool tight, unsigned pieces
   const tunnel::Passage run = tunnel::makePassage(size, tight ? tunnel::Course::tight : tunnel::Course::winding);
   step.done(std::to_string(run.poses.size()) + " poses");
   if (pieces > 0)
-    writePieces(scan, run.scan);
+    writePieces(scan, scan_points, streams ? nullptr : &run.scan);
   else
     write(scan.front(), run.scan);
   write(folder / "wagon.ply", run.wagon);
   io::writePoses(folder / "poses.txt", run.poses);
-  std::cout << "wrote a tunnel of " << run.scan.size() << " points, a wagon of " << run.wagon.size() << " and "
+  std::cout << "wrote a tunnel of " << scan_points << " points, a wagon of " << run.wagon.size() << " and "
             << run.poses.size() << " poses to " << folder.string() << '\n';
   return 0;
 }
@@ -108,7 +148,7 @@ int main(int argc, char** argv)
     CLI::App app("Makes a scanned railway tunnel, a wagon, and the wagon's way through.", program);
     app.footer(footer);
     app.add_option("FOLDER", folder, "where the three files go; made if it is not there")->type_name("")->required();
-    app.add_option("--scale", scale, "share of the full number of points and poses, above 0, 10 at most")
+    app.add_option("--scale", scale, "share of the full number of points and poses, above 0, 100 at most")
         ->type_name("S")
         ->capture_default_str();
     app.add_flag("--tight", tight, "one long bend in which the vault grazes the wagon; points in random order");

@@ -187,17 +187,24 @@ void shuffle(std::vector<Eigen::Vector3f>& points, Random& random)
     std::swap(points[i - 1], points[static_cast<std::size_t>(random.uniform(0, static_cast<double>(i)))]);
 }
 
+/// Calls take(point) for the scan's points as the scanner travels.
+template <typename Take>
+void sweepTunnel(const Track& track, std::size_t count, Course course, Random& random, const Take& take)
+{
+  const Section& section = course == Course::winding ? winding_section : tight_section;
+  sweepTube(count, track_length, section.length(), random, [&](double station, double along) {
+    const Vector2d place = onSection(section, station, along);
+    const Vector3d noise = noiseOf(course, random);
+    take(Eigen::Vector3f((track.at(station) * Vector3d(0, place.x(), place.y()) + noise).cast<float>()));
+  });
+}
+
 std::vector<Eigen::Vector3f> scanTunnel(const Track& track, std::size_t count, Course course)
 {
   Random random(1);
   std::vector<Eigen::Vector3f> points;
   points.reserve(count);
-  const Section& section = course == Course::winding ? winding_section : tight_section;
-  sweepTube(count, track_length, section.length(), random, [&](double station, double along) {
-    const Vector2d place = onSection(section, station, along);
-    const Vector3d noise = noiseOf(course, random);
-    points.emplace_back((track.at(station) * Vector3d(0, place.x(), place.y()) + noise).cast<float>());
-  });
+  sweepTunnel(track, count, course, random, [&](const Eigen::Vector3f& point) { points.push_back(point); });
   if (course == Course::tight) shuffle(points, random);
   return points;
 }
@@ -280,11 +287,18 @@ Eigen::Isometry3d Track::wagonAt(double station) const
 
 Size Size::atScale(double scale)
 {
-  if (!(scale > 0 && scale <= 10)) {
-    throw std::invalid_argument("scale: " + std::to_string(scale) + ": give a number above 0, 10 at most");
+  if (!(scale > 0 && scale <= 100)) {
+    throw std::invalid_argument("scale: " + std::to_string(scale) + ": give a number above 0, 100 at most");
   }
-  const auto scaled = [&](double count) { return static_cast<std::size_t>(std::max(1.0, count * scale)); };
-  return {scaled(18.92e6), scaled(2.5e6), scaled(19392)};
+  const auto scaled = [](double count, double by) { return static_cast<std::size_t>(std::max(1.0, count * by)); };
+  const double of_wagon = std::min(scale, 1.0);
+  return {scaled(18.92e6, scale), scaled(2.5e6, of_wagon), scaled(19392, of_wagon)};
+}
+
+void forEachScanPoint(std::size_t count, const std::function<void(const Eigen::Vector3f&)>& take)
+{
+  Random random(1);
+  sweepTunnel(Track(), count, Course::winding, random, take);
 }
 
 Passage makePassage(const Size& size, Course course)

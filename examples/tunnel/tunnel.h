@@ -15,6 +15,7 @@
 #include <Eigen/Geometry>
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace pcl_bsh::tunnel {
@@ -52,7 +53,8 @@ struct Size {
   std::size_t wagon = 0;
   std::size_t poses = 0;
 
-  /// Counts in proportion, lengths as they are. @throws std::invalid_argument unless 0 < scale <= 10
+  /// Counts in proportion, lengths as they are; above scale 1 only the scan grows.
+  /// @throws std::invalid_argument unless 0 < scale <= 100
   static Size atScale(double scale);
 };
 
@@ -66,6 +68,10 @@ struct Passage {
 
 /// The same on every call.
 Passage makePassage(const Size& size, Course course = Course::winding);
+
+/// The scan of makePassage() on the winding course point by point, for scans that are larger than memory.
+/// @param count of its points
+void forEachScanPoint(std::size_t count, const std::function<void(const Eigen::Vector3f&)>& take);
 
 /// Distance from a place in the cross-section (y to the left, z up) to the wagon's outline there; 0 inside.
 double distanceToWagonOutline(double y, double z);

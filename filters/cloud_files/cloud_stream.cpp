@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace pcl_bsh::io {
 namespace {
@@ -65,6 +66,7 @@ public:
     next_ += points;
     return points;
   }
+  void skip(std::uint64_t points) override { next_ += std::min(points, size_ - next_); }
 
 private:
   std::unique_ptr<ByteSource> file_;
@@ -90,6 +92,7 @@ public:
     next_ += points;
     return points;
   }
+  void skip(std::uint64_t points) override { next_ += std::min(points, size() - next_); }
 
 private:
   pcl::PCLPointCloud2 cloud_, header_;
@@ -121,6 +124,17 @@ std::uint64_t bytesWhenHeld(const fs::path& path, const pcl::PCLPointCloud2& hea
 }
 
 } // namespace
+
+void CloudStream::skip(std::uint64_t points)
+{
+  constexpr std::size_t most = 65536;
+  std::vector<std::uint8_t> dropped(most * header().point_step);
+  while (points > 0) {
+    const std::size_t count = read(dropped.data(), static_cast<std::size_t>(std::min<std::uint64_t>(most, points)));
+    if (count == 0) return;
+    points -= count;
+  }
+}
 
 std::unique_ptr<CloudStream> openCloud(const fs::path& path, std::uint64_t memory)
 {

@@ -28,6 +28,9 @@ public:
   /// Reads the next points, `most` at most, into records for which there is room.
   /// @return how many; 0 at the end. @throws files::FileError
   virtual std::size_t read(std::uint8_t* records, std::size_t most) = 0;
+
+  /// Leaves out the next points. @throws files::FileError
+  virtual void skip(std::uint64_t points);
 };
 
 /// Opens any file that readCloud() reads. LAS and binary PCD are read batch by batch, the other formats at once, for

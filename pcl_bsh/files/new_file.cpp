@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/new_file.h>
 #include <pcl_bsh/files/unfinished.h>
 #include <pcl_bsh/files/write_error.h>
@@ -60,6 +61,16 @@ NewFile::NewFile(const std::filesystem::path& path) : path_(path)
   }
 }
 
+NewFile::NewFile(const std::filesystem::path& path, std::uint64_t size) : path_(path), size_(size), kept_(true)
+{
+  std::error_code error;
+  const std::uint64_t there = std::filesystem::file_size(path, error);
+  if (error || there < size)
+    throw FileError(path, "is shorter than it was when it was last written", "remove the folder, and begin again");
+  std::filesystem::resize_file(path, size, error);
+  if (error) failToWrite(path, error.value());
+}
+
 NewFile::~NewFile()
 {
   if (kept_) return;
@@ -87,7 +98,7 @@ void syncDisk(const std::filesystem::path& folder)
 
 void NewFile::keep()
 {
-  dropUnfinished(path_);
+  if (!kept_) dropUnfinished(path_);
   kept_ = true;
 }
 

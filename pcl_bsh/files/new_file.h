@@ -14,6 +14,10 @@ class NewFile {
 public:
   /// @throws FileError when a file of that name is there already, or cannot be made
   explicit NewFile(const std::filesystem::path& path);
+
+  /// Goes on with a file that an earlier run has kept: what is behind its first `size` bytes is cut off.
+  /// @throws FileError when it has not so many, or cannot be written
+  NewFile(const std::filesystem::path& path, std::uint64_t size);
   ~NewFile();
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
@@ -26,8 +30,8 @@ public:
   /// Replaces the first bytes, all of which are there. @throws FileError
   void replaceHead(std::string_view bytes);
 
-  /// From now on the file stays. Under lockUnfinished(), as FileReplacement::commit() calls its function: so all files
-  /// are kept in one moment.
+  /// From now on the file stays; again has no effect. Under lockUnfinished(), as FileReplacement::commit() calls its
+  /// function: so all files are kept in one moment.
   void keep();
 
 private:

@@ -110,6 +110,19 @@ FirstContact earliestOfAllRanks(const FirstContact& own)
   return {static_cast<std::size_t>(pose), leastOfAllRanks(mine ? own.fraction : 1.0)};
 }
 
+std::vector<TileCost> costsOfAllRanks(const TileVisitor& visitor)
+{
+  std::vector<double> own;
+  for (const TileCost& cost : visitor.costs())
+    own.insert(own.end(), {static_cast<double>(cost.tile), cost.reading, cost.asking});
+  const std::vector<double> all = gatheredFromAllRanks(own);
+  std::vector<TileCost> costs;
+  for (std::size_t i = 0; i < all.size(); i += 3)
+    costs.push_back({static_cast<std::uint32_t>(all[i]), all[i + 1], all[i + 2]});
+  std::sort(costs.begin(), costs.end(), [](const TileCost& c, const TileCost& d) { return c.tile < d.tile; });
+  return costs;
+}
+
 /// Asks one question about tiles.
 class Inquiry {
 public:
@@ -130,6 +143,7 @@ public:
     };
     visitor_.visit(tiles, use, go_on);
     found_.read = sumOfAllRanks(visitor_.read());
+    found_.costs = costsOfAllRanks(visitor_);
     return found_;
   }
 

@@ -42,11 +42,19 @@ struct SiteRequest {
   std::function<bool(std::uint64_t)> progress;
 };
 
+/// What a tile has cost, in seconds of the clock on the wall.
+struct TileCost {
+  std::uint32_t tile = 0; ///< its number among the site's
+  double reading = 0.0;
+  double asking = 0.0; ///< its hierarchy, the question and the sink
+};
+
 /// What a question has read.
 struct TilesRead {
-  std::uint64_t tiles = 0;  ///< of the site
-  std::uint64_t needed = 0; ///< those that could matter before any was read
-  std::uint64_t read = 0;   ///< by all ranks
+  std::uint64_t tiles = 0;     ///< of the site
+  std::uint64_t needed = 0;    ///< those that could matter before any was read
+  std::uint64_t read = 0;      ///< by all ranks
+  std::vector<TileCost> costs; ///< of all ranks, in the order of the tiles
 };
 
 /// A point of a site.

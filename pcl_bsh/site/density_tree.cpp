@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace pcl_bsh::sites {
 
@@ -187,6 +188,44 @@ std::uint32_t DensityTree::plan()
     assign(tree.root, above);
   }
   return tiles_;
+}
+
+std::vector<std::uint32_t> DensityTree::planned() const
+{
+  std::vector<std::uint32_t> numbers = {tiles_};
+  for (const Octree& tree : octrees_)
+    numbers.insert(numbers.end(), {tree.root, static_cast<std::uint32_t>(tree.exponent - least_exponent)});
+  for (const Cell& cell : cells_) {
+    numbers.insert(numbers.end(), cell.part.begin(), cell.part.end());
+    numbers.insert(numbers.end(), {cell.tile, cell.is_divided ? 1u : 0u});
+  }
+  return numbers;
+}
+
+DensityTree DensityTree::fromPlanned(const std::vector<std::uint32_t>& numbers)
+{
+  constexpr std::size_t head = 1 + 2 * 8, per_cell = 8 + 2;
+  const auto require = [](bool is_right) {
+    if (!is_right) throw std::invalid_argument("these are not the numbers of a plan");
+  };
+  require(numbers.size() >= head && (numbers.size() - head) % per_cell == 0);
+  DensityTree tree(1);
+  tree.tiles_ = numbers[0];
+  tree.cells_.resize((numbers.size() - head) / per_cell);
+  const std::size_t cells = tree.cells_.size();
+  for (std::size_t i = 0; i < 8; ++i) {
+    tree.octrees_[i].root = numbers[1 + 2 * i];
+    tree.octrees_[i].exponent = static_cast<int>(numbers[2 + 2 * i]) + least_exponent;
+    require(tree.octrees_[i].root == none || tree.octrees_[i].root < cells);
+  }
+  auto number = numbers.begin() + head;
+  for (Cell& cell : tree.cells_) {
+    for (std::uint32_t& part : cell.part) part = *number++;
+    cell.tile = *number++;
+    cell.is_divided = *number++ != 0;
+    for (const std::uint32_t part : cell.part) require(part < cells || part == none);
+  }
+  return tree;
 }
 
 std::uint32_t DensityTree::tileOf(const Point3& point)

@@ -30,6 +30,12 @@ public:
   /// After plan(): the tile of a point, counted or not. Takes about no time for a point near the last one.
   std::uint32_t tileOf(const Point3& point);
 
+  /// After plan(): all that tileOf() needs, as numbers that a file can hold.
+  std::vector<std::uint32_t> planned() const;
+
+  /// The same tree again. @throws std::invalid_argument for numbers that planned() does not give
+  static DensityTree fromPlanned(const std::vector<std::uint32_t>& numbers);
+
   /// Memory that it takes.
   std::size_t bytes() const noexcept { return cells_.capacity() * sizeof(Cell); }
 

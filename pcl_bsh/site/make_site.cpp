@@ -5,6 +5,7 @@
 #include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/site/density_tree.h>
 #include <pcl_bsh/site/make_site.h>
+#include <pcl_bsh/site/make_state.h>
 #include <pcl_bsh/site/records.h>
 #include <pcl_bsh/site/tile_file.h>
 #include <pcl_bsh/site/unfinished_site.h>
@@ -54,10 +55,13 @@ public:
   Site make()
   {
     describe();
-    UnfinishedSite unfinished(folder_);
+    UnfinishedSite unfinished(folder_, UnfinishedSite::Use::continuable);
     unfinished_ = &unfinished;
     site_.folder = folder_;
-    count();
+    if (unfinished.wasSaved())
+      goOn();
+    else
+      count();
     deal();
     measureTiles();
     unfinished.finish(site_);
@@ -92,12 +96,13 @@ private:
     }
   }
 
-  /// Calls use(source, record, its bytes, the point) for all records of all clouds.
-  template <typename Use>
-  void forEachRecord(MakeStep step, const Use& use)
+  /// Calls use(source, record, its bytes, the point) for all records of all clouds, but for the first `done`, the last
+  /// of which stands before (first, record).
+  template <typename Use, typename AfterBatch>
+  void forEachRecord(MakeStep step, std::uint32_t first, std::uint32_t record, std::uint64_t done, const Use& use,
+                     const AfterBatch& after_batch)
   {
-    std::uint64_t done = 0;
-    for (std::size_t i = 0; i < clouds_.size(); ++i) {
+    for (std::size_t i = first; i < clouds_.size(); ++i, record = 0) {
       const auto stream = open(i);
       const pcl::PCLPointCloud2& header = stream->header();
       if (stream->size() != site_.sources[i].points) failAsChanged(i);
@@ -105,11 +110,13 @@ private:
       std::vector<std::uint8_t> batch(most * header.point_step);
       const PointsView view = viewOfRecords(header, batch.data(), most);
       begin(header);
-      std::uint32_t record = 0;
+      stream->skip(record);
       while (const std::size_t points = stream->read(batch.data(), most)) {
         for (std::uint32_t k = 0; k < points; ++k, ++record)
           use(static_cast<std::uint32_t>(i), record, batch.data() + std::size_t{k} * header.point_step, view.point(k));
-        tell(step, done += points, site_.points);
+        done += points;
+        after_batch(static_cast<std::uint32_t>(i), record, done);
+        tell(step, done, site_.points);
       }
     }
   }
@@ -128,14 +135,58 @@ private:
 
   void count()
   {
-    forEachRecord(MakeStep::count, [&](std::uint32_t, std::uint32_t, const std::uint8_t*, const Point3& point) {
+    const auto add = [&](std::uint32_t, std::uint32_t, const std::uint8_t*, const Point3& point) {
       if (!isFinite(point)) return;
       tree_.add(point);
       extend(site_.bounds, point);
       if (tree_.bytes() > options_.memory / 4) failAsTooFine();
-    });
-    planned_ = tree_.plan();
+    };
+    forEachRecord(MakeStep::count, 0, 0, 0, add, [](std::uint32_t, std::uint32_t, std::uint64_t) {});
+    // One tile more for points that are nowhere.
+    state_.open.resize(std::size_t{tree_.plan()} + 1);
     if (tree_.bytes() > options_.memory / 4) failAsTooFine();
+    state_.bounds = site_.bounds;
+    if (site_.points < options_.save_points) return;
+    const std::string plan = planBytes(tree_.planned());
+    state_.plan_crc32 = crcOf(plan);
+    unfinished_->savePlan(plan);
+    save();
+  }
+
+  /// What the site is made of: a run that is continued must have the same.
+  io::Json question() const
+  {
+    io::Json question = {{"version", 1},
+                         {"tile_points", options_.tile_points},
+                         {"overview_points", options_.overview_points},
+                         {"clouds", io::Json::array()}};
+    for (const fs::path& cloud : clouds_) {
+      question["clouds"].push_back(
+          {cloud.string(), fs::file_size(cloud), fs::last_write_time(cloud).time_since_epoch().count()});
+    }
+    return question;
+  }
+
+  /// Notes on the disk what is done.
+  void save()
+  {
+    for (TileFile& file : files_) file.flush();
+    if (overview_) overview_->flush();
+    state_.files.clear();
+    for (const TileFile& file : files_) state_.files.push_back(file.points());
+    state_.overview = overview_ ? overview_->points() : 0;
+    unfinished_->save(stateText(state_, question()));
+    saved_ = true;
+  }
+
+  /// Takes up what an earlier run has saved.
+  void goOn()
+  {
+    state_ = readState(unfinished_->stateFile(), question());
+    site_.bounds = state_.bounds;
+    tree_ = DensityTree::fromPlanned(readPlan(unfinished_->planFile(), state_.plan_crc32));
+    unfinished_->discardTilesFrom(state_.files.size());
+    saved_ = true;
   }
 
   [[noreturn]] void failAsTooFine() const
@@ -146,25 +197,38 @@ private:
 
   void deal()
   {
-    // One tile more for points that are nowhere.
-    open_.resize(std::size_t{planned_} + 1);
     const std::size_t step = layout_.point_step;
     constexpr std::size_t largest = std::size_t{4} << 20;
-    buffer_ = static_cast<std::size_t>(std::min<std::uint64_t>(largest, options_.memory / 4 / open_.size()));
+    buffer_ = static_cast<std::size_t>(std::min<std::uint64_t>(largest, options_.memory / 4 / state_.open.size()));
     if (buffer_ < step) failAsTooFine();
     std::vector<std::uint8_t> site_record(step);
     const std::size_t source_at = offsetOf(layout_, source_field_name),
                       record_at = offsetOf(layout_, record_field_name);
+    for (std::size_t i = 0; i < state_.files.size(); ++i) {
+      const std::uint64_t points = state_.files[i];
+      files_.emplace_back(unfinished_->goOn(tileFileName(i), TileFile::bytesOf(site_.fields, points)), site_.fields,
+                          buffer_, points);
+    }
     beginOverview();
-    std::uint64_t number = 0;
+    const auto unlocated = static_cast<std::uint32_t>(state_.open.size() - 1);
+    std::uint64_t number = state_.dealt;
     const auto place = [&](std::uint32_t source, std::uint32_t record, const std::uint8_t* bytes, const Point3& point) {
       (*copy_)(bytes, site_record.data());
       std::memcpy(site_record.data() + source_at, &source, sizeof source);
       std::memcpy(site_record.data() + record_at, &record, sizeof record);
-      tileFor(isFinite(point) ? tree_.tileOf(point) : planned_).add(site_record.data(), step);
+      tileFor(isFinite(point) ? tree_.tileOf(point) : unlocated).add(site_record.data(), step);
       if (overview_ && number++ % overview_every_ == 0) overview_->add(site_record.data(), step);
     };
-    forEachRecord(MakeStep::deal, place);
+    std::uint64_t next = state_.dealt + options_.save_points;
+    const auto save_some = [&](std::uint32_t source, std::uint32_t record, std::uint64_t done) {
+      if (done < next || !saved_) return;
+      state_.source = source;
+      state_.record = record;
+      state_.dealt = done;
+      save();
+      next = done + options_.save_points;
+    };
+    forEachRecord(MakeStep::deal, state_.source, state_.record, state_.dealt, place, save_some);
     for (TileFile& file : files_) file.finish();
     if (overview_) overview_->finish();
     std::uint64_t dealt = 0;
@@ -176,7 +240,7 @@ private:
   /// The file of a tile, which is followed by another one when it is full: so many points at one place.
   TileFile& tileFor(std::uint32_t tile)
   {
-    std::optional<std::size_t>& file = open_[tile];
+    std::optional<std::size_t>& file = state_.open[tile];
     if (!file || files_[*file].points() == options_.tile_points) {
       if (file) files_[*file].finish();
       file = files_.size();
@@ -190,19 +254,43 @@ private:
     const std::uint64_t most = std::min(options_.overview_points, site_.points);
     if (most == 0) return;
     overview_every_ = (site_.points + most - 1) / most;
-    overview_.emplace(unfinished_->add(overview_file_name), site_.fields, batch_bytes);
+    if (state_.dealt > 0) {
+      const std::uint64_t bytes = TileFile::bytesOf(site_.fields, state_.overview);
+      overview_.emplace(unfinished_->goOn(overview_file_name, bytes), site_.fields, batch_bytes, state_.overview);
+    }
+    else {
+      unfinished_->discard(overview_file_name);
+      overview_.emplace(unfinished_->add(overview_file_name), site_.fields, batch_bytes);
+    }
   }
 
   void measureTiles()
   {
-    std::uint64_t done = 0;
-    for (const TileFile& file : files_) {
+    state_.source = static_cast<std::uint32_t>(clouds_.size());
+    state_.record = 0;
+    state_.dealt = site_.points;
+    std::uint64_t done = 0, next = 0;
+    if (saved_) save();
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      const TileFile& file = files_[i];
       Tile tile;
-      tile.file = fs::path(tiles_folder_name) / file.path().filename();
+      if (i < state_.measured.size()) tile = state_.measured[i];
+      tile.file = tileFileName(i);
       tile.points = file.points();
+      done += file.points();
+      if (i < state_.measured.size()) {
+        site_.tiles.push_back(std::move(tile));
+        next = done;
+        continue;
+      }
       measure(loadTile(file.path(), site_.fields, tile.points), tile);
+      state_.measured.push_back(tile);
       site_.tiles.push_back(std::move(tile));
-      tell(MakeStep::measure, done += file.points(), site_.points);
+      if (saved_ && done >= next + options_.save_points) {
+        save();
+        next = done;
+      }
+      tell(MakeStep::measure, done, site_.points);
     }
   }
 
@@ -212,11 +300,11 @@ private:
   Site site_;
   pcl::PCLPointCloud2 layout_;
   DensityTree tree_;
-  std::uint32_t planned_ = 0;
+  MakeState state_;
+  bool saved_ = false; ///< there is a state on the disk
   UnfinishedSite* unfinished_ = nullptr;
   std::size_t buffer_ = 0;
   std::vector<TileFile> files_;
-  std::vector<std::optional<std::size_t>> open_; ///< of each tile planned, the file that takes its points
   std::optional<TileFile> overview_;
   std::uint64_t overview_every_ = 1;
   std::optional<RecordCopy> copy_;

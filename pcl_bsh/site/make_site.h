@@ -24,19 +24,25 @@ struct MakeOptions {
   std::uint64_t memory = std::uint64_t{2} << 30; ///< bytes that may be held at once; at least 64 MiB
   std::uint64_t tile_points = 4'000'000;         ///< no tile has more; from 1 to 2^31 - 1
   std::uint64_t overview_points = 1'000'000;     ///< overview.pcd has so many, or fewer, drawn evenly; 0: there is none
+  /// After so many points what is done is noted in the folder, so that a run that ends there can be continued; sites of
+  /// fewer points begin again. At least 1.
+  std::uint64_t save_points = 50'000'000;
   /// Called now and then with the points done and all points of this step. False: stop, makeSite() throws Cancelled.
   std::function<bool(MakeStep, std::uint64_t done, std::uint64_t all)> progress;
 };
 
 /// Reads clouds (all formats of readCloud(), from files) and makes a folder of tiles: each holds the points in some
 /// neighbouring voxels of one grid, at most `tile_points`; points that are not finite have tiles of their own. The
-/// folder is made, or is empty, or holds what an earlier run has left that was killed. When anything is thrown, nothing
-/// new is left in it.
+/// folder is made, or is empty, or holds what an earlier run has left: of the same clouds and options, what is done is
+/// not done again. When anything is thrown before something was noted, nothing new is left in it.
 /// @throws files::FileError: clouds that cannot be read, or change meanwhile; fields of one name and different types;
 ///   formats that must be held in memory, and do not fit; a folder that holds anything else, or cannot be written;
 ///   std::invalid_argument for options; Cancelled
 Site makeSite(const std::vector<std::filesystem::path>& clouds, const std::filesystem::path& folder,
               const MakeOptions& options = {});
+
+/// Whether makeSite() would go on with what an earlier run has noted in a folder.
+bool isBegun(const std::filesystem::path& folder);
 
 } // namespace pcl_bsh::sites
 PCL_BSH_EXPORT_END

@@ -33,24 +33,42 @@ std::uint32_t crcOf(const pcl::PCLPointCloud2& cloud)
   return crc.checksum();
 }
 
+/// The header while the number of points is not known.
+std::string longestHead(const Fields& fields)
+{
+  return io::binaryPcdHeader(fields, static_cast<std::uint32_t>(io::max_points));
+}
+
 } // namespace
 
-TileFile::TileFile(files::NewFile& file, const Fields& fields, std::size_t buffer)
+TileFile::TileFile(files::NewFile& file, const Fields& fields, std::size_t buffer) : TileFile(file, fields, buffer, 0)
+{
+  file_->append(longestHead(fields_));
+}
+
+TileFile::TileFile(files::NewFile& file, const Fields& fields, std::size_t buffer, std::uint64_t points)
 : file_(&file),
   fields_(fields),
-  limit_(buffer)
+  limit_(buffer),
+  head_bytes_(longestHead(fields).size()),
+  points_(points)
 {
-  const std::string head = io::binaryPcdHeader(fields_, static_cast<std::uint32_t>(io::max_points));
-  head_bytes_ = head.size();
-  file_->append(head);
+}
+
+std::uint64_t TileFile::bytesOf(const Fields& fields, std::uint64_t points)
+{
+  return longestHead(fields).size() + points * layoutOf(fields).point_step;
+}
+
+void TileFile::flush()
+{
+  if (!buffer_.empty()) file_->append(buffer_);
+  buffer_.clear();
 }
 
 void TileFile::add(const std::uint8_t* record, std::size_t bytes)
 {
-  if (buffer_.size() + bytes > limit_) {
-    file_->append(buffer_);
-    buffer_.clear();
-  }
+  if (buffer_.size() + bytes > limit_) flush();
   if (buffer_.capacity() < limit_) buffer_.reserve(limit_);
   buffer_.append(reinterpret_cast<const char*>(record), bytes);
   ++points_;
@@ -58,7 +76,7 @@ void TileFile::add(const std::uint8_t* record, std::size_t bytes)
 
 void TileFile::finish()
 {
-  file_->append(buffer_);
+  flush();
   buffer_ = std::string();
   file_->replaceHead(io::binaryPcdHeader(fields_, static_cast<std::uint32_t>(points_), head_bytes_));
 }

@@ -17,6 +17,15 @@ public:
   /// @param buffer bytes that are collected before they are written
   TileFile(files::NewFile& file, const Fields& fields, std::size_t buffer);
 
+  /// Goes on with a file to whose end so many points have been flushed.
+  TileFile(files::NewFile& file, const Fields& fields, std::size_t buffer, std::uint64_t points);
+
+  /// What a file of so many points has, in bytes, until it is finished.
+  static std::uint64_t bytesOf(const Fields& fields, std::uint64_t points);
+
+  /// Writes what is in the buffer.
+  void flush();
+
   /// @param record of these fields, `bytes` long
   void add(const std::uint8_t* record, std::size_t bytes);
 

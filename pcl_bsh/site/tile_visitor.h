@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace pcl_bsh::sites {
@@ -17,6 +18,8 @@ std::uint64_t sumOfAllRanks(std::uint64_t value);
 
 /// The values of all ranks, one after the other, on all of them.
 std::vector<double> gatheredFromAllRanks(const std::vector<double>& values);
+
+std::string gatheredFromAllRanks(const std::string& bytes);
 
 class TileVisitor {
 public:
@@ -34,12 +37,16 @@ public:
   void visit(const std::vector<std::uint32_t>& tiles, const Use& use,
              const std::function<bool(std::size_t)>& go_on = nullptr);
 
+  /// What each tile has cost that this rank has visited.
+  const std::vector<TileCost>& costs() const noexcept { return costs_; }
+
   /// Tiles that this rank has read.
   std::uint64_t read() const noexcept { return read_; }
 
 private:
   const Site& site_;
   std::uint64_t read_ = 0;
+  std::vector<TileCost> costs_;
 };
 
 } // namespace pcl_bsh::sites

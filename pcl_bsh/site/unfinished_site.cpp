@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/files/unfinished.h>
+#include <pcl_bsh/site/make_site.h>
+#include <pcl_bsh/site/tile_file.h>
 #include <pcl_bsh/site/unfinished_site.h>
 
 #include <fcntl.h>
@@ -9,6 +12,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 #include <string>
 
 namespace pcl_bsh::sites {
@@ -18,7 +22,10 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr auto mark_name = "unfinished_site";
-constexpr auto mark_text = "pcl_bsh_site makes a site here. If it was ended, the same command begins again.\n";
+constexpr auto mark_text =
+    "pcl_bsh_site makes a site here. If it was ended, the same command goes on, or begins again.\n";
+constexpr auto state_name = "unfinished_site.state";
+constexpr auto plan_name = "unfinished_site.plan";
 
 /// Whether it is a name that UnfinishedSite gives.
 bool isTileName(const std::string& name)
@@ -31,20 +38,24 @@ bool isTileName(const std::string& name)
 
 bool isSiteFileLeft(const std::string& name)
 {
-  return name == overview_file_name || name.starts_with(std::string(site_file_name) + ".part");
+  if (name == overview_file_name) return true;
+  for (const char* own : {site_file_name, state_name, plan_name})
+    if (name.starts_with(std::string(own) + ".part")) return true;
+  return name == plan_name;
 }
 
-/// Removes what a run that was killed has made.
-void clear(const fs::path& folder)
+/// Removes the tiles' files that `goes` is true of, by their names.
+void removeTiles(const fs::path& folder, const std::function<bool(const std::string&)>& goes)
 {
   std::error_code error;
   const fs::path tiles = folder / tiles_folder_name;
-  if (fs::is_directory(fs::symlink_status(tiles, error))) {
-    for (const auto& entry : fs::directory_iterator(tiles))
-      if (isTileName(entry.path().filename().string())) fs::remove(entry.path());
+  if (!fs::is_directory(fs::symlink_status(tiles, error))) return;
+  std::vector<fs::path> gone;
+  for (const auto& entry : fs::directory_iterator(tiles)) {
+    const std::string name = entry.path().filename().string();
+    if (isTileName(name) && goes(name)) gone.push_back(entry.path());
   }
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (isSiteFileLeft(entry.path().filename().string())) fs::remove(entry.path());
+  for (const fs::path& path : gone) fs::remove(path);
 }
 
 } // namespace
@@ -55,7 +66,13 @@ bool isUnfinished(const fs::path& folder)
   return fs::is_regular_file(folder / mark_name, error) && !fs::exists(folder / site_file_name, error);
 }
 
-UnfinishedSite::UnfinishedSite(const fs::path& folder) : folder_(folder)
+bool isBegun(const fs::path& folder)
+{
+  std::error_code error;
+  return isUnfinished(folder) && fs::is_regular_file(folder / state_name, error);
+}
+
+UnfinishedSite::UnfinishedSite(const fs::path& folder, Use use) : folder_(folder)
 {
   std::error_code error;
   if (fs::exists(folder / site_file_name, error))
@@ -68,13 +85,82 @@ UnfinishedSite::UnfinishedSite(const fs::path& folder) : folder_(folder)
   }
   try {
     mark();
-    if (was_begun) clear(folder);
+    was_saved_ = was_begun && fs::exists(stateFile());
+    if (was_saved_ && use != Use::continuable) {
+      throw files::FileError(folder, "holds a site that is not complete",
+                             "repeat the command that makes it to go on, or name a new folder");
+    }
+    stays_ = was_saved_ || use == Use::shared;
+    if (was_begun && !was_saved_) clear();
     tiles_ = std::make_unique<files::OutputFolder>(folder / tiles_folder_name);
+    if (use == Use::shared) keepMark();
   }
   catch (const fs::filesystem_error& failure) {
     throw files::FileError(folder, std::string("cannot be cleared (") + failure.code().message() + ")",
                            "name a new folder");
   }
+}
+
+/// Removes what a run that was killed has made.
+void UnfinishedSite::clear()
+{
+  removeTiles(folder(), [](const std::string&) { return true; });
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(folder()))
+    if (isSiteFileLeft(entry.path().filename().string())) left.push_back(entry.path());
+  for (const fs::path& path : left) fs::remove(path);
+}
+
+fs::path UnfinishedSite::stateFile() const
+{
+  return folder() / state_name;
+}
+
+fs::path UnfinishedSite::planFile() const
+{
+  return folder() / plan_name;
+}
+
+void UnfinishedSite::discardTilesFrom(std::size_t tiles)
+{
+  std::set<std::string> stay;
+  for (std::size_t i = 0; i < tiles; ++i) stay.insert(fs::path(tileFileName(i)).filename().string());
+  removeTiles(folder(), [&](const std::string& name) { return stay.count(name) == 0; });
+}
+
+void UnfinishedSite::discard(const fs::path& name)
+{
+  std::error_code ignored; // add() fails where it is still there
+  fs::remove(folder() / name, ignored);
+}
+
+files::NewFile& UnfinishedSite::goOn(const fs::path& name, std::uint64_t bytes)
+{
+  files_.push_back(std::make_unique<files::NewFile>(folder() / name, bytes));
+  return *files_.back();
+}
+
+void UnfinishedSite::keepMark()
+{
+  stays_ = true;
+  const auto lock = files::lockUnfinished();
+  if (mark_file_) mark_file_->keep();
+}
+
+void UnfinishedSite::savePlan(const std::string& bytes)
+{
+  files::replaceFile(planFile(), [&](std::ostream& out) { out << bytes; });
+}
+
+void UnfinishedSite::save(const std::string& state)
+{
+  files::syncDisk(folder());
+  keepMark();
+  files::FileReplacement document(stateFile());
+  document.stream() << state << '\n';
+  document.commit([&] {
+    for (const auto& file : files_) file->keep();
+  });
 }
 
 void UnfinishedSite::mark()
@@ -91,11 +177,12 @@ UnfinishedSite::~UnfinishedSite()
 {
   files_.clear();
   tiles_.reset();
-  std::error_code ignored;
-  if (mark_ >= 0) {
-    fs::remove(folder() / mark_name, ignored);
-    close(mark_);
+  if (mark_ < 0) return;
+  if (finished_ || !stays_) {
+    std::error_code ignored;
+    for (const char* name : {state_name, plan_name, mark_name}) fs::remove(folder() / name, ignored);
   }
+  close(mark_);
 }
 
 files::NewFile& UnfinishedSite::add(const fs::path& name)
@@ -112,6 +199,7 @@ void UnfinishedSite::finish(const Site& site)
   document.commit([&] {
     for (const auto& file : files_) file->keep();
   });
+  finished_ = true;
 }
 
 } // namespace pcl_bsh::sites

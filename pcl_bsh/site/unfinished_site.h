@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace pcl_bsh::sites {
@@ -15,13 +16,19 @@ namespace pcl_bsh::sites {
 /// Whether a folder holds what a program has left that was killed while it made a site.
 bool isUnfinished(const std::filesystem::path& folder);
 
-/// Makes the folder, if need be, and the files in it, which are removed again unless finish() is called. What an
-/// earlier run has left that was killed is removed first, which is told by its mark; nothing else ever is.
+/// Makes the folder, if need be, and the files in it, which are removed again unless finish() or save() is called. What
+/// an earlier run has left that was killed is removed first, which is told by its mark; nothing else ever is.
 class UnfinishedSite {
 public:
+  enum class Use {
+    alone,       ///< nothing is left of it where finish() is not reached
+    shared,      ///< other processes write into the folder, too: its mark stays until finish()
+    continuable, ///< goes on with what was saved
+  };
+
   /// @throws files::FileError when there is a site already or anything else, when another program makes a site there,
-  ///   or when the folder cannot be made
-  explicit UnfinishedSite(const std::filesystem::path& folder);
+  ///   when something was saved and the use is another one, or when the folder cannot be made
+  UnfinishedSite(const std::filesystem::path& folder, Use use);
   ~UnfinishedSite();
   UnfinishedSite(const UnfinishedSite&) = delete;
   UnfinishedSite& operator=(const UnfinishedSite&) = delete;
@@ -31,14 +38,35 @@ public:
   /// Makes a file. @param name relative to the folder
   files::NewFile& add(const std::filesystem::path& name);
 
+  /// Whether an earlier run has saved something, and where that stands.
+  bool wasSaved() const noexcept { return was_saved_; }
+  std::filesystem::path stateFile() const;
+  std::filesystem::path planFile() const;
+
+  /// Removes all that was begun after save(): of the tiles' files the first `tiles` stay.
+  void discardTilesFrom(std::size_t tiles);
+
+  /// Removes a file that was begun, if there is one. @param name relative to the folder
+  void discard(const std::filesystem::path& name);
+
+  /// A file that was there when save() was called, with so many bytes. @param name relative to the folder
+  files::NewFile& goOn(const std::filesystem::path& name, std::uint64_t bytes);
+
+  /// From now on, what is there stays where finish() is not reached.
+  void savePlan(const std::string& bytes);
+  void save(const std::string& state);
+
   /// Brings all files to the disk, then site.json, and keeps them.
   void finish(const Site& site);
 
 private:
   void mark();
+  void clear();
+  void keepMark();
 
   files::OutputFolder folder_;
   int mark_ = -1; ///< open and locked while the site is made
+  bool stays_ = false, was_saved_ = false, finished_ = false;
   std::unique_ptr<files::NewFile> mark_file_;
   std::unique_ptr<files::OutputFolder> tiles_;
   std::vector<std::unique_ptr<files::NewFile>> files_;

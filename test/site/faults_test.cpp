@@ -3,6 +3,8 @@
 // that passes for a site.
 #include "../programs/process.h"
 
+#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/make_site.h>
 
@@ -11,6 +13,7 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <map>
 #include <thread>
 
 namespace pcl_bsh::sites {
@@ -122,6 +125,172 @@ TEST_F(SiteFaults, AFullDisk)
     EXPECT_EQ(program.end(), 1);
     EXPECT_THAT(program.err(), HasSubstr("cannot be written (File too large)"));
     EXPECT_FALSE(fs::exists(folder / "site"));
+  }
+}
+
+/// All files below a folder, and what they hold.
+std::map<std::string, std::string> contentsOf(const fs::path& place)
+{
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(place))
+    if (entry.is_regular_file()) files[fs::relative(entry.path(), place).string()] = files::contentOf(entry.path());
+  return files;
+}
+
+class SitesContinued : public SiteFaults {
+protected:
+  SitesContinued()
+  {
+    const std::string text = files::contentOf(folder / "scan.xyz");
+    folder.write("more.xyz", text + "nan 1 2\n1 2 nan\n"); // points that are nowhere
+    options.tile_points = 5000;
+    options.overview_points = 777;
+    options.save_points = 12000;
+  }
+
+  Site makeBoth() const { return makeSite({folder / "scan.xyz", folder / "more.xyz"}, folder / "site", options); }
+
+  /// In a process that is killed at the n-th call of its progress. @return whether it lived to the end
+  bool makeAndDie(int calls)
+  {
+    const pid_t id = fork();
+    if (id == 0) {
+      MakeOptions dying = options;
+      dying.progress = [&](MakeStep, std::uint64_t, std::uint64_t) {
+        if (calls-- == 0) ::kill(::getpid(), SIGKILL);
+        return true;
+      };
+      options = dying;
+      try {
+        makeBoth();
+      }
+      catch (...) {
+        _exit(1);
+      }
+      _exit(0);
+    }
+    int status = 0;
+    waitpid(id, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
+    return WIFEXITED(status);
+  }
+
+  /// The points that all steps of a run tell together.
+  std::uint64_t pointsOfWork() const
+  {
+    std::uint64_t work = 0, last = 0;
+    MakeStep at = MakeStep::count;
+    MakeOptions telling = options;
+    bool first = true;
+    telling.progress = [&](MakeStep step, std::uint64_t done, std::uint64_t) {
+      if (!first && step == at) work += done - last;
+      first = false;
+      at = step;
+      last = done;
+      return true;
+    };
+    makeSite({folder / "scan.xyz", folder / "more.xyz"}, folder / "site", telling);
+    return work;
+  }
+
+  MakeOptions options;
+};
+
+/// Killed wherever it tells its progress, and then continued: the same files, byte by byte.
+TEST_F(SitesContinued, AfterAKillAtEachStage)
+{
+  makeBoth();
+  const auto whole = contentsOf(folder / "site");
+  fs::remove_all(folder / "site");
+  int kills = 0;
+  for (bool ended = false; !ended; ++kills) {
+    SCOPED_TRACE(kills);
+    ended = makeAndDie(kills);
+    if (!ended) {
+      EXPECT_THROW(readSite(folder / "site"), files::FileError);
+      makeBoth();
+    }
+    EXPECT_TRUE(contentsOf(folder / "site") == whole);
+    fs::remove_all(folder / "site");
+  }
+  EXPECT_GT(kills, 10);
+}
+
+/// Killed again and again, each time a little later: it comes to its end, for what was saved is not done again.
+TEST_F(SitesContinued, AfterManyKills)
+{
+  makeBoth();
+  const auto whole = contentsOf(folder / "site");
+  fs::remove_all(folder / "site");
+  int runs = 0;
+  while (!makeAndDie(5)) ASSERT_LT(++runs, 20);
+  EXPECT_GT(runs, 0);
+  EXPECT_TRUE(contentsOf(folder / "site") == whole);
+}
+
+TEST_F(SitesContinued, IsRefusedForAnotherQuestionOrDamage)
+{
+  ASSERT_FALSE(makeAndDie(6));
+  const auto left = contentsOf(folder / "site");
+  ASSERT_TRUE(left.count("unfinished_site.state"));
+  const auto refuse = [&](const std::string& words) {
+    try {
+      makeBoth();
+      ADD_FAILURE() << words;
+    }
+    catch (const files::FileError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(words));
+      EXPECT_THAT(error.what(), testing::Not(HasSubstr("\n")));
+    }
+    EXPECT_THROW(readSite(folder / "site"), files::FileError);
+  };
+  const auto put = [&](const std::string& name, const std::string& bytes) { folder.write("site/" + name, bytes); };
+
+  --options.tile_points;
+  refuse("of other clouds or options");
+  EXPECT_TRUE(contentsOf(folder / "site") == left);
+  ++options.tile_points;
+  const auto written = fs::last_write_time(folder / "scan.xyz");
+  fs::last_write_time(folder / "scan.xyz", written + std::chrono::seconds(1));
+  refuse("of other clouds or options");
+  fs::last_write_time(folder / "scan.xyz", written);
+
+  const std::string state = left.at("unfinished_site.state"), plan = left.at("unfinished_site.plan");
+  put("unfinished_site.state", state.substr(0, state.size() / 2));
+  refuse("is damaged");
+  put("unfinished_site.state", "{}");
+  refuse("is damaged");
+  put("unfinished_site.state", state);
+  std::string wrong = plan;
+  wrong[wrong.size() / 2] ^= 1;
+  put("unfinished_site.plan", wrong);
+  refuse("is damaged");
+  put("unfinished_site.plan", plan);
+  put("tiles/tile_000000.pcd", "short");
+  refuse("is shorter than it was");
+  put("tiles/tile_000000.pcd", left.at("tiles/tile_000000.pcd"));
+  makeBoth();
+  EXPECT_NO_THROW(checkSite(readSite(folder / "site")));
+  EXPECT_FALSE(fs::exists(folder / "site/unfinished_site"));
+  EXPECT_FALSE(fs::exists(folder / "site/unfinished_site.state"));
+}
+
+/// A disk that was full, or a stop that the caller wanted: the folder says so, and goes on.
+TEST_F(SitesContinued, AfterAnException)
+{
+  makeBoth();
+  const auto whole = contentsOf(folder / "site");
+  for (const MakeStep stop : {MakeStep::deal, MakeStep::measure}) {
+    fs::remove_all(folder / "site");
+    MakeOptions stopping = options;
+    stopping.progress = [&](MakeStep step, std::uint64_t done, std::uint64_t all) {
+      return step != stop || done < all / 2;
+    };
+    EXPECT_THROW(makeSite({folder / "scan.xyz", folder / "more.xyz"}, folder / "site", stopping), Cancelled);
+    EXPECT_THROW(readSite(folder / "site"), files::FileError);
+    const std::uint64_t work = pointsOfWork();
+    EXPECT_LT(work, stop == MakeStep::deal ? 80000 : 40000) << "what is done is not done again";
+    EXPECT_TRUE(contentsOf(folder / "site") == whole);
   }
 }
 

@@ -51,7 +51,7 @@ TEST(TunnelSize, InProportion)
   EXPECT_EQ(tenth.scan, 1892000u);
   EXPECT_EQ(tenth.wagon, 250000u);
   EXPECT_EQ(tenth.poses, 1939u);
-  for (const double scale : {0.0, -1.0, 11.0, std::nan("")}) EXPECT_THROW(Size::atScale(scale), std::invalid_argument);
+  for (const double scale : {0.0, -1.0, 101.0, std::nan("")}) EXPECT_THROW(Size::atScale(scale), std::invalid_argument);
 }
 
 TEST(TunnelPassage, HoldsWhatWasAskedFor)

@@ -6,14 +6,19 @@
 #include <stdexcept>
 
 #ifdef PCL_BSH_SITE_QUERIES
+#include <pcl_bsh/files/file_identity.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 
+#include "output.h"
+#include "plan.h"
+
 #include <nlohmann/json.hpp>
 
+#include <chrono>
 #include <cmath>
 #include <iostream>
 #endif
@@ -31,13 +36,34 @@ Json orNull(double number)
   return std::isfinite(number) ? Json(number) : Json(nullptr);
 }
 
-void put(Json& report, const sites::TilesRead& tiles)
+void put(Json& report, const sites::TilesRead& tiles, MeasuredRun& run)
 {
+  run.tiles = tiles.costs;
   report["tiles"] = {{"all", tiles.tiles}, {"needed", tiles.needed}, {"read", tiles.read}};
 }
 
+/// What the tiles have cost, and how long the run would take on other numbers of ranks.
+void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun& run)
+{
+  Json& costs = report["costs"] = {
+      {"ranks", run.ranks}, {"seconds", run.seconds}, {"copying", run.copying}, {"tiles", Json::array()}};
+  for (const sites::TileCost& cost : run.tiles)
+    costs["tiles"].push_back({{"tile", cost.tile}, {"reading", cost.reading}, {"asking", cost.asking}});
+  for (const unsigned n : ranks) {
+    const RunPlan plan = planRun(run, n);
+    report["plan"].push_back({{"ranks", plan.ranks},
+                              {"seconds", plan.seconds},
+                              {"limit", plan.limit},
+                              {"on_all", plan.on_all},
+                              {"copying", plan.copying},
+                              {"busiest", plan.busiest},
+                              {"even", plan.even},
+                              {"reading", plan.reading}});
+  }
+}
+
 /// The answer, the same on all ranks.
-Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& options)
+Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& options, SiteOutput& out, MeasuredRun& run)
 {
   sites::SiteRequest request;
   request.clearance = options.clearance;
@@ -50,14 +76,14 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
   case SiteQuestion::any: {
     const sites::SiteAny found = sites::anyCollision(site, obstacle, request);
     report["collides"] = found.verdict == Verdict::colliding;
-    put(report, found.tiles);
+    put(report, found.tiles, run);
     break;
   }
   case SiteQuestion::flags: {
-    const sites::SiteFlags found = sites::collisionFlags(site, obstacle, Side::both, request);
+    const sites::SiteFlags found = sites::collisionFlags(site, obstacle, Side::both, request, out.flags());
     report["colliding"] = found.colliding;
     report["colliding_of_obstacle"] = found.colliding_b;
-    put(report, found.tiles);
+    put(report, found.tiles, run);
     break;
   }
   case SiteQuestion::closest: {
@@ -67,21 +93,22 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
       report["point"] = {{"source", site.sources.at(found.point->source).file}, {"record", found.point->record}};
       report["point_of_obstacle"] = found.b;
     }
-    put(report, found.tiles);
+    put(report, found.tiles, run);
     break;
   }
   case SiteQuestion::distances: {
-    const sites::SiteDistances found = sites::pointDistances(site, obstacle, options.max_distance, request);
+    const sites::SiteDistances found =
+        sites::pointDistances(site, obstacle, options.max_distance, request, out.distances());
     report["max_distance"] = orNull(options.max_distance);
     report["measured"] = found.measured;
     report["greatest"] = orNull(found.greatest);
-    put(report, found.tiles);
+    put(report, found.tiles, run);
     break;
   }
   case SiteQuestion::path: {
     const auto poses = io::readPoses(options.trajectory);
     request.swept = options.swept;
-    const sites::SitePassage found = sites::collideAlong(site, obstacle.hierarchy(), poses, request);
+    const sites::SitePassage found = sites::collideAlong(site, obstacle.hierarchy(), poses, request, out.passage());
     report["poses"] = poses.size();
     report["colliding"] = found.colliding;
     report["distance"] = orNull(double{found.distance});
@@ -89,7 +116,7 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
     if (options.swept) report["swept"] = *options.swept;
     if (found.first_contact)
       report["first_contact"] = {{"pose", found.first_contact->pose}, {"fraction", found.first_contact->fraction}};
-    put(report, found.tiles);
+    put(report, found.tiles, run);
     break;
   }
   }
@@ -98,16 +125,30 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
 
 int answer(const SiteOptions& options)
 {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   const bool tells = sites::rankHere() == 0;
   if (tells) warn(site_program, options.warnings);
-  if (tells) files::requireWritable(options.report);
+  const bool reports = !options.report.empty();
+  if (tells && reports) files::requireWritable(options.report);
   const sites::Site site = sites::readSite(options.site);
   const pcl::PCLPointCloud2 cloud = io::readCloud(options.obstacle);
   HierarchyOptions building;
   building.threads = options.threads;
   const SphereHierarchy hierarchy(viewOf(cloud), building);
-  const Json report = ask(site, {hierarchy, options.pose}, options);
+  SiteOutput output(site, options);
+  MeasuredRun run;
+  Json report = ask(site, {hierarchy, options.pose}, options, output, run);
+  run.seconds = seconds();
+  output.finish();
+  run.copying = seconds() - run.seconds;
+  if (!options.out.empty()) report["out"] = options.out.string();
   if (!tells) return 0;
+  if (!options.out.empty() && options.report != files::standard_stream)
+    std::cout << "wrote what was found of each point to " << options.out.string() << '\n';
+  if (!reports) return 0;
+  run.ranks = sites::ranks();
+  if (!options.plan.empty()) putPlan(report, options.plan, run);
   const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
   files::replaceFile(options.report, [&](std::ostream& out) { out << text << '\n'; });
   return 0;

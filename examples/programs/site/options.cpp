@@ -20,6 +20,8 @@ Example: two scans become one site, and a file with the points of both
   pcl_bsh_site make north.las south.las --out valley --memory 2G
   pcl_bsh_site validate valley
   pcl_bsh_site export valley all.pcd
+With --out: the fields of `collide` are collision (1 collides, 0 free), with --trajectory also distance (NaN: free),
+first_pose and closest_pose (-1: none), with --distances distance alone.
 Example: where does a machine come within 5 cm of it on its way? On one process, or on four:
   pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
   mpirun -n 4 pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json)";
@@ -66,9 +68,9 @@ struct CollideTexts {
     app.add_option("OBSTACLE", options.obstacle, "cloud to collide with, which must fit into memory")
         ->type_name("")
         ->required();
-    app.add_option("--report", options.report, "JSON file for the answer; -: standard output")
-        ->type_name("FILE")
-        ->required();
+    app.add_option("--report", options.report, "JSON file for the answer; -: standard output")->type_name("FILE");
+    app.add_option("--out", options.out, "new site with what was found of each point, as fields more of the same tiles")
+        ->type_name("SITE");
     clearance = app.add_option("--clearance", options.clearance,
                                "greatest distance that counts as collision, in the clouds' unit")
                     ->type_name("D")
@@ -85,6 +87,12 @@ struct CollideTexts {
     max_distance = app.add_option("--max-distance", options.max_distance, "of --distances: greater ones do not count")
                        ->type_name("M")
                        ->transform(number<double>("give a length >= 0", [](double d) { return d >= 0; }));
+    app.add_option("--plan", options.plan,
+                   "numbers of ranks, as 64,1024: by what the tiles have cost, the report says how long the same "
+                   "question takes on so many, and what limits it")
+        ->type_name("N,...")
+        ->delimiter(',')
+        ->check(CLI::Range(1u, 1000000u));
     app.add_option("--threads", options.threads, "of each process (default: 1); 0: all of the machine's")
         ->type_name("N")
         ->transform(number<unsigned>(give_threads));
@@ -103,6 +111,12 @@ struct CollideTexts {
                                    : SiteQuestion::flags;
     const bool needs_clearance = !closest && !distances;
     if (needs_clearance && clearance->count() == 0) throw UsageError("--clearance: is missing: give a length");
+    if (options.report.empty() && options.out.empty())
+      throw UsageError("--report, --out: none is given: give --report, --out or both");
+    if (!options.plan.empty() && options.report.empty())
+      throw UsageError("--plan: is told in the report: add --report");
+    if (!options.out.empty() && (any || closest))
+      throw UsageError("--out: --any and --closest find nothing of each point: leave it away");
     if (max_distance->count() > 0 && !distances) throw UsageError("--max-distance: goes with --distances: add it");
     if (options.swept && !moves) throw UsageError("--swept: goes with --trajectory: add it");
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
@@ -143,7 +157,7 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
   CLI::App* const write = command(
       "export", "write the points in their first order, as one cloud or one for each source", SiteCommand::write);
   add_site(write);
-  write->add_option("OUT", options.out, "a .pcd file for all points, or a folder for the sources")
+  write->add_option("OUT", options.out, "a .pcd file for all points, a .pvtp for ParaView, or a folder for the sources")
       ->type_name("")
       ->required();
   addMemory(*write, options);

@@ -24,7 +24,8 @@ struct SiteOptions {
   SiteCommand command = SiteCommand::info;
   std::vector<std::filesystem::path> clouds; ///< to make a site of
   std::filesystem::path site;
-  std::filesystem::path out; ///< of `write`: a .pcd file, or a folder for the sources
+  std::filesystem::path
+      out; ///< of `write`: a .pcd or .pvtp file, or a folder for the sources; of `collide`: a site, or none
   std::uint64_t memory = std::uint64_t{2} << 30;
   std::uint64_t tile_points = 4'000'000;
 
@@ -36,6 +37,7 @@ struct SiteOptions {
   double max_distance = std::numeric_limits<double>::infinity();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   unsigned threads = 1;
+  std::vector<unsigned> plan; ///< numbers of ranks whose time is predicted
   std::vector<std::string> warnings;
 };
 

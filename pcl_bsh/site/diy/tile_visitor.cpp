@@ -10,6 +10,7 @@
 // clang-format on
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <exception>
 
@@ -92,6 +93,15 @@ std::vector<double> gatheredFromAllRanks(const std::vector<double>& values)
   return all;
 }
 
+std::string gatheredFromAllRanks(const std::string& bytes)
+{
+  std::vector<std::vector<char>> parts;
+  diy::mpi::all_gather(world(), std::vector<char>(bytes.begin(), bytes.end()), parts);
+  std::string all;
+  for (const std::vector<char>& part : parts) all.append(part.begin(), part.end());
+  return all;
+}
+
 TileVisitor::TileVisitor(const Site& site, std::uint64_t memory) : site_(site)
 {
   // A tile and its hierarchy, which takes at most twice 32 bytes for each point.
@@ -118,9 +128,16 @@ void TileVisitor::visit(const std::vector<std::uint32_t>& tiles, const Use& use,
     if (block == nullptr) return; // DIY calls for blocks that are skipped, too
     try {
       const Tile& tile = site_.tiles[block->tile];
+      using Clock = std::chrono::steady_clock;
+      const auto seconds = [](Clock::time_point from, Clock::time_point to) {
+        return std::chrono::duration<double>(to - from).count();
+      };
+      const Clock::time_point begin = Clock::now();
       const pcl::PCLPointCloud2 cloud = readTile(site_, tile);
+      const Clock::time_point there = Clock::now();
       ++read_;
       use(tile, cloud);
+      costs_.push_back({block->tile, seconds(begin, there), seconds(there, Clock::now())});
     }
     catch (...) {
       failure = std::current_exception();

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// VTK's XML file formats: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
+#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/files/new_file.h>
+#include <pcl_bsh/files/output_folder.h>
+#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/filters/cloud_files/field_type.h>
+#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/export_vtk.h>
+#include <pcl_bsh/site/records.h>
+#include <pcl_bsh/site/tile_file.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <sstream>
+#include <type_traits>
+
+namespace pcl_bsh::sites {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string escapedForXml(const std::string& text)
+{
+  std::string xml;
+  for (const char c : text) {
+    switch (c) {
+    case '&':
+      xml += "&amp;";
+      break;
+    case '<':
+      xml += "&lt;";
+      break;
+    case '"':
+      xml += "&quot;";
+      break;
+    default:
+      xml += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+    }
+  }
+  return xml;
+}
+
+std::string vtkTypeOf(std::uint8_t datatype)
+{
+  return io::withFieldType(datatype, [](auto value) -> std::string {
+    using Value = decltype(value);
+    const std::string bits = std::to_string(8 * sizeof value);
+    return (std::is_floating_point_v<Value> ? "Float" : std::is_signed_v<Value> ? "Int" : "UInt") + bits;
+  });
+}
+
+bool isAxisName(const std::string& name)
+{
+  return name == "x" || name == "y" || name == "z";
+}
+
+std::string describe(const std::string& type, const std::string& name, std::uint32_t components)
+{
+  return "type=\"" + type + "\" Name=\"" + escapedForXml(name) + "\" NumberOfComponents=\"" +
+         std::to_string(components) + "\"";
+}
+
+std::string describePoints(const Fields& fields)
+{
+  const auto x = std::find_if(fields.begin(), fields.end(), [](const auto& field) { return field.name == "x"; });
+  return describe(vtkTypeOf(x->datatype), "Points", 3);
+}
+
+std::string describe(const pcl::PCLPointField& field)
+{
+  return describe(vtkTypeOf(field.datatype), field.name, field.count);
+}
+
+/// The arrays of a tile one after the other in a file, none of which is held beside the tile but the one that is
+/// written.
+class PieceWriter {
+public:
+  PieceWriter(const pcl::PCLPointCloud2& cloud, files::NewFile& file) : cloud_(cloud), file_(file)
+  {
+    const PointsView view = viewOf(cloud);
+    for (std::uint32_t i = 0; i < view.count; ++i)
+      if (isFinite(view.point(i))) points_.push_back(i);
+  }
+
+  void write()
+  {
+    const std::uint64_t count = points_.size();
+    std::string head =
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+        "header_type=\"UInt64\">\n  <PolyData>\n    <Piece NumberOfPoints=\"" +
+        std::to_string(count) + "\" NumberOfVerts=\"" + (count > 0 ? "1" : "0") +
+        "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
+    std::uint64_t offset = 0;
+    const auto array = [&](const std::string& description, std::uint64_t bytes) {
+      head +=
+          "        <DataArray " + description + " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+      offset += sizeof bytes + bytes;
+    };
+    const std::size_t axis_bytes = io::sizeOf(axis(0));
+    head += "      <Points>\n";
+    array(describePoints(cloud_.fields), 3 * count * axis_bytes);
+    head += "      </Points>\n      <PointData>\n";
+    for (const auto& field : cloud_.fields)
+      if (!isAxisName(field.name)) array(describe(field), count * io::sizeOf(field));
+    head += "      </PointData>\n      <Verts>\n";
+    array(describe("Int64", "connectivity", 1), 8 * count);
+    array(describe("Int64", "offsets", 1), count > 0 ? 8 : 0);
+    head += "      </Verts>\n    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_";
+    file_.append(head);
+
+    writeFields({axis(0), axis(1), axis(2)});
+    for (const auto& field : cloud_.fields)
+      if (!isAxisName(field.name)) writeFields({field});
+    std::vector<std::int64_t> numbers(count);
+    for (std::size_t i = 0; i < count; ++i) numbers[i] = static_cast<std::int64_t>(i);
+    writeNumbers(numbers);
+    writeNumbers(count > 0 ? std::vector{static_cast<std::int64_t>(count)} : std::vector<std::int64_t>{});
+    file_.append("\n  </AppendedData>\n</VTKFile>\n");
+  }
+
+private:
+  const pcl::PCLPointField& axis(std::size_t k) const
+  {
+    const std::string name(1, "xyz"[k]);
+    return *std::find_if(cloud_.fields.begin(), cloud_.fields.end(), [&](const auto& f) { return f.name == name; });
+  }
+
+  void append(const std::string& bytes)
+  {
+    const std::uint64_t size = bytes.size();
+    std::string head(sizeof size, '\0');
+    std::memcpy(head.data(), &size, sizeof size);
+    file_.append(head);
+    if (size > 0) file_.append(bytes);
+  }
+
+  void writeNumbers(const std::vector<std::int64_t>& numbers)
+  {
+    std::string bytes(8 * numbers.size(), '\0');
+    if (!numbers.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
+    append(bytes);
+  }
+
+  /// The values of some fields, point by point.
+  void writeFields(const std::vector<pcl::PCLPointField>& fields)
+  {
+    std::string bytes;
+    for (const std::uint32_t i : points_) {
+      const auto* const record = reinterpret_cast<const char*>(cloud_.data.data()) + std::size_t{i} * cloud_.point_step;
+      for (const auto& field : fields) bytes.append(record + field.offset, io::sizeOf(field));
+    }
+    append(bytes);
+  }
+
+  const pcl::PCLPointCloud2& cloud_;
+  files::NewFile& file_;
+  std::vector<std::uint32_t> points_; ///< the finite ones
+};
+
+/// The document that lists the pieces.
+std::string listOfPieces(const Site& site, const std::vector<std::string>& pieces)
+{
+  std::ostringstream xml;
+  xml << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PPolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+         "header_type=\"UInt64\">\n  <PPolyData GhostLevel=\"0\">\n    <PPoints>\n      <PDataArray "
+      << describePoints(site.fields) << "/>\n    </PPoints>\n    <PPointData>\n";
+  for (const auto& field : site.fields)
+    if (!isAxisName(field.name)) xml << "      <PDataArray " << describe(field) << "/>\n";
+  xml << "    </PPointData>\n";
+  for (const std::string& piece : pieces) xml << "    <Piece Source=\"" << escapedForXml(piece) << "\"/>\n";
+  xml << "  </PPolyData>\n</VTKFile>\n";
+  return xml.str();
+}
+
+} // namespace
+
+void exportPieces(const Site& site, const fs::path& file,
+                  const std::function<bool(std::uint64_t, std::uint64_t)>& progress)
+{
+  const fs::path folder = file.parent_path() / file.stem();
+  std::error_code error;
+  if (fs::exists(folder, error) && !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
+    throw files::FileError(folder, "is in the way of the folder for the pieces", "name another file, or move it away");
+  files::FileReplacement document(file);
+  const files::OutputFolder made(folder);
+  std::vector<std::unique_ptr<files::NewFile>> written;
+  std::vector<std::string> pieces;
+  std::uint64_t done = 0;
+  for (const Tile& tile : site.tiles) {
+    const std::string name = fs::path(tileFileName(pieces.size())).stem().string() + ".vtp";
+    written.push_back(std::make_unique<files::NewFile>(folder / name));
+    pieces.push_back(folder.filename().string() + "/" + name);
+    const pcl::PCLPointCloud2 cloud = readTile(site, tile);
+    PieceWriter(cloud, *written.back()).write();
+    if (progress && !progress(done += tile.points, site.points)) throw Cancelled();
+  }
+  document.stream() << listOfPieces(site, pieces);
+  document.commit([&] {
+    for (const auto& piece : written) piece->keep();
+  });
+}
+
+} // namespace pcl_bsh::sites

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/files/unfinished.h>
+#include <pcl_bsh/filters/cloud_files/field_type.h>
+#include <pcl_bsh/site/records.h>
+#include <pcl_bsh/site/result_site.h>
+#include <pcl_bsh/site/tile_file.h>
+#include <pcl_bsh/site/tile_visitor.h>
+#include <pcl_bsh/site/unfinished_site.h>
+
+#include <boost/crc.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace pcl_bsh::sites {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t result_buffer = std::size_t{1} << 20;
+constexpr std::uint64_t overview_points = 1'000'000;
+
+/// The fields of a site with those of its results.
+Fields withResults(const Site& site, const std::vector<ResultField>& results)
+{
+  Fields fields = site.fields;
+  for (const ResultField& result : results) {
+    const auto same = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.name == result.name; });
+    if (same == fields.end()) {
+      pcl::PCLPointField field;
+      field.name = result.name;
+      field.datatype = result.datatype;
+      field.count = 1;
+      fields.push_back(field);
+    }
+    else if (same->datatype != result.datatype || same->count != 1) {
+      throw files::FileError(site.folder, "its field '" + result.name + "' has another type than the results",
+                             "rename the field in the clouds, and make the site again");
+    }
+  }
+  return layoutOf(fields).fields;
+}
+
+} // namespace
+
+class ResultSite::Writer {
+public:
+  Writer(const Site& site, const fs::path& folder, const std::vector<ResultField>& results)
+  : site_(site),
+    folder_(folder),
+    layout_(layoutOf(withResults(site, results))),
+    copy_(site.fields, layout_),
+    record_(layout_.point_step)
+  {
+    for (const ResultField& result : results) places_.push_back(placeOf(result));
+    std::uint64_t points = 0;
+    for (const Source& source : site.sources) {
+      begins_.push_back(points);
+      points += source.points;
+    }
+    every_ = std::max<std::uint64_t>((points + overview_points - 1) / overview_points, 1);
+    // The first rank makes the folder; the others go on when it is there.
+    using Use = UnfinishedSite::Use;
+    if (rankHere() == 0) made_ = std::make_unique<UnfinishedSite>(folder, ranks() > 1 ? Use::shared : Use::alone);
+    sumOfAllRanks(0);
+  }
+
+  void write(const Tile& tile, const pcl::PCLPointCloud2& cloud, const std::vector<const void*>& columns)
+  {
+    const auto number = static_cast<std::size_t>(&tile - site_.tiles.data());
+    TileFile file(add(tileFileName(number)), layout_.fields, result_buffer);
+    const std::size_t source_at = offsetOf(layout_, source_field_name),
+                      record_at = offsetOf(layout_, record_field_name);
+    boost::crc_32_type crc;
+    for (std::size_t i = 0; i < cloud.width; ++i) {
+      copy_(cloud.data.data() + i * cloud.point_step, record_.data());
+      for (std::size_t k = 0; k < places_.size(); ++k) {
+        const Place& place = places_[k];
+        const void* const column = columns.empty() ? nullptr : columns[k];
+        const std::uint8_t* const value =
+            column == nullptr ? place.none.data() : static_cast<const std::uint8_t*>(column) + i * place.bytes;
+        std::memcpy(record_.data() + place.offset, value, place.bytes);
+      }
+      crc.process_bytes(record_.data(), record_.size());
+      file.add(record_.data(), record_.size());
+      const std::uint32_t source = numberAt(record_.data() + source_at);
+      if (source >= begins_.size()) failAsDamaged(tile, source);
+      if ((begins_[source] + numberAt(record_.data() + record_at)) % every_ == 0)
+        overview_.append(reinterpret_cast<const char*>(record_.data()), record_.size());
+    }
+    file.finish();
+    written_.push_back(static_cast<double>(number));
+    written_.push_back(static_cast<double>(crc.checksum()));
+  }
+
+  Site finish()
+  {
+    copyOthers();
+    Site out = site_;
+    out.folder = folder_;
+    out.fields = layout_.fields;
+    const std::vector<double> written = gatheredFromAllRanks(written_);
+    for (std::size_t i = 0; i < written.size(); i += 2) {
+      const auto number = static_cast<std::size_t>(written[i]);
+      out.tiles[number].file = tileFileName(number);
+      out.tiles[number].crc32 = static_cast<std::uint32_t>(written[i + 1]);
+    }
+    const std::string overview = gatheredFromAllRanks(overview_);
+    keepFiles();
+    sumOfAllRanks(0); // all files are complete
+    if (rankHere() == 0) {
+      writeOverview(overview);
+      made_->finish(out);
+    }
+    sumOfAllRanks(0); // and so is the site
+    return out;
+  }
+
+private:
+  /// Where a result goes in a record.
+  struct Place {
+    std::size_t offset, bytes;
+    std::vector<std::uint8_t> none;
+  };
+
+  [[noreturn]] void failAsDamaged(const Tile& tile, std::uint32_t source) const
+  {
+    throw files::FileError(site_.folder / tile.file,
+                           "has a point of source " + std::to_string(source) + ", which there is not",
+                           "make the site again");
+  }
+
+  files::NewFile& add(const fs::path& name)
+  {
+    if (made_) return made_->add(name);
+    files_.push_back(std::make_unique<files::NewFile>(folder_ / name));
+    return *files_.back();
+  }
+
+  void keepFiles()
+  {
+    const auto lock = files::lockUnfinished();
+    for (const auto& file : files_) file->keep();
+  }
+
+  Place placeOf(const ResultField& result) const
+  {
+    Place place{offsetOf(layout_, result.name), 0, {}};
+    io::withFieldType(result.datatype, [&](auto value) {
+      value = static_cast<decltype(value)>(result.none);
+      place.bytes = sizeof value;
+      place.none.resize(sizeof value);
+      std::memcpy(place.none.data(), &value, sizeof value);
+    });
+    return place;
+  }
+
+  /// Tiles that no rank has written, dealt to all.
+  void copyOthers()
+  {
+    const std::vector<double> written = gatheredFromAllRanks(written_);
+    std::vector<bool> done(site_.tiles.size(), false);
+    for (std::size_t i = 0; i < written.size(); i += 2) done[static_cast<std::size_t>(written[i])] = true;
+    int next = 0;
+    for (std::size_t i = 0; i < done.size(); ++i) {
+      if (done[i]) continue;
+      if (next++ % ranks() == rankHere()) write(site_.tiles[i], readTile(site_, site_.tiles[i]), {});
+    }
+  }
+
+  /// In the order of (source, record), as makeSite() writes it.
+  void writeOverview(const std::string& records)
+  {
+    const std::size_t step = layout_.point_step, count = records.size() / step;
+    if (count == 0) return;
+    const std::size_t source_at = offsetOf(layout_, source_field_name),
+                      record_at = offsetOf(layout_, record_field_name);
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(records.data());
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto name = [&](std::size_t i) {
+      return std::pair{numberAt(bytes + i * step + source_at), numberAt(bytes + i * step + record_at)};
+    };
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return name(i) < name(j); });
+    TileFile file(add(overview_file_name), layout_.fields, result_buffer);
+    for (const std::size_t i : order) file.add(bytes + i * step, step);
+    file.finish();
+  }
+
+  const Site& site_;
+  fs::path folder_;
+  pcl::PCLPointCloud2 layout_;
+  RecordCopy copy_;
+  std::vector<std::uint8_t> record_;
+  std::vector<Place> places_;
+  std::vector<std::uint64_t> begins_;                  ///< of each source, the number of its first point in the site
+  std::uint64_t every_ = 1;                            ///< points of the site for one of the overview
+  std::unique_ptr<UnfinishedSite> made_;               ///< on the first rank
+  std::vector<std::unique_ptr<files::NewFile>> files_; ///< on the others
+  std::vector<double> written_; ///< of each tile that this rank has written, its number and checksum
+  std::string overview_;
+};
+
+ResultSite::ResultSite(const Site& site, const fs::path& folder, const std::vector<ResultField>& fields)
+: writer_(std::make_unique<Writer>(site, folder, fields))
+{
+}
+
+ResultSite::~ResultSite() = default;
+
+void ResultSite::write(const Tile& tile, const pcl::PCLPointCloud2& cloud, const std::vector<const void*>& columns)
+{
+  writer_->write(tile, cloud, columns);
+}
+
+Site ResultSite::finish()
+{
+  return writer_->finish();
+}
+
+} // namespace pcl_bsh::sites

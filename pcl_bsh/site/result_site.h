@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a question has found of each point, as a site of the same tiles with more fields.
+//
+//   sites::ResultSite out(valley, "marked", {{"collision", pcl::PCLPointField::UINT8, 0.0}});
+//   sites::collisionFlags(valley, machine, Side::a, request, [&](const auto& tile, const auto& cloud, const auto&
+//   found) {
+//     out.write(tile, cloud, {found.a.data()});
+//   });
+//   sites::Site marked = out.finish();
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/site/site.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh::sites {
+
+/// A field of one number, which the points of tiles that no question has read have, too.
+struct ResultField {
+  std::string name;
+  std::uint8_t datatype = 0; ///< of pcl::PCLPointField
+  double none = 0.0;         ///< the value of points of which nothing was found
+};
+
+/// Made and finished by all ranks of an MPI job together; each writes the tiles that it has. Until finish() has
+/// returned the folder is marked as not complete. Where finish() is not reached, one process removes what it made; of
+/// an MPI job a marked folder may be left, which the next ResultSite, or makeSite(), clears.
+class ResultSite {
+public:
+  /// @param folder a new or empty one, or one that was left not complete
+  /// @param fields of the results. Those that the site has already are written anew: the others stay as they are
+  /// @throws files::FileError for a folder that holds anything, or cannot be written; for a field of the site that has
+  ///   the name of one of these and another type
+  ResultSite(const Site& site, const std::filesystem::path& folder, const std::vector<ResultField>& fields);
+  ~ResultSite();
+  ResultSite(const ResultSite&) = delete;
+  ResultSite& operator=(const ResultSite&) = delete;
+
+  /// Writes the points of a tile, once.
+  /// @param tile one of the site's
+  /// @param cloud its points
+  /// @param columns for each field a value of its type per point; null: nothing was found
+  void write(const Tile& tile, const pcl::PCLPointCloud2& cloud, const std::vector<const void*>& columns);
+
+  /// Copies the tiles that no rank has written, and makes the folder a site. To be called once.
+  Site finish();
+
+private:
+  class Writer;
+  std::unique_ptr<Writer> writer_;
+};
+
+} // namespace pcl_bsh::sites
+PCL_BSH_EXPORT_END

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sites of results: the same tiles, with what a question has found of each point.
+#include "../cloud_files/samples.h"
+#include "../programs/process.h"
+#include "../programs/program_run.h"
+
+#ifdef PCL_BSH_SITE_QUERIES
+#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/check_site.h>
+#include <pcl_bsh/site/export_site.h>
+#include <pcl_bsh/site/make_site.h>
+#include <pcl_bsh/site/result_site.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <csignal>
+#include <random>
+#include <thread>
+
+namespace pcl_bsh::sites {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Cloud = pcl::PCLPointCloud2;
+
+class SiteResults : public testing::Test {
+protected:
+  SiteResults()
+  {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    const auto cloudOf = [&](std::uint32_t points, float size) {
+      Cloud cloud;
+      for (const char* axis : {"x", "y", "z"}) io::addField(cloud, axis, io::Field::FLOAT32);
+      io::allocate(cloud, points);
+      for (std::size_t i = 0; i < points; ++i) {
+        float p[3] = {size * unit(random), size * unit(random), 0.3F * unit(random)};
+        if (i % 501 == 7) p[1] = std::numeric_limits<float>::quiet_NaN();
+        std::memcpy(&cloud.data[12 * i], p, sizeof p);
+      }
+      return cloud;
+    };
+    scan = cloudOf(8000, 20);
+    machine = cloudOf(300, 1);
+    io::writeCloud(folder / "scan.pcd", scan);
+    io::writeCloud(folder / "machine.pcd", machine);
+    for (int i = 0; i < 9; ++i) poses.emplace_back(Eigen::Translation3d(i - 4.0, 0.5 * i, 0.1));
+    io::writePoses(folder / "poses.txt", poses);
+    MakeOptions options;
+    options.tile_points = 500;
+    site = makeSite({folder / "scan.pcd"}, folder / "site", options);
+  }
+
+  /// The points of a site of results in their first order. Checks the site.
+  Cloud resultOf(const std::string& name)
+  {
+    const Site out = readSite(folder / name);
+    checkSite(out);
+    EXPECT_EQ(out.tiles.size(), site.tiles.size());
+    EXPECT_EQ(io::readCloud(folder / name / overview_file_name).width, 8000u);
+    exportSource(out, 0, folder / (name + ".pcd"));
+    return io::readCloud(folder / (name + ".pcd"));
+  }
+
+  int collide(const std::string& arguments)
+  {
+    const auto outcome = run("pcl_bsh_site", "collide " + (folder / "site").string() + " " +
+                                                 (folder / "machine.pcd").string() + " " + arguments);
+    err = outcome.err;
+    return outcome.exit_code;
+  }
+  std::string in(const std::string& name) const { return (folder / name).string(); }
+
+  files::TemporaryFolder folder;
+  Cloud scan, machine;
+  std::vector<Eigen::Isometry3d> poses;
+  Site site;
+  std::string err;
+};
+
+TEST_F(SiteResults, AreThoseOfMemory)
+{
+  const SphereHierarchy a(viewOf(scan)), b(viewOf(machine));
+  FlagsRequest flags;
+  flags.clearance = 0.3;
+  flags.flagged = Side::a;
+  const FlagsResult in_memory = collisionFlags({a}, {b}, flags);
+  ASSERT_GT(in_memory.colliding_a, 0u);
+  ASSERT_EQ(collide("--clearance 0.3 --out " + in("flags")), 0) << err;
+  io::expectSame(resultOf("flags"), withField(scan, "collision", in_memory.a));
+
+  TrajectoryRequest along;
+  along.clearance = 0.3;
+  along.distances = along.first_poses = along.closest_poses = true;
+  const TrajectoryResult way = collideAlong({a}, b, poses, along);
+  ASSERT_EQ(collide("--clearance 0.3 --trajectory " + in("poses.txt") + " --out " + in("way")), 0) << err;
+  io::expectSame(resultOf("way"), withFields(scan, fieldsOf(way)));
+
+  // Of results, with the field that is there already.
+  fs::rename(folder / "site", folder / "first");
+  fs::rename(folder / "way", folder / "site");
+  ASSERT_EQ(collide("--clearance 0.3 --out " + in("again")), 0) << err;
+  Cloud again = withFields(scan, fieldsOf(way));
+  io::expectSame(resultOf("again"), withField(again, "collision", in_memory.a));
+  ASSERT_EQ(collide("--distances --max-distance 2 --out " + in("distances")), 0) << err;
+  PointDistancesRequest near;
+  near.max_distance = 2.0;
+  std::vector<float> distance;
+  for (const double d : pointDistances({a}, {b}, near).distance) distance.push_back(static_cast<float>(d));
+  io::expectSame(resultOf("distances"), withFields(again = withFields(scan, fieldsOf(way)), {{"distance", &distance}}));
+}
+
+TEST_F(SiteResults, AreTheSameOfTwoRanks)
+{
+  if (std::system("mpirun --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no mpirun";
+  ASSERT_EQ(collide("--clearance 0.3 --out " + in("one")), 0) << err;
+  // Not this process' environment: where MPI has begun in it, mpirun would take itself for a part of that job.
+  const std::string command = "cd " + folder.path().string() +
+                              " && env -i PATH=\"$PATH\" OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+                              "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR
+                              "/pcl_bsh_site collide site machine.pcd "
+                              "--clearance 0.3 --out two --report two.json --plan 1,2,1024 2>err";
+  ASSERT_EQ(std::system(command.c_str()), 0) << files::contentOf(folder / "err");
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "one")) {
+    if (!entry.is_regular_file()) continue;
+    const fs::path name = fs::relative(entry.path(), folder / "one");
+    EXPECT_TRUE(files::contentOf(entry.path()) == files::contentOf(folder / "two" / name)) << name;
+  }
+  EXPECT_FALSE(fs::exists(folder / "two/unfinished_site"));
+  const auto report = nlohmann::json::parse(files::contentOf(folder / "two.json"));
+  EXPECT_EQ(report["out"], "two");
+  EXPECT_EQ(report["costs"]["ranks"], 2);
+  EXPECT_EQ(report["costs"]["tiles"].size(), report["tiles"]["read"]);
+  ASSERT_EQ(report["plan"].size(), 3u);
+  EXPECT_GE(report["plan"][0]["seconds"], report["plan"][1]["seconds"]);
+  EXPECT_GE(report["plan"][1]["seconds"], report["plan"][2]["seconds"]);
+  EXPECT_NEAR(report["plan"][1]["seconds"].get<double>(),
+              report["costs"]["seconds"].get<double>() + report["costs"]["copying"].get<double>(), 1e-9);
+  EXPECT_NE(report["plan"][2]["limit"], "work");
+}
+
+TEST_F(SiteResults, RefuseWhatTheyMustNotWriteOver)
+{
+  const std::string before = files::contentOf(folder / "site/site.json");
+  EXPECT_EQ(collide("--clearance 0.3 --out " + in("site")), 1);
+  EXPECT_THAT(err, HasSubstr("is a site already"));
+  EXPECT_EQ(files::contentOf(folder / "site/site.json"), before);
+  fs::create_directory(folder / "mine");
+  folder.write("mine/letter.txt", "dear");
+  EXPECT_EQ(collide("--clearance 0.3 --out " + in("mine")), 1);
+  EXPECT_THAT(err, HasSubstr("is not empty"));
+  EXPECT_EQ(files::contentOf(folder / "mine/letter.txt"), "dear");
+  EXPECT_EQ(collide("--clearance 0.3"), 2);
+  EXPECT_THAT(err, HasSubstr("--report, --out: none is given"));
+  EXPECT_EQ(collide("--closest --out " + in("none")), 2);
+  EXPECT_EQ(collide("--clearance 0.3 --out " + in("none") + " --plan 2"), 2);
+  EXPECT_THAT(err, HasSubstr("--plan: is told in the report"));
+
+  ASSERT_EQ(collide("--clearance 0.3 --out " + in("out")), 0);
+  Site other = site;
+  EXPECT_THROW(ResultSite(readSite(folder / "out"), folder / "new", {{"collision", io::Field::FLOAT32, 0}}),
+               std::runtime_error);
+  EXPECT_FALSE(fs::exists(folder / "new"));
+}
+
+/// A tile that is damaged, and a disk that is full, leave nothing; a run that is killed a folder that says so.
+TEST_F(SiteResults, AreWholeOrNotThere)
+{
+  const std::string name = "site/" + site.tiles.back().file, whole = files::contentOf(folder / name);
+  std::string damaged = whole;
+  damaged[whole.size() - 5] ^= 1;
+  folder.write(name, damaged);
+  EXPECT_EQ(collide("--clearance 0.3 --out " + in("out")), 1);
+  EXPECT_THAT(err, HasSubstr("not those that the site was made with"));
+  EXPECT_FALSE(fs::exists(folder / "out"));
+  folder.write(name, whole);
+
+  const std::vector<std::string> arguments = {"collide", "site", "machine.pcd", "--clearance", "0.3", "--out", "out"};
+  { // In this process: MPI cannot begin where it may not write files itself.
+    ResultSite out(site, folder / "out", {{"collision", io::Field::UINT8, 0}});
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit before = {};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const rlimit limits = {4000, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limits);
+    EXPECT_THROW(out.finish(), files::FileError);
+    setrlimit(RLIMIT_FSIZE, &before);
+  }
+  EXPECT_FALSE(fs::exists(folder / "out"));
+
+  int unfinished = 0;
+  for (int wait = 0; wait < 6; ++wait) {
+    Process program("pcl_bsh_site", arguments, folder.path());
+    while (!program.hasEnded() && !fs::exists(folder / "out/tiles")) std::this_thread::yield();
+    std::this_thread::sleep_for(std::chrono::milliseconds(wait));
+    program.send(SIGKILL);
+    program.end();
+    if (fs::exists(folder / "out/site.json")) {
+      EXPECT_NO_THROW(checkSite(readSite(folder / "out")));
+      fs::remove_all(folder / "out");
+    }
+    else if (fs::exists(folder / "out")) {
+      ++unfinished;
+      EXPECT_THROW(readSite(folder / "out"), std::runtime_error);
+    }
+  }
+  EXPECT_EQ(collide("--clearance 0.3 --out " + in("out")), 0) << err;
+  EXPECT_NO_THROW(checkSite(readSite(folder / "out")));
+  EXPECT_GT(unfinished, 0);
+}
+
+} // namespace
+} // namespace pcl_bsh::sites
+#endif
