@@ -12,6 +12,8 @@ namespace {
 
 constexpr double cells_of_longest = 8;   ///< of the grid, along the longest side of all points
 constexpr double some_roundings = 1e-14; ///< relative: above what some ten operations in double err by
+/// Balls stay as they are where a pose, which is rigid within 1e-6 alone, shrinks the places of their centres.
+constexpr double pose_stretch = 4e-6;
 constexpr double all_of_space = std::numeric_limits<double>::infinity();
 
 /// At least the largest coordinate.
@@ -36,6 +38,7 @@ Bounds moved(const Bounds& box, const Eigen::Isometry3d& pose, double reach)
       half += std::abs(factor) * (box.high[j] / 2 - box.low[j] / 2);
       terms += std::abs(factor) * std::max(std::abs(box.low[j]), std::abs(box.high[j]));
     }
+    half *= 1.0 + pose_stretch;
     half += terms * some_roundings + std::numeric_limits<double>::min();
     result.low[k] = center - half;
     result.high[k] = center + half;

@@ -313,6 +313,24 @@ TEST_F(CollideSite, AtExactlyTheClearance)
   expectSamePassage(points, model, poses, 0.25, folder / "exact");
 }
 
+/// Poses may be off rigid by 1e-6: they shrink the places of balls, not the balls.
+TEST_F(CollideSite, BallsKeepTheirSizeAtAPoseThatShrinks)
+{
+  std::vector<Point3> points, body = {{0, 0, 0}};
+  for (int i = 0; i < 40; ++i) points.push_back({i % 2 == 0 ? 1000.0 : 3000.0, 0, 0});
+  const float radius = 1000.0f;
+  PointsView balls = viewOf(body.front().data(), body.size());
+  balls.radii = &radius;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() *= 1.0 - 3e-7;
+  const SphereHierarchy model(balls);
+  const std::vector<Eigen::Isometry3d> poses = {pose, pose};
+  ASSERT_GT(pcl_bsh::collideAlong({SphereHierarchy(viewOf(points.front().data(), points.size()))}, model, poses, {})
+                .colliding,
+            0U);
+  expectSamePassage(points, model, poses, 0.0, folder / "balls");
+}
+
 TEST_F(CollideSite, APathReadsOnlyTilesBesideIt)
 {
   const Scene scene = randomScene(2);
