@@ -50,7 +50,8 @@ Polygons parseOffFaces(std::string_view file)
   text.word(); // OFF and its relatives; the counts stand here or in the next line
   if (text.line().empty()) text.nextLine();
   const auto vertices = text.number<std::uint64_t>(), faces = text.number<std::uint64_t>();
-  for (std::uint64_t i = 0; i < vertices; ++i) text.nextLine();
+  for (std::uint64_t i = 0; i < vertices; ++i)
+    if (!text.nextLine()) throw FormatError("is truncated: it ends before the last of its vertices");
   Polygons polygons;
   for (std::uint64_t i = 0; i < faces; ++i) {
     if (!text.nextLine()) throw FormatError("is truncated: it ends before the last of its faces");
