@@ -322,7 +322,7 @@ TEST_F(CollideSite, BallsKeepTheirSizeAtAPoseThatShrinks)
   PointsView balls = viewOf(body.front().data(), body.size());
   balls.radii = &radius;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() *= 1.0 - 3e-7;
+  pose.linear() *= 1.0 - 2e-7;
   const SphereHierarchy model(balls);
   const std::vector<Eigen::Isometry3d> poses = {pose, pose};
   ASSERT_GT(pcl_bsh::collideAlong({SphereHierarchy(viewOf(points.front().data(), points.size()))}, model, poses, {})
