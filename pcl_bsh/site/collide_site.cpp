@@ -114,12 +114,13 @@ std::vector<TileCost> costsOfAllRanks(const TileVisitor& visitor)
 {
   std::vector<double> own;
   for (const TileCost& cost : visitor.costs())
-    own.insert(own.end(), {static_cast<double>(cost.tile), cost.reading, cost.asking});
+    own.insert(own.end(), {static_cast<double>(cost.tile), static_cast<double>(cost.place), cost.reading, cost.asking});
   const std::vector<double> all = gatheredFromAllRanks(own);
   std::vector<TileCost> costs;
-  for (std::size_t i = 0; i < all.size(); i += 3)
-    costs.push_back({static_cast<std::uint32_t>(all[i]), all[i + 1], all[i + 2]});
-  std::sort(costs.begin(), costs.end(), [](const TileCost& c, const TileCost& d) { return c.tile < d.tile; });
+  for (std::size_t i = 0; i < all.size(); i += 4)
+    costs.push_back(
+        {static_cast<std::uint32_t>(all[i]), static_cast<std::uint32_t>(all[i + 1]), all[i + 2], all[i + 3]});
+  std::sort(costs.begin(), costs.end(), [](const TileCost& c, const TileCost& d) { return c.place < d.place; });
   return costs;
 }
 

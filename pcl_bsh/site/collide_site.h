@@ -44,7 +44,8 @@ struct SiteRequest {
 
 /// What a tile has cost, in seconds of the clock on the wall.
 struct TileCost {
-  std::uint32_t tile = 0; ///< its number among the site's
+  std::uint32_t tile = 0;  ///< its number among the site's
+  std::uint32_t place = 0; ///< in the order in which tiles are dealt to ranks, one each in turn
   double reading = 0.0;
   double asking = 0.0; ///< its hierarchy, the question and the sink
 };
@@ -54,7 +55,7 @@ struct TilesRead {
   std::uint64_t tiles = 0;     ///< of the site
   std::uint64_t needed = 0;    ///< those that could matter before any was read
   std::uint64_t read = 0;      ///< by all ranks
-  std::vector<TileCost> costs; ///< of all ranks, in the order of the tiles
+  std::vector<TileCost> costs; ///< of all ranks, by their places
 };
 
 /// A point of a site.

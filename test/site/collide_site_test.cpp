@@ -396,6 +396,8 @@ TEST_F(CollideSite, FarSmallestDistanceReadsFewTiles)
     if (from[2] < 1e6) {
       EXPECT_LT(found.tiles.read, 20U);
     }
+    ASSERT_EQ(found.tiles.costs.size(), found.tiles.read);
+    for (std::uint32_t i = 0; i < found.tiles.read; ++i) EXPECT_EQ(found.tiles.costs[i].place, i);
   }
 }
 

@@ -40,6 +40,7 @@ diy::mpi::communicator world()
 /// What DIY holds of a tile. Its points are in memory only while it is visited, so DIY need not put blocks away.
 struct Block {
   std::uint32_t tile = 0;
+  std::uint32_t place = 0; ///< in the order of the visits
 };
 
 void* makeBlock()
@@ -121,7 +122,8 @@ void TileVisitor::visit(const std::vector<std::uint32_t>& tiles, const Use& use,
   const diy::RoundRobinAssigner assigner(comm.size(), static_cast<int>(tiles.size()));
   std::vector<int> mine;
   assigner.local_gids(comm.rank(), mine);
-  for (const int gid : mine) master.add(gid, new Block{tiles[static_cast<std::size_t>(gid)]}, new diy::Link);
+  for (const int gid : mine)
+    master.add(gid, new Block{tiles[static_cast<std::size_t>(gid)], static_cast<std::uint32_t>(gid)}, new diy::Link);
 
   std::exception_ptr failure;
   const auto visit = [&](Block* block, const diy::Master::ProxyWithLink&) {
@@ -137,7 +139,7 @@ void TileVisitor::visit(const std::vector<std::uint32_t>& tiles, const Use& use,
       const Clock::time_point there = Clock::now();
       ++read_;
       use(tile, cloud);
-      costs_.push_back({block->tile, seconds(begin, there), seconds(there, Clock::now())});
+      costs_.push_back({block->tile, block->place, seconds(begin, there), seconds(there, Clock::now())});
     }
     catch (...) {
       failure = std::current_exception();
