@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The vertices of a mesh that is left when some of its faces are taken away.
+// What is left of a mesh when some of its faces are taken away: its vertices, and the values of its faces.
 #pragma once
 
 #include <pcl/types.h>
@@ -32,6 +32,24 @@ pcl::Indices keepUsedVertices(std::size_t vertices, Faces& faces, const CornersO
       corner = static_cast<std::remove_reference_t<decltype(corner)>>(number[static_cast<std::size_t>(corner)]);
   }
   return used;
+}
+
+/// The same of faces that are ranges of their corners.
+template <typename Faces>
+pcl::Indices keepUsedVertices(std::size_t vertices, Faces& faces)
+{
+  return keepUsedVertices(
+      vertices, faces, [](auto& face) -> auto& { return face; });
+}
+
+/// The values of those that are kept. @pre no more values than flags
+template <typename Value>
+std::vector<Value> keptValues(const std::vector<Value>& values, const std::vector<std::uint8_t>& kept)
+{
+  std::vector<Value> left;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (kept[i] != 0) left.push_back(values[i]);
+  return left;
 }
 
 } // namespace pcl_bsh

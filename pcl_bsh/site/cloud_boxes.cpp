@@ -77,7 +77,7 @@ CloudBoxes::CloudBoxes(const PointsView& points)
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::uint32_t record = points.record(i);
       const Point3 p = points.point(record);
-      if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) use(record, p);
+      if (isFinite(p)) use(record, p);
     }
   };
   std::optional<Bounds> centers;

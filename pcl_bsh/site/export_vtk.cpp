@@ -53,11 +53,6 @@ std::string vtkTypeOf(std::uint8_t datatype)
   });
 }
 
-bool isAxisName(const std::string& name)
-{
-  return name == "x" || name == "y" || name == "z";
-}
-
 std::string describe(const std::string& type, const std::string& name, std::uint32_t components)
 {
   return "type=\"" + type + "\" Name=\"" + escapedForXml(name) + "\" NumberOfComponents=\"" +
@@ -105,7 +100,7 @@ public:
     array(describePoints(cloud_.fields), 3 * count * axis_bytes);
     head += "      </Points>\n      <PointData>\n";
     for (const auto& field : cloud_.fields)
-      if (!isAxisName(field.name)) array(describe(field), count * io::sizeOf(field));
+      if (!isAxis(field.name)) array(describe(field), count * io::sizeOf(field));
     head += "      </PointData>\n      <Verts>\n";
     array(describe("Int64", "connectivity", 1), 8 * count);
     array(describe("Int64", "offsets", 1), count > 0 ? 8 : 0);
@@ -114,7 +109,7 @@ public:
 
     writeFields({axis(0), axis(1), axis(2)});
     for (const auto& field : cloud_.fields)
-      if (!isAxisName(field.name)) writeFields({field});
+      if (!isAxis(field.name)) writeFields({field});
     std::vector<std::int64_t> numbers(count);
     for (std::size_t i = 0; i < count; ++i) numbers[i] = static_cast<std::int64_t>(i);
     writeNumbers(numbers);
@@ -169,7 +164,7 @@ std::string listOfPieces(const Site& site, const std::vector<std::string>& piece
          "header_type=\"UInt64\">\n  <PPolyData GhostLevel=\"0\">\n    <PPoints>\n      <PDataArray "
       << describePoints(site.fields) << "/>\n    </PPoints>\n    <PPointData>\n";
   for (const auto& field : site.fields)
-    if (!isAxisName(field.name)) xml << "      <PDataArray " << describe(field) << "/>\n";
+    if (!isAxis(field.name)) xml << "      <PDataArray " << describe(field) << "/>\n";
   xml << "    </PPointData>\n";
   for (const std::string& piece : pieces) xml << "    <Piece Source=\"" << escapedForXml(piece) << "\"/>\n";
   xml << "  </PPolyData>\n</VTKFile>\n";

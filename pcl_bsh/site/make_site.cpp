@@ -3,6 +3,7 @@
 #include <pcl_bsh/filters/cloud_files/cloud_stream.h>
 #include <pcl_bsh/hierarchy/retained_memory.h>
 #include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/site/checksum.h>
 #include <pcl_bsh/site/density_tree.h>
 #include <pcl_bsh/site/make_site.h>
 #include <pcl_bsh/site/make_state.h>

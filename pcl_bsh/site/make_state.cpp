@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/text_files/file_bytes.h>
+#include <pcl_bsh/site/checksum.h>
 #include <pcl_bsh/site/make_state.h>
-
-#include <boost/crc.hpp>
 
 #include <cstring>
 
@@ -86,13 +85,6 @@ std::string planBytes(const std::vector<std::uint32_t>& numbers)
   std::string bytes(numbers.size() * sizeof numbers[0], '\0');
   std::memcpy(bytes.data(), numbers.data(), bytes.size());
   return bytes;
-}
-
-std::uint32_t crcOf(const std::string& bytes)
-{
-  boost::crc_32_type crc;
-  crc.process_bytes(bytes.data(), bytes.size());
-  return crc.checksum();
 }
 
 std::vector<std::uint32_t> readPlan(const fs::path& path, std::uint32_t crc32)

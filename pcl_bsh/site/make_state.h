@@ -34,7 +34,6 @@ MakeState readState(const std::filesystem::path& path, const io::Json& question)
 
 /// A plan as the bytes of a file, and again. @throws files::FileError when it has another checksum
 std::string planBytes(const std::vector<std::uint32_t>& numbers);
-std::uint32_t crcOf(const std::string& bytes);
 std::vector<std::uint32_t> readPlan(const std::filesystem::path& path, std::uint32_t crc32);
 
 } // namespace pcl_bsh::sites

@@ -14,11 +14,6 @@ namespace {
 
 using Field = pcl::PCLPointField;
 
-bool isAxis(const std::string& name)
-{
-  return name == "x" || name == "y" || name == "z";
-}
-
 const Field* find(const Fields& fields, const std::string& name)
 {
   const auto found = std::find_if(fields.begin(), fields.end(), [&](const Field& field) { return field.name == name; });
@@ -48,6 +43,11 @@ std::vector<std::uint8_t> blankRecord(const pcl::PCLPointCloud2& layout)
 }
 
 } // namespace
+
+bool isAxis(const std::string& name)
+{
+  return name == "x" || name == "y" || name == "z";
+}
 
 pcl::PCLPointCloud2 layoutOf(const Fields& fields)
 {

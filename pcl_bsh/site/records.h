@@ -52,6 +52,9 @@ private:
   std::vector<Number> numbers_;
 };
 
+/// Whether it is the name of a coordinate: x, y or z.
+bool isAxis(const std::string& name);
+
 /// The records of a buffer as points.
 PointsView viewOfRecords(const pcl::PCLPointCloud2& layout, const std::uint8_t* records, std::size_t count);
 

@@ -6,9 +6,8 @@
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/checksum.h>
 #include <pcl_bsh/site/tile_file.h>
-
-#include <boost/crc.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -24,13 +23,6 @@ bool isSame(const Fields& a, const Fields& b)
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& f, const auto& g) {
     return f.name == g.name && f.datatype == g.datatype && f.count == g.count && f.offset == g.offset;
   });
-}
-
-std::uint32_t crcOf(const pcl::PCLPointCloud2& cloud)
-{
-  boost::crc_32_type crc;
-  crc.process_bytes(cloud.data.data(), cloud.data.size());
-  return crc.checksum();
 }
 
 /// The header while the number of points is not known.
@@ -107,7 +99,7 @@ pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fi
 pcl::PCLPointCloud2 readTile(const Site& site, const Tile& tile)
 {
   pcl::PCLPointCloud2 cloud = loadTile(site.folder / tile.file, site.fields, tile.points);
-  if (crcOf(cloud) != tile.crc32)
+  if (crcOf(cloud.data) != tile.crc32)
     throw files::FileError(site.folder / tile.file, "its points are not those that the site was made with",
                            site_remedy);
   return cloud;
@@ -127,7 +119,7 @@ void measure(const pcl::PCLPointCloud2& cloud, Tile& tile)
     if (isFinite(point)) extend(tile.bounds, point);
   }
   tile.spacing = spacingOf(SphereHierarchy(view)).median;
-  tile.crc32 = crcOf(cloud);
+  tile.crc32 = crcOf(cloud.data);
 }
 
 } // namespace pcl_bsh::sites

@@ -11,19 +11,6 @@
 #include <utility>
 
 namespace pcl_bsh::cli {
-namespace {
-
-/// A value of each triangle that is kept.
-template <typename Value>
-std::vector<Value> keptOf(const std::vector<Value>& values, const std::vector<std::uint8_t>& kept)
-{
-  std::vector<Value> chosen;
-  for (std::size_t t = 0; t < values.size(); ++t)
-    if (kept[t]) chosen.push_back(values[t]);
-  return chosen;
-}
-
-} // namespace
 
 SurfaceCover coverInput(const std::filesystem::path& file, const PointsView& vertices,
                         const std::vector<Triangle>& triangles, const io::SurfaceSettings& settings, double clearance,
@@ -59,15 +46,14 @@ std::size_t writeSurface(const CollideOptions& options, io::Mesh mesh, const io:
   std::vector<std::uint8_t> kept(mesh.triangles.size(), 1);
   if (options.keep != Keep::flagged)
     for (std::size_t t = 0; t < kept.size(); ++t) kept[t] = (found.flags[t] != 0) == (options.keep == Keep::colliding);
-  mesh.triangles = keptOf(mesh.triangles, kept);
+  mesh.triangles = keptValues(mesh.triangles, kept);
   if (options.keep != Keep::flagged) {
-    const pcl::Indices vertices = keepUsedVertices(viewOf(mesh.vertices).count, mesh.triangles,
-                                                   [](Triangle& triangle) -> Triangle& { return triangle; });
+    const pcl::Indices vertices = keepUsedVertices(viewOf(mesh.vertices).count, mesh.triangles);
     mesh.vertices = selectedRecords(mesh.vertices, vertices);
   }
-  const auto flags = keptOf(found.flags, kept);
-  const auto distance = keptOf(found.distance, kept);
-  const auto first = keptOf(found.first_pose, kept), closest = keptOf(found.closest_pose, kept);
+  const auto flags = keptValues(found.flags, kept);
+  const auto distance = keptValues(found.distance, kept);
+  const auto first = keptValues(found.first_pose, kept), closest = keptValues(found.closest_pose, kept);
   std::vector<io::FaceField> fields;
   if (options.keep == Keep::flagged || options.moves()) fields.push_back({collision_field_name, &flags});
   if (options.moves() && !found.distance.empty()) {

@@ -12,15 +12,6 @@
 namespace pcl_bsh::pipeline {
 namespace {
 
-template <typename Value>
-std::vector<Value> chosen(const std::vector<Value>& values, const std::vector<std::uint8_t>& kept)
-{
-  std::vector<Value> result;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (kept[i] != 0) result.push_back(values[i]);
-  return result;
-}
-
 /// 1, 2 and 3 from the gravest on; 0 is free.
 bool isGraver(std::uint8_t flag, std::uint8_t than)
 {
@@ -58,16 +49,15 @@ TrajectoryResult ofVertices(const std::vector<Triangle>& triangles, std::size_t 
 
 StageCloudPtr keptFaces(const StageCloud& mesh, const std::vector<std::uint8_t>& kept)
 {
-  auto triangles = std::make_shared<std::vector<Triangle>>(chosen(*mesh.triangles, kept));
-  const pcl::Indices vertices =
-      keepUsedVertices(viewOf(mesh.cloud).count, *triangles, [](Triangle& triangle) -> Triangle& { return triangle; });
+  auto triangles = std::make_shared<std::vector<Triangle>>(keptValues(*mesh.triangles, kept));
+  const pcl::Indices vertices = keepUsedVertices(viewOf(mesh.cloud).count, *triangles);
   auto output =
       std::make_shared<StageCloud>(StageCloud{selectedRecords(mesh.cloud, vertices), mesh.viewpoint, mesh.las_header});
   output->triangles = std::move(triangles);
   for (const FaceProperty& property : mesh.face_properties) {
     std::visit(
         [&](const auto& values) {
-          output->face_properties.push_back({property.name, chosen(values, kept)});
+          output->face_properties.push_back({property.name, keptValues(values, kept)});
         },
         property.values);
   }

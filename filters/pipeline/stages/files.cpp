@@ -112,20 +112,18 @@ protected:
   CloudHeader written(const CloudHeader& cloud) const override
   {
     CloudHeader narrow = cloud;
-    const std::string extension = io::extensionOf(filename.path);
-    if (extension == ".obj") narrow.fields = io::fieldsForObj(cloud);
-    if (extension == ".pts" || extension == ".ptx") narrow.fields = io::fieldsForScans(cloud, extension == ".ptx");
+    narrow.fields = fieldsHeld(cloud);
     return narrow;
   }
 
   void write(const StageCloud& cloud) override
   {
-    const CloudHeader narrow = written(cloud.cloud);
+    const std::vector<pcl::PCLPointField> held = fieldsHeld(cloud.cloud);
     const std::string extension = io::extensionOf(filename.path);
     std::string lost;
     for (const pcl::PCLPointField& field : cloud.cloud.fields) {
       const auto is_it = [&](const pcl::PCLPointField& other) { return other.name == field.name; };
-      const bool kept = std::any_of(narrow.fields.begin(), narrow.fields.end(), is_it);
+      const bool kept = std::any_of(held.begin(), held.end(), is_it);
       if (!kept && field.name != "_") lost += " " + field.name;
     }
     const std::string no_place = (extension == ".obj" ? "an " : "a ") + extension + " has no place for ";
@@ -137,7 +135,17 @@ protected:
         if (!isFinite(points.point(i))) ++left_out;
       if (left_out > 0) warn(no_place + "points that are not finite: " + std::to_string(left_out) + " are left out");
     }
-    io::writeCloud(filename.path, narrow, cloud.viewpoint, cloud.las_header);
+    if (held.size() == cloud.cloud.fields.size()) return FileWriter::write(cloud); // no copy of the points
+    io::writeCloud(filename.path, written(cloud.cloud), cloud.viewpoint, cloud.las_header);
+  }
+
+private:
+  std::vector<pcl::PCLPointField> fieldsHeld(const CloudHeader& cloud) const
+  {
+    const std::string extension = io::extensionOf(filename.path);
+    if (extension == ".obj") return io::fieldsForObj(cloud);
+    if (extension == ".pts" || extension == ".ptx") return io::fieldsForScans(cloud, extension == ".ptx");
+    return cloud.fields;
   }
 };
 
