@@ -54,7 +54,7 @@ struct Uncertainty {
   std::string field; ///< empty: `length` counts; else this does
   double sigmas = 1.0;
 
-  bool isZero() const { return field.empty() && length == 0.0; }
+  bool isZero() const { return field.empty() && length == 0.0; } ///< points are where they were measured
 };
 
 /// Refuses numbers that are not finite and >= 0. @throws InvalidInput

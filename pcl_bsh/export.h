@@ -4,6 +4,7 @@
 
 /// Around the declarations of a public header, below its includes: compiled hidden by default, these are exported.
 #define PCL_BSH_EXPORT_BEGIN _Pragma("GCC visibility push(default)")
+/// The end of these.
 #define PCL_BSH_EXPORT_END _Pragma("GCC visibility pop")
 
 /// For one declaration alone: explicit instantiations for types of others, whose headers are compiled hidden too.

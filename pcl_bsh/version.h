@@ -2,8 +2,8 @@
 // The version of pcl_bsh, which CMake reads from here.
 #pragma once
 
-// Before 1.0, a new minor version may change interfaces and layouts: libraries are named after both numbers, as are the
-// versions of their symbols, so that two of them can be in one process.
+/// Before 1.0, a new minor version may change interfaces and layouts: libraries are named after both numbers, as are
+/// the versions of their symbols, so that two of them can be in one process.
 #define PCL_BSH_VERSION_MAJOR 0
 #define PCL_BSH_VERSION_MINOR 1
 #define PCL_BSH_VERSION_PATCH 0

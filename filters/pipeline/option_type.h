@@ -42,6 +42,7 @@ struct Limits {
 /// What a document can say, checked to be of the option's kind. std::monostate: null.
 using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>, Limits>;
 
+/// Which of these an option is.
 enum class Kind : std::uint8_t {
   boolean,
   integer,
@@ -57,6 +58,7 @@ enum class Kind : std::uint8_t {
   length_or_field,
 };
 
+/// So many numbers.
 template <std::size_t N>
 using Numbers = std::array<double, N>;
 
@@ -70,10 +72,12 @@ struct Pose {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
 };
 
+/// A file that a stage reads.
 struct InputFile {
   std::string path;
 };
 
+/// A file that a stage writes.
 struct OutputFile {
   std::string path;
 };

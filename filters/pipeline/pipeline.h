@@ -59,12 +59,14 @@ struct StageProgress {
   std::size_t stages = 0;   ///< of all
 };
 
+/// What a run leaves behind, beside the files it wrote.
 struct PipelineResult {
   std::map<std::string, pipeline::StageCloudPtr> clouds; ///< by tag: what no other stage read
   std::vector<std::string> warnings;                     ///< `TAG: text`
   std::string metadata;                                  ///< JSON: what ran and what it took; a pipeline to run again
 };
 
+/// A document that was understood: it can be validated, run and stopped.
 class Pipeline {
 public:
   /// @param name how errors call the document

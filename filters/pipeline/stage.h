@@ -22,10 +22,11 @@ namespace pcl_bsh::pipeline {
 /// Something is wrong with one option of a stage. what() reads `what is wrong: what to do`.
 class OptionError : public std::invalid_argument {
 public:
+  /// `wrong` reads as what() does.
   OptionError(std::string option, const std::string& wrong) : std::invalid_argument(wrong), option_(std::move(option))
   {
   }
-  const std::string& option() const noexcept { return option_; }
+  const std::string& option() const noexcept { return option_; } ///< its name
 
 private:
   std::string option_;

@@ -40,6 +40,7 @@ struct StageCloud {
 
 /// Several stages may read one cloud, so it does not change.
 using StageCloudPtr = std::shared_ptr<const StageCloud>;
+/// What a stage is given: one for each input.
 using StageClouds = std::vector<StageCloudPtr>;
 
 /// The fields of a cloud, without its points.

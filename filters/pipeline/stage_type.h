@@ -55,9 +55,9 @@ struct StageType {
   std::vector<Option> options;
   std::function<std::unique_ptr<Stage>()> make;
 
-  bool isReader() const { return most_inputs == 0; }
-  bool isWriter() const { return name.rfind("writers.", 0) == 0; }
-  const Option* findOption(const std::string& option) const;
+  bool isReader() const { return most_inputs == 0; }               ///< takes no cloud
+  bool isWriter() const { return name.rfind("writers.", 0) == 0; } ///< ends in a file
+  const Option* findOption(const std::string& option) const;       ///< by name; null when there is none
 
   /// Its standard is what a new stage has. Not inline: GCC 12 sees a Value free what it never held.
   void addOption(Option option);
@@ -68,6 +68,7 @@ struct StageType {
 template <typename S>
 class StageDescription {
 public:
+  /// A name that begins with readers. takes no inputs; others take one, unless inputs() says otherwise.
   StageDescription(std::string name, std::string doc)
   {
     type_.name = std::move(name);
@@ -76,12 +77,14 @@ public:
     type_.make = [] { return std::make_unique<S>(); };
   }
 
+  /// Another name for the stage: that of PCL's class.
   StageDescription& alias(std::string name)
   {
     type_.aliases.push_back(std::move(name));
     return *this;
   }
 
+  /// How many clouds it takes.
   StageDescription& inputs(std::size_t least, std::size_t most)
   {
     type_.least_inputs = least;
@@ -89,12 +92,14 @@ public:
     return *this;
   }
 
+  /// Of files whose mere name in a document stands for this stage; with the dot.
   StageDescription& extensions(std::vector<std::string> extensions)
   {
     type_.extensions = std::move(extensions);
     return *this;
   }
 
+  /// A member of the stage that documents may set. @param doc one sentence
   template <typename T, typename Base>
   StageDescription& option(T Base::*member, std::string name, std::string doc)
   {
@@ -116,31 +121,37 @@ public:
     return *this;
   }
 
+  /// Of the last option: what its number counts.
   StageDescription& unit(std::string unit)
   {
     last().unit = std::move(unit);
     return *this;
   }
+  /// Of the last option: a document must give it.
   StageDescription& required()
   {
     last().required = true;
     return *this;
   }
+  /// Of the last option: > least.
   StageDescription& above(double least)
   {
     last().above_least = true;
     return atLeast(least);
   }
+  /// Of the last option: >= least.
   StageDescription& atLeast(double least)
   {
     last().least = least;
     return *this;
   }
+  /// Of the last option: <= most.
   StageDescription& atMost(double most)
   {
     last().most = most;
     return *this;
   }
+  /// Of the last option: one of these texts.
   StageDescription& choices(std::vector<std::string> choices)
   {
     last().choices = std::move(choices);
@@ -154,6 +165,7 @@ public:
     return *this;
   }
 
+  /// What registerStage() takes.
   operator StageType() const { return type_; } // NOLINT: a description is a stage type, once it is complete
 
 private:
@@ -162,6 +174,7 @@ private:
   StageType type_;
 };
 
+/// Begins the description of stage S. @param name readers.x, filters.x or writers.x @param doc one sentence
 template <typename S>
 StageDescription<S> describe(std::string name, std::string doc)
 {

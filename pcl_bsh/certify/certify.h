@@ -20,6 +20,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
+/// What certify() measures, and with how many threads.
 struct CertifyOptions {
   static constexpr std::size_t all = ~std::size_t{0};
 
@@ -33,6 +34,7 @@ struct CertifyOptions {
 
 /// Where in a hierarchy a sphere is.
 struct SphereLevel {
+  /// Which of the trees.
   enum Kind : std::uint8_t {
     above_voxels, ///< in the tree whose leaves are voxels
     voxel,        ///< the one around a voxel's origin
@@ -61,11 +63,13 @@ struct RadiusRatios {
   std::size_t one_place = 0; ///< spheres of a single place, whose smallest radius is 0: they have no ratio
   double worst = 0.0;
   double sum = 0.0;
-  std::array<std::size_t, edges.size() + 1> histogram = {};
+  std::array<std::size_t, edges.size() + 1> histogram = {}; ///< one more than `edges`
 
+  /// Of those measured; 0 where none was.
   double mean() const noexcept { return measured == 0 ? 0.0 : sum / static_cast<double>(measured); }
 };
 
+/// What certify() found on one level of the tree.
 struct LevelCertificate {
   SphereLevel level;
   std::size_t spheres = 0;
@@ -75,6 +79,7 @@ struct LevelCertificate {
   RadiusRatios ratio; ///< none for SphereLevel::voxel, whose sphere is not meant to be small
 };
 
+/// What certify() found.
 struct Certificate {
   static constexpr std::size_t most_leaks = 100;
 
@@ -83,6 +88,7 @@ struct Certificate {
   std::vector<Leak> leaks;              ///< the first, in the order of voxels and levels
   std::size_t missing = 0;              ///< finite points of the view that no leaf holds
 
+  /// Whether every point is where queries look for it.
   bool holds() const noexcept { return total.leaks == 0 && missing == 0; }
 };
 

@@ -12,6 +12,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
+/// The clusters of a cloud, numbered from 0.
 struct Clusters {
   static constexpr std::int32_t kNone = -1;
 

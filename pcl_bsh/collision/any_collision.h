@@ -19,6 +19,7 @@ struct AnyRequest {
   unsigned threads = 1;   ///< 0: all of the machine's. Accuracies that stop early take one
 };
 
+/// What anyCollision() found.
 struct AnyResult {
   Verdict verdict = Verdict::free; ///< undecided only when the request's accuracy lets the walk stop early,
                                    ///< or where points have uncertainties

@@ -19,6 +19,7 @@ struct DistanceRequest {
   unsigned threads = 1; ///< 0: all of the machine's. Accuracies other than exact take one
 };
 
+/// What closestPair() found.
 struct DistanceResult {
   /// Smallest |T_a p - T_b q|, less the two points' radii where given (then negative = depth of overlap); rounded to
   /// the nearest double. Infinity when a cloud has no finite point.

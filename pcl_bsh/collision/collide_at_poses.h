@@ -23,6 +23,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
+/// What anyCollisionAtPoses() found.
 struct AnyAtPoses {
   /// One per pose, a Verdict as a number: 0 free, 1 colliding, 2 undecided; the latter only where points have
   /// uncertainties: some pair may be within the clearance, but none is wherever its points truly are.
@@ -32,6 +33,7 @@ struct AnyAtPoses {
   Work work;
 };
 
+/// What closestPairAtPoses() found.
 struct DistancesAtPoses {
   /// One per pose: what closestPair() answers there.
   std::vector<double> distances;
@@ -59,7 +61,7 @@ DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, c
 /// Which points collide, b at each of the poses: calls found(pose, flags) once for each, in any order, from several
 /// threads at once for different poses where the request has more than one. What it throws comes out of this call, and
 /// no further poses are begun. The flags' memory is used again for the next pose.
-/// @param pose its index in the list
+/// @param found is given the pose's index in the list
 /// @throws as anyCollisionAtPoses()
 void collisionFlagsAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
                            const FlagsRequest& request,

@@ -14,6 +14,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
+/// Whose points are flagged.
 enum class Side : std::uint8_t { a = 1, b = 2, both = 3 };
 
 /// What collisionFlags() reads.
@@ -34,6 +35,7 @@ struct FlagsRequest {
   const float* spacings_of_b = nullptr;
 };
 
+/// What collisionFlags() found.
 struct FlagsResult {
   /// One per record of a's view, a Verdict as a number: 0 free, 1 collides, 2 undecided, the latter only when the
   /// request's accuracy lets the walk stop early, or where points have uncertainties; 3 sparse, with a density guard.

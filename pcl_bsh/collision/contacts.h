@@ -27,6 +27,7 @@ struct Contact {
       Eigen::Vector3d::Zero(); ///< from b's point to a's, unit length, in the world; 0 where they coincide
 };
 
+/// What nearestContacts() found.
 struct ContactsResult {
   std::vector<Contact> contacts; ///< by distance before rounding, then by (a, b)
   bool complete = true;          ///< no colliding pair was left out

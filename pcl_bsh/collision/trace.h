@@ -19,6 +19,7 @@ enum class SphereFate : std::uint8_t {
   compared, ///< a leaf whose points were compared
 };
 
+/// A sphere that a query tested, and what became of it.
 struct TracedSphere {
   Point3 center = {0, 0, 0}; ///< in its own cloud's frame
   double radius = 0.0;       ///< in the cloud's unit
@@ -26,6 +27,7 @@ struct TracedSphere {
   SphereFate fate = SphereFate::pruned;
 };
 
+/// What traceCollision() found, and which way it took.
 struct CollisionTrace {
   std::vector<TracedSphere> a, b; ///< each sphere that was tested, once; in the order of the trees
   AnyResult result;               ///< what anyCollision() returns

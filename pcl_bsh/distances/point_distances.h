@@ -27,6 +27,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
+/// What pointDistances() and symmetricDistances() read.
 struct PointDistancesRequest {
   /// Points of a that have no point of b within it get no distance; >= 0, inclusive, infinity for no limit.
   double max_distance = std::numeric_limits<double>::infinity();
@@ -84,11 +85,13 @@ struct SymmetricDistances {
 /// @throws as pointDistances() does
 SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request = {});
 
+/// What hausdorffDistance() reads.
 struct HausdorffRequest {
   unsigned threads = 1;                 ///< 0: all of the machine's
   std::function<bool(double)> progress; ///< as that of PointDistancesRequest
 };
 
+/// What hausdorffDistance() found.
 struct HausdorffDistance {
   /// The greatest distance from a point of either cloud to the other cloud, in the clouds' unit, rounded to the nearest
   /// double. NaN where a cloud is empty.

@@ -49,6 +49,7 @@ enum class Input : std::uint8_t {
 /// what() reads `subject: what is wrong: what to do`; the last part is absent where the first two say it.
 class InvalidInput : public std::invalid_argument {
 public:
+  /// `remedy` may be empty, where the other two say it.
   InvalidInput(Input input, const std::string& subject, std::string wrong, std::string remedy = {})
   : std::invalid_argument(subject + ": " + wrong + (remedy.empty() ? "" : ": " + remedy)),
     input_(input),
@@ -57,7 +58,7 @@ public:
   {
   }
 
-  Input input() const noexcept { return input_; }
+  Input input() const noexcept { return input_; }                ///< which part of the input
   const std::string& wrong() const noexcept { return wrong_; }   ///< with the value, as text
   const std::string& remedy() const noexcept { return remedy_; } ///< may be empty
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A place in space, as all rooms pass it on.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -12,6 +13,7 @@ namespace pcl_bsh {
 /// Three coordinates in double: exact for float32 and float64 input alike.
 using Point3 = std::array<double, 3>;
 
+/// Whether a query takes part of it: no coordinate is NaN or infinite.
 inline bool isFinite(const Point3& p) noexcept
 {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);

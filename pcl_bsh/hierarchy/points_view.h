@@ -14,6 +14,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
+/// The type of coordinates.
 enum class Scalar : std::uint8_t { float32, float64 };
 
 /// A read-only view of `count` records. Records need not be aligned. The memory must stay unchanged while anything that
@@ -62,9 +63,12 @@ struct PointsView {
     return p;
   }
 
-  double radius(std::uint32_t record) const noexcept { return radii ? radii[record] : 0.0; }
+  double radius(std::uint32_t record) const noexcept
+  {
+    return radii ? radii[record] : 0.0;
+  } ///< 0 where points have none
 
-  bool isUncertain() const noexcept { return uncertainty > 0.0 || uncertainties; }
+  bool isUncertain() const noexcept { return uncertainty > 0.0 || uncertainties; } ///< queries tell verdicts apart
 
   /// What a record adds to `uncertainty`.
   double ownUncertainty(std::uint32_t record) const noexcept { return uncertainties ? uncertainties[record] : 0.0; }

@@ -27,6 +27,7 @@ enum class CellSplit : std::uint8_t {
   octants, ///< as in the paper: cubes in eight; a cube of at most 128 points has a tree of its own, of median splits
 };
 
+/// How a hierarchy is built. Changes times, never answers.
 struct HierarchyOptions {
   /// Edge of a voxel, in the cloud's unit, >= 0; rounded to a power of two. 0: from the density of the points. It is
   /// doubled until there are at most 4096 voxels, or one for 16 points, so that memory and time stay proportional to
@@ -55,6 +56,7 @@ struct HierarchyStatistics {
 /// What validate() found. No line: no defect.
 struct HierarchyDefects {
   std::vector<std::string> lines; ///< the first hundred defects, one a line
+  /// Whether all is as queries need it.
   bool none() const noexcept { return lines.empty(); }
 };
 
@@ -82,11 +84,11 @@ public:
   SphereHierarchy(SphereHierarchy&&) noexcept;
   SphereHierarchy& operator=(SphereHierarchy&&) noexcept;
 
-  const PointsView& view() const noexcept;
-  const HierarchyOptions& options() const noexcept;
+  const PointsView& view() const noexcept;          ///< the caller's points
+  const HierarchyOptions& options() const noexcept; ///< as given
 
-  std::size_t size() const noexcept; ///< finite points indexed
-  bool empty() const noexcept { return size() == 0; }
+  std::size_t size() const noexcept;                  ///< finite points indexed
+  bool empty() const noexcept { return size() == 0; } ///< no finite point
 
   /// The distance of neighbouring float32 numbers at the largest coordinate: what rounding to float32 may have moved a
   /// point by, per axis, twice over. 0 for float64 clouds and for empty ones.
@@ -108,7 +110,7 @@ public:
   /// parent's range, no point lost or held twice. Builds what is not built yet.
   HierarchyDefects validate() const;
 
-  HierarchyStatistics statistics() const;
+  HierarchyStatistics statistics() const; ///< of what is built so far; visits every node
 
   class Storage; ///< voxels and nodes, for the queries (pcl_bsh/hierarchy/storage.h)
   const Storage& storage() const noexcept { return *storage_; }

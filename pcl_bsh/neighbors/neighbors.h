@@ -36,6 +36,7 @@ struct NeighborLists {
   std::vector<std::vector<float>> squared_distances;
 };
 
+/// How many neighbours radiusSearch() tells, and in which order.
 struct RadiusOptions {
   std::size_t most = 0; ///< only so many, the nearest ones; 0: all
   bool sorted = true;   ///< false: in any order, but always the same one

@@ -17,6 +17,7 @@ namespace pcl_bsh {
 
 /// How sure an answer has to be. Lengths in the clouds' unit.
 struct Accuracy {
+  /// One for each function below that makes an Accuracy.
   enum class Mode : std::uint8_t { exact, float_only, tolerance, level, node_pairs, time };
 
   Mode mode = Mode::exact;
@@ -52,12 +53,12 @@ struct Accuracy {
   /// What parse() reads.
   std::string text() const;
 
-  bool isExact() const noexcept { return mode == Mode::exact; }
+  bool isExact() const noexcept { return mode == Mode::exact; } ///< the default
 
   /// Whether answers may stay undecided: the modes that stop before the end.
   bool stopsEarly() const noexcept { return mode == Mode::level || mode == Mode::node_pairs || mode == Mode::time; }
 
-  bool isProven() const noexcept { return mode != Mode::float_only; }
+  bool isProven() const noexcept { return mode != Mode::float_only; } ///< all but floatOnly()
 };
 
 } // namespace pcl_bsh

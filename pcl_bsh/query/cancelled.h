@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What a caller gets who has told a query to stop.
 #pragma once
 
 #include <pcl_bsh/export.h>

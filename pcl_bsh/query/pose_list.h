@@ -17,6 +17,7 @@ namespace pcl_bsh {
 /// call that it is given to; several threads read it at once, in any order.
 class PoseList {
 public:
+  /// Not explicit: queries take any such list.
   template <class List, class = std::enable_if_t<!std::is_same_v<List, PoseList>>>
   PoseList(const List& list)
   : list_(&list),
@@ -25,8 +26,8 @@ public:
   {
   }
 
-  std::size_t size() const noexcept { return size_; }
-  Eigen::Isometry3d operator[](std::size_t i) const { return at_(list_, i); }
+  std::size_t size() const noexcept { return size_; }                         ///< poses
+  Eigen::Isometry3d operator[](std::size_t i) const { return at_(list_, i); } ///< 0 <= i < size()
 
 private:
   const void* list_;

@@ -24,6 +24,7 @@ constexpr std::uint8_t flagOf(Verdict verdict) noexcept
 struct PointPair {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
+  /// By a, then by b: of several pairs queries tell the smallest.
   bool operator==(const PointPair& other) const noexcept { return a == other.a && b == other.b; }
   bool operator<(const PointPair& other) const noexcept { return a != other.a ? a < other.a : b < other.b; }
 };

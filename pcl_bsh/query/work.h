@@ -27,6 +27,7 @@ struct Work : BuildWork {
   /// All updates of bounding volumes, as the paper counts them.
   std::uint64_t updates() const noexcept { return volumes_carried + volumes_built; }
 
+  /// Of several queries together.
   Work& operator+=(const Work& other) noexcept
   {
     voxels_built += other.voxels_built;

@@ -20,7 +20,7 @@ struct DistanceStatistics {
   double mean = std::numeric_limits<double>::quiet_NaN();
   double rms = std::numeric_limits<double>::quiet_NaN(); ///< root of the mean square
   double median = std::numeric_limits<double>::quiet_NaN();
-  std::array<double, percents.size()> percentiles = {median, median, median, median, median};
+  std::array<double, percents.size()> percentiles = {median, median, median, median, median}; ///< those of `percents`
   double maximum = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -35,6 +35,7 @@ struct DistanceHistogram {
   std::vector<std::size_t> counts; ///< of [i width, (i + 1) width); the last one has its upper end, too
   std::size_t above = 0;           ///< beyond the last interval
 
+  /// Where the last interval ends.
   double end() const { return width * static_cast<double>(counts.size()); }
 };
 

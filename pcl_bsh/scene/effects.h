@@ -19,6 +19,7 @@ namespace pcl_bsh {
 
 using ObjectId = std::uint32_t; ///< counted from 0 in the order of Scene::add()
 
+/// What a scene computes of its pairs, and does with objects that meet. Effects has what each one means.
 enum class Effect : std::uint8_t {
   any,
   flags,
@@ -32,11 +33,13 @@ enum class Effect : std::uint8_t {
   gravity,
   deform,
 };
+/// How many there are.
 inline constexpr std::size_t kEffects = 11;
 
 /// As it is written in scene files and reports.
 const char* nameOf(Effect effect) noexcept;
 
+/// What an object does that meets another.
 enum class Response : std::uint8_t {
   none,
   stop, ///< a moving object halts where it first meets another
@@ -66,8 +69,8 @@ struct Effects {
   /// have grown by this factor on average; >= 1.
   std::optional<double> deform;
 
-  bool has(Effect effect) const noexcept;
-  bool none() const noexcept;
+  bool has(Effect effect) const noexcept; ///< whether it is listed
+  bool none() const noexcept;             ///< whether a query would compute nothing
 };
 
 /// What an effect cost. Counts are free of noise and the same for any number of threads.
@@ -95,21 +98,25 @@ struct PartPair {
   std::uint32_t part_a = 0, part_b = 0;
 };
 
+/// Of Effect::any.
 struct CollidingPair : PartPair {
   PointPair witness; ///< some colliding pair of points
 };
 
+/// Of Effect::distance.
 struct DistantPair : PartPair {
   double distance = 0.0;
   Interval interval; ///< holds it for certain, where the scene's accuracy is less than exact
   PointPair pair;    ///< that realises it; of several, of the smallest parts, then the smallest (a, b)
 };
 
+/// Of Effect::contacts.
 struct ContactPair : PartPair {
   std::vector<Contact> contacts; ///< nearest first
   bool complete = true;          ///< no contact of these two parts was left out
 };
 
+/// Of Effect::first_contact.
 struct PartFirstContact : PartPair {
   double fraction =
       0.0;        ///< of the step, in [0, 1]: before it no pair of points collides, at it one is within tolerance
@@ -153,6 +160,7 @@ struct SweptMotion {
   Leg leg;
 };
 
+/// What Scene::query() or Scene::step() found; a list is empty where its effect is not asked for.
 struct SceneResult {
   double time = 0.0; ///< of the scene, seconds
   std::vector<CollidingPair> any;
@@ -171,6 +179,7 @@ struct SceneResult {
   BroadPhaseCost broad_phase;
   std::array<EffectCost, kEffects> costs;
 
+  /// What one effect took.
   const EffectCost& cost(Effect effect) const noexcept { return costs[static_cast<std::size_t>(effect)]; }
 };
 

@@ -37,6 +37,7 @@ struct WaypointMotion {
   std::vector<Eigen::Isometry3d> poses;
 };
 
+/// How an object moves by itself.
 using Motion = std::variant<NoMotion, VelocityMotion, CircularMotion, WaypointMotion>;
 
 /// Where `motion` has an object at `time`, which stood at `start` at time 0. Waypoints are in the world: they do not

@@ -45,6 +45,7 @@ struct ScenePart {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_object_cloud
 };
 
+/// What moves as one: parts, where they stand, and how they move.
 struct SceneObject {
   std::string name;                                       ///< unique in the scene, not empty
   std::string group;                                      ///< for rules about pairs; may be empty
@@ -66,6 +67,7 @@ inline SceneObject object(std::string name, std::shared_ptr<SphereHierarchy> hie
   return made;
 }
 
+/// The same, of the surroundings.
 inline SceneObject fixedObject(std::string name, std::shared_ptr<SphereHierarchy> hierarchy,
                                const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity())
 {
@@ -81,6 +83,7 @@ struct PairRule {
   std::optional<double> clearance; ///< finite, >= 0
 };
 
+/// What a scene is asked for, and how exactly.
 struct SceneOptions {
   Effects effects;
   double clearance = 0.0; ///< of pairs without a rule; finite, >= 0; inclusive
@@ -118,11 +121,11 @@ public:
   ///   hierarchy, a pose that is not rigid, a motion that check() refuses, an adjacent part that there is not.
   ObjectId add(SceneObject object);
 
-  std::size_t size() const noexcept;
-  const SceneObject& operator[](ObjectId object) const; ///< as added; pose and parts as they are now
-  std::optional<ObjectId> find(const std::string& name) const;
-  const SceneOptions& options() const noexcept;
-  double time() const noexcept; ///< seconds stepped so far
+  std::size_t size() const noexcept;                           ///< objects
+  const SceneObject& operator[](ObjectId object) const;        ///< as added; pose and parts as they are now
+  std::optional<ObjectId> find(const std::string& name) const; ///< nothing: there is no such object
+  const SceneOptions& options() const noexcept;                ///< as given
+  double time() const noexcept;                                ///< seconds stepped so far
 
   /// T_world_cloud of a part: the very pose that queries are given.
   const Eigen::Isometry3d& worldPose(ObjectId object, std::uint32_t part = 0) const;
@@ -132,6 +135,7 @@ public:
   void setPartPose(ObjectId object, std::uint32_t part, const Eigen::Isometry3d& pose);
   void setMotion(ObjectId object, const Motion& motion);
 
+  /// What holds for two objects, or for all objects of two groups, from now on.
   void setRule(ObjectId a, ObjectId b, const PairRule& rule);
   void setGroupRule(const std::string& group_a, const std::string& group_b, const PairRule& rule);
 

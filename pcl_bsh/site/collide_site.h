@@ -32,6 +32,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::sites {
 
+/// What is asked about a site, and with which means.
 struct SiteRequest {
   double clearance = 0.0;      ///< finite, >= 0; inclusive
   std::optional<double> swept; ///< of collideAlong(): the motion between poses too, to this tolerance, as there
@@ -61,6 +62,7 @@ struct TilesRead {
 /// A point of a site.
 struct SitePoint {
   std::uint32_t source = 0, record = 0;
+  /// By source, then by record.
   bool operator<(const SitePoint& other) const noexcept
   {
     return source != other.source ? source < other.source : record < other.record;
@@ -68,11 +70,13 @@ struct SitePoint {
   bool operator==(const SitePoint& other) const noexcept { return source == other.source && record == other.record; }
 };
 
+/// Whether anything of a site collides.
 struct SiteAny {
   Verdict verdict = Verdict::free; ///< free or colliding
   TilesRead tiles;
 };
 
+/// How much of a site collides.
 struct SiteFlags {
   std::uint64_t colliding = 0; ///< points of the site
   std::vector<std::uint8_t> b; ///< one per record of b's view, where asked for: 1 = collides
@@ -80,6 +84,7 @@ struct SiteFlags {
   TilesRead tiles;
 };
 
+/// The smallest distance of a site to another cloud.
 struct SiteClosest {
   double distance = std::numeric_limits<double>::infinity(); ///< as closestPair() has it
   /// That realise it; of several the smallest (source, record), and for it the smallest record of b.
@@ -88,12 +93,14 @@ struct SiteClosest {
   TilesRead tiles;
 };
 
+/// The distances of a site's points to another cloud.
 struct SiteDistances {
   std::uint64_t measured = 0; ///< points that have a distance
   double greatest = std::numeric_limits<double>::quiet_NaN();
   TilesRead tiles;
 };
 
+/// What another cloud meets in a site along its path.
 struct SitePassage {
   std::uint64_t colliding = 0; ///< points of the site that collide at any pose
   /// The smallest distance of colliding points and the first pose at which any collides; NaN and -1: none does.

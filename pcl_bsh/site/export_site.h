@@ -12,6 +12,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::sites {
 
+/// How much memory an export may take, and whom it tells how far it is.
 struct ExportOptions {
   std::uint64_t memory = std::uint64_t{2}
                          << 30; ///< bytes that may be held at once; the less, the oftener tiles are read

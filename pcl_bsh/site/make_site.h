@@ -18,8 +18,10 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::sites {
 
+/// Points are counted, dealt to their tiles, and the tiles measured.
 enum class MakeStep : std::uint8_t { count, deal, measure };
 
+/// How large tiles are, and what making them may take.
 struct MakeOptions {
   std::uint64_t memory = std::uint64_t{2} << 30; ///< bytes that may be held at once; at least 64 MiB
   std::uint64_t tile_points = 4'000'000;         ///< no tile has more; from 1 to 2^31 - 1

@@ -22,6 +22,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::sites {
 
+/// What lies in a site's folder, and the two fields that each of its points has.
 inline constexpr const char* site_file_name = "site.json";
 inline constexpr const char* overview_file_name = "overview.pcd";
 inline constexpr const char* tiles_folder_name = "tiles";
@@ -33,6 +34,7 @@ inline constexpr int site_version = 1; ///< of the folder's format
 struct Bounds {
   Point3 low, high;
 
+  /// Grows to hold it.
   void add(const Point3& point)
   {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -56,6 +58,7 @@ struct Source {
   std::vector<pcl::PCLPointField> fields; ///< side by side, without padding
 };
 
+/// A part of a site: one file.
 struct Tile {
   std::string file; ///< relative to the site's folder
   std::uint64_t points = 0;
@@ -64,6 +67,7 @@ struct Tile {
   std::uint32_t crc32 = 0;      ///< of its records
 };
 
+/// What site.json says.
 struct Site {
   std::filesystem::path folder;
   std::uint64_t points = 0;

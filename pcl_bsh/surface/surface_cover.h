@@ -26,6 +26,7 @@ namespace pcl_bsh {
 /// The records of a triangle's corners.
 using Triangle = std::array<std::uint32_t, 3>;
 
+/// What coverSurface() reads.
 struct SurfaceRequest {
   /// How far a ball may reach beyond the surface, in the vertices' unit; finite and > 0. No ball is larger.
   double tolerance = 0.0;

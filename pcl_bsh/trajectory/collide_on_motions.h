@@ -38,6 +38,7 @@ struct PoseMotion {
   std::uint32_t from = 0, to = 0;
 };
 
+/// What anyCollisionOnMotions() reads.
 struct MotionsRequest {
   double clearance = 0.0;   ///< finite, >= 0; inclusive
   double tolerance = 0.0;   ///< of the motion, finite, > 0: has to be given
@@ -49,6 +50,7 @@ struct MotionsRequest {
   std::function<bool(double)> progress = {};
 };
 
+/// What anyCollisionOnMotions() found.
 struct AnyOnMotions {
   /// One per motion, a Verdict as a number: 0 free, 1 colliding, 2 undecided; the latter only where points have
   /// uncertainties.

@@ -41,6 +41,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
+/// What collideAlong() reads.
 struct TrajectoryRequest {
   double clearance = 0.0; ///< finite, >= 0; inclusive
   /// A tolerance: pairs at distances in (clearance, clearance + tolerance] may count or not, at each pose anew; of

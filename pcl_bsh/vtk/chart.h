@@ -13,23 +13,28 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::vtk {
 
+/// A mark of an axis, with its text.
 struct Tick {
   double value = 0.0; ///< > 0
   std::string text;
 };
 
+/// A logarithmic axis.
 struct Axis {
   std::string title;
   std::vector<Tick> ticks; ///< ascending, two or more; the first and the last are the ends of the axis
 };
 
+/// A point of a series.
 struct ChartPoint {
   double x = 0.0, y = 0.0;
   std::string label; ///< empty: none. A label without a free place is left out: the earlier ones of a series stay
 };
 
+/// The shape of a series' points.
 enum class Mark { circle, square, triangle, diamond };
 
+/// Points of one look, with a name.
 struct Series {
   std::string name; ///< in the legend; empty: not there
   std::array<unsigned char, 3> color = {};
@@ -46,6 +51,7 @@ struct Span {
   std::string text;
 };
 
+/// All that a chart shows.
 struct Chart {
   std::string title;
   Axis x, y;             ///< points beyond their ends are drawn at the ends

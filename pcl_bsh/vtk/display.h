@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Whether windows can be opened here.
 #pragma once
 
 #include <pcl_bsh/export.h>

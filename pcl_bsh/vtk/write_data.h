@@ -18,6 +18,7 @@ namespace pcl_bsh::vtk {
 /// Writes a .vtp file. @throws std::runtime_error naming the file
 void writeVtp(vtkPolyData& data, const std::filesystem::path& path);
 
+/// A block, and how it is called.
 using NamedData = std::pair<std::string, vtkSmartPointer<vtkPolyData>>;
 
 /// Writes a .vtm file, NAME.vtm, which lists named blocks, and beside it a folder NAME, which holds them as files
