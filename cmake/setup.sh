@@ -44,7 +44,7 @@ apt_get() {
 }
 
 install_packages() {
-  apt_get install --yes --no-install-recommends "$@" || die "apt-get install failed: see the lines above"
+  apt_get install --yes --no-remove --no-install-recommends "$@" || die "apt-get install failed: see the lines above"
 }
 
 configure() { cmake --preset "$preset" --log-level=WARNING "$@"; }
