@@ -5,7 +5,6 @@
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/needed_tiles.h>
-#include <pcl_bsh/site/path_boxes.h>
 #include <pcl_bsh/site/records.h>
 #include <pcl_bsh/site/tile_visitor.h>
 
@@ -24,65 +23,6 @@ HierarchyOptions optionsOf(const SiteRequest& request)
   HierarchyOptions options;
   options.threads = request.threads;
   return options;
-}
-
-/// The tiles of which a ball is flagged, in their order.
-std::vector<std::uint32_t> tilesOf(const TileBalls& balls, const std::vector<std::uint8_t>& flags)
-{
-  std::vector<std::uint32_t> tiles;
-  for (std::size_t i = 0; i < flags.size(); ++i)
-    if (flags[i] != 0 && (tiles.empty() || tiles.back() != balls.tile(i))) tiles.push_back(balls.tile(i));
-  return tiles;
-}
-
-/// Tiles that may have a point within the distance of b.
-std::vector<std::uint32_t> tilesWithin(const Site& site, const Placed& b, double distance, const SiteRequest& request)
-{
-  const TileBalls balls(site);
-  const SphereHierarchy hierarchy(balls.view(), optionsOf(request));
-  FlagsRequest flags;
-  flags.clearance = distance;
-  flags.threads = request.threads;
-  return tilesOf(balls, pcl_bsh::collisionFlags({hierarchy}, b, flags).a);
-}
-
-/// All tiles with points where b has any, too.
-std::vector<std::uint32_t> tilesWithPoints(const Site& site, const Placed& b)
-{
-  std::vector<std::uint32_t> tiles;
-  for (std::uint32_t i = 0; i < site.tiles.size() && !b.hierarchy().empty(); ++i)
-    if (site.tiles[i].bounds) tiles.push_back(i);
-  return tiles;
-}
-
-/// The same, those first that may be nearest to b, each with a lower bound of its distance: that of its box to boxes
-/// about parts of b. Two steps of rounding are paid for by each of both.
-std::vector<std::pair<double, std::uint32_t>> tilesByDistance(const Site& site, const Placed& b)
-{
-  const CloudBoxes boxes(b.hierarchy().view());
-  std::vector<Bounds> parts;
-  for (const Bounds& part : boxes.parts()) parts.push_back(moved(part, b.pose, 0.0));
-  std::vector<std::pair<double, std::uint32_t>> tiles;
-  for (const std::uint32_t i : tilesWithPoints(site, b)) {
-    double least = infinity;
-    for (const Bounds& part : parts) least = std::min(least, leastDistance(*site.tiles[i].bounds, part));
-    // Where boxes overlap, a point may be inside a ball of b.
-    tiles.emplace_back(least > 0.0 ? least : -boxes.largestRadius(), i);
-  }
-  std::sort(tiles.begin(), tiles.end());
-  return tiles;
-}
-
-/// Tiles that the model may come near to on its way.
-std::vector<std::uint32_t> tilesAlong(const Site& site, const SphereHierarchy& model,
-                                      const std::vector<Eigen::Isometry3d>& poses, const PathReach& reach)
-{
-  const CloudBoxes boxes(model.view());
-  const PathBoxes path(boxes, poses, reach);
-  std::vector<std::uint32_t> tiles;
-  for (std::uint32_t i = 0; i < site.tiles.size(); ++i)
-    if (site.tiles[i].bounds && path.mayReach(*site.tiles[i].bounds)) tiles.push_back(i);
-  return tiles;
 }
 
 /// Refuses what the query would refuse of the whole site, although no tile may be asked: the site's corners are.
@@ -108,6 +48,37 @@ FirstContact earliestOfAllRanks(const FirstContact& own)
   const double pose = leastOfAllRanks(static_cast<double>(own.pose));
   const bool mine = static_cast<double>(own.pose) == pose;
   return {static_cast<std::size_t>(pose), leastOfAllRanks(mine ? own.fraction : 1.0)};
+}
+
+/// What `more` says of other points of the site, too.
+void add(std::vector<PoseSummary>& poses, const std::vector<PoseSummary>& more)
+{
+  poses.resize(std::max(poses.size(), more.size()));
+  for (std::size_t k = 0; k < more.size(); ++k) {
+    poses[k].colliding = poses[k].colliding || more[k].colliding;
+    poses[k].colliding_points += more[k].colliding_points;
+    poses[k].undecided_points += more[k].undecided_points;
+    poses[k].distance = std::min(poses[k].distance, more[k].distance);
+  }
+}
+
+std::vector<PoseSummary> summedOverAllRanks(const std::vector<PoseSummary>& own)
+{
+  std::vector<double> numbers;
+  for (const PoseSummary& pose : own) {
+    numbers.insert(numbers.end(), {pose.colliding ? 1.0 : 0.0, static_cast<double>(pose.colliding_points),
+                                   static_cast<double>(pose.undecided_points), pose.distance});
+  }
+  const std::vector<double> all = gatheredFromAllRanks(numbers);
+  std::vector<PoseSummary> sum;
+  for (std::size_t begin = 0; begin < all.size(); begin += numbers.size()) {
+    std::vector<PoseSummary> part;
+    for (std::size_t i = begin; i < begin + numbers.size(); i += 4)
+      part.push_back(
+          {all[i] != 0.0, static_cast<std::size_t>(all[i + 1]), static_cast<std::size_t>(all[i + 2]), all[i + 3]});
+    add(sum, part);
+  }
+  return sum;
 }
 
 std::vector<TileCost> costsOfAllRanks(const TileVisitor& visitor)
@@ -190,12 +161,13 @@ SiteAny anyCollision(const Site& site, const Placed& b, const SiteRequest& reque
   AnyRequest wanted;
   wanted.clearance = request.clearance;
   wanted.threads = request.threads;
+  pcl_bsh::anyCollision({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
   bool collides = false;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile&, const pcl::PCLPointCloud2&, const SphereHierarchy& hierarchy) {
     collides = pcl_bsh::anyCollision({hierarchy}, b, wanted).verdict == Verdict::colliding;
   };
-  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request), ask,
+  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance), ask,
                                [&](std::size_t) { return !(collides = sumOfAllRanks(collides ? 1 : 0) > 0); });
   if (collides) result.verdict = Verdict::colliding;
   return result;
@@ -210,6 +182,7 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
   wanted.clearance = request.clearance;
   wanted.flagged = of_b ? Side::both : Side::a;
   wanted.threads = request.threads;
+  pcl_bsh::collisionFlags({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
   if (of_b) result.b.assign(b.hierarchy().view().count, 0);
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
@@ -218,7 +191,7 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
     for (std::size_t i = 0; i < result.b.size(); ++i) result.b[i] |= flags.b[i];
     if (sink) sink(tile, cloud, flags);
   };
-  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request), ask);
+  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance), ask);
   result.colliding = sumOfAllRanks(result.colliding);
   if (ranks() > 1 && of_b) {
     std::vector<double> own;
@@ -294,7 +267,7 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
   };
   std::vector<std::uint32_t> tiles;
   if (max_distance < infinity)
-    tiles = tilesWithin(site, b, max_distance, request);
+    tiles = tilesWithin(site, b, max_distance);
   else
     tiles = tilesWithPoints(site, b);
   result.tiles = inquiry.visit(tiles, ask);
@@ -313,6 +286,7 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   wanted.distances = wanted.first_poses = wanted.closest_poses = true;
   wanted.swept = request.swept;
   wanted.pivot = request.pivot;
+  wanted.pose_summaries = request.pose_summaries;
   refuse(site, model, poses, wanted);
 
   PathReach reach;
@@ -321,12 +295,14 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   reach.moves = request.swept.has_value();
   reach.pivot = request.pivot;
   SitePassage result;
+  if (request.pose_summaries) result.poses.resize(poses.size());
   double least = infinity, first = infinity;
   FirstContact contact = no_contact;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
     result.colliding += found.colliding;
+    add(result.poses, found.poses);
     if (found.first_contact) contact = earlier(contact, *found.first_contact);
     for (std::size_t i = 0; i < found.flags.size(); ++i) {
       if (found.flags[i] == 0) continue;
@@ -337,6 +313,7 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   };
   result.tiles = inquiry.visit(tilesAlong(site, model, poses, reach), ask);
   result.colliding = sumOfAllRanks(result.colliding);
+  if (request.pose_summaries) result.poses = summedOverAllRanks(result.poses);
   least = leastOfAllRanks(least);
   first = leastOfAllRanks(first);
   if (result.colliding > 0) {

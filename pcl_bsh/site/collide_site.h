@@ -8,7 +8,7 @@
 //   sites::SiteClosest nearest = sites::closestPair(valley, {robot, T_valley_robot}, request);
 //
 // Only tiles that can matter are read, one at a time. Which, their boxes tell: compared with boxes about parts of the
-// cloud, along its path if it moves; or covered by balls, about which the same question is asked first.
+// cloud, along its path if it moves.
 //
 // In an MPI job (mpirun -n 4 ...), all ranks call the same function with the same input: the tiles are dealt to them,
 // and each gets the whole answer. Sinks are called on the rank that has the tile. Points have no uncertainties here,
@@ -37,6 +37,7 @@ struct SiteRequest {
   double clearance = 0.0;      ///< finite, >= 0; inclusive
   std::optional<double> swept; ///< of collideAlong(): the motion between poses too, to this tolerance, as there
   Point3 pivot = {0, 0, 0};    ///< of that motion, as there
+  bool pose_summaries = false; ///< of collideAlong(): what collides at each pose, as there
   unsigned threads = 1;        ///< of each process; 0: all of the machine's
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
   /// Called now and then by each rank, with the tiles that it has done. False: stop, the query throws Cancelled.
@@ -107,6 +108,7 @@ struct SitePassage {
   float distance = std::numeric_limits<float>::quiet_NaN();
   std::int32_t first_pose = -1;
   std::optional<FirstContact> first_contact; ///< of swept motion, where anything collides
+  std::vector<PoseSummary> poses;            ///< one per pose, where asked for
   TilesRead tiles;
 };
 
