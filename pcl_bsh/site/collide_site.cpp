@@ -25,6 +25,20 @@ HierarchyOptions optionsOf(const SiteRequest& request)
   return options;
 }
 
+/// The same where only measured places count.
+SiteRequest measured(SiteRequest request)
+{
+  request.uncertainty = {};
+  return request;
+}
+
+/// Of what two tiles say of one point of b: one that collides with a tile collides, and is free only if it is of all.
+std::uint8_t surer(std::uint8_t a, std::uint8_t b)
+{
+  const auto collides = flagOf(Verdict::colliding);
+  return a == collides || b == collides ? collides : std::max(a, b);
+}
+
 /// Refuses what the query would refuse of the whole site, although no tile may be asked: the site's corners are.
 void refuse(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
             const TrajectoryRequest& request)
@@ -110,7 +124,9 @@ public:
   {
     found_.needed = tiles.size();
     const auto use = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
-      ask(tile, cloud, SphereHierarchy(viewOf(cloud), optionsOf(request_)));
+      const PointsView view =
+          withUncertainty(viewOf(cloud), cloud.fields, (site_.folder / tile.file).string(), request_.uncertainty);
+      ask(tile, cloud, SphereHierarchy(view, optionsOf(request_)));
       if (request_.progress && !request_.progress(visitor_.read())) throw Cancelled();
     };
     visitor_.visit(tiles, use, go_on);
@@ -162,14 +178,21 @@ SiteAny anyCollision(const Site& site, const Placed& b, const SiteRequest& reque
   wanted.clearance = request.clearance;
   wanted.threads = request.threads;
   pcl_bsh::anyCollision({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
-  bool collides = false;
+  requireUncertainty(site, request.uncertainty);
+  bool collides = false, is_undecided = false;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile&, const pcl::PCLPointCloud2&, const SphereHierarchy& hierarchy) {
-    collides = pcl_bsh::anyCollision({hierarchy}, b, wanted).verdict == Verdict::colliding;
+    const Verdict verdict = pcl_bsh::anyCollision({hierarchy}, b, wanted).verdict;
+    collides = verdict == Verdict::colliding;
+    is_undecided = is_undecided || verdict == Verdict::undecided;
   };
-  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance), ask,
+  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request.uncertainty), ask,
                                [&](std::size_t) { return !(collides = sumOfAllRanks(collides ? 1 : 0) > 0); });
-  if (collides) result.verdict = Verdict::colliding;
+  const bool none_is_sure = sumOfAllRanks(is_undecided ? 1 : 0) > 0;
+  if (collides)
+    result.verdict = Verdict::colliding;
+  else if (none_is_sure)
+    result.verdict = Verdict::undecided;
   return result;
 }
 
@@ -183,28 +206,40 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
   wanted.flagged = of_b ? Side::both : Side::a;
   wanted.threads = request.threads;
   pcl_bsh::collisionFlags({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
+  requireUncertainty(site, request.uncertainty);
   if (of_b) result.b.assign(b.hierarchy().view().count, 0);
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const FlagsResult flags = pcl_bsh::collisionFlags({hierarchy}, b, wanted);
     result.colliding += flags.colliding_a;
-    for (std::size_t i = 0; i < result.b.size(); ++i) result.b[i] |= flags.b[i];
+    result.undecided += flags.undecided_a;
+    for (std::size_t i = 0; i < result.b.size(); ++i) result.b[i] = surer(result.b[i], flags.b[i]);
     if (sink) sink(tile, cloud, flags);
   };
-  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance), ask);
+  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request.uncertainty), ask);
   result.colliding = sumOfAllRanks(result.colliding);
+  result.undecided = sumOfAllRanks(result.undecided);
   if (ranks() > 1 && of_b) {
     std::vector<double> own;
     for (std::size_t i = 0; i < result.b.size(); ++i)
-      if (result.b[i] != 0) own.push_back(static_cast<double>(i));
-    for (const double i : gatheredFromAllRanks(own)) result.b[static_cast<std::size_t>(i)] = 1;
+      if (result.b[i] != 0) own.insert(own.end(), {static_cast<double>(i), static_cast<double>(result.b[i])});
+    const std::vector<double> all = gatheredFromAllRanks(own);
+    for (std::size_t k = 0; k < all.size(); k += 2) {
+      std::uint8_t& flag = result.b[static_cast<std::size_t>(all[k])];
+      flag = surer(flag, static_cast<std::uint8_t>(all[k + 1]));
+    }
   }
-  result.colliding_b = static_cast<std::uint64_t>(std::count(result.b.begin(), result.b.end(), 1));
+  const auto counted = [&](Verdict verdict) {
+    return static_cast<std::uint64_t>(std::count(result.b.begin(), result.b.end(), flagOf(verdict)));
+  };
+  result.colliding_b = counted(Verdict::colliding);
+  result.undecided_b = counted(Verdict::undecided);
   return result;
 }
 
-SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request)
+SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& asked)
 {
+  const SiteRequest request = measured(asked);
   DistanceRequest wanted;
   wanted.threads = request.threads;
   pcl_bsh::closestPair({SphereHierarchy(PointsView{})}, b, wanted); // refuses a pose that no tile may be asked about
@@ -249,9 +284,10 @@ SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& re
   return result;
 }
 
-SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& request,
+SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& asked,
                              const DistancesSink& sink)
 {
+  const SiteRequest request = measured(asked);
   SiteDistances result;
   PointDistancesRequest wanted;
   wanted.max_distance = max_distance;
@@ -288,6 +324,7 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   wanted.pivot = request.pivot;
   wanted.pose_summaries = request.pose_summaries;
   refuse(site, model, poses, wanted);
+  requireUncertainty(site, request.uncertainty);
 
   PathReach reach;
   // Colliding is what comes within clearance + tolerance.
@@ -297,13 +334,15 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   SitePassage result;
   if (request.pose_summaries) result.poses.resize(poses.size());
   double least = infinity, first = infinity;
-  FirstContact contact = no_contact;
+  FirstContact contact = no_contact, certain = no_contact;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
     result.colliding += found.colliding;
+    result.undecided += found.undecided;
     add(result.poses, found.poses);
     if (found.first_contact) contact = earlier(contact, *found.first_contact);
+    if (found.certain_contact) certain = earlier(certain, *found.certain_contact);
     for (std::size_t i = 0; i < found.flags.size(); ++i) {
       if (found.flags[i] == 0) continue;
       least = std::min(least, double{found.distance[i]});
@@ -311,16 +350,18 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
     }
     if (sink) sink(tile, cloud, found);
   };
-  result.tiles = inquiry.visit(tilesAlong(site, model, poses, reach), ask);
+  result.tiles = inquiry.visit(tilesAlong(site, model, poses, reach, request.uncertainty), ask);
   result.colliding = sumOfAllRanks(result.colliding);
+  result.undecided = sumOfAllRanks(result.undecided);
   if (request.pose_summaries) result.poses = summedOverAllRanks(result.poses);
   least = leastOfAllRanks(least);
   first = leastOfAllRanks(first);
-  if (result.colliding > 0) {
+  if (result.colliding + result.undecided > 0) {
     result.distance = static_cast<float>(least);
     result.first_pose = static_cast<std::int32_t>(first);
     if (request.swept) result.first_contact = earliestOfAllRanks(contact);
   }
+  if (sumOfAllRanks(certain.pose == no_contact.pose ? 0 : 1) > 0) result.certain_contact = earliestOfAllRanks(certain);
   return result;
 }
 

@@ -71,6 +71,7 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
   request.clearance = options.clearance;
   request.threads = options.threads;
   request.memory = options.memory;
+  request.uncertainty = options.uncertainty;
   Json report = {{"site", options.site.string()}, {"obstacle", options.obstacle.string()}, {"points", site.points}};
   const bool has_clearance = options.question != SiteQuestion::closest && options.question != SiteQuestion::distances;
   if (has_clearance) report["clearance"] = options.clearance;
@@ -78,13 +79,16 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
   case SiteQuestion::any: {
     const sites::SiteAny found = sites::anyCollision(site, obstacle, request);
     report["collides"] = found.verdict == Verdict::colliding;
+    report["undecided"] = found.verdict == Verdict::undecided;
     put(report, found.tiles, run);
     break;
   }
   case SiteQuestion::flags: {
     const sites::SiteFlags found = sites::collisionFlags(site, obstacle, Side::both, request, out.flags());
     report["colliding"] = found.colliding;
+    report["undecided"] = found.undecided;
     report["colliding_of_obstacle"] = found.colliding_b;
+    report["undecided_of_obstacle"] = found.undecided_b;
     put(report, found.tiles, run);
     break;
   }
@@ -115,11 +119,15 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
         sites::collideAlong(site, obstacle.hierarchy(), poses, request, clashes.after(out.passage()));
     report["poses"] = poses.size();
     report["colliding"] = found.colliding;
+    report["undecided"] = found.undecided;
     report["distance"] = orNull(double{found.distance});
     report["first_pose"] = found.first_pose < 0 ? Json(nullptr) : Json(found.first_pose);
     if (options.swept) report["swept"] = *options.swept;
     if (found.first_contact)
       report["first_contact"] = {{"pose", found.first_contact->pose}, {"fraction", found.first_contact->fraction}};
+    if (found.certain_contact)
+      report["certain_contact"] = {{"pose", found.certain_contact->pose},
+                                   {"fraction", found.certain_contact->fraction}};
     if (clashes.isWanted()) report["clashes"] = clashes.finish(obstacle.hierarchy(), poses, found);
     put(report, found.tiles, run);
     break;
@@ -143,7 +151,8 @@ int answer(const SiteOptions& options)
   const pcl::PCLPointCloud2 cloud = io::readCloud(options.obstacle);
   HierarchyOptions building;
   building.threads = options.threads;
-  const SphereHierarchy hierarchy(viewOf(cloud), building);
+  const SphereHierarchy hierarchy(
+      withUncertainty(viewOf(cloud), cloud.fields, options.obstacle.string(), options.obstacle_uncertainty), building);
   SiteOutput output(site, options);
   MeasuredRun run;
   Json report = ask(site, {hierarchy, options.pose}, options, output, clashes, run);

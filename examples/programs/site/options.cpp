@@ -3,6 +3,7 @@
 
 #include "cli/command_line.h"
 #include "cli/pose.h"
+#include "cli/uncertainty.h"
 
 #include <pcl_bsh/site/site.h>
 
@@ -66,6 +67,7 @@ void addMemory(CLI::App& app, SiteOptions& options)
 struct CollideTexts {
   bool any = false, closest = false, distances = false;
   std::string pose;
+  UncertaintyOptions uncertainties;
   CLI::Option *clearance = nullptr, *max_distance = nullptr;
 
   void addTo(CLI::App& app, SiteOptions& options)
@@ -103,6 +105,7 @@ struct CollideTexts {
     max_distance = app.add_option("--max-distance", options.max_distance, "of --distances: greater ones do not count")
                        ->type_name("M")
                        ->transform(number<double>("give a length >= 0", [](double d) { return d >= 0; }));
+    uncertainties.addTo(app, "SITE");
     app.add_option("--plan", options.plan,
                    "numbers of ranks, as 64,1024: by what the tiles have cost, the report says how long the same "
                    "question takes on so many, and what limits it")
@@ -127,6 +130,9 @@ struct CollideTexts {
                        : moves || lists ? SiteQuestion::path
                                         : SiteQuestion::flags;
     const bool needs_clearance = !closest && !distances;
+    uncertainties.read(options.uncertainty, options.obstacle_uncertainty);
+    if (uncertainties.isGiven() && !needs_clearance)
+      throw UsageError("--uncertainty: distances are those of the measured places: leave it out");
     if (needs_clearance && clearance->count() == 0) throw UsageError("--clearance: is missing: give a length");
     if (options.report.empty() && options.out.empty() && !lists)
       throw UsageError("--report, --out, --clashes: none is given: give one or more of them");

@@ -4,6 +4,8 @@
 
 #include "cli/used_files.h"
 
+#include <pcl_bsh/filters/uncertainty.h>
+
 #include <Eigen/Geometry>
 
 #include <cstdint>
@@ -38,6 +40,7 @@ struct SiteOptions {
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;
   double clearance = 0.0;
+  Uncertainty uncertainty, obstacle_uncertainty;
   std::optional<double> swept;
   double max_distance = std::numeric_limits<double>::infinity();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
