@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/python/computing.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <mutex>
@@ -13,6 +14,7 @@ struct Turns {
   std::mutex mutex;
   std::condition_variable ended;
   std::size_t computing = 0; ///< threads
+  std::size_t waiting = 0;   ///< to change
   bool changing = false;
 };
 
@@ -22,6 +24,10 @@ Turns& turns()
   return all;
 }
 
+/// How long a query lets changes go first that wait already. No longer: it may be what a callback waits for, in a query
+/// for whose end the change waits.
+constexpr std::chrono::milliseconds kGivesWay{50};
+
 thread_local std::size_t depth = 0; ///< how many Computing this thread has
 
 } // namespace
@@ -30,6 +36,7 @@ Computing::Computing()
 {
   if (depth++ > 0) return;
   std::unique_lock lock(turns().mutex);
+  turns().ended.wait_for(lock, kGivesWay, [] { return turns().waiting == 0 && !turns().changing; });
   turns().ended.wait(lock, [] { return !turns().changing; });
   ++turns().computing;
 }
@@ -46,7 +53,9 @@ Changing::Changing()
   if (depth > 0)
     throw std::runtime_error("points cannot change while a query runs: do it after the query, not in its callback");
   std::unique_lock lock(turns().mutex);
+  ++turns().waiting;
   turns().ended.wait(lock, [] { return turns().computing == 0 && !turns().changing; });
+  --turns().waiting;
   turns().changing = true;
 }
 

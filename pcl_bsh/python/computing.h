@@ -14,7 +14,8 @@ public:
   Computing& operator=(const Computing&) = delete;
 };
 
-/// While it lives, no other thread computes. It waits until those that do are done; later ones wait for it. To be made
+/// While it lives, no other thread computes. It waits until those that do are done; later ones wait for it, and for a
+/// while let it go first. To be made
 /// without the interpreter's lock.
 class Changing {
 public:

@@ -104,25 +104,27 @@ def test_not_in_the_callback_of_a_query():
 
 
 def test_queries_and_refits_of_many_threads_take_turns():
-    places = [cloud("random", seed, 500) for seed in (1, 2)]
-    other = pcl_bsh.SphereHierarchy(cloud("random", 3, 500))
-    expected = [pcl_bsh.collision_flags(pcl_bsh.SphereHierarchy(xyz, copy=True), other, 0.05).tolist() for xyz in places]
+    places = [cloud("random", seed, 10000) for seed in (1, 2)]
+    other = pcl_bsh.SphereHierarchy(cloud("random", 3, 10000))
+    expected = [pcl_bsh.collision_flags(pcl_bsh.SphereHierarchy(xyz, copy=True), other, 0.02).tolist() for xyz in places]
     hierarchy = pcl_bsh.SphereHierarchy(places[0])
     wrong = []
 
     def ask():
-        for _ in range(200):
-            if pcl_bsh.collision_flags(hierarchy, other, 0.05).tolist() not in expected:
+        for _ in range(20):
+            if pcl_bsh.collision_flags(hierarchy, other, 0.02).tolist() not in expected:
                 wrong.append(True)
 
     threads = [threading.Thread(target=ask) for _ in range(3)]
     for thread in threads:
         thread.start()
-    for k in range(60):
-        hierarchy.refit(places[(k + 1) % 2])
+    refits = 0
+    while any(thread.is_alive() for thread in threads):
+        refits += 1
+        hierarchy.refit(places[refits % 2])
     for thread in threads:
         thread.join()
-    assert not wrong
+    assert refits > 5 and not wrong
 
 
 def test_a_scene_deforms():
