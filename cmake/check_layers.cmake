@@ -27,7 +27,7 @@ endforeach()
 # The room of an included path, or empty when it is not one of ours.
 function(room_of path room_variable)
   string(REGEX REPLACE "^pcl_bsh/filters/" "filters/" path "${path}")
-  string(REGEX REPLACE "^(cli|tunnel|viewer)/" "examples/\\1/" path "${path}")
+  string(REGEX REPLACE "^(cli|self_filter|tunnel|viewer)/" "examples/\\1/" path "${path}")
   set(found "")
   set(found_length 0)
   foreach(room IN LISTS rooms) # the longest match wins: filters/json, not filters

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Three .deb packages, with VTK, CGAL and Python one more each, by `cmake --workflow --preset package` or, from any build,
+# Three .deb packages, with VTK, CGAL, urdfdom and Python one more each, by `cmake --workflow --preset package` or, from any build,
 # by `cpack -G DEB`.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The pcl_bsh authors")
@@ -20,6 +20,9 @@ if(TARGET pcl_bsh_vtk)
 endif()
 if(TARGET pcl_bsh_python)
   list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
+if(TARGET pcl_bsh_self_filter)
+  list(APPEND CPACK_COMPONENTS_ALL self_filter)
 endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -52,6 +55,11 @@ set(CPACK_COMPONENT_VTK_DEPENDS libs)
 if(TARGET pcl_bsh_vtk) # for the programs that draw
   set(CPACK_COMPONENT_TOOLS_DEPENDS libs vtk)
 endif()
+
+set(CPACK_DEBIAN_SELF_FILTER_PACKAGE_NAME pcl-bsh-self-filter)
+set(CPACK_DEBIAN_SELF_FILTER_PACKAGE_SECTION science)
+set(CPACK_COMPONENT_SELF_FILTER_DESCRIPTION "Cuts a robot, as its URDF has it, out of what its own sensors see.")
+set(CPACK_COMPONENT_SELF_FILTER_DEPENDS libs)
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-pcl-bsh)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian packages that are missing, configures and builds. Does no more than is left to do.
 #   bash cmake/setup.sh [PRESET [TARGET...]]     default: release, all targets; into build/PRESET
-# For the targets `demonstration`, `programs`, `python` and `docs` it installs the sections of packages.txt that these
-# need, for others all but [python].
+# For the targets `demonstration`, `programs`, `python`, `docs` and `self_filter` it installs the sections of
+# packages.txt that these need, for others all but [python] and [self_filter].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -16,6 +16,7 @@ case "${targets[*]}" in
   demonstration) sections="core demonstration" ;;
   programs) sections="core demonstration programs" ;;
   python) sections="core demonstration python" ;;
+  self_filter) sections="core demonstration self_filter" ;;
   docs) sections="core demonstration docs" ;;
   *) sections="core demonstration programs tests docs" ;;
 esac

@@ -30,6 +30,16 @@ view "${man[@]}" --pose=-7,0,-2.6,0,0,0 --clearance 0.5 --trace --camera=-9.4,-2
 view --scene examples/scenes/walk.json --step 90 --clearance 0.3 --camera=-17,-7.5,-0.4,-6.6,0.3,-2.9 \
   --screenshot examples/pictures/scene.png
 
+# A robot cut out of what its own camera sees (where it was built: bash cmake/setup.sh release self_filter).
+if [[ -x "$programs/pcl_bsh_self_filter" ]]; then
+  "$programs/pcl_bsh_made_robot" "$work/robot" >/dev/null
+  sed --quiet '1p;4p' "$work/robot/states.csv" >"$work/robot/state.csv"
+  "$programs/pcl_bsh_self_filter" "$work/robot/robot.urdf" "$work/robot/frame_002.pcd" --frame camera --flag \
+    --states "$work/robot/state.csv" --out "$work/robot/flagged" >/dev/null
+  view "$work/robot/flagged/frame_002.pcd" --camera=0.55,-0.75,-0.7,0.05,0.35,1.3,0,-1,0.3 \
+    --screenshot examples/pictures/self_filter.png
+fi
+
 # Two real scans of a room, at the first guess of how they lie to each other: how far is each point of the first from the
 # second? Drawn where the scans are there: PCL_BSH_SHARED_DIR is a folder with data/indoor_room_scan1.pcd and ..._scan2.pcd
 # (from PCL's repository of data, tutorials/room_scan1.pcd and room_scan2.pcd).

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts the robot that scans out of its scans: links from a URDF, where the joints' values put them.
+#include "cli/command_line.h"
+#include "cli/step.h"
+#include "cli/used_files.h"
+#include "self_filter/joint_values.h"
+#include "self_filter/self_filter.h"
+
+#include <pcl_bsh/files/output_folder.h>
+#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/filters/text_files/format_error.h>
+#include <pcl_bsh/geometry/point3.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pcl_bsh;
+using Json = nlohmann::ordered_json;
+using self_filter::JointValues;
+
+constexpr auto program = "pcl_bsh_self_filter";
+constexpr auto footer =
+    R"(Each output has the name of its cloud, in the folder of --out, and all fields. A point that is kept, or has the flag 0, is
+farther than the padding from every link's surface, for certain; one that is removed, or has the flag 1, is within padding +
+tolerance of one, or has no coordinates. Of a link the bodies for collisions count; where it has none, those to look at.
+Joints are fixed, revolute, continuous or prismatic; limits are not looked at. Meshes are .stl, .obj, .ply or .off.
+Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
+
+Example: cut the made robot out of what its camera sees
+  pcl_bsh_made_robot robot --frames 3
+  pcl_bsh_self_filter robot/robot.urdf robot/frame_*.pcd --states robot/states.csv --frame camera --out robot/free)";
+
+struct Options {
+  fs::path urdf;
+  std::vector<std::string> clouds;
+  fs::path out;
+  std::string joints;
+  fs::path states;
+  std::string frame;
+  std::vector<std::string> packages;
+  self_filter::Settings settings;
+  std::optional<double> tolerance;
+  bool flag = false;
+  std::optional<fs::path> report;
+};
+
+std::map<std::string, fs::path> packagesOf(const Options& options)
+{
+  std::map<std::string, fs::path> packages;
+  for (const std::string& package : options.packages) {
+    const std::size_t equals = package.find('=');
+    if (equals == 0 || equals == std::string::npos)
+      throw cli::UsageError("--package: '" + package + "' is no package with a folder: give NAME=FOLDER");
+    packages[package.substr(0, equals)] = package.substr(equals + 1);
+  }
+  return packages;
+}
+
+/// One for each cloud.
+std::vector<JointValues> statesOf(const Options& options)
+{
+  std::vector<JointValues> states;
+  try {
+    states = options.states.empty() ? std::vector{self_filter::parseJointValues(options.joints)}
+                                    : self_filter::readJointStates(options.states);
+  }
+  catch (const io::FormatError& error) {
+    throw cli::UsageError(std::string("--joints: ") + error.what() + ": " + error.remedy());
+  }
+  if (states.size() == 1) states.resize(options.clouds.size(), states[0]);
+  if (states.size() != options.clouds.size())
+    throw cli::UsageError("--states: " + options.states.string() + " has " + std::to_string(states.size()) +
+                          " lines of values for " + std::to_string(options.clouds.size()) +
+                          " clouds: give one line for each cloud, or one for all");
+  return states;
+}
+
+fs::path outputOf(const Options& options, const std::string& cloud)
+{
+  return options.out / fs::path(cloud).filename();
+}
+
+void check(const Options& options)
+{
+  cli::CommandFiles files;
+  files.reads("ROBOT.urdf", options.urdf).reads("--states", options.states);
+  for (const std::string& cloud : options.clouds) files.reads("CLOUD", cloud);
+  for (const std::string& cloud : options.clouds) files.writesFile("--out", outputOf(options, cloud));
+  if (options.report) files.writesFile("--report", *options.report);
+  files.requireApart();
+}
+
+/// The cloud without the robot's points, and without those that have no coordinates.
+pcl::PCLPointCloud2 withoutRobot(const pcl::PCLPointCloud2& cloud, const PointsView& view,
+                                 const std::vector<std::uint8_t>& flags)
+{
+  pcl::Indices kept;
+  for (std::uint32_t i = 0; i < view.count; ++i)
+    if (flags[i] == 0 && isFinite(view.point(i))) kept.push_back(static_cast<pcl::index_t>(i));
+  return selectedRecords(cloud, kept);
+}
+
+Json filterCloud(const Options& options, const std::string& name, const JointValues& values, std::size_t frame,
+                 self_filter::SelfFilter& filter)
+{
+  io::Viewpoint viewpoint;
+  io::LasHeaderPtr las;
+  const pcl::PCLPointCloud2 cloud = io::readCloud(name, &viewpoint, &las);
+  const PointsView view = viewOf(cloud);
+  const Eigen::Isometry3d T_scan_root = filter.robot().poses(values)[frame].inverse();
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<std::uint8_t>& flags = filter.flags(view, T_scan_root, values);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  const auto robot = std::count(flags.begin(), flags.end(), 1);
+  io::writeCloud(outputOf(options, name),
+                 options.flag ? withField(cloud, collision_field_name, flags) : withoutRobot(cloud, view, flags),
+                 viewpoint, las);
+  return {{"cloud", name}, {"points", flags.size()}, {"robot", robot}, {"seconds", taken.count()}};
+}
+
+int run(const Options& options)
+{
+  check(options);
+  const std::vector<JointValues> states = statesOf(options);
+  const self_filter::Robot robot = self_filter::readRobot(options.urdf, packagesOf(options));
+  for (const JointValues& values : states) robot.requireValues(values);
+  const std::size_t frame = options.frame.empty() ? 0 : robot.linkNamed(options.frame);
+
+  cli::Step covering("Covering the links");
+  self_filter::SelfFilter filter(robot, options.settings);
+  covering.done(std::to_string(filter.balls()) + " balls");
+
+  const files::OutputFolder folder(options.out);
+  Json report = {{"robot", robot.name},
+                 {"links", robot.links.size()},
+                 {"balls", filter.balls()},
+                 {"padding", options.settings.padding},
+                 {"tolerance", options.settings.tolerance},
+                 {"clouds", Json::array()}};
+  for (std::size_t i = 0; i < options.clouds.size(); ++i) {
+    report["clouds"].push_back(filterCloud(options, options.clouds[i], states[i], frame, filter));
+    const Json& told = report["clouds"].back();
+    std::cout << options.clouds[i] << ": " << told["robot"] << " of " << told["points"]
+              << " points are the robot, found in " << 1000 * told["seconds"].get<double>() << " ms\n";
+  }
+  if (options.report) {
+    // A file name need not be UTF-8, JSON must.
+    const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
+    files::replaceFile(*options.report, [&](std::ostream& out) { out << text << '\n'; });
+  }
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(program, [&] {
+    Options options;
+    CLI::App app("Cuts a robot out of what its own sensors see.", program);
+    app.footer(footer);
+    app.add_option("ROBOT.urdf", options.urdf, "the robot")->type_name("")->required();
+    app.add_option("CLOUD", options.clouds, "what its sensor saw: a cloud for each frame")->type_name("")->required();
+    app.add_option("--out", options.out, "folder for the results; made if it is not there")
+        ->type_name("DIR")
+        ->required();
+    auto* joints = app.add_option("--joints", options.joints, "values of joints, in radians or metres; others are at 0")
+                       ->type_name("NAME=VALUE,...");
+    app.add_option("--states", options.states,
+                   "file of such values: names in its first line, then a line for each cloud")
+        ->type_name("FILE")
+        ->excludes(joints);
+    app.add_option("--frame", options.frame, "link in whose frame the clouds are (default: the root)")
+        ->type_name("LINK");
+    app.add_option("--padding", options.settings.padding, "points this near to the robot are cut out, too, in metres")
+        ->type_name("M")
+        ->transform(
+            cli::number<double>("give a length in metres", [](double m) { return std::isfinite(m) && m >= 0.0; }))
+        ->capture_default_str();
+    app.add_option("--tolerance", options.tolerance,
+                   "by how much the links' covers may stick out, in metres (default: a\nquarter of the padding, at "
+                   "least 0.001)")
+        ->type_name("M")
+        ->transform(cli::number<double>("give a length in metres above 0",
+                                        [](double m) { return std::isfinite(m) && m > 0.0; }));
+    app.add_flag("--flag", options.flag, "keep all points, with a field 'collision' that is 1 where the robot is");
+    app.add_option("--package", options.packages, "folder that package://NAME/ stands for; may be given several times")
+        ->type_name("NAME=DIR")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--threads", options.settings.threads, "0: all of the machine's; any number gives the same result")
+        ->type_name("N")
+        ->transform(cli::number<unsigned>(cli::give_threads))
+        ->capture_default_str();
+    app.add_option("--report", options.report, "JSON file for the results and what they cost")->type_name("FILE");
+    if (!cli::understood(app, program, argc, argv)) return 0;
+    options.settings.tolerance = options.tolerance.value_or(std::max(0.001, options.settings.padding / 4));
+    return run(options);
+  });
+}
