@@ -176,6 +176,7 @@ SiteAny anyCollision(const Site& site, const Placed& b, const SiteRequest& reque
   SiteAny result;
   AnyRequest wanted;
   wanted.clearance = request.clearance;
+  wanted.accuracy = request.accuracy;
   wanted.threads = request.threads;
   pcl_bsh::anyCollision({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
   requireUncertainty(site, request.uncertainty);
@@ -203,6 +204,7 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
   const bool of_b = flagged != Side::a;
   FlagsRequest wanted;
   wanted.clearance = request.clearance;
+  wanted.accuracy = request.accuracy;
   wanted.flagged = of_b ? Side::both : Side::a;
   wanted.threads = request.threads;
   pcl_bsh::collisionFlags({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
@@ -241,16 +243,18 @@ SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& as
 {
   const SiteRequest request = measured(asked);
   DistanceRequest wanted;
+  wanted.accuracy = request.accuracy;
   wanted.threads = request.threads;
   pcl_bsh::closestPair({SphereHierarchy(PointsView{})}, b, wanted); // refuses a pose that no tile may be asked about
   const auto by_distance = tilesByDistance(site, b);
   std::vector<std::uint32_t> tiles;
   for (const auto& [lower, tile] : by_distance) tiles.push_back(tile);
-  double least = infinity;
+  double least = infinity, lower = infinity;
   std::vector<Candidate> candidates;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile&, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const DistanceResult found = pcl_bsh::closestPair({hierarchy}, b, wanted);
+    lower = std::min(lower, found.interval.lower);
     if (!found.pair || found.distance > least) return;
     least = found.distance;
     const std::uint8_t* const record = cloud.data.data() + std::size_t{found.pair->a} * cloud.point_step;
@@ -275,9 +279,12 @@ SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& as
     places.push_back(candidate.place);
     points.push_back(candidate.point);
   }
+  lower = leastOfAllRanks(lower);
   if (places.empty()) return result;
   const SphereHierarchy last(viewOf(places.front().data(), places.size()));
+  wanted.accuracy = {};
   const DistanceResult nearest = pcl_bsh::closestPair({last}, b, wanted);
+  result.interval = {std::min(lower, nearest.interval.lower), nearest.interval.upper};
   result.distance = nearest.distance;
   result.point = points[nearest.pair->a];
   result.b = nearest.pair->b;
@@ -291,6 +298,7 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
   SiteDistances result;
   PointDistancesRequest wanted;
   wanted.max_distance = max_distance;
+  wanted.accuracy = request.accuracy;
   wanted.threads = request.threads;
   pcl_bsh::pointDistances({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
   double greatest = -infinity;
@@ -298,6 +306,7 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const PointDistances found = pcl_bsh::pointDistances({hierarchy}, b, wanted);
     result.measured += found.measured;
+    result.undecided += found.undecided;
     if (found.measured > 0) greatest = std::max(greatest, found.greatest);
     if (sink) sink(tile, cloud, found);
   };
@@ -308,6 +317,7 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
     tiles = tilesWithPoints(site, b);
   result.tiles = inquiry.visit(tiles, ask);
   result.measured = sumOfAllRanks(result.measured);
+  result.undecided = sumOfAllRanks(result.undecided);
   greatest = -leastOfAllRanks(-greatest);
   if (result.measured > 0) result.greatest = greatest;
   return result;
@@ -318,8 +328,10 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
 {
   TrajectoryRequest wanted;
   wanted.clearance = request.clearance;
+  wanted.accuracy = request.accuracy;
   wanted.threads = request.threads;
-  wanted.distances = wanted.first_poses = wanted.closest_poses = true;
+  const bool measures = !request.accuracy.stopsEarly();
+  wanted.distances = wanted.first_poses = wanted.closest_poses = measures;
   wanted.swept = request.swept;
   wanted.pivot = request.pivot;
   wanted.pose_summaries = request.pose_summaries;
@@ -343,7 +355,7 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
     add(result.poses, found.poses);
     if (found.first_contact) contact = earlier(contact, *found.first_contact);
     if (found.certain_contact) certain = earlier(certain, *found.certain_contact);
-    for (std::size_t i = 0; i < found.flags.size(); ++i) {
+    for (std::size_t i = 0; i < found.distance.size(); ++i) {
       if (found.flags[i] == 0) continue;
       least = std::min(least, double{found.distance[i]});
       first = std::min(first, static_cast<double>(found.first_pose[i]));
@@ -356,7 +368,7 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   if (request.pose_summaries) result.poses = summedOverAllRanks(result.poses);
   least = leastOfAllRanks(least);
   first = leastOfAllRanks(first);
-  if (result.colliding + result.undecided > 0) {
+  if (measures && result.colliding + result.undecided > 0) {
     result.distance = static_cast<float>(least);
     result.first_pose = static_cast<std::int32_t>(first);
     if (request.swept) result.first_contact = earliestOfAllRanks(contact);

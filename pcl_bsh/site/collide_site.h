@@ -12,13 +12,15 @@
 //
 // In an MPI job (mpirun -n 4 ...), all ranks call the same function with the same input: the tiles are dealt to them,
 // and each gets the whole answer. Sinks are called on the rank that has the tile. Where points have uncertainties,
-// verdicts are as those of the queries: b's are of its view, the site's are asked for. Answers are exact.
+// verdicts are as those of the queries: b's are of its view, the site's are asked for. What an accuracy promises of one
+// cloud holds of the site; those that stop early do so in each tile.
 #pragma once
 
 #include <pcl_bsh/collision/collision_flags.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/site/site.h>
@@ -36,6 +38,7 @@ namespace pcl_bsh::sites {
 /// What is asked about a site, and with which means.
 struct SiteRequest {
   double clearance = 0.0;      ///< finite, >= 0; inclusive
+  Accuracy accuracy;           ///< a level, a number of pairs or a time is that of each tile
   std::optional<double> swept; ///< of collideAlong(): the motion between poses too, to this tolerance, as there
   Point3 pivot = {0, 0, 0};    ///< of that motion, as there
   Uncertainty uncertainty;     ///< of the site's points: for verdicts, as in PointsView. A field is one of the site's
@@ -75,7 +78,7 @@ struct SitePoint {
 
 /// Whether anything of a site collides.
 struct SiteAny {
-  Verdict verdict = Verdict::free; ///< undecided only where points are uncertain
+  Verdict verdict = Verdict::free; ///< undecided only where points are uncertain, or the accuracy stops early
   TilesRead tiles;
 };
 
@@ -92,6 +95,7 @@ struct SiteFlags {
 /// The smallest distance of a site to another cloud.
 struct SiteClosest {
   double distance = std::numeric_limits<double>::infinity(); ///< as closestPair() has it
+  Interval interval; ///< holds the smallest distance for certain, where there is one and the accuracy is proven
   /// That realise it; of several the smallest (source, record), and for it the smallest record of b.
   std::optional<SitePoint> point;
   std::uint32_t b = 0;
@@ -100,7 +104,8 @@ struct SiteClosest {
 
 /// The distances of a site's points to another cloud.
 struct SiteDistances {
-  std::uint64_t measured = 0; ///< points that have a distance
+  std::uint64_t measured = 0;  ///< points that have a distance
+  std::uint64_t undecided = 0; ///< that may have one, where the accuracy stops early
   double greatest = std::numeric_limits<double>::quiet_NaN();
   TilesRead tiles;
 };
@@ -108,7 +113,7 @@ struct SiteDistances {
 /// What another cloud meets in a site along its path.
 struct SitePassage {
   std::uint64_t colliding = 0; ///< points of the site that collide at any pose
-  std::uint64_t undecided = 0; ///< that may, where points are uncertain
+  std::uint64_t undecided = 0; ///< that may, where points are uncertain or the accuracy stops early
   /// The smallest distance of points that collide or are undecided, and the first pose at which any may; NaN and -1:
   /// none does.
   float distance = std::numeric_limits<float>::quiet_NaN();
@@ -150,7 +155,8 @@ SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& re
 SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& request,
                              const DistancesSink& sink = nullptr);
 
-/// The model along its poses, in the site's frame: flags, distances, first and closest poses of each point.
+/// The model along its poses, in the site's frame: flags, distances, first and closest poses of each point; flags alone
+/// where the accuracy stops early.
 /// @throws std::invalid_argument also for poses and a tolerance that no tile is asked about
 SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
                          const SiteRequest& request, const PassageSink& sink = nullptr);

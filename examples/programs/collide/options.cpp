@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
 
+#include "cli/accuracy.h"
 #include "cli/command_line.h"
 #include "cli/path.h"
 #include "cli/pose.h"
 #include "cli/uncertainty.h"
-
-#include <pcl_bsh/geometry/invalid_input.h>
 
 #include <cmath>
 
@@ -34,16 +33,6 @@ Example: how far has each point of a scan moved away from an earlier scan?
   pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html
 Example: which points of a hall are within 5 cm of a machine's surface, to a millimetre?
   pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05 --surface-tolerance 0.001)";
-
-Accuracy parseAccuracy(const std::string& text)
-{
-  try {
-    return Accuracy::parse(text);
-  }
-  catch (const InvalidInput& error) {
-    throw UsageError("--accuracy: " + error.advice());
-  }
-}
 
 /// As the options about distances are written.
 struct DistanceTexts {
@@ -81,10 +70,7 @@ struct DistanceTexts {
     if (options.moves())
       refuse("--distances",
              "are of one pose; along a path the output has the smallest within the clearance: leave it out");
-    if (options.accuracy.stopsEarly())
-      refuse("--accuracy",
-             (options.accuracy.text() + ": leaves points without a distance: give exact, float or tolerance=LENGTH")
-                 .c_str());
+    requireAnswers(options.accuracy, {false, false, true});
     options.distances.emplace();
     options.distances->most = most.value_or(options.distances->most);
     options.distances->page = page;
@@ -128,12 +114,7 @@ void requireConsistent(const CollideOptions& options)
   if (options.density && (options.moves() || !options.clashes.empty()))
     throw UsageError("--density: is for flags at one pose: leave out the path and --clashes");
   if (options.widest_gap > 0 && !options.density) throw UsageError("--widest-gap: give --density, too");
-  const Accuracy& accuracy = options.accuracy;
-  if (accuracy.stopsEarly() && !options.clashes.empty())
-    throw UsageError("--accuracy: " + accuracy.text() +
-                     ": clashes need distances: give exact, float or tolerance=LENGTH");
-  if (!accuracy.isExact() && options.swept)
-    throw UsageError("--accuracy: " + accuracy.text() + ": swept motion has a tolerance of its own: give exact");
+  requireAnswers(options.accuracy, {!options.clashes.empty(), options.swept.has_value(), false});
 }
 
 } // namespace

@@ -8,7 +8,6 @@
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/files/file_identity.h>
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
@@ -71,10 +70,12 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
   request.clearance = options.clearance;
   request.threads = options.threads;
   request.memory = options.memory;
+  request.accuracy = options.accuracy;
   request.uncertainty = options.uncertainty;
   Json report = {{"site", options.site.string()}, {"obstacle", options.obstacle.string()}, {"points", site.points}};
   const bool has_clearance = options.question != SiteQuestion::closest && options.question != SiteQuestion::distances;
   if (has_clearance) report["clearance"] = options.clearance;
+  report["accuracy"] = options.accuracy.text();
   switch (options.question) {
   case SiteQuestion::any: {
     const sites::SiteAny found = sites::anyCollision(site, obstacle, request);
@@ -85,6 +86,7 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
   }
   case SiteQuestion::flags: {
     const sites::SiteFlags found = sites::collisionFlags(site, obstacle, Side::both, request, out.flags());
+    out.writeObstacle(found.b);
     report["colliding"] = found.colliding;
     report["undecided"] = found.undecided;
     report["colliding_of_obstacle"] = found.colliding_b;
@@ -95,6 +97,7 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
   case SiteQuestion::closest: {
     const sites::SiteClosest found = sites::closestPair(site, obstacle, request);
     report["distance"] = orNull(found.distance);
+    report["distance_interval"] = {orNull(found.interval.lower), orNull(found.interval.upper)};
     if (found.point) {
       report["point"] = {{"source", site.sources.at(found.point->source).file}, {"record", found.point->record}};
       report["point_of_obstacle"] = found.b;
@@ -148,12 +151,13 @@ int answer(const SiteOptions& options)
   const sites::Site site = sites::readSite(options.site);
   SiteClashList clashes(site, options);
   if (tells) warn(site_program, clashes.warnings());
-  const pcl::PCLPointCloud2 cloud = io::readCloud(options.obstacle);
+  const ObstacleCloud read(options);
+  const pcl::PCLPointCloud2& cloud = read.cloud;
   HierarchyOptions building;
   building.threads = options.threads;
   const SphereHierarchy hierarchy(
       withUncertainty(viewOf(cloud), cloud.fields, options.obstacle.string(), options.obstacle_uncertainty), building);
-  SiteOutput output(site, options);
+  SiteOutput output(site, read, options);
   MeasuredRun run;
   Json report = ask(site, {hierarchy, options.pose}, options, output, clashes, run);
   run.seconds = seconds();
@@ -163,6 +167,8 @@ int answer(const SiteOptions& options)
   if (!tells) return 0;
   std::ostream& summary = options.files.summary();
   if (clashes.isWanted()) summary << report["clashes"] << " clashes\n";
+  if (!options.obstacle_out.empty())
+    summary << "wrote which points of the obstacle collide to " << options.obstacle_out.string() << '\n';
   if (!options.out.empty()) summary << "wrote what was found of each point to " << options.out.string() << '\n';
   if (!reports) return 0;
   run.ranks = sites::ranks();
