@@ -83,9 +83,7 @@ void findBytes(TextCursor text, bool at_row, Fields& values)
   for (at_row = at_row && coloured; at_row; at_row = nextRow(text)) {
     for (std::size_t i = 0; i < values.size() && !text.line().empty(); ++i) {
       const std::string_view word = text.word();
-      std::uint8_t byte = 0;
-      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), byte);
-      if (error != std::errc() || end != word.data() + word.size()) bytes[i] = false;
+      if (bytes[i] && !isByte(word)) bytes[i] = false;
     }
   }
   for (std::size_t i = 0; i < values.size(); ++i) values[i].datatype = bytes[i] ? Field::UINT8 : Field::FLOAT64;

@@ -7,9 +7,12 @@
 #include <pcl_bsh/filters/cloud_files/records.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -23,6 +26,20 @@ inline pcl::PCLPointField textValue(std::string name, std::uint8_t datatype = pc
   value.datatype = datatype;
   value.count = 1;
   return value;
+}
+
+inline bool isByte(double number)
+{
+  return number >= 0 && number <= 255 && std::trunc(number) == number;
+}
+
+/// Whether the word says a whole number from 0 to 255, also as 52.0 or 5.2e1: its notation says nothing of its type.
+inline bool isByte(std::string_view word)
+{
+  std::uint8_t byte = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), byte);
+  if (error == std::errc() && end == word.data() + word.size()) return true;
+  return isNumber(word) && isByte(parseNumber<double>(word));
 }
 
 /// Records of the values of lines. No point yet.
@@ -53,7 +70,13 @@ public:
   /// Takes values i from `first` to `last` (exclusive) of that record from the line.
   void take(TextCursor& text, std::size_t record, std::size_t first, std::size_t last)
   {
-    for (std::size_t i = first; i < last; ++i) readNumber(text, values_[i].datatype, at(record, i));
+    for (std::size_t i = first; i < last; ++i) {
+      text.parseWord([&](std::string_view word) {
+        const bool byte = values_[i].datatype == pcl::PCLPointField::UINT8;
+        if (byte && isByte(word)) return put(record, i, parseNumber<double>(word));
+        parseNumber(word, values_[i].datatype, at(record, i));
+      });
+    }
   }
 
   /// Adds a record of these values. @return false, and nothing has happened, if one cannot be of its type
@@ -61,7 +84,7 @@ public:
   {
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const bool byte = values_[i].datatype == pcl::PCLPointField::UINT8;
-      if (byte && !(numbers[i] >= 0 && numbers[i] <= 255 && std::trunc(numbers[i]) == numbers[i])) return false;
+      if (byte && !isByte(numbers[i])) return false;
     }
     const std::size_t record = size();
     add();

@@ -181,11 +181,18 @@ private:
     return Object{{"cards", cards}, {"most_pictures", all ? Data(false) : Data(std::to_string(most_pictures))}};
   }
 
+  std::string scanPointName(std::uint32_t number) const
+  {
+    if (!report_.source_of) return std::to_string(number);
+    const SourcePoint point = report_.source_of(number);
+    return std::to_string(point.record) + " of " + plain(point.file);
+  }
+
   Data card(const Clash& clash) const
   {
     const Eigen::Vector3d p = report_.scanPoint(clash);
     Object card = factsOf(clash);
-    card["scan_point"] = std::to_string(clash.scan_point);
+    card["scan_point"] = scanPointName(clash.scan_point);
     card["scan_place"] = coordinate(p.x()) + ", " + coordinate(p.y()) + ", " + coordinate(p.z());
     card["model_part"] = report_.partName() + (' ' + std::to_string(report_.modelPart(clash)));
     card["top_view"] = topView(clash);

@@ -24,11 +24,17 @@ Json toJson(const ClashReport& report, const Clash& clash)
                {"first_pose", clash.first_pose},
                {"closest_pose", clash.closest_pose}};
   if (clash.status == ClashStatus::resolved) return json;
-  const auto side = [](const char* part, std::uint32_t number, const Eigen::Vector3d& at) {
-    return Json{{part, number}, {"at", {at.x(), at.y(), at.z()}}};
+  const auto side = [](Json named, const Eigen::Vector3d& at) {
+    named["at"] = {at.x(), at.y(), at.z()};
+    return named;
   };
-  json["closest_pair"] = {{"input", side("point", clash.scan_point, report.scanPoint(clash))},
-                          {"obstacle", side(report.partName(), report.modelPart(clash), report.modelPoint(clash))}};
+  Json input = {{"point", clash.scan_point}};
+  if (report.source_of) {
+    const SourcePoint point = report.source_of(clash.scan_point);
+    input = {{"source", point.file}, {"record", point.record}};
+  }
+  json["closest_pair"] = {{"input", side(input, report.scanPoint(clash))},
+                          {"obstacle", side({{report.partName(), report.modelPart(clash)}}, report.modelPoint(clash))}};
   return json;
 }
 
@@ -103,8 +109,9 @@ std::string clashJson(const ClashReport& report)
 std::string clashCsv(const ClashReport& report)
 {
   std::string csv = "id,status,points,distance,first_pose,closest_pose,min_x,min_y,min_z,max_x,max_y,max_z,"
-                    "input_point,input_x,input_y,input_z,obstacle_" +
-                    std::string(report.partName()) + ",obstacle_x,obstacle_y,obstacle_z\n";
+                    "input_" +
+                    std::string(report.source_of ? "source,input_record" : "point") +
+                    ",input_x,input_y,input_z,obstacle_" + report.partName() + ",obstacle_x,obstacle_y,obstacle_z\n";
   const auto cell = [&](const std::string& text) { csv += (csv.back() == '\n' ? "" : ",") + text; };
   for (const Clash& clash : report.clashes) {
     cell(csvText(clash.id));
@@ -116,15 +123,20 @@ std::string clashCsv(const ClashReport& report)
     for (const Point3& corner : {clash.low, clash.high})
       for (const double coordinate : corner) cell(numberText(coordinate));
     if (clash.status == ClashStatus::resolved) {
-      csv += ",,,,,,,,\n";
+      csv += report.source_of ? ",,,,,,,,,\n" : ",,,,,,,,\n";
       continue;
     }
-    const auto side = [&](std::uint32_t point, const Eigen::Vector3d& at) {
-      cell(std::to_string(point));
-      for (const double coordinate : at) cell(numberText(coordinate));
-    };
-    side(clash.scan_point, report.scanPoint(clash));
-    side(report.modelPart(clash), report.modelPoint(clash));
+    if (report.source_of) {
+      const SourcePoint point = report.source_of(clash.scan_point);
+      cell(csvText(point.file));
+      cell(std::to_string(point.record));
+    }
+    else {
+      cell(std::to_string(clash.scan_point));
+    }
+    for (const double coordinate : report.scanPoint(clash)) cell(numberText(coordinate));
+    cell(std::to_string(report.modelPart(clash)));
+    for (const double coordinate : report.modelPoint(clash)) cell(numberText(coordinate));
     csv += '\n';
   }
   return csv;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,12 @@
 #include <vector>
 
 namespace pcl_bsh::io {
+
+/// Where a point of an input stood that is made of several files.
+struct SourcePoint {
+  std::string file;
+  std::uint32_t record = 0;
+};
 
 /// All that a list of clashes tells, in the frame of the input. Clouds and result are borrowed.
 struct ClashReport {
@@ -33,6 +40,8 @@ struct ClashReport {
   const TrajectoryResult& found;
   std::optional<double> swept;
   const Obstacle* surface = nullptr; ///< the obstacle, where it is one; `model` are its balls
+  /// Of a point of `scan`, where the input is several files.
+  std::function<SourcePoint(std::uint32_t)> source_of = nullptr;
 
   /// Of the obstacle: a point, or a triangle.
   std::uint32_t modelPart(const Clash& clash) const

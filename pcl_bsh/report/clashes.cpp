@@ -35,13 +35,14 @@ std::string untaken(const std::string& id, std::set<std::string>& taken)
   return candidate;
 }
 
-void nameByPlace(std::vector<Clash>& clashes, double cluster_distance)
+void giveIds(std::vector<Clash>& clashes, double cluster_distance)
 {
   const double cell = std::exp2(std::ceil(std::log2(4 * cluster_distance)));
   std::vector<Clash*> by_place;
   for (Clash& clash : clashes) by_place.push_back(&clash);
-  std::sort(by_place.begin(), by_place.end(),
-            [](const Clash* a, const Clash* b) { return std::tie(a->low, a->high) < std::tie(b->low, b->high); });
+  std::stable_sort(by_place.begin(), by_place.end(), [](const Clash* a, const Clash* b) {
+    return std::tie(a->low, a->high) < std::tie(b->low, b->high);
+  });
   std::set<std::string> taken;
   for (Clash* clash : by_place) clash->id = untaken(idAt(middleOf(*clash), cell), taken);
 }
@@ -51,8 +52,9 @@ void add(Clash& clash, std::uint32_t record, const Point3& point, const Trajecto
   clash.records.push_back(record);
   ++clash.points;
   for (std::size_t k = 0; k < 3; ++k) {
-    clash.low[k] = std::min(clash.low[k], point[k]);
-    clash.high[k] = std::max(clash.high[k], point[k]);
+    const double coordinate = point[k] + 0.0; // of -0 and 0 the latter, so that boxes tell no order of points
+    clash.low[k] = std::min(clash.low[k], coordinate);
+    clash.high[k] = std::max(clash.high[k], coordinate);
   }
   clash.first_pose = std::min(clash.first_pose, found.first_pose[record]);
   const double distance = static_cast<double>(found.distance[record]);
@@ -120,11 +122,16 @@ std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& f
     const auto record = static_cast<std::uint32_t>(i);
     add(clashes[static_cast<std::size_t>(clusters.of[record])], record, scan.point(record), found);
   }
-  nameByPlace(clashes, cluster_distance);
+  nameClashes(clashes, cluster_distance);
+  return clashes;
+}
+
+void nameClashes(std::vector<Clash>& clashes, double cluster_distance)
+{
+  giveIds(clashes, cluster_distance);
   std::sort(clashes.begin(), clashes.end(), [](const Clash& a, const Clash& b) {
     return std::tie(a.distance, b.points, a.id) < std::tie(b.distance, a.points, b.id);
   });
-  return clashes;
 }
 
 void compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness)

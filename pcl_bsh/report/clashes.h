@@ -42,6 +42,11 @@ struct Clash {
 /// @throws std::invalid_argument for another distance, or a result without these vectors or of another scan
 std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& found, double cluster_distance);
 
+/// Gives clashes their ids and puts the most severe first, as findClashes() does: for those that were found in parts.
+/// @param clashes in the order of their smallest records, which decides nothing but which of two with one box is first
+/// @param cluster_distance finite, > 0
+void nameClashes(std::vector<Clash>& clashes, double cluster_distance);
+
 /// Tells which clashes were there before: those whose box comes within `nearness` (per axis) of an earlier one's box
 /// are persisting, and each earlier id passes on to the clash whose middle is nearest to the earlier middle, one to
 /// one, so that a clash that moves or grows across cells keeps its id. Earlier clashes that nothing comes near are

@@ -5,7 +5,6 @@
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/needed_tiles.h>
-#include <pcl_bsh/site/path_boxes.h>
 #include <pcl_bsh/site/records.h>
 #include <pcl_bsh/site/tile_visitor.h>
 
@@ -26,63 +25,18 @@ HierarchyOptions optionsOf(const SiteRequest& request)
   return options;
 }
 
-/// The tiles of which a ball is flagged, in their order.
-std::vector<std::uint32_t> tilesOf(const TileBalls& balls, const std::vector<std::uint8_t>& flags)
+/// The same where only measured places count.
+SiteRequest measured(SiteRequest request)
 {
-  std::vector<std::uint32_t> tiles;
-  for (std::size_t i = 0; i < flags.size(); ++i)
-    if (flags[i] != 0 && (tiles.empty() || tiles.back() != balls.tile(i))) tiles.push_back(balls.tile(i));
-  return tiles;
+  request.uncertainty = {};
+  return request;
 }
 
-/// Tiles that may have a point within the distance of b.
-std::vector<std::uint32_t> tilesWithin(const Site& site, const Placed& b, double distance, const SiteRequest& request)
+/// Of what two tiles say of one point of b: one that collides with a tile collides, and is free only if it is of all.
+std::uint8_t surer(std::uint8_t a, std::uint8_t b)
 {
-  const TileBalls balls(site);
-  const SphereHierarchy hierarchy(balls.view(), optionsOf(request));
-  FlagsRequest flags;
-  flags.clearance = distance;
-  flags.threads = request.threads;
-  return tilesOf(balls, pcl_bsh::collisionFlags({hierarchy}, b, flags).a);
-}
-
-/// All tiles with points where b has any, too.
-std::vector<std::uint32_t> tilesWithPoints(const Site& site, const Placed& b)
-{
-  std::vector<std::uint32_t> tiles;
-  for (std::uint32_t i = 0; i < site.tiles.size() && !b.hierarchy().empty(); ++i)
-    if (site.tiles[i].bounds) tiles.push_back(i);
-  return tiles;
-}
-
-/// The same, those first that may be nearest to b, each with a lower bound of its distance: that of its box to boxes
-/// about parts of b. Two steps of rounding are paid for by each of both.
-std::vector<std::pair<double, std::uint32_t>> tilesByDistance(const Site& site, const Placed& b)
-{
-  const CloudBoxes boxes(b.hierarchy().view());
-  std::vector<Bounds> parts;
-  for (const Bounds& part : boxes.parts()) parts.push_back(moved(part, b.pose, 0.0));
-  std::vector<std::pair<double, std::uint32_t>> tiles;
-  for (const std::uint32_t i : tilesWithPoints(site, b)) {
-    double least = infinity;
-    for (const Bounds& part : parts) least = std::min(least, leastDistance(*site.tiles[i].bounds, part));
-    // Where boxes overlap, a point may be inside a ball of b.
-    tiles.emplace_back(least > 0.0 ? least : -boxes.largestRadius(), i);
-  }
-  std::sort(tiles.begin(), tiles.end());
-  return tiles;
-}
-
-/// Tiles that the model may come near to on its way.
-std::vector<std::uint32_t> tilesAlong(const Site& site, const SphereHierarchy& model,
-                                      const std::vector<Eigen::Isometry3d>& poses, const PathReach& reach)
-{
-  const CloudBoxes boxes(model.view());
-  const PathBoxes path(boxes, poses, reach);
-  std::vector<std::uint32_t> tiles;
-  for (std::uint32_t i = 0; i < site.tiles.size(); ++i)
-    if (site.tiles[i].bounds && path.mayReach(*site.tiles[i].bounds)) tiles.push_back(i);
-  return tiles;
+  const auto collides = flagOf(Verdict::colliding);
+  return a == collides || b == collides ? collides : std::max(a, b);
 }
 
 /// Refuses what the query would refuse of the whole site, although no tile may be asked: the site's corners are.
@@ -108,6 +62,37 @@ FirstContact earliestOfAllRanks(const FirstContact& own)
   const double pose = leastOfAllRanks(static_cast<double>(own.pose));
   const bool mine = static_cast<double>(own.pose) == pose;
   return {static_cast<std::size_t>(pose), leastOfAllRanks(mine ? own.fraction : 1.0)};
+}
+
+/// What `more` says of other points of the site, too.
+void add(std::vector<PoseSummary>& poses, const std::vector<PoseSummary>& more)
+{
+  poses.resize(std::max(poses.size(), more.size()));
+  for (std::size_t k = 0; k < more.size(); ++k) {
+    poses[k].colliding = poses[k].colliding || more[k].colliding;
+    poses[k].colliding_points += more[k].colliding_points;
+    poses[k].undecided_points += more[k].undecided_points;
+    poses[k].distance = std::min(poses[k].distance, more[k].distance);
+  }
+}
+
+std::vector<PoseSummary> summedOverAllRanks(const std::vector<PoseSummary>& own)
+{
+  std::vector<double> numbers;
+  for (const PoseSummary& pose : own) {
+    numbers.insert(numbers.end(), {pose.colliding ? 1.0 : 0.0, static_cast<double>(pose.colliding_points),
+                                   static_cast<double>(pose.undecided_points), pose.distance});
+  }
+  const std::vector<double> all = gatheredFromAllRanks(numbers);
+  std::vector<PoseSummary> sum;
+  for (std::size_t begin = 0; begin < all.size(); begin += numbers.size()) {
+    std::vector<PoseSummary> part;
+    for (std::size_t i = begin; i < begin + numbers.size(); i += 4)
+      part.push_back(
+          {all[i] != 0.0, static_cast<std::size_t>(all[i + 1]), static_cast<std::size_t>(all[i + 2]), all[i + 3]});
+    add(sum, part);
+  }
+  return sum;
 }
 
 std::vector<TileCost> costsOfAllRanks(const TileVisitor& visitor)
@@ -139,7 +124,9 @@ public:
   {
     found_.needed = tiles.size();
     const auto use = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
-      ask(tile, cloud, SphereHierarchy(viewOf(cloud), optionsOf(request_)));
+      const PointsView view =
+          withUncertainty(viewOf(cloud), cloud.fields, (site_.folder / tile.file).string(), request_.uncertainty);
+      ask(tile, cloud, SphereHierarchy(view, optionsOf(request_)));
       if (request_.progress && !request_.progress(visitor_.read())) throw Cancelled();
     };
     visitor_.visit(tiles, use, go_on);
@@ -190,14 +177,22 @@ SiteAny anyCollision(const Site& site, const Placed& b, const SiteRequest& reque
   AnyRequest wanted;
   wanted.clearance = request.clearance;
   wanted.threads = request.threads;
-  bool collides = false;
+  pcl_bsh::anyCollision({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
+  requireUncertainty(site, request.uncertainty);
+  bool collides = false, is_undecided = false;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile&, const pcl::PCLPointCloud2&, const SphereHierarchy& hierarchy) {
-    collides = pcl_bsh::anyCollision({hierarchy}, b, wanted).verdict == Verdict::colliding;
+    const Verdict verdict = pcl_bsh::anyCollision({hierarchy}, b, wanted).verdict;
+    collides = verdict == Verdict::colliding;
+    is_undecided = is_undecided || verdict == Verdict::undecided;
   };
-  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request), ask,
+  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request.uncertainty), ask,
                                [&](std::size_t) { return !(collides = sumOfAllRanks(collides ? 1 : 0) > 0); });
-  if (collides) result.verdict = Verdict::colliding;
+  const bool none_is_sure = sumOfAllRanks(is_undecided ? 1 : 0) > 0;
+  if (collides)
+    result.verdict = Verdict::colliding;
+  else if (none_is_sure)
+    result.verdict = Verdict::undecided;
   return result;
 }
 
@@ -210,28 +205,41 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
   wanted.clearance = request.clearance;
   wanted.flagged = of_b ? Side::both : Side::a;
   wanted.threads = request.threads;
+  pcl_bsh::collisionFlags({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
+  requireUncertainty(site, request.uncertainty);
   if (of_b) result.b.assign(b.hierarchy().view().count, 0);
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const FlagsResult flags = pcl_bsh::collisionFlags({hierarchy}, b, wanted);
     result.colliding += flags.colliding_a;
-    for (std::size_t i = 0; i < result.b.size(); ++i) result.b[i] |= flags.b[i];
+    result.undecided += flags.undecided_a;
+    for (std::size_t i = 0; i < result.b.size(); ++i) result.b[i] = surer(result.b[i], flags.b[i]);
     if (sink) sink(tile, cloud, flags);
   };
-  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request), ask);
+  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request.uncertainty), ask);
   result.colliding = sumOfAllRanks(result.colliding);
+  result.undecided = sumOfAllRanks(result.undecided);
   if (ranks() > 1 && of_b) {
     std::vector<double> own;
     for (std::size_t i = 0; i < result.b.size(); ++i)
-      if (result.b[i] != 0) own.push_back(static_cast<double>(i));
-    for (const double i : gatheredFromAllRanks(own)) result.b[static_cast<std::size_t>(i)] = 1;
+      if (result.b[i] != 0) own.insert(own.end(), {static_cast<double>(i), static_cast<double>(result.b[i])});
+    const std::vector<double> all = gatheredFromAllRanks(own);
+    for (std::size_t k = 0; k < all.size(); k += 2) {
+      std::uint8_t& flag = result.b[static_cast<std::size_t>(all[k])];
+      flag = surer(flag, static_cast<std::uint8_t>(all[k + 1]));
+    }
   }
-  result.colliding_b = static_cast<std::uint64_t>(std::count(result.b.begin(), result.b.end(), 1));
+  const auto counted = [&](Verdict verdict) {
+    return static_cast<std::uint64_t>(std::count(result.b.begin(), result.b.end(), flagOf(verdict)));
+  };
+  result.colliding_b = counted(Verdict::colliding);
+  result.undecided_b = counted(Verdict::undecided);
   return result;
 }
 
-SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request)
+SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& asked)
 {
+  const SiteRequest request = measured(asked);
   DistanceRequest wanted;
   wanted.threads = request.threads;
   pcl_bsh::closestPair({SphereHierarchy(PointsView{})}, b, wanted); // refuses a pose that no tile may be asked about
@@ -276,9 +284,10 @@ SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& re
   return result;
 }
 
-SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& request,
+SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& asked,
                              const DistancesSink& sink)
 {
+  const SiteRequest request = measured(asked);
   SiteDistances result;
   PointDistancesRequest wanted;
   wanted.max_distance = max_distance;
@@ -294,7 +303,7 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
   };
   std::vector<std::uint32_t> tiles;
   if (max_distance < infinity)
-    tiles = tilesWithin(site, b, max_distance, request);
+    tiles = tilesWithin(site, b, max_distance);
   else
     tiles = tilesWithPoints(site, b);
   result.tiles = inquiry.visit(tiles, ask);
@@ -313,7 +322,9 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   wanted.distances = wanted.first_poses = wanted.closest_poses = true;
   wanted.swept = request.swept;
   wanted.pivot = request.pivot;
+  wanted.pose_summaries = request.pose_summaries;
   refuse(site, model, poses, wanted);
+  requireUncertainty(site, request.uncertainty);
 
   PathReach reach;
   // Colliding is what comes within clearance + tolerance.
@@ -321,13 +332,17 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   reach.moves = request.swept.has_value();
   reach.pivot = request.pivot;
   SitePassage result;
+  if (request.pose_summaries) result.poses.resize(poses.size());
   double least = infinity, first = infinity;
-  FirstContact contact = no_contact;
+  FirstContact contact = no_contact, certain = no_contact;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
     result.colliding += found.colliding;
+    result.undecided += found.undecided;
+    add(result.poses, found.poses);
     if (found.first_contact) contact = earlier(contact, *found.first_contact);
+    if (found.certain_contact) certain = earlier(certain, *found.certain_contact);
     for (std::size_t i = 0; i < found.flags.size(); ++i) {
       if (found.flags[i] == 0) continue;
       least = std::min(least, double{found.distance[i]});
@@ -335,15 +350,18 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
     }
     if (sink) sink(tile, cloud, found);
   };
-  result.tiles = inquiry.visit(tilesAlong(site, model, poses, reach), ask);
+  result.tiles = inquiry.visit(tilesAlong(site, model, poses, reach, request.uncertainty), ask);
   result.colliding = sumOfAllRanks(result.colliding);
+  result.undecided = sumOfAllRanks(result.undecided);
+  if (request.pose_summaries) result.poses = summedOverAllRanks(result.poses);
   least = leastOfAllRanks(least);
   first = leastOfAllRanks(first);
-  if (result.colliding > 0) {
+  if (result.colliding + result.undecided > 0) {
     result.distance = static_cast<float>(least);
     result.first_pose = static_cast<std::int32_t>(first);
     if (request.swept) result.first_contact = earliestOfAllRanks(contact);
   }
+  if (sumOfAllRanks(certain.pose == no_contact.pose ? 0 : 1) > 0) result.certain_contact = earliestOfAllRanks(certain);
   return result;
 }
 

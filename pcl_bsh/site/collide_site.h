@@ -8,16 +8,17 @@
 //   sites::SiteClosest nearest = sites::closestPair(valley, {robot, T_valley_robot}, request);
 //
 // Only tiles that can matter are read, one at a time. Which, their boxes tell: compared with boxes about parts of the
-// cloud, along its path if it moves; or covered by balls, about which the same question is asked first.
+// cloud, along its path if it moves.
 //
 // In an MPI job (mpirun -n 4 ...), all ranks call the same function with the same input: the tiles are dealt to them,
-// and each gets the whole answer. Sinks are called on the rank that has the tile. Points have no uncertainties here,
-// and answers are exact.
+// and each gets the whole answer. Sinks are called on the rank that has the tile. Where points have uncertainties,
+// verdicts are as those of the queries: b's are of its view, the site's are asked for. Answers are exact.
 #pragma once
 
 #include <pcl_bsh/collision/collision_flags.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/site/site.h>
@@ -37,6 +38,8 @@ struct SiteRequest {
   double clearance = 0.0;      ///< finite, >= 0; inclusive
   std::optional<double> swept; ///< of collideAlong(): the motion between poses too, to this tolerance, as there
   Point3 pivot = {0, 0, 0};    ///< of that motion, as there
+  Uncertainty uncertainty;     ///< of the site's points: for verdicts, as in PointsView. A field is one of the site's
+  bool pose_summaries = false; ///< of collideAlong(): what collides at each pose, as there
   unsigned threads = 1;        ///< of each process; 0: all of the machine's
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
   /// Called now and then by each rank, with the tiles that it has done. False: stop, the query throws Cancelled.
@@ -72,15 +75,17 @@ struct SitePoint {
 
 /// Whether anything of a site collides.
 struct SiteAny {
-  Verdict verdict = Verdict::free; ///< free or colliding
+  Verdict verdict = Verdict::free; ///< undecided only where points are uncertain
   TilesRead tiles;
 };
 
 /// How much of a site collides.
 struct SiteFlags {
   std::uint64_t colliding = 0; ///< points of the site
-  std::vector<std::uint8_t> b; ///< one per record of b's view, where asked for: 1 = collides
+  std::uint64_t undecided = 0;
+  std::vector<std::uint8_t> b; ///< one per record of b's view, where asked for: as FlagsResult has them
   std::uint64_t colliding_b = 0;
+  std::uint64_t undecided_b = 0;
   TilesRead tiles;
 };
 
@@ -103,10 +108,14 @@ struct SiteDistances {
 /// What another cloud meets in a site along its path.
 struct SitePassage {
   std::uint64_t colliding = 0; ///< points of the site that collide at any pose
-  /// The smallest distance of colliding points and the first pose at which any collides; NaN and -1: none does.
+  std::uint64_t undecided = 0; ///< that may, where points are uncertain
+  /// The smallest distance of points that collide or are undecided, and the first pose at which any may; NaN and -1:
+  /// none does.
   float distance = std::numeric_limits<float>::quiet_NaN();
   std::int32_t first_pose = -1;
-  std::optional<FirstContact> first_contact; ///< of swept motion, where anything collides
+  std::optional<FirstContact> first_contact;   ///< of swept motion, where anything may collide
+  std::optional<FirstContact> certain_contact; ///< the same of what collides for certain, where points are uncertain
+  std::vector<PoseSummary> poses;              ///< one per pose, where asked for
   TilesRead tiles;
 };
 
@@ -133,7 +142,7 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
                          const FlagsSink& sink = nullptr);
 
 /// The smallest distance. Tiles come in the order of their lower bounds, and end where these exceed the smallest
-/// distance of any rank. The clearance is not used.
+/// distance of any rank. The clearance and uncertainties are not used.
 SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request);
 
 /// The distance of each point to b, up to max_distance; those of tiles that are not read are farther. The clearance is

@@ -1,62 +1,95 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/site/needed_tiles.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 
 namespace pcl_bsh::sites {
 
 namespace {
 
-constexpr double parts_of_longest = 8; ///< a box is cut into cubes, about so many along its longest side
+/// Boxes about parts of a cloud where it stands. Two steps of rounding are paid for by each of both.
+std::vector<Bounds> placedParts(const CloudBoxes& boxes, const Eigen::Isometry3d& pose)
+{
+  std::vector<Bounds> parts;
+  for (const Bounds& part : boxes.parts()) parts.push_back(moved(part, pose, 0.0));
+  return parts;
+}
+
+/// The box about wherever the points of a tile may truly be. @pre it has one
+Bounds trueBounds(const Tile& tile, const Uncertainty& uncertainty)
+{
+  double length = uncertainty.length;
+  if (!uncertainty.field.empty()) {
+    constexpr double rounding_up = 1.0 + 1e-6; // of a float
+    const auto greatest = tile.greatest.find(uncertainty.field);
+    length = greatest == tile.greatest.end() ? 0.0 : std::max(0.0, greatest->second * uncertainty.sigmas * rounding_up);
+  }
+  return length == 0.0 ? *tile.bounds : moved(*tile.bounds, Eigen::Isometry3d::Identity(), length);
+}
 
 } // namespace
 
-TileBalls::TileBalls(const Site& site)
+void requireUncertainty(const Site& site, const Uncertainty& uncertainty)
 {
+  withUncertainty(PointsView{}, site.fields, site.folder.string(), uncertainty);
+  if (uncertainty.field.empty()) return;
+  for (const Tile& tile : site.tiles) {
+    if (!tile.bounds || tile.greatest.count(uncertainty.field) != 0) continue;
+    throw files::FileError(site.folder / site_file_name,
+                           "does not say how large '" + uncertainty.field + "' is in " + tile.file,
+                           "make the site again, of clouds that have it as floating-point numbers; or give a length");
+  }
+}
+
+std::vector<std::uint32_t> tilesWithin(const Site& site, const Placed& b, double distance,
+                                       const Uncertainty& uncertainty)
+{
+  const std::vector<Bounds> parts = placedParts(CloudBoxes(b.hierarchy().view()), b.pose);
+  std::vector<std::uint32_t> tiles;
+  for (std::uint32_t i = 0; i < site.tiles.size(); ++i) {
+    if (!site.tiles[i].bounds) continue;
+    const Bounds tile = trueBounds(site.tiles[i], uncertainty);
+    const auto is_near = [&](const Bounds& part) { return leastDistance(tile, part) <= distance; };
+    if (std::any_of(parts.begin(), parts.end(), is_near)) tiles.push_back(i);
+  }
+  return tiles;
+}
+
+std::vector<std::uint32_t> tilesWithPoints(const Site& site, const Placed& b)
+{
+  std::vector<std::uint32_t> tiles;
+  for (std::uint32_t i = 0; i < site.tiles.size() && !b.hierarchy().empty(); ++i)
+    if (site.tiles[i].bounds) tiles.push_back(i);
+  return tiles;
+}
+
+std::vector<std::pair<double, std::uint32_t>> tilesByDistance(const Site& site, const Placed& b)
+{
+  const CloudBoxes boxes(b.hierarchy().view());
+  const std::vector<Bounds> parts = placedParts(boxes, b.pose);
+  std::vector<std::pair<double, std::uint32_t>> tiles;
+  for (const std::uint32_t i : tilesWithPoints(site, b)) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Bounds& part : parts) least = std::min(least, leastDistance(*site.tiles[i].bounds, part));
+    // Where boxes overlap, a point may be inside a ball of b.
+    tiles.emplace_back(least > 0.0 ? least : -boxes.largestRadius(), i);
+  }
+  std::sort(tiles.begin(), tiles.end());
+  return tiles;
+}
+
+std::vector<std::uint32_t> tilesAlong(const Site& site, const SphereHierarchy& model,
+                                      const std::vector<Eigen::Isometry3d>& poses, const PathReach& reach,
+                                      const Uncertainty& uncertainty)
+{
+  const CloudBoxes boxes(model.view());
+  const PathBoxes path(boxes, poses, reach);
+  std::vector<std::uint32_t> tiles;
   for (std::uint32_t i = 0; i < site.tiles.size(); ++i)
-    if (site.tiles[i].bounds) cover(*site.tiles[i].bounds, i);
-}
-
-/// Cuts the box into parts that are nearly cubes; a ball about each reaches its corners. Computed corners are off by a
-/// few units in the last place of the largest coordinate, for which radii are larger.
-void TileBalls::cover(const Bounds& bounds, std::uint32_t tile)
-{
-  Point3 side;
-  double longest = 0.0, farthest = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    side[k] = bounds.high[k] - bounds.low[k];
-    longest = std::max(longest, side[k]);
-    farthest = std::max({farthest, std::abs(bounds.low[k]), std::abs(bounds.high[k])});
-  }
-  std::array<int, 3> parts = {1, 1, 1};
-  double square = 0.0;
-  const bool divides = std::isfinite(longest) && longest > 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (divides) parts[k] = std::max(1, static_cast<int>(std::ceil(parts_of_longest * side[k] / longest)));
-    side[k] /= parts[k];
-    square += side[k] / 2 * (side[k] / 2);
-  }
-  const double radius = std::sqrt(square) * (1.0 + 1e-6) + farthest * 1e-14 + 1e-300;
-  const float reach = std::nextafter(static_cast<float>(radius), std::numeric_limits<float>::infinity());
-  for (int x = 0; x < parts[0]; ++x)
-    for (int y = 0; y < parts[1]; ++y)
-      for (int z = 0; z < parts[2]; ++z) {
-        const Point3 center = {bounds.low[0] + (x + 0.5) * side[0], bounds.low[1] + (y + 0.5) * side[1],
-                               bounds.low[2] + (z + 0.5) * side[2]};
-        centers_.push_back(center);
-        radii_.push_back(reach);
-        tiles_.push_back(tile);
-      }
-}
-
-PointsView TileBalls::view() const
-{
-  PointsView view = viewOf(centers_.empty() ? nullptr : centers_.front().data(), centers_.size());
-  view.radii = radii_.data();
-  return view;
+    if (site.tiles[i].bounds && path.mayReach(trueBounds(site.tiles[i], uncertainty))) tiles.push_back(i);
+  return tiles;
 }
 
 } // namespace pcl_bsh::sites

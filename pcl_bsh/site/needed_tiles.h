@@ -1,33 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The boxes of a site's tiles as balls that hold them, so that hierarchies answer for them.
+// Which tiles of a site can matter to a question, told by boxes alone: a tile that is left out cannot.
 #pragma once
 
-#include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/site/path_boxes.h>
 #include <pcl_bsh/site/site.h>
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh::sites {
 
-/// Some balls for each tile that has finite points: each point of the tile lies in one of them.
-class TileBalls {
-public:
-  explicit TileBalls(const Site& site);
+/// Refuses an uncertainty that the points of the site cannot have, although no tile may be read.
+/// @throws std::invalid_argument as withUncertainty() does. @throws files::FileError for a field of which site.json
+/// does
+///   not say how large its values are
+void requireUncertainty(const Site& site, const Uncertainty& uncertainty);
 
-  /// The balls as points with radii.
-  PointsView view() const;
+/// Tiles that may have a point within the distance of b, wherever points truly are.
+std::vector<std::uint32_t> tilesWithin(const Site& site, const Placed& b, double distance,
+                                       const Uncertainty& uncertainty = {});
 
-  /// The tile of a ball.
-  std::uint32_t tile(std::size_t ball) const { return tiles_[ball]; }
-  std::size_t size() const { return tiles_.size(); }
+/// All tiles with points where b has any, too.
+std::vector<std::uint32_t> tilesWithPoints(const Site& site, const Placed& b);
 
-private:
-  void cover(const Bounds& bounds, std::uint32_t tile);
+/// The same, those first that may be nearest to b, each with a lower bound of its distance.
+std::vector<std::pair<double, std::uint32_t>> tilesByDistance(const Site& site, const Placed& b);
 
-  std::vector<Point3> centers_;
-  std::vector<float> radii_;
-  std::vector<std::uint32_t> tiles_;
-};
+/// Tiles that the model may come near to on its way, wherever points truly are.
+std::vector<std::uint32_t> tilesAlong(const Site& site, const SphereHierarchy& model,
+                                      const std::vector<Eigen::Isometry3d>& poses, const PathReach& reach,
+                                      const Uncertainty& uncertainty);
 
 } // namespace pcl_bsh::sites

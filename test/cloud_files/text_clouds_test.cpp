@@ -82,7 +82,7 @@ TEST(TextClouds, CommentsMayNameTheColumns)
 
 TEST(TextClouds, OnlyBytesAreColours)
 {
-  for (const char* odd : {"256", "0.5", "-1", "1e2"}) {
+  for (const char* odd : {"256", "0.5", "-1", "1e3"}) {
     const std::string file = "x y z r g b\n1 2 3 255 0 0\n1 2 3 0 " + std::string(odd) + " 0\n";
     const pcl::PCLPointCloud2 cloud = parseColumns(file);
     EXPECT_EQ(namesOf(cloud), "x y z r g b") << odd;
@@ -99,6 +99,11 @@ TEST(TextClouds, AFileOfNamesAloneIsAnEmptyCloud)
 {
   EXPECT_EQ(parseColumns("x y z r g b\n").width, 0U);
   EXPECT_EQ(namesOf(parseColumns("x y z r g b\n")), "x y z rgb");
+
+  const auto rewritten = parseColumns("x,y,z,r,g,b\n1,2,3,200.,1e2,50.0\n1,2,3,0.0,0,00\n");
+  EXPECT_EQ(namesOf(rewritten), "x y z rgb") << "whole numbers, however they are written";
+  EXPECT_EQ(colourOf(rewritten, 0), 0xc86432U);
+  EXPECT_EQ(namesOf(parseColumns("x,y,z,r,g,b\n1,2,3,200,100,0.5\n")), "x y z r g b");
   EXPECT_EQ(namesOf(parseColumns("//X,Y,Z\n")), "x y z");
   EXPECT_EQ(parseColumns("//X,Y,Z\n").width, 0U);
 }

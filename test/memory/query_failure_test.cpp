@@ -8,6 +8,7 @@
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/report/clashes.h>
+#include <pcl_bsh/surface/surface_cover.h>
 #include <pcl_bsh/trajectory/collide_on_motions.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -283,6 +284,35 @@ TEST(AllocationFailure, OfPointDistancesLeavesAUsableResult)
     const SymmetricDistances found = symmetricDistances(pair->placedA(), pair->placedB());
     return std::tuple(found.a.nearest, found.b.nearest, found.hausdorff_pair);
   });
+}
+
+TEST(AllocationFailure, OfTheHausdorffDistance)
+{
+  for (const unsigned threads : {1u, 2u}) {
+    HausdorffRequest asked;
+    asked.threads = threads;
+    failEachAllocation(freshPair, [&](const auto& pair) {
+      const HausdorffDistance found = hausdorffDistance(pair->placedA(), pair->placedB(), asked);
+      return std::tuple(found.distance, found.pair);
+    });
+  }
+}
+
+TEST(AllocationFailure, OfACoveredSurface)
+{
+  const Cloud corners = richCloud(4, 30);
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::uint32_t i = 0; i + 2 < 30; i += 3) triangles.push_back({i, i + 1, i + 2});
+  for (const bool apart : {false, true}) {
+    SurfaceRequest asked;
+    asked.tolerance = 0.05;
+    asked.triangles_apart = apart;
+    failEachAllocation([] { return 0; },
+                       [&](int) {
+                         const SurfaceCover cover = coverSurface(corners.view(), triangles, asked);
+                         return std::tuple(cover.centers, cover.radii, cover.triangles);
+                       });
+  }
 }
 
 TEST(AllocationFailure, OfClustersClashesAndSpacing)

@@ -62,6 +62,21 @@ TEST(Clashes, GroupsAndSortsBySeverity)
   EXPECT_EQ(three.closest_pose, 7);
 }
 
+/// Of -0 and 0 a box has the latter, whichever comes first.
+TEST(Clashes, BoxesAreTheSameWhateverTheOrder)
+{
+  std::vector<Scan::Point> points = {{-0.0f, 0.0f, 1, 0.1f}, {0.0f, -0.0f, 1, 0.1f}};
+  for (int order = 0; order < 2; ++order) {
+    const std::vector<Clash> clashes = Scan(points).clashes(1.0);
+    ASSERT_EQ(clashes.size(), 1u);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_FALSE(std::signbit(clashes[0].low[k]));
+      EXPECT_FALSE(std::signbit(clashes[0].high[k]));
+    }
+    std::swap(points[0], points[1]);
+  }
+}
+
 TEST(Clashes, IdsTellThePlaceWhateverTheOrder)
 {
   std::vector<Scan::Point> points = {{1, 1, 1, 0.1f}, {-1, 1, 1, 0.2f}, {100, 0, 50, 0.3f}, {101, 2, 50, 0.4f}};

@@ -4,8 +4,8 @@
 #include "cli/command_line.h"
 #include "cli/path.h"
 #include "cli/pose.h"
+#include "cli/uncertainty.h"
 
-#include <pcl_bsh/filters/text_files/parse_number.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 
 #include <cmath>
@@ -89,43 +89,6 @@ struct DistanceTexts {
     options.distances->most = most.value_or(options.distances->most);
     options.distances->page = page;
     options.distances->unit = unit.value_or("");
-  }
-};
-
-/// As the options of uncertainties are written.
-struct UncertaintyTexts {
-  std::string input = "0", obstacle = "0";
-  std::optional<double> sigmas;
-
-  void addTo(CLI::App& app)
-  {
-    app.add_option("--uncertainty", input,
-                   "how far INPUT's points may truly be from where they were measured: a\n"
-                   "length, or the field that holds each point's sigma. What collides only\n"
-                   "perhaps gets 2 in the field 'collision'; distances are those of the\n"
-                   "measured places (default: 0)")
-        ->type_name("U");
-    app.add_option("--obstacle-uncertainty", obstacle, "the same for OBSTACLE's points (default: 0)")->type_name("U");
-    app.add_option("--sigmas", sigmas, "by how many sigmas a point may be off, where U is a field (default: 1)")
-        ->type_name("K")
-        ->transform(number<double>("give a number >= 0", [](double k) { return k >= 0 && std::isfinite(k); }));
-  }
-
-  Uncertainty uncertainty(const char* option, const std::string& text) const
-  {
-    if (!io::isNumber(text) && !io::looksLikeNumber(text)) return {text, sigmas.value_or(1.0)};
-    const double length = io::isNumber(text) ? io::parseNumber<double>(text) : -1.0;
-    if (!(length >= 0.0 && std::isfinite(length)))
-      throw UsageError(std::string(option) + ": '" + text + "': give a finite length >= 0, or the name of a field");
-    return length;
-  }
-
-  void read(CollideOptions& options) const
-  {
-    options.input_uncertainty = uncertainty("--uncertainty", input);
-    options.obstacle_uncertainty = uncertainty("--obstacle-uncertainty", obstacle);
-    if (sigmas && options.input_uncertainty.field.empty() && options.obstacle_uncertainty.field.empty())
-      throw UsageError("--sigmas: no uncertainty is a field: give the length itself");
   }
 };
 
@@ -214,8 +177,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("HOW");
   DistanceTexts distances;
   distances.addTo(app);
-  UncertaintyTexts uncertainties;
-  uncertainties.addTo(app);
+  UncertaintyOptions uncertainties;
+  uncertainties.addTo(app, "INPUT");
   addSurfaceOptions(app, options.surface);
   addDensityOptions(app, options);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
@@ -238,7 +201,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   if (!understood(app, collide_program, argc, argv)) return std::nullopt;
 
   options.accuracy = parseAccuracy(accuracy);
-  uncertainties.read(options);
+  uncertainties.read(options.input_uncertainty, options.obstacle_uncertainty);
   path.requireConsistent(!pose.empty());
   if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
   options.trajectory = path.file;

@@ -13,6 +13,7 @@
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 
+#include "clashes.h"
 #include "output.h"
 #include "plan.h"
 
@@ -63,12 +64,14 @@ void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun
 }
 
 /// The answer, the same on all ranks.
-Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& options, SiteOutput& out, MeasuredRun& run)
+Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& options, SiteOutput& out,
+         SiteClashList& clashes, MeasuredRun& run)
 {
   sites::SiteRequest request;
   request.clearance = options.clearance;
   request.threads = options.threads;
   request.memory = options.memory;
+  request.uncertainty = options.uncertainty;
   Json report = {{"site", options.site.string()}, {"obstacle", options.obstacle.string()}, {"points", site.points}};
   const bool has_clearance = options.question != SiteQuestion::closest && options.question != SiteQuestion::distances;
   if (has_clearance) report["clearance"] = options.clearance;
@@ -76,13 +79,16 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
   case SiteQuestion::any: {
     const sites::SiteAny found = sites::anyCollision(site, obstacle, request);
     report["collides"] = found.verdict == Verdict::colliding;
+    report["undecided"] = found.verdict == Verdict::undecided;
     put(report, found.tiles, run);
     break;
   }
   case SiteQuestion::flags: {
     const sites::SiteFlags found = sites::collisionFlags(site, obstacle, Side::both, request, out.flags());
     report["colliding"] = found.colliding;
+    report["undecided"] = found.undecided;
     report["colliding_of_obstacle"] = found.colliding_b;
+    report["undecided_of_obstacle"] = found.undecided_b;
     put(report, found.tiles, run);
     break;
   }
@@ -106,16 +112,23 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
     break;
   }
   case SiteQuestion::path: {
-    const auto poses = io::readPoses(options.trajectory);
+    const auto poses = options.trajectory.empty() ? std::vector{options.pose} : io::readPoses(options.trajectory);
     request.swept = options.swept;
-    const sites::SitePassage found = sites::collideAlong(site, obstacle.hierarchy(), poses, request, out.passage());
+    request.pose_summaries = clashes.isWanted() && !options.swept;
+    const sites::SitePassage found =
+        sites::collideAlong(site, obstacle.hierarchy(), poses, request, clashes.after(out.passage()));
     report["poses"] = poses.size();
     report["colliding"] = found.colliding;
+    report["undecided"] = found.undecided;
     report["distance"] = orNull(double{found.distance});
     report["first_pose"] = found.first_pose < 0 ? Json(nullptr) : Json(found.first_pose);
     if (options.swept) report["swept"] = *options.swept;
     if (found.first_contact)
       report["first_contact"] = {{"pose", found.first_contact->pose}, {"fraction", found.first_contact->fraction}};
+    if (found.certain_contact)
+      report["certain_contact"] = {{"pose", found.certain_contact->pose},
+                                   {"fraction", found.certain_contact->fraction}};
+    if (clashes.isWanted()) report["clashes"] = clashes.finish(obstacle.hierarchy(), poses, found);
     put(report, found.tiles, run);
     break;
   }
@@ -128,24 +141,29 @@ int answer(const SiteOptions& options)
   const auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   const bool tells = sites::rankHere() == 0;
+  options.files.requireApart();
   if (tells) warn(site_program, options.warnings);
   const bool reports = !options.report.empty();
   if (tells && reports) files::requireWritable(options.report);
   const sites::Site site = sites::readSite(options.site);
+  SiteClashList clashes(site, options);
+  if (tells) warn(site_program, clashes.warnings());
   const pcl::PCLPointCloud2 cloud = io::readCloud(options.obstacle);
   HierarchyOptions building;
   building.threads = options.threads;
-  const SphereHierarchy hierarchy(viewOf(cloud), building);
+  const SphereHierarchy hierarchy(
+      withUncertainty(viewOf(cloud), cloud.fields, options.obstacle.string(), options.obstacle_uncertainty), building);
   SiteOutput output(site, options);
   MeasuredRun run;
-  Json report = ask(site, {hierarchy, options.pose}, options, output, run);
+  Json report = ask(site, {hierarchy, options.pose}, options, output, clashes, run);
   run.seconds = seconds();
   output.finish();
   run.copying = seconds() - run.seconds;
   if (!options.out.empty()) report["out"] = options.out.string();
   if (!tells) return 0;
-  if (!options.out.empty() && options.report != files::standard_stream)
-    std::cout << "wrote what was found of each point to " << options.out.string() << '\n';
+  std::ostream& summary = options.files.summary();
+  if (clashes.isWanted()) summary << report["clashes"] << " clashes\n";
+  if (!options.out.empty()) summary << "wrote what was found of each point to " << options.out.string() << '\n';
   if (!reports) return 0;
   run.ranks = sites::ranks();
   if (!options.plan.empty()) putPlan(report, options.plan, run);

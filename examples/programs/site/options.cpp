@@ -3,8 +3,12 @@
 
 #include "cli/command_line.h"
 #include "cli/pose.h"
+#include "cli/uncertainty.h"
+
+#include <pcl_bsh/site/site.h>
 
 #include <array>
+#include <cmath>
 #include <string>
 
 namespace pcl_bsh::cli {
@@ -24,7 +28,9 @@ With --out: the fields of `collide` are collision (1 collides, 0 free), with --t
 first_pose and closest_pose (-1: none), with --distances distance alone.
 Example: where does a machine come within 5 cm of it on its way? On one process, or on four:
   pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
-  mpirun -n 4 pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json)";
+  mpirun -n 4 pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
+Example: the same as a page, place by place
+  pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html)";
 
 /// For transform(): a number with K, M or G behind it, each `unit` times the last.
 CLI::Validator amount(std::uint64_t unit, std::uint64_t least, std::string remedy)
@@ -61,6 +67,7 @@ void addMemory(CLI::App& app, SiteOptions& options)
 struct CollideTexts {
   bool any = false, closest = false, distances = false;
   std::string pose;
+  UncertaintyOptions uncertainties;
   CLI::Option *clearance = nullptr, *max_distance = nullptr;
 
   void addTo(CLI::App& app, SiteOptions& options)
@@ -81,12 +88,24 @@ struct CollideTexts {
     app.add_option("--swept", options.swept, "of --trajectory: the motion between poses counts, to this tolerance")
         ->type_name("TOL")
         ->transform(number<double>("give a length > 0", [](double d) { return d > 0; }));
+    app.add_option("--clashes", options.clashes,
+                   "list of the places that collide, to .json, .csv or .html; may be given more than once")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
+    app.add_option("--cluster-distance", options.cluster_distance,
+                   "colliding points no farther apart belong to one clash (default: the greater of D and four spacings "
+                   "of SITE's tiles, rounded up to a power of two)")
+        ->type_name("L")
+        ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
+    app.add_option("--previous", options.previous, "earlier .json list: clashes are new, persisting or resolved")
+        ->type_name("FILE");
     app.add_flag("--any", any, "only whether any point collides");
     app.add_flag("--closest", closest, "the smallest distance, and the points that have it");
     app.add_flag("--distances", distances, "how many points have a distance, and the greatest");
     max_distance = app.add_option("--max-distance", options.max_distance, "of --distances: greater ones do not count")
                        ->type_name("M")
                        ->transform(number<double>("give a length >= 0", [](double d) { return d >= 0; }));
+    uncertainties.addTo(app, "SITE");
     app.add_option("--plan", options.plan,
                    "numbers of ranks, as 64,1024: by what the tiles have cost, the report says how long the same "
                    "question takes on so many, and what limits it")
@@ -104,15 +123,25 @@ struct CollideTexts {
     const bool moves = !options.trajectory.empty();
     if (any + closest + distances + moves > 1)
       throw UsageError("--any, --closest, --distances, --trajectory: more than one is given: give one");
-    options.question = any         ? SiteQuestion::any
-                       : closest   ? SiteQuestion::closest
-                       : distances ? SiteQuestion::distances
-                       : moves     ? SiteQuestion::path
-                                   : SiteQuestion::flags;
+    const bool lists = !options.clashes.empty();
+    options.question = any              ? SiteQuestion::any
+                       : closest        ? SiteQuestion::closest
+                       : distances      ? SiteQuestion::distances
+                       : moves || lists ? SiteQuestion::path
+                                        : SiteQuestion::flags;
     const bool needs_clearance = !closest && !distances;
+    uncertainties.read(options.uncertainty, options.obstacle_uncertainty);
+    if (uncertainties.isGiven() && !needs_clearance)
+      throw UsageError("--uncertainty: distances are those of the measured places: leave it out");
     if (needs_clearance && clearance->count() == 0) throw UsageError("--clearance: is missing: give a length");
-    if (options.report.empty() && options.out.empty())
-      throw UsageError("--report, --out: none is given: give --report, --out or both");
+    if (options.report.empty() && options.out.empty() && !lists)
+      throw UsageError("--report, --out, --clashes: none is given: give one or more of them");
+    if (lists && (any || closest || distances))
+      throw UsageError("--clashes: are of flags or a path: leave out --any, --closest and --distances");
+    if (!lists && (options.cluster_distance > 0 || options.previous)) {
+      throw UsageError(std::string(options.previous ? "--previous" : "--cluster-distance") +
+                       ": no clash report is written: give --clashes FILE");
+    }
     if (!options.plan.empty() && options.report.empty())
       throw UsageError("--plan: is told in the report: add --report");
     if (!options.out.empty() && (any || closest))
@@ -121,6 +150,11 @@ struct CollideTexts {
     if (options.swept && !moves) throw UsageError("--swept: goes with --trajectory: add it");
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
     if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
+    CommandFiles& files = options.files;
+    files.reads("SITE", options.site / sites::site_file_name).reads("OBSTACLE", options.obstacle);
+    files.readsPose("--pose", pose).reads("--trajectory", options.trajectory);
+    files.reads("--previous", options.previous.value_or("")).writes("--report", options.report);
+    for (const std::filesystem::path& list : options.clashes) files.writes("--clashes", list, "--previous"); // updated
   }
 };
 #endif

@@ -2,6 +2,10 @@
 // The command line of pcl_bsh_site.
 #pragma once
 
+#include "cli/used_files.h"
+
+#include <pcl_bsh/filters/uncertainty.h>
+
 #include <Eigen/Geometry>
 
 #include <cstdint>
@@ -32,13 +36,18 @@ struct SiteOptions {
   // of `collide`
   SiteQuestion question = SiteQuestion::flags;
   std::filesystem::path obstacle, trajectory, report;
+  std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
+  double cluster_distance = 0;                ///< 0: from clearance and spacing
+  std::optional<std::filesystem::path> previous;
   double clearance = 0.0;
+  Uncertainty uncertainty, obstacle_uncertainty;
   std::optional<double> swept;
   double max_distance = std::numeric_limits<double>::infinity();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   unsigned threads = 1;
   std::vector<unsigned> plan; ///< numbers of ranks whose time is predicted
   std::vector<std::string> warnings;
+  CommandFiles files; ///< that `collide` reads and writes
 };
 
 /// The options, checked; none when only help was asked for. @throws UsageError

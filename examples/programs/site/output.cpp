@@ -14,18 +14,19 @@ namespace {
 using Type = pcl::PCLPointField;
 
 /// The fields that each question answers with, as those of pcl_bsh_collide.
-std::vector<sites::ResultField> resultFields(SiteQuestion question)
+std::vector<sites::ResultField> resultFields(const SiteOptions& options)
 {
   const sites::ResultField collision = {collision_field_name, Type::UINT8, 0.0},
                            distance = {distance_field_name, Type::FLOAT32, std::numeric_limits<double>::quiet_NaN()},
                            first = {first_pose_field_name, Type::INT32, -1.0},
                            closest = {closest_pose_field_name, Type::INT32, -1.0};
-  switch (question) {
+  switch (options.question) {
   case SiteQuestion::flags:
     return {collision};
   case SiteQuestion::distances:
     return {distance};
   case SiteQuestion::path:
+    if (options.trajectory.empty()) return {collision};
     return {collision, distance, first, closest};
   default:
     return {};
@@ -34,9 +35,9 @@ std::vector<sites::ResultField> resultFields(SiteQuestion question)
 
 } // namespace
 
-SiteOutput::SiteOutput(const sites::Site& site, const SiteOptions& options)
+SiteOutput::SiteOutput(const sites::Site& site, const SiteOptions& options) : moves_(!options.trajectory.empty())
 {
-  if (!options.out.empty()) out_.emplace(site, options.out, resultFields(options.question));
+  if (!options.out.empty()) out_.emplace(site, options.out, resultFields(options));
 }
 
 sites::FlagsSink SiteOutput::flags()
@@ -61,8 +62,10 @@ sites::PassageSink SiteOutput::passage()
 {
   if (!out_) return nullptr;
   return [this](const sites::Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found) {
-    out_->write(tile, cloud,
-                {found.flags.data(), found.distance.data(), found.first_pose.data(), found.closest_pose.data()});
+    std::vector<const void*> columns = {found.flags.data()};
+    if (moves_)
+      columns.insert(columns.end(), {found.distance.data(), found.first_pose.data(), found.closest_pose.data()});
+    out_->write(tile, cloud, columns);
   };
 }
 

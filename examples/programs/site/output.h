@@ -25,6 +25,7 @@ public:
   void finish();
 
 private:
+  bool moves_;
   std::optional<sites::ResultSite> out_;
 };
 

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifdef PCL_BSH_SITE_QUERIES
+#include "clashes.h"
+
+#include "cli/program.h"
+
+#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/files/replace_file.h>
+
+#include <utility>
+
+namespace pcl_bsh::cli {
+
+namespace {
+
+void requireClashFile(const std::filesystem::path& list)
+{
+  try {
+    io::requireClashFormat(list);
+  }
+  catch (const files::FileError& error) {
+    throw UsageError(std::string("--clashes: ") + error.what());
+  }
+  files::requireWritable(list);
+}
+
+} // namespace
+
+SiteClashList::SiteClashList(const sites::Site& site, const SiteOptions& options) : site_(site), options_(options)
+{
+  if (options.clashes.empty()) return;
+  for (const std::filesystem::path& list : options.clashes) requireClashFile(list);
+  Spacing spacing;
+  spacing.median = sites::spacingOf(site);
+  distance_ =
+      options.cluster_distance > 0 ? options.cluster_distance : io::clusterDistanceFor(options.clearance, spacing);
+  finder_.emplace(site, distance_);
+  if (!options.previous) return;
+  const io::ClashList list = io::readClashes(*options.previous);
+  warnings_ =
+      io::requireComparable(*options.previous, list,
+                            {options.site.string(), options.obstacle.string(), options.clearance, options.swept, {}});
+  earlier_ = list.clashes;
+}
+
+sites::PassageSink SiteClashList::after(sites::PassageSink next)
+{
+  if (!finder_) return next;
+  return [this, next = std::move(next)](const sites::Tile& tile, const pcl::PCLPointCloud2& cloud,
+                                        const TrajectoryResult& found) {
+    finder_->add(tile, cloud, found);
+    if (next) next(tile, cloud, found);
+  };
+}
+
+std::size_t SiteClashList::finish(const SphereHierarchy& obstacle, const std::vector<Eigen::Isometry3d>& poses,
+                                  const sites::SitePassage& found)
+{
+  sites::SiteClashes clashes = finder_->finish();
+  const PointsView places =
+      viewOf(clashes.places.empty() ? nullptr : clashes.places.front().data(), clashes.places.size());
+  TrajectoryResult of_places;
+  of_places.colliding = found.colliding;
+  of_places.poses = found.poses;
+  of_places.distance = std::move(clashes.distance);
+  of_places.closest_pose = std::move(clashes.closest_pose);
+  io::ClashReport list{options_.site.string(),
+                       options_.obstacle.string(),
+                       options_.clearance,
+                       distance_,
+                       {},
+                       std::move(clashes.clashes),
+                       places,
+                       obstacle.view(),
+                       poses,
+                       of_places,
+                       options_.swept,
+                       nullptr,
+                       [&](std::uint32_t i) {
+                         const sites::SitePoint& point = clashes.points[i];
+                         return io::SourcePoint{site_.sources.at(point.source).file, point.record};
+                       }};
+  if (options_.previous) {
+    list.previous = options_.previous->string();
+    compareWithEarlier(list.clashes, earlier_, distance_);
+  }
+  if (sites::rankHere() == 0)
+    for (const std::filesystem::path& file : options_.clashes) io::writeClashes(file, list);
+  return list.clashes.size() - list.count(ClashStatus::resolved);
+}
+
+} // namespace pcl_bsh::cli
+#endif

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// pcl_bsh_site collide --clashes: the places of a site that collide, as pcl_bsh_collide lists them.
+#pragma once
+
+#include "options.h"
+
+#include <pcl_bsh/filters/reports/clash_report.h>
+#include <pcl_bsh/site/site_clashes.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+/// The lists of clashes, where any is asked for; else it does nothing.
+class SiteClashList {
+public:
+  /// Reads the earlier list. To be called by all ranks.
+  /// @throws files::FileError for a list that cannot be written or compared with. @throws UsageError for its format
+  SiteClashList(const sites::Site& site, const SiteOptions& options);
+
+  bool isWanted() const noexcept { return finder_.has_value(); }
+
+  /// Warnings of the earlier list, a line each.
+  const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+  /// Finds clashes in what `next` gets, too.
+  sites::PassageSink after(sites::PassageSink next);
+
+  /// After the question. To be called by all ranks; the first writes the lists.
+  /// @return how many clashes there are now, those that are resolved left out
+  std::size_t finish(const SphereHierarchy& obstacle, const std::vector<Eigen::Isometry3d>& poses,
+                     const sites::SitePassage& found);
+
+private:
+  const sites::Site& site_;
+  const SiteOptions& options_;
+  double distance_ = 0.0;
+  std::vector<Clash> earlier_;
+  std::vector<std::string> warnings_;
+  std::optional<sites::ClashFinder> finder_;
+};
+
+} // namespace pcl_bsh::cli

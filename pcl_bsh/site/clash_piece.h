@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a clash has in one tile: pieces of several tiles are joined to clashes of the site.
+#pragma once
+
+#include <pcl_bsh/report/clashes.h>
+#include <pcl_bsh/site/collide_site.h>
+
+#include <vector>
+
+namespace pcl_bsh::sites {
+
+/// A colliding point of a piece, which is known by its smallest point.
+struct Member {
+  Point3 place;
+  SitePoint point, piece;
+  float distance = 0.0F;
+  std::int32_t closest_pose = 0;
+};
+
+struct Piece {
+  Clash clash;    ///< without records
+  Member nearest; ///< its point of the closest pair
+};
+
+/// Those of all ranks of an MPI job, on all of them.
+std::vector<Member> gathered(const std::vector<Member>& own);
+std::vector<Piece> gathered(const std::vector<Piece>& own);
+
+/// Two pieces of one clash. Of pairs of one distance that of the smaller point of the site counts, as in memory.
+void join(Piece& piece, const Piece& other);
+
+/// Leaves so many at most, drawn by lots: of all points of a clash the same, in whatever parts they are drawn.
+void drawSome(std::vector<Member>& members, std::size_t most);
+
+} // namespace pcl_bsh::sites

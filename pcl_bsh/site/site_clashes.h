@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The clashes of a site along a path: those that findClashes() would list of one cloud of all its points, with the same
+// ids, although a clash may lie in many tiles.
+//
+//   sites::ClashFinder finder(valley, 0.25);
+//   sites::collideAlong(valley, wagon, poses, request, [&](const auto& tile, const auto& cloud, const auto& found) {
+//     finder.add(tile, cloud, found);
+//   });
+//   sites::SiteClashes list = finder.finish();
+//
+// Of a tile's clashes that come near other tiles the points near these are kept until all tiles have been visited: a
+// step of the cluster distance from one tile to another joins two clashes.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/report/clashes.h>
+#include <pcl_bsh/site/collide_site.h>
+
+#include <memory>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh::sites {
+
+struct SiteClashes {
+  /// As findClashes() has them. What they call records are numbers of the points below: of each clash at most
+  /// ClashFinder::most_points and the one of the closest pair, the same for any tiles.
+  std::vector<Clash> clashes;
+  std::vector<SitePoint> points; ///< some points of all clashes
+  std::vector<Point3> places;    ///< where they are
+  std::vector<float> distance;   ///< what was found of them
+  std::vector<std::int32_t> closest_pose;
+};
+
+class ClashFinder {
+public:
+  static constexpr std::size_t most_points = 500; ///< of a clash that are listed
+
+  /// @param cluster_distance finite, > 0
+  /// @throws std::invalid_argument for another one
+  ClashFinder(const Site& site, double cluster_distance);
+  ~ClashFinder();
+  ClashFinder(const ClashFinder&) = delete;
+  ClashFinder& operator=(const ClashFinder&) = delete;
+
+  /// What was found of the points of a tile. To be called by the sink of collideAlong().
+  void add(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found);
+
+  /// All clashes, on all ranks of an MPI job. To be called once, by all of them.
+  SiteClashes finish();
+
+private:
+  class Pieces;
+  std::unique_ptr<Pieces> pieces_;
+};
+
+/// The median of the tiles' spacings, each of which counts as often as it has points; 0 of a site without.
+double spacingOf(const Site& site);
+
+} // namespace pcl_bsh::sites
+PCL_BSH_EXPORT_END

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The clashes of a site are those of one cloud of all its points, whatever the tiles and the ranks.
+#include "../programs/program_run.h"
+
+#ifdef PCL_BSH_SITE_QUERIES
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/make_site.h>
+#include <pcl_bsh/site/site_clashes.h>
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <deque>
+#include <random>
+
+namespace pcl_bsh::sites {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Cloud = pcl::PCLPointCloud2;
+using Json = nlohmann::json;
+
+Cloud float64Cloud(const std::vector<Point3>& points)
+{
+  Cloud cloud;
+  for (const char* axis : {"x", "y", "z"}) io::addField(cloud, axis, io::Field::FLOAT64);
+  io::allocate(cloud, static_cast<std::uint32_t>(points.size()));
+  if (!points.empty()) std::memcpy(cloud.data.data(), points.data(), cloud.data.size());
+  return cloud;
+}
+
+/// A model on its way past points.
+struct Scene {
+  std::vector<Point3> points, model = {{0, 0, 0}};
+  std::vector<Eigen::Isometry3d> poses;
+  double clearance = 0.5;
+  std::vector<double> cluster_distances = {1.0};
+  std::optional<double> swept;
+};
+
+/// A floor, of which much is near to the model, in clusters that are larger than small tiles.
+Scene floorScene()
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Scene scene;
+  for (int i = 0; i < 1500; ++i) scene.points.push_back({20 * unit(random), 3 * unit(random), 0.4 * unit(random)});
+  for (int i = 0; i < 600; ++i) scene.points.push_back({0, 0.5, 0.25}); // more at one place than is listed
+  for (int i = 0; i < 20; ++i) scene.points[static_cast<std::size_t>(50 * i)][1] = std::nan("");
+  for (int i = 0; i < 60; ++i) scene.model.push_back({0.8 * unit(random), 0.8 * unit(random), 0.2 * unit(random)});
+  for (int k = 0; k < 25; ++k) {
+    scene.poses.push_back(Eigen::Translation3d(1.6 * k - 20, 2 * std::sin(k), 0.5) *
+                          Eigen::AngleAxisd(0.3 * k, Eigen::Vector3d::UnitZ()));
+  }
+  scene.clearance = 0.3;
+  scene.cluster_distances = {0.35};
+  return scene;
+}
+
+/// A lattice of steps of exactly the cluster distance, at the coordinates of maps, with a gap that is wider by one unit
+/// in the last place: all points are one clash on either side of it. All are as near, so the smallest counts.
+Scene latticeScene(double x, double y)
+{
+  Scene scene;
+  const double gap = std::nextafter(x + 8, 2 * x + 9);
+  for (int i = 15; i >= 0; --i)
+    for (int j = 0; j < 16; ++j) scene.points.push_back({i < 8 ? x + i : gap + (i - 8), y + j, 0.0});
+  scene.model.clear();
+  for (int i = 0; i < 16; ++i)
+    for (int j = 0; j < 16; ++j) scene.model.push_back({i < 8 ? double(i) : gap - x + (i - 8), double(j), 0.0});
+  scene.poses.emplace_back(Eigen::Translation3d(x, y, 0.25));
+  return scene;
+}
+
+/// Two clashes that are apart, but have the same box, beside others in the cell that their ids tell.
+Scene sameBoxScene(bool other_first)
+{
+  Scene scene;
+  const auto line = [&](Point3 from, Point3 to) {
+    for (int i = 0; i <= 10; ++i) {
+      Point3 p;
+      for (std::size_t k = 0; k < 3; ++k) p[k] = from[k] + (to[k] - from[k]) * i / 10.0;
+      scene.points.push_back(p);
+    }
+  };
+  const auto path = [&](bool one) {
+    if (one) {
+      line({-5, -5, -5}, {5, -5, -5}), line({5, -5, -5}, {5, 5, -5}), line({5, 5, -5}, {5, 5, 5});
+    }
+    else {
+      line({-5, 5, -5}, {-5, 5, 5}), line({-5, 5, 5}, {-5, -5, 5}), line({-5, -5, 5}, {5, -5, 5});
+    }
+  };
+  path(!other_first);
+  path(other_first);
+  for (Point3& p : scene.points)
+    for (double& c : p) c = c == 0.0 && scene.points.size() % 2 == 0 ? -0.0 : c;
+  scene.points.push_back({0.5, 0.5, -0.0});
+  scene.points.push_back({0.5, -0.0, 0.0});
+  scene.points.push_back({0.5, 0.0, -0.5});
+  scene.model = scene.points;
+  scene.poses.push_back(Eigen::Isometry3d::Identity());
+  scene.clearance = 0.0;
+  return scene;
+}
+
+class SiteClashList : public testing::Test {
+protected:
+  /// Of several tilings, and a site of two clouds.
+  void expectSame(const Scene& scene, std::size_t least)
+  {
+    const auto half = static_cast<std::ptrdiff_t>(scene.points.size() / 3);
+    io::writeCloud(folder / "1.pcd", float64Cloud({scene.points.begin(), scene.points.begin() + half}));
+    io::writeCloud(folder / "2.pcd", float64Cloud({scene.points.begin() + half, scene.points.end()}));
+    const auto nameOf = [&](std::uint32_t i) {
+      const auto begin = static_cast<std::uint32_t>(half);
+      return i < begin ? SitePoint{0, i} : SitePoint{1, i - begin};
+    };
+    const SphereHierarchy all(viewOf(scene.points.front().data(), scene.points.size()));
+    const SphereHierarchy model(viewOf(scene.model.front().data(), scene.model.size()));
+    TrajectoryRequest wanted;
+    wanted.clearance = scene.clearance;
+    wanted.swept = scene.swept;
+    wanted.distances = wanted.first_poses = wanted.closest_poses = true;
+    wanted.pose_summaries = !scene.swept;
+    const TrajectoryResult in_memory = pcl_bsh::collideAlong({all}, model, scene.poses, wanted);
+    std::vector<std::vector<Clash>> expected;
+    for (const double distance : scene.cluster_distances) {
+      expected.push_back(findClashes(all.view(), in_memory, distance));
+      ASSERT_GE(expected.back().size(), least);
+    }
+    std::vector<std::vector<SitePoint>> drawn;
+    for (const std::uint64_t tile_points : {100000, 200, 9}) {
+      SCOPED_TRACE(tile_points);
+      MakeOptions options;
+      options.tile_points = tile_points;
+      const Site site = makeSite({folder / "1.pcd", folder / "2.pcd"}, folder / std::to_string(places++), options);
+      SiteRequest request;
+      request.clearance = scene.clearance;
+      request.swept = scene.swept;
+      request.pose_summaries = !scene.swept;
+      std::deque<ClashFinder> finders;
+      for (const double distance : scene.cluster_distances) finders.emplace_back(site, distance);
+      const SitePassage passage = collideAlong(
+          site, model, scene.poses, request, [&](const Tile& tile, const Cloud& cloud, const TrajectoryResult& found) {
+            for (ClashFinder& finder : finders) finder.add(tile, cloud, found);
+          });
+      ASSERT_EQ(passage.poses.size(), in_memory.poses.size());
+      for (std::size_t k = 0; k < passage.poses.size(); ++k) {
+        EXPECT_EQ(passage.poses[k].colliding_points, in_memory.poses[k].colliding_points);
+        EXPECT_EQ(passage.poses[k].distance, in_memory.poses[k].distance);
+      }
+      for (std::size_t i = 0; i < expected.size(); ++i) {
+        const SiteClashes list = finders[i].finish();
+        expectList(list, expected[i], all.view(), in_memory, nameOf);
+        if (drawn.size() == i) drawn.push_back(list.points);
+        EXPECT_TRUE(list.points == drawn[i]) << "the same points of large clashes";
+      }
+    }
+  }
+
+  template <typename NameOf>
+  static void expectList(const SiteClashes& list, const std::vector<Clash>& clashes, const PointsView& all,
+                         const TrajectoryResult& in_memory, const NameOf& nameOf)
+  {
+    ASSERT_EQ(list.clashes.size(), clashes.size());
+    for (std::size_t i = 0; i < clashes.size(); ++i) {
+      const Clash &found = list.clashes[i], &expected = clashes[i];
+      SCOPED_TRACE(expected.id);
+      EXPECT_EQ(found.id, expected.id);
+      EXPECT_EQ(found.points, expected.points);
+      EXPECT_EQ(found.low, expected.low);
+      EXPECT_EQ(found.high, expected.high);
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(std::signbit(found.low[k]), std::signbit(expected.low[k]));
+        EXPECT_EQ(std::signbit(found.high[k]), std::signbit(expected.high[k]));
+      }
+      EXPECT_EQ(found.distance, expected.distance);
+      EXPECT_TRUE(list.points[found.scan_point] == nameOf(expected.scan_point));
+      EXPECT_EQ(list.places[found.scan_point], all.point(expected.scan_point));
+      EXPECT_EQ(found.model_point, expected.model_point);
+      EXPECT_EQ(found.first_pose, expected.first_pose);
+      EXPECT_EQ(found.closest_pose, expected.closest_pose);
+      if (expected.points > ClashFinder::most_points) {
+        EXPECT_GE(found.records.size(), ClashFinder::most_points);
+        continue;
+      }
+      ASSERT_EQ(found.records.size(), expected.records.size());
+      for (std::size_t k = 0; k < found.records.size(); ++k) {
+        const std::uint32_t record = expected.records[k];
+        EXPECT_TRUE(list.points[found.records[k]] == nameOf(record));
+        EXPECT_EQ(list.distance[found.records[k]], in_memory.distance[record]);
+        EXPECT_EQ(list.closest_pose[found.records[k]], in_memory.closest_pose[record]);
+      }
+    }
+  }
+
+  files::TemporaryFolder folder;
+  int places = 0; ///< sites made
+};
+
+TEST_F(SiteClashList, AlongAPath)
+{
+  Scene scene = floorScene();
+  scene.cluster_distances = {0.05, 0.35, 4}; // from single points to farther than small tiles are long
+  expectSame(scene, 1);
+}
+
+TEST_F(SiteClashList, OfSweptMotion)
+{
+  Scene scene = floorScene();
+  scene.points.resize(1000);
+  scene.swept = 0.01;
+  expectSame(scene, 3);
+}
+
+TEST_F(SiteClashList, StepsOfExactlyTheDistanceLeadFromTileToTile)
+{
+  expectSame(latticeScene(0, 0), 2);
+  expectSame(latticeScene(512000, 5403000), 2);
+}
+
+TEST_F(SiteClashList, OneBoxOfTwoClashes)
+{
+  expectSame(sameBoxScene(false), 3);
+  expectSame(sameBoxScene(true), 3);
+}
+
+TEST_F(SiteClashList, NothingCollides)
+{
+  Scene scene = floorScene();
+  scene.points.resize(300);
+  for (Eigen::Isometry3d& pose : scene.poses) pose.translation().z() = 500;
+  expectSame(scene, 0);
+}
+
+TEST_F(SiteClashList, RefusesADistance)
+{
+  io::writeCloud(folder / "a.pcd", float64Cloud({{0, 0, 0}}));
+  const Site site = makeSite({folder / "a.pcd"}, folder / "site", {});
+  for (const double distance : {0.0, -1.0, std::nan("")})
+    EXPECT_THROW(ClashFinder(site, distance), std::invalid_argument);
+}
+
+/// Lists of the program for one and two ranks, and of pcl_bsh_collide for the same points.
+TEST_F(SiteClashList, OfThePrograms)
+{
+  Scene scene = floorScene();
+  io::writeCloud(folder / "a.pcd", float64Cloud(scene.points));
+  io::writeCloud(folder / "b.pcd", float64Cloud(scene.model));
+  io::writePoses(folder / "poses.txt", scene.poses);
+  MakeOptions options;
+  options.tile_points = 70;
+  makeSite({folder / "a.pcd"}, folder / "site", options);
+  const std::string asked = " --clearance 0.3 --cluster-distance 0.35 --trajectory poses.txt ";
+  const Outcome memory =
+      run("pcl_bsh_collide", "a.pcd b.pcd m.pcd" + asked + "--clashes m.json --clashes m.csv", folder.path());
+  ASSERT_EQ(memory.exit_code, 0) << memory.err;
+  const Outcome one =
+      run("pcl_bsh_site",
+          "collide site b.pcd" + asked + "--clashes 1.json --clashes 1.csv --clashes 1.html --report r.json",
+          folder.path());
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+
+  Json expected = Json::parse(files::contentOf(folder / "m.json"));
+  const Json found = Json::parse(files::contentOf(folder / "1.json"));
+  ASSERT_GE(expected["clashes"].size(), 3u);
+  EXPECT_EQ(Json::parse(files::contentOf(folder / "r.json"))["clashes"], expected["clashes"].size());
+  expected["input"] = "site";
+  for (Json& clash : expected["clashes"]) {
+    Json& input = clash["closest_pair"]["input"];
+    input["source"] = "a.pcd";
+    input["record"] = input["point"];
+    input.erase("point");
+  }
+  Json of_source = found;
+  for (Json& clash : of_source["clashes"]) {
+    Json& source = clash["closest_pair"]["input"]["source"];
+    source = fs::path(source.get<std::string>()).filename().string();
+  }
+  EXPECT_EQ(of_source, expected);
+  const std::string csv = files::contentOf(folder / "1.csv");
+  EXPECT_THAT(csv, HasSubstr(",input_source,input_record,input_x,"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), static_cast<std::ptrdiff_t>(found["clashes"].size()) + 1);
+  EXPECT_THAT(files::contentOf(folder / "1.html"), HasSubstr(" of "));
+
+  // An earlier list may be of either program.
+  const Outcome again =
+      run("pcl_bsh_site", "collide site b.pcd" + asked + "--clashes 1.json --previous 1.json", folder.path());
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  for (const Json& clash : Json::parse(files::contentOf(folder / "1.json"))["clashes"])
+    EXPECT_EQ(clash["status"], "persisting");
+
+  if (std::system("mpirun --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no mpirun";
+  const std::string command = "cd " + folder.path().string() +
+                              " && env -i PATH=\"$PATH\" OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+                              "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR "/pcl_bsh_site collide site b.pcd" +
+                              asked + "--clashes 2.json --clashes 2.csv --clashes 2.html > out.txt 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << files::contentOf(folder / "out.txt");
+  EXPECT_EQ(Json::parse(files::contentOf(folder / "2.json")), found);
+  EXPECT_EQ(files::contentOf(folder / "2.csv"), csv);
+  EXPECT_EQ(files::contentOf(folder / "2.html"), files::contentOf(folder / "1.html"));
+}
+
+TEST_F(SiteClashList, OfThePrograms_AreRefused)
+{
+  io::writeCloud(folder / "a.pcd", float64Cloud({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}}));
+  makeSite({folder / "a.pcd"}, folder / "site", {});
+  const auto refusal = [&](const std::string& arguments) {
+    const Outcome outcome = run("pcl_bsh_site", "collide site a.pcd --clearance 0.1 " + arguments, folder.path());
+    EXPECT_NE(outcome.exit_code, 0) << arguments;
+    return outcome.err;
+  };
+  EXPECT_THAT(refusal("--clashes list.txt"), HasSubstr("--clashes: "));
+  EXPECT_THAT(refusal("--clashes list.json --any"), HasSubstr("--clashes: are of flags or a path"));
+  EXPECT_THAT(refusal("--report a.pcd"), HasSubstr("is the file of OBSTACLE"));
+  EXPECT_THAT(refusal("--clashes list.json --previous none.json"), HasSubstr("none.json"));
+  EXPECT_FALSE(fs::exists(folder / "list.json"));
+  // At one pose, without a path: the points are flagged, and the list is of one pose.
+  const Outcome posed =
+      run("pcl_bsh_site", "collide site a.pcd --clearance 0.1 --pose 1,0,0,0,0,0 --clashes list.json --out out",
+          folder.path());
+  ASSERT_EQ(posed.exit_code, 0) << posed.err;
+  EXPECT_THAT(posed.out, HasSubstr("1 clashes"));
+  EXPECT_EQ(Json::parse(files::contentOf(folder / "list.json"))["poses"], 1);
+  EXPECT_EQ(readSite(folder / "out").fields.back().name, "collision");
+}
+
+} // namespace
+} // namespace pcl_bsh::sites
+#endif
