@@ -23,7 +23,7 @@ A scene's objects are drawn at their poses of one step, responses included: fixe
 and points within the scene's clearance, or D, in orange and yellow.
 Reads .pcd .ply .las .obj .off .pts .ptx .csv .xyz .txt, pipes, and standard input as -.
 Without --screenshot and --export a window opens: h shows its keys.
-Exit code: 0 done; 1 failed; 2 command line not understood.
+Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Examples:
   pcl_bsh_view hall.ply --model robot.pcd --pose 1.5,2,0,0,0,1.57 --clearance 0.05 --unit m
