@@ -4,6 +4,7 @@
 #include "cli/command_line.h"
 #include "cli/path.h"
 #include "cli/pose.h"
+#include "cli/surface_options.h"
 
 #include <pcl_bsh/filters/text_files/parse_number.h>
 #include <pcl_bsh/geometry/invalid_input.h>
@@ -142,20 +143,6 @@ void addDensityOptions(CLI::App& app, CollideOptions& options)
       ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
 }
 
-void addSurfaceOptions(CLI::App& app, io::SurfaceSettings& surface)
-{
-  CLI::Option* const tolerance =
-      app.add_option("--surface-tolerance", surface.tolerance,
-                     "where OBSTACLE has faces, it is a surface: free is farther than D from\n"
-                     "it, for certain, and colliding is within D + T; less takes more time\n"
-                     "and memory (default: a tenth of D; of 0, the size / 10,000)")
-          ->type_name("T")
-          ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-  app.add_flag("--vertices-only", surface.vertices_only,
-               "INPUT and OBSTACLE are their vertices alone, even where they have faces")
-      ->excludes(tolerance);
-}
-
 /// Checks that involve several options.
 void requireConsistent(const CollideOptions& options)
 {
@@ -216,7 +203,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   distances.addTo(app);
   UncertaintyTexts uncertainties;
   uncertainties.addTo(app);
-  addSurfaceOptions(app, options.surface);
+  addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
   addDensityOptions(app, options);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--threads", options.threads, "0: all of the machine's (default); any number gives the same result")
