@@ -5,6 +5,7 @@
 #include "cli/command_line.h"
 #include "cli/path.h"
 #include "cli/pose.h"
+#include "cli/surface_options.h"
 #include "cli/uncertainty.h"
 
 #include <cmath>
@@ -91,20 +92,6 @@ void addDensityOptions(CLI::App& app, CollideOptions& options)
       ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
 }
 
-void addSurfaceOptions(CLI::App& app, io::SurfaceSettings& surface)
-{
-  CLI::Option* const tolerance =
-      app.add_option("--surface-tolerance", surface.tolerance,
-                     "where OBSTACLE has faces, it is a surface: free is farther than D from\n"
-                     "it, for certain, and colliding is within D + T; less takes more time\n"
-                     "and memory (default: a tenth of D; of 0, the size / 10,000)")
-          ->type_name("T")
-          ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-  app.add_flag("--vertices-only", surface.vertices_only,
-               "INPUT and OBSTACLE are their vertices alone, even where they have faces")
-      ->excludes(tolerance);
-}
-
 /// Checks that involve several options.
 void requireConsistent(const CollideOptions& options)
 {
@@ -160,7 +147,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   distances.addTo(app);
   UncertaintyOptions uncertainties;
   uncertainties.addTo(app, "INPUT");
-  addSurfaceOptions(app, options.surface);
+  addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
   addDensityOptions(app, options);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--threads", options.threads, "0: all of the machine's (default); any number gives the same result")
