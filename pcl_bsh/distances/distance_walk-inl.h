@@ -168,17 +168,14 @@ private:
     const Node& node = *sphere.node;
     const float radius = node.r[sphere.lane] * obstacle.frame.stretch_b;
     DistanceRow row{sphere, lanes, {}, 0};
-    const Point center = {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]};
-    if (!outdoing_.isPossible()) {
-      boundDistances(own, obstacle, center, radius, row.lower, visit.cut);
-    }
-    else {
-      float upper[kLanes];
-      std::fill(std::begin(upper), std::end(upper), std::numeric_limits<float>::infinity());
-      boundDistances(own, obstacle, center, radius, row.lower, upper);
-      lowerCuts(visit, upper);
-    }
+    boundChildren(visit, own, obstacle, {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]}, radius,
+                  outdoing_.isPossible(), row.lower);
     found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
+    if (HWY_UNLIKELY(radius > visit.large_leaf) && sphere.level > 0 && sphere.isLeaf() && !query_.pairs.haveRadii() &&
+        visit.areSmall(lanes & notAbove(row.lower, visit.cut), radius)) {
+      boundByPoints(visit, own, obstacle, sphere.leaf(*obstacle.voxel), outdoing_.isPossible(), row.lower);
+      found.work.node_pairs += node.comparedPoints(sphere.lane);
+    }
     if (radius <= obstacle.blunt_radius && obstacle.voxel) compareAsGiven(visit, own, row);
     return row;
   }
