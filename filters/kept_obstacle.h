@@ -84,7 +84,7 @@ private:
   Fields fields_; ///< likewise
   Uncertainty uncertainty_;
   std::shared_ptr<const SphereHierarchy> hierarchy_;
-  std::uint64_t checksum_ = 0; ///< of what the hierarchy was built from
+  std::uint64_t checksum_ = 0;                         ///< of what the hierarchy was built from
   std::shared_ptr<const std::vector<float>> spacings_; ///< of the cloud, once they are asked for
   double spaced_gap_ = 0.0;                            ///< for which they are
 };
