@@ -19,6 +19,8 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
+/// The settings of the other cloud; those of a kind of question are in the classes that derive. Lengths are in the
+/// clouds' own unit.
 class ObstacleSettings {
 public:
   /// The cloud that the input is compared with: pcl::PointCloud of any point type, or pcl::PCLPointCloud2 (float64 at
