@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/filters/text_files/parse_number.h>
 
+#include <array>
 #include <cstdint>
 #include <iostream>
 
@@ -77,6 +78,28 @@ CLI::Validator numberOfName(std::vector<std::pair<std::string, int>> names)
               known += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i].first;
             }
             return "'" + text + "' is unknown: give " + known;
+          },
+          ""};
+}
+
+CLI::Validator amount(std::uint64_t unit, std::uint64_t least, std::string remedy)
+{
+  return {[=](std::string& text) -> std::string {
+            constexpr std::array letters = {'K', 'M', 'G'};
+            std::uint64_t factor = 1;
+            std::string digits = text;
+            for (std::size_t i = 0; i < letters.size() && !digits.empty(); ++i) {
+              if (digits.back() != letters[i]) continue;
+              for (std::size_t k = 0; k <= i; ++k) factor *= unit;
+              digits.pop_back();
+              break;
+            }
+            const bool whole =
+                !digits.empty() && digits.size() <= 9 && digits.find_first_not_of("0123456789") == std::string::npos;
+            const std::uint64_t value = whole ? std::stoull(digits) * factor : 0;
+            if (value < least) return "'" + text + "' is not such an amount: " + remedy;
+            text = std::to_string(value);
+            return "";
           },
           ""};
 }

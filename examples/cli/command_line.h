@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <type_traits>
@@ -31,6 +32,9 @@ extern template CLI::Validator number(std::string, std::function<bool(double)>);
 extern template CLI::Validator number(std::string, std::function<bool(int)>);
 extern template CLI::Validator number(std::string, std::function<bool(unsigned)>);
 extern template CLI::Validator number(std::string, std::function<bool(std::uint64_t)>);
+
+/// For transform(): a number with K, M or G behind it, each `unit` times the last.
+CLI::Validator amount(std::uint64_t unit, std::uint64_t least, std::string remedy);
 
 inline constexpr auto give_length = "give a length in the clouds' unit";
 inline constexpr auto give_threads = "give a number of threads, 0 for all";

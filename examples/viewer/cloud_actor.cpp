@@ -61,11 +61,12 @@ void CloudActor::paint(const std::vector<Color>& colors)
   points_.show(&data());
 }
 
-void CloudActor::paint(const Color& color)
+void CloudActor::paint(const Color& color, const ColorRange* heights)
 {
   if (triangles_) return triangles_->paint(color);
   const double* const bounds = data().GetBounds();
-  const double low = bounds[4], height = std::max(bounds[5] - bounds[4], std::numeric_limits<double>::min());
+  const ColorRange range = heights ? *heights : ColorRange{bounds[4], bounds[5]};
+  const double height = std::max(range.high - range.low, std::numeric_limits<double>::min());
   vtkNew<vtkUnsignedCharArray> colors;
   colors->SetName("colors");
   colors->SetNumberOfComponents(3);
@@ -73,7 +74,7 @@ void CloudActor::paint(const Color& color)
   for (vtkIdType i = 0; i < data().GetNumberOfPoints(); ++i) {
     double p[3];
     data().GetPoint(i, p);
-    const double share = 0.55 + 0.45 * (p[2] - low) / height;
+    const double share = 0.55 + 0.45 * std::clamp((p[2] - range.low) / height, 0.0, 1.0);
     for (int k = 0; k < 3; ++k)
       colors->SetTypedComponent(i, k, static_cast<unsigned char>(color[static_cast<std::size_t>(k)] * share));
   }
@@ -106,6 +107,18 @@ void CloudActor::setMoving(bool moving)
 {
   points_.setMoving(moving);
   marks_.setMoving(moving);
+}
+
+void CloudActor::setVisible(bool visible)
+{
+  points_.setVisible(visible);
+  marks_.setVisible(visible);
+}
+
+void CloudActor::remove(vtkRenderer& renderer)
+{
+  points_.remove(renderer);
+  marks_.remove(renderer);
 }
 
 void CloudActor::cut(const Cut& plane)

@@ -5,6 +5,7 @@
 #include "palette.h"
 #include "point_layer.h"
 #include "triangle_layer.h"
+#include "view_content.h"
 #include "viewed_cloud.h"
 
 #include <pcl_bsh/hierarchy/points_view.h>
@@ -30,7 +31,8 @@ public:
   void paint(const std::vector<Color>& colors);
 
   /// One colour, darker for lower points: a cloud all of one would look flat.
-  void paint(const Color& color);
+  /// @param heights of the lowest and the highest; null: the cloud's own
+  void paint(const Color& color, const ColorRange* heights = nullptr);
 
   /// Draws points with flags[record] != 0 larger, or triangles with flags[part] != 0: in the mark's colour, or in
   /// `colors` where that is not empty.
@@ -38,7 +40,9 @@ public:
   void mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors = {});
   void place(const Eigen::Isometry3d& pose);
   void setMoving(bool moving);
-  void cut(const Cut& plane); ///< in the world frame; nothing is drawn on the side of its normal
+  void setVisible(bool visible);
+  void remove(vtkRenderer& renderer); ///< for good
+  void cut(const Cut& plane);         ///< in the world frame; nothing is drawn on the side of its normal
 
   bool hasTriangles() const { return triangles_.has_value(); }
   vtkPolyData& data() const { return triangles_ ? triangles_->data() : points_.data(); } ///< what is drawn

@@ -44,17 +44,9 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, cons
   return viewed;
 }
 
-/// As the field `collision` has it: any other number is a collision.
-Verdict verdictOf(float value)
-{
-  for (const Verdict verdict : {Verdict::free, Verdict::undecided, Verdict::sparse})
-    if (value == static_cast<float>(flagOf(verdict))) return verdict;
-  return Verdict::colliding;
-}
-
 } // namespace
 
-CloudsContent::CloudsContent(const Options& options) : ViewContent(options), poses_{options.pose}
+CloudsContent::CloudsContent(const Options& options) : FieldContent(options), poses_{options.pose}
 {
   if (options.trajectory) {
     std::vector<std::string> warnings;
@@ -119,10 +111,10 @@ TrajectoryRequest CloudsContent::along() const
 
 StepCollisions CloudsContent::collisions(std::size_t step) const
 {
-  StepCollisions found;
-  found.flags.resize(viewed_clouds_.size());
+  StepCollisions found = options_.clearance ? StepCollisions() : FieldContent::collisions(step);
   if (options_.clearance) {
     found.known = true;
+    found.flags.resize(viewed_clouds_.size());
     found.flags[0].assign(scan().parts(), 0);
     for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
       FlagsResult flags = collisionFlags(placed(0, step), placed(other, step), flagsRequest());
@@ -130,17 +122,8 @@ StepCollisions CloudsContent::collisions(std::size_t step) const
       for (std::size_t i = 0; i < of_scan.size(); ++i) found.flags[0][i] |= of_scan[i];
       found.flags[other] = std::move(flags.b);
     }
+    countVerdicts(found);
   }
-  else if (const auto field = scan().result(collision_field_name)) {
-    found.known = true;
-    for (const float value : *field) found.flags[0].push_back(flagOf(verdictOf(value)));
-  }
-  const auto count = [&](Verdict verdict) {
-    return static_cast<std::size_t>(std::count(found.flags[0].begin(), found.flags[0].end(), flagOf(verdict)));
-  };
-  found.colliding = count(Verdict::colliding);
-  found.undecided = count(Verdict::undecided);
-  found.sparse = count(Verdict::sparse);
   if (options_.closest) found.closest = closest(step);
   return found;
 }
@@ -199,10 +182,8 @@ std::optional<double> CloudsContent::distanceOf(std::uint32_t part, std::size_t 
 
 std::vector<float> CloudsContent::distances(std::size_t step) const
 {
-  if (!options_.clearance)
-    if (auto field = scan().result(distance_field_name)) return *field;
+  if (!options_.clearance) return FieldContent::distances(step);
   std::vector<float> distances(scan().parts(), std::numeric_limits<float>::quiet_NaN());
-  if (!options_.clearance) return distances;
   TrajectoryRequest asked = along();
   asked.distances = true;
   asked.clearance = options_.range.value_or(*options_.clearance);
@@ -217,16 +198,7 @@ std::vector<float> CloudsContent::distances(std::size_t step) const
 std::vector<double> CloudsContent::allDistances(std::size_t step) const
 {
   if (options_.clearance) return {};
-  if (viewed_clouds_.size() == 1) {
-    const auto field = scan().result(distance_field_name);
-    if (!field) return {};
-    const auto collides = scan().result(collision_field_name);
-    for (std::size_t i = 0; i < field->size(); ++i) {
-      const bool free = !collides || (*collides)[i] == 0.0f;
-      if (free && std::isfinite((*field)[i])) return {field->begin(), field->end()};
-    }
-    return {}; // distances along a path are those of what collides
-  }
+  if (viewed_clouds_.size() == 1) return FieldContent::allDistances(step);
   PointDistancesRequest request;
   request.threads = options_.threads;
   std::vector<double> nearest;
@@ -241,12 +213,9 @@ std::vector<double> CloudsContent::allDistances(std::size_t step) const
 std::vector<std::int32_t> CloudsContent::firstPoses() const
 {
   if (first_poses_) return *first_poses_;
-  std::vector<std::int32_t> first(scan().parts(), -1);
-  if (const auto field = options_.clearance ? std::nullopt : scan().result(first_pose_field_name)) {
-    for (std::size_t i = 0; i < first.size(); ++i)
-      first[i] = std::isfinite((*field)[i]) ? static_cast<std::int32_t>((*field)[i]) : -1;
-  }
-  else if (options_.clearance) {
+  std::vector<std::int32_t> first =
+      options_.clearance ? std::vector<std::int32_t>(scan().parts(), -1) : FieldContent::firstPoses();
+  if (options_.clearance) {
     cli::Step step("Following " + std::to_string(steps()) + " poses");
     TrajectoryRequest asked = along();
     asked.first_poses = true;

@@ -2,7 +2,7 @@
 // A scan, obstacles that do not move, and a model that takes poses.
 #pragma once
 
-#include "view_content.h"
+#include "field_content.h"
 
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
@@ -10,14 +10,12 @@
 
 namespace pcl_bsh::view {
 
-class CloudsContent final : public ViewContent {
+class CloudsContent final : public FieldContent {
 public:
   /// @throws files::FileError, std::invalid_argument naming the file
   explicit CloudsContent(const Options& options);
 
-  std::string name() const override { return scan().name; }
   std::size_t steps() const override { return poses_.size(); }
-  const char* stepName() const override { return "pose"; }
   Eigen::Isometry3d poseOf(std::size_t cloud, std::size_t step) const override;
   bool moves(std::size_t cloud) const override { return cloud == model_; }
 

@@ -22,12 +22,8 @@ struct Values {
   bool counts = false;
 };
 
-struct Range {
-  double low = 0.0, high = 1.0;
-};
-
 /// A few outliers should not take all colours for themselves: `share` of the values is left out at either end.
-Range rangeOf(std::vector<float> values, double share)
+ColorRange rangeOf(std::vector<float> values, double share)
 {
   values.erase(std::remove_if(values.begin(), values.end(), [](float value) { return !std::isfinite(value); }),
                values.end());
@@ -72,12 +68,20 @@ std::vector<Color> colorsOf(const Values& shown, vtkLookupTable& table)
   return colors;
 }
 
-void paintValues(CloudActor& cloud, ValueBar& bar, const Values& shown)
+/// What the whole has, of which the content is a part; none where it is no part, or the whole has none.
+const ColorRange* sharedRange(const ViewContent& content)
 {
-  const Range range = rangeOf(shown.values, 0.005);
+  const SharedColors* const alike = content.sharedColors();
+  return alike && alike->values ? &*alike->values : nullptr;
+}
+
+void paintValues(CloudActor& cloud, ValueBar& bar, const ViewContent& content, const Values& shown)
+{
+  const ColorRange* const shared = sharedRange(content);
+  const ColorRange range = shared ? *shared : rangeOf(shown.values, 0.005);
   const auto table = colorTable(range.low, range.high, false);
   cloud.paint(colorsOf(shown, *table));
-  bar.show(*table, shown.title, false);
+  if (!shared) bar.show(*table, shown.title, false);
 }
 
 /// Of what is not free.
@@ -89,9 +93,11 @@ Color colorOfFlag(std::uint8_t flag)
 
 /// Marks the points that have a value.
 /// @param colliding per part, drawn in the colour of collisions; empty: none
-void markValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Range& range,
-                const std::vector<std::uint8_t>& colliding = {})
+void markValues(CloudActor& cloud, ValueBar& bar, const ViewContent& content, const Values& shown,
+                const ColorRange& own_range, const std::vector<std::uint8_t>& colliding = {})
 {
+  const ColorRange* const shared = sharedRange(content);
+  const ColorRange range = shared ? *shared : own_range;
   const auto table = colorTable(range.low, range.high, shown.reversed);
   std::vector<std::uint8_t> known;
   known.reserve(shown.values.size());
@@ -100,6 +106,7 @@ void markValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Ran
   for (std::size_t i = 0; i < colliding.size(); ++i)
     if (colliding[i] != 0) colors[i] = colorOfFlag(colliding[i]);
   cloud.mark(known, colors);
+  if (shared) return;
   if (std::find(known.begin(), known.end(), 1) != known.end())
     bar.show(*table, shown.title, shown.counts);
   else
@@ -143,13 +150,14 @@ void paintScan(CloudActor& cloud, ValueBar& bar, const ViewContent& content, Col
   case Coloring::collision:
   case Coloring::distance:
   case Coloring::first_pose:
-    cloud.paint(plainColor(scan));
+    cloud.paint(plainColor(scan), content.sharedColors() ? &content.sharedColors()->heights : nullptr);
     return;
   case Coloring::height:
-    paintValues(cloud, bar, heights(scan, content.options()));
+    paintValues(cloud, bar, content, heights(scan, content.options()));
     return;
   case Coloring::intensity:
-    paintValues(cloud, bar, {required(scan.field("intensity"), content, "field 'intensity'"), "intensity\n[as given]"});
+    paintValues(cloud, bar, content,
+                {required(scan.field("intensity"), content, "field 'intensity'"), "intensity\n[as given]"});
     return;
   case Coloring::rgb:
     cloud.paint(required(scan.colors(), content, "colours (fields rgb, rgba or red, green, blue)"));
@@ -180,8 +188,9 @@ bool paintDistances(std::vector<CloudActor>& clouds, ValueBar& bar, ValueHistogr
   const Options& options = content.options();
   const DistanceStatistics statistics = statisticsOf(distances);
   // Outliers should not take all colours for themselves.
-  const double end = options.range.value_or(statistics.count > 0 ? statistics.percentiles.back() : 1.0);
-  const auto table = colorTable(0.0, end, false);
+  const double own_end = options.range.value_or(statistics.count > 0 ? statistics.percentiles.back() : 1.0);
+  const ColorRange* const shared = sharedRange(content);
+  const auto table = colorTable(0.0, shared ? shared->high : own_end, false);
   const std::string title = lengthTitle("distance", options);
   std::vector<Color> colors(distances.size(), scan_color);
   for (std::size_t i = 0; i < distances.size(); ++i) {
@@ -191,9 +200,10 @@ bool paintDistances(std::vector<CloudActor>& clouds, ValueBar& bar, ValueHistogr
   }
   clouds[0].paint(colors);
   for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].paint(compared_color);
+  if (shared) return true;
   bar.show(*table, title, false);
   histogram.show(distances, *table, "distance [" + (options.unit.empty() ? "cloud's unit" : options.unit) + "]",
-                 options.unit, std::string(content.scan().partName()) + "s");
+                 options.unit, content.partsName());
   return true;
 }
 
@@ -205,14 +215,14 @@ void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& con
     requireCollisions(collisions, "distance");
     const Values shown{content.distances(step), lengthTitle("distance", options), true};
     if (options.range)
-      markValues(clouds[0], bar, shown, {0.0, *options.range}, collisions.flags[0]);
+      markValues(clouds[0], bar, content, shown, {0.0, *options.range}, collisions.flags[0]);
     else
-      markValues(clouds[0], bar, shown, {0.0, options.clearance.value_or(rangeOf(shown.values, 0.0).high)});
+      markValues(clouds[0], bar, content, shown, {0.0, options.clearance.value_or(rangeOf(shown.values, 0.0).high)});
   }
   else if (coloring == Coloring::first_pose) {
     requireCollisions(collisions, "first_pose");
     const Values shown = firstPoses(content);
-    markValues(clouds[0], bar, shown, rangeOf(shown.values, 0.0));
+    markValues(clouds[0], bar, content, shown, rangeOf(shown.values, 0.0));
   }
   else {
     if (coloring == Coloring::collision) requireCollisions(collisions, "collision");

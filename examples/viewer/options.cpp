@@ -7,6 +7,7 @@
 
 #include <pcl_bsh/filters/pose_files/pose_text.h>
 #include <pcl_bsh/filters/text_files/parse_number.h>
+#include <pcl_bsh/site/site.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +21,9 @@ they are drawn larger and in orange, all others dimmed. A file with faces is a s
 what is free is farther than D from it, what collides within D and the surface tolerance. Of a first
 CLOUD that is a surface the triangles are tested and coloured. A cloud that holds the fields collision,
 distance or first_pose, or a .ply whose faces have such properties, shows these as they are.
+Of a site, the folder that pcl_bsh_site makes, the overview is drawn at once, and the tiles that the
+camera sees nearest one by one, as many as the budget holds; with its fields collision, distance ...
+coloured as clouds are.
 A scene's objects are drawn at their poses of one step, responses included: fixed ones in grey, moving ones in blue,
 and points within the scene's clearance, or D, in orange and yellow.
 Reads .pcd .ply .las .obj .off .stl .pts .ptx .csv .xyz .txt, pipes, and standard input as -.
@@ -32,6 +36,7 @@ Examples:
   pcl_bsh_view after.pcd before.pcd --color distance --unit m --screenshot change.png
   pcl_bsh_view machine.stl --model hall.las --pose 1.5,2,0,0,0,1.57 --clearance 0.05
   pcl_bsh_view --scene walk.json --step 80 --clearance 0.3
+  pcl_bsh_view valley --budget 20M
   pcl_bsh_view marked.pcd --camera colliding --screenshot marked.png --size 1600x1000
   pcl_bsh_view hall.ply --model robot.pcd --clearance 0.05 --level 2 --export hall.vtm)";
 
@@ -149,6 +154,24 @@ void checkClouds(const Options& options)
     throw UsageError("--closest: there is no second cloud: give a second cloud or --model");
 }
 
+void checkSite(const Options& options)
+{
+  const auto refuse = [&](const std::string& option) {
+    throw UsageError(option + ": " + options.site->string() +
+                     " is a site, which is shown alone: ask with pcl_bsh_site, and show the site that --out makes");
+  };
+  if (!options.clouds.empty()) refuse("CLOUD");
+  if (options.scene) refuse("--scene");
+  if (options.model) refuse("--model");
+  if (!options.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) refuse("--pose");
+  if (options.trajectory) refuse("--trajectory");
+  if (options.clearance) refuse("--clearance");
+  if (options.trace) refuse("--trace");
+  if (options.closest) refuse("--closest");
+  if (options.export_to) throw UsageError("--export: of a site: give pcl_bsh_site export SITE FILE.pvtp");
+  if (options.step > 0) throw UsageError("--step: a site has no poses: leave it out");
+}
+
 void checkRange(const Options& options)
 {
   if (!options.range) return;
@@ -177,7 +200,8 @@ std::optional<Options> parseOptions(int argc, char** argv)
   std::string pose, cut, size = "1280x960", camera = "slanted";
   CLI::App app("Shows clouds, where they collide, and the spheres that find it.", program);
   app.footer(footer);
-  app.add_option("CLOUD", options.clouds, "the cloud or surface that is tested, then obstacles in the same\nframe")
+  app.add_option("CLOUD", options.clouds,
+                 "the cloud or surface that is tested, then obstacles in the same\nframe; or a site, alone")
       ->type_name("");
   app.add_option("--scene", options.scene, "a scene file in place of clouds: objects, their motions and responses")
       ->type_name("SCENE.json");
@@ -217,6 +241,13 @@ std::optional<Options> parseOptions(int argc, char** argv)
   app.add_option("--level", options.level, "draw the hierarchies' spheres: 0 the voxels', 1, 2 ... finer")
       ->type_name("L")
       ->transform(cli::number<unsigned>("give 0 or more"));
+  CLI::Option* const budget =
+      app.add_option(
+             "--budget", options.budget,
+             "of a site: points that are drawn at once, as 500K or 20M, the overview\nincluded; each takes some "
+             "100 bytes of memory (default: 10M)")
+          ->type_name("N")
+          ->transform(cli::amount(1000, 1, "give 1 or more"));
   app.add_flag("--voxels", options.voxels, "draw the voxels");
   app.add_flag("--cells", options.cells, "draw boxes around the octree cells of the level");
   app.add_flag("--trace", options.trace, "draw what the query for any collision tested and pruned");
@@ -243,6 +274,11 @@ std::optional<Options> parseOptions(int argc, char** argv)
     cli::warn(program, warnings);
   }
   if (!cut.empty()) options.cut = parseCut(cut);
+  if (!options.clouds.empty() && std::filesystem::is_directory(options.clouds[0])) {
+    options.site = options.clouds[0];
+    options.clouds.erase(options.clouds.begin());
+    options.files.reads("SITE", *options.site / sites::site_file_name);
+  }
   const auto path = [](const std::optional<std::filesystem::path>& file) { return file.value_or(""); };
   for (const std::filesystem::path& cloud : options.clouds) options.files.reads("CLOUD", cloud);
   options.files.reads("--scene", path(options.scene)).reads("--model", path(options.model));
@@ -250,7 +286,11 @@ std::optional<Options> parseOptions(int argc, char** argv)
   options.files.writes("--screenshot", path(options.screenshot)).writes("--export", path(options.export_to));
   parseSize(size, options);
   options.camera = parseCamera(camera);
-  options.scene ? checkScene(options) : checkClouds(options);
+  if (budget->count() > 0 && !options.site) throw UsageError("--budget: is for a site: leave it out");
+  if (options.site)
+    checkSite(options);
+  else
+    options.scene ? checkScene(options) : checkClouds(options);
   checkRange(options);
   checkFiles(options);
   return options;

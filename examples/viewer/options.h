@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -36,6 +37,8 @@ struct Cut {
 struct Options {
   std::vector<std::filesystem::path> clouds;  ///< the first is the one asked about, the others are obstacles
   std::optional<std::filesystem::path> scene; ///< in place of clouds
+  std::optional<std::filesystem::path> site;  ///< likewise
+  std::uint64_t budget = 10'000'000;          ///< points of a site that are drawn at once
   std::optional<std::filesystem::path> model;
   std::optional<std::filesystem::path> trajectory;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< of the model, without a trajectory

@@ -20,6 +20,12 @@ void drawFiles(const ViewContent& content)
   vtkNew<vtkRenderer> renderer;
   window->AddRenderer(renderer);
   RenderView view(content, *renderer);
+  if (content.site()) {
+    cli::Step step("Loading the tiles that the camera sees nearest");
+    while (view.loadTile()) {
+    }
+    step.done(view.tilesText());
+  }
   if (options.screenshot) {
     cli::Step step("Drawing " + options.screenshot->string());
     vtk::writePng(*window, *options.screenshot);

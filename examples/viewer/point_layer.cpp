@@ -70,6 +70,17 @@ void PointLayer::setMoving(bool moving)
   few_->SetVisibility(moving && !hidden_);
 }
 
+void PointLayer::setVisible(bool visible)
+{
+  all_->SetVisibility(visible);
+}
+
+void PointLayer::remove(vtkRenderer& renderer)
+{
+  renderer.RemoveActor(all_);
+  renderer.RemoveActor(few_);
+}
+
 void PointLayer::hide()
 {
   hidden_ = true;

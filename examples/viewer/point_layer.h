@@ -25,7 +25,9 @@ public:
   vtkActor& actor() const { return *all_; }
   void place(const Eigen::Isometry3d& pose);
   void setMoving(bool moving);
-  void hide(); ///< for good
+  void hide();                   ///< for good
+  void setVisible(bool visible); ///< of a picture that does not move
+  void remove(vtkRenderer& renderer);
   void cut(const Cut& plane);
   bool owns(const vtkProp* prop) const { return prop == all_.Get(); } ///< one picks while nothing moves
 

@@ -49,6 +49,16 @@ RenderView::RenderView(const ViewContent& content, vtkRenderer& renderer)
   paint(clouds_, bar_, content, coloring_);
   show(options.step);
   look(options.camera);
+  if (!content.site()) return;
+  tiles_.emplace(*content.site(), renderer, clouds_[0], bar_, histogram_, coloring_);
+  writeTexts();
+}
+
+bool RenderView::loadTile()
+{
+  if (!tiles_ || !tiles_->step()) return false;
+  writeTexts();
+  return true;
 }
 
 void RenderView::show(std::size_t step)
@@ -113,6 +123,7 @@ void RenderView::writeTexts()
   std::string title = content_.heading(collisions_, step_);
   if (collisions_.closest)
     title += "\nsmallest distance " + lengthOf(collisions_.closest->distance, content_.options().unit);
+  if (tiles_) title += "\n" + tiles_->text();
   if (extras_.level) title += "\nspheres of level " + std::to_string(*extras_.level);
   vtkIdType left_out = 0;
   for (const CloudActor& cloud : clouds_) left_out += cloud.leftOut();
@@ -209,6 +220,7 @@ void RenderView::look(const Camera& camera)
 void RenderView::setMoving(bool moving)
 {
   for (CloudActor& cloud : clouds_) cloud.setMoving(moving);
+  if (tiles_) tiles_->setMoving(moving);
 }
 
 std::string RenderView::pick(int x, int y) const
@@ -220,6 +232,7 @@ std::string RenderView::pick(int x, int y) const
   points->PickFromListOn();
   triangles->PickFromListOn();
   for (const CloudActor& cloud : clouds_) cloud.offerTo(*points, *triangles);
+  if (tiles_) tiles_->offerTo(*points, *triangles);
   const auto distance = [&](vtkPicker& picker) {
     if (picker.Pick(x, y, 0.0, &renderer_) == 0) return std::numeric_limits<double>::infinity();
     return std::sqrt(
@@ -233,23 +246,28 @@ std::string RenderView::pick(int x, int y) const
 std::string RenderView::describe(const vtkProp* prop, vtkIdType id) const
 {
   for (std::size_t i = 0; i < clouds_.size(); ++i) {
-    const std::optional<std::uint32_t> part = clouds_[i].partOf(prop, id);
-    if (!part) continue;
-    const ViewedCloud& viewed = content_.viewedClouds()[i];
-    const Point3 p = viewed.placeOf(*part);
-    std::ostringstream text;
-    text << viewed.partName() << ' ' << *part << " of " << viewed.name << std::setprecision(9) << ": " << p[0] << ", "
-         << p[1] << ", " << p[2];
-    const std::vector<std::uint8_t>& flags = collisions_.flags[i];
-    const std::uint8_t flag = flags.empty() ? flagOf(Verdict::free) : flags[*part];
-    if (collisions_.known)
-      text << (flag == flagOf(Verdict::free)        ? "; free"
-               : flag == flagOf(Verdict::undecided) ? "; undecided"
-               : flag == flagOf(Verdict::sparse)    ? "; not scanned densely enough"
-                                                    : "; collides");
-    return text.str() + content_.details(i, *part, step_);
+    if (const auto part = clouds_[i].partOf(prop, id)) return describePart(content_, i, collisions_, *part);
   }
-  return {};
+  const auto part = tiles_ ? tiles_->partOf(prop, id) : std::nullopt;
+  return part ? describePart(*part->content, 0, part->content->collisions(0), part->record) : std::string();
+}
+
+std::string RenderView::describePart(const ViewContent& content, std::size_t cloud, const StepCollisions& collisions,
+                                     std::uint32_t part) const
+{
+  const ViewedCloud& viewed = content.viewedClouds()[cloud];
+  const Point3 p = viewed.placeOf(part);
+  std::ostringstream text;
+  text << viewed.partName() << ' ' << part << " of " << viewed.name << std::setprecision(9) << ": " << p[0] << ", "
+       << p[1] << ", " << p[2];
+  const std::vector<std::uint8_t>& flags = collisions.flags[cloud];
+  const std::uint8_t flag = flags.empty() ? flagOf(Verdict::free) : flags[part];
+  if (collisions.known)
+    text << (flag == flagOf(Verdict::free)        ? "; free"
+             : flag == flagOf(Verdict::undecided) ? "; undecided"
+             : flag == flagOf(Verdict::sparse)    ? "; not scanned densely enough"
+                                                  : "; collides");
+  return text.str() + content.details(cloud, part, step_);
 }
 
 void RenderView::exportTo(const std::filesystem::path& path)

@@ -6,6 +6,7 @@
 #include "caption.h"
 #include "cloud_actor.h"
 #include "extra_actors.h"
+#include "tile_actors.h"
 #include "value_bar.h"
 #include "value_histogram.h"
 #include "view_content.h"
@@ -33,6 +34,11 @@ public:
   void setMoving(bool moving);
   void setNote(const std::string& text) { caption_.setNote(text); } ///< as for a picked point; empty: none
 
+  /// Of a site: draws the tiles that the camera sees nearest, one more with each call. @return whether anything changed
+  /// @throws files::FileError for a tile that cannot be read: it is left out from then on
+  bool loadTile();
+  std::string tilesText() const { return tiles_ ? tiles_->text() : std::string(); }
+
   /// What the point or triangle says that is seen at a pixel; empty when there is none.
   std::string pick(int x, int y) const;
 
@@ -45,6 +51,8 @@ public:
   const StepCollisions& collisions() const { return collisions_; }
 
 private:
+  std::string describePart(const ViewContent& content, std::size_t cloud, const StepCollisions& collisions,
+                           std::uint32_t part) const;
   void drawClouds();
   void drawExtras();
   void drawClosestPair();
@@ -62,6 +70,7 @@ private:
   ValueBar bar_;
   ValueHistogram histogram_;
   Coloring coloring_;
+  std::optional<TileActors> tiles_; ///< of a site
   Extras extras_;
   StepCollisions collisions_;
   std::size_t step_ = 0;

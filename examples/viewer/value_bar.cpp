@@ -48,4 +48,11 @@ void ValueBar::show(vtkLookupTable& table, const std::string& title, bool counts
   bar_->VisibilityOn();
 }
 
+std::optional<ColorRange> ValueBar::range() const
+{
+  if (bar_->GetVisibility() == 0) return std::nullopt;
+  const double* const ends = bar_->GetLookupTable()->GetRange();
+  return ColorRange{ends[0], ends[1]};
+}
+
 } // namespace pcl_bsh::view

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "view_content.h"
+
 #include <vtkLookupTable.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
 #include <vtkSmartPointer.h>
 
+#include <optional>
 #include <string>
 
 namespace pcl_bsh::view {
@@ -18,6 +21,9 @@ public:
   /// @param counts the values are whole numbers
   void show(vtkLookupTable& table, const std::string& title, bool counts);
   void hide() { bar_->VisibilityOff(); }
+
+  /// Of the colours shown; none where it is hidden.
+  std::optional<ColorRange> range() const;
 
   /// The share of the picture's width that it leaves to all else.
   double freeWidth() const { return bar_->GetVisibility() != 0 ? 1.0 - 1.9 * share_ : 1.0; }

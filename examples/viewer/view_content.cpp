@@ -3,12 +3,14 @@
 
 #include "clouds_content.h"
 #include "scene_content.h"
+#include "site_content.h"
 
 namespace pcl_bsh::view {
 
 std::unique_ptr<ViewContent> makeViewContent(const Options& options)
 {
   if (options.scene) return makeSceneContent(options);
+  if (options.site) return std::make_unique<SiteContent>(options);
   return std::make_unique<CloudsContent>(options);
 }
 

@@ -44,6 +44,20 @@ struct Trace {
   CollisionTrace trace;
 };
 
+/// What the two ends of a range of colours stand for.
+struct ColorRange {
+  double low = 0.0, high = 1.0;
+};
+
+/// How clouds are coloured that are parts of a whole: alike.
+struct SharedColors {
+  ColorRange heights;               ///< which plain colours are shaded by
+  std::optional<ColorRange> values; ///< none where no value is known yet
+  bool all_distances = false;       ///< free points have some, too
+};
+
+class SiteContent;
+
 /// Clouds and their poses at a number of steps; the first cloud is the one asked about: its points, or its triangles.
 class ViewContent {
 public:
@@ -77,6 +91,10 @@ public:
   /// More text about a picked part, put behind its name and coordinates; or empty.
   virtual std::string details(std::size_t /*cloud*/, std::uint32_t /*part*/, std::size_t /*step*/) const { return {}; }
   virtual std::vector<Trace> traces(std::size_t /*step*/) const { return {}; }
+
+  virtual std::string partsName() const { return std::string(scan().partName()) + "s"; } ///< of what values are of
+  virtual const SharedColors* sharedColors() const { return nullptr; } ///< where this is a part of a whole
+  virtual const SiteContent* site() const { return nullptr; }          ///< where there are tiles to draw, too
 
 protected:
   explicit ViewContent(Options options) : options_(std::move(options)) {}

@@ -27,9 +27,10 @@ struct ViewedCloud {
   std::shared_ptr<const pcl::PCLPointCloud2> cloud; ///< as it was read; none where fields are not shown
   std::optional<io::Obstacle> surface;     ///< where it has faces: these are drawn, and queries are asked of its balls
   std::vector<io::FaceValues> face_values; ///< as they were read; none where fields are not shown
-  std::shared_ptr<SphereHierarchy> hierarchy;
+  std::shared_ptr<SphereHierarchy> hierarchy; ///< null where nothing is asked
+  PointsView records;                         ///< then the points
 
-  const PointsView& points() const { return hierarchy->view(); } ///< of a surface, the balls of its cover
+  const PointsView& points() const { return hierarchy ? hierarchy->view() : records; } ///< of a surface, its balls
 
   /// What is asked about, coloured and picked: points or, of a surface whose balls are each of one triangle, triangles.
   bool hasTriangles() const { return surface && surface->cover()->triangles_apart; }

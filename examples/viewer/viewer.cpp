@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer.h"
 
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/vtk/display.h>
 #include <pcl_bsh/vtk/offscreen_window.h>
 
@@ -21,6 +22,9 @@
 
 namespace pcl_bsh::view {
 namespace {
+
+/// Between one tile of a site and the next: events are heard meanwhile.
+constexpr unsigned long tile_milliseconds = 50;
 
 /// The trackball, with our keys instead of VTK's, and a click that picks.
 class Style : public vtkInteractorStyleTrackballCamera {
@@ -87,6 +91,11 @@ void onSliderMoving(vtkObject*, unsigned long event, void* viewer, void*)
   if (event == vtkCommand::EndInteractionEvent) static_cast<Viewer*>(viewer)->interactor().Render();
 }
 
+void onTimer(vtkObject*, unsigned long, void* viewer, void*)
+{
+  static_cast<Viewer*>(viewer)->loadTile();
+}
+
 } // namespace
 
 Viewer::Viewer(const ViewContent& content) : content_(content)
@@ -110,6 +119,12 @@ Viewer::Viewer(const ViewContent& content) : content_(content)
   interactor_->SetInteractorStyle(style);
   interactor_->Initialize();
   if (content.steps() > 1) addSlider();
+  if (!content.site()) return;
+  vtkNew<vtkCallbackCommand> load;
+  load->SetClientData(this);
+  load->SetCallback(onTimer);
+  interactor_->AddObserver(vtkCommand::TimerEvent, load);
+  interactor_->CreateRepeatingTimer(tile_milliseconds);
 }
 
 Viewer::~Viewer()
@@ -227,8 +242,21 @@ void Viewer::showStep(std::size_t step)
   interactor_->Render();
 }
 
+void Viewer::loadTile()
+{
+  if (is_moving_) return;
+  try {
+    if (!render_view_->loadTile()) return;
+  }
+  catch (const files::FileError& error) {
+    render_view_->setNote(error.what()); // the window stays: other tiles are whole
+  }
+  interactor_->Render();
+}
+
 void Viewer::setMoving(bool moving)
 {
+  is_moving_ = moving;
   render_view_->setMoving(moving);
 }
 

@@ -44,6 +44,7 @@ public:
   void pick(int x, int y);
   void showStep(std::size_t step);
   void setMoving(bool moving);
+  void loadTile(); ///< one more of a site, while nothing moves
   const std::string& picked() const { return picked_; }
   const std::filesystem::path& saved() const { return saved_; } ///< the last picture that was saved
 
@@ -60,6 +61,7 @@ private:
   std::string picked_;
   std::filesystem::path saved_;
   bool help_ = false;
+  bool is_moving_ = false;
 };
 
 } // namespace pcl_bsh::view

@@ -8,7 +8,6 @@
 
 #include <pcl_bsh/site/site.h>
 
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -32,29 +31,6 @@ Example: where does a machine come within 5 cm of it on its way? On one process,
   mpirun -n 4 pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
 Example: the same as a page, place by place
   pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html)";
-
-/// For transform(): a number with K, M or G behind it, each `unit` times the last.
-CLI::Validator amount(std::uint64_t unit, std::uint64_t least, std::string remedy)
-{
-  return {[=](std::string& text) -> std::string {
-            constexpr std::array letters = {'K', 'M', 'G'};
-            std::uint64_t factor = 1;
-            std::string digits = text;
-            for (std::size_t i = 0; i < letters.size() && !digits.empty(); ++i) {
-              if (digits.back() != letters[i]) continue;
-              for (std::size_t k = 0; k <= i; ++k) factor *= unit;
-              digits.pop_back();
-              break;
-            }
-            const bool whole =
-                !digits.empty() && digits.size() <= 9 && digits.find_first_not_of("0123456789") == std::string::npos;
-            const std::uint64_t value = whole ? std::stoull(digits) * factor : 0;
-            if (value < least) return "'" + text + "' is not such an amount: " + remedy;
-            text = std::to_string(value);
-            return "";
-          },
-          ""};
-}
 
 void addMemory(CLI::App& app, SiteOptions& options)
 {
