@@ -170,14 +170,18 @@ TEST_F(SiteAccuracy, OfTheProgram)
   ASSERT_EQ(run("pcl_bsh_collide", "b.pcd a.pcd memory.pcd --clearance 0.15", folder.path()).exit_code, 0);
   io::expectSame(io::readCloud(folder / "marked.pcd"), io::readCloud(folder / "memory.pcd"));
 
+  const std::string tile = files::contentOf(folder / "site200/tiles/tile_000000.pcd");
   for (const auto& [arguments, words] :
        {std::pair{"--accuracy level=1 --clashes c.json", "clashes need distances"},
         {"--obstacle-out b.pcd", "is the file of OBSTACLE"},
+        {"--obstacle-out site200/tiles/tile_000000.pcd", "lies in the folder of SITE"},
+        {"--report site200/../site200/site.json", "lies in the folder of SITE"},
         {"--obstacle-out c.pcd --clashes c.json", "--obstacle-out: are flags at one pose"}}) {
     const Outcome outcome = run("pcl_bsh_site", asked + arguments, folder.path());
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_THAT(outcome.err, HasSubstr(words));
   }
+  EXPECT_TRUE(files::contentOf(folder / "site200/tiles/tile_000000.pcd") == tile);
 }
 
 TEST_F(SiteAccuracy, TellsProgramsWhatASiteHolds)

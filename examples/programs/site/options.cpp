@@ -8,6 +8,7 @@
 
 #include <pcl_bsh/site/site.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -40,6 +41,18 @@ void addMemory(CLI::App& app, SiteOptions& options)
 }
 
 #ifdef PCL_BSH_SITE_QUERIES
+/// Whatever lies in the site's folder is its own: no file of an answer may take a tile's place.
+void requireOutside(const std::filesystem::path& site, const char* option, const std::filesystem::path& file)
+{
+  namespace fs = std::filesystem;
+  if (file.empty()) return;
+  std::error_code error;
+  const fs::path home = fs::weakly_canonical(site, error), target = fs::weakly_canonical(fs::absolute(file), error);
+  const auto [home_end, unused] = std::mismatch(home.begin(), home.end(), target.begin(), target.end());
+  if (!error && home_end == home.end())
+    throw UsageError(std::string(option) + ": " + file.string() + ": lies in the folder of SITE: choose another place");
+}
+
 /// The options of `collide` as they are written.
 struct CollideTexts {
   bool any = false, closest = false, distances = false;
@@ -143,6 +156,9 @@ struct CollideTexts {
     if (options.swept && !moves) throw UsageError("--swept: goes with --trajectory: add it");
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
     if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
+    requireOutside(options.site, "--report", options.report);
+    requireOutside(options.site, "--obstacle-out", options.obstacle_out);
+    for (const std::filesystem::path& list : options.clashes) requireOutside(options.site, "--clashes", list);
     CommandFiles& files = options.files;
     files.reads("SITE", options.site / sites::site_file_name).reads("OBSTACLE", options.obstacle);
     files.readsPose("--pose", pose).reads("--trajectory", options.trajectory);
