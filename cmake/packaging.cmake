@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Three .deb packages, with VTK, CGAL, urdfdom and Python one more each, by `cmake --workflow --preset package` or, from any build,
-# by `cpack -G DEB`.
+# Three .deb packages, with VTK, CGAL, urdfdom, Python and VTK's Python one more each, by
+# `cmake --workflow --preset package` or, from any build, by `cpack -G DEB`.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The pcl_bsh authors")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
@@ -20,6 +20,9 @@ if(TARGET pcl_bsh_vtk)
 endif()
 if(TARGET pcl_bsh_python)
   list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
+if(TARGET pcl_bsh_python_vtk)
+  list(APPEND CPACK_COMPONENTS_ALL python_vtk)
 endif()
 if(TARGET pcl_bsh_self_filter)
   list(APPEND CPACK_COMPONENTS_ALL self_filter)
@@ -66,6 +69,12 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${PCL_BSH_PYTHON_DEPENDS}")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Where point clouds collide, for NumPy's arrays.")
 set(CPACK_COMPONENT_PYTHON_DEPENDS libs)
+
+set(CPACK_DEBIAN_PYTHON_VTK_PACKAGE_NAME python3-pcl-bsh-vtk)
+set(CPACK_DEBIAN_PYTHON_VTK_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_VTK_PACKAGE_DEPENDS "python3-vtk9")
+set(CPACK_COMPONENT_PYTHON_VTK_DESCRIPTION "Filters for point clouds in the pipelines of VTK's Python.")
+set(CPACK_COMPONENT_PYTHON_VTK_DEPENDS python vtk)
 
 # What the binaries link to becomes what the packages depend on; our own libraries are found where they were built.
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)

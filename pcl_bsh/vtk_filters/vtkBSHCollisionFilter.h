@@ -37,7 +37,7 @@ public:
   vtkGetMacro(Swept, double);
   ///@}
 
-  /// How many points collide, of the last execution; 0 where that failed.
+  /// How many points collide, of the last execution; 0 where that failed. Of a cloud in blocks: in its last block.
   vtkGetMacro(NumberOfCollidingPoints, vtkIdType);
 
 protected:

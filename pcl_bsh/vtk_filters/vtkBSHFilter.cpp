@@ -5,6 +5,7 @@
 #include <pcl_bsh/vtk_filters/bsh_question.h>
 #include <pcl_bsh/vtk_filters/pose_table.h>
 
+#include <vtkCompositeDataSet.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkLinearTransform.h>
@@ -18,6 +19,25 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+namespace {
+
+/// The data of a port, null where nothing is connected. @throws std::invalid_argument where it is of another type
+template <class Data>
+Data* dataOf(vtkInformationVector& input, const std::string& what, const std::string& wanted)
+{
+  vtkDataObject* const given = vtkDataObject::GetData(&input);
+  auto* const data = Data::SafeDownCast(given);
+  if (given && !data) {
+    const std::string advice = vtkCompositeDataSet::SafeDownCast(given)
+                                   ? "merge its blocks (vtkAppendPolyData; in ParaView, Merge Blocks)"
+                                   : "give " + wanted;
+    throw std::invalid_argument(what + " is a " + given->GetClassName() + ": " + advice);
+  }
+  return data;
+}
+
+} // namespace
 
 struct vtkBSHFilter::Kept {
   pcl_bsh::vtk::KeptHierarchy cloud, obstacle;
@@ -71,14 +91,17 @@ vtkIdType vtkBSHFilter::GetHierarchiesBuilt()
 
 vtkMTimeType vtkBSHFilter::GetMTime()
 {
-  if (this->Failed) this->Modified(); // VTK takes the empty output for an up-to-date one: the next Update() fails again
+  // VTK takes the empty output for an up-to-date one: the next Update() fails again. No event, whose observers may ask.
+  if (this->Failed) this->MTime.Modified();
   const vtkMTimeType own = this->Superclass::GetMTime();
   return this->Transform ? std::max(own, this->Transform->GetMTime()) : own;
 }
 
 int vtkBSHFilter::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 2 ? "vtkTable" : "vtkPolyData");
+  // VTK would execute once for each block of an obstacle, and none of the answers would be that of all: what is not a
+  // whole is refused below. A cloud may come in blocks.
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPolyData" : "vtkDataObject");
   if (port == 2) info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   return 1;
 }
@@ -107,9 +130,9 @@ int vtkBSHFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vt
       throw std::invalid_argument(std::to_string(controller->GetNumberOfProcesses()) +
                                   " processes share the data, and none sees all of the obstacle: use one process");
     vtkPolyData* const cloud = vtkPolyData::GetData(inputs[0]);
-    vtkPolyData* const obstacle = vtkPolyData::GetData(inputs[1]);
+    auto* const obstacle = dataOf<vtkPolyData>(*inputs[1], "the obstacle", "a vtkPolyData");
     if (!cloud || !obstacle) throw std::invalid_argument("an input is missing: connect a cloud and an obstacle");
-    vtkTable* const table = vtkTable::GetData(inputs[2]);
+    auto* const table = dataOf<vtkTable>(*inputs[2], "the list of poses", "a vtkTable");
 
     double done = 0.0; // progress of the cover first, then of the query: together they never fall
     const auto report = [this, &done](double from, double to, double fraction) {

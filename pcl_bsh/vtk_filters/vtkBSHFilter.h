@@ -5,11 +5,13 @@
 /// Port 0 is the cloud: all points of a vtkPolyData; its cells are not looked at. Port 1 is the obstacle: the points of
 /// a vtkPolyData, or, where that has lines, polygons or strips, all of its cells, as a surface (SurfaceTolerance). Port
 /// 2, optional, is a vtkTable of poses of the obstacle, a row each: 12 or 16 numbers of its matrix, row by row, or time
-/// tx ty tz qx qy qz qw.
+/// tx ty tz qx qy qz qw. A cloud may come in blocks: each is answered as a cloud of its own, and only the last one's
+/// hierarchy is kept. Obstacle or poses in blocks are refused.
 ///
 /// The output is the cloud with all its arrays and those that the filter adds. What fails is told by vtkErrorMacro in
 /// one line; then, and after an abort, the output is empty and the execution failed, so that nothing looks like an
-/// answer. Points that are not finite are no points: they have the values of free points.
+/// answer. Progress is told, and an abort heeded, while a surface is covered, along poses and of distances; the flags
+/// at a single pose are one step. Points that are not finite are no points: they have the values of free points.
 ///
 /// The hierarchies of cloud and obstacle are kept: nothing is built again when only settings, the transform or the
 /// poses change, nor when the input has other arrays at the same points. All calls by one thread at a time, as VTK has

@@ -22,6 +22,7 @@
 #include <vtkExecutive.h>
 #include <vtkFloatArray.h>
 #include <vtkIntArray.h>
+#include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkSOADataArrayTemplate.h>
@@ -532,12 +533,63 @@ TEST_P(Filters, WrongPortsAreErrors)
   vtkNew<vtkTrivialProducer> producer;
   producer->SetOutput(table);
   filter->SetObstacleConnection(producer->GetOutputPort());
-  expectFailure(*filter, "vtkPolyData is required");
+  expectFailure(*filter, "the obstacle is a vtkTable: give a vtkPolyData");
   filter->SetObstacleData(obstacle);
   vtkNew<vtkTrivialProducer> wrong;
   wrong->SetOutput(cloud);
   filter->SetPosesConnection(wrong->GetOutputPort());
-  expectFailure(*filter, "vtkTable is required");
+  expectFailure(*filter, "the list of poses is a vtkPolyData: give a vtkTable");
+}
+
+TEST_P(Filters, BlocksOfACloudAreAnsweredOfAnObstacleRefused)
+{
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(cloud);
+  filter->SetObstacleData(obstacle);
+  filter->SetClearance(0.1);
+  filter->Update();
+  const std::vector<double> whole = values(*filter->GetOutput(), "collision");
+
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, obstacle);
+  blocks->SetBlock(1, cloud);
+  filter->SetInputDataObject(1, blocks);
+  expectFailure(*filter, "the obstacle is a vtkMultiBlockDataSet: merge its blocks");
+  filter->SetObstacleData(obstacle);
+  vtkNew<vtkMultiBlockDataSet> tables;
+  tables->SetBlock(0, tableOf(path));
+  filter->SetInputDataObject(2, tables);
+  expectFailure(*filter, "the list of poses is a vtkMultiBlockDataSet: merge its blocks");
+  filter->SetPosesData(nullptr);
+
+  filter->SetInputDataObject(0, blocks);
+  filter->Update();
+  auto* const answered = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  ASSERT_NE(answered, nullptr);
+  ASSERT_EQ(answered->GetNumberOfBlocks(), 2u);
+  EXPECT_EQ(values(*vtkPolyData::SafeDownCast(answered->GetBlock(0)), "collision"), std::vector<double>(300, 1.0));
+  EXPECT_EQ(values(*vtkPolyData::SafeDownCast(answered->GetBlock(1)), "collision"), whole);
+}
+
+TEST_P(Filters, WhoHearsOfAFailureMayAskForTheTime)
+{
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(cloud);
+  filter->SetObstacleData(obstacle);
+  filter->SetClearance(-1.0);
+  expectFailure(*filter, "clearance");
+  int heard = 0;
+  vtkNew<vtkCallbackCommand> ask;
+  ask->SetClientData(&heard);
+  ask->SetCallback([](vtkObject* caller, unsigned long, void* count, void*) {
+    if (++*static_cast<int*>(count) < 10) caller->GetMTime();
+  });
+  filter->AddObserver(vtkCommand::ModifiedEvent, ask);
+  const vtkMTimeType before = filter->GetMTime();
+  EXPECT_GT(filter->GetMTime(), before);
+  EXPECT_EQ(heard, 0); // it is not modified by being asked
+  filter->SetClearance(0.1);
+  EXPECT_EQ(heard, 1);
 }
 
 TEST_P(Filters, PrintedMatricesAreTakenWithAWarning)
