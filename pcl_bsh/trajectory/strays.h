@@ -11,7 +11,8 @@
 
 namespace pcl_bsh {
 
-/// Records of a scan and of a model. No stray comes within reach of an ordinary point of the other, at any pose.
+/// Records of a scan and of a model; of strays possibly none. No stray comes within reach of an ordinary point of the
+/// other, at any pose.
 struct Strays {
   std::vector<std::int32_t> ordinary_scan, stray_scan, ordinary_model, stray_model;
 };

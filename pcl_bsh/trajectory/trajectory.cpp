@@ -250,6 +250,7 @@ TrajectoryResult walkApart(const Placed& scan, const SphereHierarchy& model,
     return walk(Placed(some_scan, scan.pose), hierarchyOf(model, of_model), model_poses, asked);
   };
   TrajectoryResult result = ask(strays.ordinary_scan, strays.ordinary_model, request);
+  if (strays.stray_scan.empty() || strays.stray_model.empty()) return result;
   TrajectoryRequest quietly = request;
   quietly.progress = {};
   addStrays(result, ask(strays.stray_scan, strays.stray_model, quietly), strays.stray_scan);

@@ -118,6 +118,16 @@ TEST(Strays, OfASubset)
   expectSame(found, brute_force::collideAlong(of_scan, of_model, poses, everything(0.3)));
   EXPECT_EQ(found.flags[7], 1);
   EXPECT_EQ(found.flags[27], 1);
+
+  // The model's own stray is no point of its subset.
+  const std::vector<std::int32_t> others = {0, 1, 2, 3, 30, 31, 40, 80, 81, 149};
+  PointsView without = model.view();
+  without.indices = others.data();
+  without.index_count = others.size();
+  const SphereHierarchy of_others(without);
+  EXPECT_TRUE(findStrays(of_scan, of_others, poses, 0.3).has_value());
+  expectSame(collideAlong(of_scan, of_others, poses, everything(0.3)),
+             brute_force::collideAlong(of_scan, of_others, poses, everything(0.3)));
 }
 
 } // namespace
