@@ -38,9 +38,8 @@ public:
     const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      double at_first = std::numeric_limits<double>::infinity(); // of a witness alone, not kept
-      double& first = query_.witness ? at_first : results_.first[leaf.points.begin + i];
-      if (!query_.closest && first <= begin + steps * clipped.from[i]) continue;
+      const double earliest_here = begin + steps * clipped.from[i];
+      if (isSettled(leaf, i, earliest_here)) continue;
       const std::uint32_t record = leaf.points.record(i);
       const PointSegment segment(query_, record, *motion.interval);
       for (std::uint32_t its = near_points[i]; its != 0; its &= its - 1) {
@@ -52,11 +51,17 @@ public:
         if (!approach.contact) continue;
         if (query_.witness) return keepWitness(leaf, {record, q});
         results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | 1u << i);
+        double& first = results_.first[leaf.points.begin + i];
         first = std::min(first, begin + steps * approach.enter);
-        if (!query_.closest) continue;
+        results_.earliest = std::min(results_.earliest, first);
+        if (!query_.closest) {
+          if (isSettled(leaf, i, earliest_here)) break;
+          continue;
+        }
         const double radii = query_.scan.hierarchy().view().radius(record) + query_.model.view().radius(q);
         consider(results_.best[leaf.points.begin + i], approach.distance - radii, begin + steps * approach.at, q);
       }
+      if (isSettled(leaf, i, begin)) leaf.open &= ~(1u << i);
       if (query_.closest && query_.radii == 0.0) {
         NearestPoint& best = results_.best[leaf.points.begin + i];
         best.reach = std::min(best.reach, roundUp(best.gap));
@@ -67,6 +72,13 @@ public:
   }
 
 private:
+  /// Whether nothing that a point meets from this time on changes an answer.
+  bool isSettled(const LeafVisit& leaf, std::uint32_t i, double from) const
+  {
+    return !query_.closest && !query_.witness && (results_.hit[leaf.slot] >> i & 1) != 0 &&
+           results_.firstOf(leaf.points.begin + i) <= from;
+  }
+
   void keepWitness(LeafVisit& leaf, const PointPair& pair)
   {
     results_.witness = pair;

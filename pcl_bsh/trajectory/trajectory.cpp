@@ -5,6 +5,7 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/trajectory/check_trajectory.h>
+#include <pcl_bsh/trajectory/strays.h>
 #include <pcl_bsh/trajectory/trajectory_walk.h>
 
 #include <algorithm>
@@ -222,6 +223,40 @@ TrajectoryResult walkUncertain(const Placed& scan, const SphereHierarchy& model,
   return std::move(*possible);
 }
 
+TrajectoryResult walk(const Placed& scan, const SphereHierarchy& model,
+                      const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
+{
+  if (areUncertain(scan, {model}) && asksForAnything(request)) return walkUncertain(scan, model, model_poses, request);
+  std::optional<TrajectoryResult> result = walkAlong(scan, model, model_poses, request, Places::measured);
+  return result ? std::move(*result) : brute_force::collideAlong(scan, model, model_poses, request);
+}
+
+SphereHierarchy hierarchyOf(const SphereHierarchy& of, const std::vector<std::int32_t>& records)
+{
+  PointsView some = of.view();
+  some.indices = records.data();
+  some.index_count = records.size();
+  return SphereHierarchy(some, of.options());
+}
+
+/// Strays by themselves, and all other points by themselves.
+TrajectoryResult walkApart(const Placed& scan, const SphereHierarchy& model,
+                           const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request,
+                           const Strays& strays)
+{
+  const auto ask = [&](const std::vector<std::int32_t>& of_scan, const std::vector<std::int32_t>& of_model,
+                       const TrajectoryRequest& asked) {
+    const SphereHierarchy some_scan = hierarchyOf(scan.hierarchy(), of_scan);
+    return walk(Placed(some_scan, scan.pose), hierarchyOf(model, of_model), model_poses, asked);
+  };
+  TrajectoryResult result = ask(strays.ordinary_scan, strays.ordinary_model, request);
+  if (strays.stray_scan.empty() || strays.stray_model.empty()) return result;
+  TrajectoryRequest quietly = request;
+  quietly.progress = {};
+  addStrays(result, ask(strays.stray_scan, strays.stray_model, quietly), strays.stray_scan);
+  return result;
+}
+
 } // namespace
 
 TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
@@ -229,9 +264,11 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
 {
   check(scan, model_poses, request);
   const DefaultFloatEnvironment environment;
-  if (areUncertain(scan, {model}) && asksForAnything(request)) return walkUncertain(scan, model, model_poses, request);
-  std::optional<TrajectoryResult> result = walkAlong(scan, model, model_poses, request, Places::measured);
-  return result ? std::move(*result) : brute_force::collideAlong(scan, model, model_poses, request);
+  // Swept motion refuses such coordinates, and what stops early has one budget for all points.
+  if (!request.swept && !StopRule(request.accuracy).mayStop() && asksForAnything(request))
+    if (const std::optional<Strays> strays = findStrays(scan, model, model_poses, request.clearance))
+      return walkApart(scan, model, model_poses, request, *strays);
+  return walk(scan, model, model_poses, request);
 }
 
 } // namespace pcl_bsh

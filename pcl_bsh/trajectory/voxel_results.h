@@ -38,9 +38,10 @@ public:
 
   std::vector<std::uint16_t> hit, settled; ///< per slot: bits of the leaf's points
   std::vector<std::uint16_t> undecided;    ///< per slot: likewise, of a child that is no leaf any bit stands for all
-  std::vector<double> first;               ///< per point: when it collides first, if that is asked for
-  std::vector<NearestPoint> best;          ///< per point, if that is asked for
-  std::optional<PointPair> witness;        ///< where one is wanted
+  std::vector<double> first;               ///< per point: when it collides first, if that is asked for; see firstOf()
+  double earliest = std::numeric_limits<double>::infinity(); ///< swept: the least of `first`
+  std::vector<NearestPoint> best;                            ///< per point, if that is asked for
+  std::optional<PointPair> witness;                          ///< where one is wanted
   Work work;
 
   /// Whether the pair collides at a pose, in exact arithmetic.
@@ -49,10 +50,17 @@ public:
   /// Keeps the nearest for a point; of several the first pose, and there the smallest record.
   void consider(NearestPoint& nearest, PointPair pair, std::uint32_t k);
 
+  /// Of a point that collides: what collides later than this changes no answer. Where swept motion is not asked for
+  /// each point's first contact, the first of all is enough, and `first` of a point is any of its contacts.
+  double firstOf(std::uint32_t point) const
+  {
+    return query_.path.is_swept && !query_.request.first_poses ? earliest : first[point];
+  }
+
   /// Whether the best so far bounds the search for a point of the voxel from this pose on.
   bool bestBounds(std::uint32_t point, double from) const
   {
-    return query_.bestBounds(query_.first ? first[point] : 0.0, from);
+    return query_.bestBounds(query_.first ? firstOf(point) : 0.0, from);
   }
 
   /// Keeps the nearest for a pose.

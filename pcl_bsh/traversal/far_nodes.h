@@ -51,6 +51,17 @@ public:
     take(cross_slabs, cross_, cross_h_);
   }
 
+  /// Of a single point, which reaches nowhere.
+  explicit NodeSupport(const Point3& point)
+  : sphere_{point, 0.0},
+    radius_(0.0),
+    normal_(Eigen::Vector3d::Zero()),
+    cross_(Eigen::Vector3d::Zero()),
+    h_(0.0),
+    cross_h_(0.0)
+  {
+  }
+
   /// In the cloud's own frame.
   const Point3& center() const { return sphere_.center; }
 

@@ -282,9 +282,32 @@ private:
       const NodeSupport own = opened == Opened::a ? supportOf(a, child.a) : supportOf(b, child.b);
       const bool of_a = opened == Opened::a;
       if (areFarNodesApart(distance, a.pose, of_a ? own : other, b.pose, of_a ? other : own, clearance,
-                           work.exact_decisions))
+                           work.exact_decisions) ||
+          pointsAreFarApart(child, opened, out.radius, out.radii[lane] * out.stretch, own, clearance))
         out.near &= ~(1u << lane);
     }
+  }
+
+  /// Whether the other side of a child is a leaf much larger than it, and the child is apart from each of its points:
+  /// a leaf of a cylinder bends by more than the points near its axis differ in their distance.
+  /// @param leaf_radius, radius of the leaf and of the child, in one unit. @param own the child's support
+  bool pointsAreFarApart(const LanePair& child, Opened opened, float leaf_radius, float radius, const NodeSupport& own,
+                         double clearance)
+  {
+    const bool leaf_is_a = opened == Opened::b;
+    if (!(leaf_radius > kLargeFarLeaf * radius) || !isLeaf(leaf_is_a ? a : b, leaf_is_a ? child.a : child.b) ||
+        isLeaf(leaf_is_a ? b : a, leaf_is_a ? child.b : child.a))
+      return false;
+    const LeafRange points = leaf_is_a ? leaf(a, child.a) : leaf(b, child.b);
+    const PointsView& view = leaf_is_a ? a.storage.view : b.storage.view;
+    for (std::uint32_t i = 0; i < points.count; ++i) {
+      const NodeSupport point(view.point(points.record(i)));
+      ++work.node_pairs;
+      if (!areFarNodesApart(distance, a.pose, leaf_is_a ? point : own, b.pose, leaf_is_a ? own : point, clearance,
+                            work.exact_decisions))
+        return false;
+    }
+    return true;
   }
 
   /// Whether both spheres of a pair are as small as the float error; one of them is child `lane` of the step.

@@ -5,6 +5,7 @@
 
 #include "journeys.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,6 +21,8 @@ using test::expectSame;
 using test::flagsOnly;
 using test::Poses;
 using test::Random;
+using testing::NanSensitiveFloatEq;
+using testing::Pointwise;
 
 using Cloud = std::vector<Eigen::Vector3d>;
 
@@ -143,6 +146,17 @@ TEST(GrazingPaths, AnswerAsBruteForce)
       swept.swept = 0.01;
       const TrajectoryResult moved = collideAlong({scan}, model, poses, swept);
       for (std::size_t i = 0; i < wall.size(); ++i) EXPECT_GE(moved.flags[i], expected.flags[i]) << i;
+      // Where each point's first contact is asked for, the first one of all does not end the search for a point.
+      swept.first_poses = swept.distances = true;
+      const TrajectoryResult each = collideAlong({scan}, model, poses, swept);
+      EXPECT_EQ(each.flags, moved.flags);
+      EXPECT_EQ(each.first_contact->pose, moved.first_contact->pose);
+      EXPECT_EQ(each.first_contact->fraction, moved.first_contact->fraction);
+      swept.first_poses = false;
+      const TrajectoryResult measured = collideAlong({scan}, model, poses, swept);
+      EXPECT_EQ(measured.flags, moved.flags);
+      EXPECT_EQ(measured.first_contact->fraction, moved.first_contact->fraction);
+      EXPECT_THAT(measured.distance, Pointwise(NanSensitiveFloatEq(), each.distance));
     }
 }
 

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A few points far outside of all others: paths leave them to themselves, unless something comes near them.
+#include <pcl_bsh/trajectory/strays.h>
+
+#include "../query/random_clouds.h"
+#include "journeys.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using test::everything;
+using test::expectSame;
+using test::Poses;
+using test::Random;
+
+using Points = std::vector<Point3>;
+
+constexpr double kSentinel = std::numeric_limits<float>::max();
+
+/// 320 points of a unit cube, some replaced: enough for voxels that hold strays alone.
+Points cubeWith(const Points& strays, std::uint64_t seed)
+{
+  Random random(seed);
+  Points points(320);
+  for (Point3& p : points) p = random.point([&] { return random.uniform(-1, 1); });
+  for (std::size_t i = 0; i < strays.size(); ++i) points[20 * i + 7] = strays[i];
+  return points;
+}
+
+Poses ahead(std::size_t count, double step)
+{
+  Poses poses(count, Eigen::Isometry3d::Identity());
+  for (std::size_t k = 0; k < count; ++k) {
+    poses[k].translation().x() = step * static_cast<double>(k);
+    poses[k].rotate(Eigen::AngleAxisd(0.1 * static_cast<double>(k), Eigen::Vector3d::UnitZ()));
+  }
+  return poses;
+}
+
+struct Case {
+  const char* name;
+  Points in_scan, in_model;
+  double step;    ///< from one pose to the next
+  bool set_aside; ///< whether the strays are
+};
+
+const Case kCases[] = {
+    {"none", {}, {}, 0.2, false},
+    {"sentinels", {{kSentinel, kSentinel, kSentinel}}, {{kSentinel, -kSentinel, 0}}, 0.2, true},
+    {"of the scan alone", {{1e20, 0, 0}, {-1e20, 1, 0}}, {}, 0.2, true},
+    {"of the model alone", {}, {{0, 1e20, 0}}, 0.2, true},
+    {"that meet each other", {{0, 0, 1e9}, {0, 1e9, 0}}, {{0, 0, 1e9}}, 0.2, true},
+    {"where the path goes", {{1e5, 0, 0}}, {}, 1e5, false},
+    {"whose path goes to the scan", {}, {{-1e5, 0, 0}}, 1e5, false},
+    {"not far enough", {{500, 0, 0}}, {{0, 0, -500}}, 0.2, false},
+};
+
+TEST(Strays, AnswerAsBruteForce)
+{
+  for (const Case& strays : kCases)
+    for (const bool balls : {false, true}) {
+      SCOPED_TRACE(strays.name);
+      test::Cloud scan(cubeWith(strays.in_scan, 1)), model(cubeWith(strays.in_model, 2));
+      if (balls) {
+        scan.setRadii(std::vector<float>(320, 0.02f));
+        model.setRadii(std::vector<float>(320, 0.01f));
+      }
+      const SphereHierarchy of_scan(scan.view()), of_model(model.view());
+      const Poses poses = ahead(4, strays.step);
+      EXPECT_EQ(findStrays(of_scan, of_model, poses, 0.1).has_value(), strays.set_aside);
+      const TrajectoryResult expected = brute_force::collideAlong(of_scan, of_model, poses, everything(0.1));
+      EXPECT_GT(expected.colliding, 5u);
+      expectSame(collideAlong(of_scan, of_model, poses, everything(0.1)), expected);
+    }
+}
+
+TEST(Strays, OfBallsThatReachTheOthers)
+{
+  test::Cloud scan(cubeWith({{1e6, 0, 0}}, 1)), model(cubeWith({}, 2));
+  std::vector<float> radii(320, 0.0f);
+  radii[7] = 1e6f;
+  scan.setRadii(radii);
+  const SphereHierarchy of_scan(scan.view()), of_model(model.view());
+  const Poses poses = ahead(3, 0.2);
+  EXPECT_FALSE(findStrays(of_scan, of_model, poses, 0.1).has_value());
+  expectSame(collideAlong(of_scan, of_model, poses, everything(0.1)),
+             brute_force::collideAlong(of_scan, of_model, poses, everything(0.1)));
+}
+
+TEST(Strays, OfPointsWhosePlacesAreUncertain)
+{
+  test::Cloud scan(cubeWith({{1e9, 0, 0}, {0, 1e9, 0}}, 1)), model(cubeWith({{0, 1e9, 0}}, 2));
+  PointsView uncertain = scan.view();
+  uncertain.uncertainty = 0.03;
+  const SphereHierarchy of_scan(uncertain), of_model(model.view());
+  const Poses poses = ahead(3, 0.2);
+  EXPECT_TRUE(findStrays(of_scan, of_model, poses, 0.1).has_value());
+  expectSame(collideAlong(of_scan, of_model, poses, everything(0.1)),
+             brute_force::collideAlong(of_scan, of_model, poses, everything(0.1)));
+}
+
+TEST(Strays, OfASubset)
+{
+  const std::vector<std::int32_t> some = {3, 7, 11, 12, 13, 27, 30, 31, 40, 80, 81, 149};
+  const test::Cloud scan(cubeWith({{1e20, 0, 0}, {1e20, 0, 0}}, 1)), model(cubeWith({{1e20, 0, 0}}, 2));
+  PointsView subset = scan.view();
+  subset.indices = some.data();
+  subset.index_count = some.size();
+  const SphereHierarchy of_scan(subset), of_model(model.view());
+  const Poses poses = ahead(3, 0.2);
+  const TrajectoryResult found = collideAlong(of_scan, of_model, poses, everything(0.3));
+  expectSame(found, brute_force::collideAlong(of_scan, of_model, poses, everything(0.3)));
+  EXPECT_EQ(found.flags[7], 1);
+  EXPECT_EQ(found.flags[27], 1);
+
+  // The model's own stray is no point of its subset.
+  const std::vector<std::int32_t> others = {0, 1, 2, 3, 30, 31, 40, 80, 81, 149};
+  PointsView without = model.view();
+  without.indices = others.data();
+  without.index_count = others.size();
+  const SphereHierarchy of_others(without);
+  EXPECT_TRUE(findStrays(of_scan, of_others, poses, 0.3).has_value());
+  expectSame(collideAlong(of_scan, of_others, poses, everything(0.3)),
+             brute_force::collideAlong(of_scan, of_others, poses, everything(0.3)));
+}
+
+} // namespace
+} // namespace pcl_bsh
