@@ -252,8 +252,13 @@ TEST(Uncertainty, OfManyLeavesAtOnce)
 {
   // A heap in the middle of a shell is near all of its leaves, and each length may be the one that decides.
   Random random(8);
-  const Cloud heap(test::makePoints(test::Shape::uniform, 60, 0.02, random));
-  Cloud cloud_a = heap, cloud_b(test::makePoints(test::Shape::sphere, 3000, 1.0, random));
+  const auto inOneVoxel = [](std::vector<Point3> points) {
+    for (Point3& p : points)
+      for (double& x : p) x += 8.0;
+    return points;
+  };
+  Cloud cloud_a(inOneVoxel(test::makePoints(test::Shape::uniform, 60, 0.02, random)));
+  Cloud cloud_b(inOneVoxel(test::makePoints(test::Shape::sphere, 3000, 1.0, random)));
   const auto lengths = [&random](std::size_t count) {
     std::vector<float> own(count);
     for (float& length : own) length = static_cast<float>(random.uniform(0, 0.05));
@@ -262,8 +267,11 @@ TEST(Uncertainty, OfManyLeavesAtOnce)
   cloud_a.setUncertainties(0.001, lengths(60));
   cloud_b.setUncertainties(0.002, lengths(3000));
   std::size_t flags[3] = {};
+  HierarchyOptions one_voxel;
+  one_voxel.voxel_edge = 16.0;
   for (const bool listed : {true, false}) {
-    const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+    const SphereHierarchy a(cloud_a.view(), one_voxel), b(cloud_b.view(), one_voxel);
+    ASSERT_EQ(b.statistics().voxels, 1u);
     if (!listed) a.buildAll();
     for (const double clearance : {0.88, 0.9, 0.92, 0.94, 1.0, 1.02, 1.04, 1.06}) {
       const FlagsResult found = collisionFlags({a}, {b}, within(clearance, Side::both));
