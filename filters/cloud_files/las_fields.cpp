@@ -172,6 +172,13 @@ bool unscaled(double value, const LasScaling& scaling, const Read& read, T& stor
     }
   }
   exact = read(valueOf(stored, scaling)) == read(value);
+  if constexpr (!std::is_floating_point_v<T>) {
+    if (exact || !std::isnan(valueOf(stored, scaling))) return true;
+    // It is what stands for no data: where the offset absorbs it, so it does its neighbour.
+    const T other = stored < std::numeric_limits<T>::max() ? stored + T{1} : stored - T{1};
+    exact = read(valueOf(other, scaling)) == read(value);
+    if (exact) stored = other;
+  }
   return true;
 }
 
