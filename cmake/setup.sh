@@ -3,7 +3,8 @@
 # Installs the Debian packages that are missing, configures and builds. Does no more than is left to do.
 #   bash cmake/setup.sh [PRESET [TARGET...]]     default: release, all targets; into build/PRESET
 # For the targets `demonstration`, `programs`, `python`, `docs` and `self_filter` it installs the sections of
-# packages.txt that these need, for others all but [python] and [self_filter].
+# packages.txt that these need, for others all but [python] and [self_filter]. The preset `paraview` needs packages that
+# exclude those of the others: apt-get removes nothing, and fails.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -20,6 +21,7 @@ case "${targets[*]}" in
   docs) sections="core demonstration docs" ;;
   *) sections="core demonstration programs tests docs" ;;
 esac
+if [[ "$preset" == paraview ]]; then sections="core paraview"; fi
 
 # The packages of some sections that are not installed.
 missing_packages() {
@@ -45,7 +47,7 @@ apt_get() {
 }
 
 install_packages() {
-  apt_get install --yes --no-install-recommends "$@" || die "apt-get install failed: see the lines above"
+  apt_get install --yes --no-remove --no-install-recommends "$@" || die "apt-get install failed: see the lines above"
 }
 
 configure() { cmake --preset "$preset" --log-level=WARNING "$@"; }

@@ -74,9 +74,7 @@ PointDistances DistanceQuery::within(const PointsView& input, double max_distanc
 {
   requireSettings();
   const SphereHierarchy& obstacle = obstacle_.hierarchy(threads_);
-  HierarchyOptions options;
-  options.threads = threads_;
-  const SphereHierarchy hierarchy(input, options);
+  const SphereHierarchy hierarchy = hierarchyOf(input);
   PointDistancesRequest request;
   request.max_distance = max_distance;
   request.accuracy = accuracy_;

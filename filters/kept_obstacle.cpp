@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/hierarchy/points_checksum.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/surface/polygon_triangles.h>
 
 #include <pcl/PCLPointField.h>
@@ -78,6 +79,7 @@ void KeptObstacle::setView(std::function<PointsView()> view, Fields fields)
   fields_ = std::move(fields);
   surface_.reset();
   hierarchy_.reset();
+  spacings_.reset();
 }
 
 void KeptObstacle::setUncertainty(const Uncertainty& uncertainty)
@@ -111,6 +113,17 @@ const SphereHierarchy& KeptObstacle::hierarchy(unsigned threads)
 const PointsView& KeptObstacle::view() const
 {
   return hierarchy_->view();
+}
+
+const std::vector<float>& KeptObstacle::spacings(double widest_gap, unsigned threads)
+{
+  if (!spacings_ || spaced_gap_ != widest_gap) {
+    const double gap = widest_gap > 0.0 ? widest_gap : usualGap(*hierarchy_);
+    spacings_ = std::make_shared<std::vector<float>>(gap > 0.0 ? patchSpacings(*hierarchy_, gap, threads)
+                                                               : std::vector<float>(hierarchy_->view().count));
+    spaced_gap_ = widest_gap;
+  }
+  return *spacings_;
 }
 
 } // namespace pcl_bsh

@@ -70,6 +70,10 @@ public:
   /// The points of the hierarchy. @pre hierarchy() was called
   const PointsView& view() const;
 
+  /// How wide the holes beside each record are taken to be: patchSpacings(), measured once for a cloud and a gap.
+  /// @param widest_gap >= 0; 0: usualGap() @param threads that measure @pre hierarchy() was called
+  const std::vector<float>& spacings(double widest_gap, unsigned threads);
+
 private:
   using Fields = std::function<std::vector<pcl::PCLPointField>()>;
 
@@ -80,7 +84,9 @@ private:
   Fields fields_; ///< likewise
   Uncertainty uncertainty_;
   std::shared_ptr<const SphereHierarchy> hierarchy_;
-  std::uint64_t checksum_ = 0; ///< of what the hierarchy was built from
+  std::uint64_t checksum_ = 0;                         ///< of what the hierarchy was built from
+  std::shared_ptr<const std::vector<float>> spacings_; ///< of the cloud, once they are asked for
+  double spaced_gap_ = 0.0;                            ///< for which they are
 };
 
 } // namespace pcl_bsh

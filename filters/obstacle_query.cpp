@@ -6,7 +6,6 @@
 #include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
-#include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/surface/triangle_answers.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -30,25 +29,14 @@ void ObstacleQuery::setInputUncertainty(const Uncertainty& uncertainty)
   input_uncertainty_ = std::move(copy);
 }
 
-void ObstacleQuery::setWidestGap(double widest_gap)
-{
-  widest_gap_ = widest_gap;
-  spacings_.reset();
-}
-
-const float* ObstacleQuery::obstacleSpacings(const SphereHierarchy& obstacle)
+const float* ObstacleQuery::obstacleSpacings()
 {
   if (!density_guard_ || obstacle_.surface()) return nullptr;
   if (!(std::isfinite(widest_gap_) && widest_gap_ >= 0.0)) {
     throw InvalidInput(Input::density, "widest gap", plainText(widest_gap_), "give a finite length >= 0")
         .withValue(widest_gap_);
   }
-  if (!spacings_) {
-    const double gap = widest_gap_ > 0.0 ? widest_gap_ : usualGap(obstacle);
-    spacings_ = std::make_shared<std::vector<float>>(gap > 0.0 ? patchSpacings(obstacle, gap, threads_)
-                                                               : std::vector<float>(obstacle.view().count));
-  }
-  return spacings_->data();
+  return obstacle_.spacings(widest_gap_, threads_).data();
 }
 
 void ObstacleQuery::warnOfCoarse(const char* cloud, const SphereHierarchy& hierarchy)
@@ -71,9 +59,7 @@ TrajectoryResult ObstacleQuery::run(const PointsView& input, const SurfaceCover*
     throw std::invalid_argument("trajectory has no pose: give one at least, or call setPose()");
   }
   const SphereHierarchy& obstacle = obstacle_.hierarchy(threads_);
-  HierarchyOptions options;
-  options.threads = threads_;
-  const SphereHierarchy hierarchy(input, options);
+  const SphereHierarchy hierarchy = hierarchyOf(input);
 
   warnOfCoarse("input", hierarchy);
   warnOfCoarse("obstacle", obstacle);
@@ -108,9 +94,7 @@ std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input,
     return run(input, surface, request).flags;
   }
   const SphereHierarchy& obstacle = obstacle_.hierarchy(threads_);
-  HierarchyOptions options;
-  options.threads = threads_;
-  const SphereHierarchy hierarchy(input, options);
+  const SphereHierarchy hierarchy = hierarchyOf(input);
 
   warnOfCoarse("input", hierarchy);
   warnOfCoarse("obstacle", obstacle);
@@ -124,7 +108,7 @@ std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input,
     throw InvalidInput(Input::density, "density guard", "is about points, and the input is a surface",
                        "call setDensityGuard(false)");
   }
-  request.spacings_of_b = obstacleSpacings(obstacle);
+  request.spacings_of_b = obstacleSpacings();
   FlagsResult result = pcl_bsh::collisionFlags({hierarchy}, {obstacle, pose_}, request);
   work_ = result.work;
   undecided_ = result.undecided_a + result.sparse_a;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The obstacle, where it stands and how close is too close: all of CollisionFilter that knows no point type.
+// How close to the obstacle is too close: all of CollisionFilter that knows no point type.
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/filters/kept_obstacle.h>
+#include <pcl_bsh/filters/obstacle_settings.h>
 #include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/result.h>
@@ -31,62 +31,24 @@ struct TrajectoryRequest;
 struct TrajectoryResult;
 
 /// The settings that CollisionFilter adds to PCL's, and the query they ask. Lengths are in the clouds' own unit.
-class ObstacleQuery {
+///
+/// Accuracy: unless it is floatOnly(), no point is called free or colliding that is not, within the tolerance if one
+/// was given. What an early stop leaves undecided is never kept as free: it counts as colliding wherever points are
+/// kept or removed, and its flag is 2. A time is that of the query alone, after both clouds are sorted into voxels.
+/// Filtering throws for what TrajectoryRequest::accuracy says that a trajectory cannot tell.
+class ObstacleQuery : public ObstacleSettings {
 public:
-  /// The cloud to collide with: pcl::PointCloud of any point type, or pcl::PCLPointCloud2 (float64 at full precision).
-  /// Its hierarchy is built on the first use and kept until the next call of this method; pose, clearance and input may
-  /// change meanwhile, the cloud's points must not: every use compares a checksum of their coordinates and throws when
-  /// they have. That takes some 20 instructions a point, a tenth or less of what building takes. An empty cloud
-  /// collides with nothing.
-  /// @throws std::invalid_argument when the pointer is null, or as viewOf() does.
-  template <typename Cloud>
-  void setObstacleCloud(const std::shared_ptr<Cloud>& cloud)
-  {
-    obstacle_.setCloud(cloud);
-    spacings_.reset();
-  }
-
-  /// The surface to collide with, instead of a cloud: the mesh's polygons. Then free is farther than the clearance from
-  /// the surface, for certain, and colliding is within clearance + tolerance (with setSwept(), its tolerance comes on
-  /// top); a distance d means that the true one is in [d, d + tolerance]. What a closed surface encloses is not part of
-  /// it. The mesh is covered by balls here and now, and not kept.
-  /// @param tolerance by how much balls may reach beyond the surface, in the clouds' unit; finite and > 0
-  /// @throws std::invalid_argument as coverOf() does
-  void setObstacleSurface(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance)
-  {
-    setObstacleSurface(coverOf(mesh, tolerance));
-  }
-
-  /// The same, of a surface that is covered already: of coverSurface().
-  /// @throws std::invalid_argument when the pointer is null
-  void setObstacleSurface(const std::shared_ptr<const SurfaceCover>& cover)
-  {
-    obstacle_.setSurface(cover);
-    spacings_.reset();
-  }
-
-  /// Null where the obstacle is a cloud. Its records are those that results name: `triangles` of each says which
-  /// triangle it stands for.
-  const std::shared_ptr<const SurfaceCover>& getObstacleSurface() const { return obstacle_.surface(); }
-
   /// Greatest distance at which two points collide; touching counts. Finite and >= 0 (default 0), or filtering throws.
   void setClearance(double clearance) { clearance_ = clearance; }
   double getClearance() const { return clearance_; }
 
-  /// Pose of the obstacle in the input's frame, T_input_obstacle. Rigid within 1e-6 (default: identity), or filtering
-  /// throws. Takes any of Eigen's transforms, and 4x4 matrices as PCL's registration returns them; float or double.
-  template <typename Scalar, int Mode, int Options>
-  void setPose(const Eigen::Transform<Scalar, 3, Mode, Options>& pose)
+  /// As ObstacleSettings has it; the obstacle stands there, and moves no more.
+  template <typename Pose>
+  void setPose(const Pose& pose)
   {
-    setPose(pose.matrix());
-  }
-  template <typename Derived>
-  void setPose(const Eigen::MatrixBase<Derived>& pose)
-  {
-    pose_.matrix() = pose.template cast<double>();
+    ObstacleSettings::setPose(pose);
     trajectory_.reset();
   }
-  const Eigen::Isometry3d& getPose() const { return pose_; }
 
   /// The obstacle moves: its poses in the input's frame, one after another, each rigid as setPose() asks. A point
   /// collides if it does at any of them. At least one pose, or filtering throws. Replaces setPose(), and the other way
@@ -99,14 +61,6 @@ public:
   /// clearance + tolerance do not. 0 (default): at the poses alone. Finite and >= 0, or filtering throws.
   void setSwept(double tolerance) { swept_ = tolerance; }
   double getSwept() const { return swept_; }
-
-  /// How sure the answer has to be: less is faster. Default: exact. Unless it is floatOnly(), no point is called free
-  /// or colliding that is not, within the tolerance if one was given. What an early stop leaves undecided is never kept
-  /// as free: it counts as colliding wherever points are kept or removed, and its flag is 2. A time is that of the
-  /// query alone, after both clouds are sorted into voxels. Its number is finite and >= 0, or filtering throws; so it
-  /// does for what TrajectoryRequest::accuracy says that a trajectory cannot tell.
-  void setAccuracy(const Accuracy& accuracy) { accuracy_ = accuracy; }
-  const Accuracy& getAccuracy() const { return accuracy_; }
 
   /// How far the points of the input, or of the obstacle, may truly be from where they were measured. Then a point
   /// collides where it does wherever all points truly are, it is free where it cannot collide, and else it is
@@ -136,20 +90,8 @@ public:
   /// What gapes wider in the obstacle is an opening, not a surface. 0 (default): eight times the median distance of its
   /// points from their nearest neighbours. Where lines of a scan are farther apart than that, give more than what is
   /// between the lines. Finite and >= 0, or filtering throws.
-  void setWidestGap(double widest_gap);
+  void setWidestGap(double widest_gap) { widest_gap_ = widest_gap; }
   double getWidestGap() const { return widest_gap_; }
-
-  /// Default 1; 0: all of the machine's. The answer is the same for any number.
-  void setNumberOfThreads(unsigned threads) { threads_ = threads; }
-  unsigned getNumberOfThreads() const { return threads_; }
-
-  /// Along a trajectory: called now and then, by the thread that filters, with the fraction done in [0, 1], ascending.
-  /// False: stop, filtering throws Cancelled (pcl_bsh/query/cancelled.h). What it throws itself comes out of the
-  /// filter, too. Either way outputs stay as they were.
-  void setProgress(std::function<bool(double)> progress) { progress_ = std::move(progress); }
-
-  /// What the last query cost.
-  const Work& getWork() const { return work_; }
 
 protected:
   ObstacleQuery() = default;
@@ -180,24 +122,17 @@ protected:
 
 private:
   void warnOfCoarse(const char* cloud, const SphereHierarchy& hierarchy);
-  const float* obstacleSpacings(const SphereHierarchy& obstacle);
+  const float* obstacleSpacings();
   TrajectoryResult run(const PointsView& input, const SurfaceCover* surface, TrajectoryRequest& request);
 
-  KeptObstacle obstacle_;
   Uncertainty input_uncertainty_;
-  std::function<bool(double)> progress_;
-  Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
   std::optional<std::vector<Eigen::Isometry3d>> trajectory_; ///< instead of pose_
   double swept_ = 0.0;
   double clearance_ = 0.0;
-  Accuracy accuracy_;
-  unsigned threads_ = 1;
-  Work work_;
   std::size_t undecided_ = 0;
   std::size_t sparse_ = 0;
   bool density_guard_ = false;
   double widest_gap_ = 0.0;
-  std::shared_ptr<const std::vector<float>> spacings_; ///< of the hierarchy's records, once they are asked for
   bool warned_ = false; ///< of coordinates too coarse for the clearance; once, for clouds come in streams
 
 public:

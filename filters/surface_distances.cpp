@@ -61,7 +61,7 @@ void tellOfSurface(TrajectoryResult& found)
 TrajectoryResult ofTriangles(const SurfaceCover& cover, TrajectoryResult balls)
 {
   TrajectoryResult found;
-  found.flags = triangleVerdicts(cover, balls.flags);
+  if (!balls.flags.empty()) found.flags = triangleVerdicts(cover, balls.flags);
   found.colliding = count(found.flags, Verdict::colliding);
   found.undecided = count(found.flags, Verdict::undecided);
   if (!balls.distance.empty()) {

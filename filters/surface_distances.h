@@ -22,7 +22,7 @@ void tellOfSurface(double tolerance, SymmetricDistances& found); ///< of b, too,
 void tellOfSurface(TrajectoryResult& found);
 
 /// From a result about the balls of a surface that is asked about to one about its triangles: flags, counts, distances,
-/// poses. Summaries of poses, which count balls, are left out.
+/// poses, where the result has them. Summaries of poses, which count balls, are left out.
 /// @throws std::invalid_argument as triangleVerdicts() does
 TrajectoryResult ofTriangles(const SurfaceCover& cover, TrajectoryResult balls);
 

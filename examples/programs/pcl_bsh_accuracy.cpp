@@ -26,8 +26,8 @@ using namespace pcl_bsh;
 constexpr auto program = "pcl_bsh_accuracy";
 constexpr auto footer =
     R"(Queries whether the clouds collide, where, and their distance, at every setting: exact, float only, tolerance, level of
-detail, budgets. Writes accuracy.csv, accuracy.md and accuracy.png. A or B may be a pipe, or - for standard input.
-Exit code: 0 done; 1 failed; 2 command line not understood.
+detail, budgets. Writes accuracy.csv, accuracy.json, accuracy.md and accuracy.png. A or B may be a pipe, or - for standard input.
+Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example: a robot in a hall, at ten poses about (1.5, 2, 0)
   pcl_bsh_accuracy hall.ply robot.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.57 --poses 10 --out study
@@ -36,7 +36,7 @@ Example: a wagon on its way
 
 constexpr std::size_t most_poses = 20; // of a trajectory's; every setting is measured at each, several times
 
-constexpr std::array results = {"accuracy.csv", "accuracy.md", "accuracy.png"};
+constexpr std::array results = {"accuracy.csv", "accuracy.json", "accuracy.md", "accuracy.png"};
 
 struct Options {
   std::filesystem::path a, b, out, trajectory;
@@ -65,17 +65,17 @@ std::optional<Options> parse(int argc, char** argv)
   app.add_option("--pose", pose, "of B in A's frame, as for pcl_bsh_collide (default: no motion)")->type_name("POSE");
   const auto at_least_one = [](unsigned n) { return n >= 1; };
   app.add_option("--poses", poses,
-                 "that pose, and N - 1 about it: up to 5 % of A's diameter and 10 degrees off (default 1)")
+                 "that pose, and N - 1 about it: up to 5 % of A's diameter and 10 degrees off (default: 1)")
       ->type_name("N")
       ->transform(cli::number<unsigned>("give a number of poses, 1 or more", at_least_one));
   app.add_option("--trajectory", options.trajectory,
                  "instead: a file of B's poses, as for pcl_bsh_collide; of more than 20,\n"
                  "20 in even steps")
       ->type_name("FILE");
-  app.add_option("--repeat", options.repetitions, "repetitions of every measurement (default 5)")
+  app.add_option("--repeat", options.repetitions, "repetitions of every measurement (default: 5)")
       ->type_name("N")
       ->transform(cli::number<unsigned>("give a number, 1 or more", at_least_one));
-  app.add_option("--threads", options.threads, "0: all of the machine's (default 1)")
+  app.add_option("--threads", options.threads, "0: all of the machine's (default: 1)")
       ->type_name("N")
       ->transform(cli::number<unsigned>(cli::give_threads));
   app.add_option("--unit", options.unit, "name of the clouds' unit, for the picture")->type_name("NAME");

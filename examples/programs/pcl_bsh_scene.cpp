@@ -32,7 +32,7 @@ in examples/scenes. An effect that is not listed is not computed.
 With --out, DIR gets steps.csv (a row a step), steps.jsonl (all results, a line a step), summary.json, and the
 flagged clouds if the scene asks for them. Where clouds have an `uncertainty`, what may collide, but does not for
 certain, is undecided, flag 2.
-Exit code: 0 done; 1 failed, the scene file is wrong included; 2 command line not understood.
+Exit code: 0 done; 1 failed, the scene file is wrong included; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example:
   pcl_bsh_scene examples/scenes/drift.json --out drift

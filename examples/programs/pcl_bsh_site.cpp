@@ -15,6 +15,8 @@
 #include <pcl_bsh/site/export_vtk.h>
 #include <pcl_bsh/site/make_site.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <array>
 #include <iostream>
@@ -98,22 +100,62 @@ std::string texted(const Point3& point)
   return text;
 }
 
+/// What the tiles of a site have, from the least to the most.
+struct TileRange {
+  std::uint64_t least = 0, most = 0;   ///< points
+  double finest = 0.0, coarsest = 0.0; ///< spacings, of tiles that have one
+};
+
+TileRange rangeOf(const sites::Site& site)
+{
+  TileRange range;
+  range.least = site.points;
+  for (const sites::Tile& tile : site.tiles) {
+    range.most = std::max(range.most, tile.points);
+    range.least = std::min(range.least, tile.points);
+    if (tile.spacing > 0) {
+      range.finest = range.finest > 0 ? std::min(range.finest, tile.spacing) : tile.spacing;
+      range.coarsest = std::max(range.coarsest, tile.spacing);
+    }
+  }
+  return range;
+}
+
+using Json = nlohmann::ordered_json;
+
+void print(const Json& json)
+{
+  std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
+Json infoJson(const sites::Site& site)
+{
+  const TileRange range = rangeOf(site);
+  Json json = {{"site", site.folder.string()},
+               {"points", site.points},
+               {"tiles", {{"count", site.tiles.size()}, {"least_points", range.least}, {"most_points", range.most}}},
+               {"spacing", {{"finest", range.finest}, {"coarsest", range.coarsest}}},
+               {"bounds", nullptr},
+               {"fields", Json::array()},
+               {"sources", Json::array()}};
+  if (site.bounds) json["bounds"] = {{"low", site.bounds->low}, {"high", site.bounds->high}};
+  for (const auto& field : site.fields) json["fields"].push_back(field.name);
+  for (const sites::Source& source : site.sources)
+    json["sources"].push_back({{"file", source.file}, {"points", source.points}});
+  return json;
+}
+
 int info(const Options& options)
 {
   const sites::Site site = sites::readSite(options.site);
-  std::uint64_t most = 0, least = site.points;
-  double finest = 0.0, coarsest = 0.0;
-  for (const sites::Tile& tile : site.tiles) {
-    most = std::max(most, tile.points);
-    least = std::min(least, tile.points);
-    if (tile.spacing > 0) {
-      finest = finest > 0 ? std::min(finest, tile.spacing) : tile.spacing;
-      coarsest = std::max(coarsest, tile.spacing);
-    }
+  if (options.json) {
+    print(infoJson(site));
+    return 0;
   }
+  const TileRange range = rangeOf(site);
   std::cout << "points:  " << site.points << '\n'
-            << "tiles:   " << site.tiles.size() << ", of " << least << " to " << most << " points\n"
-            << "spacing: " << finest << " to " << coarsest << " (medians of tiles)\n";
+            << "tiles:   " << site.tiles.size() << ", of " << range.least << " to " << range.most << " points\n"
+            << "spacing: " << range.finest << " to " << range.coarsest << " (medians of tiles)\n";
   if (site.bounds) std::cout << "bounds:  " << texted(site.bounds->low) << " to " << texted(site.bounds->high) << '\n';
   std::cout << "fields: ";
   for (const auto& field : site.fields) std::cout << ' ' << field.name;
@@ -122,16 +164,34 @@ int info(const Options& options)
   return 0;
 }
 
-int validate(const Options& options)
+/// @throws what says why it is not sound
+sites::Site checkedSite(const Options& options)
 {
-  const sites::Site site = sites::readSite(options.site);
+  sites::Site site = sites::readSite(options.site);
   cli::Step step("Checking tiles");
   sites::checkSite(site, [&](std::uint64_t done, std::uint64_t all) {
     step.share(shareOf(done, all));
     return true;
   });
   step.done(std::to_string(site.tiles.size()) + " tiles");
-  std::cout << "sound: each of " << site.points << " points is there once, in its tile\n";
+  return site;
+}
+
+int validate(const Options& options)
+{
+  try {
+    const sites::Site site = checkedSite(options);
+    if (options.json) {
+      print({{"site", options.site.string()}, {"sound", true}, {"points", site.points}, {"tiles", site.tiles.size()}});
+    }
+    else {
+      std::cout << "sound: each of " << site.points << " points is there once, in its tile\n";
+    }
+  }
+  catch (const std::runtime_error& error) {
+    if (options.json) print({{"site", options.site.string()}, {"sound", false}, {"error", error.what()}});
+    throw;
+  }
   return 0;
 }
 

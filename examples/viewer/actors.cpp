@@ -3,6 +3,7 @@
 
 #include <vtkIntArray.h>
 #include <vtkNew.h>
+#include <vtkPlane.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
@@ -35,6 +36,7 @@ void setColor(vtkActor& actor, const Color& color)
   const std::array<double, 3> c = fractions(color);
   actor.GetProperty()->SetColor(c[0], c[1], c[2]);
 }
+
 void setColors(vtkPolyData& data, const std::vector<Color>& colors)
 {
   auto* const index = vtkIntArray::SafeDownCast(data.GetPointData()->GetArray("index"));
@@ -46,6 +48,15 @@ void setColors(vtkPolyData& data, const std::vector<Color>& colors)
     array->SetTypedTuple(i, colors[static_cast<std::size_t>(index ? index->GetValue(i) : i)].data());
   data.GetPointData()->SetScalars(array);
 }
+
+void cut(vtkActor& actor, const Cut& plane)
+{
+  vtkNew<vtkPlane> kept;
+  kept->SetOrigin(plane.point.data());
+  kept->SetNormal(-plane.normal[0], -plane.normal[1], -plane.normal[2]);
+  actor.GetMapper()->AddClippingPlane(kept);
+}
+
 vtkSmartPointer<vtkPolyData> posed(vtkPolyData* data, const Eigen::Isometry3d& pose)
 {
   if (data->GetNumberOfPoints() == 0 || pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) return data;

@@ -2,6 +2,7 @@
 // Data as actors: placed, coloured, and several that come and go together.
 #pragma once
 
+#include "options.h"
 #include "palette.h"
 
 #include <Eigen/Geometry>
@@ -24,6 +25,9 @@ void setColor(vtkActor& actor, const Color& color);
 
 /// A colour of its own for each point, by record where the data has record numbers.
 void setColors(vtkPolyData& data, const std::vector<Color>& colors);
+
+/// Nothing of the actor is drawn on the side of the plane's normal.
+void cut(vtkActor& actor, const Cut& plane);
 
 /// The data in another frame; itself where that is the same.
 vtkSmartPointer<vtkPolyData> posed(vtkPolyData* data, const Eigen::Isometry3d& pose);

@@ -38,6 +38,10 @@ CloudActor::CloudActor(const ViewedCloud& viewed, vtkRenderer& renderer, const C
   marks_(renderer, 6.0f, true)
 {
   setColor(marks_.actor(), marked);
+  if (viewed.hasTriangles()) {
+    triangles_.emplace(viewed, renderer, color, marked);
+    return;
+  }
   setPoints(viewed.points());
   if (!viewed.surface) return;
   surface_ = addSurface(viewed, renderer, color);
@@ -52,12 +56,14 @@ void CloudActor::setPoints(const PointsView& points)
 
 void CloudActor::paint(const std::vector<Color>& colors)
 {
+  if (triangles_) return triangles_->paint(colors);
   setColors(data(), colors);
   points_.show(&data());
 }
 
 void CloudActor::paint(const Color& color)
 {
+  if (triangles_) return triangles_->paint(color);
   const double* const bounds = data().GetBounds();
   const double low = bounds[4], height = std::max(bounds[5] - bounds[4], std::numeric_limits<double>::min());
   vtkNew<vtkUnsignedCharArray> colors;
@@ -77,6 +83,7 @@ void CloudActor::paint(const Color& color)
 
 void CloudActor::mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors)
 {
+  if (triangles_) return triangles_->mark(flags, colors);
   if (flags.empty()) {
     marks_.show(noPoints());
     return;
@@ -92,6 +99,7 @@ void CloudActor::place(const Eigen::Isometry3d& pose)
   points_.place(pose);
   marks_.place(pose);
   if (surface_) surface_->SetUserMatrix(matrixOf(pose));
+  if (triangles_) triangles_->place(pose);
 }
 
 void CloudActor::setMoving(bool moving)
@@ -104,10 +112,20 @@ void CloudActor::cut(const Cut& plane)
 {
   points_.cut(plane);
   marks_.cut(plane);
+  if (triangles_) triangles_->cut(plane);
 }
 
-std::optional<std::uint32_t> CloudActor::recordOf(const vtkProp* prop, vtkIdType id) const
+void CloudActor::offerTo(vtkPicker& points, vtkPicker& triangles) const
 {
+  if (triangles_)
+    triangles.AddPickList(&triangles_->actor());
+  else if (!surface_)
+    for (const PointLayer* layer : {&points_, &marks_}) points.AddPickList(&layer->actor());
+}
+
+std::optional<std::uint32_t> CloudActor::partOf(const vtkProp* prop, vtkIdType id) const
+{
+  if (triangles_) return triangles_->triangleOf(prop, id);
   if (!points_.owns(prop) && !marks_.owns(prop)) return std::nullopt;
   vtkPolyData& picked = points_.owns(prop) ? data() : marked();
   if (id < 0 || id >= picked.GetNumberOfPoints()) return std::nullopt;

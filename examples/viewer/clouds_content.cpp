@@ -8,7 +8,8 @@
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
-#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/filters/surface_distances.h>
+#include <pcl_bsh/surface/triangle_answers.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +18,7 @@
 namespace pcl_bsh::view {
 namespace {
 
-/// The scan is points, whose fields are shown; an obstacle with faces is a surface.
+/// A cloud with faces is a surface; of the scan's, each triangle is asked about.
 ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, const Options& options)
 {
   ViewedCloud viewed;
@@ -26,18 +27,20 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, cons
   viewed.file = file;
   cli::Step step("Loading " + file.string());
   io::SurfaceSettings settings = options.surface;
-  settings.vertices_only |= role == ViewedCloud::Role::scan;
-  const io::Obstacle read = io::readObstacle(file, settings, options.clearance.value_or(0.0));
+  settings.triangles_apart = role == ViewedCloud::Role::scan;
+  io::Mesh mesh = settings.vertices_only ? io::Mesh{io::readCloud(file), {}} : io::readMesh(file);
+  viewed.face_values = std::move(mesh.face_values);
+  const io::Obstacle read = io::obstacleOf(file, std::move(mesh), settings, options.clearance.value_or(0.0));
   HierarchyOptions how;
   how.threads = options.threads;
   viewed.hierarchy = std::make_shared<SphereHierarchy>(read.view(), how);
-  if (read.isSurface())
-    viewed.surface = read;
-  else
-    viewed.cloud = std::shared_ptr<const pcl::PCLPointCloud2>(viewed.points().owner, &read.points());
+  viewed.cloud = read.cloud();
+  if (read.isSurface()) viewed.surface = read;
   step.done(read.isSurface() ? std::to_string(read.triangles()->size()) + " triangles"
                              : std::to_string(viewed.points().count) + " points");
-  for (const std::string& remark : read.remarks()) cli::warn(program, {file.string() + ": " + remark});
+  const bool asks = options.clouds.size() > 1 || options.model; // else nothing depends on the balls
+  for (const std::string& remark : asks ? read.remarks() : std::vector<std::string>())
+    cli::warn(program, {file.string() + ": " + remark});
   return viewed;
 }
 
@@ -76,6 +79,26 @@ Eigen::Isometry3d CloudsContent::poseOf(std::size_t cloud, std::size_t step) con
   return cloud == model_ ? poses_[step] : Eigen::Isometry3d::Identity();
 }
 
+std::vector<std::uint8_t> CloudsContent::ofScan(std::vector<std::uint8_t>&& flags) const
+{
+  return scan().hasTriangles() ? triangleVerdicts(*scan().surface->cover(), flags) : std::move(flags);
+}
+
+TrajectoryResult CloudsContent::ofScan(TrajectoryResult&& found) const
+{
+  if (scan().hasTriangles()) return ofTriangles(*scan().surface->cover(), std::move(found));
+  tellOfSurface(found);
+  return std::move(found);
+}
+
+std::vector<double> CloudsContent::ofScan(PointDistances&& found) const
+{
+  tellOfSurface(0.0, found);
+  if (!scan().hasTriangles()) return std::move(found.distance);
+  const std::vector<std::uint32_t> nearest = nearestBalls(*scan().surface->cover(), found.distance);
+  return ofBalls(nearest, found.distance, std::numeric_limits<double>::quiet_NaN());
+}
+
 FlagsRequest CloudsContent::flagsRequest() const
 {
   FlagsRequest request;
@@ -100,14 +123,15 @@ StepCollisions CloudsContent::collisions(std::size_t step) const
   found.flags.resize(viewed_clouds_.size());
   if (options_.clearance) {
     found.known = true;
-    found.flags[0].assign(scan().points().count, 0);
+    found.flags[0].assign(scan().parts(), 0);
     for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
       FlagsResult flags = collisionFlags(placed(0, step), placed(other, step), flagsRequest());
-      for (std::size_t i = 0; i < flags.a.size(); ++i) found.flags[0][i] |= flags.a[i];
+      const std::vector<std::uint8_t> of_scan = ofScan(std::move(flags.a));
+      for (std::size_t i = 0; i < of_scan.size(); ++i) found.flags[0][i] |= of_scan[i];
       found.flags[other] = std::move(flags.b);
     }
   }
-  else if (const auto field = scan().field(collision_field_name)) {
+  else if (const auto field = scan().result(collision_field_name)) {
     found.known = true;
     for (const float value : *field) found.flags[0].push_back(flagOf(verdictOf(value)));
   }
@@ -125,7 +149,8 @@ std::optional<ClosestPair> CloudsContent::closest(std::size_t step) const
 {
   std::optional<ClosestPair> nearest;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
-    const DistanceResult found = closestPair(placed(0, step), placed(other, step));
+    DistanceResult found = closestPair(placed(0, step), placed(other, step));
+    tellOfSurface(0.0, found);
     if (!found.pair || (nearest && nearest->distance <= found.distance)) continue;
     const Point3 a = scan().points().point(found.pair->a), b = viewed_clouds_[other].points().point(found.pair->b);
     nearest = {Eigen::Vector3d(a[0], a[1], a[2]), poseOf(other, step) * Eigen::Vector3d(b[0], b[1], b[2]),
@@ -137,7 +162,8 @@ std::optional<ClosestPair> CloudsContent::closest(std::size_t step) const
 std::string CloudsContent::heading(const StepCollisions& collisions, std::size_t step) const
 {
   std::ostringstream text;
-  text << scan().name << ": " << grouped(scan().hierarchy->size()) << " points";
+  text << scan().name << ": " << grouped(scan().hasTriangles() ? scan().parts() : scan().hierarchy->size())
+       << (scan().hasTriangles() ? " triangles" : " points");
   if (collisions.known) {
     text << ", " << grouped(collisions.colliding) << " collide";
     if (collisions.undecided > 0) text << ", " << grouped(collisions.undecided) << " are undecided";
@@ -154,29 +180,35 @@ MotionPaths CloudsContent::paths(std::size_t /*step*/) const
   return {"path of the model", {poses_}};
 }
 
-std::optional<double> CloudsContent::distanceOf(std::uint32_t record, std::size_t step) const
+std::optional<double> CloudsContent::distanceOf(std::uint32_t part, std::size_t step) const
 {
   if (viewed_clouds_.size() == 1) return std::nullopt;
-  const Point3 p = scan().points().point(record);
-  const SphereHierarchy point(viewOf(p.data(), 1));
+  std::vector<std::int32_t> records; // the point, or the triangle's balls
+  if (!scan().hasTriangles()) records.push_back(static_cast<std::int32_t>(part));
+  for (std::uint32_t ball = 0; scan().hasTriangles() && ball < scan().points().count; ++ball)
+    if (scan().surface->partOf(ball) == part) records.push_back(static_cast<std::int32_t>(ball));
+  PointsView view = scan().points();
+  view.indices = records.data();
+  view.index_count = records.size();
+  const SphereHierarchy alone(view);
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
-    nearest = std::min(nearest, closestPair({point}, placed(other, step)).distance);
-  return nearest;
+    nearest = std::min(nearest, closestPair({alone}, placed(other, step)).distance);
+  return std::max(nearest, 0.0);
 }
 
 std::vector<float> CloudsContent::distances(std::size_t step) const
 {
   if (!options_.clearance)
-    if (auto field = scan().field("distance")) return *field;
-  std::vector<float> distances(scan().points().count, std::numeric_limits<float>::quiet_NaN());
+    if (auto field = scan().result(distance_field_name)) return *field;
+  std::vector<float> distances(scan().parts(), std::numeric_limits<float>::quiet_NaN());
   if (!options_.clearance) return distances;
   TrajectoryRequest asked = along();
   asked.distances = true;
   asked.clearance = options_.range.value_or(*options_.clearance);
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
     const TrajectoryResult found =
-        collideAlong(placed(0, step), *viewed_clouds_[other].hierarchy, {poseOf(other, step)}, asked);
+        ofScan(collideAlong(placed(0, step), *viewed_clouds_[other].hierarchy, {poseOf(other, step)}, asked));
     for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = std::fmin(distances[i], found.distance[i]);
   }
   return distances;
@@ -186,9 +218,9 @@ std::vector<double> CloudsContent::allDistances(std::size_t step) const
 {
   if (options_.clearance) return {};
   if (viewed_clouds_.size() == 1) {
-    const auto field = scan().field(distance_field_name);
+    const auto field = scan().result(distance_field_name);
     if (!field) return {};
-    const auto collides = scan().field(collision_field_name);
+    const auto collides = scan().result(collision_field_name);
     for (std::size_t i = 0; i < field->size(); ++i) {
       const bool free = !collides || (*collides)[i] == 0.0f;
       if (free && std::isfinite((*field)[i])) return {field->begin(), field->end()};
@@ -199,7 +231,7 @@ std::vector<double> CloudsContent::allDistances(std::size_t step) const
   request.threads = options_.threads;
   std::vector<double> nearest;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
-    const std::vector<double> found = pointDistances(placed(0, step), placed(other, step), request).distance;
+    const std::vector<double> found = ofScan(pointDistances(placed(0, step), placed(other, step), request));
     if (nearest.empty()) nearest.assign(found.size(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t i = 0; i < found.size(); ++i) nearest[i] = std::fmin(nearest[i], found[i]);
   }
@@ -209,8 +241,8 @@ std::vector<double> CloudsContent::allDistances(std::size_t step) const
 std::vector<std::int32_t> CloudsContent::firstPoses() const
 {
   if (first_poses_) return *first_poses_;
-  std::vector<std::int32_t> first(scan().points().count, -1);
-  if (const auto field = options_.clearance ? std::nullopt : scan().field("first_pose")) {
+  std::vector<std::int32_t> first(scan().parts(), -1);
+  if (const auto field = options_.clearance ? std::nullopt : scan().result(first_pose_field_name)) {
     for (std::size_t i = 0; i < first.size(); ++i)
       first[i] = std::isfinite((*field)[i]) ? static_cast<std::int32_t>((*field)[i]) : -1;
   }
@@ -221,7 +253,7 @@ std::vector<std::int32_t> CloudsContent::firstPoses() const
     for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
       const std::vector<Eigen::Isometry3d> still = {poseOf(other, 0)};
       const TrajectoryResult found =
-          collideAlong(placed(0, 0), *viewed_clouds_[other].hierarchy, other == model_ ? poses_ : still, asked);
+          ofScan(collideAlong(placed(0, 0), *viewed_clouds_[other].hierarchy, other == model_ ? poses_ : still, asked));
       for (std::size_t i = 0; i < first.size(); ++i) {
         const std::int32_t pose = found.first_pose[i];
         if (pose >= 0 && (first[i] < 0 || pose < first[i])) first[i] = pose;
@@ -232,14 +264,14 @@ std::vector<std::int32_t> CloudsContent::firstPoses() const
   return *(first_poses_ = std::move(first));
 }
 
-std::string CloudsContent::details(std::size_t cloud, std::uint32_t record, std::size_t step) const
+std::string CloudsContent::details(std::size_t cloud, std::uint32_t part, std::size_t step) const
 {
   if (cloud > 0) return {};
   std::string text;
-  if (const auto distance = distanceOf(record, step)) text += "; distance " + lengthOf(*distance, options_.unit);
+  if (const auto distance = distanceOf(part, step)) text += "; distance " + lengthOf(*distance, options_.unit);
   if (first_poses_ || steps() > 1) {
     const std::vector<std::int32_t> first = firstPoses();
-    text += "; first pose " + (first[record] < 0 ? "none" : std::to_string(first[record]));
+    text += "; first pose " + (first[part] < 0 ? "none" : std::to_string(first[part]));
   }
   return text;
 }

@@ -36,8 +36,8 @@ public:
   /// Or the scan's field `first_pose`. Asked once, then kept.
   std::vector<std::int32_t> firstPoses() const override;
 
-  /// Of the scan's points: the distance to the nearest point of any obstacle, and the first pose.
-  std::string details(std::size_t cloud, std::uint32_t record, std::size_t step) const override;
+  /// Of the scan's parts: the distance to the nearest point of any obstacle, and the first pose.
+  std::string details(std::size_t cloud, std::uint32_t part, std::size_t step) const override;
   std::vector<Trace> traces(std::size_t step) const override;
 
 private:
@@ -48,7 +48,12 @@ private:
   FlagsRequest flagsRequest() const;
   TrajectoryRequest along() const;
   std::optional<ClosestPair> closest(std::size_t step) const;
-  std::optional<double> distanceOf(std::uint32_t record, std::size_t step) const;
+  std::optional<double> distanceOf(std::uint32_t part, std::size_t step) const;
+
+  // From what a query found of the records of the scan's view to what is told of its parts.
+  std::vector<std::uint8_t> ofScan(std::vector<std::uint8_t>&& flags) const;
+  TrajectoryResult ofScan(TrajectoryResult&& found) const;
+  std::vector<double> ofScan(PointDistances&& found) const;
 
   std::optional<std::size_t> model_;
   std::vector<Eigen::Isometry3d> poses_;

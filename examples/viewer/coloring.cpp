@@ -14,7 +14,7 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// What colours stand for, one value per record; none where it is NaN.
+/// What colours stand for, one value per part; none where it is NaN.
 struct Values {
   std::vector<float> values;
   std::string title;
@@ -48,9 +48,8 @@ std::string lengthTitle(const std::string& name, const Options& options)
 Values heights(const ViewedCloud& scan, const Options& options)
 {
   Values heights{{}, lengthTitle("height z", options)};
-  heights.values.reserve(scan.points().count);
-  for (std::uint32_t i = 0; i < scan.points().count; ++i)
-    heights.values.push_back(static_cast<float>(scan.points().point(i)[2]));
+  heights.values.reserve(scan.parts());
+  for (std::uint32_t i = 0; i < scan.parts(); ++i) heights.values.push_back(static_cast<float>(scan.placeOf(i)[2]));
   return heights;
 }
 
@@ -89,7 +88,7 @@ Color colorOfFlag(std::uint8_t flag)
 }
 
 /// Marks the points that have a value.
-/// @param colliding per record, drawn in the colour of collisions; empty: none
+/// @param colliding per part, drawn in the colour of collisions; empty: none
 void markValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Range& range,
                 const std::vector<std::uint8_t>& colliding = {})
 {
@@ -107,7 +106,7 @@ void markValues(CloudActor& cloud, ValueBar& bar, const Values& shown, const Ran
     bar.hide();
 }
 
-/// The colours of what is not free, one per record.
+/// The colours of what is not free, one per part.
 std::vector<Color> colorsOfVerdicts(const std::vector<std::uint8_t>& flags)
 {
   std::vector<Color> colors;
@@ -194,7 +193,7 @@ bool paintDistances(std::vector<CloudActor>& clouds, ValueBar& bar, ValueHistogr
   for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].paint(compared_color);
   bar.show(*table, title, false);
   histogram.show(distances, *table, "distance [" + (options.unit.empty() ? "cloud's unit" : options.unit) + "]",
-                 options.unit);
+                 options.unit, std::string(content.scan().partName()) + "s");
   return true;
 }
 

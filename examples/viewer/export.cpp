@@ -8,6 +8,7 @@
 #include <pcl_bsh/vtk/cloud_data.h>
 #include <pcl_bsh/vtk/hierarchy_data.h>
 #include <pcl_bsh/vtk/path_data.h>
+#include <pcl_bsh/vtk/surface_data.h>
 #include <pcl_bsh/vtk/write_data.h>
 
 #include <vtkNew.h>
@@ -16,12 +17,19 @@
 namespace pcl_bsh::view {
 namespace {
 
-/// A cloud with all that is known of its points, in its own frame.
+/// Adds values of what the cloud is asked about.
+template <class Value>
+void addValues(const CloudActor& cloud, vtkPolyData& data, const std::string& name, const std::vector<Value>& values)
+{
+  cloud.hasTriangles() ? vtk::addTriangleArray(data, name, values) : vtk::addArray(data, name, values);
+}
+
+/// A cloud with all that is known of its points, or a surface with that of its triangles, in its own frame.
 vtkSmartPointer<vtkPolyData> known(CloudActor& cloud, const std::vector<std::uint8_t>& flags)
 {
   auto data = vtkSmartPointer<vtkPolyData>::New();
   data->ShallowCopy(cloud.leftOut() > 0 ? &cloud.all() : &cloud.data()); // a picture may leave points out, a file not
-  if (!flags.empty()) vtk::addArray(*data, "collision", flags);
+  if (!flags.empty()) addValues(cloud, *data, "collision", flags);
   return data;
 }
 
@@ -29,10 +37,11 @@ vtkSmartPointer<vtkPolyData> knownScan(CloudActor& cloud, const ViewContent& con
                                        std::size_t step)
 {
   const auto data = known(cloud, collisions.flags[0]);
-  if (const auto values = content.scan().field("intensity")) vtk::addArray(*data, "intensity", *values);
+  if (const auto values = content.scan().field("intensity")) addValues(cloud, *data, "intensity", *values);
   if (!collisions.known) return data;
-  if (const auto distances = content.distances(step); !distances.empty()) vtk::addArray(*data, "distance", distances);
-  if (const auto poses = content.firstPoses(); !poses.empty()) vtk::addArray(*data, "first_pose", poses);
+  if (const auto distances = content.distances(step); !distances.empty())
+    addValues(cloud, *data, "distance", distances);
+  if (const auto poses = content.firstPoses(); !poses.empty()) addValues(cloud, *data, "first_pose", poses);
   return data;
 }
 
@@ -45,7 +54,8 @@ void exportTo(const std::filesystem::path& path, const ViewContent& content, std
   const auto scan = knownScan(clouds[0], content, collisions, at);
   if (path.extension() == ".vtp") {
     vtk::writeVtp(*scan, path);
-    step.done(grouped(static_cast<std::size_t>(scan->GetNumberOfPoints())) + " points");
+    const vtkIdType written = content.scan().hasTriangles() ? scan->GetNumberOfCells() : scan->GetNumberOfPoints();
+    step.done(grouped(static_cast<std::size_t>(written)) + ' ' + content.scan().partName() + 's');
     return;
   }
   std::vector<vtk::NamedData> blocks;

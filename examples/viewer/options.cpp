@@ -3,6 +3,7 @@
 
 #include "cli/command_line.h"
 #include "cli/pose.h"
+#include "cli/surface_options.h"
 
 #include <pcl_bsh/filters/pose_files/pose_text.h>
 #include <pcl_bsh/filters/text_files/parse_number.h>
@@ -15,20 +16,21 @@ namespace pcl_bsh::view {
 namespace {
 
 constexpr auto footer = R"(Points of the first CLOUD within D of another CLOUD or of the MODEL collide, decided exactly;
-they are drawn larger and in orange, all others dimmed. Another CLOUD or a MODEL with faces is a
-surface, drawn as one: what is free is farther than D from it, what collides within D and the
-surface tolerance. A cloud that holds the fields collision,
-distance or first_pose shows these as they are.
+they are drawn larger and in orange, all others dimmed. A file with faces is a surface, drawn as one:
+what is free is farther than D from it, what collides within D and the surface tolerance. Of a first
+CLOUD that is a surface the triangles are tested and coloured. A cloud that holds the fields collision,
+distance or first_pose, or a .ply whose faces have such properties, shows these as they are.
 A scene's objects are drawn at their poses of one step, responses included: fixed ones in grey, moving ones in blue,
 and points within the scene's clearance, or D, in orange and yellow.
-Reads .pcd .ply .las .obj .off .pts .ptx .csv .xyz .txt, pipes, and standard input as -.
+Reads .pcd .ply .las .obj .off .stl .pts .ptx .csv .xyz .txt, pipes, and standard input as -.
 Without --screenshot and --export a window opens: h shows its keys.
-Exit code: 0 done; 1 failed; 2 command line not understood.
+Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Examples:
   pcl_bsh_view hall.ply --model robot.pcd --pose 1.5,2,0,0,0,1.57 --clearance 0.05 --unit m
   pcl_bsh_view tunnel.pcd --model wagon.ply --trajectory path.txt --clearance 0.1 --color first_pose
   pcl_bsh_view after.pcd before.pcd --color distance --unit m --screenshot change.png
+  pcl_bsh_view machine.stl --model hall.las --pose 1.5,2,0,0,0,1.57 --clearance 0.05
   pcl_bsh_view --scene walk.json --step 80 --clearance 0.3
   pcl_bsh_view marked.pcd --camera colliding --screenshot marked.png --size 1600x1000
   pcl_bsh_view hall.ply --model robot.pcd --clearance 0.05 --level 2 --export hall.vtm)";
@@ -175,7 +177,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
   std::string pose, cut, size = "1280x960", camera = "slanted";
   CLI::App app("Shows clouds, where they collide, and the spheres that find it.", program);
   app.footer(footer);
-  app.add_option("CLOUD", options.clouds, "the cloud whose points are tested, then obstacles in the same frame")
+  app.add_option("CLOUD", options.clouds, "the cloud or surface that is tested, then obstacles in the same\nframe")
       ->type_name("");
   app.add_option("--scene", options.scene, "a scene file in place of clouds: objects, their motions and responses")
       ->type_name("SCENE.json");
@@ -193,15 +195,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
                  "greatest distance that counts as collision, in the clouds' unit\n(default for a scene: its own)")
       ->type_name("D")
       ->transform(cli::number<double>(cli::give_length));
-  CLI::Option* const tolerance =
-      app.add_option("--surface-tolerance", options.surface.tolerance,
-                     "how far from the surface of an obstacle with faces what collides\nmay be beyond D (default: a "
-                     "tenth of D, else its size / 10,000)")
-          ->type_name("T")
-          ->transform(
-              cli::number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-  app.add_flag("--vertices-only", options.surface.vertices_only, "of obstacles with faces, take the vertices alone")
-      ->excludes(tolerance);
+  cli::addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
   app.add_option("--color", options.color,
                  "collision (default where known), distance, first_pose, height,\nrgb or intensity; distance without "
                  "--clearance is of all points,\nwith a histogram")

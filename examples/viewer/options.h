@@ -40,7 +40,7 @@ struct Options {
   std::optional<std::filesystem::path> trajectory;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< of the model, without a trajectory
   std::optional<double> clearance;
-  io::SurfaceSettings surface; ///< of obstacles and the model
+  io::SurfaceSettings surface; ///< of clouds with faces
   std::optional<Coloring> color;
   std::optional<double> range; ///< distances up to here have colours; what collides, the colour of collisions
   std::optional<Cut> cut;      ///< of the first cloud

@@ -5,8 +5,6 @@
 
 #include <pcl_bsh/vtk/cloud_data.h>
 
-#include <vtkNew.h>
-#include <vtkPlane.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
@@ -56,10 +54,8 @@ void PointLayer::place(const Eigen::Isometry3d& pose)
 
 void PointLayer::cut(const Cut& plane)
 {
-  vtkNew<vtkPlane> kept;
-  kept->SetOrigin(plane.point.data());
-  kept->SetNormal(-plane.normal[0], -plane.normal[1], -plane.normal[2]);
-  for (vtkActor* actor : {all_.Get(), few_.Get()}) actor->GetMapper()->AddClippingPlane(kept);
+  view::cut(*all_, plane);
+  view::cut(*few_, plane);
 }
 
 void PointLayer::setMoving(bool moving)

@@ -22,7 +22,7 @@ public:
   void show(const vtkSmartPointer<vtkPolyData>& data);
   vtkPolyData& data() const { return *data_; }
 
-  vtkActor& actor() { return *all_; }
+  vtkActor& actor() const { return *all_; }
   void place(const Eigen::Isometry3d& pose);
   void setMoving(bool moving);
   void hide(); ///< for good

@@ -11,10 +11,17 @@
 #include <pcl_bsh/vtk/path_data.h>
 
 #include <vtkBoundingBox.h>
+#include <vtkCamera.h>
+#include <vtkCellPicker.h>
+#include <vtkMath.h>
+#include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPointPicker.h>
 #include <vtkProperty.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace pcl_bsh::view {
 
@@ -159,7 +166,9 @@ vtkBoundingBox RenderView::boundsOf(std::size_t cloud) const
   vtkBoundingBox bounds;
   vtkPolyData& data = clouds_[cloud].data();
   if (data.GetNumberOfPoints() == 0) return bounds;
-  const vtkBoundingBox own(data.GetBounds());
+  double drawn[6];
+  data.GetCellsBounds(drawn); // a mesh may have vertices of no triangle
+  const vtkBoundingBox own(drawn);
   const Eigen::Isometry3d pose = content_.poseOf(cloud, step_);
   for (int corner = 0; corner < 8; ++corner) {
     Eigen::Vector3d at;
@@ -202,24 +211,43 @@ void RenderView::setMoving(bool moving)
   for (CloudActor& cloud : clouds_) cloud.setMoving(moving);
 }
 
+std::string RenderView::pick(int x, int y) const
+{
+  vtkNew<vtkPointPicker> points;
+  vtkNew<vtkCellPicker> triangles;
+  points->SetTolerance(0.005);
+  triangles->SetTolerance(0.0);
+  points->PickFromListOn();
+  triangles->PickFromListOn();
+  for (const CloudActor& cloud : clouds_) cloud.offerTo(*points, *triangles);
+  const auto distance = [&](vtkPicker& picker) {
+    if (picker.Pick(x, y, 0.0, &renderer_) == 0) return std::numeric_limits<double>::infinity();
+    return std::sqrt(
+        vtkMath::Distance2BetweenPoints(picker.GetPickPosition(), renderer_.GetActiveCamera()->GetPosition()));
+  };
+  const double to_point = distance(*points), to_triangle = distance(*triangles);
+  if (to_triangle < to_point) return describe(triangles->GetViewProp(), triangles->GetCellId());
+  return std::isfinite(to_point) ? describe(points->GetViewProp(), points->GetPointId()) : std::string();
+}
+
 std::string RenderView::describe(const vtkProp* prop, vtkIdType id) const
 {
   for (std::size_t i = 0; i < clouds_.size(); ++i) {
-    const std::optional<std::uint32_t> record = clouds_[i].recordOf(prop, id);
-    if (!record) continue;
+    const std::optional<std::uint32_t> part = clouds_[i].partOf(prop, id);
+    if (!part) continue;
     const ViewedCloud& viewed = content_.viewedClouds()[i];
-    const Point3 p = viewed.points().point(*record);
+    const Point3 p = viewed.placeOf(*part);
     std::ostringstream text;
-    text << "point " << *record << " of " << viewed.name << std::setprecision(9) << ": " << p[0] << ", " << p[1] << ", "
-         << p[2];
+    text << viewed.partName() << ' ' << *part << " of " << viewed.name << std::setprecision(9) << ": " << p[0] << ", "
+         << p[1] << ", " << p[2];
     const std::vector<std::uint8_t>& flags = collisions_.flags[i];
-    const std::uint8_t flag = flags.empty() ? flagOf(Verdict::free) : flags[*record];
+    const std::uint8_t flag = flags.empty() ? flagOf(Verdict::free) : flags[*part];
     if (collisions_.known)
       text << (flag == flagOf(Verdict::free)        ? "; free"
                : flag == flagOf(Verdict::undecided) ? "; undecided"
                : flag == flagOf(Verdict::sparse)    ? "; not scanned densely enough"
                                                     : "; collides");
-    return text.str() + content_.details(i, *record, step_);
+    return text.str() + content_.details(i, *part, step_);
   }
   return {};
 }

@@ -33,7 +33,10 @@ public:
   void setMoving(bool moving);
   void setNote(const std::string& text) { caption_.setNote(text); } ///< as for a picked point; empty: none
 
-  /// What a picked prop and point id say; empty when that is no point of a cloud.
+  /// What the point or triangle says that is seen at a pixel; empty when there is none.
+  std::string pick(int x, int y) const;
+
+  /// What a picked prop and the id of a point, or of a triangle's cell, say; empty when that is of no cloud.
   std::string describe(const vtkProp* prop, vtkIdType id) const;
 
   /// @throws std::runtime_error naming the file

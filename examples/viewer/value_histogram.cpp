@@ -54,14 +54,14 @@ ValueHistogram::ValueHistogram(vtkRenderer& renderer, int width, int height)
 }
 
 void ValueHistogram::show(const std::vector<double>& distances, vtkLookupTable& colors, const std::string& axis_title,
-                          const std::string& unit)
+                          const std::string& unit, const std::string& parts)
 {
   constexpr std::size_t most_bars = 40;
   const DistanceStatistics statistics = statisticsOf(distances);
   const DistanceHistogram histogram = histogramOf(distances, colors.GetTableRange()[1], most_bars);
   vtkNew<vtkDoubleArray> middles, counts;
   middles->SetName("distance");
-  counts->SetName("points");
+  counts->SetName(parts.c_str());
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
     middles->InsertNextValue((static_cast<double>(i) + 0.5) * histogram.width);
     counts->InsertNextValue(static_cast<double>(histogram.counts[i]));
@@ -78,7 +78,7 @@ void ValueHistogram::show(const std::vector<double>& distances, vtkLookupTable& 
   bars->ScalarVisibilityOn();
   bars->GetPen()->SetLineType(vtkPen::NO_PEN);
   setColors(*chart_->GetAxis(vtkAxis::BOTTOM), axis_title);
-  setColors(*chart_->GetAxis(vtkAxis::LEFT), "points");
+  setColors(*chart_->GetAxis(vtkAxis::LEFT), parts);
   vtkAxis& across = *chart_->GetAxis(vtkAxis::BOTTOM);
   across.SetBehavior(vtkAxis::FIXED);
   across.SetRange(0.0, histogram.end());
@@ -86,7 +86,7 @@ void ValueHistogram::show(const std::vector<double>& distances, vtkLookupTable& 
   std::string title = "mean " + lengthOf(statistics.mean, unit) + ", RMS " + lengthOf(statistics.rms, unit) +
                       "\nmedian " + lengthOf(statistics.median, unit) + ", greatest " +
                       lengthOf(statistics.maximum, unit);
-  if (histogram.above > 0) title += "\n" + grouped(histogram.above) + " points beyond the axis";
+  if (histogram.above > 0) title += "\n" + grouped(histogram.above) + ' ' + parts + " beyond the axis";
   chart_->SetTitle(title);
   actor_->SetVisibility(statistics.count > 0);
 }

@@ -12,15 +12,16 @@
 
 namespace pcl_bsh::view {
 
-/// How many points have which distance, in the colours of the ValueBar above it, at the lower right.
+/// How many points or triangles have which distance, in the colours of the ValueBar above it, at the lower right.
 class ValueHistogram {
 public:
   ValueHistogram(vtkRenderer& renderer, int width, int height); ///< of the picture, in pixels
 
-  /// @param distances one per record, NaN where there is none
+  /// @param distances one per part, NaN where there is none
   /// @param colors whose range ends where the axis does
+  /// @param parts what is counted
   void show(const std::vector<double>& distances, vtkLookupTable& colors, const std::string& axis_title,
-            const std::string& unit);
+            const std::string& unit, const std::string& parts);
   void hide() { actor_->VisibilityOff(); }
   bool isShown() const { return actor_->GetVisibility() != 0; }
 

@@ -25,8 +25,8 @@ struct ClosestPair {
 /// What collides at one step.
 struct StepCollisions {
   bool known = false;                           ///< whether a query ran or a field says it
-  std::vector<std::vector<std::uint8_t>> flags; ///< of each viewed cloud, 1 = collides, per record; empty: none do
-  std::size_t colliding = 0;                    ///< points of the scan, or of all clouds of a scene
+  std::vector<std::vector<std::uint8_t>> flags; ///< of each viewed cloud, 1 = collides, per part; empty: none do
+  std::size_t colliding = 0;                    ///< parts of the scan, or points of all clouds of a scene
   std::size_t undecided = 0;                    ///< likewise
   std::size_t sparse = 0;                       ///< likewise, not scanned densely enough
   std::optional<ClosestPair> closest;
@@ -44,7 +44,7 @@ struct Trace {
   CollisionTrace trace;
 };
 
-/// Clouds and their poses at a number of steps; the first cloud is the one asked about.
+/// Clouds and their poses at a number of steps; the first cloud is the one asked about: its points, or its triangles.
 class ViewContent {
 public:
   virtual ~ViewContent() = default;
@@ -69,16 +69,13 @@ public:
   virtual std::string heading(const StepCollisions& collisions, std::size_t step) const = 0;
   virtual MotionPaths paths(std::size_t step) const = 0;
 
-  // Of the scan, per record; empty where that is not known.
+  // Of the scan, per part; empty where that is not known.
   virtual std::vector<float> distances(std::size_t /*step*/) const { return {}; }     ///< NaN where free
   virtual std::vector<double> allDistances(std::size_t /*step*/) const { return {}; } ///< of free points, too
   virtual std::vector<std::int32_t> firstPoses() const { return {}; }                 ///< -1 where always free
 
-  /// More text about a picked point, put behind its name and coordinates; or empty.
-  virtual std::string details(std::size_t /*cloud*/, std::uint32_t /*record*/, std::size_t /*step*/) const
-  {
-    return {};
-  }
+  /// More text about a picked part, put behind its name and coordinates; or empty.
+  virtual std::string details(std::size_t /*cloud*/, std::uint32_t /*part*/, std::size_t /*step*/) const { return {}; }
   virtual std::vector<Trace> traces(std::size_t /*step*/) const { return {}; }
 
 protected:

@@ -25,16 +25,33 @@ struct ViewedCloud {
   Role role = Role::scan;
   std::filesystem::path file;
   std::shared_ptr<const pcl::PCLPointCloud2> cloud; ///< as it was read; none where fields are not shown
-  std::optional<io::Obstacle> surface; ///< where it has faces: these are drawn, and queries are asked of its balls
+  std::optional<io::Obstacle> surface;     ///< where it has faces: these are drawn, and queries are asked of its balls
+  std::vector<io::FaceValues> face_values; ///< as they were read; none where fields are not shown
   std::shared_ptr<SphereHierarchy> hierarchy;
 
-  const PointsView& points() const { return hierarchy->view(); }
+  const PointsView& points() const { return hierarchy->view(); } ///< of a surface, the balls of its cover
 
-  /// A field's values, one per record; none where the cloud has no such field, or one of several values.
+  /// What is asked about, coloured and picked: points or, of a surface whose balls are each of one triangle, triangles.
+  bool hasTriangles() const { return surface && surface->cover()->triangles_apart; }
+  std::size_t parts() const { return hasTriangles() ? surface->triangles()->size() : points().count; }
+  const char* partName() const { return hasTriangles() ? "triangle" : "point"; }
+
+  /// Of a triangle, its middle.
+  Point3 placeOf(std::uint32_t part) const;
+
+  /// A field's values, one per part; none where the cloud has no such field, or one of several values. Of triangles:
+  /// the property of its faces or, without one, the mean of the field at the corners.
   std::optional<std::vector<float>> field(const std::string& field_name) const;
 
-  /// Red, green, blue, per record; none where the cloud has no colours.
+  /// What was found out about each part, as a field has it; of triangles, only a property of their faces.
+  std::optional<std::vector<float>> result(const std::string& field_name) const;
+
+  /// Red, green, blue, per part; none where the cloud has no colours.
   std::optional<std::vector<std::array<unsigned char, 3>>> colors() const;
+
+private:
+  std::optional<std::vector<float>> fieldOfRecords(const std::string& field_name) const;
+  std::optional<std::vector<std::array<unsigned char, 3>>> colorsOfRecords() const;
 };
 
 } // namespace pcl_bsh::view

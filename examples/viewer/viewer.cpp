@@ -8,7 +8,6 @@
 #include <vtkInteractorStyleTrackballCamera.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
-#include <vtkPointPicker.h>
 #include <vtkProperty2D.h>
 #include <vtkRendererCollection.h>
 #include <vtkSliderRepresentation2D.h>
@@ -213,11 +212,7 @@ bool Viewer::press(const std::string& key)
 
 void Viewer::pick(int x, int y)
 {
-  vtkNew<vtkPointPicker> picker;
-  picker->SetTolerance(0.005);
-  picked_.clear();
-  if (picker->Pick(x, y, 0.0, renderer_) != 0)
-    picked_ = render_view_->describe(picker->GetViewProp(), picker->GetPointId());
+  picked_ = render_view_->pick(x, y);
   if (!picked_.empty()) std::cout << picked_ << std::endl;
   help_ = false;
   render_view_->setNote(picked_);

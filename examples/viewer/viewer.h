@@ -19,7 +19,7 @@ inline constexpr auto keys = R"(+ -    spheres one level finer, coarser (none)
 v  o    voxels, octree cells
 t       what the query tested and pruned
 left right   step before, after
-click   point: number, place, distance, first pose
+click   point or triangle: number, place, distance, first pose
 r  s    reset the camera, save a picture
 h  q    hide this, quit)";
 

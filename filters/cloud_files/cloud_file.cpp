@@ -237,7 +237,8 @@ Mesh readMesh(const std::filesystem::path& path, Viewpoint* viewpoint, LasHeader
     if (extension == ".obj") faces = parseObjFaces(file.view());
     if (extension == ".off") faces = parseOffFaces(file.view());
     mesh.vertices = checked(std::move(contents), viewpoint, las);
-    for (const Triangle& triangle : trianglesOf(faces, viewOf(mesh.vertices))) mesh.triangles.push_back(triangle);
+    for (const Triangle& triangle : trianglesOf(faces, viewOf(mesh.vertices), &mesh.face_values))
+      mesh.triangles.push_back(triangle);
     return std::move(mesh);
   });
 }

@@ -70,10 +70,17 @@ pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t s
 /// The fields that readPtxScan() makes. Throws as readCloud() does.
 pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan);
 
+/// A number of each triangle.
+struct FaceValues {
+  std::string name;
+  std::vector<double> values; ///< NaN where the file gives none
+};
+
 /// A cloud and the triangles between its points.
 struct Mesh {
   pcl::PCLPointCloud2 vertices;
-  std::vector<Triangle> triangles; ///< empty where the file has no faces
+  std::vector<Triangle> triangles;          ///< empty where the file has no faces
+  std::vector<FaceValues> face_values = {}; ///< the properties of a .ply's faces that are numbers
 };
 
 /// Reads the faces, too, of .obj, .off, .ply and .stl; of others the points alone. Polygons are cut into triangles.

@@ -75,11 +75,11 @@ UsualTolerance usualTolerance(const PointsView& vertices, const std::vector<Tria
 }
 
 SurfaceCover coverMesh(const PointsView& vertices, const std::vector<Triangle>& triangles,
-                       const SurfaceSettings& settings, double clearance, bool triangles_apart,
-                       const std::function<bool(double)>& progress, std::vector<std::string>& remarks)
+                       const SurfaceSettings& settings, double clearance, const std::function<bool(double)>& progress,
+                       std::vector<std::string>& remarks)
 {
   SurfaceRequest request;
-  request.triangles_apart = triangles_apart;
+  request.triangles_apart = settings.triangles_apart;
   request.progress = progress;
   if (settings.tolerance) {
     request.tolerance = *settings.tolerance;
@@ -106,8 +106,8 @@ Obstacle::Obstacle(CloudPtr vertices, const TrianglesPtr& triangles, const Surfa
 : points_(std::move(vertices))
 {
   if (settings.vertices_only || !triangles || triangles->empty()) return;
-  cover_ = std::make_shared<SurfaceCover>(
-      coverMesh(viewOf(*points_), *triangles, settings, clearance, false, progress, remarks_));
+  cover_ =
+      std::make_shared<SurfaceCover>(coverMesh(viewOf(*points_), *triangles, settings, clearance, progress, remarks_));
   triangles_ = triangles;
 }
 
@@ -135,7 +135,12 @@ Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& 
                       const std::function<bool(double)>& progress)
 {
   if (settings.vertices_only) return Obstacle(std::make_shared<pcl::PCLPointCloud2>(readCloud(path)));
-  Mesh mesh = readMesh(path);
+  return obstacleOf(path, readMesh(path), settings, clearance, progress);
+}
+
+Obstacle obstacleOf(const std::filesystem::path& path, Mesh mesh, const SurfaceSettings& settings, double clearance,
+                    const std::function<bool(double)>& progress)
+{
   const auto vertices = std::make_shared<const pcl::PCLPointCloud2>(std::move(mesh.vertices));
   const auto triangles = std::make_shared<const std::vector<Triangle>>(std::move(mesh.triangles));
   try {

@@ -27,11 +27,12 @@
 
 namespace pcl_bsh::io {
 
-/// What users say about surfaces.
+/// How meshes are taken.
 struct SurfaceSettings {
   /// By how much balls may stick out, in the cloud's unit; finite and > 0. None: usualTolerance().
   std::optional<double> tolerance;
-  bool vertices_only = false; ///< a mesh is its vertices, and what lies between them is nothing
+  bool vertices_only = false;   ///< a mesh is its vertices, and what lies between them is nothing
+  bool triangles_apart = false; ///< for a mesh that is asked about (SurfaceRequest::triangles_apart)
 };
 
 using CloudPtr = std::shared_ptr<const pcl::PCLPointCloud2>;
@@ -50,13 +51,12 @@ UsualTolerance usualTolerance(const PointsView& vertices, const std::vector<Tria
 
 /// Covers a mesh to the tolerance of the settings, or to the usual one.
 /// @param clearance of the query, for the usual tolerance
-/// @param triangles_apart for a mesh that is asked about (SurfaceRequest::triangles_apart)
 /// @param progress as SurfaceRequest has it
 /// @param remarks what users should know of the cover is appended, a line each, without the file's name
 /// @throws InvalidInput as coverSurface() does. Cancelled
 SurfaceCover coverMesh(const PointsView& vertices, const std::vector<Triangle>& triangles,
-                       const SurfaceSettings& settings, double clearance, bool triangles_apart,
-                       const std::function<bool(double)>& progress, std::vector<std::string>& remarks);
+                       const SurfaceSettings& settings, double clearance, const std::function<bool(double)>& progress,
+                       std::vector<std::string>& remarks);
 
 /// Shares what it holds with its copies.
 class Obstacle {
@@ -75,6 +75,7 @@ public:
            const std::function<bool(double)>& progress = nullptr);
 
   const pcl::PCLPointCloud2& points() const { return *points_; } ///< as read; of a surface, its vertices
+  const CloudPtr& cloud() const { return points_; }              ///< the same
   bool isSurface() const { return cover_ != nullptr; }
   const std::vector<Triangle>* triangles() const { return triangles_.get(); } ///< null where it is no surface
   const std::shared_ptr<const SurfaceCover>& cover() const { return cover_; } ///< likewise
@@ -105,5 +106,10 @@ std::string promiseOf(const Obstacle& surface, const std::string& beside = "");
 /// @throws files::FileError as readMesh() does, and where its faces cannot be covered. Cancelled
 Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& settings, double clearance,
                       const std::function<bool(double)>& progress = nullptr);
+
+/// That of a file whose mesh is read already.
+/// @throws files::FileError naming the file, where its faces cannot be covered. Cancelled
+Obstacle obstacleOf(const std::filesystem::path& path, Mesh mesh, const SurfaceSettings& settings, double clearance,
+                    const std::function<bool(double)>& progress = nullptr);
 
 } // namespace pcl_bsh::io

@@ -7,6 +7,7 @@
 #include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/text_files/text_cursor.h>
 
+#include <algorithm>
 #include <bit>
 #include <optional>
 
@@ -238,15 +239,47 @@ void readCorners(Rows& rows, const Property& property, bool strips, Polygons& fa
   if (!strips) faces.end();
 }
 
-/// Takes what an element `face` or `tristrips` lists as its vertices; skips all else.
+bool isCorners(const Property& property)
+{
+  return property.length_type && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+/// Whether each row is one polygon, of which its other properties tell something.
+bool tellsOfPolygons(const Element& element, const Polygons& before)
+{
+  return element.name == "face" && before.size() == 0 &&
+         std::count_if(element.properties.begin(), element.properties.end(), isCorners) == 1;
+}
+
+/// A number of any type.
+template <typename Rows>
+double readValue(Rows& rows, std::uint8_t datatype)
+{
+  std::uint8_t bytes[sizeof(std::uint64_t)];
+  rows.value(datatype, bytes);
+  return withFieldType(datatype, [&](auto value) {
+    std::memcpy(&value, bytes, sizeof value);
+    return static_cast<double>(value);
+  });
+}
+
+/// Takes what an element `face` or `tristrips` lists as its vertices, and the numbers beside; skips all else.
 template <typename Rows>
 void readFaces(Rows& rows, const Element& element, Polygons& faces)
 {
+  std::vector<FaceValues>& values = faces.values();
+  const bool tells = tellsOfPolygons(element, faces);
+  for (const Property& property : element.properties)
+    if (tells && !property.length_type) values.push_back({property.name, {}});
   for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
     rows.begin();
+    std::size_t value = 0;
     for (const Property& property : element.properties) {
-      if (property.length_type && (property.name == "vertex_indices" || property.name == "vertex_index")) {
+      if (isCorners(property)) {
         readCorners(rows, property, element.name == "tristrips", faces);
+      }
+      else if (tells && !property.length_type) {
+        values[value++].values.push_back(readValue(rows, property.datatype));
       }
       else {
         const std::uint64_t length = readLength(rows, property);

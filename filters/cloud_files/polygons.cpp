@@ -4,12 +4,15 @@
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/surface/polygon_triangles.h>
 
+#include <limits>
 #include <string>
 
 namespace pcl_bsh::io {
 
-std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& vertices)
+std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& vertices, std::vector<FaceValues>* values)
 {
+  if (values)
+    for (const FaceValues& known : polygons.values()) values->push_back({known.name, {}});
   std::vector<Triangle> triangles;
   triangles.reserve(polygons.size());
   std::vector<std::uint32_t> corners;
@@ -27,6 +30,11 @@ std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& ve
     }
     catch (const InvalidInput& error) {
       throw FormatError(error.wrong(), error.remedy());
+    }
+    for (std::size_t k = 0; values && k < values->size(); ++k) {
+      const std::vector<double>& known = polygons.values()[k].values;
+      (*values)[k].values.resize(triangles.size(),
+                                 i < known.size() ? known[i] : std::numeric_limits<double>::quiet_NaN());
     }
   }
   return triangles;

@@ -57,6 +57,8 @@ struct VoxelLists {
   }
 
   /// What any walk decides stays decided.
+  static void perhaps(std::uint32_t) {} // no search for lists tells what is certain from what is possible
+
   void endWalk()
   {
     if (left_all) return;

@@ -37,6 +37,11 @@ public:
     flags_[record] = flagOf(Verdict::colliding);
   }
 
+  void perhaps(std::uint32_t record)
+  {
+    if (flags_[record] != flagOf(Verdict::colliding)) flags_[record] = flagOf(Verdict::undecided);
+  }
+
   bool takesFree() const { return marked_; }
   void free(std::uint32_t record) { flags_[record] = flagOf(Verdict::free); }
 
@@ -127,7 +132,7 @@ void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, P
   found.work += flagSides(a, b, request, places, sheet_a, sheet_b);
   found.colliding_a = sheet_a.colliding();
   found.colliding_b = sheet_b.colliding();
-  if (!request.accuracy.stopsEarly()) return;
+  if (!request.accuracy.stopsEarly() && places != Places::either) return;
   found.undecided_a = sheet_a.undecided();
   found.undecided_b = sheet_b.undecided();
 }
@@ -159,19 +164,7 @@ void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& reques
   result = FlagsResult(); // should something throw, it has neither colliding nor free points
   found.a.clear();
   found.b.clear();
-  if (!areUncertain(a, b)) {
-    flagPlaces(a, b, request, Places::measured, found);
-  }
-  else {
-    FlagsRequest half = request;
-    half.accuracy = halfOf(request.accuracy);
-    flagPlaces(a, b, half, Places::possible, found);
-    FlagsResult certain;
-    flagPlaces(a, b, half, Places::certain, certain);
-    withhold(found.a, certain.a, found.colliding_a, found.undecided_a);
-    withhold(found.b, certain.b, found.colliding_b, found.undecided_b);
-    found.work += certain.work;
-  }
+  flagPlaces(a, b, request, areUncertain(a, b) ? Places::either : Places::measured, found);
   if (request.spacings_of_b && request.flagged != Side::b) guardDensity(a, b, request, found);
   result = std::move(found);
 }

@@ -53,7 +53,7 @@ struct FlagsResult {
 /// Which points collide with something of the other cloud? Where points have uncertainties (PointsView), a point
 /// collides if some point of the other cloud is within the clearance of it wherever both truly are; it is free if none
 /// can be; else it is undecided. Several points of the other cloud of which always one is near, though not always the
-/// same, leave it undecided. That costs about two queries; a budget is divided between them.
+/// same, leave it undecided. One search tells them apart.
 /// A density guard is one search more.
 /// @throws std::invalid_argument when the clearance, the accuracy, a spacing or a pose is not what its declaration asks
 ///   for.

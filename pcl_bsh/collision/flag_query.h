@@ -17,6 +17,11 @@ struct FlagQuery {
   const PointPairs& pairs;
   RelativeRotation rotation;
   Acceptance acceptance;
+  /// Where points are uncertain: `pairs` are those that may collide, these are the ones that do for certain.
+  const PointPairs* certain = nullptr;
+  Acceptance surely; ///< of the pairs that do for certain, or of all
+
+  const PointPairs& surePairs() const { return certain ? *certain : pairs; }
 };
 
 /// A voxel of a with points to flag.

@@ -10,7 +10,7 @@
 #define PCL_BSH_COLLISION_FLAG_RUNS_INL_H_
 #endif
 
-#include <pcl_bsh/collision/flag_visit-inl.h>
+#include <pcl_bsh/collision/flag_leaf-inl.h>
 #include <pcl_bsh/hierarchy/local_points-inl.h>
 
 #include <utility>
@@ -33,11 +33,11 @@ class FlagRuns {
 public:
   /// @param voxel listed. @param obstacles all voxels of b that it can reach; points have no radii
   FlagRuns(const Voxel& voxel, const PointsView& view, const std::vector<ObstacleVoxel>& obstacles,
-           const PointPairs& pairs, Sink& sink, Work& work)
+           const FlagQuery& query, Sink& sink, Work& work)
   : voxel_(voxel),
     view_(view),
     obstacles_(obstacles),
-    pairs_(pairs),
+    query_(query),
     sink_(sink),
     work_(work),
     slack_(storedSlack(voxel.frame))
@@ -275,9 +275,12 @@ private:
     nearestSquared(carried_, leaf.x(), leaf.y(), leaf.z(), firstBits(leaf.count), nearest);
     std::uint32_t hit = open_ & atMost(nearest, obstacle.band.hit);
     const std::uint32_t undecided = open_ & ~hit & ~above(nearest, obstacle.band.miss);
-    if (undecided != 0)
-      eachPairNotBeyond(carried_, undecided, leaf, obstacle.band.miss, [&](std::uint32_t i, std::uint32_t j, float) {
-        if ((hit >> i & 1) == 0 && pairs_.collide({points_[i].record, leaf.record(j)}, work_)) hit |= 1u << i;
+    if (query_.certain)
+      hit |= compareUncertain(obstacle, leaf, nearest, {undecided, open_ & ~hit});
+    else if (undecided != 0)
+      eachPairNotBeyond(carried_, undecided, leaf, obstacle.band.miss, [&](std::uint32_t i, std::uint32_t j, float s) {
+        if ((hit >> i & 1) == 0 && query_.pairs.collide(obstacle.frame, s, {points_[i].record, leaf.record(j)}, work_))
+          hit |= 1u << i;
         return (undecided & ~hit) == 0;
       });
     if (hit == 0) return false;
@@ -288,10 +291,23 @@ private:
     return true;
   }
 
+  /// Reports which points may collide. @param nearest of the leaf's points to each @return those that do for certain
+  std::uint32_t compareUncertain(const ObstacleVoxel& obstacle, const LeafRange& leaf, const float* nearest,
+                                 OpenPoints open)
+  {
+    std::uint32_t perhaps = open.perhaps & atMost(nearest, obstacle.possible.hit);
+    open.perhaps &= ~perhaps & ~above(nearest, obstacle.possible.miss);
+    const OpenPoints hit = hitUncertain(
+        obstacle, carried_, [this](std::uint32_t i) { return points_[i].record; }, leaf, open, query_, work_);
+    perhaps = (perhaps | hit.perhaps) & ~hit.surely;
+    for (; perhaps != 0; perhaps &= perhaps - 1) sink_.perhaps(points_[std::countr_zero(perhaps)].record);
+    return hit.surely;
+  }
+
   const Voxel& voxel_;
   const PointsView& view_;
   const std::vector<ObstacleVoxel>& obstacles_;
-  const PointPairs& pairs_;
+  const FlagQuery& query_;
   Sink& sink_;
   Work& work_;
   const double slack_;
@@ -313,11 +329,11 @@ private:
 /// Flags the points of a voxel of a, where it lists them and this was not done before. @return whether all are flagged
 template <class Sink>
 bool flagRuns(const SphereHierarchy::Storage& a, std::uint32_t voxel, const std::vector<ObstacleVoxel>& obstacles,
-              const PointPairs& pairs, Sink& sink, Work& work)
+              const FlagQuery& query, Sink& sink, Work& work)
 {
-  if (pairs.haveRadii()) return false;
+  if (query.pairs.haveRadii()) return false;
   return a.readOnce(
-      voxel, [&](const Voxel& listed) { return FlagRuns<Sink>(listed, a.view, obstacles, pairs, sink, work).run(); });
+      voxel, [&](const Voxel& listed) { return FlagRuns<Sink>(listed, a.view, obstacles, query, sink, work).run(); });
 }
 
 } // namespace HWY_NAMESPACE

@@ -20,8 +20,15 @@ public:
   FlagSide(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, const StopRule& rule,
            Sheet& sheet, Work& work, const PatchSpacings& patches_of_b = {})
   : sheet_(sheet),
-    pairs_(a, b, request.clearance, places, patches_of_b),
-    query_{a, b, pairs_, RelativeRotation(a.pose, b.pose), Acceptance(pairs_.reach, request.accuracy)},
+    pairs_(a, b, request.clearance, places == Places::either ? Places::possible : places, patches_of_b),
+    certain_(a, b, request.clearance, Places::certain),
+    query_{a,
+           b,
+           pairs_,
+           RelativeRotation(a.pose, b.pose),
+           Acceptance(pairs_.reach, request.accuracy),
+           places == Places::either ? &certain_ : nullptr,
+           Acceptance(places == Places::either ? certain_.reach : pairs_.reach, request.accuracy)},
     voxels_(threadCount(request.threads), work)
   {
     // A budget may end before a voxel is looked at. A level looks at all, and has to mark only those that come near.
@@ -47,6 +54,7 @@ public:
 private:
   Sheet& sheet_;
   const PointPairs pairs_;
+  const PointPairs certain_;
   const FlagQuery query_;
   VoxelPasses<FlaggedPlace, FlaggedVoxel> voxels_; ///< with undecided points
 };

@@ -28,7 +28,8 @@ struct ObstacleVoxel {
   float sure_reach;   ///< what comes within it collides
   float accept_reach; ///< what comes within it may count as colliding; no less
   float blunt_radius;
-  DistanceBand band;
+  DistanceBand band;            ///< of what collides, where points are uncertain: for certain
+  DistanceBand possible;        ///< of what may collide
   const Slabs* slabs = nullptr; ///< of its nodes, once asked for
 };
 
@@ -50,6 +51,7 @@ struct FlagVisit {
   std::vector<ObstacleSphere> near[kLanes]; ///< what each child has to be compared with; of leaves, in this obstacle
 
   std::uint32_t open_points[kLanes] = {}; ///< of leaves: bits of the points not flagged yet
+  std::uint32_t perhaps[kLanes] = {};     ///< likewise, of the points that may collide, but were not found to
   std::uint32_t unsure = 0;               ///< bits of leaves that met spheres which were not to be opened
 
   void begin(const Node& entered, const BoundingSphere& holding_all)
@@ -64,6 +66,7 @@ struct FlagVisit {
       if (!entered.isLeaf(lane)) continue;
       leaves |= 1u << lane;
       open_points[lane] = firstBits(entered.comparedPoints(lane));
+      perhaps[lane] = 0;
     }
   }
 };

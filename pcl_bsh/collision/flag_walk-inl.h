@@ -22,17 +22,17 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
 /// @tparam Sink is called with the result of each point, once in a walk but for some that collide: collide(record);
+///   perhaps(record) where points are uncertain and it may, before collide() if that turns out to be so for certain;
 ///   free(record) if takesFree(); leave(record) for undecided points if takesUndecided(); leaveAll() if no point of the
 ///   voxel was tested
 template <class Sink>
 class FlagWalk {
 public:
   FlagWalk(const FlagQuery& query, const StopRule& rule, Sink& sink, FlagScratch& scratch)
-  : a_(query.a),
+  : query_(query),
+    a_(query.a),
     b_(query.b),
     pairs_(query.pairs),
-    rotation_(query.rotation),
-    acceptance_(query.acceptance),
     rule_(rule),
     sink_(sink),
     visits_(scratch.visits),
@@ -48,7 +48,7 @@ public:
   /// Flags the points of one voxel of a.
   void run(std::uint32_t voxel)
   {
-    const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose, rotation_);
+    const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose, query_.rotation);
     if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs)) return leaveAll();
     const bool apart = above.separates(pairs_.clearance + a_.storage.largest_radius + b_.storage.largest_radius);
     if (!apart) ++found.work.volumes_carried; // the voxel's own sphere
@@ -60,17 +60,18 @@ public:
     }
     if (!mayEnter(voxel)) return leaveAll();
     for (const std::uint32_t other : reached_) {
-      const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, rotation_);
+      const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, query_.rotation);
       const Node& root = b_.voxel(other, found.work).nodes[0];
       for (std::uint32_t lane = 0; lane < root.count; ++lane)
         spheres_.push_back({&root, static_cast<std::uint16_t>(lane), 1, static_cast<std::uint32_t>(obstacles_.size())});
       obstacles_.push_back({&b_.storage.voxels[other], frame, frame.pruneReach(pairs_.clearance),
-                            frame.acceptReach(pairs_.reach.least), frame.acceptReach(acceptance_.accepted),
-                            frame.bluntRadius(), acceptance_.band(frame)});
+                            frame.acceptReach(query_.surePairs().reach.least),
+                            frame.acceptReach(query_.surely.accepted), frame.bluntRadius(), query_.surely.band(frame),
+                            query_.acceptance.band(frame)});
     }
     // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
     if (mayUseKnownSlabs() && &a_.storage != &b_.storage &&
-        flagRuns(a_.storage, voxel, obstacles_, pairs_, sink_, found.work))
+        flagRuns(a_.storage, voxel, obstacles_, query_, sink_, found.work))
       return;
     voxel_ = voxel;
     a_voxel_ = &a_.voxel(voxel, found.work);
@@ -94,7 +95,7 @@ private:
   /// Slabs that earlier queries have fitted are used at once, if for exact answers: these are the same with slabs and
   /// without. No other answer may depend on what was asked before. Of fresh voxels, a query that runs at the same time
   /// may fit them or not; the work then depends on that, the result does not.
-  bool mayUseKnownSlabs() const { return !rule_.mayStop() && acceptance_.exact; }
+  bool mayUseKnownSlabs() const { return !rule_.mayStop() && query_.surely.exact; }
 
   bool knowsSlabs(std::uint32_t obstacle) const
   {
@@ -106,7 +107,7 @@ private:
   {
     const float radius = a_.storage.voxels[voxel].radius * frame.stretch_a;
     const QueryBall ball{frame.g[0], frame.g[1], frame.g[2], radius + frame.pruneReach(pairs_.clearance),
-                         frame.acceptReach(acceptance_.accepted) - radius * (1.0f + kSphereMargin)};
+                         frame.acceptReach(query_.surely.accepted) - radius * (1.0f + kSphereMargin)};
     const SphereLanes spheres{node.x, node.y, node.z, node.r, frame.stretch_b};
     found.work.node_pairs += node.count;
     if ((spheresInside(spheres, ball) & firstBits(node.count)) != 0) return false;
@@ -164,10 +165,10 @@ private:
         if (visit.near[lane].empty()) free(begin, end);
       }
       else if (visit.node->isCoincident(lane)) {
-        unsure ? leave(begin, end) : free(begin, end);
+        if (visit.perhaps[lane] == 0) unsure ? leave(begin, end) : free(begin, end);
       }
       else {
-        for (std::uint32_t points = visit.open_points[lane]; points != 0; points &= points - 1) {
+        for (std::uint32_t points = visit.open_points[lane] & ~visit.perhaps[lane]; points != 0; points &= points - 1) {
           const std::uint32_t i = begin + static_cast<std::uint32_t>(std::countr_zero(points));
           unsure ? leave(i, i + 1) : free(i, i + 1);
         }
@@ -320,7 +321,11 @@ private:
       LeafPoints points;
       carryLeaf(obstacles_[visit.obstacle].frame, leaf, points);
       const std::uint32_t hit =
-          collidingPoints(obstacles_[visit.obstacle], visit, lane, leaf, points, pairs_, found.work);
+          collidingPoints(obstacles_[visit.obstacle], visit, lane, leaf, points, query_, found.work);
+      for (std::uint32_t set = visit.perhaps[lane] & ~hit; set != 0; set &= set - 1)
+        sink_.perhaps(leaf.record(static_cast<std::uint32_t>(std::countr_zero(set))));
+      if (visit.node->isCoincident(lane) && (visit.perhaps[lane] & ~hit) != 0)
+        for (std::uint32_t i = leaf.begin; i < visit.node->begin[lane + 1]; ++i) sink_.perhaps(a_voxel_->records()[i]);
       for (std::uint32_t set = hit; set != 0; set &= set - 1)
         sink_.collide(leaf.record(static_cast<std::uint32_t>(std::countr_zero(set))));
       visit.open_points[lane] &= ~hit;
@@ -361,10 +366,9 @@ private:
     sink_.leaveAll();
   }
 
+  const FlagQuery& query_;
   const Spaces a_, b_;
   const PointPairs& pairs_;
-  const RelativeRotation& rotation_;
-  const Acceptance& acceptance_;
   const StopRule& rule_;
   Sink& sink_;
   static constexpr std::size_t kManyCandidates = 256;   ///< as they are where surfaces face each other

@@ -57,7 +57,7 @@ public:
     std::uint32_t undecided = firstBits(leaf_.count);
     const bool by_float = largest_radius_ > 0.0 ? findNearest<true>(visit, lane, near, undecided)
                                                 : findNearest<false>(visit, lane, near, undecided);
-    if (by_float && exceeds(limit_)) return;
+    if (by_float && query_.exceeds(limit_, unit_)) return;
     for (std::uint32_t i = 0; i < leaf_.count; ++i) {
       Found& found = found_[i];
       found = (undecided >> i & 1) != 0 ? decide(i, near, visit.cut[lane], by_float) : named(i, near);
@@ -115,7 +115,7 @@ private:
       if (now < farthest) {
         farthest = now;
         limit_ = limit = std::min(limit, beyond(mostOf<kBalls>(farthest)));
-        if (exceeds(limit)) return true;
+        if (query_.exceeds(limit, unit_)) return true;
       }
     }
     undecided = query_.proven ? ambiguous<kBalls>() : 0;
@@ -158,9 +158,6 @@ private:
     const bool all_within = found * unit_ * (1.0 + kMargin) <= max_;
     return roundUp(all_within ? found - query_.tolerance / unit_ * (1.0 - kDoubleMargin) : found);
   }
-
-  /// Whether a greater distance than the bound has been measured, where only the greatest is asked for.
-  bool exceeds(float upper) const { return query_.reached && query_.reached->exceeds(upper, unit_); }
 
   /// The points whose second nearest may be the nearest.
   template <bool kBalls>

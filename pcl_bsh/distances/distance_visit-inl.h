@@ -12,8 +12,11 @@
 #include <pcl_bsh/distances/bound_margin.h>
 #include <pcl_bsh/traversal/obstacle_sphere-inl.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <deque>
+#include <limits>
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
@@ -83,6 +86,7 @@ struct DistanceVisit {
   std::uint64_t stamp = 0; ///< a number that no other visit or leaf has had
   BoundingSphere around;   ///< holds them all; in the frame of a's voxel
   std::uint32_t leaves = 0;
+  float large_leaf = 0.0f;                ///< a leaf of b with a greater radius is large beside a child
   float cut[kLanes];                      ///< what is farther than this is not the nearest of any point of the child
   float limit[kLanes];                    ///< spheres with a lower bound above it are outdone; infinite where none are
   float turn[kLanes];                     ///< Outdoing::turnOf() of the children
@@ -98,14 +102,25 @@ struct DistanceVisit {
     node = &entered;
     around = holding_all;
     leaves = 0;
-    for (std::uint32_t lane = 0; lane < entered.count; ++lane)
+    large_leaf = std::numeric_limits<float>::infinity();
+    for (std::uint32_t lane = 0; lane < entered.count; ++lane) {
       if (entered.isLeaf(lane)) leaves |= 1u << lane;
+      large_leaf = std::min(large_leaf, kLargeLeaf * entered.r[lane]);
+    }
     for (float& value : cut) value = upper;
     for (std::uint8_t lane = 0; lane < kLanes; ++lane) order[lane] = lane;
     for (float& value : limit) value = std::numeric_limits<float>::infinity();
     rows.clear();
     kept.clear();
     for (auto& list : near) list.clear();
+  }
+
+  /// Whether one of these children is small beside a leaf of b.
+  bool areSmall(std::uint32_t children, float radius) const
+  {
+    for (; children != 0; children &= children - 1)
+      if (kLargeLeaf * node->r[std::countr_zero(children)] < radius) return true;
+    return false;
   }
 };
 
@@ -134,6 +149,12 @@ HWY_INLINE void boundDistances(const CarriedNode& spheres, const DistanceObstacl
   }
 }
 
+/// A lower bound that is NaN bounds nothing.
+HWY_INLINE float orNone(float lower)
+{
+  return std::isnan(lower) ? -std::numeric_limits<float>::infinity() : lower;
+}
+
 /// Which of eight values are not above those of others.
 HWY_INLINE std::uint32_t notAbove(const float* values, const float* limits)
 {
@@ -156,6 +177,32 @@ HWY_INLINE void lowerCuts(DistanceVisit& visit, const float* upper)
     const LaneVector now = hn::Sub(hn::Mul(far, hn::Set(d, 1.0f + 0x1p-22f)), hn::LoadU(d, visit.turn + i));
     hn::StoreU(hn::IfThenElse(hn::Lt(now, limit), now, limit), d, visit.limit + i);
   }
+}
+
+/// Bounds the distances from the children of a visit to what lies within a sphere, one point at least.
+/// @param outdoing whether `limit` is of use
+HWY_INLINE void boundChildren(DistanceVisit& visit, const CarriedNode& own, const DistanceObstacle& obstacle,
+                              const Point& center, float radius, bool outdoing, float* lower)
+{
+  if (!outdoing) return boundDistances(own, obstacle, center, radius, lower, visit.cut);
+  float upper[kLanes];
+  std::fill(std::begin(upper), std::end(upper), std::numeric_limits<float>::infinity());
+  boundDistances(own, obstacle, center, radius, lower, upper);
+  lowerCuts(visit, upper);
+}
+
+/// Sharpens such bounds by the points of the sphere's leaf, where that is much larger than a child: its sphere tells
+/// nothing. @pre no radii
+HWY_NOINLINE inline void boundByPoints(DistanceVisit& visit, const CarriedNode& own, const DistanceObstacle& obstacle,
+                                       const LeafRange& leaf, bool outdoing, float* lower)
+{
+  float least[kLanes], of_point[kLanes];
+  std::fill(std::begin(least), std::end(least), std::numeric_limits<float>::infinity());
+  for (std::uint32_t i = 0; i < leaf.count; ++i) {
+    boundChildren(visit, own, obstacle, {leaf.x()[i], leaf.y()[i], leaf.z()[i]}, 0.0f, outdoing, of_point);
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) least[lane] = std::min(least[lane], orNone(of_point[lane]));
+  }
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) lower[lane] = std::max(orNone(lower[lane]), least[lane]);
 }
 
 /// Memory of one walk after another, to be had by a ScratchLease.

@@ -62,7 +62,7 @@ public:
         return forAll([&](std::uint32_t record) { leave(record, interval); });
       }
     }
-    if (query_.reached && exceeds(boundVoxel(cut).upper)) return;
+    if (query_.reached && query_.exceeds(boundVoxel(cut).upper, unit_)) return;
     a_voxel_ = &a_.voxel(voxel, found.work);
     const Node& root = b_.storage.top[0];
     constexpr double stretch = 1.0 + 2 * kPoseStretch;
@@ -124,7 +124,7 @@ private:
         visit.near[lane].push_back({row.sphere, orNone(row.lower[lane])});
       }
     for (const std::uint8_t lane : visit.order) {
-      if (lane >= node.count || exceeds(visit.cut[lane])) continue;
+      if (lane >= node.count || query_.exceeds(visit.cut[lane], unit_)) continue;
       std::vector<NearSphere>& near = visit.near[lane];
       const std::uint32_t begin = node.begin[lane], end = node.begin[lane + 1];
       if (near.empty())
@@ -139,9 +139,6 @@ private:
     }
   }
 
-  /// Whether a greater distance than the bound has been measured, where only the greatest is asked for.
-  bool exceeds(float upper) const { return query_.reached && query_.reached->exceeds(upper, unit_); }
-
   /// Leaves out the children that a greater distance is known for. The farthest are measured first.
   void leaveNearer(DistanceVisit& visit) const
   {
@@ -150,7 +147,7 @@ private:
     });
     std::uint32_t wanted = 0;
     for (std::uint32_t lane = 0; lane < visit.node->count; ++lane)
-      wanted |= (exceeds(visit.cut[lane]) ? 0u : 1u) << lane;
+      wanted |= (query_.exceeds(visit.cut[lane], unit_) ? 0u : 1u) << lane;
     for (DistanceRow& row : visit.rows) row.lanes &= wanted;
   }
 
@@ -171,17 +168,14 @@ private:
     const Node& node = *sphere.node;
     const float radius = node.r[sphere.lane] * obstacle.frame.stretch_b;
     DistanceRow row{sphere, lanes, {}, 0};
-    const Point center = {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]};
-    if (!outdoing_.isPossible()) {
-      boundDistances(own, obstacle, center, radius, row.lower, visit.cut);
-    }
-    else {
-      float upper[kLanes];
-      std::fill(std::begin(upper), std::end(upper), std::numeric_limits<float>::infinity());
-      boundDistances(own, obstacle, center, radius, row.lower, upper);
-      lowerCuts(visit, upper);
-    }
+    boundChildren(visit, own, obstacle, {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]}, radius,
+                  outdoing_.isPossible(), row.lower);
     found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
+    if (HWY_UNLIKELY(radius > visit.large_leaf) && sphere.level > 0 && sphere.isLeaf() && !query_.pairs.haveRadii() &&
+        visit.areSmall(lanes & notAbove(row.lower, visit.cut), radius)) {
+      boundByPoints(visit, own, obstacle, sphere.leaf(*obstacle.voxel), outdoing_.isPossible(), row.lower);
+      found.work.node_pairs += node.comparedPoints(sphere.lane);
+    }
     if (radius <= obstacle.blunt_radius && obstacle.voxel) compareAsGiven(visit, own, row);
     return row;
   }

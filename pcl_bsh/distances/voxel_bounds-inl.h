@@ -18,12 +18,6 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// A lower bound that is NaN bounds nothing.
-HWY_INLINE float orNone(float lower)
-{
-  return std::isnan(lower) ? -std::numeric_limits<float>::infinity() : lower;
-}
-
 /// In the walk's unit.
 class VoxelBounds {
 public:

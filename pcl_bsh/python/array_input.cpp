@@ -215,6 +215,20 @@ PointsView viewOfPoints(const std::string& name, const PointsInput& input)
   return view;
 }
 
+PointsView viewOfMoved(const PointsView& before, PointsInput input)
+{
+  // The arrays of before may end with its hierarchy's view.
+  const auto stays = [&](py::object& given, const float* values) {
+    if (given.is_none() && values) given = py::array_t<float>(static_cast<py::ssize_t>(before.count), values);
+  };
+  stays(input.radii, before.radii);
+  stays(input.uncertainties, before.uncertainties);
+  if (before.indices)
+    input.indices = py::array_t<std::int32_t>(static_cast<py::ssize_t>(before.index_count), before.indices);
+  input.uncertainty = before.uncertainty;
+  return viewOfPoints("points", input);
+}
+
 PointsView viewForCall(const std::string& name, const py::object& xyz, py::array& kept)
 {
   kept = arrayOf(name, xyz);

@@ -2,6 +2,7 @@
 // Results as NumPy arrays, without copies of their numbers.
 #pragma once
 
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/query/result.h>
 
 #include <pybind11/numpy.h>
@@ -49,6 +50,17 @@ py::object arrayInOrNone(const py::handle& object, const std::vector<T>& values,
 {
   if (!asked) return py::none();
   return arrayIn(object, values);
+}
+
+inline py::dict dictOf(const RefitReport& report)
+{
+  py::dict named;
+  named["sorted_anew"] = report.sorted_anew;
+  named["voxels_refitted"] = report.voxels_refitted;
+  named["voxels_dropped"] = report.voxels_dropped;
+  named["volumes_refitted"] = report.volumes_refitted;
+  named["looseness"] = report.looseness;
+  return named;
 }
 
 /// (4, 4)

@@ -87,8 +87,12 @@ void bindClusters(py::module_& module)
       .def_readonly("work", &Clusters::work)
       .def("__len__", [](const Clusters& found) { return found.sizes.size(); })
       .def("__repr__", [](const Clusters& found) { return "Clusters(" + std::to_string(found.sizes.size()) + ")"; });
-  module.def("euclidean_clusters", &euclideanClusters, kClusters, py::arg("cloud"), py::arg("distance"),
-             py::call_guard<py::gil_scoped_release>());
+  module.def(
+      "euclidean_clusters",
+      [](const SphereHierarchy& cloud, double distance) {
+        return unlocked([&] { return euclideanClusters(cloud, distance); });
+      },
+      kClusters, py::arg("cloud"), py::arg("distance"));
   module.def(
       "spacing_of",
       [](const SphereHierarchy& cloud) {

@@ -58,6 +58,55 @@ Examples
 SphereHierarchy(1000 points, float64)
 )";
 
+constexpr auto kRefit = R"(refit(xyz, *, radii=None, uncertainties=None, copy=False, most_growth=1.5)
+--
+
+The points have moved: as many rows of the same type, other coordinates.
+
+Trees stay as they are where they can, and their spheres are fitted to the points anew; answers are those of a new
+hierarchy. It takes as long as measuring all spheres: for points that move a little, a part of what building takes.
+
+Parameters
+----------
+xyz : array_like
+    As that of `SphereHierarchy`. Not the array that the hierarchy reads now, which is read-only: that one is given back,
+    and may be written to and given next.
+radii, uncertainties : array_like of float32, (n,), optional
+    None: as they were.
+copy : bool, default False
+    Keep a copy, and leave the arrays as they are.
+most_growth : float, default 1.5
+    A voxel's tree is dropped, and built on its next visit, when the radii of its leaves have grown by more than this
+    factor on average.
+
+Returns
+-------
+dict
+    `sorted_anew`, `voxels_refitted`, `voxels_dropped`, `volumes_refitted`, `looseness`.
+
+Raises
+------
+ValueError
+    Another number or type of points. The hierarchy is then as it was.
+RuntimeError
+    Called by the `progress` of a query.
+
+Notes
+-----
+It waits until no thread runs a query, of any hierarchy, and holds the interpreter's lock: queries of other threads wait.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> here, there = np.zeros((1, 3)), np.ones((1, 3))
+>>> ball = pcl_bsh.SphereHierarchy(here)
+>>> report = ball.refit(there)
+>>> here.flags.writeable, there.flags.writeable
+(True, False)
+>>> pcl_bsh.closest_pair(ball, pcl_bsh.SphereHierarchy(np.array([[1.0, 1.0, 3.0]]))).distance
+2.0
+)";
+
 const KeptArrays* arraysOf(const SphereHierarchy& hierarchy)
 {
   return dynamic_cast<const KeptArrays*>(static_cast<const Owner*>(hierarchy.view().owner.get()));
@@ -90,6 +139,15 @@ py::dict statisticsOf(const SphereHierarchy& hierarchy)
   named["mean_leaf_points"] = statistics.mean_leaf_points;
   named["mean_leaf_radius"] = statistics.mean_leaf_radius;
   return named;
+}
+
+py::dict refit(SphereHierarchy& hierarchy, const py::object& xyz, const py::object& radii,
+               const py::object& uncertainties, bool copy, double most_growth)
+{
+  return whileNoneComputes([&] {
+    return dictOf(hierarchy.refit(viewOfMoved(hierarchy.view(), {xyz, radii, py::none(), 0.0, uncertainties, copy}),
+                                  most_growth));
+  });
 }
 
 std::shared_ptr<SphereHierarchy> make(const py::object& xyz, const py::object& radii, const py::object& indices,
@@ -133,8 +191,12 @@ void bindHierarchy(py::module_& module)
           "Rows of the array: the length of arrays with a value for each point.")
       .def_property_readonly("coordinate_spacing", &SphereHierarchy::coordinateSpacing,
                              "The distance of neighbouring float32 numbers at the largest coordinate; 0 of float64.")
-      .def("build_all", &SphereHierarchy::buildAll, py::arg("threads") = 1, py::call_guard<py::gil_scoped_release>(),
-           "Builds every sphere now. threads=0: all of the machine's.")
+      .def(
+          "build_all",
+          [](const SphereHierarchy& hierarchy, unsigned threads) { unlocked([&] { hierarchy.buildAll(threads); }); },
+          py::arg("threads") = 1, "Builds every sphere now. threads=0: all of the machine's.")
+      .def("refit", &refit, kRefit, py::arg("xyz"), py::kw_only(), py::arg("radii") = py::none(),
+           py::arg("uncertainties") = py::none(), py::arg("copy") = false, py::arg("most_growth") = 1.5)
       .def(
           "validate",
           [](const SphereHierarchy& hierarchy) { return unlocked([&] { return hierarchy.validate(); }).lines; },

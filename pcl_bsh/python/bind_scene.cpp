@@ -43,6 +43,9 @@ tolerance : float, default 1e-4
 voxel_edge : float, default 0
     Of the grid over the scene; 0: from the sizes of what moves.
 threads : int, default 1
+deform : float, optional
+    Points of objects may move, by `Scene.deform`: the spheres of a voxel, or of all, are built anew once they have grown
+    by this factor on average; >= 1.
 
 Notes
 -----
@@ -88,7 +91,8 @@ std::unique_ptr<SharedScene> makeScene(double clearance, bool any, bool flags, s
                                        std::optional<std::size_t> contacts, bool first_contact, bool swept,
                                        bool self_collisions, const std::string& response, std::optional<double> gravity,
                                        const py::object& down, bool test_pairs, const py::object& accuracy,
-                                       double tolerance, double voxel_edge, unsigned threads)
+                                       double tolerance, double voxel_edge, unsigned threads,
+                                       std::optional<double> deform)
 {
   SceneOptions options;
   options.effects.any = any;
@@ -99,6 +103,7 @@ std::unique_ptr<SharedScene> makeScene(double clearance, bool any, bool flags, s
   options.effects.swept = swept;
   options.effects.self = self_collisions;
   options.effects.response = responseOf(response);
+  options.effects.deform = deform;
   if (gravity) {
     options.effects.gravity.emplace();
     options.effects.gravity->step_height = *gravity;
@@ -171,6 +176,13 @@ ObjectId idOf(SharedScene& shared, const py::object& object)
                          "give a name that add() was given");
     return *found;
   });
+}
+
+void requirePart(const Scene& scene, ObjectId object, std::uint32_t part)
+{
+  if (part >= scene[object].parts.size())
+    throw InvalidInput(Input::scene, "part", "there is no part " + std::to_string(part),
+                       "the object has " + std::to_string(scene[object].parts.size()) + ", counted from 0");
 }
 
 PairRule ruleOf(const std::optional<bool>& tested, const std::optional<double>& clearance)
@@ -336,7 +348,7 @@ void bindScene(py::module_& module)
            py::arg("first_contact") = false, py::arg("swept") = false, py::arg("self_collisions") = false,
            py::arg("response") = "none", py::arg("gravity") = none, py::arg("down") = none,
            py::arg("test_pairs") = true, py::arg("accuracy") = none, py::arg("tolerance") = 1e-4,
-           py::arg("voxel_edge") = 0.0, py::arg("threads") = 1)
+           py::arg("voxel_edge") = 0.0, py::arg("threads") = 1, py::arg("deform") = none)
       .def("add", &addObject, py::arg("name"), py::arg("cloud"), py::arg("pose") = none, py::kw_only(),
            py::arg("fixed") = false, py::arg("group") = "", py::arg("motion") = none,
            py::arg("adjacent") = std::vector<std::pair<std::uint32_t, std::uint32_t>>{},
@@ -374,13 +386,27 @@ void bindScene(py::module_& module)
             const ObjectId id = idOf(s, object);
             const Eigen::Isometry3d to = poseOf("pose", pose);
             inTurn(s, [&](Scene& scene) {
-              if (part >= scene[id].parts.size())
-                throw InvalidInput(Input::scene, "part", "there is no part " + std::to_string(part),
-                                   "the object has " + std::to_string(scene[id].parts.size()) + ", counted from 0");
+              requirePart(scene, id, part);
               scene.setPartPose(id, part, to);
             });
           },
           py::arg("object"), py::arg("part"), py::arg("pose"), "Moves a part within its object.")
+      .def(
+          "deform",
+          [](SharedScene& s, const py::object& object, const py::object& xyz, std::uint32_t part,
+             const py::object& radii, const py::object& uncertainties, bool copy) {
+            const ObjectId id = idOf(s, object);
+            return whileNoneComputes([&] {
+              requirePart(s.scene, id, part);
+              const PointsView& before = s.scene[id].parts[part].hierarchy->view();
+              return dictOf(
+                  s.scene.deform(id, part, viewOfMoved(before, {xyz, radii, py::none(), 0.0, uncertainties, copy})));
+            });
+          },
+          py::arg("object"), py::arg("xyz"), py::arg("part") = 0, py::kw_only(), py::arg("radii") = none,
+          py::arg("uncertainties") = none, py::arg("copy") = false,
+          "The points of a part have moved: as `SphereHierarchy.refit`, with the scene's factor; in every object that "
+          "shares the hierarchy.")
       .def(
           "set_motion",
           [](SharedScene& s, const py::object& object, const py::object& motion) {

@@ -2,9 +2,12 @@
 // Between queries, which run without the interpreter's lock, and what Python wants to be told.
 #pragma once
 
+#include <pcl_bsh/python/computing.h>
+
 #include <pybind11/pybind11.h>
 
 #include <functional>
+#include <optional>
 
 namespace pcl_bsh::python {
 
@@ -28,7 +31,20 @@ template <class Compute>
 auto unlocked(Compute&& compute)
 {
   const py::gil_scoped_release release;
+  const Computing turn;
   return compute();
+}
+
+/// Changes points of a hierarchy: when no query runs, and with the interpreter's lock, so that none begins meanwhile.
+template <class Change>
+auto whileNoneComputes(Change&& change)
+{
+  std::optional<Changing> turn;
+  {
+    const py::gil_scoped_release release;
+    turn.emplace();
+  }
+  return change();
 }
 
 } // namespace pcl_bsh::python

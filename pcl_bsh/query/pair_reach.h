@@ -2,9 +2,13 @@
 #pragma once
 
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/query/reach.h>
 #include <pcl_bsh/query/result.h>
+
+#include <cmath>
+#include <utility>
 
 namespace pcl_bsh {
 
@@ -35,6 +39,21 @@ public:
     return distance.compare(p, q, clearance_, a_.radius(pair.a), b_.radius(pair.b)) <= 0;
   }
 
+  /// Points in the order of a tree are anywhere in the caller's arrays: asks for those that will be read soon.
+  void prefetchOfA(std::uint32_t record) const { prefetch(a_, record); }
+  void prefetchOfB(std::uint32_t record) const { prefetch(b_, record); }
+
+  /// Between which lengths it is for certain, whatever rounding takes. @return the lesser and the greater one
+  std::pair<double, double> around(PointPair pair) const
+  {
+    double sum = 0.0, magnitude = 0.0;
+    for (const double term : of(pair)) {
+      sum += term;
+      magnitude += std::abs(term);
+    }
+    return {sum - kDoubleMargin * magnitude, sum + kDoubleMargin * magnitude};
+  }
+
   /// Before rounding.
   ExactDistance::Sum of(PointPair pair) const
   {
@@ -50,6 +69,11 @@ public:
   }
 
 private:
+  static void prefetch(const PointsView& view, std::uint32_t record)
+  {
+    if (view.uncertainties) __builtin_prefetch(view.uncertainties + record);
+  }
+
   const PointsView& a_;
   const PointsView& b_;
   const double clearance_;

@@ -15,6 +15,7 @@ enum class Places : std::uint8_t {
   measured, ///< are they within the clearance as they were measured?
   certain,  ///< are they wherever they truly are, within their uncertainties?
   possible, ///< may they be?
+  either,   ///< both of these at once, of a search that tells them apart
   covered,  ///< may the first be within it of the other's patch of surface?
 };
 

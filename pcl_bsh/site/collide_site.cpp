@@ -25,6 +25,20 @@ HierarchyOptions optionsOf(const SiteRequest& request)
   return options;
 }
 
+/// The same where only measured places count.
+SiteRequest measured(SiteRequest request)
+{
+  request.uncertainty = {};
+  return request;
+}
+
+/// Of what two tiles say of one point of b: one that collides with a tile collides, and is free only if it is of all.
+std::uint8_t surer(std::uint8_t a, std::uint8_t b)
+{
+  const auto collides = flagOf(Verdict::colliding);
+  return a == collides || b == collides ? collides : std::max(a, b);
+}
+
 /// Refuses what the query would refuse of the whole site, although no tile may be asked: the site's corners are.
 void refuse(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
             const TrajectoryRequest& request)
@@ -110,7 +124,9 @@ public:
   {
     found_.needed = tiles.size();
     const auto use = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
-      ask(tile, cloud, SphereHierarchy(viewOf(cloud), optionsOf(request_)));
+      const PointsView view =
+          withUncertainty(viewOf(cloud), cloud.fields, (site_.folder / tile.file).string(), request_.uncertainty);
+      ask(tile, cloud, SphereHierarchy(view, optionsOf(request_)));
       if (request_.progress && !request_.progress(visitor_.read())) throw Cancelled();
     };
     visitor_.visit(tiles, use, go_on);
@@ -160,16 +176,24 @@ SiteAny anyCollision(const Site& site, const Placed& b, const SiteRequest& reque
   SiteAny result;
   AnyRequest wanted;
   wanted.clearance = request.clearance;
+  wanted.accuracy = request.accuracy;
   wanted.threads = request.threads;
   pcl_bsh::anyCollision({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
-  bool collides = false;
+  requireUncertainty(site, request.uncertainty);
+  bool collides = false, is_undecided = false;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile&, const pcl::PCLPointCloud2&, const SphereHierarchy& hierarchy) {
-    collides = pcl_bsh::anyCollision({hierarchy}, b, wanted).verdict == Verdict::colliding;
+    const Verdict verdict = pcl_bsh::anyCollision({hierarchy}, b, wanted).verdict;
+    collides = verdict == Verdict::colliding;
+    is_undecided = is_undecided || verdict == Verdict::undecided;
   };
-  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance), ask,
+  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request.uncertainty), ask,
                                [&](std::size_t) { return !(collides = sumOfAllRanks(collides ? 1 : 0) > 0); });
-  if (collides) result.verdict = Verdict::colliding;
+  const bool none_is_sure = sumOfAllRanks(is_undecided ? 1 : 0) > 0;
+  if (collides)
+    result.verdict = Verdict::colliding;
+  else if (none_is_sure)
+    result.verdict = Verdict::undecided;
   return result;
 }
 
@@ -180,42 +204,57 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
   const bool of_b = flagged != Side::a;
   FlagsRequest wanted;
   wanted.clearance = request.clearance;
+  wanted.accuracy = request.accuracy;
   wanted.flagged = of_b ? Side::both : Side::a;
   wanted.threads = request.threads;
   pcl_bsh::collisionFlags({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
+  requireUncertainty(site, request.uncertainty);
   if (of_b) result.b.assign(b.hierarchy().view().count, 0);
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const FlagsResult flags = pcl_bsh::collisionFlags({hierarchy}, b, wanted);
     result.colliding += flags.colliding_a;
-    for (std::size_t i = 0; i < result.b.size(); ++i) result.b[i] |= flags.b[i];
+    result.undecided += flags.undecided_a;
+    for (std::size_t i = 0; i < result.b.size(); ++i) result.b[i] = surer(result.b[i], flags.b[i]);
     if (sink) sink(tile, cloud, flags);
   };
-  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance), ask);
+  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request.uncertainty), ask);
   result.colliding = sumOfAllRanks(result.colliding);
+  result.undecided = sumOfAllRanks(result.undecided);
   if (ranks() > 1 && of_b) {
     std::vector<double> own;
     for (std::size_t i = 0; i < result.b.size(); ++i)
-      if (result.b[i] != 0) own.push_back(static_cast<double>(i));
-    for (const double i : gatheredFromAllRanks(own)) result.b[static_cast<std::size_t>(i)] = 1;
+      if (result.b[i] != 0) own.insert(own.end(), {static_cast<double>(i), static_cast<double>(result.b[i])});
+    const std::vector<double> all = gatheredFromAllRanks(own);
+    for (std::size_t k = 0; k < all.size(); k += 2) {
+      std::uint8_t& flag = result.b[static_cast<std::size_t>(all[k])];
+      flag = surer(flag, static_cast<std::uint8_t>(all[k + 1]));
+    }
   }
-  result.colliding_b = static_cast<std::uint64_t>(std::count(result.b.begin(), result.b.end(), 1));
+  const auto counted = [&](Verdict verdict) {
+    return static_cast<std::uint64_t>(std::count(result.b.begin(), result.b.end(), flagOf(verdict)));
+  };
+  result.colliding_b = counted(Verdict::colliding);
+  result.undecided_b = counted(Verdict::undecided);
   return result;
 }
 
-SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request)
+SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& asked)
 {
+  const SiteRequest request = measured(asked);
   DistanceRequest wanted;
+  wanted.accuracy = request.accuracy;
   wanted.threads = request.threads;
   pcl_bsh::closestPair({SphereHierarchy(PointsView{})}, b, wanted); // refuses a pose that no tile may be asked about
   const auto by_distance = tilesByDistance(site, b);
   std::vector<std::uint32_t> tiles;
   for (const auto& [lower, tile] : by_distance) tiles.push_back(tile);
-  double least = infinity;
+  double least = infinity, lower = infinity;
   std::vector<Candidate> candidates;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile&, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const DistanceResult found = pcl_bsh::closestPair({hierarchy}, b, wanted);
+    lower = std::min(lower, found.interval.lower);
     if (!found.pair || found.distance > least) return;
     least = found.distance;
     const std::uint8_t* const record = cloud.data.data() + std::size_t{found.pair->a} * cloud.point_step;
@@ -240,21 +279,26 @@ SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& re
     places.push_back(candidate.place);
     points.push_back(candidate.point);
   }
+  lower = leastOfAllRanks(lower);
   if (places.empty()) return result;
   const SphereHierarchy last(viewOf(places.front().data(), places.size()));
+  wanted.accuracy = {};
   const DistanceResult nearest = pcl_bsh::closestPair({last}, b, wanted);
+  result.interval = {std::min(lower, nearest.interval.lower), nearest.interval.upper};
   result.distance = nearest.distance;
   result.point = points[nearest.pair->a];
   result.b = nearest.pair->b;
   return result;
 }
 
-SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& request,
+SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& asked,
                              const DistancesSink& sink)
 {
+  const SiteRequest request = measured(asked);
   SiteDistances result;
   PointDistancesRequest wanted;
   wanted.max_distance = max_distance;
+  wanted.accuracy = request.accuracy;
   wanted.threads = request.threads;
   pcl_bsh::pointDistances({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
   double greatest = -infinity;
@@ -262,6 +306,7 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const PointDistances found = pcl_bsh::pointDistances({hierarchy}, b, wanted);
     result.measured += found.measured;
+    result.undecided += found.undecided;
     if (found.measured > 0) greatest = std::max(greatest, found.greatest);
     if (sink) sink(tile, cloud, found);
   };
@@ -272,6 +317,7 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
     tiles = tilesWithPoints(site, b);
   result.tiles = inquiry.visit(tiles, ask);
   result.measured = sumOfAllRanks(result.measured);
+  result.undecided = sumOfAllRanks(result.undecided);
   greatest = -leastOfAllRanks(-greatest);
   if (result.measured > 0) result.greatest = greatest;
   return result;
@@ -282,12 +328,15 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
 {
   TrajectoryRequest wanted;
   wanted.clearance = request.clearance;
+  wanted.accuracy = request.accuracy;
   wanted.threads = request.threads;
-  wanted.distances = wanted.first_poses = wanted.closest_poses = true;
+  const bool measures = !request.accuracy.stopsEarly();
+  wanted.distances = wanted.first_poses = wanted.closest_poses = measures;
   wanted.swept = request.swept;
   wanted.pivot = request.pivot;
   wanted.pose_summaries = request.pose_summaries;
   refuse(site, model, poses, wanted);
+  requireUncertainty(site, request.uncertainty);
 
   PathReach reach;
   // Colliding is what comes within clearance + tolerance.
@@ -297,30 +346,34 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   SitePassage result;
   if (request.pose_summaries) result.poses.resize(poses.size());
   double least = infinity, first = infinity;
-  FirstContact contact = no_contact;
+  FirstContact contact = no_contact, certain = no_contact;
   Inquiry inquiry(site, request);
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
     result.colliding += found.colliding;
+    result.undecided += found.undecided;
     add(result.poses, found.poses);
     if (found.first_contact) contact = earlier(contact, *found.first_contact);
-    for (std::size_t i = 0; i < found.flags.size(); ++i) {
+    if (found.certain_contact) certain = earlier(certain, *found.certain_contact);
+    for (std::size_t i = 0; i < found.distance.size(); ++i) {
       if (found.flags[i] == 0) continue;
       least = std::min(least, double{found.distance[i]});
       first = std::min(first, static_cast<double>(found.first_pose[i]));
     }
     if (sink) sink(tile, cloud, found);
   };
-  result.tiles = inquiry.visit(tilesAlong(site, model, poses, reach), ask);
+  result.tiles = inquiry.visit(tilesAlong(site, model, poses, reach, request.uncertainty), ask);
   result.colliding = sumOfAllRanks(result.colliding);
+  result.undecided = sumOfAllRanks(result.undecided);
   if (request.pose_summaries) result.poses = summedOverAllRanks(result.poses);
   least = leastOfAllRanks(least);
   first = leastOfAllRanks(first);
-  if (result.colliding > 0) {
+  if (measures && result.colliding + result.undecided > 0) {
     result.distance = static_cast<float>(least);
     result.first_pose = static_cast<std::int32_t>(first);
     if (request.swept) result.first_contact = earliestOfAllRanks(contact);
   }
+  if (sumOfAllRanks(certain.pose == no_contact.pose ? 0 : 1) > 0) result.certain_contact = earliestOfAllRanks(certain);
   return result;
 }
 

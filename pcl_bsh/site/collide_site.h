@@ -11,13 +11,16 @@
 // cloud, along its path if it moves.
 //
 // In an MPI job (mpirun -n 4 ...), all ranks call the same function with the same input: the tiles are dealt to them,
-// and each gets the whole answer. Sinks are called on the rank that has the tile. Points have no uncertainties here,
-// and answers are exact.
+// and each gets the whole answer. Sinks are called on the rank that has the tile. Where points have uncertainties,
+// verdicts are as those of the queries: b's are of its view, the site's are asked for. What an accuracy promises of one
+// cloud holds of the site; those that stop early do so in each tile.
 #pragma once
 
 #include <pcl_bsh/collision/collision_flags.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/site/site.h>
@@ -35,8 +38,10 @@ namespace pcl_bsh::sites {
 /// What is asked about a site, and with which means.
 struct SiteRequest {
   double clearance = 0.0;      ///< finite, >= 0; inclusive
+  Accuracy accuracy;           ///< a level, a number of pairs or a time is that of each tile
   std::optional<double> swept; ///< of collideAlong(): the motion between poses too, to this tolerance, as there
   Point3 pivot = {0, 0, 0};    ///< of that motion, as there
+  Uncertainty uncertainty;     ///< of the site's points: for verdicts, as in PointsView. A field is one of the site's
   bool pose_summaries = false; ///< of collideAlong(): what collides at each pose, as there
   unsigned threads = 1;        ///< of each process; 0: all of the machine's
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
@@ -73,21 +78,24 @@ struct SitePoint {
 
 /// Whether anything of a site collides.
 struct SiteAny {
-  Verdict verdict = Verdict::free; ///< free or colliding
+  Verdict verdict = Verdict::free; ///< undecided only where points are uncertain, or the accuracy stops early
   TilesRead tiles;
 };
 
 /// How much of a site collides.
 struct SiteFlags {
   std::uint64_t colliding = 0; ///< points of the site
-  std::vector<std::uint8_t> b; ///< one per record of b's view, where asked for: 1 = collides
+  std::uint64_t undecided = 0;
+  std::vector<std::uint8_t> b; ///< one per record of b's view, where asked for: as FlagsResult has them
   std::uint64_t colliding_b = 0;
+  std::uint64_t undecided_b = 0;
   TilesRead tiles;
 };
 
 /// The smallest distance of a site to another cloud.
 struct SiteClosest {
   double distance = std::numeric_limits<double>::infinity(); ///< as closestPair() has it
+  Interval interval; ///< holds the smallest distance for certain, where there is one and the accuracy is proven
   /// That realise it; of several the smallest (source, record), and for it the smallest record of b.
   std::optional<SitePoint> point;
   std::uint32_t b = 0;
@@ -96,7 +104,8 @@ struct SiteClosest {
 
 /// The distances of a site's points to another cloud.
 struct SiteDistances {
-  std::uint64_t measured = 0; ///< points that have a distance
+  std::uint64_t measured = 0;  ///< points that have a distance
+  std::uint64_t undecided = 0; ///< that may have one, where the accuracy stops early
   double greatest = std::numeric_limits<double>::quiet_NaN();
   TilesRead tiles;
 };
@@ -104,11 +113,14 @@ struct SiteDistances {
 /// What another cloud meets in a site along its path.
 struct SitePassage {
   std::uint64_t colliding = 0; ///< points of the site that collide at any pose
-  /// The smallest distance of colliding points and the first pose at which any collides; NaN and -1: none does.
+  std::uint64_t undecided = 0; ///< that may, where points are uncertain or the accuracy stops early
+  /// The smallest distance of points that collide or are undecided, and the first pose at which any may; NaN and -1:
+  /// none does.
   float distance = std::numeric_limits<float>::quiet_NaN();
   std::int32_t first_pose = -1;
-  std::optional<FirstContact> first_contact; ///< of swept motion, where anything collides
-  std::vector<PoseSummary> poses;            ///< one per pose, where asked for
+  std::optional<FirstContact> first_contact;   ///< of swept motion, where anything may collide
+  std::optional<FirstContact> certain_contact; ///< the same of what collides for certain, where points are uncertain
+  std::vector<PoseSummary> poses;              ///< one per pose, where asked for
   TilesRead tiles;
 };
 
@@ -135,7 +147,7 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
                          const FlagsSink& sink = nullptr);
 
 /// The smallest distance. Tiles come in the order of their lower bounds, and end where these exceed the smallest
-/// distance of any rank. The clearance is not used.
+/// distance of any rank. The clearance and uncertainties are not used.
 SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request);
 
 /// The distance of each point to b, up to max_distance; those of tiles that are not read are farther. The clearance is
@@ -143,7 +155,8 @@ SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& re
 SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& request,
                              const DistancesSink& sink = nullptr);
 
-/// The model along its poses, in the site's frame: flags, distances, first and closest poses of each point.
+/// The model along its poses, in the site's frame: flags, distances, first and closest poses of each point; flags alone
+/// where the accuracy stops early.
 /// @throws std::invalid_argument also for poses and a tolerance that no tile is asked about
 SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
                          const SiteRequest& request, const PassageSink& sink = nullptr);

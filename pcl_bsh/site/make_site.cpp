@@ -157,7 +157,7 @@ private:
   /// What the site is made of: a run that is continued must have the same.
   io::Json question() const
   {
-    io::Json question = {{"version", 1},
+    io::Json question = {{"version", 2},
                          {"tile_points", options_.tile_points},
                          {"overview_points", options_.overview_points},
                          {"clouds", io::Json::array()}};

@@ -40,7 +40,8 @@ std::string stateText(const MakeState& state, const Json& question)
                {"overview", state.overview},     {"files", state.files},
                {"open", Json::array()},          {"measured", Json::array()}};
   for (const auto& file : state.open) json["open"].push_back(file ? Json(*file) : Json(nullptr));
-  for (const Tile& tile : state.measured) json["measured"].push_back({stateOf(tile.bounds), tile.spacing, tile.crc32});
+  for (const Tile& tile : state.measured)
+    json["measured"].push_back({stateOf(tile.bounds), tile.spacing, tile.crc32, tile.greatest});
   return json.dump();
 }
 
@@ -70,6 +71,7 @@ MakeState readState(const fs::path& path, const Json& question)
       tile.bounds = boundsIn(entry.at(0));
       entry.at(1).get_to(tile.spacing);
       entry.at(2).get_to(tile.crc32);
+      entry.at(3).get_to(tile.greatest);
       state.measured.push_back(tile);
     }
   }

@@ -56,7 +56,10 @@ public:
     copy_(site.fields, layout_),
     record_(layout_.point_step)
   {
-    for (const ResultField& result : results) places_.push_back(placeOf(result));
+    for (const ResultField& result : results) {
+      places_.push_back(placeOf(result));
+      written_anew_.push_back(result.name);
+    }
     std::uint64_t points = 0;
     for (const Source& source : site.sources) {
       begins_.push_back(points);
@@ -108,6 +111,7 @@ public:
       const auto number = static_cast<std::size_t>(written[i]);
       out.tiles[number].file = tileFileName(number);
       out.tiles[number].crc32 = static_cast<std::uint32_t>(written[i + 1]);
+      for (const std::string& name : written_anew_) out.tiles[number].greatest.erase(name);
     }
     const std::string overview = gatheredFromAllRanks(overview_);
     keepFiles();
@@ -197,6 +201,7 @@ private:
   RecordCopy copy_;
   std::vector<std::uint8_t> record_;
   std::vector<Place> places_;
+  std::vector<std::string> written_anew_;              ///< fields whose greatest values are not known
   std::vector<std::uint64_t> begins_;                  ///< of each source, the number of its first point in the site
   std::uint64_t every_ = 1;                            ///< points of the site for one of the overview
   std::unique_ptr<UnfinishedSite> made_;               ///< on the first rank

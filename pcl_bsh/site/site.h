@@ -15,6 +15,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,7 +29,7 @@ inline constexpr const char* overview_file_name = "overview.pcd";
 inline constexpr const char* tiles_folder_name = "tiles";
 inline constexpr const char* source_field_name = "source";
 inline constexpr const char* record_field_name = "record";
-inline constexpr int site_version = 1; ///< of the folder's format
+inline constexpr int site_version = 2; ///< of the folder's format; version 1, which is read, too, knows no `greatest`
 
 /// Both corners inclusive, in the clouds' unit.
 struct Bounds {
@@ -65,6 +66,9 @@ struct Tile {
   std::optional<Bounds> bounds; ///< of its finite points
   double spacing = 0.0;         ///< median distance of a sample of its points to the nearest other
   std::uint32_t crc32 = 0;      ///< of its records
+  /// Of each field of one floating-point number but coordinates, the greatest value of finite points, where any has
+  /// one.
+  std::map<std::string, double> greatest;
 };
 
 /// What site.json says.

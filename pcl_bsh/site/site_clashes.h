@@ -22,6 +22,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::sites {
 
+/// What ClashFinder found.
 struct SiteClashes {
   /// As findClashes() has them. What they call records are numbers of the points below: of each clash at most
   /// ClashFinder::most_points and the one of the closest pair, the same for any tiles.
@@ -32,6 +33,7 @@ struct SiteClashes {
   std::vector<std::int32_t> closest_pose;
 };
 
+/// Gathers what collides along a path from the tiles of a site, and makes clashes of it.
 class ClashFinder {
 public:
   static constexpr std::size_t most_points = 500; ///< of a clash that are listed

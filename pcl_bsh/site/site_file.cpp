@@ -96,6 +96,8 @@ Tile readTileEntry(const fs::path& folder, const JsonReader& json)
   io::readCount(json, "points", tile.points);
   tile.bounds = readBounds(json);
   io::read(json, "spacing", tile.spacing);
+  if (json.has("greatest"))
+    for (const auto& [field, value] : json.at("greatest").json().items()) tile.greatest[field] = value.get<double>();
   io::readCount(json, "crc32", tile.crc32);
   std::error_code error;
   if (!fs::is_regular_file(folder / tile.file, error))
@@ -115,8 +117,9 @@ Source readSourceEntry(const JsonReader& json)
 void requireVersion(const JsonReader& json)
 {
   if (!json.json().is_object() || !json.has("version") || !json.json()["version"].is_number_integer()) return;
-  if (json.json()["version"] != site_version) {
-    json.at("version").fail("this program reads version " + std::to_string(site_version),
+  const auto version = json.json()["version"].get<std::int64_t>();
+  if (version < 1 || version > site_version) {
+    json.at("version").fail("this program reads versions 1 to " + std::to_string(site_version),
                             "make the site again, or take the program that made it");
   }
 }
@@ -186,6 +189,7 @@ std::string siteText(const Site& site)
   for (const Tile& tile : site.tiles) {
     Json entry = {{"file", tile.file}, {"points", tile.points}};
     if (tile.bounds) entry["bounds"] = toJson(*tile.bounds);
+    if (!tile.greatest.empty()) entry["greatest"] = tile.greatest;
     entry["spacing"] = tile.spacing;
     entry["crc32"] = tile.crc32;
     json["tiles"].push_back(std::move(entry));

@@ -10,7 +10,11 @@
 #include <pcl_bsh/site/tile_file.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <limits>
+#include <optional>
 
 namespace pcl_bsh::sites {
 
@@ -23,6 +27,22 @@ bool isSame(const Fields& a, const Fields& b)
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& f, const auto& g) {
     return f.name == g.name && f.datatype == g.datatype && f.count == g.count && f.offset == g.offset;
   });
+}
+
+/// Of finite points; none where no number is there. Infinite ones are the largest numbers.
+template <typename Real>
+std::optional<double> greatestOf(const pcl::PCLPointCloud2& cloud, const PointsView& view, std::size_t offset)
+{
+  constexpr double most = std::numeric_limits<double>::max();
+  std::optional<double> greatest;
+  for (std::uint32_t i = 0; i < view.count; ++i) {
+    Real real;
+    std::memcpy(&real, cloud.data.data() + std::size_t{i} * cloud.point_step + offset, sizeof real);
+    const auto value = static_cast<double>(real);
+    if (std::isnan(value) || (greatest && value <= *greatest) || !isFinite(view.point(i))) continue;
+    greatest = std::clamp(value, -most, most);
+  }
+  return greatest;
 }
 
 /// The header while the number of points is not known.
@@ -120,6 +140,14 @@ void measure(const pcl::PCLPointCloud2& cloud, Tile& tile)
   }
   tile.spacing = spacingOf(SphereHierarchy(view)).median;
   tile.crc32 = crcOf(cloud.data);
+  tile.greatest.clear();
+  for (const auto& field : cloud.fields) {
+    if (field.count != 1 || isAxis(field.name)) continue;
+    std::optional<double> greatest;
+    if (field.datatype == pcl::PCLPointField::FLOAT32) greatest = greatestOf<float>(cloud, view, field.offset);
+    if (field.datatype == pcl::PCLPointField::FLOAT64) greatest = greatestOf<double>(cloud, view, field.offset);
+    if (greatest) tile.greatest[field.name] = *greatest;
+  }
 }
 
 } // namespace pcl_bsh::sites

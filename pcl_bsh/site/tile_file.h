@@ -49,7 +49,7 @@ std::string tileFileName(std::size_t tile);
 /// The points of a file of a site. @throws files::FileError when it has other fields or another number of points
 pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points);
 
-/// Sets bounds, spacing and checksum of a tile from its points.
+/// Sets bounds, spacing, checksum and the greatest values of a tile from its points.
 void measure(const pcl::PCLPointCloud2& cloud, Tile& tile);
 
 } // namespace pcl_bsh::sites

@@ -30,6 +30,18 @@ public:
     return of_pairs_.holds(distance, pair);
   }
 
+  /// The same of a pair whose squared float distance in a frame is known. Where pairs have reaches of their own, it
+  /// decides most of them.
+  bool collide(const RelativeFrame& frame, float squared, PointPair pair, Work& work) const
+  {
+    if (!of_pairs_.isOne()) {
+      const auto [least, most] = of_pairs_.around(pair);
+      if (most < 0.0 || squared > frame.band(most).miss) return false;
+      if (least > 0.0 && squared <= frame.band(least).hit) return true;
+    }
+    return collide(pair, work);
+  }
+
   ExactDistance::Pair posed(PointPair pair) const
   {
     return {a_.point(pair.a), b_.point(pair.b), a_.radius(pair.a), b_.radius(pair.b)};
@@ -44,6 +56,8 @@ public:
   }
 
   bool haveRadii() const { return a_.radii || b_.radii; }
+
+  const PairReach& ofPairs() const { return of_pairs_; }
 
   const Reach reach;      ///< of all pairs
   const double clearance; ///< at least any pair's reach, and >= 0

@@ -2,13 +2,33 @@
 #include <pcl_bsh/vtk/surface_data.h>
 
 #include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
+#include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
 #include <stdexcept>
-#include <string>
 
 namespace pcl_bsh::vtk {
+namespace {
+
+template <class Array, class T>
+void addToCells(vtkPolyData& surface, const std::string& name, const std::vector<T>& values)
+{
+  if (values.size() != static_cast<std::size_t>(surface.GetNumberOfCells()))
+    throw std::invalid_argument("array " + name + ": " + std::to_string(values.size()) + " values for " +
+                                std::to_string(surface.GetNumberOfCells()) + " triangles: give one per triangle");
+  vtkNew<Array> array;
+  array->SetName(name.c_str());
+  array->SetNumberOfTuples(surface.GetNumberOfCells());
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  surface.GetCellData()->AddArray(array);
+}
+
+} // namespace
 
 vtkSmartPointer<vtkPolyData> surfaceData(const PointsView& vertices, const std::vector<Triangle>& triangles)
 {
@@ -31,6 +51,19 @@ vtkSmartPointer<vtkPolyData> surfaceData(const PointsView& vertices, const std::
   data->SetPoints(points);
   data->SetPolys(cells);
   return data;
+}
+
+void addTriangleArray(vtkPolyData& surface, const std::string& name, const std::vector<std::uint8_t>& values)
+{
+  addToCells<vtkUnsignedCharArray>(surface, name, values);
+}
+void addTriangleArray(vtkPolyData& surface, const std::string& name, const std::vector<std::int32_t>& values)
+{
+  addToCells<vtkIntArray>(surface, name, values);
+}
+void addTriangleArray(vtkPolyData& surface, const std::string& name, const std::vector<float>& values)
+{
+  addToCells<vtkFloatArray>(surface, name, values);
 }
 
 } // namespace pcl_bsh::vtk

@@ -116,6 +116,35 @@ TEST(MeshFile, CutsPolygonsIntoTheirArea)
   EXPECT_GE(areaOf(readMesh(folder.write("x.obj", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\nf 1 2\n"))), 0.5);
 }
 
+TEST(MeshFile, ReadsNumbersOfPlyFaces)
+{
+  const TemporaryFolder folder;
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                           "property float z\n";
+  const std::string rows = "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  // A square is two triangles, and what has two corners none.
+  const Mesh mesh = readMesh(
+      folder.write("a.ply", head +
+                                "element face 3\nproperty uchar collision\nproperty list uchar float texture\n"
+                                "property list uchar int vertex_indices\nproperty float distance\nelement edge 1\n"
+                                "property int vertex1\n" +
+                                rows + "1 2 7 8 4 0 1 2 3 0.25\n2 0 2 0 1 0.75\n0 1 9 3 0 1 2 nan\n5\n"));
+  ASSERT_EQ(mesh.triangles.size(), 3u);
+  ASSERT_EQ(mesh.face_values.size(), 2u);
+  EXPECT_EQ(mesh.face_values[0].name, "collision");
+  EXPECT_THAT(mesh.face_values[0].values, ElementsAre(1, 1, 0));
+  EXPECT_EQ(mesh.face_values[1].name, "distance");
+  EXPECT_THAT(mesh.face_values[1].values, ElementsAre(0.25, 0.25, testing::IsNan()));
+  // A second element of faces has none, and its numbers are not mistaken for those of the first.
+  const Mesh two = readMesh(folder.write(
+      "b.ply", head +
+                   "element face 1\nproperty list uchar int vertex_indices\nproperty int a\nelement face 1\n"
+                   "property int a\nproperty list uchar int vertex_indices\n" +
+                   rows + "3 0 1 2 5\n6 3 1 2 3\n"));
+  ASSERT_EQ(two.face_values.size(), 1u);
+  EXPECT_THAT(two.face_values[0].values, ElementsAre(5, testing::IsNan()));
+}
+
 TEST(MeshFile, ReadsPolygonsOfManyCorners)
 {
   const TemporaryFolder folder;

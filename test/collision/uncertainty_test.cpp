@@ -234,7 +234,47 @@ TEST(Uncertainty, CostsAtMostTwoQueries)
   };
   b.buildAll();
   cloud_a.setUncertainties(0.002, {});
-  EXPECT_LE(tests(SphereHierarchy(cloud_a.view())), 2.2 * static_cast<double>(tests(plain)));
+  EXPECT_LE(tests(SphereHierarchy(cloud_a.view())), 1.4 * static_cast<double>(tests(plain)));
+  std::vector<float> own(20000);
+  for (float& length : own) length = static_cast<float>(random.uniform(0, 0.002));
+  cloud_a.setUncertainties(0.0, own);
+  cloud_b.setUncertainties(0.0, own);
+  const SphereHierarchy a(cloud_a.view()), uncertain_b(cloud_b.view());
+  uncertain_b.buildAll();
+  a.buildAll();
+  const FlagsResult found = collisionFlags({a}, {uncertain_b}, within(clearance, Side::a));
+  EXPECT_GT(found.undecided_a, 100u);
+  EXPECT_LE(found.work.node_pairs, 1.5 * static_cast<double>(tests(plain)));
+  EXPECT_LT(found.work.exact_decisions, 20u); // floats decide the rest
+}
+
+TEST(Uncertainty, OfManyLeavesAtOnce)
+{
+  // A heap in the middle of a shell is near all of its leaves, and each length may be the one that decides.
+  Random random(8);
+  const Cloud heap(test::makePoints(test::Shape::uniform, 60, 0.02, random));
+  Cloud cloud_a = heap, cloud_b(test::makePoints(test::Shape::sphere, 3000, 1.0, random));
+  const auto lengths = [&random](std::size_t count) {
+    std::vector<float> own(count);
+    for (float& length : own) length = static_cast<float>(random.uniform(0, 0.05));
+    return own;
+  };
+  cloud_a.setUncertainties(0.001, lengths(60));
+  cloud_b.setUncertainties(0.002, lengths(3000));
+  std::size_t flags[3] = {};
+  for (const bool listed : {true, false}) {
+    const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+    if (!listed) a.buildAll();
+    for (const double clearance : {0.88, 0.9, 0.92, 0.94, 1.0, 1.02, 1.04, 1.06}) {
+      const FlagsResult found = collisionFlags({a}, {b}, within(clearance, Side::both));
+      const FlagsResult expected = brute_force::collisionFlags({a}, {b}, within(clearance, Side::both));
+      ASSERT_EQ(found.a, expected.a) << clearance;
+      ASSERT_EQ(found.b, expected.b) << clearance;
+      ASSERT_EQ(found.undecided_a, expected.undecided_a) << clearance;
+      for (const std::uint8_t flag : found.a) ++flags[flag];
+    }
+  }
+  for (const std::size_t count : flags) EXPECT_GT(count, 100u);
 }
 
 TEST(Uncertainty, FollowsARefitAndAnUpdate)

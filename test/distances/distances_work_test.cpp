@@ -45,6 +45,11 @@ Points strayed(Points points)
   return points;
 }
 
+std::uint64_t stepsOf(const Work& work)
+{
+  return work.node_pairs + 16 * work.leaf_pairs + work.exact_decisions;
+}
+
 std::uint64_t workOf(const Points& one, const Points& other)
 {
   const Cloud cloud_a(one), cloud_b(other);
@@ -52,41 +57,101 @@ std::uint64_t workOf(const Points& one, const Points& other)
   const SymmetricDistances found = symmetricDistances(a, b);
   EXPECT_EQ(found.a.measured, a.size());
   EXPECT_EQ(found.b.measured, b.size());
-  Work work = found.a.work;
-  work += found.b.work;
-  return work.node_pairs + 16 * work.leaf_pairs + work.exact_decisions;
+  return stepsOf(found.a.work) + stepsOf(found.b.work);
 }
 
-/// Where nearly all pairs are at nearly the same distance work is quadratic, as that of exact comparisons would be: a
-/// ball in a shell, a circle and its axis. Octaves and strays are between. None may become worse.
+std::uint64_t hausdorffWorkOf(const Points& one, const Points& other)
+{
+  const Cloud cloud_a(one), cloud_b(other);
+  const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+  return stepsOf(hausdorffDistance(a, b).work);
+}
+
+std::function<Points(std::size_t)> shellOf(double radius, std::size_t count = 1)
+{
+  return [=](std::size_t n) {
+    Points points = shells(n, count, 0.1);
+    for (Point3& p : points) p = scaled(p, radius);
+    return points;
+  };
+}
+
+/// What is linear but for the depth of trees: at most 25 times the steps for 16 times the points. Both directions, and
+/// the Hausdorff distance alone.
+TEST(PointDistances, TakeWorkThatGrowsAsTheClouds)
+{
+  const Corner corners[] = {
+      {"center and shell",
+       [](std::size_t) {
+         return Points{{0, 0, 0}};
+       },
+       shellOf(1), 25},
+      {"beside the center",
+       [](std::size_t) {
+         return Points{{1e-3, 2e-3, -1e-3}};
+       },
+       shellOf(1), 25},
+      {"one place",
+       [](std::size_t n) {
+         return Points(n, {1, 2, 3});
+       },
+       shellOf(1), 25},
+      {"shifted sheets", [](std::size_t n) { return sheet(n, 0, 0); },
+       [](std::size_t n) { return sheet(n, 0.25, 0.5); }, 25},
+      {"sheets ten spacings apart", [](std::size_t n) { return sheet(n, 0, 0); },
+       [](std::size_t n) { return sheet(n, 0.5, 10); }, 25},
+      {"double helix", [](std::size_t n) { return helix(n, 30, 0.05); },
+       [](std::size_t n) { return helix(n, 30, 0.05, 0.5); }, 25},
+  };
+  for (const Corner& corner : corners)
+    for (const auto& work : {workOf, hausdorffWorkOf}) {
+      const std::uint64_t few = work(corner.a(1'000), corner.b(1'000)), many = work(corner.a(16'000), corner.b(16'000));
+      EXPECT_LE(static_cast<double>(many), corner.growth * static_cast<double>(few) + 1000.0) << corner.name;
+    }
+}
+
+/// The spheres of a shell's leaves are far larger than the nodes of a ball within: the leaves' points bound what these
+/// do not. Took 46 million steps.
+TEST(PointDistances, AskThePointsOfLeavesThatAreLargeBesideANode)
+{
+  const Cloud cloud_a(shellOf(1e-3)(16'000)), cloud_b(shellOf(1)(16'000));
+  const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+  EXPECT_LT(stepsOf(pointDistances(a, b).work), 5e6);
+}
+
+/// Where nearly all pairs are at nearly the same distance work is quadratic: a shell and a ball in it, whose spheres
+/// are too small beside the shell's; an axis and its circle, which are ties of all pairs but for rounding, and take
+/// exact comparisons. Shells, combs, octaves and strays are between: a stray makes the others one crowded cell. None
+/// may become worse.
 TEST(PointDistances, TakeNoMoreWorkOfGrowingCornersThanKnown)
 {
   const Points center = {{0, 0, 0}};
-  const auto shell = [](double radius) {
-    return [radius](std::size_t n) {
-      Points points = shells(n, 1, 0);
-      for (Point3& p : points) p = scaled(p, radius);
-      return points;
-    };
-  };
   const auto at_height = [](double z) { return [z](std::size_t n) { return sheet(n, 0.25, z); }; };
   const auto at_scale = [](std::uint64_t seed, double count) {
     return [=](std::size_t n) { return octaves(n, count, seed); };
   };
   const Corner corners[] = {
-      {"center and shell", [&](std::size_t) { return center; }, shell(1), 5.0},
-      {"concentric shells", shell(1), shell(1.5), 7.0},
-      {"ball in a shell", shell(1e-3), shell(1), 22.0},
+      {"center and shell", [&](std::size_t) { return center; }, shellOf(1), 5.0},
+      {"concentric shells", shellOf(1), shellOf(1.5), 7.0},
+      {"five shells in five", shellOf(1, 5), shellOf(1.05, 5), 7.0},
+      {"ball in a shell", shellOf(1e-3), shellOf(1), 16.0},
       {"circle and axis", circle, [](std::size_t n) { return axis(n, 1); }, 16.5},
       {"sheets half a spacing apart", at_height(0), at_height(0.5), 6.0},
       {"sheets ten spacings apart", at_height(0), at_height(10), 7.0},
+      {"sheets a hundred spacings apart", at_height(0), at_height(100), 16.0},
+      {"combs", [](std::size_t n) { return comb(n, 0); }, [](std::size_t n) { return comb(n, 0.5); }, 7.0},
       {"octaves", at_scale(1, 40), at_scale(2, 40), 13.0},
       {"one place",
        [](std::size_t n) {
          return Points(n, {1, 2, 3});
        },
-       shell(1), 4.5},
+       shellOf(1), 4.5},
       {"one stray", [](std::size_t n) { return strayed(cube(n, 1)); }, [](std::size_t n) { return cube(n, 2); }, 7.5},
+      {"one stray at 1e20",
+       [](std::size_t n) {
+         return with(cube(n, 1), {{1e20, 0, 0}});
+       },
+       [](std::size_t n) { return cube(n, 2); }, 7.5},
       {"two strays", [](std::size_t n) { return strayed(cube(n, 1)); },
        [](std::size_t n) { return strayed(cube(n, 2)); }, 11.0},
   };

@@ -2,6 +2,7 @@
 #include "program_run.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <map>
@@ -82,6 +83,18 @@ TEST_F(AccuracyProgram, MeasuresEveryKnobAndIsNeverWrongWhereCertified)
       EXPECT_EQ(row.at("wrong"), "0") << row.at("query") << ' ' << row.at("setting");
     ++certified_of[row.at("query")];
   }
+  const auto report = nlohmann::json::parse(io::contentOf(folder / "study" / "accuracy.json"));
+  ASSERT_EQ(report["measurements"].size(), rows().size());
+  for (std::size_t i = 0; i < rows().size(); ++i) {
+    const Row row = rows()[i];
+    const auto& told = report["measurements"][i];
+    for (const char* name : {"query", "knob", "setting"}) EXPECT_EQ(told[name], row.at(name));
+    EXPECT_NEAR(told["seconds"]["median"].get<double>(), std::stod(row.at("time_median_s")), 1e-9);
+    EXPECT_EQ(told["work"]["node_pairs"], std::stoull(row.at("node_pairs")));
+    EXPECT_EQ(told["wrong"], std::stoull(row.at("wrong")));
+  }
+  EXPECT_EQ(report["fits"].size(), 3U);
+  EXPECT_EQ(report["poses"], 2);
   for (const char* query : {"distance", "flags", "any"}) EXPECT_GE(certified_of[query], 5) << query;
   for (const char* knob : {"exact", "float only", "tolerance", "level of detail", "budget of tests", "k-d tree",
                            "approximate k-d tree", "octree", "VoxelGrid + k-d tree"})

@@ -16,7 +16,7 @@ for page in "$@"; do
   expect() { grep -qE -- "$1" <<<"$text" || fail "$page: no line matches $1"; }
   expect "^$(basename "$program") - [A-Z]"
   expect '^\.SH EXIT STATUS$'
-  expect '^0 .*; 1 .*; 2 '
+  expect '^0 .*; 1 .*; 2 .*; 130 stopped by Ctrl.*C\.$'
   expect '^\.SH EXAMPLES$'
   subcommands="$("$program" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p')"
   for command in "" $subcommands; do

@@ -164,7 +164,7 @@ TEST_F(SiteResults, RefuseWhatTheyMustNotWriteOver)
   EXPECT_THAT(err, HasSubstr("is not empty"));
   EXPECT_EQ(files::contentOf(folder / "mine/letter.txt"), "dear");
   EXPECT_EQ(collide("--clearance 0.3"), 2);
-  EXPECT_THAT(err, HasSubstr("--report, --out: none is given"));
+  EXPECT_THAT(err, HasSubstr("--report, --out, --obstacle-out, --clashes: none is given"));
   EXPECT_EQ(collide("--closest --out " + in("none")), 2);
   EXPECT_EQ(collide("--clearance 0.3 --out " + in("none") + " --plan 2"), 2);
   EXPECT_THAT(err, HasSubstr("--plan: is told in the report"));

@@ -317,7 +317,7 @@ TEST_F(SiteClashList, OfThePrograms_AreRefused)
     EXPECT_NE(outcome.exit_code, 0) << arguments;
     return outcome.err;
   };
-  EXPECT_THAT(refusal("--clashes list.txt"), HasSubstr("--clashes: "));
+  EXPECT_THAT(refusal("--clashes list.txt"), HasSubstr("unknown extension '.txt'"));
   EXPECT_THAT(refusal("--clashes list.json --any"), HasSubstr("--clashes: are of flags or a path"));
   EXPECT_THAT(refusal("--report a.pcd"), HasSubstr("is the file of OBSTACLE"));
   EXPECT_THAT(refusal("--clashes list.json --previous none.json"), HasSubstr("none.json"));

@@ -5,6 +5,8 @@
 
 #include <pcl_bsh/files/replace_file.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,6 +39,39 @@ void writeCsv(std::ostream& out, const Study& study)
         << m.work.updates() << ',' << m.work.leaf_pairs << ',' << m.work.exact_decisions << ',' << (m.certified ? 1 : 0)
         << ',' << format("%.9g,%.9g", m.certified_error, m.actual_error) << ',' << m.wrong << '\n';
   }
+}
+
+/// All that the other two have.
+void writeJson(std::ostream& out, const std::string& heading, const Subject& subject, const Study& study)
+{
+  using Json = nlohmann::ordered_json;
+  const auto spread = [](const Spread& s) -> Json { return {{"low", s.low}, {"median", s.median}, {"high", s.high}}; };
+  Json report = {{"compared", heading},          {"clearance", subject.clearance}, {"poses", subject.poses.size()},
+                 {"diameter", subject.diameter}, {"unit", subject.unit},           {"measurements", Json::array()},
+                 {"fits", Json::array()}};
+  for (const Measurement& m : study.measurements)
+    report["measurements"].push_back({{"query", m.query},
+                                      {"knob", m.knob},
+                                      {"setting", m.setting},
+                                      {"peer", m.peer},
+                                      {"seconds", spread(m.seconds)},
+                                      {"work",
+                                       {{"node_pairs", m.work.node_pairs},
+                                        {"updates", m.work.updates()},
+                                        {"leaf_pairs", m.work.leaf_pairs},
+                                        {"exact_decisions", m.work.exact_decisions}}},
+                                      {"certified", m.certified},
+                                      {"certified_error", m.certified_error},
+                                      {"actual_error", m.actual_error},
+                                      {"wrong", m.wrong}});
+  for (const FitMeasurement& m : study.fits)
+    report["fits"].push_back({{"fit", m.fit},
+                              {"build", spread(m.build)},
+                              {"mean_leaf_radius", m.mean_leaf_radius},
+                              {"flags", spread(m.flags)},
+                              {"distance", spread(m.distance)}});
+  // A file name need not be UTF-8, JSON must.
+  out << report.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
 void writeTable(std::ostream& out, const Study& study, const std::string& query)
@@ -171,6 +206,7 @@ void writeReports(const std::filesystem::path& folder, const std::string& headin
                   const Study& study)
 {
   files::replaceFile(folder / "accuracy.csv", [&](std::ostream& out) { writeCsv(out, study); });
+  files::replaceFile(folder / "accuracy.json", [&](std::ostream& out) { writeJson(out, heading, subject, study); });
   files::replaceFile(folder / "accuracy.md", [&](std::ostream& out) { writeMarkdown(out, heading, subject, study); });
   vtk::writeChartsPng(chartsOf(subject, study), 1600, 800, folder / "accuracy.png");
 }

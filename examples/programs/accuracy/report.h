@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A study for programs (CSV), as text (Markdown) and as a picture (PNG).
+// A study for programs (CSV, JSON), as text (Markdown) and as a picture (PNG).
 #pragma once
 
 #include "study.h"
@@ -8,7 +8,7 @@
 
 namespace pcl_bsh::accuracy {
 
-/// Writes accuracy.csv, accuracy.md and accuracy.png into a folder that exists.
+/// Writes accuracy.csv, accuracy.json, accuracy.md and accuracy.png into a folder that exists.
 /// @param heading what was compared, one line
 /// @throws std::exception naming the file that cannot be written
 void writeReports(const std::filesystem::path& folder, const std::string& heading, const Subject& subject,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
 
+#include "cli/accuracy.h"
 #include "cli/command_line.h"
 #include "cli/path.h"
 #include "cli/pose.h"
-
-#include <pcl_bsh/filters/text_files/parse_number.h>
-#include <pcl_bsh/geometry/invalid_input.h>
+#include "cli/surface_options.h"
+#include "cli/uncertainty.h"
 
 #include <cmath>
 
@@ -34,16 +34,6 @@ Example: how far has each point of a scan moved away from an earlier scan?
   pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html
 Example: which points of a hall are within 5 cm of a machine's surface, to a millimetre?
   pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05 --surface-tolerance 0.001)";
-
-Accuracy parseAccuracy(const std::string& text)
-{
-  try {
-    return Accuracy::parse(text);
-  }
-  catch (const InvalidInput& error) {
-    throw UsageError("--accuracy: " + error.advice());
-  }
-}
 
 /// As the options about distances are written.
 struct DistanceTexts {
@@ -81,51 +71,11 @@ struct DistanceTexts {
     if (options.moves())
       refuse("--distances",
              "are of one pose; along a path the output has the smallest within the clearance: leave it out");
-    if (options.accuracy.stopsEarly())
-      refuse("--accuracy",
-             (options.accuracy.text() + ": leaves points without a distance: give exact, float or tolerance=LENGTH")
-                 .c_str());
+    requireAnswers(options.accuracy, {false, false, true});
     options.distances.emplace();
     options.distances->most = most.value_or(options.distances->most);
     options.distances->page = page;
     options.distances->unit = unit.value_or("");
-  }
-};
-
-/// As the options of uncertainties are written.
-struct UncertaintyTexts {
-  std::string input = "0", obstacle = "0";
-  std::optional<double> sigmas;
-
-  void addTo(CLI::App& app)
-  {
-    app.add_option("--uncertainty", input,
-                   "how far INPUT's points may truly be from where they were measured: a\n"
-                   "length, or the field that holds each point's sigma. What collides only\n"
-                   "perhaps gets 2 in the field 'collision'; distances are those of the\n"
-                   "measured places (default: 0)")
-        ->type_name("U");
-    app.add_option("--obstacle-uncertainty", obstacle, "the same for OBSTACLE's points (default: 0)")->type_name("U");
-    app.add_option("--sigmas", sigmas, "by how many sigmas a point may be off, where U is a field (default: 1)")
-        ->type_name("K")
-        ->transform(number<double>("give a number >= 0", [](double k) { return k >= 0 && std::isfinite(k); }));
-  }
-
-  Uncertainty uncertainty(const char* option, const std::string& text) const
-  {
-    if (!io::isNumber(text) && !io::looksLikeNumber(text)) return {text, sigmas.value_or(1.0)};
-    const double length = io::isNumber(text) ? io::parseNumber<double>(text) : -1.0;
-    if (!(length >= 0.0 && std::isfinite(length)))
-      throw UsageError(std::string(option) + ": '" + text + "': give a finite length >= 0, or the name of a field");
-    return length;
-  }
-
-  void read(CollideOptions& options) const
-  {
-    options.input_uncertainty = uncertainty("--uncertainty", input);
-    options.obstacle_uncertainty = uncertainty("--obstacle-uncertainty", obstacle);
-    if (sigmas && options.input_uncertainty.field.empty() && options.obstacle_uncertainty.field.empty())
-      throw UsageError("--sigmas: no uncertainty is a field: give the length itself");
   }
 };
 
@@ -142,20 +92,6 @@ void addDensityOptions(CLI::App& app, CollideOptions& options)
       ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
 }
 
-void addSurfaceOptions(CLI::App& app, io::SurfaceSettings& surface)
-{
-  CLI::Option* const tolerance =
-      app.add_option("--surface-tolerance", surface.tolerance,
-                     "where OBSTACLE has faces, it is a surface: free is farther than D from\n"
-                     "it, for certain, and colliding is within D + T; less takes more time\n"
-                     "and memory (default: a tenth of D; of 0, the size / 10,000)")
-          ->type_name("T")
-          ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-  app.add_flag("--vertices-only", surface.vertices_only,
-               "INPUT and OBSTACLE are their vertices alone, even where they have faces")
-      ->excludes(tolerance);
-}
-
 /// Checks that involve several options.
 void requireConsistent(const CollideOptions& options)
 {
@@ -165,12 +101,7 @@ void requireConsistent(const CollideOptions& options)
   if (options.density && (options.moves() || !options.clashes.empty()))
     throw UsageError("--density: is for flags at one pose: leave out the path and --clashes");
   if (options.widest_gap > 0 && !options.density) throw UsageError("--widest-gap: give --density, too");
-  const Accuracy& accuracy = options.accuracy;
-  if (accuracy.stopsEarly() && !options.clashes.empty())
-    throw UsageError("--accuracy: " + accuracy.text() +
-                     ": clashes need distances: give exact, float or tolerance=LENGTH");
-  if (!accuracy.isExact() && options.swept)
-    throw UsageError("--accuracy: " + accuracy.text() + ": swept motion has a tolerance of its own: give exact");
+  requireAnswers(options.accuracy, {!options.clashes.empty(), options.swept.has_value(), false});
 }
 
 } // namespace
@@ -214,9 +145,9 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("HOW");
   DistanceTexts distances;
   distances.addTo(app);
-  UncertaintyTexts uncertainties;
-  uncertainties.addTo(app);
-  addSurfaceOptions(app, options.surface);
+  UncertaintyOptions uncertainties;
+  uncertainties.addTo(app, "INPUT");
+  addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
   addDensityOptions(app, options);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--threads", options.threads, "0: all of the machine's (default); any number gives the same result")
@@ -238,7 +169,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   if (!understood(app, collide_program, argc, argv)) return std::nullopt;
 
   options.accuracy = parseAccuracy(accuracy);
-  uncertainties.read(options);
+  uncertainties.read(options.input_uncertainty, options.obstacle_uncertainty);
   path.requireConsistent(!pose.empty());
   if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
   options.trajectory = path.file;

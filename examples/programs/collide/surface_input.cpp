@@ -17,8 +17,10 @@ SurfaceCover coverInput(const std::filesystem::path& file, const PointsView& ver
                         const std::function<bool(double)>& progress, std::vector<std::string>& warnings)
 {
   std::vector<std::string> remarks;
+  io::SurfaceSettings asked_about = settings;
+  asked_about.triangles_apart = true;
   try {
-    SurfaceCover cover = io::coverMesh(vertices, triangles, settings, clearance, true, progress, remarks);
+    SurfaceCover cover = io::coverMesh(vertices, triangles, asked_about, clearance, progress, remarks);
     for (const std::string& remark : remarks) warnings.push_back(file.string() + ": " + remark);
     return cover;
   }

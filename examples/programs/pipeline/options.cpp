@@ -9,7 +9,7 @@ namespace {
 constexpr auto pipeline_footer =
     R"(PIPELINE.json is written in PDAL's grammar: {"pipeline": ["in.pcd", {"type": ...}, "out.pcd"]}.
 --print-stages lists the stages and their options; --print-schema lets editors complete and check them.
-Exit code: 0 done; 1 failed; 2 command line not understood.
+Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example: thin a scan, flag what is within 5 cm of a robot; then the same with other cubes.
   pcl_bsh_pipeline flag.json

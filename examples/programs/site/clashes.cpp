@@ -2,34 +2,19 @@
 #ifdef PCL_BSH_SITE_QUERIES
 #include "clashes.h"
 
-#include "cli/program.h"
-
-#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/replace_file.h>
 
 #include <utility>
 
 namespace pcl_bsh::cli {
 
-namespace {
-
-void requireClashFile(const std::filesystem::path& list)
-{
-  try {
-    io::requireClashFormat(list);
-  }
-  catch (const files::FileError& error) {
-    throw UsageError(std::string("--clashes: ") + error.what());
-  }
-  files::requireWritable(list);
-}
-
-} // namespace
-
 SiteClashList::SiteClashList(const sites::Site& site, const SiteOptions& options) : site_(site), options_(options)
 {
   if (options.clashes.empty()) return;
-  for (const std::filesystem::path& list : options.clashes) requireClashFile(list);
+  for (const std::filesystem::path& list : options.clashes) {
+    io::requireClashFormat(list);
+    files::requireWritable(list);
+  }
   Spacing spacing;
   spacing.median = sites::spacingOf(site);
   distance_ =

@@ -17,7 +17,7 @@ namespace pcl_bsh::cli {
 class SiteClashList {
 public:
   /// Reads the earlier list. To be called by all ranks.
-  /// @throws files::FileError for a list that cannot be written or compared with. @throws UsageError for its format
+  /// @throws files::FileError for a list that cannot be written or compared with
   SiteClashList(const sites::Site& site, const SiteOptions& options);
 
   bool isWanted() const noexcept { return finder_.has_value(); }

@@ -8,7 +8,6 @@
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/files/file_identity.h>
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
@@ -71,26 +70,34 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
   request.clearance = options.clearance;
   request.threads = options.threads;
   request.memory = options.memory;
+  request.accuracy = options.accuracy;
+  request.uncertainty = options.uncertainty;
   Json report = {{"site", options.site.string()}, {"obstacle", options.obstacle.string()}, {"points", site.points}};
   const bool has_clearance = options.question != SiteQuestion::closest && options.question != SiteQuestion::distances;
   if (has_clearance) report["clearance"] = options.clearance;
+  report["accuracy"] = options.accuracy.text();
   switch (options.question) {
   case SiteQuestion::any: {
     const sites::SiteAny found = sites::anyCollision(site, obstacle, request);
     report["collides"] = found.verdict == Verdict::colliding;
+    report["undecided"] = found.verdict == Verdict::undecided;
     put(report, found.tiles, run);
     break;
   }
   case SiteQuestion::flags: {
     const sites::SiteFlags found = sites::collisionFlags(site, obstacle, Side::both, request, out.flags());
+    out.writeObstacle(found.b);
     report["colliding"] = found.colliding;
+    report["undecided"] = found.undecided;
     report["colliding_of_obstacle"] = found.colliding_b;
+    report["undecided_of_obstacle"] = found.undecided_b;
     put(report, found.tiles, run);
     break;
   }
   case SiteQuestion::closest: {
     const sites::SiteClosest found = sites::closestPair(site, obstacle, request);
     report["distance"] = orNull(found.distance);
+    report["distance_interval"] = {orNull(found.interval.lower), orNull(found.interval.upper)};
     if (found.point) {
       report["point"] = {{"source", site.sources.at(found.point->source).file}, {"record", found.point->record}};
       report["point_of_obstacle"] = found.b;
@@ -115,11 +122,15 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
         sites::collideAlong(site, obstacle.hierarchy(), poses, request, clashes.after(out.passage()));
     report["poses"] = poses.size();
     report["colliding"] = found.colliding;
+    report["undecided"] = found.undecided;
     report["distance"] = orNull(double{found.distance});
     report["first_pose"] = found.first_pose < 0 ? Json(nullptr) : Json(found.first_pose);
     if (options.swept) report["swept"] = *options.swept;
     if (found.first_contact)
       report["first_contact"] = {{"pose", found.first_contact->pose}, {"fraction", found.first_contact->fraction}};
+    if (found.certain_contact)
+      report["certain_contact"] = {{"pose", found.certain_contact->pose},
+                                   {"fraction", found.certain_contact->fraction}};
     if (clashes.isWanted()) report["clashes"] = clashes.finish(obstacle.hierarchy(), poses, found);
     put(report, found.tiles, run);
     break;
@@ -140,11 +151,13 @@ int answer(const SiteOptions& options)
   const sites::Site site = sites::readSite(options.site);
   SiteClashList clashes(site, options);
   if (tells) warn(site_program, clashes.warnings());
-  const pcl::PCLPointCloud2 cloud = io::readCloud(options.obstacle);
+  const ObstacleCloud read(options);
+  const pcl::PCLPointCloud2& cloud = read.cloud;
   HierarchyOptions building;
   building.threads = options.threads;
-  const SphereHierarchy hierarchy(viewOf(cloud), building);
-  SiteOutput output(site, options);
+  const SphereHierarchy hierarchy(
+      withUncertainty(viewOf(cloud), cloud.fields, options.obstacle.string(), options.obstacle_uncertainty), building);
+  SiteOutput output(site, read, options);
   MeasuredRun run;
   Json report = ask(site, {hierarchy, options.pose}, options, output, clashes, run);
   run.seconds = seconds();
@@ -154,6 +167,8 @@ int answer(const SiteOptions& options)
   if (!tells) return 0;
   std::ostream& summary = options.files.summary();
   if (clashes.isWanted()) summary << report["clashes"] << " clashes\n";
+  if (!options.obstacle_out.empty())
+    summary << "wrote which points of the obstacle collide to " << options.obstacle_out.string() << '\n';
   if (!options.out.empty()) summary << "wrote what was found of each point to " << options.out.string() << '\n';
   if (!reports) return 0;
   run.ranks = sites::ranks();

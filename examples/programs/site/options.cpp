@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
 
+#include "cli/accuracy.h"
 #include "cli/command_line.h"
 #include "cli/pose.h"
+#include "cli/uncertainty.h"
 
 #include <pcl_bsh/site/site.h>
 
@@ -65,7 +67,8 @@ void addMemory(CLI::App& app, SiteOptions& options)
 /// The options of `collide` as they are written.
 struct CollideTexts {
   bool any = false, closest = false, distances = false;
-  std::string pose;
+  std::string pose, accuracy = "exact";
+  UncertaintyOptions uncertainties;
   CLI::Option *clearance = nullptr, *max_distance = nullptr;
 
   void addTo(CLI::App& app, SiteOptions& options)
@@ -103,6 +106,19 @@ struct CollideTexts {
     max_distance = app.add_option("--max-distance", options.max_distance, "of --distances: greater ones do not count")
                        ->type_name("M")
                        ->transform(number<double>("give a length >= 0", [](double d) { return d >= 0; }));
+    app.add_option(
+           "--obstacle-out", options.obstacle_out,
+           "OBSTACLE's points with all their fields, and which of them collide with SITE in a field 'collision'; "
+           "not with --trajectory or --clashes")
+        ->type_name("FILE");
+    app.add_option(
+           "--accuracy", accuracy,
+           "what may be given up for time: exact (default); float: without proof; tolerance=LENGTH: pairs up to "
+           "that much beyond D may count; level=N: spheres are opened down to this level; pairs=N or "
+           "time=SECONDS: the query of each tile stops there. Points that are undecided then get 2 in the field "
+           "'collision'")
+        ->type_name("HOW");
+    uncertainties.addTo(app, "SITE");
     app.add_option("--plan", options.plan,
                    "numbers of ranks, as 64,1024: by what the tiles have cost, the report says how long the same "
                    "question takes on so many, and what limits it")
@@ -127,9 +143,16 @@ struct CollideTexts {
                        : moves || lists ? SiteQuestion::path
                                         : SiteQuestion::flags;
     const bool needs_clearance = !closest && !distances;
+    options.accuracy = parseAccuracy(accuracy);
+    requireAnswers(options.accuracy, {lists, options.swept.has_value(), distances});
+    if (!options.obstacle_out.empty() && (moves || lists || any || closest || distances))
+      throw UsageError("--obstacle-out: are flags at one pose: leave out what else is asked");
+    uncertainties.read(options.uncertainty, options.obstacle_uncertainty);
+    if (uncertainties.isGiven() && !needs_clearance)
+      throw UsageError("--uncertainty: distances are those of the measured places: leave it out");
     if (needs_clearance && clearance->count() == 0) throw UsageError("--clearance: is missing: give a length");
-    if (options.report.empty() && options.out.empty() && !lists)
-      throw UsageError("--report, --out, --clashes: none is given: give one or more of them");
+    if (options.report.empty() && options.out.empty() && options.obstacle_out.empty() && !lists)
+      throw UsageError("--report, --out, --obstacle-out, --clashes: none is given: give one or more of them");
     if (lists && (any || closest || distances))
       throw UsageError("--clashes: are of flags or a path: leave out --any, --closest and --distances");
     if (!lists && (options.cluster_distance > 0 || options.previous)) {
@@ -148,6 +171,7 @@ struct CollideTexts {
     files.reads("SITE", options.site / sites::site_file_name).reads("OBSTACLE", options.obstacle);
     files.readsPose("--pose", pose).reads("--trajectory", options.trajectory);
     files.reads("--previous", options.previous.value_or("")).writes("--report", options.report);
+    files.writesFile("--obstacle-out", options.obstacle_out);
     for (const std::filesystem::path& list : options.clashes) files.writes("--clashes", list, "--previous"); // updated
   }
 };
@@ -179,9 +203,13 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
   make->add_option("--tile-points", options.tile_points, "points of a tile at most, as 500K or 4M (default: 4M)")
       ->type_name("N")
       ->transform(amount(1000, 1, "give 1 or more"));
-  add_site(command("info", "print what a site holds", SiteCommand::info));
-  add_site(command("validate", "read all tiles and check that each point is there once, and where it should be",
-                   SiteCommand::validate));
+  for (CLI::App* const told :
+       {command("info", "print what a site holds", SiteCommand::info),
+        command("validate", "read all tiles and check that each point is there once, and where it should be",
+                SiteCommand::validate)}) {
+    add_site(told);
+    told->add_flag("--json", options.json, "as JSON, for programs");
+  }
   CLI::App* const write = command(
       "export", "write the points in their first order, as one cloud or one for each source", SiteCommand::write);
   add_site(write);

@@ -4,6 +4,9 @@
 
 #include "cli/used_files.h"
 
+#include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/query/accuracy.h>
+
 #include <Eigen/Geometry>
 
 #include <cstdint>
@@ -31,13 +34,18 @@ struct SiteOptions {
   std::uint64_t memory = std::uint64_t{2} << 30;
   std::uint64_t tile_points = 4'000'000;
 
+  bool json = false; ///< of `info` and `validate`: what they tell
+
   // of `collide`
   SiteQuestion question = SiteQuestion::flags;
   std::filesystem::path obstacle, trajectory, report;
+  std::filesystem::path obstacle_out;         ///< the obstacle with its flags, or none
   std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;
   double clearance = 0.0;
+  Accuracy accuracy;
+  Uncertainty uncertainty, obstacle_uncertainty;
   std::optional<double> swept;
   double max_distance = std::numeric_limits<double>::infinity();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

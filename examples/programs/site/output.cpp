@@ -3,6 +3,7 @@
 #include "output.h"
 
 #include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/selected_records.h>
 
 #include <limits>
 #include <vector>
@@ -12,6 +13,12 @@ namespace pcl_bsh::cli {
 namespace {
 
 using Type = pcl::PCLPointField;
+
+/// As pcl_bsh_collide: distances and poses are of paths, where nothing stops early.
+bool tellsPoses(const SiteOptions& options)
+{
+  return !options.trajectory.empty() && !options.accuracy.stopsEarly();
+}
 
 /// The fields that each question answers with, as those of pcl_bsh_collide.
 std::vector<sites::ResultField> resultFields(const SiteOptions& options)
@@ -26,7 +33,7 @@ std::vector<sites::ResultField> resultFields(const SiteOptions& options)
   case SiteQuestion::distances:
     return {distance};
   case SiteQuestion::path:
-    if (options.trajectory.empty()) return {collision};
+    if (!tellsPoses(options)) return {collision};
     return {collision, distance, first, closest};
   default:
     return {};
@@ -35,7 +42,17 @@ std::vector<sites::ResultField> resultFields(const SiteOptions& options)
 
 } // namespace
 
-SiteOutput::SiteOutput(const sites::Site& site, const SiteOptions& options) : moves_(!options.trajectory.empty())
+ObstacleCloud::ObstacleCloud(const SiteOptions& options)
+{
+  cloud = io::readCloud(options.obstacle, &viewpoint, &las);
+  if (options.obstacle_out.empty()) return;
+  io::requireWritableCloud(options.obstacle_out);
+  withField(withoutRecords(cloud), collision_field_name, {}); // fails now
+}
+
+SiteOutput::SiteOutput(const sites::Site& site, const ObstacleCloud& obstacle, const SiteOptions& options)
+: obstacle_(obstacle),
+  options_(options)
 {
   if (!options.out.empty()) out_.emplace(site, options.out, resultFields(options));
 }
@@ -63,10 +80,17 @@ sites::PassageSink SiteOutput::passage()
   if (!out_) return nullptr;
   return [this](const sites::Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found) {
     std::vector<const void*> columns = {found.flags.data()};
-    if (moves_)
+    if (tellsPoses(options_))
       columns.insert(columns.end(), {found.distance.data(), found.first_pose.data(), found.closest_pose.data()});
     out_->write(tile, cloud, columns);
   };
+}
+
+void SiteOutput::writeObstacle(const std::vector<std::uint8_t>& flags) const
+{
+  if (options_.obstacle_out.empty() || sites::rankHere() != 0) return;
+  io::writeCloud(options_.obstacle_out, withField(obstacle_.cloud, collision_field_name, flags), obstacle_.viewpoint,
+                 obstacle_.las);
 }
 
 void SiteOutput::finish()

@@ -49,7 +49,7 @@ std::shared_ptr<const SurfaceCover> SurfaceOptions::coverOfInput(const StageClou
   try {
     std::vector<std::string> remarks;
     auto cover = std::make_shared<const SurfaceCover>(io::coverMesh(
-        viewOf(input.cloud), *input.triangles, {surface_tolerance, vertices_only}, clearance, true,
+        viewOf(input.cloud), *input.triangles, {surface_tolerance, vertices_only, true}, clearance,
         [&stage](double) { return !stage.isCancelled(); }, remarks));
     for (const std::string& remark : remarks) told.push_back("input: " + remark);
     const std::string tolerance = io::numberText(cover->tolerance, std::chars_format::general, 6);

@@ -97,6 +97,15 @@ class SphereHierarchy:
     @property
     def coordinate_spacing(self) -> float: ...
     def build_all(self, threads: int = ...) -> None: ...
+    def refit(
+        self,
+        xyz: npt.ArrayLike,
+        *,
+        radii: Optional[npt.ArrayLike] = ...,
+        uncertainties: Optional[npt.ArrayLike] = ...,
+        copy: bool = ...,
+        most_growth: float = ...,
+    ) -> Dict[str, Any]: ...
     def validate(self) -> List[str]: ...
     def statistics(self) -> Dict[str, Any]: ...
 
@@ -167,6 +176,16 @@ class SymmetricDistances:
     def hausdorff(self) -> float: ...
     @property
     def hausdorff_pair(self) -> Optional[Tuple[int, int]]: ...
+
+class HausdorffDistance:
+    @property
+    def distance(self) -> float: ...
+    @property
+    def pair(self) -> Optional[Tuple[int, int]]: ...
+    @property
+    def work(self) -> Work: ...
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[Any]: ...
 
 class Trajectory:
     @property
@@ -302,6 +321,7 @@ class Scene:
         tolerance: float = ...,
         voxel_edge: float = ...,
         threads: int = ...,
+        deform: Optional[float] = ...,
     ) -> None: ...
     def add(
         self,
@@ -321,6 +341,16 @@ class Scene:
     def pose(self, object: _Object) -> _Floats64: ...
     def set_pose(self, object: _Object, pose: npt.ArrayLike) -> None: ...
     def set_part_pose(self, object: _Object, part: int, pose: npt.ArrayLike) -> None: ...
+    def deform(
+        self,
+        object: _Object,
+        xyz: npt.ArrayLike,
+        part: int = ...,
+        *,
+        radii: Optional[npt.ArrayLike] = ...,
+        uncertainties: Optional[npt.ArrayLike] = ...,
+        copy: bool = ...,
+    ) -> Dict[str, Any]: ...
     def set_motion(self, object: _Object, motion: _Motion) -> None: ...
     def set_rule(
         self, a: _Object, b: _Object, *, tested: Optional[bool] = ..., clearance: Optional[float] = ...
@@ -454,6 +484,15 @@ def symmetric_distances(
     threads: int = ...,
     progress: _Progress = ...,
 ) -> SymmetricDistances: ...
+def hausdorff_distance(
+    a: SphereHierarchy,
+    b: SphereHierarchy,
+    *,
+    pose_a: _Pose = ...,
+    pose_b: _Pose = ...,
+    threads: int = ...,
+    progress: _Progress = ...,
+) -> HausdorffDistance: ...
 @overload
 def radius_search(
     cloud: SphereHierarchy,

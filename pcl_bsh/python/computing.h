@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Queries of all of Python's threads, or one change of points: never both.
+#pragma once
+
+namespace pcl_bsh::python {
+
+/// While it lives, this thread computes, and no hierarchy changes. May be nested: a query may be asked by the callback
+/// of another. To be made without the interpreter's lock.
+class Computing {
+public:
+  Computing();
+  ~Computing();
+  Computing(const Computing&) = delete;
+  Computing& operator=(const Computing&) = delete;
+};
+
+/// While it lives, no other thread computes. It waits until those that do are done; later ones wait for it, and for a
+/// while let it go first. To be made
+/// without the interpreter's lock.
+class Changing {
+public:
+  /// @throws std::runtime_error where this thread computes: in the callback of a query
+  Changing();
+  ~Changing();
+  Changing(const Changing&) = delete;
+  Changing& operator=(const Changing&) = delete;
+};
+
+} // namespace pcl_bsh::python

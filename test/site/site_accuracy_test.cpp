@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an accuracy promises of one cloud holds of a site, whatever its tiles; and what the program tells and writes.
+#include "../cloud_files/samples.h"
+#include "../programs/program_run.h"
+
+#ifdef PCL_BSH_SITE_QUERIES
+#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/make_site.h>
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+namespace pcl_bsh::sites {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Cloud = pcl::PCLPointCloud2;
+using Json = nlohmann::json;
+
+class SiteAccuracy : public testing::Test {
+protected:
+  SiteAccuracy()
+  {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int i = 0; i < 2000; ++i) a.push_back({10 * unit(random), 10 * unit(random), 0.2 * unit(random)});
+    for (int i = 0; i < 300; ++i) b.push_back({2 * unit(random), 2 * unit(random), 0.3 + 0.2 * unit(random)});
+    io::writeCloud(folder / "a.pcd", cloudOf(a));
+    io::writeCloud(folder / "b.pcd", cloudOf(b));
+  }
+
+  static Cloud cloudOf(const std::vector<Point3>& points)
+  {
+    Cloud cloud;
+    for (const char* axis : {"x", "y", "z"}) io::addField(cloud, axis, io::Field::FLOAT64);
+    io::allocate(cloud, static_cast<std::uint32_t>(points.size()));
+    std::memcpy(cloud.data.data(), points.data(), cloud.data.size());
+    return cloud;
+  }
+
+  Site siteOf(std::uint64_t tile_points)
+  {
+    MakeOptions options;
+    options.tile_points = tile_points;
+    return makeSite({folder / "a.pcd"}, folder / ("site" + std::to_string(tile_points)), options);
+  }
+
+  template <typename Values, typename Result>
+  static void put(Values& values, const Cloud& cloud, const Result& result)
+  {
+    for (std::uint32_t i = 0; i < cloud.width; ++i)
+      values[static_cast<std::size_t>(io::valueOf(cloud, i, "record"))] = result[i];
+  }
+
+  files::TemporaryFolder folder;
+  std::vector<Point3> a, b;
+};
+
+TEST_F(SiteAccuracy, KeepsItsPromises)
+{
+  const SphereHierarchy all(viewOf(a.front().data(), a.size())), other(viewOf(b.front().data(), b.size()));
+  constexpr double clearance = 0.15, tolerance = 0.05;
+  FlagsRequest wanted;
+  wanted.clearance = clearance;
+  wanted.flagged = Side::both;
+  const FlagsResult truth = pcl_bsh::collisionFlags({all}, {other}, wanted);
+  wanted.clearance = clearance + tolerance;
+  const FlagsResult wider = pcl_bsh::collisionFlags({all}, {other}, wanted);
+  const PointDistances distances = pcl_bsh::pointDistances({all}, {other}, {});
+  const double least = pcl_bsh::closestPair({all}, {other}, {}).distance;
+  std::size_t left_undecided = 0;
+  for (const std::uint64_t tile_points : {100000, 200, 20}) {
+    const Site site = siteOf(tile_points);
+    for (const char* text :
+         {"exact", "tolerance=0.05", "level=0", "level=2", "pairs=3", "pairs=300", "time=0", "time=10"}) {
+      SCOPED_TRACE(std::to_string(tile_points) + " " + text);
+      SiteRequest request;
+      request.clearance = clearance;
+      request.accuracy = Accuracy::parse(text);
+      const bool exact = request.accuracy.isExact(), stops = request.accuracy.stopsEarly();
+
+      std::vector<std::uint8_t> flags(a.size(), 0), along(a.size(), 0);
+      const SiteFlags found = collisionFlags(
+          site, other, Side::both, request,
+          [&](const Tile&, const Cloud& cloud, const FlagsResult& result) { put(flags, cloud, result.a); });
+      const SitePassage passage = collideAlong(
+          site, other, {Eigen::Isometry3d::Identity()}, request,
+          [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) { put(along, cloud, result.flags); });
+      EXPECT_EQ(std::isnan(passage.distance), stops || passage.colliding == 0);
+      const auto expectKept = [&](const std::vector<std::uint8_t>& said, const std::vector<std::uint8_t>& collides,
+                                  const std::vector<std::uint8_t>& nearly) {
+        for (std::size_t i = 0; i < said.size(); ++i) {
+          ASSERT_LE(said[i], stops ? 2 : 1);
+          if (said[i] == 0) {
+            EXPECT_EQ(collides[i], 0) << i;
+          }
+          if (said[i] == 1) {
+            EXPECT_EQ(exact || stops ? collides[i] : nearly[i], 1) << i;
+          }
+          left_undecided += said[i] == 2 ? 1 : 0;
+        }
+      };
+      expectKept(flags, truth.a, wider.a);
+      expectKept(along, truth.a, wider.a);
+      expectKept(found.b, truth.b, wider.b);
+      EXPECT_EQ(found.undecided, static_cast<std::uint64_t>(std::count(flags.begin(), flags.end(), 2)));
+      EXPECT_EQ(found.undecided_b, static_cast<std::uint64_t>(std::count(found.b.begin(), found.b.end(), 2)));
+
+      const Verdict verdict = anyCollision(site, other, request).verdict;
+      EXPECT_TRUE(verdict == Verdict::colliding || (stops && verdict == Verdict::undecided));
+
+      const SiteClosest closest = closestPair(site, other, request);
+      EXPECT_LE(closest.interval.lower, least);
+      EXPECT_GE(closest.distance, least);
+      if (closest.point) {
+        EXPECT_GE(closest.interval.upper, least);
+      }
+      if (exact) {
+        EXPECT_EQ(closest.distance, least);
+        EXPECT_GE(closest.interval.lower, std::nextafter(least, 0.0));
+      }
+      if (!stops) {
+        EXPECT_LE(closest.distance, least + tolerance);
+      }
+
+      std::vector<double> measured(a.size(), std::nan(""));
+      const SiteDistances of_points =
+          pointDistances(site, other, std::numeric_limits<double>::infinity(), request,
+                         [&](const Tile&, const Cloud& cloud, const PointDistances& result) {
+                           put(measured, cloud, result.distance);
+                         });
+      EXPECT_EQ(of_points.measured + of_points.undecided, a.size());
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        if (std::isnan(measured[i])) continue;
+        EXPECT_GE(measured[i], distances.distance[i]);
+        EXPECT_LE(measured[i], distances.distance[i] + (stops || exact ? 0.0 : tolerance));
+      }
+    }
+  }
+  EXPECT_GT(left_undecided, 0U);
+}
+
+TEST_F(SiteAccuracy, OfTheProgram)
+{
+  siteOf(200);
+  const std::string asked = "collide site200 b.pcd --clearance 0.15 ";
+  const auto report = [&](const std::string& arguments) -> Json {
+    const Outcome outcome = run("pcl_bsh_site", asked + "--report r.json " + arguments, folder.path());
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.exit_code == 0 ? Json::parse(files::contentOf(folder / "r.json")) : Json();
+  };
+  const Json level = report("--accuracy level=1 --out out --obstacle-out marked.pcd");
+  EXPECT_EQ(level["accuracy"], "level=1");
+  EXPECT_GT(level["undecided"], 0);
+  EXPECT_EQ(readSite(folder / "out").fields.back().name, "collision");
+
+  // Exactly, the obstacle's flags are those that pcl_bsh_collide gives it as an input.
+  report("--obstacle-out marked.pcd");
+  ASSERT_EQ(run("pcl_bsh_collide", "b.pcd a.pcd memory.pcd --clearance 0.15", folder.path()).exit_code, 0);
+  io::expectSame(io::readCloud(folder / "marked.pcd"), io::readCloud(folder / "memory.pcd"));
+
+  for (const auto& [arguments, words] :
+       {std::pair{"--accuracy level=1 --clashes c.json", "clashes need distances"},
+        {"--obstacle-out b.pcd", "is the file of OBSTACLE"},
+        {"--obstacle-out c.pcd --clashes c.json", "--obstacle-out: are flags at one pose"}}) {
+    const Outcome outcome = run("pcl_bsh_site", asked + arguments, folder.path());
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(words));
+  }
+}
+
+TEST_F(SiteAccuracy, TellsProgramsWhatASiteHolds)
+{
+  const Site site = siteOf(200);
+  const Outcome info = run("pcl_bsh_site", "info site200 --json", folder.path());
+  ASSERT_EQ(info.exit_code, 0) << info.err;
+  const Json told = Json::parse(info.out);
+  EXPECT_EQ(told["points"], a.size());
+  EXPECT_EQ(told["tiles"]["count"], site.tiles.size());
+  EXPECT_LE(told["tiles"]["most_points"], 200);
+  EXPECT_EQ(told["bounds"]["low"], Json(site.bounds->low));
+  EXPECT_EQ(told["fields"], (Json{"x", "y", "z", "source", "record"}));
+  EXPECT_EQ(told["sources"][0]["points"], a.size());
+
+  const Outcome sound = run("pcl_bsh_site", "validate site200 --json", folder.path());
+  ASSERT_EQ(sound.exit_code, 0) << sound.err;
+  EXPECT_EQ(Json::parse(sound.out)["sound"], true);
+  folder.write("site200/" + site.tiles[1].file, "damaged");
+  const Outcome damaged = run("pcl_bsh_site", "validate site200 --json", folder.path());
+  EXPECT_EQ(damaged.exit_code, 1);
+  EXPECT_EQ(Json::parse(damaged.out)["sound"], false);
+  EXPECT_THAT(Json::parse(damaged.out)["error"].get<std::string>(), HasSubstr(site.tiles[1].file));
+  EXPECT_THAT(damaged.err, HasSubstr(site.tiles[1].file));
+}
+
+} // namespace
+} // namespace pcl_bsh::sites
+#endif
