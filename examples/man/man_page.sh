@@ -66,13 +66,16 @@ roff() { # WHOLE PAGE: 1, or SUBCOMMAND: 0
     waits && !/^\.S[HS] / { print ".PP" } { waits = 0; headed = /^\.S[HS] / } { print }'
 }
 
+# Help is read to its end, whatever is made of it: programs tell when nobody reads what they say.
 {
-  "$program" --help | roff 1
-  subcommands="$("$program" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p')"
+  help="$("$program" --help)"
+  roff 1 <<<"$help"
+  subcommands="$(sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p' <<<"$help")"
   [[ -z "$subcommands" ]] || printf '.SH SUBCOMMANDS, EACH WITH ITS OPTIONS\n'
   for subcommand in $subcommands; do
     printf '.SS %s %s\n' "${name//-/\\-}" "$subcommand"
-    "$program" "$subcommand" --help | roff 0
+    help="$("$program" "$subcommand" --help)"
+    roff 0 <<<"$help"
   done
 } >"$page.part"
 mv "$page.part" "$page"

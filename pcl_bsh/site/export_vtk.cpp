@@ -11,9 +11,13 @@
 #include <pcl_bsh/site/records.h>
 #include <pcl_bsh/site/tile_file.h>
 
+#include <boost/archive/iterators/base64_from_binary.hpp>
+#include <boost/archive/iterators/transform_width.hpp>
+
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <numeric>
 #include <sstream>
 #include <type_traits>
 
@@ -70,6 +74,15 @@ std::string describe(const pcl::PCLPointField& field)
   return describe(vtkTypeOf(field.datatype), field.name, field.count);
 }
 
+std::string inBase64(const std::string& bytes)
+{
+  using namespace boost::archive::iterators;
+  using Letters = base64_from_binary<transform_width<const char*, 6, 8>>;
+  std::string text(Letters(bytes.data()), Letters(bytes.data() + bytes.size()));
+  text.append((3 - bytes.size() % 3) % 3, '=');
+  return text;
+}
+
 /// The arrays of a tile one after the other in a file, none of which is held beside the tile but the one that is
 /// written.
 class PieceWriter {
@@ -83,38 +96,22 @@ public:
 
   void write()
   {
-    const std::uint64_t count = points_.size();
-    std::string head =
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-        "header_type=\"UInt64\">\n  <PolyData>\n    <Piece NumberOfPoints=\"" +
-        std::to_string(count) + "\" NumberOfVerts=\"" + (count > 0 ? "1" : "0") +
-        "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
-    std::uint64_t offset = 0;
-    const auto array = [&](const std::string& description, std::uint64_t bytes) {
-      head +=
-          "        <DataArray " + description + " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
-      offset += sizeof bytes + bytes;
-    };
-    const std::size_t axis_bytes = io::sizeOf(axis(0));
-    head += "      <Points>\n";
-    array(describePoints(cloud_.fields), 3 * count * axis_bytes);
-    head += "      </Points>\n      <PointData>\n";
+    const std::string count = std::to_string(points_.size());
+    file_.append("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+                 "header_type=\"UInt64\">\n  <PolyData>\n    <Piece NumberOfPoints=\"" +
+                 count + "\" NumberOfVerts=\"" + (points_.empty() ? "0" : "1") +
+                 "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n      <Points>\n");
+    writeArray(describePoints(cloud_.fields), valuesOf({axis(0), axis(1), axis(2)}));
+    file_.append("      </Points>\n      <PointData>\n");
     for (const auto& field : cloud_.fields)
-      if (!isAxis(field.name)) array(describe(field), count * io::sizeOf(field));
-    head += "      </PointData>\n      <Verts>\n";
-    array(describe("Int64", "connectivity", 1), 8 * count);
-    array(describe("Int64", "offsets", 1), count > 0 ? 8 : 0);
-    head += "      </Verts>\n    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_";
-    file_.append(head);
-
-    writeFields({axis(0), axis(1), axis(2)});
-    for (const auto& field : cloud_.fields)
-      if (!isAxis(field.name)) writeFields({field});
-    std::vector<std::int64_t> numbers(count);
-    for (std::size_t i = 0; i < count; ++i) numbers[i] = static_cast<std::int64_t>(i);
-    writeNumbers(numbers);
-    writeNumbers(count > 0 ? std::vector{static_cast<std::int64_t>(count)} : std::vector<std::int64_t>{});
-    file_.append("\n  </AppendedData>\n</VTKFile>\n");
+      if (!isAxis(field.name)) writeArray(describe(field), valuesOf({field}));
+    file_.append("      </PointData>\n      <Verts>\n");
+    std::vector<std::int64_t> numbers(points_.size());
+    std::iota(numbers.begin(), numbers.end(), std::int64_t{0});
+    writeArray(describe("Int64", "connectivity", 1), bytesOf(numbers));
+    const auto end = static_cast<std::int64_t>(points_.size());
+    writeArray(describe("Int64", "offsets", 1), points_.empty() ? "" : bytesOf({end}));
+    file_.append("      </Verts>\n    </Piece>\n  </PolyData>\n</VTKFile>\n");
   }
 
 private:
@@ -124,31 +121,32 @@ private:
     return *std::find_if(cloud_.fields.begin(), cloud_.fields.end(), [&](const auto& f) { return f.name == name; });
   }
 
-  void append(const std::string& bytes)
+  /// In base64, with its size before it. Raw bytes behind the document would be a quarter less, but expat refuses them
+  /// since its mends of 2024.
+  void writeArray(const std::string& description, const std::string& bytes)
   {
-    const std::uint64_t size = bytes.size();
-    std::string head(sizeof size, '\0');
-    std::memcpy(head.data(), &size, sizeof size);
-    file_.append(head);
-    if (size > 0) file_.append(bytes);
+    file_.append("        <DataArray " + description + " format=\"binary\">\n");
+    file_.append(inBase64(bytesOf({static_cast<std::int64_t>(bytes.size())})));
+    file_.append(inBase64(bytes));
+    file_.append("\n        </DataArray>\n");
   }
 
-  void writeNumbers(const std::vector<std::int64_t>& numbers)
+  static std::string bytesOf(const std::vector<std::int64_t>& numbers)
   {
     std::string bytes(8 * numbers.size(), '\0');
     if (!numbers.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
-    append(bytes);
+    return bytes;
   }
 
   /// The values of some fields, point by point.
-  void writeFields(const std::vector<pcl::PCLPointField>& fields)
+  std::string valuesOf(const std::vector<pcl::PCLPointField>& fields) const
   {
     std::string bytes;
     for (const std::uint32_t i : points_) {
       const auto* const record = reinterpret_cast<const char*>(cloud_.data.data()) + std::size_t{i} * cloud_.point_step;
       for (const auto& field : fields) bytes.append(record + field.offset, io::sizeOf(field));
     }
-    append(bytes);
+    return bytes;
   }
 
   const pcl::PCLPointCloud2& cloud_;

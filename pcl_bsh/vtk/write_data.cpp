@@ -28,8 +28,7 @@ void fill(files::FileReplacement& file, vtkPolyData& data, const fs::path& path)
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputData(&data);
   writer->SetFileName(file.name().c_str());
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
+  writer->SetDataModeToBinary(); // appended data is refused by expat since its mends of 2024
   writer->SetCompressorTypeToNone();
   const int displayed = vtkObject::GetGlobalWarningDisplay(); // of the whole process
   vtkObject::GlobalWarningDisplayOff();
