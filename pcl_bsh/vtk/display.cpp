@@ -2,14 +2,33 @@
 #include <pcl_bsh/vtk/display.h>
 
 #include <X11/Xlib.h> // here alone: its macros are everywhere
+#include <poll.h>
+
+#include <mutex>
 
 namespace pcl_bsh::vtk {
 
+namespace {
+
+/// Whether the server is still there: to close a connection that it has ended would end the program.
+bool isOpen(Display* display)
+{
+  pollfd connection = {ConnectionNumber(display), POLLIN, 0};
+  return poll(&connection, 1, 0) >= 0 && (connection.revents & (POLLHUP | POLLERR | POLLNVAL)) == 0;
+}
+
+} // namespace
+
 bool haveDisplay()
 {
+  static std::mutex mutex;
+  static Display* kept = nullptr;
+  const std::lock_guard lock(mutex);
   Display* const display = XOpenDisplay(nullptr);
-  if (display) XCloseDisplay(display);
-  return display != nullptr;
+  if (!display) return false;
+  if (kept && isOpen(kept)) XCloseDisplay(kept);
+  kept = display;
+  return true;
 }
 
 } // namespace pcl_bsh::vtk

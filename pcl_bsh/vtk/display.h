@@ -7,7 +7,9 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::vtk {
 
-/// Whether the X server that DISPLAY names answers. Where it does not, VTK's ordinary windows end the program.
+/// Whether the X server that DISPLAY names answers. Where it does not, VTK's ordinary windows end the program. The
+/// connection stays open until the next call: a server that loses its only client begins anew, and meanwhile lets
+/// nobody in.
 bool haveDisplay();
 
 } // namespace pcl_bsh::vtk

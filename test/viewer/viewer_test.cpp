@@ -5,6 +5,8 @@
 #include <viewer/clouds_content.h>
 #include <viewer/viewer.h>
 
+#include <pcl_bsh/vtk/display.h>
+
 #include <gmock/gmock.h>
 
 #include <vtkCommand.h>
@@ -161,6 +163,13 @@ TEST_F(ViewerTest, SavesPictures)
   EXPECT_EQ(viewer.saved(), "pcl_bsh_view_2.png");
   EXPECT_GT(readPng(folder / "pcl_bsh_view_1.png").count(ground), 100u);
   std::filesystem::current_path(before);
+}
+
+/// A server begins anew when its only client has gone, and lets nobody in meanwhile.
+TEST_F(ViewerTest, TheServerStaysBetweenTheQuestionAndTheWindow)
+{
+  const Xvfb display;
+  for (int i = 0; i < 30; ++i) EXPECT_TRUE(vtk::haveDisplay()) << i;
 }
 
 TEST_F(ViewerTest, NoDisplayIsAnErrorNotAnEnd)
