@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Questions about a site have the answers of one hierarchy over all its points, whatever the tiles and the ranks.
 #include "../programs/program_run.h"
+#include "float64_cloud.h"
 
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
@@ -23,15 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using Cloud = pcl::PCLPointCloud2;
-
-Cloud cloudOf(const std::vector<Point3>& points)
-{
-  Cloud cloud;
-  for (const char* axis : {"x", "y", "z"}) io::addField(cloud, axis, io::Field::FLOAT64);
-  io::allocate(cloud, static_cast<std::uint32_t>(points.size()));
-  if (!points.empty()) std::memcpy(cloud.data.data(), points.data(), cloud.data.size());
-  return cloud;
-}
 
 struct Scene {
   std::vector<Point3> a, b;
@@ -90,8 +82,10 @@ protected:
   void expectSameAnswers(const Scene& scene)
   {
     const std::size_t half = scene.a.size() / 3;
-    io::writeCloud(folder / "1.pcd", cloudOf({scene.a.begin(), scene.a.begin() + static_cast<std::ptrdiff_t>(half)}));
-    io::writeCloud(folder / "2.pcd", cloudOf({scene.a.begin() + static_cast<std::ptrdiff_t>(half), scene.a.end()}));
+    io::writeCloud(folder / "1.pcd",
+                   float64Cloud({scene.a.begin(), scene.a.begin() + static_cast<std::ptrdiff_t>(half)}));
+    io::writeCloud(folder / "2.pcd",
+                   float64Cloud({scene.a.begin() + static_cast<std::ptrdiff_t>(half), scene.a.end()}));
     const SphereHierarchy all(viewOf(scene.a.front().data(), scene.a.size()));
     const SphereHierarchy other(viewOf(scene.b.front().data(), scene.b.size()));
     const Placed b(other, scene.pose);
@@ -205,7 +199,7 @@ TEST_F(CollideSite, NearTies)
 TEST_F(CollideSite, ReadsOnlyTilesThatMatter)
 {
   const Scene scene = randomScene(2);
-  io::writeCloud(folder / "a.pcd", cloudOf(scene.a));
+  io::writeCloud(folder / "a.pcd", float64Cloud(scene.a));
   MakeOptions options;
   options.tile_points = 40;
   const Site site = makeSite({folder / "a.pcd"}, folder / "site", options);
@@ -231,7 +225,7 @@ void expectSamePassage(const std::vector<Point3>& points, const SphereHierarchy&
                        const std::vector<Eigen::Isometry3d>& poses, double clearance, const fs::path& folder)
 {
   fs::create_directory(folder);
-  io::writeCloud(folder / "points.pcd", cloudOf(points));
+  io::writeCloud(folder / "points.pcd", float64Cloud(points));
   const SphereHierarchy all(viewOf(points.front().data(), points.size()));
   for (const std::optional<double> swept : {std::optional<double>(), std::optional<double>(0.01)}) {
     TrajectoryRequest wanted;
@@ -334,7 +328,7 @@ TEST_F(CollideSite, BallsKeepTheirSizeAtAPoseThatShrinks)
 TEST_F(CollideSite, APathReadsOnlyTilesBesideIt)
 {
   const Scene scene = randomScene(2);
-  io::writeCloud(folder / "a.pcd", cloudOf(scene.a));
+  io::writeCloud(folder / "a.pcd", float64Cloud(scene.a));
   MakeOptions options;
   options.tile_points = 40;
   const Site site = makeSite({folder / "a.pcd"}, folder / "site", options);
@@ -360,7 +354,7 @@ TEST_F(CollideSite, APathReadsOnlyTilesBesideIt)
 TEST_F(CollideSite, RefusesWithoutATileToAsk)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  io::writeCloud(folder / "a.pcd", cloudOf({{nan, 0, 0}, {0, nan, 0}}));
+  io::writeCloud(folder / "a.pcd", float64Cloud({{nan, 0, 0}, {0, nan, 0}}));
   const Site site = makeSite({folder / "a.pcd"}, folder / "site", {});
   const Point3 point = {0, 0, 0};
   const SphereHierarchy other(viewOf(point.data(), 1));
@@ -379,7 +373,7 @@ TEST_F(CollideSite, RefusesWithoutATileToAsk)
 TEST_F(CollideSite, FarSmallestDistanceReadsFewTiles)
 {
   const Scene scene = randomScene(2);
-  io::writeCloud(folder / "a.pcd", cloudOf(scene.a));
+  io::writeCloud(folder / "a.pcd", float64Cloud(scene.a));
   MakeOptions options;
   options.tile_points = 40;
   const Site site = makeSite({folder / "a.pcd"}, folder / "site", options);
@@ -405,8 +399,8 @@ TEST_F(CollideSite, OnTwoRanks)
 {
   if (std::system("mpirun --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no mpirun";
   const Scene scene = randomScene(3);
-  io::writeCloud(folder / "a.pcd", cloudOf(scene.a));
-  io::writeCloud(folder / "b.pcd", cloudOf(scene.b));
+  io::writeCloud(folder / "a.pcd", float64Cloud(scene.a));
+  io::writeCloud(folder / "b.pcd", float64Cloud(scene.b));
   std::vector<Eigen::Isometry3d> poses;
   for (int k = 0; k < 20; ++k) poses.push_back(Eigen::Translation3d(0.3 * k, 0.1 * k, 0) * scene.pose);
   io::writePoses(folder / "poses.txt", poses);

@@ -2,6 +2,7 @@
 // What an accuracy promises of one cloud holds of a site, whatever its tiles; and what the program tells and writes.
 #include "../cloud_files/samples.h"
 #include "../programs/program_run.h"
+#include "float64_cloud.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/collision/collide.h>
@@ -36,17 +37,8 @@ protected:
     std::uniform_real_distribution<double> unit(-1, 1);
     for (int i = 0; i < 2000; ++i) a.push_back({10 * unit(random), 10 * unit(random), 0.2 * unit(random)});
     for (int i = 0; i < 300; ++i) b.push_back({2 * unit(random), 2 * unit(random), 0.3 + 0.2 * unit(random)});
-    io::writeCloud(folder / "a.pcd", cloudOf(a));
-    io::writeCloud(folder / "b.pcd", cloudOf(b));
-  }
-
-  static Cloud cloudOf(const std::vector<Point3>& points)
-  {
-    Cloud cloud;
-    for (const char* axis : {"x", "y", "z"}) io::addField(cloud, axis, io::Field::FLOAT64);
-    io::allocate(cloud, static_cast<std::uint32_t>(points.size()));
-    std::memcpy(cloud.data.data(), points.data(), cloud.data.size());
-    return cloud;
+    io::writeCloud(folder / "a.pcd", float64Cloud(a));
+    io::writeCloud(folder / "b.pcd", float64Cloud(b));
   }
 
   Site siteOf(std::uint64_t tile_points)

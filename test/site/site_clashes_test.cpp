@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The clashes of a site are those of one cloud of all its points, whatever the tiles and the ranks.
 #include "../programs/program_run.h"
+#include "float64_cloud.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
@@ -25,15 +26,6 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using Cloud = pcl::PCLPointCloud2;
 using Json = nlohmann::json;
-
-Cloud float64Cloud(const std::vector<Point3>& points)
-{
-  Cloud cloud;
-  for (const char* axis : {"x", "y", "z"}) io::addField(cloud, axis, io::Field::FLOAT64);
-  io::allocate(cloud, static_cast<std::uint32_t>(points.size()));
-  if (!points.empty()) std::memcpy(cloud.data.data(), points.data(), cloud.data.size());
-  return cloud;
-}
 
 /// A model on its way past points.
 struct Scene {
