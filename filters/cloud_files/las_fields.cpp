@@ -146,6 +146,13 @@ bool converted(From from, To& to)
   }
 }
 
+template <typename T>
+T neighborOf(T value)
+{
+  if constexpr (std::is_floating_point_v<T>) return std::nextafter(value, std::numeric_limits<T>::max());
+  return value < std::numeric_limits<T>::max() ? value + T{1} : value - T{1};
+}
+
 /// The stored value nearest to `value`. @param exact whether that is read as `value`
 /// @return whether there is one
 template <typename T, typename Read>
@@ -172,13 +179,11 @@ bool unscaled(double value, const LasScaling& scaling, const Read& read, T& stor
     }
   }
   exact = read(valueOf(stored, scaling)) == read(value);
-  if constexpr (!std::is_floating_point_v<T>) {
-    if (exact || !std::isnan(valueOf(stored, scaling))) return true;
-    // It is what stands for no data: where the offset absorbs it, so it does its neighbour.
-    const T other = stored < std::numeric_limits<T>::max() ? stored + T{1} : stored - T{1};
-    exact = read(valueOf(other, scaling)) == read(value);
-    if (exact) stored = other;
-  }
+  if (exact || !std::isnan(valueOf(stored, scaling))) return true;
+  // It is what stands for no data: where the offset absorbs it, so it does its neighbour.
+  const T other = neighborOf(stored);
+  exact = read(valueOf(other, scaling)) == read(value);
+  if (exact) stored = other;
   return true;
 }
 

@@ -102,18 +102,22 @@ TEST(Las, CoordinatesAreScaledAndMovedInDouble)
 /// An offset that absorbs all stored values absorbs the one for no data, too, which must not be written for another.
 TEST(Las, NoDataIsNoNeighbourOfAValue)
 {
-  LasSample sample(4, 6, 2);
-  const std::string descriptor = LasSample::descriptor(3, "far", 1 | 16, 0, 1e300, 0);
-  sample.records = {LasSample::record("LASF_Spec", 4, descriptor)};
+  LasSample sample(4, 6, 2 + 4);
+  const std::string descriptors =
+      LasSample::descriptor(3, "far", 1 | 16, 0, 1e300, 0) + LasSample::descriptor(9, "off", 1 | 16, 0, -1e300, 0);
+  sample.records = {LasSample::record("LASF_Spec", 4, descriptors)};
   sample.addPoints(2);
   put(sample.points[0], 30, std::uint16_t{0});
+  put(sample.points[0], 32, 0.0F);
   put(sample.points[1], 30, std::uint16_t{5});
+  put(sample.points[1], 32, 7.0F);
   const Las las = readText(sample.text());
   const Las again = readText(written(las.cloud, &las.header));
   EXPECT_EQ(namesOf(again.cloud), namesOf(las.cloud));
-  EXPECT_EQ(again.header.descriptors, descriptor);
-  EXPECT_TRUE(std::isnan(valueOf(again.cloud, 0, "far")));
+  EXPECT_EQ(again.header.descriptors, descriptors);
+  EXPECT_TRUE(std::isnan(valueOf(again.cloud, 0, "far")) && std::isnan(valueOf(again.cloud, 0, "off")));
   EXPECT_EQ(valueOf(again.cloud, 1, "far"), 1e300);
+  EXPECT_EQ(valueOf(again.cloud, 1, "off"), -1e300);
 }
 
 /// Where doubles do not tell multiples of the scale apart, integers may change, coordinates must not.
