@@ -161,7 +161,7 @@ bool unscaled(double value, const LasScaling& scaling, const Read& read, T& stor
   if (std::isnan(value)) {
     if (scaling.no_data) {
       stored = narrowed<T>(*scaling.no_data);
-      return true;
+      if (std::isnan(valueOf(stored, scaling))) return true; // else none of the type stands for no data
     }
     if constexpr (std::is_floating_point_v<T>) stored = std::numeric_limits<T>::quiet_NaN();
     return std::is_floating_point_v<T>;

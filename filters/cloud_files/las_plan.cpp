@@ -85,9 +85,16 @@ void placeCoordinates(const LasPoints& points, const LasHeader* header, LasPlan&
   }
 }
 
-const pcl::PCLPointField* packedColourOf(const LasPoints& points)
+/// PCL's packed colour; extra bytes of that name and type are what the file says they are.
+const pcl::PCLPointField* packedColourOf(const LasPoints& points, const LasHeader* header)
 {
-  const auto found = std::find_if(points.fields().begin(), points.fields().end(), isPackedColour);
+  std::vector<LasField> given;
+  if (header != nullptr) given = lasFieldsOf(header->block, header->descriptors);
+  const auto is_colour = [&](const pcl::PCLPointField& field) {
+    const auto is_extra = [&](const LasField& other) { return !other.descriptor.empty() && other.name == field.name; };
+    return isPackedColour(field) && std::none_of(given.begin(), given.end(), is_extra);
+  };
+  const auto found = std::find_if(points.fields().begin(), points.fields().end(), is_colour);
   return found == points.fields().end() ? nullptr : &*found;
 }
 
@@ -108,7 +115,7 @@ void chooseFormat(const LasPoints& points, const LasHeader* header, LasPlan& pla
   const std::vector<LasField> given_fields =
       header == nullptr ? lasFields(given, {}, {}) : lasFieldsOf(header->block, header->descriptors);
   const bool extended = given >= 6;
-  const bool coloured = hasChannels(points) || packedColourOf(points) != nullptr;
+  const bool coloured = hasChannels(points) || packedColourOf(points, header) != nullptr;
   const bool time = points.field("gps_time") != nullptr && !names(given_fields, "gps_time");
   const bool colour = coloured && !names(given_fields, "red");
   const bool infrared = extended && points.field("nir") != nullptr && !names(given_fields, "nir");
@@ -177,7 +184,7 @@ public:
   void place()
   {
     const bool channels = hasChannels(points_);
-    const pcl::PCLPointField* const packed = channels ? nullptr : packedColourOf(points_);
+    const pcl::PCLPointField* const packed = channels ? nullptr : packedColourOf(points_, header_);
     for (const LasField& field : lasFields(plan_.format, plan_.scale, plan_.offset)) {
       if (field.kind == LasField::Kind::colour) continue;
       if (packed != nullptr && (field.name == "green" || field.name == "blue")) continue;

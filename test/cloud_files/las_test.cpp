@@ -120,6 +120,18 @@ TEST(Las, NoDataIsNoNeighbourOfAValue)
   EXPECT_EQ(valueOf(again.cloud, 1, "off"), -1e300);
 }
 
+/// Extra bytes may have the name and the type of PCL's packed colours.
+TEST(Las, ExtraBytesAreNoColours)
+{
+  LasSample sample(4, 6, 4 + 4);
+  sample.records = {
+      LasSample::record("LASF_Spec", 4, LasSample::descriptor(6, "rgba") + LasSample::descriptor(9, "rgb"))};
+  sample.addPoints(3);
+  const std::string file = sample.text();
+  const Las las = readText(file);
+  EXPECT_EQ(difference(written(las.cloud, &las.header), file), "");
+}
+
 /// Where doubles do not tell multiples of the scale apart, integers may change, coordinates must not.
 TEST(Las, CoordinatesStayWhereDoublesAreCoarse)
 {
