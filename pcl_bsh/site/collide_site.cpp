@@ -7,6 +7,7 @@
 #include <pcl_bsh/site/needed_tiles.h>
 #include <pcl_bsh/site/records.h>
 #include <pcl_bsh/site/tile_visitor.h>
+#include <pcl_bsh/trajectory/add_summary.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,12 +69,7 @@ FirstContact earliestOfAllRanks(const FirstContact& own)
 void add(std::vector<PoseSummary>& poses, const std::vector<PoseSummary>& more)
 {
   poses.resize(std::max(poses.size(), more.size()));
-  for (std::size_t k = 0; k < more.size(); ++k) {
-    poses[k].colliding = poses[k].colliding || more[k].colliding;
-    poses[k].colliding_points += more[k].colliding_points;
-    poses[k].undecided_points += more[k].undecided_points;
-    poses[k].distance = std::min(poses[k].distance, more[k].distance);
-  }
+  for (std::size_t k = 0; k < more.size(); ++k) addSummary(poses[k], more[k]);
 }
 
 std::vector<PoseSummary> summedOverAllRanks(const std::vector<PoseSummary>& own)

@@ -2,6 +2,7 @@
 #include <pcl_bsh/trajectory/strays.h>
 
 #include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/trajectory/add_summary.h>
 
 #include <algorithm>
 #include <cmath>
@@ -132,13 +133,7 @@ void addStrays(TrajectoryResult& result, const TrajectoryResult& strays, const s
   take(result.certain_pose, strays.certain_pose);
   result.colliding += strays.colliding;
   result.undecided += strays.undecided;
-  for (std::size_t k = 0; k < result.poses.size(); ++k) {
-    PoseSummary& pose = result.poses[k];
-    pose.colliding = pose.colliding || strays.poses[k].colliding;
-    pose.colliding_points += strays.poses[k].colliding_points;
-    pose.undecided_points += strays.poses[k].undecided_points;
-    pose.distance = std::min(pose.distance, strays.poses[k].distance);
-  }
+  for (std::size_t k = 0; k < result.poses.size(); ++k) addSummary(result.poses[k], strays.poses[k]);
   result.work += strays.work;
 }
 
