@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/cloud_files/stl.h>
+#include <pcl_bsh/filters/text_files/small_letters.h>
 #include <pcl_bsh/filters/text_files/text_cursor.h>
 
 #include <boost/container_hash/hash.hpp>
@@ -64,12 +65,18 @@ std::optional<std::uint64_t> countOf(std::string_view file)
   return count;
 }
 
+/// The next word; some programs write capitals.
+std::string keyword(TextCursor& text)
+{
+  return inSmallLetters(std::string(text.word().substr(0, 40)));
+}
+
 bool isText(std::string_view file)
 {
   const auto count = countOf(file);
   if (count && header_bytes + count_bytes + *count * triangle_bytes == file.size()) return false;
   TextCursor text(file.substr(0, 1024));
-  return text.nextLine() && text.word() == "solid" && file.find('\0') == std::string_view::npos;
+  return text.nextLine() && keyword(text) == "solid" && file.find('\0') == std::string_view::npos;
 }
 
 void readBinary(std::string_view file, Places& places, std::vector<Triangle>& triangles)
@@ -91,14 +98,14 @@ void readBinary(std::string_view file, Places& places, std::vector<Triangle>& tr
 
 void expect(TextCursor& text, std::string_view word)
 {
-  if (text.word() != word) text.fail("has no '" + std::string(word) + "' where a facet needs one");
+  if (keyword(text) != word) text.fail("has no '" + std::string(word) + "' where a facet needs one");
 }
 
 void readText(std::string_view file, Places& places, std::vector<Triangle>& triangles)
 {
   bool in_solid = false;
   for (TextCursor text(file); text.nextLine();) {
-    const std::string_view key = text.word();
+    const std::string key = keyword(text);
     if (key == "solid") {
       in_solid = true;
     }
@@ -123,7 +130,7 @@ void readText(std::string_view file, Places& places, std::vector<Triangle>& tria
       triangles.push_back(triangle);
     }
     else {
-      text.fail("starts with '" + std::string(key.substr(0, 40)) + "', which no STL file has there");
+      text.fail("starts with '" + key + "', which no STL file has there");
     }
   }
   if (in_solid) throw FormatError("is truncated: it ends before 'endsolid'");

@@ -81,8 +81,8 @@ void findBytes(TextCursor text, bool at_row, Fields& values)
   const bool coloured = std::any_of(laid_out.fields.begin(), laid_out.fields.end(), isPackedColour);
   std::vector<bool> bytes(values.size(), coloured);
   for (at_row = at_row && coloured; at_row; at_row = nextRow(text)) {
-    for (std::size_t i = 0; i < values.size() && !text.line().empty(); ++i) {
-      const std::string_view word = text.word();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const std::string_view word = text.word(); // empty where the row ends early
       if (bytes[i] && !isByte(word)) bytes[i] = false;
     }
   }

@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -67,10 +68,15 @@ public:
     return cloud_.data.data() + record * cloud_.point_step + offsets_[i];
   }
 
-  /// Takes values i from `first` to `last` (exclusive) of that record from the line.
+  /// Takes values i from `first` to `last` (exclusive) of that record from the line. What is empty between separators
+  /// is NaN; a coordinate must not be.
   void take(TextCursor& text, std::size_t record, std::size_t first, std::size_t last)
   {
     for (std::size_t i = first; i < last; ++i) {
+      if (values_[i].datatype == pcl::PCLPointField::FLOAT64 && !isCoordinate(i) && text.takeEmptyWord()) {
+        put(record, i, std::numeric_limits<double>::quiet_NaN());
+        continue;
+      }
       text.parseWord([&](std::string_view word) {
         const bool byte = values_[i].datatype == pcl::PCLPointField::UINT8;
         if (byte && isByte(word)) return put(record, i, parseNumber<double>(word));
@@ -111,6 +117,13 @@ public:
   }
 
 private:
+  bool isCoordinate(std::size_t i) const
+  {
+    return std::any_of(cloud_.fields.begin(), cloud_.fields.end(), [&](const pcl::PCLPointField& field) {
+      return field.offset == offsets_[i] && (field.name == "x" || field.name == "y" || field.name == "z");
+    });
+  }
+
   pcl::PCLPointCloud2 cloud_;
   Fields values_;
   std::vector<std::uint32_t> offsets_;

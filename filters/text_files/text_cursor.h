@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 namespace pcl_bsh::io {
 
@@ -66,6 +67,7 @@ public:
     end_ += bytes;
     ++line_number_;
     line_ = {};
+    ends_with_separator_ = false;
     return true;
   }
 
@@ -82,6 +84,17 @@ public:
     line_.remove_prefix(length);
     skipBlanks();
     return taken;
+  }
+
+  /// Takes the next word if a separator stands where it would be, or the line's last separator is before it.
+  /// @return whether it did
+  bool takeEmptyWord() noexcept
+  {
+    if (line_.empty()) return std::exchange(ends_with_separator_, false);
+    TextCursor behind = *this;
+    if (separator_ == ' ' || !behind.word().empty()) return false;
+    *this = behind;
+    return true;
   }
 
   /// What `parse` gives for the next word, which is taken off the line.
@@ -144,6 +157,7 @@ private:
   {
     const std::size_t length = std::min(line_.find(separator_), line_.size());
     const std::string_view taken = line_.substr(0, length);
+    ends_with_separator_ = length + 1 == line_.size();
     line_.remove_prefix(std::min(length + 1, line_.size()));
     skipBlanks();
     return withoutQuotes(taken.substr(0, taken.find_last_not_of(" \t") + 1));
@@ -158,6 +172,7 @@ private:
   void readLine() noexcept
   {
     const std::size_t begin = end_;
+    ends_with_separator_ = false;
     while (end_ < text_.size() && text_[end_] != '\n' && text_[end_] != '\r') ++end_;
     line_ = text_.substr(begin, end_ - begin);
     if (end_ < text_.size()) end_ += text_.substr(end_).starts_with("\r\n") ? 2 : 1;
@@ -179,7 +194,8 @@ private:
   char comment_;
   char separator_ = ' ';
   std::string_view line_;
-  std::size_t end_ = 0; ///< where the next line begins
+  bool ends_with_separator_ = false; ///< the word taken last is followed by nothing but a separator
+  std::size_t end_ = 0;              ///< where the next line begins
   std::size_t line_number_ = 0;
 };
 

@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -191,6 +192,9 @@ TEST(MeshFile, ReadsStl)
   EXPECT_EQ(ascii.vertices.width, 4u);
   EXPECT_THAT(ascii.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
   EXPECT_EQ(areaOf(readMesh(folder.write("b.STL", text + text))), 2.0);
+  std::string capitals = text;
+  for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  EXPECT_EQ(areaOf(readMesh(folder.write("capitals.stl", capitals))), 1.0);
   for (const char* title : {"made", "solid made by many programs", "solid\n facet"}) {
     const Mesh binary =
         readMesh(folder.write("c.stl", binaryStl({{0, 0, 0, 1, 0, 0, 1, 1, 0}, {0, 0, 0, 1, 1, 0, 0, 1, 0}}, title)));

@@ -46,6 +46,26 @@ TEST(TextClouds, TheFirstRowDecidesTheSeparator)
   EXPECT_EQ(valueOf(named, 0, "z"), 3) << "the names' line may have its own";
 }
 
+TEST(TextClouds, TakesAnEmptyValueForNaN)
+{
+  for (const char* rows :
+       {"x,y,z,i,t\n1,2,3,,5\n1,2,3,4,\n1,2,3,4,5\n", "x;y;z;i;t\n1;2;3;;5\n1;2;3;\"4\";\"\"\n1;2;3;4;5\n"}) {
+    const pcl::PCLPointCloud2 cloud = parseColumns(rows);
+    ASSERT_EQ(cloud.width, 3U) << rows;
+    EXPECT_TRUE(std::isnan(valueOf(cloud, 0, "i"))) << rows;
+    EXPECT_EQ(valueOf(cloud, 0, "t"), 5) << rows;
+    EXPECT_EQ(valueOf(cloud, 1, "i"), 4) << rows;
+    EXPECT_TRUE(std::isnan(valueOf(cloud, 1, "t"))) << rows;
+    EXPECT_EQ(valueOf(cloud, 2, "t"), 5) << rows;
+  }
+  const pcl::PCLPointCloud2 coloured = parseColumns("x,y,z,red,green,blue\n1,2,3,4,5,\n1,2,3,4,5,6\n");
+  EXPECT_TRUE(std::isnan(valueOf(coloured, 0, "blue"))) << "so the channels are no colour";
+  EXPECT_EQ(valueOf(coloured, 1, "blue"), 6);
+  EXPECT_EQ(defectOf([] { parseColumns("x,y,z,i,t\n1,2,3,4\n"); }), "line 2 has fewer values than it should");
+  EXPECT_EQ(defectOf([] { parseColumns("X,Y,Z,i\n1,2,3,4\n1,,3,4\n"); }), "line 3 has an empty value");
+  EXPECT_EQ(defectOf([] { parseColumns("i,x,y,z\n,1,2,\n"); }), "line 2 has fewer values than it should");
+}
+
 TEST(TextClouds, RefusesDecimalCommasAndMixedSeparators)
 {
   EXPECT_EQ(defectOf([] { parseColumns("1,5;2,5;3,5\n"); }), "line 1 is damaged: '1,5' is not a number");

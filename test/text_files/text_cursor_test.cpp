@@ -57,6 +57,32 @@ TEST(TextCursor, TakesOneSeparatorAndNoOther)
   for (const char* word : {"1", "", "3", "4"}) EXPECT_EQ(tabs.word(), word);
 }
 
+TEST(TextCursor, TakesEmptyWordsAlone)
+{
+  TextCursor text("1,,\"\",4,\n5\n6,\n");
+  text.separateBy(',');
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_FALSE(text.takeEmptyWord());
+  EXPECT_EQ(text.number<int>(), 1);
+  EXPECT_TRUE(text.takeEmptyWord());
+  EXPECT_TRUE(text.takeEmptyWord()) << "in quotes";
+  EXPECT_FALSE(text.takeEmptyWord());
+  EXPECT_EQ(text.number<int>(), 4);
+  EXPECT_TRUE(text.takeEmptyWord()) << "behind the last separator";
+  EXPECT_FALSE(text.takeEmptyWord()) << "once";
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(text.number<int>(), 5);
+  EXPECT_FALSE(text.takeEmptyWord()) << "no separator behind the last word";
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(text.number<int>(), 6);
+  EXPECT_FALSE(text.nextLine());
+  EXPECT_FALSE(TextCursor("").takeEmptyWord());
+  TextCursor blanks("1  2 ");
+  ASSERT_TRUE(blanks.nextLine());
+  EXPECT_EQ(blanks.number<int>(), 1);
+  EXPECT_FALSE(blanks.takeEmptyWord());
+}
+
 TEST(TextCursor, ALineTellsItsSeparator)
 {
   EXPECT_EQ(separatorOf("1,5;2,5"), ';');
