@@ -16,7 +16,9 @@ if(PCL_BSH_WITHOUT_PCL)
   return()
 endif()
 find_path(KAINJOW_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)
-mark_as_advanced(KAINJOW_INCLUDE_DIR)
+find_path(LIBDEFLATE_INCLUDE_DIR libdeflate.h REQUIRED) # beside VTK, which needs it, too
+find_library(LIBDEFLATE_LIBRARY deflate REQUIRED)
+mark_as_advanced(KAINJOW_INCLUDE_DIR LIBDEFLATE_INCLUDE_DIR LIBDEFLATE_LIBRARY)
 
 # Without what they need, tests are left out: who only runs the programs need not install it.
 if(PCL_BSH_BUILD_TESTS)

@@ -71,6 +71,27 @@ Bounds joined(const Bounds& a, const Bounds& b)
   return both;
 }
 
+PointsNear::PointsNear(const Bounds& box, double distance, const Bounds& points, const Eigen::Isometry3d& pose)
+: grown_(moved(box, Eigen::Isometry3d::Identity(), distance))
+{
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    double terms = std::abs(pose.translation()[row]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      rows_[k][j] = pose.linear()(row, static_cast<Eigen::Index>(j));
+      terms += std::abs(rows_[k][j]) * std::max(std::abs(points.low[j]), std::abs(points.high[j]));
+    }
+    rows_[k][3] = pose.translation()[row];
+    const double rounding = terms * some_roundings + std::numeric_limits<double>::min();
+    grown_.low[k] -= rounding;
+    grown_.high[k] += rounding;
+    if (std::isfinite(rounding)) continue; // places may overflow: any may be near
+    rows_[k] = {0, 0, 0, 0};
+    grown_.low[k] = -all_of_space;
+    grown_.high[k] = all_of_space;
+  }
+}
+
 CloudBoxes::CloudBoxes(const PointsView& points)
 {
   const auto forEach = [&](const auto& use) {

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -24,6 +25,27 @@ double leastDistance(const Bounds& a, const Bounds& b);
 
 /// The smallest box about both.
 Bounds joined(const Bounds& a, const Bounds& b);
+
+/// Whether a point, moved by a pose, may be within a distance of a box: asked of many points, which lie in a box.
+class PointsNear {
+public:
+  PointsNear(const Bounds& box, double distance, const Bounds& points, const Eigen::Isometry3d& pose);
+
+  /// False: it is farther away, or not finite.
+  bool operator()(const Point3& p) const
+  {
+    bool is_near = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double place = rows_[k][0] * p[0] + rows_[k][1] * p[1] + rows_[k][2] * p[2] + rows_[k][3];
+      is_near = is_near && place >= grown_.low[k] && place <= grown_.high[k];
+    }
+    return is_near;
+  }
+
+private:
+  Bounds grown_; ///< by the distance, and what the places' rounding may be
+  std::array<std::array<double, 4>, 3> rows_;
+};
 
 /// Boxes, in the cloud's frame, about its finite points with their radii and uncertainties: about all of them, and
 /// about those of each cell of a coarse grid.

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/collision/any_collision.h>
 #include <pcl_bsh/collision/closest_pair.h>
-#include <pcl_bsh/query/cancelled.h>
-#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/candidate.h>
 #include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/inquiry.h>
 #include <pcl_bsh/site/needed_tiles.h>
-#include <pcl_bsh/site/records.h>
-#include <pcl_bsh/site/tile_visitor.h>
 #include <pcl_bsh/trajectory/add_summary.h>
 
 #include <algorithm>
@@ -17,27 +15,11 @@ namespace pcl_bsh::sites {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-HierarchyOptions optionsOf(const SiteRequest& request)
-{
-  HierarchyOptions options;
-  options.threads = request.threads;
-  return options;
-}
-
 /// The same where only measured places count.
 SiteRequest measured(SiteRequest request)
 {
   request.uncertainty = {};
   return request;
-}
-
-/// Of what two tiles say of one point of b: one that collides with a tile collides, and is free only if it is of all.
-std::uint8_t surer(std::uint8_t a, std::uint8_t b)
-{
-  const auto collides = flagOf(Verdict::colliding);
-  return a == collides || b == collides ? collides : std::max(a, b);
 }
 
 /// Refuses what the query would refuse of the whole site, although no tile may be asked: the site's corners are.
@@ -89,80 +71,6 @@ std::vector<PoseSummary> summedOverAllRanks(const std::vector<PoseSummary>& own)
     add(sum, part);
   }
   return sum;
-}
-
-std::vector<TileCost> costsOfAllRanks(const TileVisitor& visitor)
-{
-  std::vector<double> own;
-  for (const TileCost& cost : visitor.costs())
-    own.insert(own.end(), {static_cast<double>(cost.tile), static_cast<double>(cost.place), cost.reading, cost.asking});
-  const std::vector<double> all = gatheredFromAllRanks(own);
-  std::vector<TileCost> costs;
-  for (std::size_t i = 0; i < all.size(); i += 4)
-    costs.push_back(
-        {static_cast<std::uint32_t>(all[i]), static_cast<std::uint32_t>(all[i + 1]), all[i + 2], all[i + 3]});
-  std::sort(costs.begin(), costs.end(), [](const TileCost& c, const TileCost& d) { return c.place < d.place; });
-  return costs;
-}
-
-/// Asks one question about tiles.
-class Inquiry {
-public:
-  Inquiry(const Site& site, const SiteRequest& request) : site_(site), request_(request), visitor_(site, request.memory)
-  {
-    found_.tiles = site.tiles.size();
-  }
-
-  /// Calls ask(tile, cloud, its hierarchy).
-  template <typename Ask>
-  TilesRead visit(const std::vector<std::uint32_t>& tiles, const Ask& ask,
-                  const std::function<bool(std::size_t)>& go_on = nullptr)
-  {
-    found_.needed = tiles.size();
-    const auto use = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
-      const PointsView view =
-          withUncertainty(viewOf(cloud), cloud.fields, (site_.folder / tile.file).string(), request_.uncertainty);
-      ask(tile, cloud, SphereHierarchy(view, optionsOf(request_)));
-      if (request_.progress && !request_.progress(visitor_.read())) throw Cancelled();
-    };
-    visitor_.visit(tiles, use, go_on);
-    found_.read = sumOfAllRanks(visitor_.read());
-    found_.costs = costsOfAllRanks(visitor_);
-    return found_;
-  }
-
-private:
-  const Site& site_;
-  const SiteRequest& request_;
-  TileVisitor visitor_;
-  TilesRead found_;
-};
-
-/// A point of the site that may be nearest.
-struct Candidate {
-  Point3 place;
-  SitePoint point;
-  double distance;
-};
-
-/// Of all ranks. Numbers of 32 bits are exact as doubles.
-std::vector<Candidate> gathered(const std::vector<Candidate>& own)
-{
-  std::vector<double> numbers;
-  for (const Candidate& c : own) {
-    numbers.insert(numbers.end(), {c.place[0], c.place[1], c.place[2], static_cast<double>(c.point.source),
-                                   static_cast<double>(c.point.record), c.distance});
-  }
-  const std::vector<double> all = gatheredFromAllRanks(numbers);
-  std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < all.size(); i += 6) {
-    candidates.push_back({{all[i], all[i + 1], all[i + 2]},
-                          {static_cast<std::uint32_t>(all[i + 3]), static_cast<std::uint32_t>(all[i + 4])},
-                          all[i + 5]});
-  }
-  std::sort(candidates.begin(), candidates.end(),
-            [](const Candidate& c, const Candidate& d) { return c.point < d.point; });
-  return candidates;
 }
 
 } // namespace
@@ -253,11 +161,7 @@ SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& as
     lower = std::min(lower, found.interval.lower);
     if (!found.pair || found.distance > least) return;
     least = found.distance;
-    const std::uint8_t* const record = cloud.data.data() + std::size_t{found.pair->a} * cloud.point_step;
-    candidates.push_back(
-        {hierarchy.view().point(found.pair->a),
-         {numberAt(record + offsetOf(cloud, source_field_name)), numberAt(record + offsetOf(cloud, record_field_name))},
-         found.distance});
+    candidates.push_back({hierarchy.view().point(found.pair->a), nameOf(cloud, found.pair->a), found.distance});
   };
   const auto go_on = [&](std::size_t visited) {
     least = leastOfAllRanks(least);
@@ -267,22 +171,14 @@ SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& as
   result.tiles = inquiry.visit(tiles, ask, go_on);
 
   // Distances that round to the same double may differ: the nearest of each tile are compared once more, exactly.
-  candidates = gathered(candidates);
-  std::vector<Point3> places;
-  std::vector<SitePoint> points;
-  for (const Candidate& candidate : candidates) {
-    if (candidate.distance != least) continue;
-    places.push_back(candidate.place);
-    points.push_back(candidate.point);
-  }
+  const Candidates last(candidates, least);
   lower = leastOfAllRanks(lower);
-  if (places.empty()) return result;
-  const SphereHierarchy last(viewOf(places.front().data(), places.size()));
+  if (last.points.empty()) return result;
   wanted.accuracy = {};
-  const DistanceResult nearest = pcl_bsh::closestPair({last}, b, wanted);
+  const DistanceResult nearest = pcl_bsh::closestPair({last.hierarchy()}, b, wanted);
   result.interval = {std::min(lower, nearest.interval.lower), nearest.interval.upper};
   result.distance = nearest.distance;
-  result.point = points[nearest.pair->a];
+  result.point = last.points[nearest.pair->a];
   result.b = nearest.pair->b;
   return result;
 }

@@ -17,7 +17,8 @@ std::vector<Bounds> placedParts(const CloudBoxes& boxes, const Eigen::Isometry3d
   return parts;
 }
 
-/// The box about wherever the points of a tile may truly be. @pre it has one
+} // namespace
+
 Bounds trueBounds(const Tile& tile, const Uncertainty& uncertainty)
 {
   double length = uncertainty.length;
@@ -28,8 +29,6 @@ Bounds trueBounds(const Tile& tile, const Uncertainty& uncertainty)
   }
   return length == 0.0 ? *tile.bounds : moved(*tile.bounds, Eigen::Isometry3d::Identity(), length);
 }
-
-} // namespace
 
 void requireUncertainty(const Site& site, const Uncertainty& uncertainty)
 {

@@ -19,6 +19,9 @@ namespace pcl_bsh::sites {
 ///   not say how large its values are
 void requireUncertainty(const Site& site, const Uncertainty& uncertainty);
 
+/// The box about wherever the points of a tile may truly be. @pre it has one
+Bounds trueBounds(const Tile& tile, const Uncertainty& uncertainty);
+
 /// Tiles that may have a point within the distance of b, wherever points truly are.
 std::vector<std::uint32_t> tilesWithin(const Site& site, const Placed& b, double distance,
                                        const Uncertainty& uncertainty = {});

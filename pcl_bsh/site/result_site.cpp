@@ -2,13 +2,12 @@
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/unfinished.h>
 #include <pcl_bsh/filters/cloud_files/field_type.h>
+#include <pcl_bsh/site/checksum.h>
 #include <pcl_bsh/site/records.h>
 #include <pcl_bsh/site/result_site.h>
 #include <pcl_bsh/site/tile_file.h>
 #include <pcl_bsh/site/tile_visitor.h>
 #include <pcl_bsh/site/unfinished_site.h>
-
-#include <boost/crc.hpp>
 
 #include <algorithm>
 #include <numeric>
@@ -78,7 +77,7 @@ public:
     TileFile file(add(tileFileName(number)), layout_.fields, result_buffer);
     const std::size_t source_at = offsetOf(layout_, source_field_name),
                       record_at = offsetOf(layout_, record_field_name);
-    boost::crc_32_type crc;
+    Checksum checksum;
     for (std::size_t i = 0; i < cloud.width; ++i) {
       copy_(cloud.data.data() + i * cloud.point_step, record_.data());
       for (std::size_t k = 0; k < places_.size(); ++k) {
@@ -88,7 +87,7 @@ public:
             column == nullptr ? place.none.data() : static_cast<const std::uint8_t*>(column) + i * place.bytes;
         std::memcpy(record_.data() + place.offset, value, place.bytes);
       }
-      crc.process_bytes(record_.data(), record_.size());
+      checksum.add(record_.data(), record_.size());
       file.add(record_.data(), record_.size());
       const std::uint32_t source = numberAt(record_.data() + source_at);
       if (source >= begins_.size()) failAsDamaged(tile, source);
@@ -97,7 +96,7 @@ public:
     }
     file.finish();
     written_.push_back(static_cast<double>(number));
-    written_.push_back(static_cast<double>(crc.checksum()));
+    written_.push_back(static_cast<double>(checksum.value()));
   }
 
   Site finish()

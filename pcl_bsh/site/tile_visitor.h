@@ -27,6 +27,9 @@ public:
   /// @throws std::invalid_argument when the largest tile needs more
   TileVisitor(const Site& site, std::uint64_t memory);
 
+  /// What the points of the largest tile and their hierarchy need.
+  std::uint64_t bytesForLargest() const noexcept { return bytes_for_largest_; }
+
   using Use = std::function<void(const Tile&, const pcl::PCLPointCloud2&)>;
 
   /// Calls `use` with each of these tiles, on one of the ranks. To be called by all ranks with the same list.
@@ -45,6 +48,7 @@ public:
 
 private:
   const Site& site_;
+  std::uint64_t bytes_for_largest_ = 0;
   std::uint64_t read_ = 0;
   std::vector<TileCost> costs_;
 };

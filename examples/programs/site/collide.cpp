@@ -6,20 +6,17 @@
 #include <stdexcept>
 
 #ifdef PCL_BSH_SITE_QUERIES
-#include <pcl_bsh/files/file_identity.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 
 #include "clashes.h"
+#include "collide_sites.h"
 #include "output.h"
-#include "plan.h"
-
-#include <nlohmann/json.hpp>
+#include "report.h"
 
 #include <chrono>
-#include <cmath>
 #include <iostream>
 #endif
 
@@ -28,54 +25,18 @@ namespace pcl_bsh::cli {
 #ifdef PCL_BSH_SITE_QUERIES
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// NaN has no place in JSON.
-Json orNull(double number)
-{
-  return std::isfinite(number) ? Json(number) : Json(nullptr);
-}
-
-void put(Json& report, const sites::TilesRead& tiles, MeasuredRun& run)
-{
-  run.tiles = tiles.costs;
-  report["tiles"] = {{"all", tiles.tiles}, {"needed", tiles.needed}, {"read", tiles.read}};
-}
-
-/// What the tiles have cost, and how long the run would take on other numbers of ranks.
-void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun& run)
-{
-  Json& costs = report["costs"] = {
-      {"ranks", run.ranks}, {"seconds", run.seconds}, {"copying", run.copying}, {"tiles", Json::array()}};
-  for (const sites::TileCost& cost : run.tiles)
-    costs["tiles"].push_back({{"tile", cost.tile}, {"reading", cost.reading}, {"asking", cost.asking}});
-  for (const unsigned n : ranks) {
-    const RunPlan plan = planRun(run, n);
-    report["plan"].push_back({{"ranks", plan.ranks},
-                              {"seconds", plan.seconds},
-                              {"limit", plan.limit},
-                              {"on_all", plan.on_all},
-                              {"copying", plan.copying},
-                              {"busiest", plan.busiest},
-                              {"even", plan.even},
-                              {"reading", plan.reading}});
-  }
-}
-
 /// The answer, the same on all ranks.
-Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& options, SiteOutput& out,
-         SiteClashList& clashes, MeasuredRun& run)
+Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const SiteOptions& options, SiteOutput& out,
+                SiteClashList& clashes, MeasuredRun& run)
 {
-  sites::SiteRequest request;
-  request.clearance = options.clearance;
-  request.threads = options.threads;
-  request.memory = options.memory;
-  request.accuracy = options.accuracy;
-  request.uncertainty = options.uncertainty;
-  Json report = {{"site", options.site.string()}, {"obstacle", options.obstacle.string()}, {"points", site.points}};
-  const bool has_clearance = options.question != SiteQuestion::closest && options.question != SiteQuestion::distances;
-  if (has_clearance) report["clearance"] = options.clearance;
-  report["accuracy"] = options.accuracy.text();
+  HierarchyOptions building;
+  building.threads = options.threads;
+  const SphereHierarchy hierarchy(
+      withUncertainty(viewOf(cloud.cloud), cloud.cloud.fields, options.obstacle.string(), options.obstacle_uncertainty),
+      building);
+  const Placed obstacle(hierarchy, options.pose);
+  sites::SiteRequest request = requestOf(options);
+  Json report = beginReport(site, options);
   switch (options.question) {
   case SiteQuestion::any: {
     const sites::SiteAny found = sites::anyCollision(site, obstacle, request);
@@ -86,7 +47,7 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
   }
   case SiteQuestion::flags: {
     const sites::SiteFlags found = sites::collisionFlags(site, obstacle, Side::both, request, out.flags());
-    out.writeObstacle(found.b);
+    cloud.write(found.b, options);
     report["colliding"] = found.colliding;
     report["undecided"] = found.undecided;
     report["colliding_of_obstacle"] = found.colliding_b;
@@ -99,7 +60,7 @@ Json ask(const sites::Site& site, const Placed& obstacle, const SiteOptions& opt
     report["distance"] = orNull(found.distance);
     report["distance_interval"] = {orNull(found.interval.lower), orNull(found.interval.upper)};
     if (found.point) {
-      report["point"] = {{"source", site.sources.at(found.point->source).file}, {"record", found.point->record}};
+      report["point"] = named(site, *found.point);
       report["point_of_obstacle"] = found.b;
     }
     put(report, found.tiles, run);
@@ -151,15 +112,13 @@ int answer(const SiteOptions& options)
   const sites::Site site = sites::readSite(options.site);
   SiteClashList clashes(site, options);
   if (tells) warn(site_program, clashes.warnings());
-  const ObstacleCloud read(options);
-  const pcl::PCLPointCloud2& cloud = read.cloud;
-  HierarchyOptions building;
-  building.threads = options.threads;
-  const SphereHierarchy hierarchy(
-      withUncertainty(viewOf(cloud), cloud.fields, options.obstacle.string(), options.obstacle_uncertainty), building);
-  SiteOutput output(site, read, options);
+  SiteOutput output(site, options);
   MeasuredRun run;
-  Json report = ask(site, {hierarchy, options.pose}, options, output, clashes, run);
+  Json report;
+  if (options.obstacleIsSite())
+    report = askOfSite(site, options, output, run);
+  else
+    report = askOfCloud(site, ObstacleCloud(options), options, output, clashes, run);
   run.seconds = seconds();
   output.finish();
   run.copying = seconds() - run.seconds;

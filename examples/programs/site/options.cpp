@@ -31,7 +31,9 @@ Example: where does a machine come within 5 cm of it on its way? On one process,
   pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
   mpirun -n 4 pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
 Example: the same as a page, place by place
-  pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html)";
+  pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html
+Example: what of two epochs has no point of the other within 10 cm
+  pcl_bsh_site collide now before --clearance 0.1 --out now_marked --obstacle-out before_marked)";
 
 void addMemory(CLI::App& app, SiteOptions& options)
 {
@@ -42,7 +44,8 @@ void addMemory(CLI::App& app, SiteOptions& options)
 
 #ifdef PCL_BSH_SITE_QUERIES
 /// Whatever lies in the site's folder is its own: no file of an answer may take a tile's place.
-void requireOutside(const std::filesystem::path& site, const char* option, const std::filesystem::path& file)
+void requireOutside(const std::filesystem::path& site, const char* name, const char* option,
+                    const std::filesystem::path& file)
 {
   namespace fs = std::filesystem;
   if (file.empty()) return;
@@ -50,7 +53,8 @@ void requireOutside(const std::filesystem::path& site, const char* option, const
   const fs::path home = fs::weakly_canonical(site, error), target = fs::weakly_canonical(fs::absolute(file), error);
   const auto [home_end, unused] = std::mismatch(home.begin(), home.end(), target.begin(), target.end());
   if (!error && home_end == home.end())
-    throw UsageError(std::string(option) + ": " + file.string() + ": lies in the folder of SITE: choose another place");
+    throw UsageError(std::string(option) + ": " + file.string() + ": lies in the folder of " + name +
+                     ": choose another place");
 }
 
 /// The options of `collide` as they are written.
@@ -62,7 +66,8 @@ struct CollideTexts {
 
   void addTo(CLI::App& app, SiteOptions& options)
   {
-    app.add_option("OBSTACLE", options.obstacle, "cloud to collide with, which must fit into memory")
+    app.add_option("OBSTACLE", options.obstacle,
+                   "cloud to collide with, which must fit into memory; or another site of any size")
         ->type_name("")
         ->required();
     app.add_option("--report", options.report, "JSON file for the answer; -: standard output")->type_name("FILE");
@@ -98,7 +103,7 @@ struct CollideTexts {
     app.add_option(
            "--obstacle-out", options.obstacle_out,
            "OBSTACLE's points with all their fields, and which of them collide with SITE in a field 'collision'; "
-           "not with --trajectory or --clashes")
+           "a new site where OBSTACLE is one; not with --trajectory or --clashes")
         ->type_name("FILE");
     app.add_option(
            "--accuracy", accuracy,
@@ -156,11 +161,21 @@ struct CollideTexts {
     if (options.swept && !moves) throw UsageError("--swept: goes with --trajectory: add it");
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
     if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
-    requireOutside(options.site, "--report", options.report);
-    requireOutside(options.site, "--obstacle-out", options.obstacle_out);
-    for (const std::filesystem::path& list : options.clashes) requireOutside(options.site, "--clashes", list);
+    const bool two_sites = options.obstacleIsSite();
+    if (two_sites && (moves || lists)) {
+      throw UsageError(std::string(moves ? "--trajectory" : "--clashes") + ": OBSTACLE, " + options.obstacle.string() +
+                       ", is a site, for which this is not answered: give a cloud, or leave the option out");
+    }
+    const auto require_outside_sites = [&](const char* option, const std::filesystem::path& file) {
+      requireOutside(options.site, "SITE", option, file);
+      if (two_sites) requireOutside(options.obstacle, "OBSTACLE", option, file);
+    };
+    require_outside_sites("--report", options.report);
+    require_outside_sites("--obstacle-out", options.obstacle_out);
+    for (const std::filesystem::path& list : options.clashes) require_outside_sites("--clashes", list);
     CommandFiles& files = options.files;
-    files.reads("SITE", options.site / sites::site_file_name).reads("OBSTACLE", options.obstacle);
+    files.reads("SITE", options.site / sites::site_file_name);
+    files.reads("OBSTACLE", two_sites ? options.obstacle / sites::site_file_name : options.obstacle);
     files.readsPose("--pose", pose).reads("--trajectory", options.trajectory);
     files.reads("--previous", options.previous.value_or("")).writes("--report", options.report);
     files.writesFile("--obstacle-out", options.obstacle_out);

@@ -37,9 +37,11 @@ struct SiteOptions {
   bool json = false; ///< of `info` and `validate`: what they tell
 
   // of `collide`
+  /// Whether the obstacle is a site, too: a folder.
+  bool obstacleIsSite() const { return std::filesystem::is_directory(obstacle); }
   SiteQuestion question = SiteQuestion::flags;
   std::filesystem::path obstacle, trajectory, report;
-  std::filesystem::path obstacle_out;         ///< the obstacle with its flags, or none
+  std::filesystem::path obstacle_out;         ///< the obstacle with its flags, a cloud or a site as it, or none
   std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;

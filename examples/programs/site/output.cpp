@@ -23,7 +23,7 @@ bool tellsPoses(const SiteOptions& options)
 /// The fields that each question answers with, as those of pcl_bsh_collide.
 std::vector<sites::ResultField> resultFields(const SiteOptions& options)
 {
-  const sites::ResultField collision = {collision_field_name, Type::UINT8, 0.0},
+  const sites::ResultField collision = collisionField(),
                            distance = {distance_field_name, Type::FLOAT32, std::numeric_limits<double>::quiet_NaN()},
                            first = {first_pose_field_name, Type::INT32, -1.0},
                            closest = {closest_pose_field_name, Type::INT32, -1.0};
@@ -40,7 +40,19 @@ std::vector<sites::ResultField> resultFields(const SiteOptions& options)
   }
 }
 
+std::vector<float> inFloats(const std::vector<double>& numbers)
+{
+  std::vector<float> floats;
+  for (const double number : numbers) floats.push_back(static_cast<float>(number));
+  return floats;
+}
+
 } // namespace
+
+sites::ResultField collisionField()
+{
+  return {collision_field_name, Type::UINT8, 0.0};
+}
 
 ObstacleCloud::ObstacleCloud(const SiteOptions& options)
 {
@@ -50,9 +62,13 @@ ObstacleCloud::ObstacleCloud(const SiteOptions& options)
   withField(withoutRecords(cloud), collision_field_name, {}); // fails now
 }
 
-SiteOutput::SiteOutput(const sites::Site& site, const ObstacleCloud& obstacle, const SiteOptions& options)
-: obstacle_(obstacle),
-  options_(options)
+void ObstacleCloud::write(const std::vector<std::uint8_t>& flags, const SiteOptions& options) const
+{
+  if (options.obstacle_out.empty() || sites::rankHere() != 0) return;
+  io::writeCloud(options.obstacle_out, withField(cloud, collision_field_name, flags), viewpoint, las);
+}
+
+SiteOutput::SiteOutput(const sites::Site& site, const SiteOptions& options) : options_(options)
 {
   if (!options.out.empty()) out_.emplace(site, options.out, resultFields(options));
 }
@@ -69,9 +85,15 @@ sites::DistancesSink SiteOutput::distances()
 {
   if (!out_) return nullptr;
   return [this](const sites::Tile& tile, const pcl::PCLPointCloud2& cloud, const PointDistances& found) {
-    std::vector<float> distance;
-    for (const double d : found.distance) distance.push_back(static_cast<float>(d));
-    out_->write(tile, cloud, {distance.data()});
+    out_->write(tile, cloud, {inFloats(found.distance).data()});
+  };
+}
+
+sites::PairDistancesSink SiteOutput::distancesOfSites()
+{
+  if (!out_) return nullptr;
+  return [this](const sites::Tile& tile, const pcl::PCLPointCloud2& cloud, const std::vector<double>& distance) {
+    out_->write(tile, cloud, {inFloats(distance).data()});
   };
 }
 
@@ -84,13 +106,6 @@ sites::PassageSink SiteOutput::passage()
       columns.insert(columns.end(), {found.distance.data(), found.first_pose.data(), found.closest_pose.data()});
     out_->write(tile, cloud, columns);
   };
-}
-
-void SiteOutput::writeObstacle(const std::vector<std::uint8_t>& flags) const
-{
-  if (options_.obstacle_out.empty() || sites::rankHere() != 0) return;
-  io::writeCloud(options_.obstacle_out, withField(obstacle_.cloud, collision_field_name, flags), obstacle_.viewpoint,
-                 obstacle_.las);
 }
 
 void SiteOutput::finish()

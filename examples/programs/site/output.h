@@ -5,10 +5,12 @@
 #include "options.h"
 
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/collide_sites.h>
 #include <pcl_bsh/site/result_site.h>
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace pcl_bsh::cli {
 
@@ -17,27 +19,32 @@ struct ObstacleCloud {
   /// @throws files::FileError, also where its points shall be written and cannot
   explicit ObstacleCloud(const SiteOptions& options);
 
+  /// Writes its points with these flags, where they are asked for: on the first rank.
+  void write(const std::vector<std::uint8_t>& flags, const SiteOptions& options) const;
+
   pcl::PCLPointCloud2 cloud;
   io::Viewpoint viewpoint = io::no_viewpoint;
   io::LasHeaderPtr las;
 };
 
-/// The site of results, and the obstacle with its flags, where they are asked for; else its sinks are null.
+/// The field of flags at one pose.
+sites::ResultField collisionField();
+
+/// The site of results, where it is asked for; else its sinks are null.
 class SiteOutput {
 public:
   /// @throws files::FileError for a folder that cannot be one
-  SiteOutput(const sites::Site& site, const ObstacleCloud& obstacle, const SiteOptions& options);
+  SiteOutput(const sites::Site& site, const SiteOptions& options);
 
   sites::FlagsSink flags();
   sites::DistancesSink distances();
+  sites::PairDistancesSink distancesOfSites();
   sites::PassageSink passage();
-  void writeObstacle(const std::vector<std::uint8_t>& flags) const;
 
   /// After the question. To be called by all ranks.
   void finish();
 
 private:
-  const ObstacleCloud& obstacle_;
   const SiteOptions& options_;
   std::optional<sites::ResultSite> out_;
 };

@@ -106,10 +106,10 @@ std::string gatheredFromAllRanks(const std::string& bytes)
 TileVisitor::TileVisitor(const Site& site, std::uint64_t memory) : site_(site)
 {
   // A tile and its hierarchy, which takes at most twice 32 bytes for each point.
-  std::uint64_t most = 0;
-  for (const Tile& tile : site.tiles) most = std::max(most, tile.points * (recordBytes(site) + 64));
-  if (most > memory) {
-    throw std::invalid_argument("memory: the largest tile needs " + std::to_string(most) +
+  for (const Tile& tile : site.tiles)
+    bytes_for_largest_ = std::max<std::uint64_t>(bytes_for_largest_, tile.points * (recordBytes(site) + 64));
+  if (bytes_for_largest_ > memory) {
+    throw std::invalid_argument("memory: the largest tile needs " + std::to_string(bytes_for_largest_) +
                                 " bytes: give more, or make the site again with smaller tiles");
   }
 }

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifdef PCL_BSH_SITE_QUERIES
+#include "collide_sites.h"
+
+#include <stdexcept>
+
+namespace pcl_bsh::cli {
+
+namespace {
+
+/// Flags of both sides: each in tiles of its own.
+void askFlags(const sites::Site& site, const sites::PlacedSite& obstacle, const SiteOptions& options, SiteOutput& out,
+              Json& report, MeasuredRun& run)
+{
+  std::optional<sites::ResultSite> obstacle_out;
+  if (!options.obstacle_out.empty())
+    obstacle_out.emplace(obstacle.site, options.obstacle_out, std::vector{collisionField()});
+  const sites::SiteRequest request = requestOf(options);
+  const sites::SitePairFlags found = sites::collisionFlags(site, obstacle, request, out.flags());
+  report["colliding"] = found.colliding;
+  report["undecided"] = found.undecided;
+  put(report, found.tiles, run);
+  putTiles(report, "tiles_of_obstacle", found.tiles_b);
+  if (!obstacle_out) return;
+  const sites::SitePairFlags of_obstacle =
+      sites::collisionFlagsOfB(site, obstacle, request,
+                               [&](const sites::Tile& tile, const pcl::PCLPointCloud2& cloud,
+                                   const FlagsResult& flags) { obstacle_out->write(tile, cloud, {flags.a.data()}); });
+  obstacle_out->finish();
+  report["colliding_of_obstacle"] = of_obstacle.colliding;
+  report["undecided_of_obstacle"] = of_obstacle.undecided;
+}
+
+} // namespace
+
+Json askOfSite(const sites::Site& site, const SiteOptions& options, SiteOutput& out, MeasuredRun& run)
+{
+  const sites::Site other = sites::readSite(options.obstacle);
+  const sites::PlacedSite obstacle{other, options.pose, options.obstacle_uncertainty};
+  const sites::SiteRequest request = requestOf(options);
+  Json report = beginReport(site, options);
+  report["points_of_obstacle"] = other.points;
+  switch (options.question) {
+  case SiteQuestion::any: {
+    const sites::SitePairAny found = sites::anyCollision(site, obstacle, request);
+    report["collides"] = found.verdict == Verdict::colliding;
+    report["undecided"] = found.verdict == Verdict::undecided;
+    put(report, found.tiles, run);
+    putTiles(report, "tiles_of_obstacle", found.tiles_b);
+    break;
+  }
+  case SiteQuestion::flags:
+    askFlags(site, obstacle, options, out, report, run);
+    break;
+  case SiteQuestion::closest: {
+    const sites::SitePairClosest found = sites::closestPair(site, obstacle, request);
+    report["distance"] = orNull(found.distance);
+    report["distance_interval"] = {orNull(found.interval.lower), orNull(found.interval.upper)};
+    if (found.point) {
+      report["point"] = named(site, *found.point);
+      report["point_of_obstacle"] = named(other, *found.point_b);
+    }
+    put(report, found.tiles, run);
+    putTiles(report, "tiles_of_obstacle", found.tiles_b);
+    break;
+  }
+  case SiteQuestion::distances: {
+    const sites::SitePairDistances found =
+        sites::pointDistances(site, obstacle, options.max_distance, request, out.distancesOfSites());
+    report["max_distance"] = orNull(options.max_distance);
+    report["measured"] = found.measured;
+    report["greatest"] = orNull(found.greatest);
+    put(report, found.tiles, run);
+    putTiles(report, "tiles_of_obstacle", found.tiles_b);
+    break;
+  }
+  case SiteQuestion::path:
+    throw std::logic_error("OBSTACLE is a site: paths and clash lists are refused before");
+  }
+  return report;
+}
+
+} // namespace pcl_bsh::cli
+#endif

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// pcl_bsh_site collide SITE OBSTACLE, where the obstacle is a site, too.
+#pragma once
+
+#include "options.h"
+#include "output.h"
+#include "report.h"
+
+namespace pcl_bsh::cli {
+
+/// The answer, the same on all ranks. Writes the site of the obstacle's flags, where it is asked for.
+Json askOfSite(const sites::Site& site, const SiteOptions& options, SiteOutput& out, MeasuredRun& run);
+
+} // namespace pcl_bsh::cli

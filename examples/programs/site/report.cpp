@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifdef PCL_BSH_SITE_QUERIES
+#include "report.h"
+
+#include <cmath>
+
+namespace pcl_bsh::cli {
+
+sites::SiteRequest requestOf(const SiteOptions& options)
+{
+  sites::SiteRequest request;
+  request.clearance = options.clearance;
+  request.threads = options.threads;
+  request.memory = options.memory;
+  request.accuracy = options.accuracy;
+  request.uncertainty = options.uncertainty;
+  return request;
+}
+
+Json beginReport(const sites::Site& site, const SiteOptions& options)
+{
+  Json report = {{"site", options.site.string()}, {"obstacle", options.obstacle.string()}, {"points", site.points}};
+  const bool has_clearance = options.question != SiteQuestion::closest && options.question != SiteQuestion::distances;
+  if (has_clearance) report["clearance"] = options.clearance;
+  report["accuracy"] = options.accuracy.text();
+  return report;
+}
+
+Json orNull(double number)
+{
+  return std::isfinite(number) ? Json(number) : Json(nullptr);
+}
+
+void putTiles(Json& report, const char* key, const sites::TilesRead& tiles)
+{
+  report[key] = {{"all", tiles.tiles}, {"needed", tiles.needed}, {"read", tiles.read}};
+}
+
+Json named(const sites::Site& site, const sites::SitePoint& point)
+{
+  return {{"source", site.sources.at(point.source).file}, {"record", point.record}};
+}
+
+void put(Json& report, const sites::TilesRead& tiles, MeasuredRun& run)
+{
+  run.tiles = tiles.costs;
+  putTiles(report, "tiles", tiles);
+}
+
+void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun& run)
+{
+  Json& costs = report["costs"] = {
+      {"ranks", run.ranks}, {"seconds", run.seconds}, {"copying", run.copying}, {"tiles", Json::array()}};
+  for (const sites::TileCost& cost : run.tiles)
+    costs["tiles"].push_back({{"tile", cost.tile}, {"reading", cost.reading}, {"asking", cost.asking}});
+  for (const unsigned n : ranks) {
+    const RunPlan plan = planRun(run, n);
+    report["plan"].push_back({{"ranks", plan.ranks},
+                              {"seconds", plan.seconds},
+                              {"limit", plan.limit},
+                              {"on_all", plan.on_all},
+                              {"copying", plan.copying},
+                              {"busiest", plan.busiest},
+                              {"even", plan.even},
+                              {"reading", plan.reading}});
+  }
+}
+
+} // namespace pcl_bsh::cli
+#endif

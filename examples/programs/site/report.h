@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What pcl_bsh_site collide is asked, and what its report says whatever the question.
+#pragma once
+
+#include "options.h"
+#include "plan.h"
+
+#include <nlohmann/json.hpp>
+
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+using Json = nlohmann::ordered_json;
+
+sites::SiteRequest requestOf(const SiteOptions& options);
+
+/// What was asked.
+Json beginReport(const sites::Site& site, const SiteOptions& options);
+
+/// NaN and infinity have no place in JSON.
+Json orNull(double number);
+
+/// @param key of the report
+void putTiles(Json& report, const char* key, const sites::TilesRead& tiles);
+
+/// The tiles of the site asked about, and what they have cost.
+void put(Json& report, const sites::TilesRead& tiles, MeasuredRun& run);
+
+/// A point of a site, by its name.
+Json named(const sites::Site& site, const sites::SitePoint& point);
+
+/// What the tiles have cost, and how long the run would take on other numbers of ranks.
+void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun& run);
+
+} // namespace pcl_bsh::cli

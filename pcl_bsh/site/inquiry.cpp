@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/site/inquiry.h>
+
+namespace pcl_bsh::sites {
+
+std::vector<TileCost> Inquiry::costsOfAllRanks() const
+{
+  std::vector<double> own;
+  for (const TileCost& cost : visitor_.costs())
+    own.insert(own.end(), {static_cast<double>(cost.tile), static_cast<double>(cost.place), cost.reading, cost.asking});
+  const std::vector<double> all = gatheredFromAllRanks(own);
+  std::vector<TileCost> costs;
+  for (std::size_t i = 0; i < all.size(); i += 4)
+    costs.push_back(
+        {static_cast<std::uint32_t>(all[i]), static_cast<std::uint32_t>(all[i + 1]), all[i + 2], all[i + 3]});
+  std::sort(costs.begin(), costs.end(), [](const TileCost& c, const TileCost& d) { return c.place < d.place; });
+  return costs;
+}
+
+} // namespace pcl_bsh::sites

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One question about tiles of a site.
+#pragma once
+
+#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/tile_visitor.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace pcl_bsh::sites {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Of what two tiles say of one point: one that collides with a tile collides, and is free only if it is of all.
+inline std::uint8_t surer(std::uint8_t a, std::uint8_t b)
+{
+  const auto collides = flagOf(Verdict::colliding);
+  return a == collides || b == collides ? collides : std::max(a, b);
+}
+
+class Inquiry {
+public:
+  Inquiry(const Site& site, const SiteRequest& request) : site_(site), request_(request), visitor_(site, request.memory)
+  {
+    found_.tiles = site.tiles.size();
+  }
+
+  /// Calls ask(tile, cloud, its hierarchy) for these tiles, on one of the ranks each.
+  /// @param go_on as that of TileVisitor::visit()
+  template <typename Ask>
+  TilesRead visit(const std::vector<std::uint32_t>& tiles, const Ask& ask,
+                  const std::function<bool(std::size_t)>& go_on = nullptr)
+  {
+    found_.needed = tiles.size();
+    const auto use = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
+      ask(tile, cloud, SphereHierarchy(pointsOf(cloud, site_, tile, request_.uncertainty), building()));
+      if (request_.progress && !request_.progress(visitor_.read())) throw Cancelled();
+    };
+    visitor_.visit(tiles, use, go_on);
+    found_.read = sumOfAllRanks(visitor_.read());
+    found_.costs = costsOfAllRanks();
+    return found_;
+  }
+
+  std::uint64_t bytesForLargest() const noexcept { return visitor_.bytesForLargest(); }
+
+  /// How hierarchies of tiles are built.
+  HierarchyOptions building() const
+  {
+    HierarchyOptions options;
+    options.threads = request_.threads;
+    return options;
+  }
+
+  /// The points of a tile, or of a part of it, with their uncertainties.
+  static PointsView pointsOf(const pcl::PCLPointCloud2& cloud, const Site& site, const Tile& tile,
+                             const Uncertainty& uncertainty)
+  {
+    return withUncertainty(viewOf(cloud), cloud.fields, (site.folder / tile.file).string(), uncertainty);
+  }
+
+private:
+  std::vector<TileCost> costsOfAllRanks() const;
+
+  const Site& site_;
+  const SiteRequest& request_;
+  TileVisitor visitor_;
+  TilesRead found_;
+};
+
+} // namespace pcl_bsh::sites

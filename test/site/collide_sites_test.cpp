@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Questions about two sites have the answers of one hierarchy over all points of each, whatever the tiles and the
+// ranks.
+#include "../programs/program_run.h"
+#include "float64_cloud.h"
+
+#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/site/check_site.h>
+#include <pcl_bsh/site/make_site.h>
+
+#ifdef PCL_BSH_SITE_QUERIES
+#include <pcl_bsh/site/collide_sites.h>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+#include <utility>
+
+namespace pcl_bsh::sites {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Cloud = pcl::PCLPointCloud2;
+using Points = std::vector<Point3>;
+
+/// A wavy floor with a dense patch, and points that are none.
+Points floorOf(std::size_t n, unsigned seed)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Points points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double size = i % 2 == 0 ? 10.0 : 0.5, x = size * unit(random), y = size * unit(random);
+    points.push_back({x, y, std::sin(x) * std::cos(y)});
+  }
+  for (std::size_t i = 5; i < n; i += 400) points[i][1] = std::numeric_limits<double>::quiet_NaN();
+  return points;
+}
+
+/// A lattice, some points of which are there twice.
+Points lattice(int side, double shift, double height)
+{
+  Points points;
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j)
+      for (int twice = 0; twice < (i % 3 == 0 ? 2 : 1); ++twice)
+        points.push_back({side - i + shift, double(j), height});
+  return points;
+}
+
+class CollideSites : public testing::Test {
+protected:
+  /// A site of two sources.
+  Site siteOf(const std::string& name, const Points& points, std::uint64_t tile_points)
+  {
+    const auto half = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 3);
+    io::writeCloud(folder / (name + "1.pcd"), float64Cloud({points.begin(), half}));
+    io::writeCloud(folder / (name + "2.pcd"), float64Cloud({half, points.end()}));
+    MakeOptions options;
+    options.tile_points = tile_points;
+    return makeSite({folder / (name + "1.pcd"), folder / (name + "2.pcd")}, folder / (name + std::to_string(places++)),
+                    options);
+  }
+
+  /// The place of a tile's point among all.
+  static std::size_t placeOf(const Cloud& cloud, std::uint32_t i, const Points& points)
+  {
+    return placeOf({static_cast<std::uint32_t>(io::valueOf(cloud, i, "source")),
+                    static_cast<std::uint32_t>(io::valueOf(cloud, i, "record"))},
+                   points);
+  }
+  static std::size_t placeOf(const SitePoint& point, const Points& points)
+  {
+    return point.record + (point.source == 0 ? 0 : points.size() / 3);
+  }
+
+  /// Compares all questions with those of one hierarchy for each, for several tilings of both.
+  void expectSameAnswers(const Points& a, const Points& b, const Eigen::Isometry3d& pose, double clearance,
+                         double uncertainty_a = 0.0, double uncertainty_b = 0.0)
+  {
+    PointsView view_a = viewOf(a.front().data(), a.size()), view_b = viewOf(b.front().data(), b.size());
+    const SphereHierarchy measured_a(view_a), measured_b(view_b);
+    view_a.uncertainty = uncertainty_a;
+    view_b.uncertainty = uncertainty_b;
+    const SphereHierarchy all_a(view_a), all_b(view_b);
+    FlagsRequest wanted;
+    wanted.clearance = clearance;
+    wanted.flagged = Side::both;
+    const FlagsResult flags = pcl_bsh::collisionFlags({all_a}, {all_b, pose}, wanted);
+    const AnyResult any = pcl_bsh::anyCollision({all_a}, {all_b, pose}, {clearance, {}, 1});
+    const DistanceResult nearest = pcl_bsh::closestPair({measured_a}, {measured_b, pose});
+    const std::uint64_t tilings[][2] = {{100000, 100000}, {300, 70}, {30, 900}};
+    for (const auto& tiling : tilings) {
+      SCOPED_TRACE(std::to_string(tiling[0]) + " and " + std::to_string(tiling[1]));
+      const Site site = siteOf("a", a, tiling[0]), other = siteOf("b", b, tiling[1]);
+      Uncertainty of_b;
+      of_b.length = uncertainty_b;
+      const PlacedSite placed{other, pose, of_b};
+      SiteRequest request;
+      request.clearance = clearance;
+      request.uncertainty.length = uncertainty_a;
+      EXPECT_EQ(anyCollision(site, placed, request).verdict, any.verdict);
+
+      const auto expectFlags = [&](const auto& query, const Points& points, const std::vector<std::uint8_t>& right,
+                                   std::size_t colliding, std::size_t undecided) {
+        std::vector<std::uint8_t> found(points.size(), 0);
+        const SitePairFlags of_sites =
+            query(site, placed, request, [&](const Tile&, const Cloud& cloud, const FlagsResult& result) {
+              for (std::uint32_t i = 0; i < cloud.width; ++i) found[placeOf(cloud, i, points)] = result.a[i];
+            });
+        EXPECT_EQ(found, right);
+        EXPECT_EQ(of_sites.colliding, colliding);
+        EXPECT_EQ(of_sites.undecided, undecided);
+        EXPECT_EQ(of_sites.tiles.read, of_sites.tiles.needed);
+        EXPECT_GE(of_sites.tiles_b.read, of_sites.tiles_b.needed);
+      };
+      expectFlags([](const auto&... arguments) { return collisionFlags(arguments...); }, a, flags.a, flags.colliding_a,
+                  flags.undecided_a);
+      expectFlags([](const auto&... arguments) { return collisionFlagsOfB(arguments...); }, b, flags.b,
+                  flags.colliding_b, flags.undecided_b);
+
+      const SitePairClosest closest = closestPair(site, placed, request);
+      EXPECT_EQ(closest.distance, nearest.distance);
+      EXPECT_EQ(closest.interval.lower, nearest.interval.lower);
+      EXPECT_EQ(closest.interval.upper, nearest.interval.upper);
+      ASSERT_TRUE(closest.point && closest.point_b);
+      EXPECT_EQ(placeOf(*closest.point, a), nearest.pair->a);
+      EXPECT_EQ(placeOf(*closest.point_b, b), nearest.pair->b);
+
+      for (const double most : {std::numeric_limits<double>::infinity(), 1.5 * clearance}) {
+        PointDistancesRequest near;
+        near.max_distance = most;
+        const PointDistances right = pcl_bsh::pointDistances({measured_a}, {measured_b, pose}, near);
+        std::vector<double> found(a.size(), std::numeric_limits<double>::quiet_NaN());
+        const SitePairDistances distances = pointDistances(
+            site, placed, most, request, [&](const Tile&, const Cloud& cloud, const std::vector<double>& distance) {
+              for (std::uint32_t i = 0; i < cloud.width; ++i) found[placeOf(cloud, i, a)] = distance[i];
+            });
+        for (std::size_t i = 0; i < a.size(); ++i) {
+          EXPECT_TRUE(found[i] == right.distance[i] || (std::isnan(found[i]) && std::isnan(right.distance[i])))
+              << i << ": " << found[i] << ", " << right.distance[i];
+        }
+        EXPECT_EQ(distances.measured, right.measured);
+        EXPECT_TRUE(distances.greatest == right.greatest || (std::isnan(right.greatest) && distances.measured == 0));
+      }
+    }
+  }
+
+  files::TemporaryFolder folder;
+  int places = 0; ///< sites made
+};
+
+TEST_F(CollideSites, RandomPointsAtAPose)
+{
+  Eigen::Isometry3d pose =
+      Eigen::Translation3d(0.4, -0.3, 0.1) * Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 30).normalized());
+  expectSameAnswers(floorOf(2500, 1), floorOf(1500, 2), pose, 0.07);
+  expectSameAnswers(floorOf(900, 3), floorOf(2500, 4), Eigen::Isometry3d(Eigen::Translation3d(3, 2, 0.2)), 0.2);
+}
+
+TEST_F(CollideSites, PointsThatAreUncertain)
+{
+  expectSameAnswers(floorOf(1500, 1), floorOf(1500, 2), Eigen::Isometry3d::Identity(), 0.05, 0.02, 0.01);
+}
+
+/// Each point is at the clearance of some other, and each distance is one of many.
+TEST_F(CollideSites, Ties)
+{
+  expectSameAnswers(lattice(20, 0.0, 0.0), lattice(20, 0.0, 3.0), Eigen::Isometry3d::Identity(), 3.0);
+  const Eigen::Isometry3d far(Eigen::Translation3d(600000.25, 0, 0));
+  expectSameAnswers(lattice(20, 600000.25, 0.0), lattice(20, 0.0, 3.0), far, 3.0);
+}
+
+/// Distances differ by less than a double tells: exact arithmetic chooses among the tiles.
+TEST_F(CollideSites, NearTies)
+{
+  Points a, b;
+  const double least = std::numeric_limits<double>::denorm_min();
+  for (int i = 0; i < 120; ++i) {
+    a.push_back({10.0 * i, i == 90 ? 0.0 : (i + 1) * 1e-30 + least, 1.0});
+    b.push_back({10.0 * i, 0.0, 0.0});
+  }
+  expectSameAnswers(a, b, Eigen::Isometry3d::Identity(), 1.0);
+}
+
+TEST_F(CollideSites, ASiteAgainstItself)
+{
+  const Points points = floorOf(1200, 5);
+  const Site site = siteOf("a", points, 100);
+  SiteRequest request;
+  const SitePairFlags flags = collisionFlags(site, {site}, request);
+  EXPECT_EQ(flags.colliding, points.size() - 3) << "three are not finite";
+  EXPECT_EQ(pointDistances(site, {site}, 1.0, request).greatest, 0.0);
+}
+
+TEST_F(CollideSites, ReadOnlyTilesThatMatter)
+{
+  const Site site = siteOf("a", floorOf(2000, 6), 50), other = siteOf("b", floorOf(2000, 7), 50);
+  SiteRequest request;
+  request.clearance = 0.1;
+  const SitePairFlags aside = collisionFlags(site, {other, Eigen::Isometry3d(Eigen::Translation3d(19, 0, 0))}, request);
+  EXPECT_LT(aside.tiles.needed, aside.tiles.tiles / 2);
+  EXPECT_LT(aside.tiles_b.needed, aside.tiles_b.tiles / 2);
+  EXPECT_EQ(aside.tiles_b.read, aside.tiles_b.needed) << "all that was read is kept";
+  const SitePairFlags far = collisionFlags(site, {other, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 50))}, request);
+  EXPECT_EQ(far.tiles.read + far.tiles_b.read, 0u);
+  EXPECT_LT(closestPair(site, {other, Eigen::Isometry3d(Eigen::Translation3d(25, 0, 0))}, request).tiles.read, 20u);
+  // Where memory holds a tile of each alone, tiles are read for each that they come near to.
+  request.memory = 2 * 50 * (3 * 8 + 8 + 64);
+  const SitePairFlags small = collisionFlags(site, {other}, request);
+  EXPECT_GT(small.tiles_b.read, small.tiles_b.needed);
+  request.memory = 2 * 50 * (3 * 8 + 8 + 64) - 1000;
+  EXPECT_THROW(collisionFlags(site, {other}, request), std::invalid_argument);
+  // A tile that is damaged is not "free".
+  for (const Tile& tile : other.tiles) std::ofstream(other.folder / tile.file) << "damaged";
+  EXPECT_THROW(collisionFlags(site, {other}, {}), std::runtime_error);
+}
+
+TEST_F(CollideSites, RefuseWhatOneHierarchyWouldRefuse)
+{
+  const Site site = siteOf("a", floorOf(100, 8), 50), other = siteOf("b", floorOf(100, 9), 50);
+  const Eigen::Isometry3d far(Eigen::Translation3d(0, 0, 1000));
+  Eigen::Isometry3d crooked = far;
+  crooked.linear() *= 1.5;
+  SiteRequest negative, sigmas, level;
+  negative.clearance = -1.0;
+  sigmas.uncertainty.field = "sigma";
+  level.accuracy = Accuracy::level(2);
+  EXPECT_THROW(anyCollision(site, {other, far}, negative), std::invalid_argument);
+  EXPECT_THROW(collisionFlags(site, {other, far}, negative), std::invalid_argument);
+  EXPECT_THROW(collisionFlagsOfB(site, {other, crooked}, {}), std::invalid_argument);
+  EXPECT_THROW(closestPair(site, {other, crooked}, {}), std::invalid_argument);
+  EXPECT_THROW(pointDistances(site, {other, far}, -1.0, {}), std::invalid_argument);
+  EXPECT_THROW(pointDistances(site, {other, far}, 1.0, level), std::invalid_argument);
+  EXPECT_THROW(collisionFlags(site, {other, far}, sigmas), std::invalid_argument);
+  EXPECT_THROW(collisionFlags(site, {other, far, sigmas.uncertainty}, {}), std::invalid_argument);
+}
+
+/// The program.
+class SitePairProgram : public CollideSites {
+protected:
+  SitePairProgram()
+  {
+    fs::rename(siteOf("a", a, 120).folder, folder / "now");
+    fs::rename(siteOf("b", b, 200).folder, folder / "before");
+  }
+
+  Outcome collide(const std::string& arguments)
+  {
+    return run("pcl_bsh_site", "collide now before " + arguments, folder.path());
+  }
+
+  /// The numbers of a field of a site, by the places of its points among all.
+  std::vector<double> valuesOf(const std::string& site, const std::string& field, const Points& points)
+  {
+    const Site found = readSite(folder / site);
+    checkSite(found);
+    std::vector<double> values(points.size(), -7.0);
+    for (const Tile& tile : found.tiles) {
+      const Cloud cloud = readTile(found, tile);
+      for (std::uint32_t i = 0; i < cloud.width; ++i) values[placeOf(cloud, i, points)] = io::valueOf(cloud, i, field);
+    }
+    return values;
+  }
+
+  const Points a = floorOf(1500, 10), b = floorOf(1200, 11);
+};
+
+TEST_F(SitePairProgram, WritesWhatCollidesOfBoth)
+{
+  const SphereHierarchy of_a(viewOf(a.front().data(), a.size())), of_b(viewOf(b.front().data(), b.size()));
+  const Eigen::Isometry3d pose(Eigen::Translation3d(0.1, 0, 0));
+  FlagsRequest wanted;
+  wanted.clearance = 0.08;
+  wanted.flagged = Side::both;
+  const FlagsResult right = pcl_bsh::collisionFlags({of_a}, {of_b, pose}, wanted);
+  const std::string asked =
+      "--clearance 0.08 --pose 0.1,0,0,0,0,0 --out now_found --obstacle-out before_found --report r.json";
+  const Outcome outcome = collide(asked);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(valuesOf("now_found", "collision", a), std::vector<double>(right.a.begin(), right.a.end()));
+  EXPECT_EQ(valuesOf("before_found", "collision", b), std::vector<double>(right.b.begin(), right.b.end()));
+  const std::string report = files::contentOf(folder / "r.json");
+  EXPECT_THAT(report, HasSubstr("\"colliding\": " + std::to_string(right.colliding_a) + ","));
+  EXPECT_THAT(report, HasSubstr("\"colliding_of_obstacle\": " + std::to_string(right.colliding_b) + ","));
+  EXPECT_THAT(report, HasSubstr("\"tiles_of_obstacle\""));
+
+  const Outcome again = collide(asked);
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.err, HasSubstr("now_found"));
+  ASSERT_EQ(collide("--distances --max-distance 0.5 --out distances").exit_code, 0);
+  PointDistancesRequest near;
+  near.max_distance = 0.5;
+  const PointDistances distances = pcl_bsh::pointDistances({of_a}, {of_b}, near);
+  const std::vector<double> found = valuesOf("distances", "distance", a);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    EXPECT_TRUE(std::isnan(found[i]) ? std::isnan(distances.distance[i])
+                                     : found[i] == double{static_cast<float>(distances.distance[i])})
+        << i;
+}
+
+TEST_F(SitePairProgram, SaysTheSameOnTwoRanks)
+{
+  if (std::system("mpirun --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no mpirun";
+  for (const std::string question : {"--clearance 0.05 --out found --obstacle-out before_found", "--closest",
+                                     "--any --clearance 0.001", "--distances --out found"}) {
+    const Outcome one = collide(question + " --report report.json");
+    ASSERT_EQ(one.exit_code, 0) << one.err;
+    fs::create_directory(folder / "one");
+    for (const char* name : {"report.json", "found", "before_found"})
+      if (fs::exists(folder / name)) fs::rename(folder / name, folder / "one" / name);
+    // Not this process' environment: where MPI has begun in it, mpirun would take itself for a part of that job.
+    const std::string command = "cd " + folder.path().string() +
+                                " && env -i PATH=\"$PATH\" OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+                                "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR "/pcl_bsh_site collide now before " +
+                                question + " --report report.json 2>err";
+    ASSERT_EQ(std::system(command.c_str()), 0) << files::contentOf(folder / "err");
+    const auto answerOf = [&](const fs::path& report) { // what was read depends on who read it
+      const std::string text = files::contentOf(report);
+      return text.substr(0, text.find("\"tiles\""));
+    };
+    EXPECT_EQ(answerOf(folder / "report.json"), answerOf(folder / "one" / "report.json")) << question;
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "one")) {
+      const fs::path name = fs::relative(entry.path(), folder / "one");
+      if (!entry.is_regular_file() || name == "report.json") continue;
+      EXPECT_TRUE(files::contentOf(entry.path()) == files::contentOf(folder / name)) << question << name;
+    }
+    for (const char* name : {"one", "report.json", "found", "before_found"}) fs::remove_all(folder / name);
+  }
+}
+
+TEST_F(SitePairProgram, RefusesInOneLine)
+{
+  const auto expectRefused = [&](const std::string& arguments, int exit_code, const std::string& line) {
+    const Outcome outcome = collide(arguments);
+    EXPECT_EQ(outcome.exit_code, exit_code) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(line)) << arguments;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  };
+  std::ofstream(folder / "poses.txt") << "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  expectRefused("--clearance 0.1 --trajectory poses.txt --report r.json", 2,
+                "--trajectory: OBSTACLE, before, is a site");
+  expectRefused("--clearance 0.1 --clashes c.html", 2, "--clashes: OBSTACLE, before, is a site");
+  expectRefused("--clearance 0.1 --report before/r.json", 2, "lies in the folder of OBSTACLE");
+  expectRefused("--clearance 0.1 --obstacle-out before/found", 2, "lies in the folder of OBSTACLE");
+  fs::create_directory(folder / "mine");
+  std::ofstream(folder / "mine" / "notes.txt") << "mine";
+  expectRefused("--clearance 0.1 --obstacle-out mine", 1, "mine");
+  EXPECT_EQ(files::contentOf(folder / "mine" / "notes.txt"), "mine");
+  fs::remove(folder / "before" / "site.json");
+  expectRefused("--clearance 0.1 --report r.json", 1, "before");
+  EXPECT_FALSE(fs::exists(folder / "r.json"));
+}
+
+} // namespace
+} // namespace pcl_bsh::sites
+#endif
