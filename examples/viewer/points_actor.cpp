@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cloud_actor.h"
+#include "points_actor.h"
 
 #include "actors.h"
 #include "far_points.h"
@@ -33,37 +33,31 @@ vtkSmartPointer<vtkPolyData> noPoints()
 
 } // namespace
 
-CloudActor::CloudActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color, const Color& marked)
+PointsActor::PointsActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color, const Color& marked)
 : points_(renderer, sizeFor(viewed.points().size()), false),
   marks_(renderer, 6.0f, true)
 {
   setColor(marks_.actor(), marked);
-  if (viewed.hasTriangles()) {
-    triangles_.emplace(viewed, renderer, color, marked);
-    return;
-  }
   setPoints(viewed.points());
   if (!viewed.surface) return;
   surface_ = addSurface(viewed, renderer, color);
   points_.hide();
 }
 
-void CloudActor::setPoints(const PointsView& points)
+void PointsActor::setPoints(const PointsView& points)
 {
   all_ = vtk::cloudData(points);
   points_.show(withoutFarPoints(*all_));
 }
 
-void CloudActor::paint(const std::vector<Color>& colors)
+void PointsActor::paint(const std::vector<Color>& colors)
 {
-  if (triangles_) return triangles_->paint(colors);
   setColors(data(), colors);
   points_.show(&data());
 }
 
-void CloudActor::paint(const Color& color, const ColorRange* heights)
+void PointsActor::paint(const Color& color, const ColorRange* heights)
 {
-  if (triangles_) return triangles_->paint(color);
   const double* const bounds = data().GetBounds();
   const ColorRange range = heights ? *heights : ColorRange{bounds[4], bounds[5]};
   const double height = std::max(range.high - range.low, std::numeric_limits<double>::min());
@@ -82,9 +76,8 @@ void CloudActor::paint(const Color& color, const ColorRange* heights)
   points_.show(&data());
 }
 
-void CloudActor::mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors)
+void PointsActor::mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors)
 {
-  if (triangles_) return triangles_->mark(flags, colors);
   if (flags.empty()) {
     marks_.show(noPoints());
     return;
@@ -95,50 +88,47 @@ void CloudActor::mark(const std::vector<std::uint8_t>& flags, const std::vector<
   marks_.show(marked);
 }
 
-void CloudActor::place(const Eigen::Isometry3d& pose)
+void PointsActor::place(const Eigen::Isometry3d& pose)
 {
   points_.place(pose);
   marks_.place(pose);
   if (surface_) surface_->SetUserMatrix(matrixOf(pose));
-  if (triangles_) triangles_->place(pose);
 }
 
-void CloudActor::setMoving(bool moving)
+void PointsActor::setMoving(bool moving)
 {
   points_.setMoving(moving);
   marks_.setMoving(moving);
 }
 
-void CloudActor::setVisible(bool visible)
+void PointsActor::setVisible(bool visible)
 {
   points_.setVisible(visible);
   marks_.setVisible(visible);
+  if (surface_) surface_->SetVisibility(visible);
 }
 
-void CloudActor::remove(vtkRenderer& renderer)
+void PointsActor::remove(vtkRenderer& renderer)
 {
   points_.remove(renderer);
   marks_.remove(renderer);
+  renderer.RemoveActor(surface_);
 }
 
-void CloudActor::cut(const Cut& plane)
+void PointsActor::cut(const Cut& plane)
 {
   points_.cut(plane);
   marks_.cut(plane);
-  if (triangles_) triangles_->cut(plane);
 }
 
-void CloudActor::offerTo(vtkPicker& points, vtkPicker& triangles) const
+void PointsActor::offerTo(vtkPicker& points, vtkPicker& /*triangles*/) const
 {
-  if (triangles_)
-    triangles.AddPickList(&triangles_->actor());
-  else if (!surface_)
-    for (const PointLayer* layer : {&points_, &marks_}) points.AddPickList(&layer->actor());
+  if (surface_) return;
+  for (const PointLayer* layer : {&points_, &marks_}) points.AddPickList(&layer->actor());
 }
 
-std::optional<std::uint32_t> CloudActor::partOf(const vtkProp* prop, vtkIdType id) const
+std::optional<std::uint32_t> PointsActor::partOf(const vtkProp* prop, vtkIdType id) const
 {
-  if (triangles_) return triangles_->triangleOf(prop, id);
   if (!points_.owns(prop) && !marks_.owns(prop)) return std::nullopt;
   vtkPolyData& picked = points_.owns(prop) ? data() : marked();
   if (id < 0 || id >= picked.GetNumberOfPoints()) return std::nullopt;

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "options.h"
-#include "palette.h"
-#include "viewed_cloud.h"
+#include "cloud_actor.h"
 
-#include <Eigen/Geometry>
 #include <vtkActor.h>
-#include <vtkPolyData.h>
-#include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
 #include <cstdint>
@@ -19,27 +14,25 @@ namespace pcl_bsh::view {
 
 /// A surface whose triangles have colours of their own. What is marked is outlined, too: small triangles are seen from
 /// afar.
-class TriangleLayer {
+class TrianglesActor : public CloudActor {
 public:
   /// @pre viewed.hasTriangles()
-  TriangleLayer(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color, const Color& marked);
+  TrianglesActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color, const Color& marked);
 
-  void paint(const std::vector<Color>& colors); ///< one per triangle
-  void paint(const Color& color);
-
-  /// Colours triangles with flags[triangle] != 0: the marks' colour, or those of `colors` where that is not empty.
-  /// @param flags empty: none
-  void mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors);
-
-  void place(const Eigen::Isometry3d& pose);
-  void cut(const Cut& plane);
-
-  vtkPolyData& data() const { return *data_; }     ///< a cell per triangle
-  vtkPolyData& marked() const { return *marked_; } ///< with points of its own
-  vtkActor& actor() const { return *faces_; }
-
-  /// The triangle that a picked prop and cell id are.
-  std::optional<std::uint32_t> triangleOf(const vtkProp* prop, vtkIdType id) const;
+  void setPoints(const PointsView& /*points*/) override {} ///< surfaces do not deform
+  void paint(const std::vector<Color>& colors) override;
+  void paint(const Color& color, const ColorRange* heights) override;
+  void mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors) override;
+  void place(const Eigen::Isometry3d& pose) override;
+  void setMoving(bool /*moving*/) override {}
+  void setVisible(bool visible) override;
+  void remove(vtkRenderer& renderer) override;
+  void cut(const Cut& plane) override;
+  vtkPolyData& data() const override { return *data_; } ///< a cell per triangle
+  vtkPolyData& all() const override { return *data_; }
+  vtkPolyData& marked() const override { return *marked_; } ///< with points of its own
+  void offerTo(vtkPicker& points, vtkPicker& triangles) const override;
+  std::optional<std::uint32_t> partOf(const vtkProp* prop, vtkIdType id) const override;
 
 private:
   void show();
