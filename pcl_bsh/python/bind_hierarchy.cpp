@@ -93,7 +93,7 @@ RuntimeError
 
 Notes
 -----
-It waits until no thread runs a query, of any hierarchy, and holds the interpreter's lock: queries of other threads wait.
+It waits until no thread runs a query, of any hierarchy, and queries of other threads wait for it.
 
 Examples
 --------
