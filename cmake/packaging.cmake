@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Three .deb packages, with VTK, CGAL, urdfdom, Python and VTK's Python one more each, by
-# `cmake --workflow --preset package` or, from any build, by `cpack -G DEB`.
+# `cmake --workflow --preset package` or, from any build, by `cpack -G DEB`. The build of ParaView's plugin has one.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The pcl_bsh authors")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
@@ -9,7 +9,9 @@ set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
 set(CPACK_VERBATIM_VARIABLES ON)
 
 set(CPACK_COMPONENTS_ALL libs dev)
-if(PCL_BSH_BUILD_EXAMPLES)
+if(PCL_BSH_BUILD_PARAVIEW)
+  set(CPACK_COMPONENTS_ALL paraview)
+elseif(PCL_BSH_BUILD_EXAMPLES)
   list(APPEND CPACK_COMPONENTS_ALL tools)
 endif()
 if(PCL_BSH_BUILD_CERTIFY)
@@ -76,8 +78,14 @@ set(CPACK_DEBIAN_PYTHON_VTK_PACKAGE_DEPENDS "python3-vtk9")
 set(CPACK_COMPONENT_PYTHON_VTK_DESCRIPTION "Filters for point clouds in the pipelines of VTK's Python.")
 set(CPACK_COMPONENT_PYTHON_VTK_DEPENDS python vtk)
 
+set(CPACK_DEBIAN_PARAVIEW_PACKAGE_NAME pcl-bsh-paraview)
+set(CPACK_DEBIAN_PARAVIEW_PACKAGE_SECTION science)
+set(CPACK_COMPONENT_PARAVIEW_DESCRIPTION "Collisions and distances of point clouds in ParaView: a plugin.")
+
 # What the binaries link to becomes what the packages depend on; our own libraries are found where they were built.
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+if(NOT PCL_BSH_BUILD_PARAVIEW) # nothing links to a plugin
+  set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+endif()
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/pcl_bsh" "${PROJECT_BINARY_DIR}/pcl_bsh/files"
     "${PROJECT_BINARY_DIR}/pcl_bsh/certify" "${PROJECT_BINARY_DIR}/pcl_bsh/vtk" "${PROJECT_BINARY_DIR}/pcl_bsh/site"

@@ -10,13 +10,6 @@
 
 namespace pcl_bsh {
 
-void CollisionFilter<pcl::PCLPointCloud2>::setInputCloud(const PCLPointCloud2ConstPtr& cloud)
-{
-  if (!cloud) throw std::invalid_argument("input cloud is null: give an empty cloud if there are no points");
-  field_sizes_.reserve(cloud->fields.size()); // PCL's takes the cloud before it has room for these
-  CollisionFilterBase<pcl::PCLPointCloud2>::setInputCloud(cloud);
-}
-
 void CollisionFilter<pcl::PCLPointCloud2>::applyFilter(pcl::PCLPointCloud2& output)
 {
   if (keep_flagged_) {

@@ -85,10 +85,6 @@ public:
 
   using CollisionFilterBase<pcl::PCLPointCloud2>::CollisionFilterBase;
 
-  /// @throws std::invalid_argument when the pointer is null, as PCL's own would crash. On an error the former input
-  ///   stays.
-  void setInputCloud(const PCLPointCloud2ConstPtr& cloud);
-
   /// true: filter(cloud) removes nothing and adds a field `collision` (UINT8), the flags of computeFlags(), whatever
   /// setNegative() and setKeepOrganized() say; along a trajectory also `distance` (FLOAT32, NaN where free),
   /// `first_pose` and `closest_pose` (INT32, -1 where free). Default: false.

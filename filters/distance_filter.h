@@ -67,10 +67,6 @@ public:
 
   using DistanceFilterBase<pcl::PCLPointCloud2>::DistanceFilterBase;
 
-  /// @throws std::invalid_argument when the pointer is null, as PCL's own would crash. On an error the former input
-  ///   stays.
-  void setInputCloud(const PCLPointCloud2ConstPtr& cloud);
-
 protected:
   using DistanceFilterBase<pcl::PCLPointCloud2>::applyFilter;
   void applyFilter(pcl::PCLPointCloud2& output) override;

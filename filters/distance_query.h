@@ -9,11 +9,7 @@
 #include <pcl/memory.h>
 #include <pcl/types.h>
 
-#include <Eigen/Geometry>
-
-#include <functional>
 #include <limits>
-#include <memory>
 #include <utility>
 #include <vector>
 

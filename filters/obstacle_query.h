@@ -5,22 +5,17 @@
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/obstacle_settings.h>
 #include <pcl_bsh/filters/uncertainty.h>
-#include <pcl_bsh/query/accuracy.h>
-#include <pcl_bsh/query/result.h>
-#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/hierarchy/points_view.h>
 
-#include <pcl/common/io.h>
+#include <pcl/PCLPointField.h>
 #include <pcl/memory.h>
+#include <pcl/types.h>
 
 #include <Eigen/Geometry>
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <optional>
-#include <stdexcept>
-#include <utility>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/filters/input_filter.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <pcl/PCLPointCloud2.h>
-#include <pcl/filters/filter_indices.h>
 #include <pcl/point_cloud.h>
 
 #include <type_traits>
@@ -19,7 +19,7 @@ namespace pcl_bsh {
 /// @tparam Query has select(input, negative, kept, removed), and can be copied and moved. Its assignment leaves it as
 ///   it was where memory runs out
 template <typename PointT, typename Query>
-class QueryFilter : public pcl::FilterIndices<PointT>, public Query {
+class QueryFilter : public InputFilter<PointT>, public Query {
 public:
   using Cloud =
       std::conditional_t<std::is_same_v<PointT, pcl::PCLPointCloud2>, pcl::PCLPointCloud2, pcl::PointCloud<PointT>>;

@@ -3,6 +3,7 @@
 // The program is under GPL-3.0-or-later once compiled: see pcl_bsh/certify/LICENSE.
 #include "certify/options.h"
 #include "certify/report.h"
+#include "cli/json_output.h"
 #include "cli/program.h"
 #include "cli/step.h"
 
@@ -101,11 +102,7 @@ int run(const Options& options)
     report["fits"].push_back(std::move(of_fit));
   }
   report["holds"] = holds;
-  if (options.report) {
-    // A file name need not be UTF-8, JSON must.
-    const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
-    files::replaceFile(*options.report, [&](std::ostream& out) { out << text << '\n'; });
-  }
+  if (options.report) cli::writeJson(*options.report, report);
   options.files.summary() << (holds ? "Certified: every point is in every sphere above it.\n" : "Not certified.\n");
   return holds ? 0 : 1;
 }

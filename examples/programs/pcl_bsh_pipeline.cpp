@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs a pipeline of point cloud filters, read from a JSON file.
+#include "cli/json_output.h"
 #include "cli/program.h"
 #include "pipeline/options.h"
 #include "pipeline/run.h"
@@ -12,6 +13,16 @@ namespace {
 using namespace pcl_bsh;
 using cli::PipelineTask;
 
+void validate(const cli::PipelineOptions& options)
+{
+  cli::checkTold(options.json, {{"pipeline", options.name()}, {"valid", false}},
+                 [&] { Pipeline::read(options.document, options.overrides).validate(); });
+  if (options.json)
+    cli::writeJson(std::cout, {{"pipeline", options.name()}, {"valid", true}});
+  else
+    std::cout << options.name() << " is valid\n";
+}
+
 int run(const cli::PipelineOptions& options)
 {
   if (options.task == PipelineTask::print_schema) {
@@ -22,12 +33,11 @@ int run(const cli::PipelineOptions& options)
     std::cout << pipeline::stageDocumentation();
     return 0;
   }
-  Pipeline pipeline = Pipeline::read(options.document, options.overrides);
   if (options.task == PipelineTask::validate) {
-    pipeline.validate();
-    std::cout << options.name() << " is valid\n";
+    validate(options);
     return 0;
   }
+  Pipeline pipeline = Pipeline::read(options.document, options.overrides);
   pipeline.setNumberOfThreads(options.threads);
   cli::runPipeline(cli::pipeline_program, pipeline, options);
   return 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs a scene file: many objects in motion, and only the effects it lists.
 #include "cli/command_line.h"
+#include "cli/json_output.h"
 #include "cli/step.h"
 #include "cli/used_files.h"
 #include "scene/cloud_names.h"
@@ -29,6 +30,7 @@ constexpr auto program = "pcl_bsh_scene";
 constexpr auto footer =
     R"(A scene file names clouds, objects with poses and motions, pairs, and effects; see scene.schema.json and the samples
 in examples/scenes. An effect that is not listed is not computed.
+With --json, what is said of a check, an explanation or a run is JSON on standard output.
 With --out, DIR gets steps.csv (a row a step), steps.jsonl (all results, a line a step), summary.json, and the
 flagged clouds if the scene asks for them. Where clouds have an `uncertainty`, what may collide, but does not for
 certain, is undecided, flag 2.
@@ -36,13 +38,15 @@ Exit code: 0 done; 1 failed, the scene file is wrong included; 2 command line no
 
 Example:
   pcl_bsh_scene examples/scenes/drift.json --out drift
-  pcl_bsh_scene examples/scenes/drift.json --explain)";
+  pcl_bsh_scene examples/scenes/drift.json --explain
+  pcl_bsh_scene examples/scenes/drift.json --validate --json)";
 
 struct Options {
   fs::path scene;
   fs::path out;
   bool validate = false;
   bool explain = false;
+  bool json = false;
 };
 
 double seconds(Clock::time_point since)
@@ -91,7 +95,7 @@ public:
 
   void finish(const nlohmann::ordered_json& summary)
   {
-    summary_.stream() << summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    cli::writeJson(summary_.stream(), summary);
     for (files::FileReplacement* file : {&csv_, &json_, &summary_}) file->commit();
   }
 
@@ -145,6 +149,12 @@ nlohmann::ordered_json summaryOf(const io::SceneFile& file, const cli::SceneTota
   for (std::size_t e = 0; e < kEffects; ++e)
     if (file.options.effects.has(static_cast<Effect>(e)))
       json["effects"][nameOf(static_cast<Effect>(e))] = cli::toJson(totals.costs[e]);
+  if (file.options.effects.any) {
+    json["colliding_steps"] = totals.colliding_steps;
+    json["undecided_steps"] = totals.undecided_steps;
+  }
+  if (totals.wanted > 0.0)
+    json["moves"] = {{"travelled", totals.travelled}, {"wanted", totals.wanted}, {"touched", totals.touched_moves}};
   return json;
 }
 
@@ -173,14 +183,21 @@ void printSummary(const io::SceneFile& file, const cli::SceneTotals& totals)
   std::printf("\n");
 }
 
-int runScene(const Options& options)
+/// Of --explain and --validate.
+void tell(const io::SceneFile& file, const Options& options)
 {
-  const io::SceneFile file = io::readSceneFile(options.scene);
-  cli::warn(program, file.warnings);
+  if (options.json) {
+    nlohmann::ordered_json json = {{"scene", file.path.string()}, {"valid", true}, {"objects", file.objects.size()}};
+    if (options.explain) json.update(cli::explanationJson(file));
+    cli::writeJson(std::cout, json);
+    return;
+  }
   if (options.explain) cli::explain(file, std::cout);
-  if (options.validate) std::cout << options.scene.string() << ": is valid: " << file.objects.size() << " objects\n";
-  if (options.explain || options.validate) return 0;
+  if (options.validate) std::cout << file.path.string() << ": is valid: " << file.objects.size() << " objects\n";
+}
 
+void runScene(const io::SceneFile& file, const Options& options)
+{
   const cli::CloudNames names(file);
   check(file, names, options);
   std::optional<RunFiles> files;
@@ -191,8 +208,9 @@ int runScene(const Options& options)
   loading.done(std::to_string(world.points()) + " points");
   cli::warn(program, world.warnings());
   const double load_seconds = seconds(start);
-  std::printf("%s: %zu objects, %zu points in %zu clouds\n", options.scene.c_str(), file.objects.size(), world.points(),
-              file.clouds.size());
+  if (!options.json)
+    std::printf("%s: %zu objects, %zu points in %zu clouds\n", options.scene.c_str(), file.objects.size(),
+                world.points(), file.clouds.size());
 
   const cli::SceneTable table(file.options.effects, cli::mayBeUndecided(world.scene()));
   if (files) table.writeHeader(files->csv());
@@ -213,9 +231,25 @@ int runScene(const Options& options)
         (file.cloud_output == io::CloudOutput::last && step == file.steps))
       writeClouds(file, names, world, result, options.out, step);
   }
-  if (files) files->finish(summaryOf(file, totals, world.points(), load_seconds));
-  printSummary(file, totals);
-  return 0;
+  const nlohmann::ordered_json summary = summaryOf(file, totals, world.points(), load_seconds);
+  if (files) files->finish(summary);
+  if (options.json)
+    cli::writeJson(std::cout, summary);
+  else
+    printSummary(file, totals);
+}
+
+void run(const Options& options)
+{
+  const bool only_tells = options.explain || options.validate;
+  const io::SceneFile file =
+      cli::checkTold(options.json && only_tells, {{"scene", options.scene.string()}, {"valid", false}},
+                     [&] { return io::readSceneFile(options.scene); });
+  cli::warn(program, file.warnings);
+  if (only_tells)
+    tell(file, options);
+  else
+    runScene(file, options);
 }
 
 } // namespace
@@ -232,9 +266,11 @@ int main(int argc, char** argv)
     app.add_flag("--validate", options.validate, "only check the scene file");
     app.add_flag("--explain", options.explain,
                  "only print which effects are on, what each makes the program build, and why");
+    app.add_flag("--json", options.json, "print what is found as JSON, for programs");
     if (!cli::understood(app, program, argc, argv)) return 0;
     options.scene = scene;
     options.out = out;
-    return runScene(options);
+    run(options);
+    return 0;
   });
 }

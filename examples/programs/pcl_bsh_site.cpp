@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clouds that are larger than memory: makes a folder of tiles of them, checks it, and writes clouds again.
 #include "cli/interruption.h"
+#include "cli/json_output.h"
 #include "cli/program.h"
 #include "cli/step.h"
 #include "site/collide.h"
@@ -8,7 +9,6 @@
 
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/output_folder.h>
-#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/text_files/small_letters.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/export_site.h>
@@ -123,11 +123,6 @@ TileRange rangeOf(const sites::Site& site)
 
 using Json = nlohmann::ordered_json;
 
-void print(const Json& json)
-{
-  std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
-}
-
 Json infoJson(const sites::Site& site)
 {
   const TileRange range = rangeOf(site);
@@ -149,7 +144,7 @@ int info(const Options& options)
 {
   const sites::Site site = sites::readSite(options.site);
   if (options.json) {
-    print(infoJson(site));
+    cli::writeJson(std::cout, infoJson(site));
     return 0;
   }
   const TileRange range = rangeOf(site);
@@ -179,19 +174,13 @@ sites::Site checkedSite(const Options& options)
 
 int validate(const Options& options)
 {
-  try {
-    const sites::Site site = checkedSite(options);
-    if (options.json) {
-      print({{"site", options.site.string()}, {"sound", true}, {"points", site.points}, {"tiles", site.tiles.size()}});
-    }
-    else {
-      std::cout << "sound: each of " << site.points << " points is there once, in its tile\n";
-    }
-  }
-  catch (const std::runtime_error& error) {
-    if (options.json) print({{"site", options.site.string()}, {"sound", false}, {"error", error.what()}});
-    throw;
-  }
+  const std::string name = options.site.string();
+  const sites::Site site =
+      cli::checkTold(options.json, {{"site", name}, {"sound", false}}, [&] { return checkedSite(options); });
+  if (options.json)
+    cli::writeJson(std::cout, {{"site", name}, {"sound", true}, {"points", site.points}, {"tiles", site.tiles.size()}});
+  else
+    std::cout << "sound: each of " << site.points << " points is there once, in its tile\n";
   return 0;
 }
 

@@ -24,14 +24,15 @@ float roundedUp(double length)
 
 void addShape(LinkBody& body, const Shape& shape, double tolerance)
 {
-  const double sagitta = tolerance / 4;
-  const Surface surface = surfaceOf(shape, sagitta);
   if (const auto* ball = std::get_if<Sphere>(&shape.form)) {
+    requireSize(ball->radius, "a sphere");
     const Eigen::Vector3d center = shape.pose.translation();
     body.centers.push_back({center.x(), center.y(), center.z()});
     body.radii.push_back(roundedUp(ball->radius));
     return;
   }
+  const double sagitta = tolerance / 4;
+  const Surface surface = surfaceOf(shape, sagitta);
   // A cylinder's prism lies within it, so that balls which hold the prism must be larger to hold the cylinder.
   const double beyond = std::holds_alternative<Cylinder>(shape.form) ? sagitta : 0.0;
   SurfaceRequest request;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cuts the robot that scans out of its scans: links from a URDF, where the joints' values put them.
 #include "cli/command_line.h"
+#include "cli/json_output.h"
 #include "cli/step.h"
 #include "cli/used_files.h"
 #include "self_filter/joint_values.h"
@@ -53,6 +54,7 @@ struct Options {
   std::optional<double> tolerance;
   bool flag = false;
   std::optional<fs::path> report;
+  cli::CommandFiles files;
 };
 
 std::map<std::string, fs::path> packagesOf(const Options& options)
@@ -91,14 +93,15 @@ fs::path outputOf(const Options& options, const std::string& cloud)
   return options.out / fs::path(cloud).filename();
 }
 
-void check(const Options& options)
+void check(Options& options)
 {
-  cli::CommandFiles files;
+  cli::CommandFiles& files = options.files;
   files.reads("ROBOT.urdf", options.urdf).reads("--states", options.states);
   for (const std::string& cloud : options.clouds) files.reads("CLOUD", cloud);
   for (const std::string& cloud : options.clouds) files.writesFile("--out", outputOf(options, cloud));
-  if (options.report) files.writesFile("--report", *options.report);
+  files.writes("--report", options.report.value_or(""));
   files.requireApart();
+  if (options.report) files::requireWritable(*options.report);
 }
 
 /// The cloud without the robot's points, and without those that have no coordinates.
@@ -131,7 +134,6 @@ Json filterCloud(const Options& options, const std::string& name, const JointVal
 
 int run(const Options& options)
 {
-  check(options);
   const std::vector<JointValues> states = statesOf(options);
   const self_filter::Robot robot = self_filter::readRobot(options.urdf, packagesOf(options));
   for (const JointValues& values : states) robot.requireValues(values);
@@ -151,14 +153,10 @@ int run(const Options& options)
   for (std::size_t i = 0; i < options.clouds.size(); ++i) {
     report["clouds"].push_back(filterCloud(options, options.clouds[i], states[i], frame, filter));
     const Json& told = report["clouds"].back();
-    std::cout << options.clouds[i] << ": " << told["robot"] << " of " << told["points"]
-              << " points are the robot, found in " << 1000 * told["seconds"].get<double>() << " ms\n";
+    options.files.summary() << options.clouds[i] << ": " << told["robot"] << " of " << told["points"]
+                            << " points are the robot, found in " << 1000 * told["seconds"].get<double>() << " ms\n";
   }
-  if (options.report) {
-    // A file name need not be UTF-8, JSON must.
-    const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
-    files::replaceFile(*options.report, [&](std::ostream& out) { out << text << '\n'; });
-  }
+  if (options.report) cli::writeJson(*options.report, report);
   return 0;
 }
 
@@ -203,9 +201,11 @@ int main(int argc, char** argv)
         ->type_name("N")
         ->transform(cli::number<unsigned>(cli::give_threads))
         ->capture_default_str();
-    app.add_option("--report", options.report, "JSON file for the results and what they cost")->type_name("FILE");
+    app.add_option("--report", options.report, "JSON file for the results and what they cost;\n- is standard output")
+        ->type_name("FILE");
     if (!cli::understood(app, program, argc, argv)) return 0;
     options.settings.tolerance = options.tolerance.value_or(std::max(0.001, options.settings.padding / 4));
+    check(options);
     return run(options);
   });
 }

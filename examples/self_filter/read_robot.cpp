@@ -58,8 +58,9 @@ public:
     const io::FileBytes bytes(path_);
     FirstComplaint complaint;
     model_ = urdf::parseURDF(std::string(bytes.view()));
-    if (!model_)
-      fail(complaint.text().empty() ? "is no URDF" : "is refused by urdfdom: " + complaint.text(), "mend the URDF");
+    // urdfdom leaves out a body that it cannot read, and goes on: the robot would not be where that is
+    if (!complaint.text().empty()) fail("is refused by urdfdom: " + complaint.text(), "mend the URDF");
+    if (!model_) fail("is no URDF", "mend the URDF");
     requireTree();
     robot_.name = model_->getName();
     add(*model_->getRoot(), 0);
@@ -128,7 +129,7 @@ private:
 
   void addShape(Link& link, const urdf::Geometry* geometry, const urdf::Pose& origin) const
   {
-    if (!geometry) return;
+    if (!geometry) fail("link '" + link.name + "' has a body without a geometry", "mend the URDF");
     Shape shape;
     shape.pose = poseOf(origin);
     if (const auto* box = dynamic_cast<const urdf::Box*>(geometry)) shape.form = Box{vectorOf(box->dim)};

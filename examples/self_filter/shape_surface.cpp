@@ -17,16 +17,15 @@ namespace pcl_bsh::self_filter {
 
 namespace {
 
-void requireSize(double size, const char* what)
-{
-  if (!(size > 0.0) || !std::isfinite(size))
-    throw std::runtime_error(std::string(what) + " of size " + std::to_string(size) + ": give one above 0");
-}
-
 /// In how many sides a circle falls.
 std::uint32_t sidesOf(double radius, double sagitta)
 {
-  return static_cast<std::uint32_t>(std::ceil(std::numbers::pi / std::acos(std::max(0.5, 1.0 - sagitta / radius))));
+  constexpr double most = 100'000;
+  const double sides = std::ceil(std::numbers::pi / std::acos(std::max(0.5, 1.0 - sagitta / radius)));
+  if (!(sides <= most))
+    throw std::runtime_error("a circle of radius " + std::to_string(radius) +
+                             " has too many sides at this tolerance: give a coarser one");
+  return static_cast<std::uint32_t>(sides);
 }
 
 Surface triangulated(const Box& box, double)
@@ -94,6 +93,12 @@ Surface triangulated(const MeshFile& mesh, double)
 }
 
 } // namespace
+
+void requireSize(double size, const char* what)
+{
+  if (!(size > 0.0) || !std::isfinite(size))
+    throw std::runtime_error(std::string(what) + " of size " + std::to_string(size) + ": give one above 0");
+}
 
 Surface surfaceOf(const Shape& shape, double sagitta)
 {

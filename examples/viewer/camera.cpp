@@ -43,7 +43,9 @@ void look(vtkRenderer& renderer, const Camera& camera, const vtkBoundingBox& see
     away = std::max({away, std::abs(p.dot(right)) / wide + p.dot(toward_eye),
                      std::abs(p.dot(toward_eye.cross(right))) / tall + p.dot(toward_eye)});
   }
-  const Eigen::Vector3d position = Eigen::Vector3d(focus) + 1.1 * std::max(away, 1e-6) * toward_eye;
+  // Of a single place any distance will do that the graphics card's floats tell from none.
+  away = away > 0.0 ? std::max(away, 1e-6) : std::max(1.0, 1e-3 * Eigen::Vector3d(focus).norm());
+  const Eigen::Vector3d position = Eigen::Vector3d(focus) + 1.1 * away * toward_eye;
   eye.SetFocalPoint(focus);
   eye.SetPosition(position.data());
   eye.SetViewUp(up.data());

@@ -173,14 +173,14 @@ Coloring coloringOf(const ViewContent& content, const StepCollisions& collisions
   return content.scan().colors() ? Coloring::rgb : Coloring::height;
 }
 
-void paint(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& content, Coloring coloring)
+void paint(CloudActors clouds, ValueBar& bar, const ViewContent& content, Coloring coloring)
 {
-  paintScan(clouds[0], bar, content, coloring);
-  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].paint(plainColor(content.viewedClouds()[i]));
+  paintScan(*clouds[0], bar, content, coloring);
+  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i]->paint(plainColor(content.viewedClouds()[i]));
 }
 
-bool paintDistances(std::vector<CloudActor>& clouds, ValueBar& bar, ValueHistogram& histogram,
-                    const ViewContent& content, Coloring coloring, std::size_t step)
+bool paintDistances(CloudActors clouds, ValueBar& bar, ValueHistogram& histogram, const ViewContent& content,
+                    Coloring coloring, std::size_t step)
 {
   if (coloring != Coloring::distance) return false;
   const std::vector<double> distances = content.allDistances(step);
@@ -198,8 +198,8 @@ bool paintDistances(std::vector<CloudActor>& clouds, ValueBar& bar, ValueHistogr
     const unsigned char* const c = table->MapValue(distances[i]);
     colors[i] = {c[0], c[1], c[2]};
   }
-  clouds[0].paint(colors);
-  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].paint(compared_color);
+  clouds[0]->paint(colors);
+  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i]->paint(compared_color);
   if (shared) return true;
   bar.show(*table, title, false);
   histogram.show(distances, *table, "distance [" + (options.unit.empty() ? "cloud's unit" : options.unit) + "]",
@@ -207,7 +207,7 @@ bool paintDistances(std::vector<CloudActor>& clouds, ValueBar& bar, ValueHistogr
   return true;
 }
 
-void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& content, const StepCollisions& collisions,
+void mark(CloudActors clouds, ValueBar& bar, const ViewContent& content, const StepCollisions& collisions,
           Coloring coloring, std::size_t step)
 {
   const Options& options = content.options();
@@ -215,22 +215,22 @@ void mark(std::vector<CloudActor>& clouds, ValueBar& bar, const ViewContent& con
     requireCollisions(collisions, "distance");
     const Values shown{content.distances(step), lengthTitle("distance", options), true};
     if (options.range)
-      markValues(clouds[0], bar, content, shown, {0.0, *options.range}, collisions.flags[0]);
+      markValues(*clouds[0], bar, content, shown, {0.0, *options.range}, collisions.flags[0]);
     else
-      markValues(clouds[0], bar, content, shown, {0.0, options.clearance.value_or(rangeOf(shown.values, 0.0).high)});
+      markValues(*clouds[0], bar, content, shown, {0.0, options.clearance.value_or(rangeOf(shown.values, 0.0).high)});
   }
   else if (coloring == Coloring::first_pose) {
     requireCollisions(collisions, "first_pose");
     const Values shown = firstPoses(content);
-    markValues(clouds[0], bar, content, shown, rangeOf(shown.values, 0.0));
+    markValues(*clouds[0], bar, content, shown, rangeOf(shown.values, 0.0));
   }
   else {
     if (coloring == Coloring::collision) requireCollisions(collisions, "collision");
     const std::vector<std::uint8_t>& flags = collisions.flags[0];
-    clouds[0].mark(flags,
-                   collisions.undecided + collisions.sparse > 0 ? colorsOfVerdicts(flags) : std::vector<Color>());
+    clouds[0]->mark(flags,
+                    collisions.undecided + collisions.sparse > 0 ? colorsOfVerdicts(flags) : std::vector<Color>());
   }
-  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i].mark(collisions.flags[i]);
+  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i]->mark(collisions.flags[i]);
 }
 
 } // namespace pcl_bsh::view

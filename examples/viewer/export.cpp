@@ -19,39 +19,40 @@ namespace {
 
 /// Adds values of what the cloud is asked about.
 template <class Value>
-void addValues(const CloudActor& cloud, vtkPolyData& data, const std::string& name, const std::vector<Value>& values)
+void addValues(const ViewedCloud& viewed, vtkPolyData& data, const std::string& name, const std::vector<Value>& values)
 {
-  cloud.hasTriangles() ? vtk::addTriangleArray(data, name, values) : vtk::addArray(data, name, values);
+  viewed.hasTriangles() ? vtk::addTriangleArray(data, name, values) : vtk::addArray(data, name, values);
 }
 
 /// A cloud with all that is known of its points, or a surface with that of its triangles, in its own frame.
-vtkSmartPointer<vtkPolyData> known(CloudActor& cloud, const std::vector<std::uint8_t>& flags)
+vtkSmartPointer<vtkPolyData> known(const ViewedCloud& viewed, const CloudActor& cloud,
+                                   const std::vector<std::uint8_t>& flags)
 {
   auto data = vtkSmartPointer<vtkPolyData>::New();
   data->ShallowCopy(cloud.leftOut() > 0 ? &cloud.all() : &cloud.data()); // a picture may leave points out, a file not
-  if (!flags.empty()) addValues(cloud, *data, "collision", flags);
+  if (!flags.empty()) addValues(viewed, *data, "collision", flags);
   return data;
 }
 
-vtkSmartPointer<vtkPolyData> knownScan(CloudActor& cloud, const ViewContent& content, const StepCollisions& collisions,
-                                       std::size_t step)
+vtkSmartPointer<vtkPolyData> knownScan(const CloudActor& cloud, const ViewContent& content,
+                                       const StepCollisions& collisions, std::size_t step)
 {
-  const auto data = known(cloud, collisions.flags[0]);
-  if (const auto values = content.scan().field("intensity")) addValues(cloud, *data, "intensity", *values);
+  const ViewedCloud& scan = content.scan();
+  const auto data = known(scan, cloud, collisions.flags[0]);
+  if (const auto values = scan.field("intensity")) addValues(scan, *data, "intensity", *values);
   if (!collisions.known) return data;
-  if (const auto distances = content.distances(step); !distances.empty())
-    addValues(cloud, *data, "distance", distances);
-  if (const auto poses = content.firstPoses(); !poses.empty()) addValues(cloud, *data, "first_pose", poses);
+  if (const auto distances = content.distances(step); !distances.empty()) addValues(scan, *data, "distance", distances);
+  if (const auto poses = content.firstPoses(); !poses.empty()) addValues(scan, *data, "first_pose", poses);
   return data;
 }
 
 } // namespace
 
-void exportTo(const std::filesystem::path& path, const ViewContent& content, std::vector<CloudActor>& clouds,
+void exportTo(const std::filesystem::path& path, const ViewContent& content, CloudActors clouds,
               const StepCollisions& collisions, std::size_t at, unsigned level)
 {
   cli::Step step("Writing " + path.string());
-  const auto scan = knownScan(clouds[0], content, collisions, at);
+  const auto scan = knownScan(*clouds[0], content, collisions, at);
   if (path.extension() == ".vtp") {
     vtk::writeVtp(*scan, path);
     const vtkIdType written = content.scan().hasTriangles() ? scan->GetNumberOfCells() : scan->GetNumberOfPoints();
@@ -63,7 +64,7 @@ void exportTo(const std::filesystem::path& path, const ViewContent& content, std
     const ViewedCloud& viewed = content.viewedClouds()[i];
     const Eigen::Isometry3d pose = content.poseOf(i, at);
     const auto spheres = vtk::sphereData(*viewed.hierarchy, level);
-    blocks.emplace_back(viewed.name, posed(i == 0 ? scan : known(clouds[i], collisions.flags[i]), pose));
+    blocks.emplace_back(viewed.name, posed(i == 0 ? scan : known(viewed, *clouds[i], collisions.flags[i]), pose));
     blocks.emplace_back(viewed.name + " spheres", posed(spheres, pose));
     blocks.emplace_back(viewed.name + " sphere glyphs", posed(vtk::sphereGlyphs(*spheres), pose));
     blocks.emplace_back(viewed.name + " voxels", posed(vtk::voxelBoxes(*viewed.hierarchy), pose));

@@ -5,12 +5,11 @@
 #include "view_content.h"
 
 #include <filesystem>
-#include <vector>
 
 namespace pcl_bsh::view {
 
 /// Clouds with their arrays, spheres of a level, boxes and paths, as files. @throws std::runtime_error naming the file
-void exportTo(const std::filesystem::path& path, const ViewContent& content, std::vector<CloudActor>& clouds,
+void exportTo(const std::filesystem::path& path, const ViewContent& content, CloudActors clouds,
               const StepCollisions& collisions, std::size_t step, unsigned level);
 
 } // namespace pcl_bsh::view

@@ -72,7 +72,7 @@ void PointLayer::setMoving(bool moving)
 
 void PointLayer::setVisible(bool visible)
 {
-  all_->SetVisibility(visible);
+  all_->SetVisibility(visible && !hidden_);
 }
 
 void PointLayer::remove(vtkRenderer& renderer)

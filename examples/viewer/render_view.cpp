@@ -39,9 +39,10 @@ RenderView::RenderView(const ViewContent& content, vtkRenderer& renderer)
   const std::array<double, 3> c = fractions(ground);
   renderer.SetBackground(c[0], c[1], c[2]);
   for (const ViewedCloud& viewed : content.viewedClouds())
-    clouds_.emplace_back(viewed, renderer, viewed.role == ViewedCloud::Role::scan ? scan_color : obstacle_color,
-                         viewed.role == ViewedCloud::Role::scan ? colliding_color : obstacle_colliding_color);
-  if (options.cut) clouds_[0].cut(*options.cut);
+    clouds_.push_back(
+        makeCloudActor(viewed, renderer, viewed.role == ViewedCloud::Role::scan ? scan_color : obstacle_color,
+                       viewed.role == ViewedCloud::Role::scan ? colliding_color : obstacle_colliding_color));
+  if (options.cut) clouds_[0]->cut(*options.cut);
   extras_ = {options.level, options.voxels, options.cells, options.trace};
   collisions_ = content.collisions(options.step);
   coloring_ = coloringOf(content, collisions_);
@@ -50,7 +51,7 @@ RenderView::RenderView(const ViewContent& content, vtkRenderer& renderer)
   show(options.step);
   look(options.camera);
   if (!content.site()) return;
-  tiles_.emplace(*content.site(), renderer, clouds_[0], bar_, histogram_, coloring_);
+  tiles_.emplace(*content.site(), renderer, *clouds_[0], bar_, histogram_, coloring_);
   writeTexts();
 }
 
@@ -83,9 +84,9 @@ void RenderView::drawClouds()
 {
   bool deformed = false;
   for (std::size_t i = 0; i < clouds_.size(); ++i) {
-    clouds_[i].place(content_.poseOf(i, step_));
+    clouds_[i]->place(content_.poseOf(i, step_));
     if (!content_.deforms(i)) continue;
-    clouds_[i].setPoints(content_.viewedClouds()[i].points());
+    clouds_[i]->setPoints(content_.viewedClouds()[i].points());
     deformed = true;
   }
   if (deformed) paint(clouds_, bar_, content_, coloring_);
@@ -126,7 +127,7 @@ void RenderView::writeTexts()
   if (tiles_) title += "\n" + tiles_->text();
   if (extras_.level) title += "\nspheres of level " + std::to_string(*extras_.level);
   vtkIdType left_out = 0;
-  for (const CloudActor& cloud : clouds_) left_out += cloud.leftOut();
+  for (const auto& cloud : clouds_) left_out += cloud->leftOut();
   if (left_out > 0)
     title += "\nfar off and not drawn: " + std::to_string(left_out) + (left_out == 1 ? " point" : " points");
   caption_.setTitle(title);
@@ -175,7 +176,7 @@ std::vector<LegendEntry> RenderView::legend() const
 vtkBoundingBox RenderView::boundsOf(std::size_t cloud) const
 {
   vtkBoundingBox bounds;
-  vtkPolyData& data = clouds_[cloud].data();
+  vtkPolyData& data = clouds_[cloud]->data();
   if (data.GetNumberOfPoints() == 0) return bounds;
   double drawn[6];
   data.GetCellsBounds(drawn); // a mesh may have vertices of no triangle
@@ -196,7 +197,7 @@ vtkBoundingBox RenderView::collidingBounds() const
   vtkBoundingBox bounds;
   for (std::size_t i = 0; i < clouds_.size(); ++i) {
     if (content_.moves(i)) bounds.AddBox(boundsOf(i));
-    const auto marked = posed(&clouds_[i].marked(), content_.poseOf(i, step_));
+    const auto marked = posed(&clouds_[i]->marked(), content_.poseOf(i, step_));
     if (collisions_.known && marked->GetNumberOfPoints() > 0) bounds.AddBounds(marked->GetBounds());
   }
   return bounds;
@@ -219,7 +220,7 @@ void RenderView::look(const Camera& camera)
 
 void RenderView::setMoving(bool moving)
 {
-  for (CloudActor& cloud : clouds_) cloud.setMoving(moving);
+  for (const auto& cloud : clouds_) cloud->setMoving(moving);
   if (tiles_) tiles_->setMoving(moving);
 }
 
@@ -231,7 +232,7 @@ std::string RenderView::pick(int x, int y) const
   triangles->SetTolerance(0.0);
   points->PickFromListOn();
   triangles->PickFromListOn();
-  for (const CloudActor& cloud : clouds_) cloud.offerTo(*points, *triangles);
+  for (const auto& cloud : clouds_) cloud->offerTo(*points, *triangles);
   if (tiles_) tiles_->offerTo(*points, *triangles);
   const auto distance = [&](vtkPicker& picker) {
     if (picker.Pick(x, y, 0.0, &renderer_) == 0) return std::numeric_limits<double>::infinity();
@@ -246,7 +247,7 @@ std::string RenderView::pick(int x, int y) const
 std::string RenderView::describe(const vtkProp* prop, vtkIdType id) const
 {
   for (std::size_t i = 0; i < clouds_.size(); ++i) {
-    if (const auto part = clouds_[i].partOf(prop, id)) return describePart(content_, i, collisions_, *part);
+    if (const auto part = clouds_[i]->partOf(prop, id)) return describePart(content_, i, collisions_, *part);
   }
   const auto part = tiles_ ? tiles_->partOf(prop, id) : std::nullopt;
   return part ? describePart(*part->content, 0, part->content->collisions(0), part->record) : std::string();

@@ -64,7 +64,7 @@ private:
 
   const ViewContent& content_;
   vtkRenderer& renderer_;
-  std::vector<CloudActor> clouds_;
+  std::vector<std::unique_ptr<CloudActor>> clouds_;
   PropGroup extra_props_, closest_props_, path_props_;
   Caption caption_;
   ValueBar bar_;

@@ -51,7 +51,7 @@ bool TileActors::step()
   choice_.look(eye());
   const std::vector<std::size_t> superfluous = choice_.superfluous();
   for (const std::size_t tile : superfluous) {
-    shown_.at(tile).actor.front().remove(renderer_);
+    shown_.at(tile).actor->remove(renderer_);
     shown_.erase(tile);
     choice_.drop(tile);
   }
@@ -72,29 +72,30 @@ void TileActors::load(std::size_t tile)
 {
   Shown shown;
   shown.content = site_.readTile(tile, alike_);
-  shown.actor.emplace_back(shown.content->scan(), renderer_, scan_color, colliding_color);
-  if (site_.options().cut) shown.actor.front().cut(*site_.options().cut);
-  paint(shown.actor, bar_, *shown.content, coloring_);
-  if (!paintDistances(shown.actor, bar_, histogram_, *shown.content, coloring_, 0))
-    mark(shown.actor, bar_, *shown.content, shown.content->collisions(0), coloring_, 0);
+  shown.actor = makeCloudActor(shown.content->scan(), renderer_, scan_color, colliding_color);
+  const CloudActors clouds(&shown.actor, 1);
+  if (site_.options().cut) shown.actor->cut(*site_.options().cut);
+  paint(clouds, bar_, *shown.content, coloring_);
+  if (!paintDistances(clouds, bar_, histogram_, *shown.content, coloring_, 0))
+    mark(clouds, bar_, *shown.content, shown.content->collisions(0), coloring_, 0);
   if (!alike_.values) alike_.values = bar_.range(); // no point of the overview has a value, one of this tile may
   shown_.emplace(tile, std::move(shown));
 }
 
 void TileActors::setMoving(bool moving)
 {
-  for (auto& [tile, shown] : shown_) shown.actor.front().setVisible(!moving);
+  for (auto& [tile, shown] : shown_) shown.actor->setVisible(!moving);
 }
 
 void TileActors::offerTo(vtkPicker& points, vtkPicker& triangles) const
 {
-  for (const auto& [tile, shown] : shown_) shown.actor.front().offerTo(points, triangles);
+  for (const auto& [tile, shown] : shown_) shown.actor->offerTo(points, triangles);
 }
 
 std::optional<TileActors::Part> TileActors::partOf(const vtkProp* prop, vtkIdType id) const
 {
   for (const auto& [tile, shown] : shown_)
-    if (const auto record = shown.actor.front().partOf(prop, id)) return Part{shown.content.get(), *record};
+    if (const auto record = shown.actor->partOf(prop, id)) return Part{shown.content.get(), *record};
   return std::nullopt;
 }
 

@@ -45,7 +45,7 @@ public:
 private:
   struct Shown {
     std::unique_ptr<ViewContent> content;
-    std::vector<CloudActor> actor; ///< one
+    std::unique_ptr<CloudActor> actor;
   };
 
   Eye eye() const;

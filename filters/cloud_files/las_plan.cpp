@@ -85,11 +85,17 @@ void placeCoordinates(const LasPoints& points, const LasHeader* header, LasPlan&
   }
 }
 
-/// PCL's packed colour; extra bytes of that name and type are what the file says they are.
-const pcl::PCLPointField* packedColourOf(const LasPoints& points, const LasHeader* header)
+bool hasChannels(const LasPoints& points)
 {
-  std::vector<LasField> given;
-  if (header != nullptr) given = lasFieldsOf(header->block, header->descriptors);
+  return points.field("red") != nullptr && points.field("green") != nullptr && points.field("blue") != nullptr;
+}
+
+/// PCL's packed colour, where no channels stand beside it; extra bytes of that name and type are what the file says
+/// they are.
+/// @param given the fields of the header's points
+const pcl::PCLPointField* packedColourOf(const LasPoints& points, const std::vector<LasField>& given)
+{
+  if (hasChannels(points)) return nullptr;
   const auto is_colour = [&](const pcl::PCLPointField& field) {
     const auto is_extra = [&](const LasField& other) { return !other.descriptor.empty() && other.name == field.name; };
     return isPackedColour(field) && std::none_of(given.begin(), given.end(), is_extra);
@@ -98,28 +104,21 @@ const pcl::PCLPointField* packedColourOf(const LasPoints& points, const LasHeade
   return found == points.fields().end() ? nullptr : &*found;
 }
 
-bool hasChannels(const LasPoints& points)
-{
-  return points.field("red") != nullptr && points.field("green") != nullptr && points.field("blue") != nullptr;
-}
-
 bool names(const std::vector<LasField>& fields, const char* name)
 {
   return std::any_of(fields.begin(), fields.end(), [&](const LasField& field) { return field.name == name; });
 }
 
 /// The header's format, or the least one that has what the header's points had not, and the cloud has.
-void chooseFormat(const LasPoints& points, const LasHeader* header, LasPlan& plan)
+/// @param given, given_fields of the header's points
+void chooseFormat(const LasPoints& points, std::uint8_t given, const std::vector<LasField>& given_fields,
+                  bool packed_colour, LasPlan& plan)
 {
-  const std::uint8_t given = header == nullptr ? 6 : header->block.format;
-  const std::vector<LasField> given_fields =
-      header == nullptr ? lasFields(given, {}, {}) : lasFieldsOf(header->block, header->descriptors);
   const bool extended = given >= 6;
-  const bool coloured = hasChannels(points) || packedColourOf(points, header) != nullptr;
+  const bool coloured = hasChannels(points) || packed_colour;
   const bool time = points.field("gps_time") != nullptr && !names(given_fields, "gps_time");
   const bool colour = coloured && !names(given_fields, "red");
   const bool infrared = extended && points.field("nir") != nullptr && !names(given_fields, "nir");
-  plan.minor = header == nullptr ? 4 : header->block.minor;
   plan.format = given;
   if (!time && !colour && !infrared) return;
   for (std::uint8_t format = 0; format <= 10; ++format) {
@@ -172,9 +171,12 @@ bool fits(const LasPoints& points, const LasTarget& target)
 /// Gives the cloud's fields their places.
 class Planner {
 public:
-  Planner(const LasPoints& points, const LasHeader* header, LasPlan& plan)
+  /// @param extra_fields of the header's points, beyond those of their format
+  /// @param packed the packed colour; null: none
+  Planner(const LasPoints& points, std::vector<LasField> extra_fields, const pcl::PCLPointField* packed, LasPlan& plan)
   : points_(points),
-    header_(header),
+    extra_fields_(std::move(extra_fields)),
+    packed_(packed),
     plan_(plan)
   {
     for (std::size_t i = 0; i < points.fields().size(); ++i) places_.emplace(points.fields()[i].name, i);
@@ -183,13 +185,11 @@ public:
 
   void place()
   {
-    const bool channels = hasChannels(points_);
-    const pcl::PCLPointField* const packed = channels ? nullptr : packedColourOf(points_, header_);
     for (const LasField& field : lasFields(plan_.format, plan_.scale, plan_.offset)) {
       if (field.kind == LasField::Kind::colour) continue;
-      if (packed != nullptr && (field.name == "green" || field.name == "blue")) continue;
-      if (packed != nullptr && field.name == "red") {
-        plan_.targets.push_back({field, packed->offset, packed->datatype, true});
+      if (packed_ != nullptr && (field.name == "green" || field.name == "blue")) continue;
+      if (packed_ != nullptr && field.name == "red") {
+        plan_.targets.push_back({field, packed_->offset, packed_->datatype, true});
         continue;
       }
       const bool coordinate = field.at < 12;
@@ -226,24 +226,19 @@ private:
   {
     std::string descriptors;
     bool changed = false;
-    if (header_ != nullptr) {
-      std::vector<LasField> fields = lasFieldsOf(header_->block, header_->descriptors);
-      fields.erase(fields.begin(),
-                   fields.begin() + static_cast<std::ptrdiff_t>(lasFields(header_->block.format, {}, {}).size()));
-      for (LasField& field : fields) {
-        field.at = plan_.record_length;
-        if (!take(field, false)) {
-          changed = true;
-          addNewInPlaceOf(field, descriptors);
-          continue;
-        }
-        const std::size_t bytes = sizeOf(field.stored) * field.count;
-        plan_.record_length += bytes;
-        if (!field.descriptor.empty())
-          descriptors += field.descriptor;
-        else
-          appendUndescribed(descriptors, bytes);
+    for (LasField& field : extra_fields_) {
+      field.at = plan_.record_length;
+      if (!take(field, false)) {
+        changed = true;
+        addNewInPlaceOf(field, descriptors);
+        continue;
       }
+      const std::size_t bytes = sizeOf(field.stored) * field.count;
+      plan_.record_length += bytes;
+      if (!field.descriptor.empty())
+        descriptors += field.descriptor;
+      else
+        appendUndescribed(descriptors, bytes);
     }
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       if (taken_[i]) continue;
@@ -301,7 +296,8 @@ private:
   }
 
   const LasPoints& points_;
-  const LasHeader* header_;
+  std::vector<LasField> extra_fields_;
+  const pcl::PCLPointField* packed_;
   LasPlan& plan_;
   std::map<std::string, std::size_t> places_; ///< of the cloud's fields by name
   std::vector<bool> taken_;                   ///< whether a field of the cloud has a place
@@ -383,8 +379,14 @@ LasPlan planLas(const LasPoints& points, const LasHeader* header)
 {
   LasPlan plan;
   placeCoordinates(points, header, plan);
-  chooseFormat(points, header, plan);
-  Planner(points, header, plan).place();
+  const std::uint8_t given_format = header == nullptr ? 6 : header->block.format;
+  plan.minor = header == nullptr ? 4 : header->block.minor;
+  std::vector<LasField> fields = lasFields(given_format, {}, {});
+  const auto of_format = static_cast<std::ptrdiff_t>(fields.size());
+  if (header != nullptr) fields = lasFieldsOf(header->block, header->descriptors);
+  const pcl::PCLPointField* const packed = packedColourOf(points, fields);
+  chooseFormat(points, given_format, fields, packed != nullptr, plan);
+  Planner(points, {fields.begin() + of_format, fields.end()}, packed, plan).place();
   return plan;
 }
 

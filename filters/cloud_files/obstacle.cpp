@@ -58,7 +58,8 @@ UsualTolerance usualTolerance(const PointsView& vertices, const std::vector<Tria
     box.extend(a).extend(b).extend(c);
     area += 0.5 * (b - a).cross(c - a).norm();
   }
-  if (box.isEmpty()) return {clearance / 10, clearance / 10};
+  constexpr double any = 1e-6; // where nothing depends on it
+  if (box.isEmpty()) return {any, any};
   const double diagonal = box.diagonal().norm();
   const double magnitude = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
   UsualTolerance usual;
@@ -69,8 +70,7 @@ UsualTolerance usualTolerance(const PointsView& vertices, const std::vector<Tria
   const double most_balls = clearance > 0.0 ? most_usual_balls : most_without_clearance;
   usual.tolerance = std::max({usual.wanted, std::sqrt(usual_excess * best.hexagonalOptimum() / most_balls),
                               least_of_coordinate * magnitude + least_of_diagonal * diagonal});
-  // A mesh that is one place, the origin: any length will do.
-  if (usual.tolerance == 0.0) usual.tolerance = usual.wanted = 1e-6;
+  if (usual.tolerance == 0.0) usual.tolerance = usual.wanted = any; // a mesh that is one place, the origin
   return usual;
 }
 

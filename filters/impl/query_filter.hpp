@@ -12,13 +12,13 @@ namespace pcl_bsh {
 
 template <typename PointT, typename Query>
 QueryFilter<PointT, Query>::QueryFilter(bool extract_removed_indices, const char* name)
-: pcl::FilterIndices<PointT>(extract_removed_indices)
+: InputFilter<PointT>(extract_removed_indices)
 {
   this->filter_name_ = name;
 }
 
 template <typename PointT, typename Query>
-QueryFilter<PointT, Query>::QueryFilter(const QueryFilter& other) : pcl::FilterIndices<PointT>(other),
+QueryFilter<PointT, Query>::QueryFilter(const QueryFilter& other) : InputFilter<PointT>(other),
                                                                     Query(other)
 {
   this->removed_indices_ = removedOfItsOwn();
@@ -36,7 +36,7 @@ QueryFilter<PointT, Query>& QueryFilter<PointT, Query>::operator=(const QueryFil
   if constexpr (std::is_same_v<PointT, pcl::PCLPointCloud2>) this->field_sizes_.reserve(other.field_sizes_.size());
   Query::operator=(other);
 
-  pcl::FilterIndices<PointT>::operator=(other);
+  InputFilter<PointT>::operator=(other);
   this->removed_indices_ = std::move(removed);
   this->indices_ = std::move(indices);
   return *this;

@@ -10,7 +10,7 @@
 #endif
 
 #include <pcl_bsh/collision/flag_visit-inl.h>
-#include <pcl_bsh/traversal/far_nodes.h>
+#include <pcl_bsh/traversal/far_points-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -53,28 +53,10 @@ HWY_NOINLINE inline std::uint32_t leavesApart(const ObstacleVoxel& obstacle, con
 /// The voxels that two nodes are in, and where their clouds are.
 struct FarSides {
   Voxel& voxel_a;
-  const Eigen::Isometry3d& pose_a;
-  const PointsView& view_a;
+  GivenCloud a;
   Voxel& voxel_b;
-  const Eigen::Isometry3d& pose_b;
-  const PointsView& view_b;
+  GivenCloud b;
 };
-
-/// Whether each of a leaf's points, which are those of a or of b, is apart from a node of the other cloud that is far
-/// away and much smaller: see PairWalk::pointsAreFarApart().
-inline bool pointsFarApart(const FarSides& sides, const LeafRange& leaf, bool leaf_is_a, const NodeSupport& node,
-                           const PointPairs& pairs, Work& work)
-{
-  const PointsView& view = leaf_is_a ? sides.view_a : sides.view_b;
-  for (std::uint32_t i = 0; i < leaf.count; ++i) {
-    const NodeSupport point(view.point(leaf.record(i)));
-    ++work.node_pairs;
-    if (!areFarNodesApart(pairs.distance, sides.pose_a, leaf_is_a ? point : node, sides.pose_b,
-                          leaf_is_a ? node : point, pairs.clearance, work.exact_decisions))
-      return false;
-  }
-  return true;
-}
 
 /// The children in `near` that are far from the candidate for their size, and apart from it. @pre no radii
 HWY_NOINLINE inline std::uint32_t farApart(const ObstacleVoxel& obstacle, const FarSides& sides, const FlagVisit& visit,
@@ -93,12 +75,14 @@ HWY_NOINLINE inline std::uint32_t farApart(const ObstacleVoxel& obstacle, const 
     const NodeSupport own = nodeSupport(sides.voxel_a, *visit.node, lane, work);
     const bool is_leaf = (visit.leaves >> lane & 1) != 0;
     bool is_apart =
-        areFarNodesApart(pairs.distance, sides.pose_a, own, sides.pose_b, other, pairs.clearance, work.exact_decisions);
+        areFarNodesApart(pairs.distance, sides.a.pose, own, sides.b.pose, other, pairs.clearance, work.exact_decisions);
     if (!is_apart && is_leaf && !candidate.isLeaf() && visit.r[lane] > kLargeFarLeaf * radius)
-      is_apart = pointsFarApart(sides, {&sides.voxel_a, visit.node->begin[lane], visit.node->comparedPoints(lane)},
-                                true, other, pairs, work);
+      is_apart = pointsFarApart(pairs.distance, sides.a, sides.b,
+                                {&sides.voxel_a, visit.node->begin[lane], visit.node->comparedPoints(lane)}, true,
+                                other, pairs.clearance, work);
     else if (!is_apart && !is_leaf && candidate.isLeaf() && radius > kLargeFarLeaf * visit.r[lane])
-      is_apart = pointsFarApart(sides, candidate.leaf(*obstacle.voxel), false, own, pairs, work);
+      is_apart = pointsFarApart(pairs.distance, sides.a, sides.b, candidate.leaf(*obstacle.voxel), false, own,
+                                pairs.clearance, work);
     if (is_apart) apart |= 1u << lane;
   }
   return apart;

@@ -237,11 +237,9 @@ private:
       return;
     if (visit.has_several && mayBeFar(obstacle.prune_reach, radius)) {
       const FarSides sides{a_.storage.voxels[voxel_],
-                           a_.pose,
-                           a_.storage.view,
+                           {a_.pose, a_.storage.view},
                            b_.storage.voxels[reached_[visit.obstacle]],
-                           b_.pose,
-                           b_.storage.view};
+                           {b_.pose, b_.storage.view}};
       if ((near &= ~farApart(obstacle, sides, visit, candidate, ball, pairs_, near, found.work)) == 0) return;
     }
     if (ball.inside_reach > visit.smallest) {

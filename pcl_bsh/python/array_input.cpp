@@ -215,9 +215,9 @@ PointsView viewOfPoints(const std::string& name, const PointsInput& input)
   return view;
 }
 
-PointsView viewOfMoved(const PointsView& before, PointsInput input)
+MovedView movedView(const PointsView& before, PointsInput input)
 {
-  // The arrays of before may end with its hierarchy's view.
+  // The arrays of before end with its hierarchy's view.
   const auto stays = [&](py::object& given, const float* values) {
     if (given.is_none() && values) given = py::array_t<float>(static_cast<py::ssize_t>(before.count), values);
   };
@@ -226,7 +226,7 @@ PointsView viewOfMoved(const PointsView& before, PointsInput input)
   if (before.indices)
     input.indices = py::array_t<std::int32_t>(static_cast<py::ssize_t>(before.index_count), before.indices);
   input.uncertainty = before.uncertainty;
-  return viewOfPoints("points", input);
+  return {before, viewOfPoints("points", input)};
 }
 
 PointsView viewForCall(const std::string& name, const py::object& xyz, py::array& kept)

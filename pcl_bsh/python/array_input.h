@@ -67,9 +67,14 @@ std::shared_ptr<Kept> makeOwner()
 /// @param name how errors call the points
 PointsView viewOfPoints(const std::string& name, const PointsInput& input);
 
-/// The view of points that have moved: `input` has no subset and no common uncertainty, those of the points before
-/// stay, as do radii and uncertainties that it does not have.
-PointsView viewOfMoved(const PointsView& before, PointsInput input);
+/// Points that have moved, and where they were: what is last to hold these needs the interpreter's lock.
+struct MovedView {
+  PointsView before, now;
+};
+
+/// `input` has no subset and no common uncertainty, those of the points before stay, as do radii and uncertainties that
+/// it does not have.
+MovedView movedView(const PointsView& before, PointsInput input);
 
 /// The same for the time of a call: nothing is locked. `kept` has what must live as long as the view.
 PointsView viewForCall(const std::string& name, const py::object& xyz, py::array& kept);

@@ -160,7 +160,7 @@ py::object collisionFlagsOf(const SphereHierarchy& a, const SphereHierarchy& b, 
   FlagsRequest request = flagsRequest(clearance, side, accuracy, threads);
   py::array_t<float> spacings;
   if (!spacings_of_b.is_none()) {
-    spacings = floatsOf("spacings_of_b", spacings_of_b, b.view().count);
+    spacings = floatsOf("spacings_of_b", spacings_of_b, viewNow(b).count);
     request.spacings_of_b = spacings.data();
   }
   FlagsResult found = unlocked([&] { return collisionFlags(placed_a, placed_b, request); });

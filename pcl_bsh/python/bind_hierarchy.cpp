@@ -93,7 +93,7 @@ RuntimeError
 
 Notes
 -----
-It waits until no thread runs a query, of any hierarchy, and holds the interpreter's lock: queries of other threads wait.
+It waits until no thread runs a query, of any hierarchy, and queries of other threads wait for it.
 
 Examples
 --------
@@ -107,16 +107,22 @@ Examples
 2.0
 )";
 
-const KeptArrays* arraysOf(const SphereHierarchy& hierarchy)
+const KeptArrays* arraysOf(const PointsView& view)
 {
-  return dynamic_cast<const KeptArrays*>(static_cast<const Owner*>(hierarchy.view().owner.get()));
+  return dynamic_cast<const KeptArrays*>(static_cast<const Owner*>(view.owner.get()));
+}
+
+std::size_t sizeOf(const SphereHierarchy& hierarchy)
+{
+  return unlocked([&] { return hierarchy.size(); });
 }
 
 std::string textOf(const SphereHierarchy& hierarchy)
 {
-  const PointsView& view = hierarchy.view();
-  std::string text = "SphereHierarchy(" + std::to_string(hierarchy.size()) + " points";
-  if (hierarchy.size() != view.size()) text += " of " + std::to_string(view.size());
+  const PointsView view = viewNow(hierarchy);
+  const std::size_t finite = sizeOf(hierarchy);
+  std::string text = "SphereHierarchy(" + std::to_string(finite) + " points";
+  if (finite != view.size()) text += " of " + std::to_string(view.size());
   text += view.scalar == Scalar::float32 ? ", float32" : ", float64";
   if (view.radii) text += ", with radii";
   if (view.isUncertain()) text += ", uncertain";
@@ -144,10 +150,11 @@ py::dict statisticsOf(const SphereHierarchy& hierarchy)
 py::dict refit(SphereHierarchy& hierarchy, const py::object& xyz, const py::object& radii,
                const py::object& uncertainties, bool copy, double most_growth)
 {
-  return whileNoneComputes([&] {
-    return dictOf(hierarchy.refit(viewOfMoved(hierarchy.view(), {xyz, radii, py::none(), 0.0, uncertainties, copy}),
-                                  most_growth));
-  });
+  return dictOf(whileNoneComputes(
+      [&] {
+        return movedView(hierarchy.view(), {xyz, radii, py::none(), 0.0, uncertainties, copy});
+      },
+      [&](const MovedView& moved) { return hierarchy.refit(moved.now, most_growth); }));
 }
 
 std::shared_ptr<SphereHierarchy> make(const py::object& xyz, const py::object& radii, const py::object& indices,
@@ -169,12 +176,13 @@ void bindHierarchy(py::module_& module)
       .def(py::init(&make), py::arg("xyz"), py::kw_only(), py::arg("radii") = py::none(),
            py::arg("indices") = py::none(), py::arg("uncertainty") = 0.0, py::arg("uncertainties") = py::none(),
            py::arg("copy") = false, py::arg("voxel_edge") = 0.0, py::arg("threads") = 1)
-      .def("__len__", &SphereHierarchy::size)
+      .def("__len__", &sizeOf)
       .def("__repr__", &textOf)
       .def_property_readonly(
           "array",
           [](const SphereHierarchy& hierarchy) -> py::object {
-            const KeptArrays* kept = arraysOf(hierarchy);
+            const PointsView view = viewNow(hierarchy);
+            const KeptArrays* kept = arraysOf(view);
             if (!kept) return py::none();
             return kept->points;
           },
@@ -182,15 +190,18 @@ void bindHierarchy(py::module_& module)
       .def_property_readonly(
           "in_place",
           [](const SphereHierarchy& hierarchy) {
-            const KeptArrays* kept = arraysOf(hierarchy);
+            const PointsView view = viewNow(hierarchy);
+            const KeptArrays* kept = arraysOf(view);
             return kept && kept->in_place;
           },
           "Whether it reads the caller's own memory.")
       .def_property_readonly(
-          "records", [](const SphereHierarchy& hierarchy) { return hierarchy.view().count; },
+          "records", [](const SphereHierarchy& hierarchy) { return viewNow(hierarchy).count; },
           "Rows of the array: the length of arrays with a value for each point.")
-      .def_property_readonly("coordinate_spacing", &SphereHierarchy::coordinateSpacing,
-                             "The distance of neighbouring float32 numbers at the largest coordinate; 0 of float64.")
+      .def_property_readonly(
+          "coordinate_spacing",
+          [](const SphereHierarchy& hierarchy) { return unlocked([&] { return hierarchy.coordinateSpacing(); }); },
+          "The distance of neighbouring float32 numbers at the largest coordinate; 0 of float64.")
       .def(
           "build_all",
           [](const SphereHierarchy& hierarchy, unsigned threads) { unlocked([&] { hierarchy.buildAll(threads); }); },

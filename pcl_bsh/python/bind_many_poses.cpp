@@ -155,7 +155,7 @@ py::object flagsAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, co
   request.clearance = clearance;
   request.accuracy = accuracyOf(accuracy);
   request.threads = threads;
-  const std::size_t records = a.view().count;
+  const std::size_t records = viewNow(a).count;
   py::array_t<std::uint8_t> flags({static_cast<py::ssize_t>(list.size()), static_cast<py::ssize_t>(records)});
   std::uint8_t* const rows = flags.mutable_data();
   unlocked([&] {

@@ -396,12 +396,13 @@ void bindScene(py::module_& module)
           [](SharedScene& s, const py::object& object, const py::object& xyz, std::uint32_t part,
              const py::object& radii, const py::object& uncertainties, bool copy) {
             const ObjectId id = idOf(s, object);
-            return whileNoneComputes([&] {
-              requirePart(s.scene, id, part);
-              const PointsView& before = s.scene[id].parts[part].hierarchy->view();
-              return dictOf(
-                  s.scene.deform(id, part, viewOfMoved(before, {xyz, radii, py::none(), 0.0, uncertainties, copy})));
-            });
+            return dictOf(whileNoneComputes(
+                [&] {
+                  requirePart(s.scene, id, part);
+                  const PointsView& before = s.scene[id].parts[part].hierarchy->view();
+                  return movedView(before, {xyz, radii, py::none(), 0.0, uncertainties, copy});
+                },
+                [&](const MovedView& moved) { return s.scene.deform(id, part, moved.now); }));
           },
           py::arg("object"), py::arg("xyz"), py::arg("part") = 0, py::kw_only(), py::arg("radii") = none,
           py::arg("uncertainties") = none, py::arg("copy") = false,

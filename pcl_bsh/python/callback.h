@@ -2,6 +2,7 @@
 // Between queries, which run without the interpreter's lock, and what Python wants to be told.
 #pragma once
 
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/python/computing.h>
 
 #include <pybind11/pybind11.h>
@@ -35,16 +36,26 @@ auto unlocked(Compute&& compute)
   return compute();
 }
 
-/// Changes points of a hierarchy: when no query runs, and with the interpreter's lock, so that none begins meanwhile.
-template <class Change>
-auto whileNoneComputes(Change&& change)
+/// Where a hierarchy's points are; other threads may change it meanwhile.
+inline PointsView viewNow(const SphereHierarchy& hierarchy)
+{
+  return unlocked([&] { return hierarchy.view(); });
+}
+
+/// Changes points of a hierarchy: while no query runs, and none begins.
+/// @param prepare what is passed to `change`, which outlives that; may call Python
+/// @param change without the interpreter's lock
+template <class Prepare, class Change>
+auto whileNoneComputes(Prepare&& prepare, Change&& change)
 {
   std::optional<Changing> turn;
   {
     const py::gil_scoped_release release;
     turn.emplace();
   }
-  return change();
+  const auto prepared = prepare();
+  const py::gil_scoped_release release;
+  return change(prepared);
 }
 
 } // namespace pcl_bsh::python

@@ -28,7 +28,7 @@ Turns& turns()
 /// for whose end the change waits.
 constexpr std::chrono::milliseconds kGivesWay{50};
 
-thread_local std::size_t depth = 0; ///< how many Computing this thread has
+thread_local std::size_t depth = 0; ///< how many Computing and Changing this thread has
 
 } // namespace
 
@@ -57,10 +57,12 @@ Changing::Changing()
   turns().ended.wait(lock, [] { return turns().computing == 0 && !turns().changing; });
   --turns().waiting;
   turns().changing = true;
+  ++depth;
 }
 
 Changing::~Changing()
 {
+  --depth;
   const std::lock_guard lock(turns().mutex);
   turns().changing = false;
   turns().ended.notify_all();

@@ -15,7 +15,7 @@ public:
 };
 
 /// While it lives, no other thread computes. It waits until those that do are done; later ones wait for it, and for a
-/// while let it go first. To be made without the interpreter's lock.
+/// while let it go first. To be made without the interpreter's lock. What this thread asks meanwhile need not wait.
 class Changing {
 public:
   /// @throws std::runtime_error where this thread computes: in the callback of a query

@@ -11,8 +11,7 @@
 #endif
 
 #include <pcl_bsh/hierarchy/crowded_cell.h>
-#include <pcl_bsh/traversal/far_nodes.h>
-#include <pcl_bsh/traversal/leaf_pair-inl.h>
+#include <pcl_bsh/traversal/far_points-inl.h>
 #include <pcl_bsh/traversal/space.h>
 
 #include <vector>
@@ -283,31 +282,22 @@ private:
       const bool of_a = opened == Opened::a;
       if (areFarNodesApart(distance, a.pose, of_a ? own : other, b.pose, of_a ? other : own, clearance,
                            work.exact_decisions) ||
-          pointsAreFarApart(child, opened, out.radius, out.radii[lane] * out.stretch, own, clearance))
+          leafIsFarApart(child, opened, out.radius, out.radii[lane] * out.stretch, own, clearance))
         out.near &= ~(1u << lane);
     }
   }
 
-  /// Whether the other side of a child is a leaf much larger than it, and the child is apart from each of its points:
-  /// a leaf of a cylinder bends by more than the points near its axis differ in their distance.
+  /// Whether the other side of a child is a leaf much larger than it, and the child is apart from each of its points.
   /// @param leaf_radius, radius of the leaf and of the child, in one unit. @param own the child's support
-  bool pointsAreFarApart(const LanePair& child, Opened opened, float leaf_radius, float radius, const NodeSupport& own,
-                         double clearance)
+  bool leafIsFarApart(const LanePair& child, Opened opened, float leaf_radius, float radius, const NodeSupport& own,
+                      double clearance)
   {
     const bool leaf_is_a = opened == Opened::b;
     if (!(leaf_radius > kLargeFarLeaf * radius) || !isLeaf(leaf_is_a ? a : b, leaf_is_a ? child.a : child.b) ||
         isLeaf(leaf_is_a ? b : a, leaf_is_a ? child.b : child.a))
       return false;
-    const LeafRange points = leaf_is_a ? leaf(a, child.a) : leaf(b, child.b);
-    const PointsView& view = leaf_is_a ? a.storage.view : b.storage.view;
-    for (std::uint32_t i = 0; i < points.count; ++i) {
-      const NodeSupport point(view.point(points.record(i)));
-      ++work.node_pairs;
-      if (!areFarNodesApart(distance, a.pose, leaf_is_a ? point : own, b.pose, leaf_is_a ? own : point, clearance,
-                            work.exact_decisions))
-        return false;
-    }
-    return true;
+    return pointsFarApart(distance, {a.pose, a.storage.view}, {b.pose, b.storage.view},
+                          leaf_is_a ? leaf(a, child.a) : leaf(b, child.b), leaf_is_a, own, clearance, work);
   }
 
   /// Whether both spheres of a pair are as small as the float error; one of them is child `lane` of the step.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/vtk/display.h>
 
+#include <EGL/egl.h>
 #include <X11/Xlib.h> // here alone: its macros are everywhere
 #include <poll.h>
 
@@ -28,6 +29,7 @@ bool haveDisplay()
   if (!display) return false;
   if (kept && isOpen(kept)) XCloseDisplay(kept);
   kept = display;
+  eglReleaseThread(); // GLX ends the program where EGL has this thread
   return true;
 }
 

@@ -37,6 +37,12 @@ vtkIdType vtkBSHSphereSource::GetHierarchiesBuilt()
   return static_cast<vtkIdType>(this->Cloud->hierarchy.built());
 }
 
+vtkMTimeType vtkBSHSphereSource::GetMTime()
+{
+  if (this->Failed) this->MTime.Modified(); // as vtkBSHFilter has it
+  return this->Superclass::GetMTime();
+}
+
 int vtkBSHSphereSource::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
@@ -48,6 +54,7 @@ int vtkBSHSphereSource::RequestData(vtkInformation*, vtkInformationVector** inpu
   vtkPolyData* const output = vtkPolyData::GetData(outputs);
   output->Initialize();
   this->DeepestLevel = 0;
+  this->Failed = true;
   try {
     vtkPolyData* const cloud = vtkPolyData::GetData(inputs[0]);
     if (!cloud) throw std::invalid_argument("the input is missing: connect a cloud");
@@ -56,6 +63,7 @@ int vtkBSHSphereSource::RequestData(vtkInformation*, vtkInformationVector** inpu
     if (this->GenerateGlyphs) spheres = pcl_bsh::vtk::sphereGlyphs(*spheres, this->Resolution);
     output->ShallowCopy(spheres);
     this->DeepestLevel = static_cast<int>(pcl_bsh::vtk::deepestLevel(hierarchy));
+    this->Failed = false;
     return 1;
   }
   catch (const std::exception& error) {

@@ -46,6 +46,9 @@ public:
   /// How many hierarchies this source has built.
   vtkIdType GetHierarchiesBuilt();
 
+  /// Now, where the last execution failed: nothing that asks again gets an old answer.
+  vtkMTimeType GetMTime() override;
+
 protected:
   vtkBSHSphereSource();
   ~vtkBSHSphereSource() override;
@@ -64,4 +67,5 @@ private:
 
   struct Kept;
   std::unique_ptr<Kept> Cloud;
+  bool Failed = false; ///< the last execution
 };

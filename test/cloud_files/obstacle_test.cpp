@@ -97,6 +97,21 @@ TEST(Obstacle, TakesMoreWhereThatWouldTakeTooManyBalls)
   EXPECT_THAT(readObstacle(far, {}, 1e-10).remarks(), ElementsAre(HasSubstr("since one of 1e-11 would take")));
 }
 
+TEST(Obstacle, NamesTheCornerThatIsNoPlaceNotATolerance)
+{
+  const TemporaryFolder folder;
+  const auto path = folder.write("hole.off", "OFF\n3 1 0\n0 0 0\n1 0 0\nnan 1 0\n3 0 1 2\n");
+  for (const double clearance : {0.0, 0.1}) {
+    try {
+      readObstacle(path, {}, clearance);
+      ADD_FAILURE() << clearance;
+    }
+    catch (const std::exception& error) {
+      EXPECT_THAT(error.what(), HasSubstr("vertex 2 of triangle 0 is not finite"));
+    }
+  }
+}
+
 TEST(Obstacle, CoversWhatHasNoSizeAndWhatIsFarAway)
 {
   const TemporaryFolder folder;

@@ -294,6 +294,28 @@ TEST_F(PipelineProgram, ReadsPipelinesFromStandardInput)
   EXPECT_THAT(failed.err, StartsWith("pcl_bsh_pipeline: standard input: is no JSON"));
 }
 
+TEST_F(PipelineProgram, TellsProgramsWhetherItIsValid)
+{
+  put("scan.pcd", cloudOf(wall(0)));
+  folder.write("p.json", R"(["scan.pcd", "out.ply"])");
+  const Outcome valid = runIn("p.json --validate --json");
+  EXPECT_EQ(valid.exit_code, 0) << valid.err;
+  EXPECT_EQ(nlohmann::json::parse(valid.out), (nlohmann::json{{"pipeline", "p.json"}, {"valid", true}}));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.ply"));
+
+  folder.write("q.json", R"(["none.pcd", "out.ply"])");
+  for (const char* document : {"q.json", "none.json"}) {
+    const Outcome wrong = runIn(std::string(document) + " --validate --json");
+    EXPECT_EQ(wrong.exit_code, 1);
+    const nlohmann::json told = nlohmann::json::parse(wrong.out);
+    EXPECT_EQ(told["valid"], false);
+    EXPECT_EQ("pcl_bsh_pipeline: " + told["error"].get<std::string>() + "\n", wrong.err);
+  }
+  const Outcome alone = runIn("p.json --json");
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_EQ(alone.err, "pcl_bsh_pipeline: --json: goes with --validate: add it, or give --metadata - instead\n");
+}
+
 TEST_F(PipelineProgram, OverridesSetOptionsAlone)
 {
   folder.write("p.json", R"(["scan.pcd", {"type": "filters.voxel_grid", "tag": "v", "leaf_size": 0.5}, "out.ply"])");

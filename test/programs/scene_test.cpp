@@ -193,6 +193,41 @@ TEST(SceneProgram, ExplainsAndValidatesWithoutRunning)
   EXPECT_THAT(valid.out, HasSubstr("is valid: 2 objects"));
 }
 
+TEST(SceneProgram, TellsProgramsTheSameAsPeople)
+{
+  const io::TemporaryFolder folder;
+  const std::string scene = folder.write("crash.json", crashWith(R"("any": true, "response": "stop")")).string();
+  const Outcome valid = run("pcl_bsh_scene", scene + " --validate --json");
+  EXPECT_EQ(valid.exit_code, 0) << valid.err;
+  EXPECT_EQ(Json::parse(valid.out), (Json{{"scene", scene}, {"valid", true}, {"objects", 2}}));
+
+  const Json explained = Json::parse(run("pcl_bsh_scene", scene + " --explain --json").out);
+  EXPECT_EQ(explained["effects"].size(), 2u);
+  EXPECT_THAT(explained["effects"]["any"].get<std::string>(), HasSubstr("which pairs collide"));
+  EXPECT_EQ(explained["effects"].size() + explained["off"].size(), 11U);
+  EXPECT_EQ(explained["built"], (Json{{"voxels", true}, {"spheres", true}, {"grid", true}}));
+  EXPECT_EQ(explained["fixed_objects"], 1);
+  EXPECT_EQ(explained["accuracy"], "exact");
+  const std::string idle = folder.write("idle.json", crashWith("")).string();
+  EXPECT_EQ(Json::parse(run("pcl_bsh_scene", idle + " --explain --json").out)["built"],
+            (Json{{"voxels", true}, {"spheres", false}, {"grid", false}}));
+
+  const Outcome done = run("pcl_bsh_scene", scene + " --json --out " + (folder / "out").string());
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  const Json summary = Json::parse(done.out);
+  EXPECT_EQ(summary, Json::parse(io::contentOf(folder / "out" / "summary.json")));
+  EXPECT_EQ(summary["steps"], 5);
+  EXPECT_EQ(summary["colliding_steps"], 0);
+  EXPECT_EQ(summary["moves"]["touched"], 3);
+
+  const std::string wrong = folder.write("wrong.json", crashWith(R"("ani": true)")).string();
+  const Outcome refused = run("pcl_bsh_scene", wrong + " --validate --json");
+  EXPECT_EQ(refused.exit_code, 1);
+  const Json told = Json::parse(refused.out);
+  EXPECT_EQ(told["valid"], false);
+  EXPECT_EQ("pcl_bsh_scene: " + told["error"].get<std::string>() + "\n", refused.err);
+}
+
 TEST(SceneProgram, FailsInOneLine)
 {
   const io::TemporaryFolder folder;

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Points that move: hierarchies and scenes follow them."""
 
+import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -125,6 +127,86 @@ def test_queries_and_refits_of_many_threads_take_turns():
     for thread in threads:
         thread.join()
     assert refits > 5 and not wrong
+
+
+def ticks_while(change):
+    """How often this thread comes to run while another one changes points."""
+    done = threading.Event()
+
+    def work():
+        change()
+        done.set()
+
+    thread = threading.Thread(target=work)
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1000)  # a thread gives the interpreter's lock away only by itself
+    try:
+        thread.start()
+        ticks = 0
+        while not done.is_set():
+            time.sleep(0.0005)
+            ticks += 1
+        thread.join()
+        return ticks
+    finally:
+        sys.setswitchinterval(interval)
+
+
+def test_the_interpreter_goes_on_while_points_change():
+    places = [cloud("random", seed, 100000) for seed in (1, 2)]
+    hierarchy = pcl_bsh.SphereHierarchy(places[0])
+    scene = pcl_bsh.Scene(deform=1.5)
+    scene.add("cloth", pcl_bsh.SphereHierarchy(places[0]))
+    for change in (lambda k: hierarchy.refit(places[k % 2]), lambda k: scene.deform("cloth", places[k % 2])):
+        ticks = 0
+        for k in range(1, 20):  # it sleeps twice at most where the lock is held: before, and when the turn is taken
+            hierarchy.build_all()
+            ticks = max(ticks, ticks_while(lambda: change(k)))
+            if ticks > 4:
+                break
+        assert ticks > 4, "the change held the interpreter's lock"
+
+
+def test_what_is_told_while_points_change_is_whole():
+    places = [cloud("random", seed, 5000) for seed in (1, 2)]
+    hierarchy = pcl_bsh.SphereHierarchy(places[0])
+    ends = threading.Event()
+    wrong = []
+
+    def look():
+        while not ends.is_set():
+            told = (len(hierarchy), hierarchy.records, hierarchy.in_place, hierarchy.coordinate_spacing, repr(hierarchy))
+            if told != (5000, 5000, True, 0.0, "SphereHierarchy(5000 points, float64)"):
+                wrong.append(told)
+            if not any(hierarchy.array is xyz for xyz in places):
+                wrong.append(hierarchy.array)
+
+    threads = [threading.Thread(target=look) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for k in range(1, 60):
+        hierarchy.refit(places[k % 2])
+    ends.set()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+def test_what_is_given_may_ask_the_hierarchy_that_it_changes():
+    hierarchy = pcl_bsh.SphereHierarchy(cloud("random", 1, 50))
+    moved = cloud("random", 2, 50)
+    asked = []
+
+    class Points:
+        def __array__(self, *arguments, **options):
+            asked.append((len(hierarchy), pcl_bsh.closest_pair(hierarchy, hierarchy).distance))
+            with pytest.raises(RuntimeError, match="while a query runs"):
+                hierarchy.refit(moved)
+            return moved
+
+    hierarchy.refit(Points())
+    assert asked and set(asked) == {(50, 0.0)}
+    assert pcl_bsh.closest_pair(hierarchy, pcl_bsh.SphereHierarchy(moved[:1])).distance == 0.0
 
 
 def test_a_scene_deforms():

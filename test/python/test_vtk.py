@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """pcl_bsh.vtk: the filters in a pipeline of Debian's vtkmodules, held against brute force."""
+import ast
+import re
+
 import numpy as np
 import pytest
 
@@ -11,6 +14,8 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkTable  # noqa: E402
 from vtkmodules.vtkCommonExecutionModel import vtkPolyDataAlgorithm, vtkTrivialProducer  # noqa: E402
 from vtkmodules.vtkCommonTransforms import vtkTransform  # noqa: E402
 from vtkmodules.vtkFiltersSources import vtkSphereSource  # noqa: E402
+
+from stubs import PACKAGE, mypy_errors  # noqa: E402
 
 
 def cloud(points):
@@ -119,3 +124,36 @@ def test_what_fails_has_no_answer(clouds):
     collision.Update()
     assert told == ["ErrorEvent"]
     assert collision.GetOutput().GetNumberOfPoints() == 0
+
+
+def test_stubs(tmp_path):
+    assert mypy_errors(
+        tmp_path,
+        "import pcl_bsh.vtk\n"
+        "collision = pcl_bsh.vtk.vtkBSHCollisionFilter()\n"
+        "collision.SetClearance(0.05)\n"
+        "collision.SetTransform(None)\n"
+        "near: int = collision.GetNumberOfCollidingPoints()\n"
+        "collision.SetClearance('near')  # error\n"
+        "collision.SetSwept()  # error\n"
+        "text: str = pcl_bsh.vtk.vtkBSHSphereSource().GetLevel()  # error\n"
+        "pcl_bsh.vtk.vtkBSHPathFilter()  # error\n") == [6, 7, 8, 9]
+
+
+def test_stubs_say_what_the_wrappers_say():
+    """VTK's wrappers write each method's signature into its docstring; None stands for a null object."""
+    stub = ast.parse((PACKAGE / "vtk.pyi").read_text())
+    named = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+    assert set(named) == {name for name in vars(vtk) if name.startswith("vtk")}
+    of_objects = {"IsTypeOf", "IsA", "GetNumberOfGenerationsFromBaseType", "GetNumberOfGenerationsFromBase"}
+    for name, node in named.items():
+        wrapped = getattr(vtk, name)
+        assert [ast.unparse(base) for base in node.bases] == [wrapped.__bases__[0].__name__]
+        methods = {part.name: part for part in node.body if part.name != "__init__"}
+        assert set(methods) == {m for m in vars(wrapped) if not m.startswith("__")} - of_objects, name
+        for method, part in methods.items():
+            told = re.sub(r"\s+", " ", getattr(wrapped, method).__doc__.split("C++:")[0]).strip()
+            arguments = ", ".join(
+                a.arg + (f":{ast.unparse(a.annotation)}" if a.annotation else "") for a in part.args.args)
+            said = f"{method}({arguments}) -> {ast.unparse(part.returns)}"
+            assert re.sub(r"Optional\[(\w+)\]", r"\1", said) == told

@@ -143,6 +143,18 @@ TEST_F(RobotTest, RefusesJointsItCannotMove)
                 "mimics itself");
 }
 
+TEST_F(RobotTest, RefusesABodyThatUrdfdomLeavesOut)
+{
+  for (const char* geometry :
+       {"<box size=\"1 2\"/>", "<sphere radius=\"nan\"/>", "<sphere/>", "<cone radius=\"1\"/>", ""}) {
+    SCOPED_TRACE(geometry);
+    for (const char* kind : {"collision", "visual"})
+      expectRefused(link("a", std::string("<") + kind + "><geometry>" + geometry + "</geometry></" + kind + ">"),
+                    "is refused by urdfdom: ");
+  }
+  expectRefused(link("a", "<collision/>"), "is refused by urdfdom: ");
+}
+
 TEST_F(RobotTest, RefusesWhatIsNoUrdf)
 {
   expectRefused("<link", "");

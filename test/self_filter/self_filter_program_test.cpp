@@ -70,6 +70,9 @@ TEST_F(SelfFilterProgram, FlagsItPerFrameWhereTheJointsPutIt)
   EXPECT_EQ(report["clouds"].size(), 2U);
   EXPECT_EQ(report["clouds"][1]["robot"], 1);
   EXPECT_EQ(report["padding"], 0.02);
+  const Outcome piped = filter("ball.urdf a.csv b.csv --states states.csv --out out --report -");
+  EXPECT_EQ(Json::parse(piped.out)["clouds"].size(), 2U);
+  EXPECT_THAT(piped.err, HasSubstr("b.csv: 1 of "));
 }
 
 TEST_F(SelfFilterProgram, SeesFromALink)

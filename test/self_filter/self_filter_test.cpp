@@ -174,6 +174,24 @@ TEST(LinkBodyTest, NamesTheLinkThatHasNoSize)
   }
 }
 
+TEST(LinkBodyTest, OfAVastSphereIsOneBall)
+{
+  Link link;
+  link.shapes = {{Sphere{1e9}, Eigen::Isometry3d::Identity()}};
+  EXPECT_EQ(bodyOf(link, 0.001).centers.size(), 1U);
+  link.name = "drum";
+  for (const double radius : {1e9, 1e30}) {
+    link.shapes = {{Cylinder{radius, 1.0}, Eigen::Isometry3d::Identity()}};
+    try {
+      bodyOf(link, 0.001);
+      ADD_FAILURE() << radius;
+    }
+    catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), testing::StartsWith("link 'drum': a circle of radius "));
+    }
+  }
+}
+
 TEST(LinkBodyTest, OfALinkWithoutBodiesIsEmpty)
 {
   EXPECT_EQ(bodyOf({}, 0.01).view().count, 0U);

@@ -288,6 +288,14 @@ TEST_F(Picture, ExportsReadBack)
       << "floor and ball; spheres, glyphs, voxels, cells of both; the path";
 }
 
+TEST_F(Picture, APointAloneIsInTheMiddle)
+{
+  for (const char* place : {"0 0 0\n", "5 5 5\n", "513449.7 5402650.2 300\n"}) {
+    const Pixels pixels = drawn(folder.write("one.xyz", place).string() + " --color height");
+    EXPECT_GT(pixels.countIf(200, 150, 4, [&](int x, int y) { return pixels.at(x, y) != ground; }), 2u) << place;
+  }
+}
+
 TEST_F(Picture, PointsFarOffLeaveTheOthersInSight)
 {
   std::string text = "3.4028234e38 0 0\n-1e30 1e6 5\n";

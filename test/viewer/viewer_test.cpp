@@ -172,6 +172,19 @@ TEST_F(ViewerTest, TheServerStaysBetweenTheQuestionAndTheWindow)
   for (int i = 0; i < 30; ++i) EXPECT_TRUE(vtk::haveDisplay()) << i;
 }
 
+TEST_F(ViewerTest, OpensAfterAPictureThatNeededNoDisplay)
+{
+  const CloudsContent content(options());
+  unsetenv("DISPLAY");
+  const auto drawn = vtk::makeOffscreenWindow(100, 100);
+  drawn->Render();
+  for (int i = 0; i < 2; ++i) { // one after the other
+    const Xvfb display;
+    Viewer viewer(content);
+    EXPECT_GT(pixelsOf(viewer.window()).count(ground), 100u);
+  }
+}
+
 TEST_F(ViewerTest, NoDisplayIsAnErrorNotAnEnd)
 {
   const CloudsContent content(options());

@@ -31,7 +31,11 @@
 #include <vtkTransform.h>
 #include <vtkTrivialProducer.h>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -705,6 +709,43 @@ TEST_P(Filters, SpheresOfALevelHoldAllPoints)
   source->SetInputData(empty);
   source->Update();
   EXPECT_EQ(source->GetOutput()->GetNumberOfPoints(), 0);
+}
+
+/// While it lives, this process gets no memory but what it has.
+class NoMoreMemory {
+public:
+  NoMoreMemory()
+  {
+    getrlimit(RLIMIT_AS, &before_);
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    rlimit limit = before_;
+    limit.rlim_cur = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + (std::size_t{1} << 20);
+    setrlimit(RLIMIT_AS, &limit);
+  }
+  ~NoMoreMemory() { setrlimit(RLIMIT_AS, &before_); }
+
+private:
+  rlimit before_ = {};
+};
+
+TEST(SphereSource, RunsAgainAfterAFailure)
+{
+  Random random{3};
+  const auto cloud = dataOf(makePoints(Shape::uniform, 300'000, 1.0, random), VTK_FLOAT);
+  vtkNew<vtkBSHSphereSource> source;
+  source->SetInputData(cloud);
+  Told told(*source);
+  {
+    const NoMoreMemory little;
+    source->Update();
+  }
+  ASSERT_FALSE(told.texts.empty());
+  EXPECT_EQ(source->GetOutput()->GetNumberOfPoints(), 0);
+  told.texts.clear();
+  source->Update();
+  EXPECT_TRUE(told.texts.empty());
+  EXPECT_GT(source->GetOutput()->GetNumberOfPoints(), 0);
 }
 
 } // namespace

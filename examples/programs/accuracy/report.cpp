@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.h"
 
+#include "cli/json_output.h"
 #include "picture.h"
 
 #include <pcl_bsh/files/replace_file.h>
@@ -42,7 +43,7 @@ void writeCsv(std::ostream& out, const Study& study)
 }
 
 /// All that the other two have.
-void writeJson(std::ostream& out, const std::string& heading, const Subject& subject, const Study& study)
+nlohmann::ordered_json toJson(const std::string& heading, const Subject& subject, const Study& study)
 {
   using Json = nlohmann::ordered_json;
   const auto spread = [](const Spread& s) -> Json { return {{"low", s.low}, {"median", s.median}, {"high", s.high}}; };
@@ -70,8 +71,7 @@ void writeJson(std::ostream& out, const std::string& heading, const Subject& sub
                               {"mean_leaf_radius", m.mean_leaf_radius},
                               {"flags", spread(m.flags)},
                               {"distance", spread(m.distance)}});
-  // A file name need not be UTF-8, JSON must.
-  out << report.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  return report;
 }
 
 void writeTable(std::ostream& out, const Study& study, const std::string& query)
@@ -206,7 +206,7 @@ void writeReports(const std::filesystem::path& folder, const std::string& headin
                   const Study& study)
 {
   files::replaceFile(folder / "accuracy.csv", [&](std::ostream& out) { writeCsv(out, study); });
-  files::replaceFile(folder / "accuracy.json", [&](std::ostream& out) { writeJson(out, heading, subject, study); });
+  cli::writeJson(folder / "accuracy.json", toJson(heading, subject, study));
   files::replaceFile(folder / "accuracy.md", [&](std::ostream& out) { writeMarkdown(out, heading, subject, study); });
   vtk::writeChartsPng(chartsOf(subject, study), 1600, 800, folder / "accuracy.png");
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.h"
 
-#include <pcl_bsh/files/replace_file.h>
+#include "cli/json_output.h"
+
 #include <pcl_bsh/filters/reports/clash_report.h>
 
 namespace pcl_bsh::cli {
@@ -98,10 +99,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
 
 void writeReport(const std::filesystem::path& path, const CollisionReport& report)
 {
-  using Json = nlohmann::ordered_json;
-  // A file name need not be UTF-8, JSON must.
-  const std::string text = toJson(report).dump(2, ' ', false, Json::error_handler_t::replace);
-  files::replaceFile(path, [&](std::ostream& out) { out << text << '\n'; });
+  writeJson(path, toJson(report));
 }
 
 } // namespace pcl_bsh::cli

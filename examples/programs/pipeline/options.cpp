@@ -50,6 +50,7 @@ std::optional<PipelineOptions> parsePipelineOptions(int argc, char** argv)
   app.footer(pipeline_footer);
   app.add_option("PIPELINE.json", options.document, "the pipeline; - is standard input")->type_name("");
   app.add_flag("--validate", validate, "only check it: options, files, and the fields their headers name");
+  app.add_flag("--json", options.json, "say so as JSON, for programs; a run has --metadata -");
   app.add_option("--stage.TAG.OPTION", "VALUE instead of what the pipeline says; write it with =, as often as needed")
       ->type_name("VALUE");
   app.add_option("--metadata", options.metadata,
@@ -65,6 +66,7 @@ std::optional<PipelineOptions> parsePipelineOptions(int argc, char** argv)
     if (options.document.empty() && !schema && !stages) throw CLI::RequiredError("PIPELINE.json");
   });
   if (!wanted) return std::nullopt;
+  if (options.json && !validate) throw UsageError("--json: goes with --validate: add it, or give --metadata - instead");
   if (schema || stages) {
     options.task = schema ? PipelineTask::print_schema : PipelineTask::print_stages;
     return options;

@@ -22,6 +22,7 @@ struct PipelineOptions {
   std::filesystem::path metadata; ///< empty: none
   unsigned threads = 0;
   bool progress = false;
+  bool json = false; ///< what validation tells
 
   /// What messages call the document.
   std::string name() const { return document == "-" ? "standard input" : document.string(); }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "explain.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <ostream>
 
 namespace pcl_bsh::cli {
@@ -38,6 +40,19 @@ const char* explanationOf(Effect effect)
   return "";
 }
 
+/// Whether the grid over the scene is needed.
+bool asksForPairs(const Effects& effects)
+{
+  return effects.any || effects.flags || effects.distance || effects.contacts || effects.first_contact ||
+         effects.swept || effects.response != Response::none || effects.gravity;
+}
+
+std::size_t fixedObjects(const io::SceneFile& file)
+{
+  return static_cast<std::size_t>(std::count_if(file.objects.begin(), file.objects.end(),
+                                                [](const io::ObjectEntry& object) { return object.fixed; }));
+}
+
 } // namespace
 
 void explain(const io::SceneFile& file, std::ostream& out)
@@ -59,17 +74,39 @@ void explain(const io::SceneFile& file, std::ostream& out)
   for (std::size_t e = 0; e < kEffects; ++e)
     if (!effects.has(static_cast<Effect>(e))) out << ' ' << nameOf(static_cast<Effect>(e));
 
-  const bool pairs = effects.any || effects.flags || effects.distance || effects.contacts || effects.first_contact ||
-                     effects.swept || effects.response != Response::none || effects.gravity;
+  const bool pairs = asksForPairs(effects);
   out << "\n\nWhat is built:\n  voxels of every cloud: points are sorted into them when the cloud is read\n";
   out << "  octree and spheres of a voxel: when an effect first visits it" << (effects.none() ? ", so never\n" : "\n");
   out << "  grid over the scene: " << (pairs ? "yes, " : "no, no effect asks for pairs of objects\n");
-  if (pairs) {
-    std::size_t fixed = 0;
-    for (const io::ObjectEntry& object : file.objects) fixed += object.fixed;
-    out << "only objects that share one of its voxels are tested\n  pairs of the " << fixed
+  if (pairs)
+    out << "only objects that share one of its voxels are tested\n  pairs of the " << fixedObjects(file)
         << " fixed objects: not tested, unless a rule says so; " << file.rules.size() << " rules\n";
+}
+
+nlohmann::ordered_json explanationJson(const io::SceneFile& file)
+{
+  using Json = nlohmann::ordered_json;
+  const Effects& effects = file.options.effects;
+  Json json = {{"clouds", file.clouds.size()},
+               {"uncertain_clouds", Json::array()},
+               {"steps", file.steps},
+               {"dt", file.dt},
+               {"accuracy", file.options.accuracy.text()},
+               {"effects", Json::object()},
+               {"off", Json::array()}};
+  for (const io::CloudSource& cloud : file.clouds)
+    if (!cloud.uncertainty.isZero()) json["uncertain_clouds"].push_back(cloud.name);
+  for (std::size_t e = 0; e < kEffects; ++e) {
+    const auto effect = static_cast<Effect>(e);
+    if (effects.has(effect))
+      json["effects"][nameOf(effect)] = explanationOf(effect);
+    else
+      json["off"].push_back(nameOf(effect));
   }
+  json["built"] = {{"voxels", true}, {"spheres", !effects.none()}, {"grid", asksForPairs(effects)}};
+  json["fixed_objects"] = fixedObjects(file);
+  json["rules"] = file.rules.size();
+  return json;
 }
 
 } // namespace pcl_bsh::cli

@@ -4,11 +4,16 @@
 
 #include <pcl_bsh/filters/scene_files/scene_file.h>
 
+#include <nlohmann/json.hpp>
+
 #include <iosfwd>
 
 namespace pcl_bsh::cli {
 
 /// Prints which effects are on and what is built for them.
 void explain(const io::SceneFile& file, std::ostream& out);
+
+/// The same for programs: `effects` that are on, with what each is; those `off`; what is `built`.
+nlohmann::ordered_json explanationJson(const io::SceneFile& file);
 
 } // namespace pcl_bsh::cli

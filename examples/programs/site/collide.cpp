@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide.h"
 
+#include "cli/json_output.h"
 #include "cli/program.h"
 
 #include <stdexcept>
@@ -132,8 +133,7 @@ int answer(const SiteOptions& options)
   if (!reports) return 0;
   run.ranks = sites::ranks();
   if (!options.plan.empty()) putPlan(report, options.plan, run);
-  const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
-  files::replaceFile(options.report, [&](std::ostream& out) { out << text << '\n'; });
+  writeJson(options.report, report);
   return 0;
 }
 

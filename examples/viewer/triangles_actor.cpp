@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "triangle_layer.h"
+#include "triangles_actor.h"
 
 #include "actors.h"
 #include "surface_actor.h"
@@ -46,7 +46,8 @@ vtkSmartPointer<vtkPolyData> someOf(vtkPolyData& data, const std::vector<std::ui
 
 } // namespace
 
-TriangleLayer::TriangleLayer(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color, const Color& marked)
+TrianglesActor::TrianglesActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
+                               const Color& marked)
 : marked_(vtkSmartPointer<vtkPolyData>::New()),
   faces_(addSurface(viewed, renderer, color)),
   outlines_(actorOf(marked_)),
@@ -62,25 +63,25 @@ TriangleLayer::TriangleLayer(const ViewedCloud& viewed, vtkRenderer& renderer, c
   show();
 }
 
-void TriangleLayer::paint(const std::vector<Color>& colors)
+void TrianglesActor::paint(const std::vector<Color>& colors)
 {
   colors_ = colors;
   show();
 }
 
-void TriangleLayer::paint(const Color& color)
+void TrianglesActor::paint(const Color& color, const ColorRange* /*heights*/)
 {
   paint(std::vector<Color>(colors_.size(), color));
 }
 
-void TriangleLayer::mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors)
+void TrianglesActor::mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors)
 {
   flags_ = flags;
   marked_colors_ = colors;
   show();
 }
 
-void TriangleLayer::show()
+void TrianglesActor::show()
 {
   std::vector<Color> shown = colors_, outlined;
   for (std::size_t i = 0; i < flags_.size(); ++i) {
@@ -94,20 +95,35 @@ void TriangleLayer::show()
   vtkPolyDataMapper::SafeDownCast(outlines_->GetMapper())->SetInputData(marked_);
 }
 
-void TriangleLayer::place(const Eigen::Isometry3d& pose)
+void TrianglesActor::place(const Eigen::Isometry3d& pose)
 {
   const auto matrix = matrixOf(pose);
   faces_->SetUserMatrix(matrix);
   outlines_->SetUserMatrix(matrix);
 }
 
-void TriangleLayer::cut(const Cut& plane)
+void TrianglesActor::cut(const Cut& plane)
 {
   view::cut(*faces_, plane);
   view::cut(*outlines_, plane);
 }
 
-std::optional<std::uint32_t> TriangleLayer::triangleOf(const vtkProp* prop, vtkIdType id) const
+void TrianglesActor::setVisible(bool visible)
+{
+  for (vtkActor* actor : {faces_.Get(), outlines_.Get()}) actor->SetVisibility(visible);
+}
+
+void TrianglesActor::remove(vtkRenderer& renderer)
+{
+  for (vtkActor* actor : {faces_.Get(), outlines_.Get()}) renderer.RemoveActor(actor);
+}
+
+void TrianglesActor::offerTo(vtkPicker& /*points*/, vtkPicker& triangles) const
+{
+  triangles.AddPickList(faces_);
+}
+
+std::optional<std::uint32_t> TrianglesActor::partOf(const vtkProp* prop, vtkIdType id) const
 {
   if (prop != faces_.Get() || id < 0 || id >= data_->GetNumberOfCells()) return std::nullopt;
   return static_cast<std::uint32_t>(id);
