@@ -68,9 +68,10 @@ inline std::uint32_t facingPoints(const ObstacleVoxel& obstacle, const FlagVisit
 
 /// Where points are uncertain: by the nearest of b, each as far as its own uncertainty makes it, and pair by pair where
 /// that does not decide. @param reach of the obstacle. @param own uncertainties of the leaf's points
-inline std::uint32_t hitUncertainPoints(const ObstacleVoxel& obstacle, const UncertainReach& reach, FlagVisit& visit,
-                                        std::uint32_t lane, const LeafRange& leaf, const float* own,
-                                        const LeafPoints& points, const FlagQuery& query, Work& work)
+HWY_NOINLINE inline std::uint32_t hitUncertainPoints(const ObstacleVoxel& obstacle, const UncertainReach& reach,
+                                                     FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf,
+                                                     const float* own, const LeafPoints& points, const FlagQuery& query,
+                                                     Work& work)
 {
   const UncertainPoints limits(reach, own);
   const std::vector<ObstacleSphere>& candidates = visit.near[lane];

@@ -167,8 +167,8 @@ public:
   /// Turns to the visit's obstacle, and settles the children that single points of b are near enough to.
   /// @param from, to candidates. @param settleChild(lane)
   template <class Candidate, class Settle>
-  void settle(FlagVisit& visit, const ObstacleVoxel& obstacle, Candidate from, Candidate to, Work& work,
-              const Settle& settleChild)
+  HWY_NOINLINE void settle(FlagVisit& visit, const ObstacleVoxel& obstacle, Candidate from, Candidate to, Work& work,
+                           const Settle& settleChild)
   {
     const UncertainReach& reach = reaches_[visit.obstacle];
     lanes_.set(reach, visit.r, ownOf(own_, static_cast<std::size_t>(visit.node - voxel_->nodes.data())));
@@ -189,8 +189,8 @@ public:
   }
 
   /// Which of these children the candidate matters to.
-  std::uint32_t near(const FlagVisit& visit, const ObstacleVoxel& obstacle, const ObstacleSphere& candidate,
-                     std::uint32_t lanes) const
+  HWY_NOINLINE std::uint32_t near(const FlagVisit& visit, const ObstacleVoxel& obstacle,
+                                  const ObstacleSphere& candidate, std::uint32_t lanes) const
   {
     const CandidateReach more(obstacle, reaches_[visit.obstacle], candidate);
     const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
@@ -205,7 +205,7 @@ public:
 
   /// Tells the sink which points may collide, of the open children that are done with.
   template <class Sink>
-  void report(const FlagVisit& visit, Sink& sink) const
+  HWY_NOINLINE void report(const FlagVisit& visit, Sink& sink) const
   {
     for (std::uint32_t bits = visit.open; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));

@@ -307,7 +307,7 @@ private:
   }
 
   /// Where the clearance exceeds the radius of a child, a single point of b near its centre settles all of it.
-  void settleByPoints(FlagVisit& visit, const ObstacleSphere& candidate)
+  HWY_INLINE void settleByPoints(FlagVisit& visit, const ObstacleSphere& candidate)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
     if (!(obstacle.sure_reach > visit.smallest)) return;
