@@ -11,18 +11,11 @@
 
 #include <pcl_bsh/collision/flag_query.h>
 #include <pcl_bsh/collision/flag_visit-inl.h>
-#include <pcl_bsh/collision/uncertain_reach.h>
+#include <pcl_bsh/traversal/uncertain_points-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
-
-/// What pays for float sums of up to four roundings, relative to the sum of their terms: 4 u of 8 u.
-inline constexpr float kSumMargin = kReachMargin;
-
-/// The same with nearestWithLengths(): the root of a squared distance, a product and a sum err by 6 u of their terms,
-/// the other point's length counts three times, and thresholds by 4 u; less than 23 u of the 32.
-inline constexpr float kLengthsMargin = 4 * kSumMargin;
 
 /// The reaches of a visit's children, in the obstacle voxel's frame.
 struct UncertainLanes {
@@ -53,36 +46,11 @@ struct UncertainLanes {
   }
 };
 
-/// The same of a leaf's points: of distances plus or less the other points' uncertainties.
-struct UncertainPoints {
-  alignas(64) float sure[kLeafPoints];      ///< up to it, colliding for certain
-  alignas(64) float maybe[kLeafPoints];     ///< up to it, of shortened distances, it may be so
-  alignas(64) float sure_miss[kLeafPoints]; ///< beyond it, not for certain
-  alignas(64) float miss[kLeafPoints];      ///< beyond it, of shortened distances, free
-
-  UncertainPoints(const UncertainReach& reach, const float* own)
-  {
-    for (std::size_t i = 0; i < kLeafPoints; ++i) {
-      const float least = own[i] * reach.scale_down, most = own[i] * reach.scale_up;
-      const float slack = (most + reach.magnitude) * kLengthsMargin;
-      sure[i] = reach.sure - most - slack;
-      maybe[i] = reach.maybe + least - slack;
-      sure_miss[i] = reach.sure_miss - least + slack;
-      miss[i] = reach.miss + most + slack;
-    }
-  }
-};
-
-/// Where uncertainties of a node of b, or of a leaf, begin; zeros where points have none of their own.
+/// Those of a node's children; zeros where points have none of their own.
 inline const UncertaintyLanes& ownOf(const OwnUncertainties* own, std::size_t node)
 {
   static constexpr UncertaintyLanes kNone{};
   return own ? own->nodes[node] : kNone;
-}
-inline const float* ownOf(const OwnUncertainties* own, const LeafRange& leaf)
-{
-  alignas(64) static constexpr float kNone[kLeafPoints] = {};
-  return own ? own->points.get() + leaf.begin : kNone;
 }
 
 /// The part of a candidate in the reach of a pair of nodes.
@@ -155,10 +123,15 @@ public:
   {
     const PairReach& of_pairs = query_.pairs.ofPairs();
     voxel_ = &a.storage.voxels[voxel];
-    own_ = ownUncertainties(a, voxel);
-    for (std::size_t i = 0; i < obstacles.size(); ++i)
-      reaches_.emplace_back(obstacles[i].frame, obstacles[i].voxel->frame.unit, of_pairs.leastInCommon(),
-                            of_pairs.mostInCommon(), query_.pairs.clearance, ownUncertainties(b, reached[i]));
+    own_ = ownUncertainties(a.storage, voxel);
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+      const RelativeFrame& frame = obstacles[i].frame;
+      const OwnUncertainties* const of_b = ownUncertainties(b.storage, reached[i]);
+      reaches_.emplace_back(frame.error, frame.skew(), obstacles[i].voxel->frame.unit, of_pairs.leastInCommon(),
+                            of_pairs.mostInCommon(), of_b ? static_cast<double>(of_b->most) : 0.0,
+                            frame.pruneReach(query_.pairs.clearance));
+      reaches_.back().of_b = of_b;
+    }
   }
 
   const UncertainReach& reach(std::uint32_t obstacle) const { return reaches_[obstacle]; }
@@ -224,13 +197,6 @@ public:
   }
 
 private:
-  static const OwnUncertainties* ownUncertainties(const Spaces& side, std::uint32_t voxel)
-  {
-    const PointsView& view = side.storage.view;
-    Voxel& of = side.storage.voxels[voxel];
-    return view.uncertainties ? of.own_uncertainties.of(of, view) : nullptr;
-  }
-
   static Point centerOf(const ObstacleSphere& candidate)
   {
     const Node& node = *candidate.node;

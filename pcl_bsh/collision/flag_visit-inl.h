@@ -9,10 +9,10 @@
 #define PCL_BSH_COLLISION_FLAG_VISIT_INL_H_
 #endif
 
-#include <pcl_bsh/collision/uncertain_reach.h>
 #include <pcl_bsh/geometry/distance_band.h>
 #include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/traversal/obstacle_sphere-inl.h>
+#include <pcl_bsh/traversal/uncertain_reach.h>
 
 #include <deque>
 #include <vector>

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <pcl_bsh/geometry/relative_frame.h>
+#include <pcl_bsh/geometry/distance_band.h>
 #include <pcl_bsh/geometry/rounding.h>
-#include <pcl_bsh/hierarchy/own_uncertainties.h>
+#include <pcl_bsh/hierarchy/storage.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace pcl_bsh {
+
+/// Those of a built voxel; null where its points have none of their own.
+inline const OwnUncertainties* ownUncertainties(const SphereHierarchy::Storage& storage, std::size_t voxel)
+{
+  Voxel& of = storage.voxels[voxel];
+  return storage.view.uncertainties ? of.own_uncertainties.of(of, storage.view) : nullptr;
+}
 
 /// How near points of two voxels have to be, but for what is their own: bounds in the frame and the unit of b's voxel,
 /// rounded to the safe side. From `sure` and `sure_near`, the lengths that points of a pair have of their own are to be
@@ -23,25 +30,24 @@ struct UncertainReach {
   float scale_up, scale_down; ///< the clouds' unit in b's, with the poses' skew
   float most_of_b = 0.0f;     ///< of the lengths that b's points have of their own, in its unit
   float magnitude = 0.0f;     ///< of the terms of sums of these, b's own lengths included
-  const OwnUncertainties* of_b;
+  const OwnUncertainties* of_b = nullptr;
 
-  /// @param least, most reach of all pairs, without what points have of their own; `least` may be below 0. @param
-  /// at_most of all pairs, with it. @param unit of b's voxel. @param b null where its points have none of their own
-  UncertainReach(const RelativeFrame& frame, double unit, double least, double most, double at_most,
-                 const OwnUncertainties* b)
+  /// @param error of distances of points, in b's unit; may be infinite. @param skew as RelativeFrame has it. @param
+  /// unit of b. @param least, most reach of all pairs, without what points have of their own, in the clouds' unit, as
+  /// `b_most`, the most that points of b have; `least` may be below 0. @param prune_reach of spheres where none of this
+  /// can be known
+  UncertainReach(double error, double skew, double unit, double least, double most, double b_most, float prune_reach)
   : sure(-kNever),
     maybe(-kNever),
-    sure_near(frame.pruneReach(at_most)),
-    near(sure_near),
+    sure_near(prune_reach),
+    near(prune_reach),
     sure_miss(kNever),
     miss(kNever),
     scale_up(0.0f),
-    scale_down(0.0f),
-    of_b(b)
+    scale_down(0.0f)
   {
-    const double skew = frame.skew(), error = frame.error;
-    const double b_most = b ? static_cast<double>(b->most) / unit : 0.0;
-    const double size = (std::max(std::abs(least), most)) / unit + b_most + error;
+    b_most /= unit;
+    const double size = std::max(std::abs(least), most) / unit + b_most + error;
     if (!inFloatRange(size) || !inFloatRange(unit) || !inFloatRange(1.0 / unit)) return; // pairs are decided one by one
     const double room = kDoubleMargin * size + kSmallestLength;                          // for all roundings here
     scale_up = roundUp((1.0 + skew) / unit * (1.0 + kDoubleMargin));
