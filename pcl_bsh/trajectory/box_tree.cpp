@@ -249,6 +249,7 @@ BoxedVoxel::BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* st
     records_[i] = voxel.records()[points[i].place()];
     if (uncertainties) lengths_.push_back(uncertainties[records_[i]]);
   }
+  if (uncertainties) lengths_.resize(lengths_.size() + kNodeChildren);
 }
 
 } // namespace pcl_bsh

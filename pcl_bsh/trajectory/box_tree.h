@@ -31,7 +31,7 @@ struct alignas(32) BoxNode {
 struct BoxLeaf {
   const float *at_x, *at_y, *at_z; ///< as the voxel stores them
   const std::uint32_t* records;
-  const float* lengths; ///< their own uncertainties, where they have any; else null
+  const float* lengths; ///< their own uncertainties, likewise; null where they have none
   std::uint32_t count;
 
   const float* x() const { return at_x; }

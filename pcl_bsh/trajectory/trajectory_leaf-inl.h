@@ -86,6 +86,9 @@ public:
     return (all & ~results_.settled[slot]) != 0;
   }
 
+  /// Of pairs of points with uncertainties of their own.
+  const UncertainReach& reach() const { return reach_; }
+
 private:
   /// The candidates by their distance from the leaf, at one pose: the sooner its points' bounds are small, the fewer
   /// boxes are opened.
