@@ -30,9 +30,10 @@ using Indices = std::vector<std::int32_t>;
 
 /// What the walks through one voxel have found.
 struct VoxelLists {
-  Indices colliding;        ///< in any order, some more than once
-  Indices undecided;        ///< after the passes so far
-  Indices left;             ///< undecided by the last walk
+  Indices colliding; ///< in any order, some more than once
+  Indices undecided; ///< after the passes so far
+  Indices possible;  ///< of uncertain points: those that may collide, in any order, perhaps among the others, too
+  Indices left;      ///< undecided by the last walk
   bool none_decided = true; ///< nothing of the voxel was looked at so far
   bool left_all = false;    ///< nor by the last walk
 
@@ -40,6 +41,7 @@ struct VoxelLists {
   {
     colliding.clear();
     undecided.clear();
+    possible.clear();
     none_decided = true;
   }
 
@@ -56,9 +58,9 @@ struct VoxelLists {
     left_all = false;
   }
 
-  /// What any walk decides stays decided.
-  static void perhaps(std::uint32_t) {} // no search for lists tells what is certain from what is possible
+  void perhaps(std::uint32_t record) { possible.push_back(static_cast<std::int32_t>(record)); }
 
+  /// What any walk decides stays decided.
   void endWalk()
   {
     if (left_all) return;
@@ -108,7 +110,9 @@ struct ListScratch {
   {
     std::size_t sum = voxels.capacity() * sizeof(VoxelLists) + numbers.capacity() * sizeof(std::uint32_t);
     for (const VoxelLists& lists : voxels)
-      sum += (lists.colliding.capacity() + lists.undecided.capacity() + lists.left.capacity()) * sizeof(std::int32_t);
+      sum += (lists.colliding.capacity() + lists.undecided.capacity() + lists.possible.capacity() +
+              lists.left.capacity()) *
+             sizeof(std::int32_t);
     return sum;
   }
 };
@@ -121,6 +125,7 @@ public:
   void begin(const FlagQuery& query, const std::vector<FlaggedPlace>& places, bool)
   {
     cloud_ = &query.a.hierarchy().storage();
+    are_uncertain_ = query.certain != nullptr;
     ListScratch& scratch = *lease_.emplace();
     if (scratch.voxels.size() < places.size()) scratch.voxels.resize(places.size());
     scratch.numbers.clear();
@@ -145,14 +150,20 @@ public:
     for (std::size_t slot = 0; slot < scratch.numbers.size(); ++slot) {
       const VoxelLists& lists = scratch.voxels[slot];
       colliding_.insert(colliding_.end(), lists.colliding.begin(), lists.colliding.end());
-      undecided_.insert(undecided_.end(), lists.undecided.begin(), lists.undecided.end());
+      for (const Indices* const left : {&lists.undecided, &lists.possible})
+        undecided_.insert(undecided_.end(), left->begin(), left->end());
       if (!lists.none_decided) continue;
       cloud_->forEachRecord(scratch.numbers[slot],
                             [this](std::uint32_t record) { undecided_.push_back(static_cast<std::int32_t>(record)); });
     }
-    for (Indices* const indices : {&colliding_, &undecided_})
+    for (Indices* const indices : {&colliding_, &undecided_}) {
       scratch.sorter(indices->data(), indices->size(), hwy::SortAscending());
-    colliding_.erase(std::unique(colliding_.begin(), colliding_.end()), colliding_.end());
+      indices->erase(std::unique(indices->begin(), indices->end()), indices->end());
+    }
+    if (are_uncertain_) // some of those that may collide were found to do so later
+      undecided_.erase(std::set_difference(undecided_.begin(), undecided_.end(), colliding_.begin(), colliding_.end(),
+                                           undecided_.begin()), // never ahead of what it reads
+                       undecided_.end());
     lease_.reset();
   }
 
@@ -161,24 +172,8 @@ private:
   Indices& undecided_;
   std::optional<ScratchLease<ListScratch>> lease_;
   const SphereHierarchy::Storage* cloud_ = nullptr;
+  bool are_uncertain_ = false;
 };
-
-/// The lists of points that are where `places` says.
-void listPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, CollidingIndices& found)
-{
-  ListSheet sheet_a(found.a, found.undecided_a), sheet_b(found.b, found.undecided_b);
-  found.work += flagSides(a, b, request, places, sheet_a, sheet_b);
-}
-
-/// Points that may collide are undecided, unless they do for certain.
-/// @param left those of which it was not found out whether they may
-void withhold(const Indices& possible, const Indices& left, const Indices& certain, Indices& undecided)
-{
-  Indices open;
-  std::set_union(possible.begin(), possible.end(), left.begin(), left.end(), std::back_inserter(open));
-  undecided.clear();
-  std::set_difference(open.begin(), open.end(), certain.begin(), certain.end(), std::back_inserter(undecided));
-}
 
 } // namespace
 
@@ -191,20 +186,8 @@ void collidingIndices(const Placed& a, const Placed& b, const FlagsRequest& requ
   CollidingIndices found;
   std::swap(found, result); // should something throw, the result has no collision
   for (Indices* const indices : {&found.a, &found.b, &found.undecided_a, &found.undecided_b}) indices->clear();
-  found.work = Work();
-  if (!areUncertain(a, b)) {
-    listPlaces(a, b, request, Places::measured, found);
-  }
-  else {
-    FlagsRequest half = request;
-    half.accuracy = halfOf(request.accuracy);
-    CollidingIndices possible;
-    listPlaces(a, b, half, Places::certain, found);
-    listPlaces(a, b, half, Places::possible, possible);
-    withhold(possible.a, possible.undecided_a, found.a, found.undecided_a);
-    withhold(possible.b, possible.undecided_b, found.b, found.undecided_b);
-    found.work += possible.work;
-  }
+  ListSheet sheet_a(found.a, found.undecided_a), sheet_b(found.b, found.undecided_b);
+  found.work = flagSides(a, b, request, areUncertain(a, b) ? Places::either : Places::measured, sheet_a, sheet_b);
   result = std::move(found);
 }
 

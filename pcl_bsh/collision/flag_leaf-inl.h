@@ -9,6 +9,7 @@
 #endif
 
 #include <pcl_bsh/collision/flag_query.h>
+#include <pcl_bsh/collision/flag_uncertain-inl.h>
 #include <pcl_bsh/collision/flag_visit-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -65,36 +66,38 @@ inline std::uint32_t facingPoints(const ObstacleVoxel& obstacle, const FlagVisit
                     visit.r[lane] + obstacle.prune_reach, kSphereMargin);
 }
 
-/// Where points are uncertain: by float bands, of the nearest pair and of each pair, and exactly within these.
-inline std::uint32_t hitUncertainPoints(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
-                                        const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query,
-                                        Work& work)
+/// Where points are uncertain: by the nearest of b, each as far as its own uncertainty makes it, and pair by pair where
+/// that does not decide. @param reach of the obstacle. @param own uncertainties of the leaf's points
+HWY_NOINLINE inline std::uint32_t hitUncertainPoints(const ObstacleVoxel& obstacle, const UncertainReach& reach,
+                                                     FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf,
+                                                     const float* own, const LeafPoints& points, const FlagQuery& query,
+                                                     Work& work)
 {
+  const UncertainPoints limits(reach, own);
   const std::vector<ObstacleSphere>& candidates = visit.near[lane];
   const std::uint32_t open = visit.open_points[lane];
-  constexpr std::size_t kNoted = 64;
-  std::uint32_t near[kNoted];
-  alignas(64) float nearest[kLeafPoints], here[kLeafPoints];
-  std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
+  alignas(64) float longer[kLeafPoints], shorter[kLeafPoints];
+  std::fill(std::begin(longer), std::end(longer), std::numeric_limits<float>::infinity());
+  std::fill(std::begin(shorter), std::end(shorter), std::numeric_limits<float>::infinity());
   std::uint32_t hit = 0;
-  for (std::size_t n = 0; n < candidates.size(); ++n) {
+  for (const ObstacleSphere& candidate : candidates) {
     ++work.leaf_pairs;
-    const LeafRange other = candidates[n].leaf(*obstacle.voxel);
-    std::fill(std::begin(here), std::end(here), std::numeric_limits<float>::infinity());
-    nearestSquared(points, other.x(), other.y(), other.z(), facingPoints(obstacle, visit, lane, other), here);
-    if (n < kNoted) near[n] = open & ~above(here, obstacle.possible.miss);
-    for (std::size_t i = 0; i < kLeafPoints; ++i) nearest[i] = std::min(nearest[i], here[i]);
-    hit = open & atMost(nearest, obstacle.band.hit);
+    const LeafRange other = candidate.leaf(*obstacle.voxel);
+    const std::uint32_t facing = facingPoints(obstacle, visit, lane, other);
+    if (facing == 0) continue;
+    nearestWithLengths(points, other.x(), other.y(), other.z(), ownOf(reach.of_b, other), reach.scale_up, facing,
+                       longer, shorter);
+    hit = open & atMostEach(longer, limits.sure);
     if (hit == open) return hit;
   }
-  visit.perhaps[lane] |= open & atMost(nearest, obstacle.possible.hit);
-  OpenPoints left{open & ~hit & ~above(nearest, obstacle.band.miss), 0};
-  left.perhaps = open & ~hit & ~visit.perhaps[lane] & ~above(nearest, obstacle.possible.miss);
-  for (std::size_t n = 0; n < candidates.size() && (left.surely | left.perhaps) != 0; ++n) {
-    const std::uint32_t lanes = n < kNoted ? near[n] : open;
+  visit.perhaps[lane] |= open & atMostEach(shorter, limits.maybe);
+  OpenPoints left{open & ~hit & ~aboveEach(longer, limits.sure_miss), 0};
+  left.perhaps = open & ~hit & ~visit.perhaps[lane] & ~aboveEach(shorter, limits.miss);
+  for (const ObstacleSphere& candidate : candidates) {
+    if ((left.surely | left.perhaps) == 0) break;
     const OpenPoints found = hitUncertain(
-        obstacle, points, [&leaf](std::uint32_t i) { return leaf.record(i); }, candidates[n].leaf(*obstacle.voxel),
-        {left.surely & lanes, left.perhaps & lanes}, query, work);
+        obstacle, points, [&leaf](std::uint32_t i) { return leaf.record(i); }, candidate.leaf(*obstacle.voxel), left,
+        query, work);
     hit |= found.surely;
     visit.perhaps[lane] |= found.perhaps;
     left = {left.surely & ~found.surely, left.perhaps & ~found.surely & ~found.perhaps};
@@ -157,16 +160,6 @@ inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, s
                      });
   }
   return hit;
-}
-
-/// Which open points of a leaf, carried to the obstacle voxel, collide with the leaves of it that the child is near to.
-inline std::uint32_t collidingPoints(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
-                                     const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query,
-                                     Work& work)
-{
-  if (query.pairs.haveRadii()) return hitBalls(obstacle, visit, lane, leaf, points, query, work);
-  return query.certain ? hitUncertainPoints(obstacle, visit, lane, leaf, points, query, work)
-                       : hitPoints(obstacle, visit, lane, leaf, points, query.pairs, work);
 }
 
 } // namespace HWY_NAMESPACE

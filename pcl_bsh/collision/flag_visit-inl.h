@@ -12,6 +12,7 @@
 #include <pcl_bsh/geometry/distance_band.h>
 #include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/traversal/obstacle_sphere-inl.h>
+#include <pcl_bsh/traversal/uncertain_reach.h>
 
 #include <deque>
 #include <vector>
@@ -52,10 +53,13 @@ struct FlagVisit {
 
   std::uint32_t open_points[kLanes] = {}; ///< of leaves: bits of the points not flagged yet
   std::uint32_t perhaps[kLanes] = {};     ///< likewise, of the points that may collide, but were not found to
-  std::uint32_t unsure = 0;               ///< bits of leaves that met spheres which were not to be opened
+  std::uint32_t known = 0;  ///< bits of the children all of whose points may collide; what is open is if they do
+  std::uint32_t unsure = 0; ///< bits of leaves that met spheres which were not to be opened
 
-  void begin(const Node& entered, const BoundingSphere& holding_all)
+  /// @param may_collide all points below the node
+  void begin(const Node& entered, const BoundingSphere& holding_all, bool may_collide)
   {
+    known = may_collide ? firstBits(entered.count) : 0;
     unsure = 0;
     around = holding_all;
     node = &entered;
@@ -66,7 +70,7 @@ struct FlagVisit {
       if (!entered.isLeaf(lane)) continue;
       leaves |= 1u << lane;
       open_points[lane] = firstBits(entered.comparedPoints(lane));
-      perhaps[lane] = 0;
+      perhaps[lane] = may_collide ? open_points[lane] : 0;
     }
   }
 };
@@ -83,26 +87,40 @@ inline std::uint32_t slabsApartFrom(const FlagVisit& visit, const ObstacleVoxel&
                     obstacle.prune_reach);
 }
 
-/// Whether the candidate has a point in the ball; the nearest spheres are asked first.
-inline bool hasPointWithin(const ObstacleVoxel& obstacle, const ObstacleSphere& candidate, const QueryBall& ball,
-                           Work& work)
-{
-  if (candidate.isLeaf()) {
-    const LeafRange leaf = candidate.leaf(*obstacle.voxel);
+/// Finds points of b by their distance alone, for hasPointWithin().
+struct MeasuredPoint {
+  float stretch;
+
+  static bool isIn(const LeafRange& leaf, const QueryBall& ball)
+  {
     return anyPointWithin(leaf.x(), leaf.y(), leaf.z(), leaf.count, ball.x, ball.y, ball.z, ball.near_reach);
   }
+
+  std::uint32_t spheresIn(const Node& node, const QueryBall& ball, float* gap) const
+  {
+    return spheresNear({node.x, node.y, node.z, node.r, stretch}, ball, gap);
+  }
+};
+
+/// Whether the candidate has a point in the ball; the nearest spheres are asked first.
+/// @param finder `isIn(leaf, ball)`: whether a point of the leaf is. `spheresIn(node, ball, gap)`: which spheres may
+///   have one, and in which order
+template <class Finder>
+inline bool hasPointWithin(const Finder& finder, const ObstacleVoxel& obstacle, const ObstacleSphere& candidate,
+                           const QueryBall& ball, Work& work)
+{
+  if (candidate.isLeaf()) return finder.isIn(candidate.leaf(*obstacle.voxel), ball);
   const Node& below = obstacle.voxel->nodes[candidate.node->child[candidate.lane]];
   float gap[kLanes];
   work.node_pairs += below.count;
-  std::uint32_t near =
-      spheresNear({below.x, below.y, below.z, below.r, obstacle.frame.stretch_b}, ball, gap) & firstBits(below.count);
+  std::uint32_t near = finder.spheresIn(below, ball, gap) & firstBits(below.count);
   while (near != 0) {
     auto nearest = static_cast<std::uint32_t>(std::countr_zero(near));
     for (std::uint32_t bits = near & (near - 1); bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (gap[lane] < gap[nearest]) nearest = lane;
     }
-    if (hasPointWithin(obstacle, candidate.below(below, nearest), ball, work)) return true;
+    if (hasPointWithin(finder, obstacle, candidate.below(below, nearest), ball, work)) return true;
     near &= ~(1u << nearest);
   }
   return false;
@@ -112,13 +130,15 @@ inline bool hasPointWithin(const ObstacleVoxel& obstacle, const ObstacleSphere& 
 struct FlagScratch {
   std::deque<FlagVisit> visits; ///< by depth; a deque, for references to shallower visits stay in use
   std::vector<ObstacleVoxel> obstacles;
-  std::vector<ObstacleSphere> spheres; ///< of the obstacles' roots
-  std::vector<std::uint32_t> reached;  ///< voxels of b
+  std::vector<ObstacleSphere> spheres;   ///< of the obstacles' roots
+  std::vector<std::uint32_t> reached;    ///< voxels of b
+  std::vector<UncertainReach> uncertain; ///< of the obstacles, where points are uncertain
 
   std::size_t bytes() const noexcept
   {
     std::size_t sum = visits.size() * sizeof(FlagVisit) + obstacles.capacity() * sizeof(ObstacleVoxel) +
-                      spheres.capacity() * sizeof(ObstacleSphere) + reached.capacity() * sizeof(std::uint32_t);
+                      spheres.capacity() * sizeof(ObstacleSphere) + reached.capacity() * sizeof(std::uint32_t) +
+                      uncertain.capacity() * sizeof(UncertainReach);
     for (const FlagVisit& visit : visits)
       for (const auto& list : visit.near) sum += list.capacity() * sizeof(ObstacleSphere);
     return sum;

@@ -38,7 +38,8 @@ public:
     visits_(scratch.visits),
     obstacles_(scratch.obstacles),
     spheres_(scratch.spheres),
-    reached_(scratch.reached)
+    reached_(scratch.reached),
+    uncertain_(query, scratch.uncertain)
   {
     obstacles_.clear();
     spheres_.clear();
@@ -76,7 +77,8 @@ public:
     voxel_ = voxel;
     a_voxel_ = &a_.voxel(voxel, found.work);
     knows_slabs_ = mayUseKnownSlabs() && a_.storage.voxels[voxel].slabs.isFitted();
-    descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, spheres_, 0);
+    if (query_.certain) uncertain_.begin(a_, voxel, b_, reached_, obstacles_);
+    descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, spheres_, 0, false);
   }
 
   FlaggedVoxel found;
@@ -123,25 +125,31 @@ private:
   }
 
   /// Takes a node of a, all its children at once, through its candidates; then its inner children through theirs.
+  /// @param may_collide all points below the node, where they are uncertain
   void descend(const Node& node, const BoundingSphere& around, const std::vector<ObstacleSphere>& candidates,
-               std::size_t depth)
+               std::size_t depth, bool may_collide)
   {
     if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs)) return leave(node.begin[0], node.begin[node.count]);
     if (visits_.size() == depth) visits_.emplace_back();
     FlagVisit& visit = visits_[depth];
-    visit.begin(node, around);
+    visit.begin(node, around, may_collide);
     for (auto from = candidates.begin(); from != candidates.end() && visit.open != 0;) {
       const auto to =
           std::find_if(from, candidates.end(), [&](const ObstacleSphere& c) { return c.obstacle != from->obstacle; });
       enter(visit, from->obstacle);
       visit.has_slabs = (candidates.size() > kManyCandidates || knowsSlabs(visit.obstacle)) && takeSlabs(visit);
       visit.has_several = candidates.size() > kSeveralCandidates && !pairs_.haveRadii();
-      for (auto c = from; c != to && visit.open != 0; ++c) settleByPoints(visit, *c);
+      if (query_.certain)
+        uncertain_.settle(visit, obstacles_[visit.obstacle], from, to, found.work,
+                          [&](std::uint32_t lane) { settleChild(visit, lane); });
+      else
+        for (auto c = from; c != to && visit.open != 0; ++c) settleByPoints(visit, *c);
       for (auto c = from; c != to && visit.open != 0; ++c) take(visit, *c, visit.open);
       compareLeaves(visit);
       from = to;
     }
     if (rule_.mayStop()) clear(visit);
+    if (query_.certain) uncertain_.report(visit, sink_);
     for (std::uint32_t bits = visit.open & ~visit.leaves; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
@@ -150,7 +158,7 @@ private:
         continue;
       }
       const BoundingSphere child{{node.x[lane], node.y[lane], node.z[lane]}, node.r[lane]};
-      descend(a_voxel_->nodes[node.child[lane]], child, visit.near[lane], depth + 1);
+      descend(a_voxel_->nodes[node.child[lane]], child, visit.near[lane], depth + 1, (visit.known >> lane & 1) != 0);
     }
   }
 
@@ -162,7 +170,7 @@ private:
       const std::uint32_t begin = visit.node->begin[lane], end = visit.node->begin[lane + 1];
       const bool unsure = (visit.unsure >> lane & 1) != 0;
       if ((visit.leaves >> lane & 1) == 0) {
-        if (visit.near[lane].empty()) free(begin, end);
+        if (visit.near[lane].empty() && (visit.known >> lane & 1) == 0) free(begin, end);
       }
       else if (visit.node->isCoincident(lane)) {
         if (visit.perhaps[lane] == 0) unsure ? leave(begin, end) : free(begin, end);
@@ -225,8 +233,10 @@ private:
     const QueryBall ball{node.x[k], node.y[k], node.z[k], radius + obstacle.prune_reach,
                          obstacle.accept_reach - radius * (1.0f + kSphereMargin)};
     const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
-    found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes & visit.open));
-    std::uint32_t near = spheresNear(spheres, ball, nullptr) & lanes & visit.open;
+    lanes &= visit.open;
+    found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
+    std::uint32_t near = lanes & (query_.certain ? uncertain_.near(visit, obstacle, candidate, lanes)
+                                                 : spheresNear(spheres, ball, nullptr));
     if (near == 0) return;
     if (visit.has_slabs && (near &= ~slabsApartFrom(visit, obstacle, candidate, radius)) == 0) return;
     if (radius <= obstacle.blunt_radius && (near &= ~apartAsGiven(visit, candidate, ball, near)) == 0) return;
@@ -295,7 +305,7 @@ private:
   }
 
   /// Where the clearance exceeds the radius of a child, a single point of b near its centre settles all of it.
-  void settleByPoints(FlagVisit& visit, const ObstacleSphere& candidate)
+  HWY_INLINE void settleByPoints(FlagVisit& visit, const ObstacleSphere& candidate)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
     if (!(obstacle.sure_reach > visit.smallest)) return;
@@ -310,7 +320,9 @@ private:
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       const float reach = obstacle.sure_reach - visit.r[lane] * (1.0f + kSphereMargin);
       const QueryBall center{visit.x[lane], visit.y[lane], visit.z[lane], reach, 0.0f};
-      if (reach > 0.0f && hasPointWithin(obstacle, candidate, center, found.work)) settleChild(visit, lane);
+      if (reach > 0.0f &&
+          hasPointWithin(MeasuredPoint{obstacle.frame.stretch_b}, obstacle, candidate, center, found.work))
+        settleChild(visit, lane);
     }
   }
 
@@ -323,12 +335,7 @@ private:
       const LeafRange leaf{a_voxel_, visit.node->begin[lane], visit.node->comparedPoints(lane)};
       LeafPoints points;
       carryLeaf(obstacles_[visit.obstacle].frame, leaf, points);
-      const std::uint32_t hit =
-          collidingPoints(obstacles_[visit.obstacle], visit, lane, leaf, points, query_, found.work);
-      for (std::uint32_t set = visit.perhaps[lane] & ~hit; set != 0; set &= set - 1)
-        sink_.perhaps(leaf.record(static_cast<std::uint32_t>(std::countr_zero(set))));
-      if (visit.node->isCoincident(lane) && (visit.perhaps[lane] & ~hit) != 0)
-        for (std::uint32_t i = leaf.begin; i < visit.node->begin[lane + 1]; ++i) sink_.perhaps(a_voxel_->records()[i]);
+      const std::uint32_t hit = collidingPoints(visit, lane, leaf, points);
       for (std::uint32_t set = hit; set != 0; set &= set - 1)
         sink_.collide(leaf.record(static_cast<std::uint32_t>(std::countr_zero(set))));
       visit.open_points[lane] &= ~hit;
@@ -336,6 +343,17 @@ private:
       visit.open &= ~(1u << lane);
       settle(leaf.begin + leaf.count, visit.node->begin[lane + 1]); // those at the place of the one that was compared
     }
+  }
+
+  /// Which open points of a leaf, carried to the obstacle voxel, collide with the leaves of it that the child is near
+  /// to.
+  std::uint32_t collidingPoints(FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf, const LeafPoints& points)
+  {
+    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    if (pairs_.haveRadii()) return hitBalls(obstacle, visit, lane, leaf, points, query_, found.work);
+    if (!query_.certain) return hitPoints(obstacle, visit, lane, leaf, points, pairs_, found.work);
+    return hitUncertainPoints(obstacle, uncertain_.reach(visit.obstacle), visit, lane, leaf, uncertain_.own(leaf),
+                              points, query_, found.work);
   }
 
   void settleChild(FlagVisit& visit, std::uint32_t lane)
@@ -384,6 +402,7 @@ private:
   std::vector<ObstacleVoxel>& obstacles_;
   std::vector<ObstacleSphere>& spheres_; ///< of the obstacles' roots
   std::vector<std::uint32_t>& reached_;
+  UncertainWalk uncertain_; ///< where points are
 };
 
 /// One walk through a voxel of a, in memory that the thread keeps.

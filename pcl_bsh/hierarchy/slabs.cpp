@@ -126,10 +126,10 @@ const Slabs* LazySlabs::fit(const Voxel& voxel, BuildWork& work)
 {
   auto slabs = std::make_unique<Slabs[]>(voxel.nodes.size()); // all zero
   HWY_DYNAMIC_DISPATCH(fitSlabsOnTarget)(voxel, axis_, slabs.get());
-  Slabs* known = nullptr;
-  if (!slabs_.compare_exchange_strong(known, slabs.get(), std::memory_order_acq_rel)) return known;
-  work.volumes_built += voxel.nodes.size() - 1; // every node but the root is a child that is no leaf
-  return slabs.release();
+  bool kept = false;
+  const Slabs* const known = slabs_.keep(std::move(slabs), kept);
+  if (kept) work.volumes_built += voxel.nodes.size() - 1; // every node but the root is a child that is no leaf
+  return known;
 }
 
 } // namespace pcl_bsh

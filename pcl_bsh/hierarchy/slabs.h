@@ -3,9 +3,8 @@
 #pragma once
 
 #include <pcl_bsh/hierarchy/build_work.h>
+#include <pcl_bsh/hierarchy/made_once.h>
 #include <pcl_bsh/hierarchy/node.h>
-
-#include <atomic>
 
 namespace pcl_bsh {
 
@@ -29,34 +28,27 @@ enum class SlabAxis : std::uint8_t {
 class LazySlabs {
 public:
   explicit LazySlabs(SlabAxis axis) : axis_(axis) {}
-  LazySlabs(const LazySlabs&) = delete;
-  LazySlabs& operator=(const LazySlabs&) = delete;
-  ~LazySlabs() { reset(); }
 
   /// One per node of a built voxel whose points have no radii. Any number of threads may call this at once:
   /// threads that come before slabs are stored all fit the same ones, and those of one thread are kept.
   /// @param work the slabs that this call added to the voxel are added to it
   const Slabs* of(const Voxel& voxel, BuildWork& work)
   {
-    const Slabs* known = slabs_.load(std::memory_order_acquire);
+    const Slabs* known = slabs_.get();
     return known ? known : fit(voxel, work);
   }
 
-  bool isFitted() const noexcept { return slabs_.load(std::memory_order_relaxed) != nullptr; }
+  bool isFitted() const noexcept { return slabs_.get() != nullptr; }
 
   // Not while another thread asks.
-  void reset() noexcept { delete[] slabs_.exchange(nullptr); }
-  void adopt(LazySlabs& other) noexcept
-  {
-    reset();
-    slabs_.store(other.slabs_.exchange(nullptr));
-  }
+  void reset() noexcept { slabs_.reset(); }
+  void adopt(LazySlabs& other) noexcept { slabs_.adopt(other.slabs_); }
 
 private:
   const Slabs* fit(const Voxel& voxel, BuildWork& work);
 
   const SlabAxis axis_;
-  std::atomic<Slabs*> slabs_{nullptr};
+  MadeOnce<Slabs[]> slabs_;
 };
 
 } // namespace pcl_bsh

@@ -39,6 +39,9 @@ HierarchyStatistics SphereHierarchy::statistics() const
     result.bytes += voxel.given.capacity() * sizeof(GivenSphere);
     for (const LazySlabs* slabs : {&voxel.slabs, &voxel.cross_slabs})
       if (slabs->isFitted()) result.bytes += voxel.nodes.size() * sizeof(Slabs);
+    if (voxel.own_uncertainties.made())
+      result.bytes += sizeof(OwnUncertainties) + voxel.nodes.size() * sizeof(UncertaintyLanes) +
+                      (voxel.count + kMaxLeafPoints) * sizeof(float);
     result.depth = std::max(result.depth, depthBelow(voxel.nodes, 0));
     for (const Node& node : voxel.nodes)
       for (std::uint32_t i = 0; i < node.count; ++i) {

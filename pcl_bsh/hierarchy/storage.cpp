@@ -38,6 +38,7 @@ void measureVoxel(Voxel& voxel, const PointsView& view)
 {
   voxel.slabs.reset();
   voxel.cross_slabs.reset();
+  voxel.own_uncertainties.reset();
   voxel.largest_radius = 0.0f;
   if (view.radii)
     voxel.forEachRecord(

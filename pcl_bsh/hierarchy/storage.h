@@ -8,6 +8,7 @@
 #include <pcl_bsh/hierarchy/build_work.h>
 #include <pcl_bsh/hierarchy/large_buffer.h>
 #include <pcl_bsh/hierarchy/node.h>
+#include <pcl_bsh/hierarchy/own_uncertainties.h>
 #include <pcl_bsh/hierarchy/point_runs.h>
 #include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
@@ -68,6 +69,7 @@ struct Voxel {
   std::vector<GivenSphere> given;      ///< see givenSpheres(); empty unless the voxel has crowded cells
   LazySlabs slabs{SlabAxis::least};    ///< of the nodes, once built and asked for
   LazySlabs cross_slabs{SlabAxis::second}; ///< likewise
+  LazyUncertainties own_uncertainties;     ///< likewise
   bool was_read = false;                   ///< by Storage::readOnce()
   std::atomic<std::uint8_t> state{sorted};
 
@@ -89,6 +91,7 @@ struct Voxel {
     given = std::move(other.given);
     slabs.adopt(other.slabs);
     cross_slabs.adopt(other.cross_slabs);
+    own_uncertainties.adopt(other.own_uncertainties);
     was_read = other.was_read;
     state.store(other.state.load(std::memory_order_relaxed), std::memory_order_relaxed);
   }
@@ -267,8 +270,8 @@ private:
 /// the face between them than this, times the cell's number and 2, in cells.
 inline constexpr double kCellRounding = 0x1p-23;
 
-/// Sets what is known of a voxel by its frame and points: `radius`, `largest_radius`; forgets its slabs. @pre its
-/// points' records are set
+/// Sets what is known of a voxel by its frame and points: `radius`, `largest_radius`; forgets what was made when asked
+/// for. @pre its points' records are set
 void measureVoxel(Voxel& voxel, const PointsView& view);
 
 /// Voxel::radius of points in this frame.

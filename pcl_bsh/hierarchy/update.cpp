@@ -310,6 +310,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
       if (after[v] != &voxels[v]) voxels[v].adopt(*after[v]);
       voxels[v].begin = static_cast<std::uint32_t>(begin);
       begin += voxels[v].count;
+      voxels[v].own_uncertainties.reset(); // also where no point came or went
     }
     storage.view = now;
     storage.uncertainty = UncertaintyRange(now);

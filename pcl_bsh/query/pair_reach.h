@@ -39,6 +39,10 @@ public:
     return distance.compare(p, q, clearance_, a_.radius(pair.a), b_.radius(pair.b)) <= 0;
   }
 
+  /// Without what points of a pair have of their own: between which lengths it is, at most, for all places.
+  double leastInCommon() const { return clearance_ - a_.uncertainty - b_.uncertainty; }
+  double mostInCommon() const { return clearance_ + a_.uncertainty + b_.uncertainty; }
+
   /// Points in the order of a tree are anywhere in the caller's arrays: asks for those that will be read soon.
   void prefetchOfA(std::uint32_t record) const { prefetch(a_, record); }
   void prefetchOfB(std::uint32_t record) const { prefetch(b_, record); }

@@ -150,6 +150,24 @@ HWY_INLINE std::uint32_t atMost(const float* values, float limit)
   return bits;
 }
 
+/// The same of sixteen limits, and which values are above theirs.
+HWY_INLINE std::uint32_t atMostEach(const float* values, const float* limits)
+{
+  const LaneTag d;
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+    bits |= bitsOf(d, hn::Le(hn::Load(d, values + i), hn::Load(d, limits + i))) << i;
+  return bits;
+}
+HWY_INLINE std::uint32_t aboveEach(const float* values, const float* limits)
+{
+  const LaneTag d;
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+    bits |= bitsOf(d, hn::Gt(hn::Load(d, values + i), hn::Load(d, limits + i))) << i;
+  return bits;
+}
+
 /// Which of sixteen values are above `limit`. Not the opposite of atMost(): NaN is neither.
 HWY_INLINE std::uint32_t above(const float* values, float limit)
 {
@@ -187,6 +205,48 @@ HWY_INLINE bool anyPointWithin(const float* x, const float* y, const float* z, s
     if ((within & firstBits(std::min(count - i, hn::Lanes(d)))) != 0) return true;
   }
   return false;
+}
+
+/// The same where each point has a reach of its own, reach + scale * lengths[i]; below 0 it is within none.
+/// @param reach rounded inward, and scale so that the products are. @param lengths >= 0; as many are read as of x
+HWY_INLINE bool anyPointWithinEach(const float* x, const float* y, const float* z, const float* lengths, float scale,
+                                   std::size_t count, const Point& to, float reach)
+{
+  const LaneTag d;
+  const LaneVector vx = hn::Set(d, to.x), vy = hn::Set(d, to.y), vz = hn::Set(d, to.z);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const LaneVector squared = squaredNorm(hn::Sub(hn::LoadU(d, x + i), vx), hn::Sub(hn::LoadU(d, y + i), vy),
+                                           hn::Sub(hn::LoadU(d, z + i), vz));
+    const LaneVector room = hn::Add(hn::Set(d, reach), hn::Mul(hn::LoadU(d, lengths + i), hn::Set(d, scale)));
+    const LaneVector core =
+        hn::Sub(hn::Mul(hn::Mul(room, room), hn::Set(d, 1.0f - kSphereMargin)), hn::Set(d, kVanishingSquare));
+    const std::uint32_t within = bitsOf(d, hn::And(hn::Gt(room, hn::Zero(d)), hn::Le(squared, core)));
+    if ((within & firstBits(std::min(count - i, hn::Lanes(d)))) != 0) return true;
+  }
+  return false;
+}
+
+/// Lowers longer[i] to the smallest distance of point i to those points (x, y, z) that have their bit set, each plus
+/// scale * lengths[j], and shorter[i] to the smallest less that. Both in float arithmetic: kReachMargin of all terms.
+HWY_INLINE void nearestWithLengths(const LeafPoints& points, const float* x, const float* y, const float* z,
+                                   const float* lengths, float scale, std::uint32_t others, float* longer,
+                                   float* shorter)
+{
+  const LaneTag d;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+    const LaneVector px = hn::Load(d, points.x + i), py = hn::Load(d, points.y + i), pz = hn::Load(d, points.z + i);
+    LaneVector least = hn::Load(d, longer + i), most = hn::Load(d, shorter + i);
+    for (std::uint32_t bits = others; bits != 0; bits &= bits - 1) {
+      const int j = std::countr_zero(bits);
+      const LaneVector distance = hn::Sqrt(
+          squaredNorm(hn::Sub(px, hn::Set(d, x[j])), hn::Sub(py, hn::Set(d, y[j])), hn::Sub(pz, hn::Set(d, z[j]))));
+      const LaneVector length = hn::Set(d, lengths[j] * scale);
+      least = hn::Min(least, hn::Add(distance, length));
+      most = hn::Min(most, hn::Sub(distance, length));
+    }
+    hn::Store(least, d, longer + i);
+    hn::Store(most, d, shorter + i);
+  }
 }
 
 /// Largest squared distance of count > 0 points from (cx, cy, cz), in float arithmetic (kSquaredDistanceError).

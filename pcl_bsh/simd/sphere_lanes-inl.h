@@ -180,6 +180,25 @@ HWY_INLINE std::uint32_t spheresNear(const SphereLanes& spheres, const QueryBall
   return apart ^ ((1u << kLanes) - 1);
 }
 
+/// Bit i: (x, y, z) is not proven to be farther than reaches[i] + more from the centre of sphere i; proven it is where
+/// that sum is below 0. As nearLimit() has it, both rounded outward. @param gap as spheresNear() has it, or null
+HWY_INLINE std::uint32_t spheresNearEach(const SphereLanes& spheres, const float* reaches, const Point& to, float more,
+                                         float* gap)
+{
+  const LaneTag d;
+  std::uint32_t apart = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const LaneVector s = squaredNorm(hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, to.x)),
+                                     hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, to.y)),
+                                     hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, to.z)));
+    const LaneVector reach = hn::LoadU(d, reaches + i), sum = hn::Add(reach, hn::Set(d, more));
+    const LaneVector limit = nearLimit(reach, hn::Set(d, more), hn::Set(d, 1.0f + kSphereMargin));
+    apart |= bitsOf(d, hn::Or(hn::Gt(s, limit), hn::Lt(sum, hn::Zero(d)))) << i; // not so for NaN
+    if (gap) hn::StoreU(hn::Sub(hn::Sqrt(s), reach), d, gap + i);
+  }
+  return apart ^ ((1u << kLanes) - 1);
+}
+
 /// Bit i: from the centre of sphere i to that of another one it is more than `times` as far as both radii together.
 /// @param gap as spheresNear() gave it. @param radius of the other one
 HWY_INLINE std::uint32_t spheresFar(const float* gap, const float* radii, float stretch, float radius, float times)

@@ -214,13 +214,13 @@ const BoxedVoxel& BoxTree::voxel(std::uint32_t index, Work& work) const
   Entry& entry = voxels_[index];
   std::call_once(entry.once, [&] {
     const Voxel& built = storage.built(index, work);
-    entry.boxed = BoxedVoxel(built, offset(index), stretch);
+    entry.boxed = BoxedVoxel(built, offset(index), stretch, storage.view.uncertainties);
     for (const BoxNode& node : entry.boxed.boxes()) work.volumes_built += node.count;
   });
   return entry.boxed;
 }
 
-BoxedVoxel::BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* stretch)
+BoxedVoxel::BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* stretch, const float* uncertainties)
 {
   std::vector<PlacedPoint> points;
   points.reserve(voxel.count);
@@ -247,7 +247,9 @@ BoxedVoxel::BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* st
     for (std::size_t axis = 0; axis < 3; ++axis)
       coordinates_[axis * points.size() + i] = points[i].at[static_cast<Eigen::Index>(axis)];
     records_[i] = voxel.records()[points[i].place()];
+    if (uncertainties) lengths_.push_back(uncertainties[records_[i]]);
   }
+  if (uncertainties) lengths_.resize(lengths_.size() + kNodeChildren);
 }
 
 } // namespace pcl_bsh

@@ -31,6 +31,7 @@ struct alignas(32) BoxNode {
 struct BoxLeaf {
   const float *at_x, *at_y, *at_z; ///< as the voxel stores them
   const std::uint32_t* records;
+  const float* lengths; ///< their own uncertainties, likewise; null where they have none
   std::uint32_t count;
 
   const float* x() const { return at_x; }
@@ -44,8 +45,9 @@ class BoxedVoxel {
 public:
   BoxedVoxel() = default;
 
-  /// @param offset from the tree's origin to the voxel's. @param stretch see BoxTree
-  BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* stretch);
+  /// @param offset from the tree's origin to the voxel's. @param stretch see BoxTree. @param uncertainties of the
+  /// cloud's records; may be null
+  BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* stretch, const float* uncertainties);
 
   const std::vector<BoxNode>& boxes() const { return boxes_; }
 
@@ -53,13 +55,19 @@ public:
   {
     const std::uint32_t begin = begins_[number];
     const float* x = coordinates_.data() + begin;
-    return {x, x + records_.size(), x + 2 * records_.size(), records_.data() + begin, begins_[number + 1] - begin};
+    return {x,
+            x + records_.size(),
+            x + 2 * records_.size(),
+            records_.data() + begin,
+            lengths_.empty() ? nullptr : lengths_.data() + begin,
+            begins_[number + 1] - begin};
   }
 
 private:
   std::vector<BoxNode> boxes_;
   std::vector<float> coordinates_;     // x, y, z of each point
   std::vector<std::uint32_t> records_; // per point
+  std::vector<float> lengths_;         // likewise, of uncertain points
   std::vector<std::uint32_t> begins_;  // per leaf: its first point; then their number
 };
 

@@ -19,6 +19,8 @@ struct ProbeSphere {
   Point center;
   float reach;
   std::uint32_t pose;
+  float scale = 0.0f;   ///< of points' own uncertainties, which make the reach longer, or shorter
+  float farther = 0.0f; ///< by this at most
 };
 
 class PointProbing {
@@ -44,16 +46,19 @@ public:
       for (const float g : map.g)
         if (!(std::abs(g) <= voxel_frame_.far)) return false;
       const Point at = carryPoint(map.m, map.g, probe.center);
+      if (leaf.lengths)
+        return anyPointWithinEach(leaf.x(), leaf.y(), leaf.z(), leaf.lengths, probe.scale, leaf.count, at, probe.reach);
       return anyPointWithin(leaf.x(), leaf.y(), leaf.z(), leaf.count, at.x, at.y, at.z, probe.reach);
     }
     if (!model_.mayOpen(candidate)) return false;
     const Siblings children = model_.below(candidate);
     work_.node_pairs += static_cast<std::uint64_t>(std::popcount(children.lanes));
     float distance[kLanes];
+    const float reach = probe.reach + probe.farther;
     std::uint32_t near = 0;
     for (std::uint32_t lane = 0; lane < children.box().count; ++lane) {
       distance[lane] = BoxEnds(children[lane]).squaredDistance(center);
-      if (distance[lane] <= probe.reach * probe.reach) near |= 1u << lane;
+      if (distance[lane] <= reach * reach) near |= 1u << lane;
     }
     while (near != 0) {
       auto nearest = static_cast<std::uint32_t>(std::countr_zero(near));

@@ -13,6 +13,7 @@
 #include <pcl_bsh/trajectory/pose_ranges-inl.h>
 #include <pcl_bsh/trajectory/swept_leaf-inl.h>
 #include <pcl_bsh/trajectory/voxel_results.h>
+#include <pcl_bsh/traversal/uncertain_points-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -33,7 +34,9 @@ public:
     model_(model),
     stop_check_(stop_check),
     results_(results),
-    swept_(query, voxel_frame, results)
+    swept_(query, voxel_frame, results),
+    reach_(voxel_frame.error, query.path.skew, 1.0, query.of_pairs.leastInCommon(), query.of_pairs.mostInCommon(),
+           query.model.storage().uncertainty.most, 0.0f)
   {
   }
 
@@ -82,6 +85,9 @@ public:
     if (!query_.everything()) results_.settled[slot] = results_.hit[slot];
     return (all & ~results_.settled[slot]) != 0;
   }
+
+  /// Of pairs of points with uncertainties of their own.
+  const UncertainReach& reach() const { return reach_; }
 
 private:
   /// The candidates by their distance from the leaf, at one pose: the sooner its points' bounds are small, the fewer
@@ -261,9 +267,15 @@ private:
     std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
     std::uint32_t hit = 0;
     if (certain) {
-      nearestSquared(points, other.x(), other.y(), other.z(), firstBits(other.count), nearest);
-      hit = lanes & atMost(nearest, voxel_frame_.band.hit);
-      const std::uint32_t undecided = lanes & ~hit & ~above(nearest, voxel_frame_.band.miss);
+      std::uint32_t undecided = 0;
+      if (query_.of_pairs.isOne()) {
+        nearestSquared(points, other.x(), other.y(), other.z(), firstBits(other.count), nearest);
+        hit = lanes & atMost(nearest, voxel_frame_.band.hit);
+        undecided = lanes & ~hit & ~above(nearest, voxel_frame_.band.miss);
+      }
+      else {
+        compareUncertain(leaf, lanes, points, other, hit, undecided);
+      }
       if (undecided != 0)
         eachPairNotBeyond(points, undecided, other, voxel_frame_.band.miss,
                           [&](std::uint32_t i, std::uint32_t j, float) {
@@ -280,6 +292,25 @@ private:
       }
     }
     if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, motion);
+  }
+
+  /// Points with uncertainties of their own, as the query asks about them. @param hit, undecided become those in
+  /// `lanes` that collide for certain, and those of which single pairs have to be asked
+  HWY_NOINLINE void compareUncertain(const LeafVisit& leaf, std::uint32_t lanes, const LeafPoints& points,
+                                     const BoxLeaf& other, std::uint32_t& hit, std::uint32_t& undecided) const
+  {
+    static constexpr float kNone[kLeafPoints] = {};
+    const SphereHierarchy::Storage& scan = query_.scan.hierarchy().storage();
+    const auto voxel = static_cast<std::size_t>(&voxel_frame_.voxel - scan.voxels.get());
+    const UncertainPoints limits(reach_, ownOf(ownUncertainties(scan, voxel), leaf.points));
+    alignas(64) float longer[kLeafPoints], shorter[kLeafPoints];
+    std::fill(std::begin(longer), std::end(longer), std::numeric_limits<float>::infinity());
+    std::fill(std::begin(shorter), std::end(shorter), std::numeric_limits<float>::infinity());
+    nearestWithLengths(points, other.x(), other.y(), other.z(), other.lengths ? other.lengths : kNone, reach_.scale_up,
+                       firstBits(other.count), longer, shorter);
+    hit = lanes & (query_.certain ? atMostEach(longer, limits.sure) : atMostEach(shorter, limits.maybe));
+    undecided =
+        lanes & ~hit & ~(query_.certain ? aboveEach(longer, limits.sure_miss) : aboveEach(shorter, limits.miss));
   }
 
   /// A point that is known to collide at pose k matters again only where it may be nearer than the nearest so far, of
@@ -360,6 +391,7 @@ private:
   StopCheck& stop_check_;
   VoxelResults& results_;
   SweptLeaf swept_;
+  const UncertainReach reach_;
   std::vector<Siblings> near_; // what the leaf may meet
   std::vector<PointsNearBoxes> stack_;
   ClippedSegments<kLanes> clips_[kLeafPoints]; // of each point, when it is in the boxes it is compared with

@@ -121,6 +121,7 @@ TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& m
   radii(largestRadii(scan_at, model_of)),
   reach(reachOf(scan_at, model_of, asked, between)),
   path(pathOf(scan_at, model_poses, asked, boxes, reach, progress)),
+  certain(where == Places::certain),
   witness(what == Wanted::witness),
   closest(asked.distances || asked.closest_poses),
   first(asked.first_poses || asked.swept.has_value())

@@ -47,6 +47,7 @@ struct TrajectoryQuery {
   const double radii;       ///< the largest of the scan and of the model, summed
   const double reach;       ///< of points: the clearance, half of the tolerance, the radii; the greatest of all
   const PosePath path;
+  const bool certain;        ///< uncertain points are asked about for what collides wherever they are
   const bool witness;        ///< the walk ends at the first pair that collides
   const bool closest, first; ///< what has to be known of each point, beside whether it collides
   /// Whether the best so far bounds the search for a point, with all of a path that begins at `from`: what is farther

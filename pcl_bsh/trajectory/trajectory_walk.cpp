@@ -55,9 +55,9 @@ public:
     model_(query.boxes, rule, results_.work),
     leaves_(query, voxel_frame_, model_, stop_check_, results_),
     probing_(query, voxel_frame_, model_, results_.work),
+    settled_reach_(settledReach()),
     settling_(!query.everything() && !query.first && query.radii == 0.0 && voxel_frame_.frame.unit == 1.0 &&
-              voxel_frame_.band.hit > 0.0f),
-    settled_reach_(settling_ ? std::sqrt(voxel_frame_.band.hit) * (1.0f - kRadiusMargin) : 0.0f),
+              settled_reach_ > 0.0f),
     visits_(visits)
   {
   }
@@ -110,9 +110,34 @@ private:
     voxel_ = &query_.scan.hierarchy().storage().built(index_, results_.work);
     for (const Node& node : voxel_->nodes) open_lanes_.push_back(static_cast<std::uint8_t>(firstBits(node.count)));
     results_.begin(*voxel_);
+    own_ = ownUncertainties(query_.scan.hierarchy().storage(), index_);
     if (query_.witness) return;
     oriented_boxes_.fit(*voxel_, motion.from);
     results_.work.volumes_built += countChildren(voxel_->nodes);
+  }
+
+  float settledReach() const
+  {
+    const UncertainReach& reach = leaves_.reach();
+    if (!query_.of_pairs.isOne()) return query_.certain ? reach.sure : reach.maybe;
+    return voxel_frame_.band.hit > 0.0f ? std::sqrt(voxel_frame_.band.hit) * (1.0f - kRadiusMargin) : 0.0f;
+  }
+
+  /// The probe of a child that settles it: by the most of its points' lengths for certain, by the least for what may
+  /// be.
+  ProbeSphere probeOf(std::uint32_t index, std::uint32_t lane, float radius) const
+  {
+    const Node& node = voxel_->nodes[index];
+    ProbeSphere probe{
+        {node.x[lane], node.y[lane], node.z[lane]}, settled_reach_ - radius * (1.0f + 4 * kRadiusMargin), 0};
+    if (query_.of_pairs.isOne()) return probe;
+    const UncertainReach& reach = leaves_.reach();
+    const float least = own_ ? own_->nodes[index].least[lane] * reach.scale_down : 0.0f;
+    const float most = own_ ? own_->nodes[index].most[lane] * reach.scale_up : 0.0f;
+    probe.reach += (query_.certain ? -most : least) - (radius + most + reach.magnitude) * 2 * kSumMargin;
+    probe.scale = query_.certain ? -reach.scale_up * (1.0f + kReachMargin) : reach.scale_down * (1.0f - kReachMargin);
+    probe.farther = query_.certain ? 0.0f : reach.most_of_b;
+    return probe;
   }
 
   /// Reports progress to the caller from time to time, and whether it asked to stop.
@@ -240,7 +265,7 @@ private:
     const Node& node = voxel_->nodes[index];
     float smallest = std::numeric_limits<float>::infinity();
     for (std::uint32_t lane = 0; lane < node.count; ++lane) smallest = std::min(smallest, visit.radius[lane]);
-    if (!(settled_reach_ > smallest)) return;
+    if (!(settled_reach_ > smallest) && query_.of_pairs.isOne()) return;
     for (const Siblings& candidate : visit.candidates)
       for (std::uint32_t bits = candidate.lanes; bits != 0; bits &= bits - 1) {
         settleBy(candidate[static_cast<std::uint32_t>(std::countr_zero(bits))], visit, index, motion);
@@ -251,20 +276,19 @@ private:
   /// Settles those that points in a box are near enough to.
   void settleBy(const ModelBox& candidate, const NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
   {
-    const Node& node = voxel_->nodes[index];
     ClippedSegments<kLanes> clipped;
     const BoxEnds box(candidate);
     results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(open_lanes_[index]));
     std::uint32_t near = open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, motion.steps, &clipped);
     for (; near != 0; near &= near - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-      const float reach = settled_reach_ - visit.radius[lane] * (1.0f + 4 * kRadiusMargin);
-      if (!(reach > 0.0f)) continue;
+      ProbeSphere probe = probeOf(index, lane, visit.radius[lane]);
+      if (!(probe.reach > 0.0f)) continue;
       const double middle = 0.5 * (std::max(clipped.from[lane], 0.0f) + std::min(clipped.to[lane], 1.0f));
       const double steps = motion.interval->last - motion.interval->first; // beyond 2^24, motion.steps may be more
-      const auto pose = motion.interval->first + static_cast<std::uint32_t>(std::lround(middle * steps));
-      const ProbeSphere probe{{node.x[lane], node.y[lane], node.z[lane]}, reach, pose};
-      const AffineMap map = voxel_frame_.mapAt(query_.path.poses[pose], {0, 0, 0}, 1.0);
+      probe.pose = motion.interval->first + static_cast<std::uint32_t>(std::lround(middle * steps));
+      const float reach = probe.reach + probe.farther;
+      const AffineMap map = voxel_frame_.mapAt(query_.path.poses[probe.pose], {0, 0, 0}, 1.0);
       const Point center = carryPoint(map.m, map.g, probe.center);
       ++results_.work.volumes_carried;
       if (box.squaredDistance(center) > reach * reach || !probing_.hasPoint(candidate, probe, center)) continue;
@@ -332,11 +356,12 @@ private:
   ModelBoxes model_;
   LeafWalk leaves_;
   PointProbing probing_;
-  const bool settling_;                  // whether one pose and one point of the model answer the request
-  const float settled_reach_;            // a pair nearer than this, in floats, collides
-  const Voxel* voxel_ = nullptr;         // once it was entered
-  std::vector<std::uint8_t> open_lanes_; // per node: children that are not settled
-  std::deque<NodeVisit>& visits_;        // by depth; a deque, for references to shallower visits stay in use
+  const float settled_reach_;             // a pair nearer than this, in floats, collides; but for lengths of its own
+  const bool settling_;                   // whether one pose and one point of the model answer the request
+  const Voxel* voxel_ = nullptr;          // once it was entered
+  const OwnUncertainties* own_ = nullptr; // of its points, likewise
+  std::vector<std::uint8_t> open_lanes_;  // per node: children that are not settled
+  std::deque<NodeVisit>& visits_;         // by depth; a deque, for references to shallower visits stay in use
 };
 
 } // namespace

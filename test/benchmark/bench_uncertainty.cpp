@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What verdicts cost that hold wherever points truly are: flags of a scan, plain, with one length for all points of
-// both clouds, and with a length for each point.
+// What verdicts cost that hold wherever points truly are: of a scan, plain, with one length for all points of both
+// clouds, and with a length for each point.
 #include "program.h"
 #include "workload/random.h"
 #include "workload/scenes.h"
 
-#include <pcl_bsh/collision/collision_flags.h>
+#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collision/colliding_indices.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <array>
 #include <cstdint>
@@ -21,6 +23,7 @@ namespace {
 struct Options : ProgramOptions {
   std::vector<std::string> scenes = {"terrain", "lion"};
   std::vector<double> clearances = {1.0, 5.0, 20.0};
+  std::vector<std::string> queries = {"flags"};
   std::size_t size = 300000;
   std::string folder = PCL_BSH_SHARED_DIR "/data";
 };
@@ -58,32 +61,72 @@ struct Cloud {
 
 struct Entry {
   std::vector<double> seconds;
-  FlagsResult found;
+  std::size_t colliding = 0, undecided = 0; ///< points of the first cloud; of any collision: whether it is so
 };
 
-void measure(const std::string& name, const ScanPair& pair, double spacings, const Options& options, Table& table)
+constexpr int kPoses = 20;
+
+/// The second cloud comes up from below in steps of half a clearance.
+std::vector<Eigen::Isometry3d> path(double clearance)
+{
+  std::vector<Eigen::Isometry3d> poses(kPoses, Eigen::Isometry3d::Identity());
+  for (int k = 0; k < kPoses; ++k)
+    poses[static_cast<std::size_t>(k)].translation().z() = -0.5 * clearance * (kPoses - k);
+  return poses;
+}
+
+void ask(const std::string& query, const SphereHierarchy& a, const SphereHierarchy& b, double clearance, Entry& entry)
+{
+  FlagsRequest request;
+  request.clearance = clearance;
+  if (query == "flags") {
+    const FlagsResult found = collisionFlags({a}, {b}, request);
+    entry.colliding = found.colliding_a;
+    entry.undecided = found.undecided_a;
+  }
+  else if (query == "lists") {
+    const CollidingIndices found = collidingIndices({a}, {b}, request);
+    entry.colliding = found.a.size();
+    entry.undecided = found.undecided_a.size();
+  }
+  else if (query == "path") {
+    TrajectoryRequest along;
+    along.clearance = clearance;
+    const TrajectoryResult found = collideAlong({a}, b, path(clearance), along);
+    entry.colliding = found.colliding;
+    entry.undecided = found.undecided;
+  }
+  else { // a search that ends early, and one that need not
+    entry.colliding = entry.undecided = 0;
+    for (const Eigen::Isometry3d& pose : path(clearance)) {
+      const Verdict verdict = anyCollision({a}, {b, pose}, {clearance, {}}).verdict;
+      entry.colliding += verdict == Verdict::colliding;
+      entry.undecided += verdict == Verdict::undecided;
+    }
+  }
+}
+
+void measure(const std::string& name, const ScanPair& pair, double spacings, const std::string& query,
+             const Options& options, Table& table)
 {
   const double clearance = spacings * pair.spacing;
   std::array<Entry, kNames.size()> entries;
   for (unsigned repetition = 0; repetition < options.repeat; ++repetition) {
     for (std::size_t k = 0; k < entries.size(); ++k) {
-      progress(name + ", clearance " + text(clearance) + ", " + kNames[k]);
+      progress(name + ", " + query + ", clearance " + text(clearance) + ", " + kNames[k]);
       const auto kind = static_cast<Kind>(k);
       const Cloud a(pair.a, kind, clearance, 1), b(pair.b, kind, clearance, 1u << 30);
-      FlagsRequest request;
-      request.clearance = clearance;
-      collisionFlags({a.hierarchy}, {b.hierarchy}, request, entries[k].found); // builds what queries share
+      ask(query, a.hierarchy, b.hierarchy, clearance, entries[k]); // builds what queries share
       const Stopwatch watch;
-      collisionFlags({a.hierarchy}, {b.hierarchy}, request, entries[k].found);
+      ask(query, a.hierarchy, b.hierarchy, clearance, entries[k]);
       entries[k].seconds.push_back(watch.seconds());
     }
   }
   const double plain = quantile(entries[0].seconds, 0.0);
   for (std::size_t k = 0; k < entries.size(); ++k) {
     const double least = quantile(entries[k].seconds, 0.0);
-    table.add({name, std::to_string(pair.a.size()), text(spacings), kNames[k], text(1e3 * least, 4),
-               text(least / plain), std::to_string(entries[k].found.colliding_a),
-               std::to_string(entries[k].found.undecided_a)});
+    table.add({name, query, std::to_string(pair.a.size()), text(spacings), kNames[k], text(1e3 * least, 4),
+               text(least / plain), std::to_string(entries[k].colliding), std::to_string(entries[k].undecided)});
   }
 }
 
@@ -95,7 +138,8 @@ bool measureAll(const Options& options, Table& table)
       progress(name + ": no such scan in " + options.folder + ": skipped");
       continue;
     }
-    for (const double spacings : options.clearances) measure(name, *pair, spacings, options, table);
+    for (const std::string& query : options.queries)
+      for (const double spacings : options.clearances) measure(name, *pair, spacings, query, options, table);
   }
   return true;
 }
@@ -108,7 +152,8 @@ int main(int argc, char** argv)
   std::vector<std::string> all_scenes = kMadeScenes;
   all_scenes.insert(all_scenes.end(), kRealScenes.begin(), kRealScenes.end());
   CLI::App app(
-      "Flags of a scan whose points may be elsewhere: by up to a tenth of the clearance, drawn for each point of "
+      "Questions about a scan whose points may be elsewhere: by up to a tenth of the clearance, drawn for each point "
+      "of "
       "both clouds,\nor by half of that for all. One thread, hierarchies built. Ratios are of the smallest times, "
       "to the plain query.",
       "bench_uncertainty");
@@ -117,13 +162,19 @@ int main(int argc, char** argv)
       ->delimiter(',')
       ->check(CLI::IsMember(all_scenes))
       ->capture_default_str();
+  app.add_option("--query", options.queries,
+                 "flags, lists (of colliding and undecided points), any (of two clouds at 20 poses, each alone), path "
+                 "(flags along these poses)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"flags", "lists", "any", "path"}))
+      ->capture_default_str();
   app.add_option("--size", options.size, "points of a made cloud")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--clearances", options.clearances, "in spacings of the cloud")
       ->delimiter(',')
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--folder", options.folder, "where the real scans are")->capture_default_str();
-  Table table(
-      {"scene", "points", "clearance [spacings]", "uncertainty", "least [ms]", "ratio", "colliding", "undecided"});
+  Table table({"scene", "query", "points", "clearance [spacings]", "uncertainty", "least [ms]", "ratio", "colliding",
+               "undecided"});
   return runProgram(app, argc, argv, options, table, [&](Table& rows) { return measureAll(options, rows); });
 }

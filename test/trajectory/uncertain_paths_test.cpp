@@ -79,6 +79,55 @@ TEST(UncertainPaths, SameAsBruteForceWhateverIsAsked)
   EXPECT_GT(later, 50u) << "points which collide for certain later than they may";
 }
 
+/// Nodes small beside the clearance, which is the reach of one of the pairs, or nearly: they are settled by the lengths
+/// of their own points, which differ by a million, by one, or by none.
+TEST(UncertainPaths, WholeNodesByLengthsOfTheirOwn)
+{
+  std::size_t flags[3] = {};
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed + 3000000);
+    const auto cloud = [&random] {
+      Cloud made(test::makePoints(random.chance(0.5) ? test::Shape::uniform : test::Shape::plane,
+                                  static_cast<std::size_t>(random.integer(20, 80)), random.uniform(0.02, 0.5), random));
+      std::vector<float> own(random.chance(0.2) ? 0 : made.view().count);
+      const int octaves = random.integer(0, 2);
+      for (float& length : own)
+        length = static_cast<float>(octaves == 0   ? random.uniform(0, 0.3)
+                                    : octaves == 1 ? std::pow(10.0, random.uniform(-6, 0))
+                                                   : (random.chance(0.05) ? 0.0 : 0.25));
+      made.setUncertainties(random.chance(0.3) ? 0.0625 : 0.0, std::move(own));
+      return made;
+    };
+    const Cloud cloud_a = cloud(), cloud_b = cloud();
+    const SphereHierarchy scan(cloud_a.view()), model(cloud_b.view());
+    Poses poses;
+    for (int k = 0; k < 8; ++k) {
+      poses.push_back(random.pose(0.1));
+      poses.back().translation().x() += 1.0 + 0.1 * k;
+    }
+    const auto any = [&random](const Cloud& of) {
+      return static_cast<std::uint32_t>(random.integer(0, static_cast<int>(of.view().count) - 1));
+    };
+    const std::uint32_t i = any(cloud_a), j = any(cloud_b);
+    const Point3 p = cloud_a.view().point(i), q = cloud_b.view().point(j);
+    const double off = cloud_a.view().uncertainty + cloud_a.view().ownUncertainty(i) + cloud_b.view().uncertainty +
+                       cloud_b.view().ownUncertainty(j);
+    const double distance = (Eigen::Vector3d(p[0], p[1], p[2]) -
+                             poses[static_cast<std::size_t>(random.integer(0, 7))] * Eigen::Vector3d(q[0], q[1], q[2]))
+                                .norm();
+    const double edge = std::max(0.0, random.chance(0.5) ? distance + off : distance - off);
+    for (const double clearance : {edge, std::nextafter(edge, 0.0), std::nextafter(edge, 9.0)}) {
+      const TrajectoryRequest request = flagsOnly(clearance);
+      const TrajectoryResult found = collideAlong({scan}, model, poses, request);
+      expectSame(found, brute_force::collideAlong({scan}, model, poses, request));
+      ASSERT_FALSE(::testing::Test::HasFailure());
+      for (const std::uint8_t flag : found.flags) ++flags[flag];
+    }
+  }
+  for (const std::size_t count : flags) EXPECT_GT(count, 300u);
+}
+
 TEST(UncertainPaths, BothEdgesToTheLastBit)
 {
   std::size_t verdicts[3] = {};

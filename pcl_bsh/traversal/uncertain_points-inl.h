@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Points of a leaf that are uncertain, against those of another leaf: float bounds that count both of a pair.
+
+#if defined(PCL_BSH_TRAVERSAL_UNCERTAIN_POINTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAVERSAL_UNCERTAIN_POINTS_INL_H_
+#undef PCL_BSH_TRAVERSAL_UNCERTAIN_POINTS_INL_H_
+#else
+#define PCL_BSH_TRAVERSAL_UNCERTAIN_POINTS_INL_H_
+#endif
+
+#include <pcl_bsh/traversal/leaf_pair-inl.h>
+#include <pcl_bsh/traversal/uncertain_reach.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// What pays for float sums of up to four roundings, relative to the sum of their terms: 4 u of 8 u.
+inline constexpr float kSumMargin = kReachMargin;
+
+/// The same with nearestWithLengths(): the root of a squared distance, a product and a sum err by 6 u of their terms,
+/// the other point's length counts three times, and thresholds by 4 u; less than 23 u of the 32.
+inline constexpr float kLengthsMargin = 4 * kSumMargin;
+
+/// The reaches of a leaf's points: of distances plus or less the other points' uncertainties, as nearestWithLengths()
+/// has them.
+struct UncertainPoints {
+  alignas(64) float sure[kLeafPoints];      ///< up to it, colliding for certain
+  alignas(64) float maybe[kLeafPoints];     ///< up to it, of shortened distances, it may be so
+  alignas(64) float sure_miss[kLeafPoints]; ///< beyond it, not for certain
+  alignas(64) float miss[kLeafPoints];      ///< beyond it, of shortened distances, free
+
+  UncertainPoints(const UncertainReach& reach, const float* own)
+  {
+    for (std::size_t i = 0; i < kLeafPoints; ++i) {
+      const float least = own[i] * reach.scale_down, most = own[i] * reach.scale_up;
+      const float slack = (most + reach.magnitude) * kLengthsMargin;
+      sure[i] = reach.sure - most - slack;
+      maybe[i] = reach.maybe + least - slack;
+      sure_miss[i] = reach.sure_miss - least + slack;
+      miss[i] = reach.miss + most + slack;
+    }
+  }
+};
+
+/// The lengths of a leaf's points, sixteen to be read; zeros where they have none of their own.
+inline const float* ownOf(const OwnUncertainties* own, const LeafRange& leaf)
+{
+  alignas(64) static constexpr float kNone[kLeafPoints] = {};
+  return own ? own->points.get() + leaf.begin : kNone;
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl_bsh/geometry/distance_band.h>
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/hierarchy/storage.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcl_bsh {
+
+/// Those of a built voxel; null where its points have none of their own.
+inline const OwnUncertainties* ownUncertainties(const SphereHierarchy::Storage& storage, std::size_t voxel)
+{
+  Voxel& of = storage.voxels[voxel];
+  return storage.view.uncertainties ? of.own_uncertainties.of(of, storage.view) : nullptr;
+}
+
+/// How near points of two voxels have to be, but for what is their own: bounds in the frame and the unit of b's voxel,
+/// rounded to the safe side. From `sure` and `sure_near`, the lengths that points of a pair have of their own are to be
+/// subtracted, to `maybe` and `near` they are to be added: rounded up where that is a claim, else down.
+struct UncertainReach {
+  float sure;                 ///< whatever is so near collides for certain
+  float maybe;                ///< may collide
+  float sure_near;            ///< nothing in spheres farther apart collides for certain
+  float near;                 ///< nor may it
+  float sure_miss, miss;      ///< the same of points
+  float scale_up, scale_down; ///< the clouds' unit in b's, with the poses' skew
+  float most_of_b = 0.0f;     ///< of the lengths that b's points have of their own, in its unit
+  float magnitude = 0.0f;     ///< of the terms of sums of these, b's own lengths included
+  const OwnUncertainties* of_b = nullptr;
+
+  /// @param error of distances of points, in b's unit; may be infinite. @param skew as RelativeFrame has it. @param
+  /// unit of b. @param least, most reach of all pairs, without what points have of their own, in the clouds' unit, as
+  /// `b_most`, the most that points of b have; `least` may be below 0. @param prune_reach of spheres where none of this
+  /// can be known
+  UncertainReach(double error, double skew, double unit, double least, double most, double b_most, float prune_reach)
+  : sure(-kNever),
+    maybe(-kNever),
+    sure_near(prune_reach),
+    near(prune_reach),
+    sure_miss(kNever),
+    miss(kNever),
+    scale_up(0.0f),
+    scale_down(0.0f)
+  {
+    b_most /= unit;
+    const double size = std::max(std::abs(least), most) / unit + b_most + error;
+    if (!inFloatRange(size) || !inFloatRange(unit) || !inFloatRange(1.0 / unit)) return; // pairs are decided one by one
+    const double room = kDoubleMargin * size + kSmallestLength;                          // for all roundings here
+    scale_up = roundUp((1.0 + skew) / unit * (1.0 + kDoubleMargin));
+    scale_down = roundDown((1.0 - skew) / unit * (1.0 - kDoubleMargin));
+    const double blur = b_most * (static_cast<double>(scale_up - scale_down) * unit) * (1.0 + kDoubleMargin);
+    const auto low = [&](double d) { return d / unit * (d < 0.0 ? 1.0 + skew : 1.0 - skew) - error - room; };
+    const auto high = [&](double d) { return d / unit * (d < 0.0 ? 1.0 - skew : 1.0 + skew) + error + room; };
+    most_of_b = roundUp(b_most);
+    sure = roundDown(low(least));
+    maybe = roundDown(low(most) - blur);
+    sure_near = roundUp(high(least));
+    near = miss = roundUp(high(most));
+    sure_miss = roundUp(high(least) + blur);
+    magnitude = roundUp(size + blur + room);
+  }
+
+private:
+  static constexpr float kNever = std::numeric_limits<float>::infinity();
+};
+
+} // namespace pcl_bsh
