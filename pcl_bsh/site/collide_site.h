@@ -45,8 +45,9 @@ struct SiteRequest {
   bool pose_summaries = false; ///< of collideAlong(): what collides at each pose, as there
   unsigned threads = 1;        ///< of each process; 0: all of the machine's
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
-  /// Called now and then by each rank, with the tiles that it has done. False: stop, the query throws Cancelled.
-  std::function<bool(std::uint64_t)> progress;
+  /// Called after each tile by the rank that had it, with the tiles that it has done and those that it may have to do.
+  /// False: stop, the query throws Cancelled.
+  std::function<bool(std::uint64_t done, std::uint64_t all)> progress;
 };
 
 /// What a tile has cost, in seconds of the clock on the wall.

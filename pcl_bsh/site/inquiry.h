@@ -38,9 +38,12 @@ public:
                   const std::function<bool(std::size_t)>& go_on = nullptr)
   {
     found_.needed = tiles.size();
+    const auto number_of_ranks = static_cast<std::size_t>(ranks());
+    const std::size_t mine =
+        (tiles.size() + number_of_ranks - 1 - static_cast<std::size_t>(rankHere())) / number_of_ranks;
     const auto use = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
       ask(tile, cloud, SphereHierarchy(pointsOf(cloud, site_, tile, request_.uncertainty), building()));
-      if (request_.progress && !request_.progress(visitor_.read())) throw Cancelled();
+      if (request_.progress && !request_.progress(visitor_.read(), mine)) throw Cancelled();
     };
     visitor_.visit(tiles, use, go_on);
     found_.read = sumOfAllRanks(visitor_.read());

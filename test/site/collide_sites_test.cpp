@@ -221,6 +221,28 @@ TEST_F(CollideSites, ReadOnlyTilesThatMatter)
   EXPECT_THROW(collisionFlags(site, {other}, {}), std::runtime_error);
 }
 
+TEST_F(CollideSites, TellTheirProgressAndStop)
+{
+  const Site site = siteOf("a", floorOf(1000, 6), 50), other = siteOf("b", floorOf(1000, 7), 300);
+  SiteRequest request;
+  request.clearance = 0.1;
+  std::vector<std::uint64_t> told;
+  std::uint64_t of = 0;
+  request.progress = [&](std::uint64_t done, std::uint64_t all) {
+    told.push_back(done);
+    of = all;
+    return true;
+  };
+  const SitePairFlags flags = collisionFlags(site, {other}, request);
+  ASSERT_EQ(told.size(), flags.tiles.needed);
+  EXPECT_EQ(told.front(), 1u);
+  EXPECT_EQ(told.back(), flags.tiles.needed);
+  EXPECT_EQ(of, flags.tiles.needed);
+  request.progress = [](std::uint64_t done, std::uint64_t) { return done < 3; };
+  EXPECT_THROW(collisionFlags(site, {other}, request), Cancelled);
+  EXPECT_THROW(pointDistances(site, {other}, 1.0, request), Cancelled);
+}
+
 TEST_F(CollideSites, RefuseWhatOneHierarchyWouldRefuse)
 {
   const Site site = siteOf("a", floorOf(100, 8), 50), other = siteOf("b", floorOf(100, 9), 50);

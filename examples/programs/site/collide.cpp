@@ -19,6 +19,7 @@
 
 #include <chrono>
 #include <iostream>
+#include <optional>
 #endif
 
 namespace pcl_bsh::cli {
@@ -28,7 +29,7 @@ namespace {
 
 /// The answer, the same on all ranks.
 Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const SiteOptions& options, SiteOutput& out,
-                SiteClashList& clashes, MeasuredRun& run)
+                SiteClashList& clashes, MeasuredRun& run, Step* step)
 {
   HierarchyOptions building;
   building.threads = options.threads;
@@ -36,7 +37,7 @@ Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const SiteO
       withUncertainty(viewOf(cloud.cloud), cloud.cloud.fields, options.obstacle.string(), options.obstacle_uncertainty),
       building);
   const Placed obstacle(hierarchy, options.pose);
-  sites::SiteRequest request = requestOf(options);
+  sites::SiteRequest request = requestOf(options, step);
   Json report = beginReport(site, options);
   switch (options.question) {
   case SiteQuestion::any: {
@@ -116,10 +117,14 @@ int answer(const SiteOptions& options)
   SiteOutput output(site, options);
   MeasuredRun run;
   Json report;
+  std::optional<Step> shown;
+  if (tells) shown.emplace("Asking about tiles");
+  Step* const step = tells ? &*shown : nullptr;
   if (options.obstacleIsSite())
-    report = askOfSite(site, options, output, run);
+    report = askOfSite(site, options, output, run, step);
   else
-    report = askOfCloud(site, ObstacleCloud(options), options, output, clashes, run);
+    report = askOfCloud(site, ObstacleCloud(options), options, output, clashes, run, step);
+  if (tells) shown->done(report["tiles"]["read"].dump() + " tiles read");
   run.seconds = seconds();
   output.finish();
   run.copying = seconds() - run.seconds;

@@ -10,12 +10,12 @@ namespace {
 
 /// Flags of both sides: each in tiles of its own.
 void askFlags(const sites::Site& site, const sites::PlacedSite& obstacle, const SiteOptions& options, SiteOutput& out,
-              Json& report, MeasuredRun& run)
+              Json& report, MeasuredRun& run, Step* step)
 {
   std::optional<sites::ResultSite> obstacle_out;
   if (!options.obstacle_out.empty())
     obstacle_out.emplace(obstacle.site, options.obstacle_out, std::vector{collisionField()});
-  const sites::SiteRequest request = requestOf(options);
+  const sites::SiteRequest request = requestOf(options, step);
   const sites::SitePairFlags found = sites::collisionFlags(site, obstacle, request, out.flags());
   report["colliding"] = found.colliding;
   report["undecided"] = found.undecided;
@@ -33,11 +33,11 @@ void askFlags(const sites::Site& site, const sites::PlacedSite& obstacle, const 
 
 } // namespace
 
-Json askOfSite(const sites::Site& site, const SiteOptions& options, SiteOutput& out, MeasuredRun& run)
+Json askOfSite(const sites::Site& site, const SiteOptions& options, SiteOutput& out, MeasuredRun& run, Step* step)
 {
   const sites::Site other = sites::readSite(options.obstacle);
   const sites::PlacedSite obstacle{other, options.pose, options.obstacle_uncertainty};
-  const sites::SiteRequest request = requestOf(options);
+  const sites::SiteRequest request = requestOf(options, step);
   Json report = beginReport(site, options);
   report["points_of_obstacle"] = other.points;
   switch (options.question) {
@@ -50,7 +50,7 @@ Json askOfSite(const sites::Site& site, const SiteOptions& options, SiteOutput& 
     break;
   }
   case SiteQuestion::flags:
-    askFlags(site, obstacle, options, out, report, run);
+    askFlags(site, obstacle, options, out, report, run, step);
     break;
   case SiteQuestion::closest: {
     const sites::SitePairClosest found = sites::closestPair(site, obstacle, request);

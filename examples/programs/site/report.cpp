@@ -6,7 +6,7 @@
 
 namespace pcl_bsh::cli {
 
-sites::SiteRequest requestOf(const SiteOptions& options)
+sites::SiteRequest requestOf(const SiteOptions& options, Step* step)
 {
   sites::SiteRequest request;
   request.clearance = options.clearance;
@@ -14,6 +14,12 @@ sites::SiteRequest requestOf(const SiteOptions& options)
   request.memory = options.memory;
   request.accuracy = options.accuracy;
   request.uncertainty = options.uncertainty;
+  if (step != nullptr) {
+    request.progress = [step](std::uint64_t done, std::uint64_t all) {
+      step->share(static_cast<double>(done) / static_cast<double>(all));
+      return true;
+    };
+  }
   return request;
 }
 

@@ -2,6 +2,7 @@
 // What pcl_bsh_site collide is asked, and what its report says whatever the question.
 #pragma once
 
+#include "cli/step.h"
 #include "options.h"
 #include "plan.h"
 
@@ -13,7 +14,8 @@ namespace pcl_bsh::cli {
 
 using Json = nlohmann::ordered_json;
 
-sites::SiteRequest requestOf(const SiteOptions& options);
+/// @param step that shows the progress; null on all ranks but the first
+sites::SiteRequest requestOf(const SiteOptions& options, Step* step);
 
 /// What was asked.
 Json beginReport(const sites::Site& site, const SiteOptions& options);
