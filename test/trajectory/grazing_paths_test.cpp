@@ -152,6 +152,12 @@ TEST(GrazingPaths, AnswerAsBruteForce)
       EXPECT_EQ(each.flags, moved.flags);
       EXPECT_EQ(each.first_contact->pose, moved.first_contact->pose);
       EXPECT_EQ(each.first_contact->fraction, moved.first_contact->fraction);
+      // Where no distance is asked for, what a point meets after its first contact is left out.
+      swept.distances = false;
+      const TrajectoryResult firsts = collideAlong({scan}, model, poses, swept);
+      EXPECT_EQ(firsts.flags, each.flags);
+      EXPECT_EQ(firsts.first_pose, each.first_pose);
+      swept.distances = true;
       swept.first_poses = false;
       const TrajectoryResult measured = collideAlong({scan}, model, poses, swept);
       EXPECT_EQ(measured.flags, moved.flags);

@@ -105,6 +105,58 @@ TEST(Strays, OfPointsWhosePlacesAreUncertain)
              brute_force::collideAlong(of_scan, of_model, poses, everything(0.1)));
 }
 
+/// Swept motion and what stops early set nothing aside.
+TEST(Strays, StayWhereMotionIsSwept)
+{
+  const test::Cloud scan(cubeWith({{1e6, 0, 0}, {0, -1e6, 0}}, 1)), model(cubeWith({{1e6, 0, 0}}, 2));
+  const SphereHierarchy of_scan(scan.view()), of_model(model.view());
+  constexpr double clearance = 0.05, tolerance = 0.02;
+  constexpr std::size_t steps = 40;
+  Poses poses = {Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity()}, between;
+  poses[1].translation().x() = 0.4;
+  ASSERT_TRUE(findStrays(of_scan, of_model, poses, clearance).has_value());
+  for (std::size_t k = 0; k <= steps; ++k) {
+    between.push_back(poses[0]);
+    between.back().translation().x() = 0.4 * static_cast<double>(k) / steps;
+  }
+  TrajectoryRequest request = test::flagsOnly(clearance);
+  const std::vector<std::uint8_t> surely = brute_force::collideAlong(of_scan, of_model, between, request).flags;
+  request.clearance = clearance + tolerance + 0.2 / steps;
+  const std::vector<std::uint8_t> perhaps = brute_force::collideAlong(of_scan, of_model, between, request).flags;
+  request = test::flagsOnly(clearance);
+  request.swept = tolerance;
+  const TrajectoryResult swept = collideAlong(of_scan, of_model, poses, request);
+  EXPECT_GT(swept.colliding, 5u);
+  for (std::size_t i = 0; i < surely.size(); ++i) {
+    EXPECT_GE(swept.flags[i], surely[i]) << i;
+    EXPECT_LE(swept.flags[i], perhaps[i]) << i;
+  }
+  request.first_poses = request.distances = true;
+  const TrajectoryResult each = collideAlong(of_scan, of_model, poses, request);
+  EXPECT_EQ(each.flags, swept.flags);
+  ASSERT_TRUE(each.first_contact && swept.first_contact);
+  EXPECT_EQ(each.first_contact->fraction, swept.first_contact->fraction);
+}
+
+TEST(Strays, StayWhereTheSearchStopsEarly)
+{
+  const test::Cloud scan(cubeWith({{1e9, 0, 0}, {0, 1e9, 0}}, 1)), model(cubeWith({{0, 1e9, 0}}, 2));
+  const SphereHierarchy of_scan(scan.view()), of_model(model.view());
+  const Poses poses = ahead(3, 0.2);
+  TrajectoryRequest request = test::flagsOnly(0.1);
+  const std::vector<std::uint8_t> truth = brute_force::collideAlong(of_scan, of_model, poses, request).flags;
+  for (const Accuracy& accuracy : {Accuracy::level(0), Accuracy::level(2), Accuracy::level(100), Accuracy::nodePairs(0),
+                                   Accuracy::nodePairs(300), Accuracy::nodePairs(std::uint64_t{1} << 50)}) {
+    request.accuracy = accuracy;
+    const std::vector<std::uint8_t> flags = collideAlong(of_scan, of_model, poses, request).flags;
+    for (std::size_t i = 0; i < truth.size(); ++i)
+      EXPECT_TRUE(flags[i] == flagOf(Verdict::undecided) || flags[i] == truth[i]) << i;
+    if (accuracy.value > 1000) {
+      EXPECT_EQ(flags, truth);
+    }
+  }
+}
+
 TEST(Strays, OfASubset)
 {
   const std::vector<std::int32_t> some = {3, 7, 11, 12, 13, 27, 30, 31, 40, 80, 81, 149};

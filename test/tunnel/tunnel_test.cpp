@@ -173,6 +173,23 @@ TEST(TightTunnel, NodePairsGrowLittleMoreThanThePoints)
   EXPECT_LT(workAt(0.06), 3.6 * small);
 }
 
+TEST(TightTunnel, ListsOfClashesAndSweptMotionAreAFewTimesTheWorkOfFlags)
+{
+  const Passage run = makePassage(Size::atScale(0.02), Course::tight);
+  const SphereHierarchy scan(viewOf(run.scan)), wagon(viewOf(run.wagon));
+  TrajectoryRequest request;
+  request.clearance = clearance;
+  const auto work = [&] {
+    return static_cast<double>(collideAlong({scan}, wagon, run.poses, request).work.node_pairs);
+  };
+  const double flags = work();
+  request.first_poses = request.distances = request.closest_poses = request.pose_summaries = true;
+  EXPECT_LT(work(), 1.2 * flags);
+  request.pose_summaries = false;
+  request.swept = 0.01;
+  EXPECT_LT(work(), 3.3 * flags);
+}
+
 TEST(TightTunnel, TenTimesThePosesAreLittleMoreWork)
 {
   EXPECT_LT(workAt(0.02, 10), 2.0 * workAt(0.02));
