@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Children of a node of a that are apart from a sphere of b, though their spheres are not: leaves that are large beside
-// the other sphere, and nodes that are far away for their size.
+// the other sphere, nodes that are far away for their size, and nodes too small for floats.
 
 #if defined(PCL_BSH_COLLISION_FLAG_APART_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_COLLISION_FLAG_APART_INL_H_
@@ -10,6 +10,7 @@
 #endif
 
 #include <pcl_bsh/collision/flag_visit-inl.h>
+#include <pcl_bsh/hierarchy/crowded_cell.h>
 #include <pcl_bsh/traversal/far_points-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -51,7 +52,7 @@ HWY_NOINLINE inline std::uint32_t leavesApart(const ObstacleVoxel& obstacle, con
 }
 
 /// The voxels that two nodes are in, and where their clouds are.
-struct FarSides {
+struct ComparedSides {
   Voxel& voxel_a;
   GivenCloud a;
   Voxel& voxel_b;
@@ -59,9 +60,10 @@ struct FarSides {
 };
 
 /// The children in `near` that are far from the candidate for their size, and apart from it. @pre no radii
-HWY_NOINLINE inline std::uint32_t farApart(const ObstacleVoxel& obstacle, const FarSides& sides, const FlagVisit& visit,
-                                           const ObstacleSphere& candidate, const QueryBall& ball,
-                                           const PointPairs& pairs, std::uint32_t near, Work& work)
+HWY_NOINLINE inline std::uint32_t farApart(const ObstacleVoxel& obstacle, const ComparedSides& sides,
+                                           const FlagVisit& visit, const ObstacleSphere& candidate,
+                                           const QueryBall& ball, const PointPairs& pairs, std::uint32_t near,
+                                           Work& work)
 {
   float gap[kLanes];
   spheresNear({visit.x, visit.y, visit.z, visit.r, 1.0f}, ball, gap);
@@ -84,6 +86,28 @@ HWY_NOINLINE inline std::uint32_t farApart(const ObstacleVoxel& obstacle, const 
       is_apart = pointsFarApart(pairs.distance, sides.a, sides.b, candidate.leaf(*obstacle.voxel), false, own,
                                 pairs.clearance, work);
     if (is_apart) apart |= 1u << lane;
+  }
+  return apart;
+}
+
+/// The children in `near` which float arithmetic cannot tell from the candidate's sphere, but whose points as given are
+/// apart from the candidate's.
+inline std::uint32_t apartAsGiven(const ObstacleVoxel& obstacle, const ComparedSides& sides, const FlagVisit& visit,
+                                  const ObstacleSphere& candidate, const QueryBall& ball, const PointPairs& pairs,
+                                  std::uint32_t near, Work& work)
+{
+  std::uint32_t apart = 0;
+  GivenSphere other;
+  for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    const float dx = visit.x[lane] - ball.x, dy = visit.y[lane] - ball.y, dz = visit.z[lane] - ball.z;
+    if (visit.r[lane] > obstacle.blunt_radius ||
+        !obstacle.frame.isUndecided(dx * dx + dy * dy + dz * dz, visit.r[lane] + ball.near_reach))
+      continue;
+    ++work.exact_decisions;
+    if (!other.isKnown()) other = givenSphereOf(sides.b.view, sides.voxel_b, *candidate.node, candidate.lane);
+    const GivenSphere own = givenSphereOf(sides.a.view, sides.voxel_a, *visit.node, lane);
+    if (areApart(pairs.distance, own, other, pairs.clearance)) apart |= 1u << lane;
   }
   return apart;
 }

@@ -14,7 +14,6 @@
 #include <pcl_bsh/collision/flag_leaf-inl.h>
 #include <pcl_bsh/collision/flag_query.h>
 #include <pcl_bsh/collision/flag_runs-inl.h>
-#include <pcl_bsh/hierarchy/crowded_cell.h>
 #include <pcl_bsh/hierarchy/kept_scratch.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -222,6 +221,14 @@ private:
     return true;
   }
 
+  ComparedSides sidesOf(const FlagVisit& visit) const
+  {
+    return {a_.storage.voxels[voxel_],
+            {a_.pose, a_.storage.view},
+            b_.storage.voxels[reached_[visit.obstacle]],
+            {b_.pose, b_.storage.view}};
+  }
+
   /// Compares a sphere of b with those children of the visit that are in `lanes`: settles them, drops it, keeps it for
   /// their own descent, or opens it.
   void take(FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t lanes)
@@ -239,19 +246,17 @@ private:
                                                  : spheresNear(spheres, ball, nullptr));
     if (near == 0) return;
     if (visit.has_slabs && (near &= ~slabsApartFrom(visit, obstacle, candidate, radius)) == 0) return;
-    if (radius <= obstacle.blunt_radius && (near &= ~apartAsGiven(visit, candidate, ball, near)) == 0) return;
+    if (radius <= obstacle.blunt_radius &&
+        (near &= ~apartAsGiven(obstacle, sidesOf(visit), visit, candidate, ball, pairs_, near, found.work)) == 0)
+      return;
     const bool has_large_leaf =
         candidate.isLeaf() ? radius > kLargeLeaf * visit.smallest : visit.largest_leaf > kLargeLeaf * radius;
     if (HWY_UNLIKELY(has_large_leaf) &&
         (near &= ~leavesApart(obstacle, *a_voxel_, visit, candidate, ball, pairs_, near, found.work)) == 0)
       return;
-    if (visit.has_several && mayBeFar(obstacle.prune_reach, radius)) {
-      const FarSides sides{a_.storage.voxels[voxel_],
-                           {a_.pose, a_.storage.view},
-                           b_.storage.voxels[reached_[visit.obstacle]],
-                           {b_.pose, b_.storage.view}};
-      if ((near &= ~farApart(obstacle, sides, visit, candidate, ball, pairs_, near, found.work)) == 0) return;
-    }
+    if (visit.has_several && mayBeFar(obstacle.prune_reach, radius) &&
+        (near &= ~farApart(obstacle, sidesOf(visit), visit, candidate, ball, pairs_, near, found.work)) == 0)
+      return;
     if (ball.inside_reach > visit.smallest) {
       for (std::uint32_t bits = spheresInside(spheres, ball) & near; bits != 0; bits &= bits - 1)
         settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
@@ -280,28 +285,6 @@ private:
       if ((opening & visit.open) == 0) return;
       take(visit, candidate.below(below, static_cast<std::uint32_t>(std::countr_zero(bits))), opening);
     }
-  }
-
-  /// The children in `near` which float arithmetic cannot tell from the candidate's sphere, but whose points as given
-  /// are apart from the candidate's.
-  std::uint32_t apartAsGiven(const FlagVisit& visit, const ObstacleSphere& candidate, const QueryBall& ball,
-                             std::uint32_t near)
-  {
-    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
-    std::uint32_t apart = 0;
-    GivenSphere other;
-    for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      const float dx = visit.x[lane] - ball.x, dy = visit.y[lane] - ball.y, dz = visit.z[lane] - ball.z;
-      if (visit.r[lane] > obstacle.blunt_radius ||
-          !obstacle.frame.isUndecided(dx * dx + dy * dy + dz * dz, visit.r[lane] + ball.near_reach))
-        continue;
-      ++found.work.exact_decisions;
-      if (!other.isKnown()) other = givenSphereOf(b_.storage.view, *obstacle.voxel, *candidate.node, candidate.lane);
-      const GivenSphere own = givenSphereOf(a_.storage.view, *a_voxel_, *visit.node, lane);
-      if (areApart(pairs_.distance, own, other, pairs_.clearance)) apart |= 1u << lane;
-    }
-    return apart;
   }
 
   /// Where the clearance exceeds the radius of a child, a single point of b near its centre settles all of it.

@@ -2,6 +2,7 @@
 // Questions about a site have the answers of one hierarchy over all its points, whatever the tiles and the ranks.
 #include "../programs/program_run.h"
 #include "float64_cloud.h"
+#include "two_ranks.h"
 
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
@@ -397,7 +398,7 @@ TEST_F(CollideSite, FarSmallestDistanceReadsFewTiles)
 
 TEST_F(CollideSite, OnTwoRanks)
 {
-  if (std::system("mpirun --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no mpirun";
+  if (!hasMpirun()) GTEST_SKIP() << "no mpirun";
   const Scene scene = randomScene(3);
   io::writeCloud(folder / "a.pcd", float64Cloud(scene.a));
   io::writeCloud(folder / "b.pcd", float64Cloud(scene.b));
@@ -407,10 +408,6 @@ TEST_F(CollideSite, OnTwoRanks)
   MakeOptions options;
   options.tile_points = 100;
   makeSite({folder / "a.pcd"}, folder / "site", options);
-  // Not this process' environment: where MPI has begun in it, mpirun would take itself for a part of that job.
-  const std::string two_ranks = "cd " + folder.path().string() +
-                                " && env -i PATH=\"$PATH\" OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-                                "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR "/pcl_bsh_site ";
   const std::string pose = " --pose=3,-2,0.7,0.1,0.2,0.3";
   const std::vector<std::string> questions = {" --clearance 0.2" + pose,
                                               " --any --clearance 0.2" + pose,
@@ -422,14 +419,16 @@ TEST_F(CollideSite, OnTwoRanks)
     SCOPED_TRACE(question);
     const Outcome one = run("pcl_bsh_site", "collide site b.pcd --report one.json" + question, folder.path());
     EXPECT_EQ(one.exit_code, 0) << one.err;
-    EXPECT_EQ(std::system((two_ranks + "collide site b.pcd --report two.json" + question).c_str()), 0);
+    const Outcome two = runOnTwoRanks("collide site b.pcd --report two.json" + question, folder.path());
+    EXPECT_EQ(two.exit_code, 0) << two.err;
     const auto withoutCounts = [](std::string text) { return text.substr(0, text.find("\"tiles\"")); };
     EXPECT_EQ(withoutCounts(files::contentOf(folder / "one.json")),
               withoutCounts(files::contentOf(folder / "two.json")));
   }
   for (const auto& entry : fs::directory_iterator(folder / "site/tiles")) std::ofstream(entry.path()) << "damaged";
-  EXPECT_NE(std::system((two_ranks + "collide site b.pcd --report - --distances > out.txt 2>&1").c_str()), 0);
-  EXPECT_THAT(files::contentOf(folder / "out.txt"), HasSubstr("pcl_bsh_site: rank "));
+  const Outcome damaged = runOnTwoRanks("collide site b.pcd --report - --distances", folder.path());
+  EXPECT_NE(damaged.exit_code, 0);
+  EXPECT_THAT(damaged.err, HasSubstr("pcl_bsh_site: rank "));
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 // ranks.
 #include "../programs/program_run.h"
 #include "float64_cloud.h"
+#include "two_ranks.h"
 
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
@@ -328,7 +329,7 @@ TEST_F(SitePairProgram, WritesWhatCollidesOfBoth)
 
 TEST_F(SitePairProgram, SaysTheSameOnTwoRanks)
 {
-  if (std::system("mpirun --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no mpirun";
+  if (!hasMpirun()) GTEST_SKIP() << "no mpirun";
   for (const std::string question : {"--clearance 0.05 --out found --obstacle-out before_found", "--closest",
                                      "--any --clearance 0.001", "--distances --out found"}) {
     const Outcome one = collide(question + " --report report.json");
@@ -336,12 +337,8 @@ TEST_F(SitePairProgram, SaysTheSameOnTwoRanks)
     fs::create_directory(folder / "one");
     for (const char* name : {"report.json", "found", "before_found"})
       if (fs::exists(folder / name)) fs::rename(folder / name, folder / "one" / name);
-    // Not this process' environment: where MPI has begun in it, mpirun would take itself for a part of that job.
-    const std::string command = "cd " + folder.path().string() +
-                                " && env -i PATH=\"$PATH\" OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-                                "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR "/pcl_bsh_site collide now before " +
-                                question + " --report report.json 2>err";
-    ASSERT_EQ(std::system(command.c_str()), 0) << files::contentOf(folder / "err");
+    const Outcome two = runOnTwoRanks("collide now before " + question + " --report report.json", folder.path());
+    ASSERT_EQ(two.exit_code, 0) << two.err;
     const auto answerOf = [&](const fs::path& report) { // what was read depends on who read it
       const std::string text = files::contentOf(report);
       return text.substr(0, text.find("\"tiles\""));

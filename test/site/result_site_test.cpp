@@ -5,6 +5,8 @@
 #include "../programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
+#include "two_ranks.h"
+
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/files/file_error.h>
@@ -125,19 +127,20 @@ TEST_F(SiteResults, AreThoseOfMemory)
 
 TEST_F(SiteResults, AreTheSameOfTwoRanks)
 {
-  if (std::system("mpirun --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no mpirun";
-  ASSERT_EQ(collide("--clearance 0.3 --out " + in("one")), 0) << err;
-  // Not this process' environment: where MPI has begun in it, mpirun would take itself for a part of that job.
-  const std::string command = "cd " + folder.path().string() +
-                              " && env -i PATH=\"$PATH\" OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-                              "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR
-                              "/pcl_bsh_site collide site machine.pcd "
-                              "--clearance 0.3 --out two --report two.json --plan 1,2,1024 2>err";
-  ASSERT_EQ(std::system(command.c_str()), 0) << files::contentOf(folder / "err");
-  for (const auto& entry : fs::recursive_directory_iterator(folder / "one")) {
-    if (!entry.is_regular_file()) continue;
-    const fs::path name = fs::relative(entry.path(), folder / "one");
-    EXPECT_TRUE(files::contentOf(entry.path()) == files::contentOf(folder / "two" / name)) << name;
+  if (!hasMpirun()) GTEST_SKIP() << "no mpirun";
+  for (const std::string asked : {"--clearance 0.3 --accuracy level=3 ", "--clearance 0.3 "}) {
+    for (const char* name : {"one", "two"}) fs::remove_all(folder / name);
+    ASSERT_EQ(collide(asked + "--out " + in("one") + " --obstacle-out " + in("one.pcd")), 0) << err;
+    const Outcome two = runOnTwoRanks("collide site machine.pcd " + asked +
+                                          "--out two --obstacle-out two.pcd --report two.json --plan 1,2,1024",
+                                      folder.path());
+    ASSERT_EQ(two.exit_code, 0) << two.err;
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "one")) {
+      if (!entry.is_regular_file()) continue;
+      const fs::path name = fs::relative(entry.path(), folder / "one");
+      EXPECT_TRUE(files::contentOf(entry.path()) == files::contentOf(folder / "two" / name)) << asked << name;
+    }
+    EXPECT_TRUE(files::contentOf(folder / "one.pcd") == files::contentOf(folder / "two.pcd")) << asked;
   }
   EXPECT_FALSE(fs::exists(folder / "two/unfinished_site"));
   const auto report = nlohmann::json::parse(files::contentOf(folder / "two.json"));

@@ -4,6 +4,8 @@
 #include "float64_cloud.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
+#include "two_ranks.h"
+
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
@@ -289,12 +291,10 @@ TEST_F(SiteClashList, OfThePrograms)
   for (const Json& clash : Json::parse(files::contentOf(folder / "1.json"))["clashes"])
     EXPECT_EQ(clash["status"], "persisting");
 
-  if (std::system("mpirun --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no mpirun";
-  const std::string command = "cd " + folder.path().string() +
-                              " && env -i PATH=\"$PATH\" OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-                              "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR "/pcl_bsh_site collide site b.pcd" +
-                              asked + "--clashes 2.json --clashes 2.csv --clashes 2.html > out.txt 2>&1";
-  ASSERT_EQ(std::system(command.c_str()), 0) << files::contentOf(folder / "out.txt");
+  if (!hasMpirun()) GTEST_SKIP() << "no mpirun";
+  const Outcome two =
+      runOnTwoRanks("collide site b.pcd" + asked + "--clashes 2.json --clashes 2.csv --clashes 2.html", folder.path());
+  ASSERT_EQ(two.exit_code, 0) << two.err;
   EXPECT_EQ(Json::parse(files::contentOf(folder / "2.json")), found);
   EXPECT_EQ(files::contentOf(folder / "2.csv"), csv);
   EXPECT_EQ(files::contentOf(folder / "2.html"), files::contentOf(folder / "1.html"));

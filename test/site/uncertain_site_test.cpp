@@ -3,6 +3,8 @@
 #include "../programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
+#include "two_ranks.h"
+
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
@@ -285,13 +287,9 @@ TEST_F(UncertainSite, OfThePrograms)
   EXPECT_EQ(run("pcl_bsh_site", "collide site80 machine.pcd" + refused + "class", folder.path()).exit_code, 1);
   EXPECT_FALSE(fs::exists(folder / "3.json"));
 
-  if (std::system("mpirun --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no mpirun";
-  const std::string command = "cd " + folder.path().string() +
-                              " && env -i PATH=\"$PATH\" OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-                              "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR
-                              "/pcl_bsh_site collide site80 machine.pcd --report 2.json" +
-                              asked + " > out.txt 2>&1";
-  ASSERT_EQ(std::system(command.c_str()), 0) << files::contentOf(folder / "out.txt");
+  if (!hasMpirun()) GTEST_SKIP() << "no mpirun";
+  const Outcome ranks = runOnTwoRanks("collide site80 machine.pcd --report 2.json" + asked, folder.path());
+  ASSERT_EQ(ranks.exit_code, 0) << ranks.err;
   const Json two = Json::parse(files::contentOf(folder / "2.json"));
   for (const char* key : {"colliding", "undecided", "colliding_of_obstacle", "undecided_of_obstacle"})
     EXPECT_EQ(two[key], found[key]) << key;
