@@ -32,14 +32,15 @@ void refuse(const Site& site, const SphereHierarchy& model, const std::vector<Ei
   pcl_bsh::collideAlong({scan}, model, poses, request);
 }
 
-constexpr FirstContact no_contact = {std::numeric_limits<std::size_t>::max(), 1.0};
+/// Its number, as those of poses, is exact as a double.
+constexpr FirstContact no_contact = {std::size_t{1} << 53, 1.0};
 
 FirstContact earlier(const FirstContact& a, const FirstContact& b)
 {
   return std::pair(b.pose, b.fraction) < std::pair(a.pose, a.fraction) ? b : a;
 }
 
-/// @pre one of them is a contact. Numbers of poses are exact as doubles.
+/// @pre one of them is a contact
 FirstContact earliestOfAllRanks(const FirstContact& own)
 {
   const double pose = leastOfAllRanks(static_cast<double>(own.pose));
@@ -54,22 +55,32 @@ void add(std::vector<PoseSummary>& poses, const std::vector<PoseSummary>& more)
   for (std::size_t k = 0; k < more.size(); ++k) addSummary(poses[k], more[k]);
 }
 
-std::vector<PoseSummary> summedOverAllRanks(const std::vector<PoseSummary>& own)
+void append(std::vector<double>& numbers, const std::vector<PoseSummary>& poses)
 {
-  std::vector<double> numbers;
-  for (const PoseSummary& pose : own) {
+  for (const PoseSummary& pose : poses) {
     numbers.insert(numbers.end(), {pose.colliding ? 1.0 : 0.0, static_cast<double>(pose.colliding_points),
                                    static_cast<double>(pose.undecided_points), pose.distance});
   }
+}
+
+std::vector<PoseSummary> posesOf(const std::vector<double>& numbers, std::size_t begin, std::size_t end)
+{
+  std::vector<PoseSummary> poses;
+  for (std::size_t i = begin; i < end; i += 4) {
+    poses.push_back({numbers[i] != 0.0, static_cast<std::size_t>(numbers[i + 1]),
+                     static_cast<std::size_t>(numbers[i + 2]), numbers[i + 3]});
+  }
+  return poses;
+}
+
+std::vector<PoseSummary> summedOverAllRanks(const std::vector<PoseSummary>& own)
+{
+  std::vector<double> numbers;
+  append(numbers, own);
   const std::vector<double> all = gatheredFromAllRanks(numbers);
   std::vector<PoseSummary> sum;
-  for (std::size_t begin = 0; begin < all.size(); begin += numbers.size()) {
-    std::vector<PoseSummary> part;
-    for (std::size_t i = begin; i < begin + numbers.size(); i += 4)
-      part.push_back(
-          {all[i] != 0.0, static_cast<std::size_t>(all[i + 1]), static_cast<std::size_t>(all[i + 2]), all[i + 3]});
-    add(sum, part);
-  }
+  for (std::size_t begin = 0; begin < all.size(); begin += numbers.size())
+    add(sum, posesOf(all, begin, begin + numbers.size()));
   return sum;
 }
 
@@ -115,25 +126,33 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
   requireUncertainty(site, request.uncertainty);
   if (of_b) result.b.assign(b.hierarchy().view().count, 0);
   Inquiry inquiry(site, request);
-  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const FlagsResult flags = pcl_bsh::collisionFlags({hierarchy}, b, wanted);
-    result.colliding += flags.colliding_a;
-    result.undecided += flags.undecided_a;
-    for (std::size_t i = 0; i < result.b.size(); ++i) result.b[i] = surer(result.b[i], flags.b[i]);
+    std::vector<double> numbers = {static_cast<double>(flags.colliding_a), static_cast<double>(flags.undecided_a)};
+    for (std::size_t i = 0; i < flags.b.size(); ++i)
+      if (flags.b[i] != 0) numbers.insert(numbers.end(), {static_cast<double>(i), static_cast<double>(flags.b[i])});
     if (sink) sink(tile, cloud, flags);
+    return numbers;
   };
-  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request.uncertainty), ask);
+  const auto add_flags = [&](const std::vector<double>& numbers, std::size_t begin) {
+    for (std::size_t k = begin; k < numbers.size(); k += 2) {
+      std::uint8_t& flag = result.b[static_cast<std::size_t>(numbers[k])];
+      flag = surer(flag, static_cast<std::uint8_t>(numbers[k + 1]));
+    }
+  };
+  const auto add = [&](const std::vector<double>& numbers) {
+    result.colliding += static_cast<std::uint64_t>(numbers[0]);
+    result.undecided += static_cast<std::uint64_t>(numbers[1]);
+    add_flags(numbers, 2);
+  };
+  result.tiles = inquiry.visitAndAdd(tilesWithin(site, b, request.clearance, request.uncertainty), find, add);
   result.colliding = sumOfAllRanks(result.colliding);
   result.undecided = sumOfAllRanks(result.undecided);
   if (ranks() > 1 && of_b) {
     std::vector<double> own;
     for (std::size_t i = 0; i < result.b.size(); ++i)
       if (result.b[i] != 0) own.insert(own.end(), {static_cast<double>(i), static_cast<double>(result.b[i])});
-    const std::vector<double> all = gatheredFromAllRanks(own);
-    for (std::size_t k = 0; k < all.size(); k += 2) {
-      std::uint8_t& flag = result.b[static_cast<std::size_t>(all[k])];
-      flag = surer(flag, static_cast<std::uint8_t>(all[k + 1]));
-    }
+    add_flags(gatheredFromAllRanks(own), 0);
   }
   const auto counted = [&](Verdict verdict) {
     return static_cast<std::uint64_t>(std::count(result.b.begin(), result.b.end(), flagOf(verdict)));
@@ -195,19 +214,23 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
   pcl_bsh::pointDistances({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
   double greatest = -infinity;
   Inquiry inquiry(site, request);
-  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const PointDistances found = pcl_bsh::pointDistances({hierarchy}, b, wanted);
-    result.measured += found.measured;
-    result.undecided += found.undecided;
-    if (found.measured > 0) greatest = std::max(greatest, found.greatest);
     if (sink) sink(tile, cloud, found);
+    return std::vector<double>{static_cast<double>(found.measured), static_cast<double>(found.undecided),
+                               found.greatest};
+  };
+  const auto add = [&](const std::vector<double>& numbers) {
+    result.measured += static_cast<std::uint64_t>(numbers[0]);
+    result.undecided += static_cast<std::uint64_t>(numbers[1]);
+    if (numbers[0] > 0) greatest = std::max(greatest, numbers[2]);
   };
   std::vector<std::uint32_t> tiles;
   if (max_distance < infinity)
     tiles = tilesWithin(site, b, max_distance);
   else
     tiles = tilesWithPoints(site, b);
-  result.tiles = inquiry.visit(tiles, ask);
+  result.tiles = inquiry.visitAndAdd(tiles, find, add);
   result.measured = sumOfAllRanks(result.measured);
   result.undecided = sumOfAllRanks(result.undecided);
   greatest = -leastOfAllRanks(-greatest);
@@ -240,21 +263,33 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   double least = infinity, first = infinity;
   FirstContact contact = no_contact, certain = no_contact;
   Inquiry inquiry(site, request);
-  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
-    result.colliding += found.colliding;
-    result.undecided += found.undecided;
-    add(result.poses, found.poses);
-    if (found.first_contact) contact = earlier(contact, *found.first_contact);
-    if (found.certain_contact) certain = earlier(certain, *found.certain_contact);
+    double nearest = infinity, earliest = infinity;
     for (std::size_t i = 0; i < found.distance.size(); ++i) {
       if (found.flags[i] == 0) continue;
-      least = std::min(least, double{found.distance[i]});
-      first = std::min(first, static_cast<double>(found.first_pose[i]));
+      nearest = std::min(nearest, double{found.distance[i]});
+      earliest = std::min(earliest, static_cast<double>(found.first_pose[i]));
     }
+    std::vector<double> numbers = {static_cast<double>(found.colliding), static_cast<double>(found.undecided), nearest,
+                                   earliest};
+    for (const auto& met : {found.first_contact, found.certain_contact})
+      numbers.insert(numbers.end(),
+                     {static_cast<double>(met.value_or(no_contact).pose), met.value_or(no_contact).fraction});
+    append(numbers, found.poses);
     if (sink) sink(tile, cloud, found);
+    return numbers;
   };
-  result.tiles = inquiry.visit(tilesAlong(site, model, poses, reach, request.uncertainty), ask);
+  const auto add_tile = [&](const std::vector<double>& numbers) {
+    result.colliding += static_cast<std::uint64_t>(numbers[0]);
+    result.undecided += static_cast<std::uint64_t>(numbers[1]);
+    least = std::min(least, numbers[2]);
+    first = std::min(first, numbers[3]);
+    contact = earlier(contact, {static_cast<std::size_t>(numbers[4]), numbers[5]});
+    certain = earlier(certain, {static_cast<std::size_t>(numbers[6]), numbers[7]});
+    add(result.poses, posesOf(numbers, 8, numbers.size()));
+  };
+  result.tiles = inquiry.visitAndAdd(tilesAlong(site, model, poses, reach, request.uncertainty), find, add_tile);
   result.colliding = sumOfAllRanks(result.colliding);
   result.undecided = sumOfAllRanks(result.undecided);
   if (request.pose_summaries) result.poses = summedOverAllRanks(result.poses);

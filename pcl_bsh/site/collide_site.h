@@ -35,6 +35,19 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::sites {
 
+/// What a question has found of tiles, by their numbers, so that it can be asked again after it was ended: numbers that
+/// only the query understands.
+class TileAnswers {
+public:
+  virtual ~TileAnswers() = default;
+
+  /// Null where the tile has to be asked about. The same on all ranks.
+  virtual const std::vector<double>* known(std::size_t tile) const = 0;
+
+  /// Called by the rank that has the tile, after the sink.
+  virtual void keep(std::size_t tile, const std::vector<double>& numbers) = 0;
+};
+
 /// What is asked about a site, and with which means.
 struct SiteRequest {
   double clearance = 0.0;      ///< finite, >= 0; inclusive
@@ -45,6 +58,8 @@ struct SiteRequest {
   bool pose_summaries = false; ///< of collideAlong(): what collides at each pose, as there
   unsigned threads = 1;        ///< of each process; 0: all of the machine's
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
+  /// Of flags, distances and paths: tiles that are known are not read, and their sinks not called. ResultSite has some.
+  TileAnswers* answers = nullptr;
   /// Called after each tile by the rank that had it, with the tiles that it has done and those that it may have to do.
   /// False: stop, the query throws Cancelled.
   std::function<bool(std::uint64_t done, std::uint64_t all)> progress;

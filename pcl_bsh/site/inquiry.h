@@ -51,6 +51,29 @@ public:
     return found_;
   }
 
+  /// The same where what is found of a tile is added to the rest by numbers, which may be known from an earlier run.
+  /// @param find (tile, cloud, its hierarchy): its numbers, after the sink. @param add (numbers)
+  template <typename Find, typename Add>
+  TilesRead visitAndAdd(const std::vector<std::uint32_t>& tiles, const Find& find, const Add& add)
+  {
+    std::vector<std::uint32_t> left;
+    for (const std::uint32_t tile : tiles) {
+      const std::vector<double>* const known = request_.answers ? request_.answers->known(tile) : nullptr;
+      if (known == nullptr)
+        left.push_back(tile);
+      else if (rankHere() == 0)
+        add(*known);
+    }
+    const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+      const std::vector<double> numbers = find(tile, cloud, hierarchy);
+      add(numbers);
+      if (request_.answers) request_.answers->keep(static_cast<std::size_t>(&tile - site_.tiles.data()), numbers);
+    };
+    TilesRead read = visit(left, ask);
+    read.needed = tiles.size();
+    return read;
+  }
+
   std::uint64_t bytesForLargest() const noexcept { return visitor_.bytesForLargest(); }
 
   /// How hierarchies of tiles are built.

@@ -3,6 +3,7 @@
 #include <pcl_bsh/files/unfinished.h>
 #include <pcl_bsh/filters/cloud_files/field_type.h>
 #include <pcl_bsh/site/checksum.h>
+#include <pcl_bsh/site/kept_answers.h>
 #include <pcl_bsh/site/records.h>
 #include <pcl_bsh/site/result_site.h>
 #include <pcl_bsh/site/tile_file.h>
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -48,11 +50,14 @@ Fields withResults(const Site& site, const std::vector<ResultField>& results)
 
 class ResultSite::Writer {
 public:
-  Writer(const Site& site, const fs::path& folder, const std::vector<ResultField>& results)
+  Writer(const Site& site, const fs::path& folder, const std::vector<ResultField>& results,
+         const Continuation& continuation)
   : site_(site),
     folder_(folder),
     layout_(layoutOf(withResults(site, results))),
     copy_(site.fields, layout_),
+    source_at_(offsetOf(layout_, source_field_name)),
+    record_at_(offsetOf(layout_, record_field_name)),
     record_(layout_.point_step)
   {
     for (const ResultField& result : results) {
@@ -67,16 +72,28 @@ public:
     every_ = std::max<std::uint64_t>((points + overview_points - 1) / overview_points, 1);
     // The first rank makes the folder; the others go on when it is there.
     using Use = UnfinishedSite::Use;
-    if (rankHere() == 0) made_ = std::make_unique<UnfinishedSite>(folder, ranks() > 1 ? Use::shared : Use::alone);
+    const bool is_kept = !continuation.question.empty();
+    const Use use = continuation.goes_on ? Use::resumed : ranks() > 1 || is_kept ? Use::shared : Use::alone;
+    if (rankHere() == 0) made_ = std::make_unique<UnfinishedSite>(folder, use);
     sumOfAllRanks(0);
+    if (is_kept) answers_.emplace(folder, continuation.question);
+    if (continuation.goes_on) goOn();
   }
+
+  ~Writer()
+  {
+    if (made_ && answers_ && ranks() == 1 && !is_finished_) made_->forget(); // not killed: nothing is left
+  }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  TileAnswers* answers() { return answers_ ? &*answers_ : nullptr; }
 
   void write(const Tile& tile, const pcl::PCLPointCloud2& cloud, const std::vector<const void*>& columns)
   {
     const auto number = static_cast<std::size_t>(&tile - site_.tiles.data());
-    TileFile file(add(tileFileName(number)), layout_.fields, result_buffer);
-    const std::size_t source_at = offsetOf(layout_, source_field_name),
-                      record_at = offsetOf(layout_, record_field_name);
+    files::NewFile& made = add(tileFileName(number));
+    TileFile file(made, layout_.fields, result_buffer);
     Checksum checksum;
     for (std::size_t i = 0; i < cloud.width; ++i) {
       copy_(cloud.data.data() + i * cloud.point_step, record_.data());
@@ -89,14 +106,14 @@ public:
       }
       checksum.add(record_.data(), record_.size());
       file.add(record_.data(), record_.size());
-      const std::uint32_t source = numberAt(record_.data() + source_at);
-      if (source >= begins_.size()) failAsDamaged(tile, source);
-      if ((begins_[source] + numberAt(record_.data() + record_at)) % every_ == 0)
-        overview_.append(reinterpret_cast<const char*>(record_.data()), record_.size());
+      addToOverview(tile, record_.data());
     }
     file.finish();
-    written_.push_back(static_cast<double>(number));
-    written_.push_back(static_cast<double>(checksum.value()));
+    note(number, checksum.value());
+    if (!answers_ || columns.empty()) return;
+    answers_->setChecksum(number, checksum.value());
+    const auto lock = files::lockUnfinished();
+    made.keep();
   }
 
   Site finish()
@@ -120,6 +137,7 @@ public:
       made_->finish(out);
     }
     sumOfAllRanks(0); // and so is the site
+    is_finished_ = true;
     return out;
   }
 
@@ -135,6 +153,51 @@ private:
     throw files::FileError(site_.folder / tile.file,
                            "has a point of source " + std::to_string(source) + ", which there is not",
                            "make the site again");
+  }
+
+  void note(std::size_t tile, std::uint32_t crc32)
+  {
+    written_.push_back(static_cast<double>(tile));
+    written_.push_back(static_cast<double>(crc32));
+  }
+
+  /// Takes one point of `every_`. @param record of the results, of this tile
+  void addToOverview(const Tile& tile, const std::uint8_t* record)
+  {
+    const std::uint32_t source = numberAt(record + source_at_);
+    if (source >= begins_.size()) failAsDamaged(tile, source);
+    if ((begins_[source] + numberAt(record + record_at_)) % every_ == 0)
+      overview_.append(reinterpret_cast<const char*>(record), layout_.point_step);
+  }
+
+  /// Takes over the tiles whose answers an earlier run has kept, and whose files are what it wrote. Dealt to all ranks.
+  void goOn()
+  {
+    std::vector<std::size_t> mine;
+    for (std::size_t i = static_cast<std::size_t>(rankHere()); i < site_.tiles.size();
+         i += static_cast<std::size_t>(ranks()))
+      if (takeOver(i)) mine.push_back(i);
+    answers_->share(mine);
+    if (made_) made_->discardTiles(answers_->all());
+    sumOfAllRanks(0);
+  }
+
+  bool takeOver(std::size_t number)
+  {
+    const auto crc32 = answers_->checksumKept(number);
+    if (!crc32) return false;
+    const Tile& tile = site_.tiles[number];
+    pcl::PCLPointCloud2 cloud;
+    try {
+      cloud = loadTile(folder_ / tileFileName(number), layout_.fields, tile.points);
+    }
+    catch (const std::runtime_error&) {
+      return false; // it was not complete when the earlier run ended
+    }
+    if (crcOf(cloud.data) != *crc32) return false;
+    for (std::size_t i = 0; i < cloud.width; ++i) addToOverview(tile, cloud.data.data() + i * cloud.point_step);
+    note(number, *crc32);
+    return true;
   }
 
   files::NewFile& add(const fs::path& name)
@@ -180,13 +243,11 @@ private:
   {
     const std::size_t step = layout_.point_step, count = records.size() / step;
     if (count == 0) return;
-    const std::size_t source_at = offsetOf(layout_, source_field_name),
-                      record_at = offsetOf(layout_, record_field_name);
     const auto* const bytes = reinterpret_cast<const std::uint8_t*>(records.data());
     std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), std::size_t{0});
     const auto name = [&](std::size_t i) {
-      return std::pair{numberAt(bytes + i * step + source_at), numberAt(bytes + i * step + record_at)};
+      return std::pair{numberAt(bytes + i * step + source_at_), numberAt(bytes + i * step + record_at_)};
     };
     std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return name(i) < name(j); });
     TileFile file(add(overview_file_name), layout_.fields, result_buffer);
@@ -198,6 +259,7 @@ private:
   fs::path folder_;
   pcl::PCLPointCloud2 layout_;
   RecordCopy copy_;
+  std::size_t source_at_, record_at_; ///< in a record of the results
   std::vector<std::uint8_t> record_;
   std::vector<Place> places_;
   std::vector<std::string> written_anew_;              ///< fields whose greatest values are not known
@@ -207,10 +269,13 @@ private:
   std::vector<std::unique_ptr<files::NewFile>> files_; ///< on the others
   std::vector<double> written_; ///< of each tile that this rank has written, its number and checksum
   std::string overview_;
+  std::optional<KeptAnswers> answers_; ///< where the question may go on
+  bool is_finished_ = false;
 };
 
-ResultSite::ResultSite(const Site& site, const fs::path& folder, const std::vector<ResultField>& fields)
-: writer_(std::make_unique<Writer>(site, folder, fields))
+ResultSite::ResultSite(const Site& site, const fs::path& folder, const std::vector<ResultField>& fields,
+                       const Continuation& continuation)
+: writer_(std::make_unique<Writer>(site, folder, fields, continuation))
 {
 }
 
@@ -219,6 +284,11 @@ ResultSite::~ResultSite() = default;
 void ResultSite::write(const Tile& tile, const pcl::PCLPointCloud2& cloud, const std::vector<const void*>& columns)
 {
   writer_->write(tile, cloud, columns);
+}
+
+TileAnswers* ResultSite::answers()
+{
+  return writer_->answers();
 }
 
 Site ResultSite::finish()

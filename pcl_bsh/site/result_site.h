@@ -10,6 +10,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/site.h>
 
 #include <cstdint>
@@ -28,16 +29,25 @@ struct ResultField {
   double none = 0.0;         ///< the value of points of which nothing was found
 };
 
+/// Lets a run of the same question use what an earlier one has found that was killed.
+struct Continuation {
+  std::string question; ///< all that was asked; empty: nothing is kept for another run
+  bool goes_on = false; ///< whether to use what there is; else it is cleared
+};
+
 /// Made and finished by all ranks of an MPI job together; each writes the tiles that it has. Until finish() has
 /// returned the folder is marked as not complete. Where finish() is not reached, one process removes what it made; of
-/// an MPI job a marked folder may be left, which the next ResultSite, or makeSite(), clears.
+/// an MPI job a marked folder may be left, which the next ResultSite, or makeSite(), clears. So may be one of a process
+/// that was killed: with a question, each tile is in place as soon as it is written, and what was found of it is beside
+/// it, so that the same question can go on.
 class ResultSite {
 public:
   /// @param folder a new or empty one, or one that was left not complete
   /// @param fields of the results. Those that the site has already are written anew: the others stay as they are
   /// @throws files::FileError for a folder that holds anything, or cannot be written; for a field of the site that has
   ///   the name of one of these and another type
-  ResultSite(const Site& site, const std::filesystem::path& folder, const std::vector<ResultField>& fields);
+  ResultSite(const Site& site, const std::filesystem::path& folder, const std::vector<ResultField>& fields,
+             const Continuation& continuation = {});
   ~ResultSite();
   ResultSite(const ResultSite&) = delete;
   ResultSite& operator=(const ResultSite&) = delete;
@@ -47,6 +57,9 @@ public:
   /// @param cloud its points
   /// @param columns for each field a value of its type per point; null: nothing was found
   void write(const Tile& tile, const pcl::PCLPointCloud2& cloud, const std::vector<const void*>& columns);
+
+  /// What the continuation's question has found, for SiteRequest::answers. Null where nothing is kept.
+  TileAnswers* answers();
 
   /// Copies the tiles that no rank has written, and makes the folder a site. To be called once.
   Site finish();

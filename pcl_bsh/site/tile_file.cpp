@@ -100,6 +100,11 @@ std::string tileFileName(std::size_t tile)
   return std::string(tiles_folder_name) + name;
 }
 
+std::filesystem::path answerFileName(std::size_t tile)
+{
+  return std::filesystem::path(tileFileName(tile)).replace_extension(answer_extension);
+}
+
 pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points)
 {
   const auto stream = io::openCloud(path, 0);

@@ -7,7 +7,9 @@
 #include <pcl_bsh/site/site.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace pcl_bsh::sites {
 
@@ -45,6 +47,10 @@ private:
 
 /// The name of a tile's file in the site's folder.
 std::string tileFileName(std::size_t tile);
+
+/// That of the answer about a tile, which is there while a site of results is not complete.
+inline constexpr std::string_view answer_extension = ".answer";
+std::filesystem::path answerFileName(std::size_t tile);
 
 /// The points of a file of a site. @throws files::FileError when it has other fields or another number of points
 pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points);

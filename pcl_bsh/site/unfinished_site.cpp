@@ -27,13 +27,17 @@ constexpr auto mark_text =
 constexpr auto state_name = "unfinished_site.state";
 constexpr auto plan_name = "unfinished_site.plan";
 
-/// Whether it is a name that UnfinishedSite gives.
+/// Whether it is a name of a tile's file, or of the answer about it; also of one that was being written.
 bool isTileName(const std::string& name)
 {
-  constexpr std::string_view begin = "tile_", end = ".pcd";
-  if (name.size() <= begin.size() + end.size() || !name.starts_with(begin) || !name.ends_with(end)) return false;
-  const std::string_view digits = std::string_view(name).substr(begin.size(), name.size() - begin.size() - end.size());
-  return std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  constexpr std::string_view begin = "tile_";
+  if (!name.starts_with(begin)) return false;
+  const std::size_t dot = std::min(name.find('.'), name.size());
+  const std::string_view digits = std::string_view(name).substr(begin.size(), dot - begin.size());
+  const std::string_view end = std::string_view(name).substr(dot);
+  return !digits.empty() &&
+         (end == ".pcd" || end == answer_extension || end.starts_with(std::string(answer_extension) + ".part")) &&
+         std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
 bool isSiteFileLeft(const std::string& name)
@@ -90,10 +94,11 @@ UnfinishedSite::UnfinishedSite(const fs::path& folder, Use use) : folder_(folder
       throw files::FileError(folder, "holds a site that is not complete",
                              "repeat the command that makes it to go on, or name a new folder");
     }
-    stays_ = was_saved_ || use == Use::shared;
-    if (was_begun && !was_saved_) clear();
+    const bool is_shared = use == Use::shared || use == Use::resumed;
+    stays_ = was_saved_ || is_shared;
+    if (was_begun && !was_saved_ && use != Use::resumed) clear();
     tiles_ = std::make_unique<files::OutputFolder>(folder / tiles_folder_name);
-    if (use == Use::shared) keepMark();
+    if (is_shared) keepMark();
   }
   catch (const fs::filesystem_error& failure) {
     throw files::FileError(folder, std::string("cannot be cleared (") + failure.code().message() + ")",
@@ -123,9 +128,30 @@ fs::path UnfinishedSite::planFile() const
 
 void UnfinishedSite::discardTilesFrom(std::size_t tiles)
 {
-  std::set<std::string> stay;
-  for (std::size_t i = 0; i < tiles; ++i) stay.insert(fs::path(tileFileName(i)).filename().string());
-  removeTiles(folder(), [&](const std::string& name) { return stay.count(name) == 0; });
+  std::set<std::size_t> stay;
+  for (std::size_t i = 0; i < tiles; ++i) stay.insert(i);
+  discardTiles(stay);
+}
+
+void UnfinishedSite::discardTiles(const std::set<std::size_t>& stay)
+{
+  std::set<std::string> names;
+  for (const std::size_t i : stay)
+    for (const fs::path& file : {fs::path(tileFileName(i)), answerFileName(i)}) names.insert(file.filename().string());
+  removeTiles(folder(), [&](const std::string& name) { return names.count(name) == 0; });
+}
+
+void UnfinishedSite::forget()
+{
+  std::error_code ignored;
+  files_.clear();
+  try {
+    clear();
+  }
+  catch (const fs::filesystem_error&) { // what cannot be removed stays, with the mark
+    return;
+  }
+  stays_ = false;
 }
 
 void UnfinishedSite::discard(const fs::path& name)
@@ -193,6 +219,7 @@ files::NewFile& UnfinishedSite::add(const fs::path& name)
 
 void UnfinishedSite::finish(const Site& site)
 {
+  removeTiles(folder(), [](const std::string& name) { return !name.ends_with(".pcd"); });
   files::syncDisk(folder());
   files::FileReplacement document(folder() / site_file_name);
   document.stream() << siteText(site) << '\n';

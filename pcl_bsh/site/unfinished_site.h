@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ public:
     alone,       ///< nothing is left of it where finish() is not reached
     shared,      ///< other processes write into the folder, too: its mark stays until finish()
     continuable, ///< goes on with what was saved
+    resumed,     ///< as `shared`, and tiles of an earlier run stay until discardTiles()
   };
 
   /// @throws files::FileError when there is a site already or anything else, when another program makes a site there,
@@ -45,6 +47,12 @@ public:
 
   /// Removes all that was begun after save(): of the tiles' files the first `tiles` stay.
   void discardTilesFrom(std::size_t tiles);
+
+  /// Removes the files of tiles whose numbers are not among these.
+  void discardTiles(const std::set<std::size_t>& stay);
+
+  /// Leaves nothing where finish() is not reached, although the folder is shared.
+  void forget();
 
   /// Removes a file that was begun, if there is one. @param name relative to the folder
   void discard(const std::filesystem::path& name);

@@ -8,7 +8,6 @@
 
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 
@@ -38,6 +37,7 @@ Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const SiteO
       building);
   const Placed obstacle(hierarchy, options.pose);
   sites::SiteRequest request = requestOf(options, step);
+  request.answers = out.answers();
   Json report = beginReport(site, options);
   switch (options.question) {
   case SiteQuestion::any: {
@@ -78,7 +78,7 @@ Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const SiteO
     break;
   }
   case SiteQuestion::path: {
-    const auto poses = options.trajectory.empty() ? std::vector{options.pose} : io::readPoses(options.trajectory);
+    const std::vector<Eigen::Isometry3d> poses = posesOf(options);
     request.swept = options.swept;
     request.pose_summaries = clashes.isWanted() && !options.swept;
     const sites::SitePassage found =
@@ -114,16 +114,18 @@ int answer(const SiteOptions& options)
   const sites::Site site = sites::readSite(options.site);
   SiteClashList clashes(site, options);
   if (tells) warn(site_program, clashes.warnings());
-  SiteOutput output(site, options);
+  std::optional<ObstacleCloud> cloud;
+  if (!options.obstacleIsSite()) cloud.emplace(options);
+  SiteOutput output(site, cloud ? &*cloud : nullptr, options);
   MeasuredRun run;
   Json report;
   std::optional<Step> shown;
   if (tells) shown.emplace("Asking about tiles");
   Step* const step = tells ? &*shown : nullptr;
-  if (options.obstacleIsSite())
-    report = askOfSite(site, options, output, run, step);
+  if (cloud)
+    report = askOfCloud(site, *cloud, options, output, clashes, run, step);
   else
-    report = askOfCloud(site, ObstacleCloud(options), options, output, clashes, run, step);
+    report = askOfSite(site, options, output, run, step);
   if (tells) shown->done(report["tiles"]["read"].dump() + " tiles read");
   run.seconds = seconds();
   output.finish();

@@ -27,14 +27,21 @@ struct ObstacleCloud {
   io::LasHeaderPtr las;
 };
 
+/// Where the obstacle is asked about.
+std::vector<Eigen::Isometry3d> posesOf(const SiteOptions& options);
+
 /// The field of flags at one pose.
 sites::ResultField collisionField();
 
 /// The site of results, where it is asked for; else its sinks are null.
 class SiteOutput {
 public:
+  /// @param obstacle null where that is a site, too
   /// @throws files::FileError for a folder that cannot be one
-  SiteOutput(const sites::Site& site, const SiteOptions& options);
+  SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, const SiteOptions& options);
+
+  /// What an earlier run has found, and where this one keeps what it finds; null: nothing is kept.
+  sites::TileAnswers* answers() { return out_ ? out_->answers() : nullptr; }
 
   sites::FlagsSink flags();
   sites::DistancesSink distances();

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/filters/json/json_document.h>
+#include <pcl_bsh/filters/text_files/file_bytes.h>
+#include <pcl_bsh/site/checksum.h>
+#include <pcl_bsh/site/kept_answers.h>
+#include <pcl_bsh/site/tile_file.h>
+#include <pcl_bsh/site/tile_visitor.h>
+
+namespace pcl_bsh::sites {
+
+namespace fs = std::filesystem;
+using io::Json;
+
+KeptAnswers::KeptAnswers(const fs::path& folder, const std::string& question)
+: folder_(folder),
+  question_(crcOf(question))
+{
+}
+
+const std::vector<double>* KeptAnswers::known(std::size_t tile) const
+{
+  const auto found = known_.find(tile);
+  return found == known_.end() ? nullptr : &found->second;
+}
+
+void KeptAnswers::keep(std::size_t tile, const std::vector<double>& numbers)
+{
+  // CBOR keeps doubles as they are, infinity and NaN too.
+  const auto bytes = Json::to_cbor({{"question", question_}, {"crc32", checksums_.at(tile)}, {"numbers", numbers}});
+  files::replaceFile(folder_ / answerFileName(tile), [&](std::ostream& out) {
+    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  });
+}
+
+std::optional<KeptAnswers::Answer> KeptAnswers::read(std::size_t tile) const
+{
+  const fs::path file = folder_ / answerFileName(tile);
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return std::nullopt;
+  const io::FileBytes bytes(file);
+  const Json json = Json::from_cbor(bytes.view(), true, false);
+  if (json.is_discarded() || !json.is_object()) return std::nullopt;
+  try {
+    if (json.at("question").get<std::uint32_t>() != question_) return std::nullopt;
+    return Answer{json.at("crc32").get<std::uint32_t>(), json.at("numbers").get<std::vector<double>>()};
+  }
+  catch (const Json::exception&) {
+    return std::nullopt; // not ours: the tile is asked about again
+  }
+}
+
+std::optional<std::uint32_t> KeptAnswers::checksumKept(std::size_t tile) const
+{
+  const auto answer = read(tile);
+  return answer ? std::optional(answer->crc32) : std::nullopt;
+}
+
+void KeptAnswers::share(const std::vector<std::size_t>& mine)
+{
+  std::vector<double> own;
+  for (const std::size_t tile : mine) {
+    const auto answer = read(tile);
+    if (!answer) continue;
+    own.insert(own.end(), {static_cast<double>(tile), static_cast<double>(answer->numbers.size())});
+    own.insert(own.end(), answer->numbers.begin(), answer->numbers.end());
+  }
+  const std::vector<double> all = gatheredFromAllRanks(own);
+  for (auto number = all.begin(); number != all.end();) {
+    const auto tile = static_cast<std::size_t>(*number++);
+    const auto count = static_cast<std::ptrdiff_t>(*number++);
+    known_[tile].assign(number, number + count);
+    number += count;
+  }
+}
+
+std::set<std::size_t> KeptAnswers::all() const
+{
+  std::set<std::size_t> tiles;
+  for (const auto& [tile, numbers] : known_) tiles.insert(tile);
+  return tiles;
+}
+
+} // namespace pcl_bsh::sites

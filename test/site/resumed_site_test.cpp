@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A question to a site that was killed goes on with the tiles that it has answered, and says what it would have said.
+#include "../programs/program_run.h"
+#include "float64_cloud.h"
+#include "two_ranks.h"
+
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/site/check_site.h>
+#include <pcl_bsh/site/make_site.h>
+
+#ifdef PCL_BSH_SITE_QUERIES
+#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/result_site.h>
+#include <pcl_bsh/site/tile_file.h>
+
+#include <gmock/gmock.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <map>
+#include <random>
+
+namespace pcl_bsh::sites {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Cloud = pcl::PCLPointCloud2;
+
+std::map<std::string, std::string> contentsOf(const fs::path& folder)
+{
+  std::map<std::string, std::string> contents;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) contents[fs::relative(entry.path(), folder).string()] = files::contentOf(entry.path());
+  return contents;
+}
+
+/// Where a run is killed.
+enum class At : std::uint8_t { before_writing, before_keeping, after_tile, nowhere };
+
+class ResumedSite : public testing::Test {
+protected:
+  ResumedSite()
+  {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int i = 0; i < 3000; ++i) scan.push_back({9 * unit(random), 9 * unit(random), 0.2 * unit(random)});
+    for (int i = 0; i < 300; ++i) body.push_back({unit(random), 0.1 * unit(random), 0.1 * unit(random)});
+    for (int k = 0; k < 12; ++k) poses.emplace_back(Eigen::Translation3d(1.2 * k - 7, 0.5 * k - 3, 0));
+    io::writeCloud(folder / "scan.pcd", float64Cloud(scan));
+    io::writeCloud(folder / "body.pcd", float64Cloud(body));
+    io::writePoses(folder / "poses.txt", poses);
+    MakeOptions options;
+    options.tile_points = 300;
+    options.overview_points = 500;
+    site = makeSite({folder / "scan.pcd"}, folder / "site", options);
+  }
+
+  /// Asks about the path, on a site of results. @param kill the tile, counted as they are asked, at which this process
+  /// dies
+  SitePassage ask(const fs::path& out, bool goes_on, At at = At::nowhere, std::uint64_t kill = 0,
+                  const std::string& question = "where?")
+  {
+    const SphereHierarchy model(viewOf(body.front().data(), body.size()));
+    ResultSite results(site, out,
+                       {{"collision", pcl::PCLPointField::UINT8, 0.0},
+                        {"distance", pcl::PCLPointField::FLOAT32, std::numeric_limits<double>::quiet_NaN()}},
+                       {question, goes_on});
+    std::uint64_t asked = 0;
+    const auto dieAt = [&](At here, std::uint64_t tile) {
+      if (here == at && tile == kill) ::kill(::getpid(), SIGKILL);
+    };
+    SiteRequest request;
+    request.clearance = 0.3;
+    request.pose_summaries = true;
+    request.answers = results.answers();
+    request.progress = [&](std::uint64_t done, std::uint64_t) {
+      dieAt(At::after_tile, done);
+      return true;
+    };
+    const SitePassage passage = collideAlong(site, model, poses, request,
+                                             [&](const Tile& tile, const Cloud& cloud, const TrajectoryResult& found) {
+                                               dieAt(At::before_writing, ++asked);
+                                               results.write(tile, cloud, {found.flags.data(), found.distance.data()});
+                                               dieAt(At::before_keeping, asked);
+                                             });
+    results.finish();
+    return passage;
+  }
+
+  /// In a process that is killed there. @return whether it was
+  bool askAndDie(const fs::path& out, bool goes_on, At at, std::uint64_t kill)
+  {
+    const pid_t id = fork();
+    if (id == 0) {
+      try {
+        ask(out, goes_on, at, kill);
+      }
+      catch (...) {
+        _exit(1);
+      }
+      _exit(0);
+    }
+    int status = 0;
+    waitpid(id, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
+    return WIFSIGNALED(status);
+  }
+
+  static void expectSame(const SitePassage& a, const SitePassage& b)
+  {
+    EXPECT_EQ(a.colliding, b.colliding);
+    EXPECT_EQ(a.distance, b.distance);
+    EXPECT_EQ(a.first_pose, b.first_pose);
+    EXPECT_EQ(a.tiles.needed, b.tiles.needed);
+    ASSERT_EQ(a.poses.size(), b.poses.size());
+    for (std::size_t k = 0; k < a.poses.size(); ++k) {
+      EXPECT_EQ(a.poses[k].colliding_points, b.poses[k].colliding_points) << k;
+      EXPECT_TRUE(a.poses[k].distance == b.poses[k].distance ||
+                  (std::isnan(a.poses[k].distance) && std::isnan(b.poses[k].distance)))
+          << k;
+    }
+  }
+
+  files::TemporaryFolder folder;
+  std::vector<Point3> scan, body;
+  std::vector<Eigen::Isometry3d> poses;
+  Site site;
+};
+
+TEST_F(ResumedSite, SaysTheSameAfterAKillAnywhere)
+{
+  const SitePassage whole = ask(folder / "whole", false);
+  const auto files = contentsOf(folder / "whole");
+  ASSERT_GT(whole.tiles.read, 5u);
+  ASSERT_GT(whole.colliding, 0u);
+  for (const At at : {At::before_writing, At::before_keeping, At::after_tile}) {
+    for (const std::uint64_t kill : {std::uint64_t{1}, std::uint64_t{3}, whole.tiles.read}) {
+      SCOPED_TRACE(std::to_string(static_cast<int>(at)) + " " + std::to_string(kill));
+      ASSERT_TRUE(askAndDie(folder / "out", false, at, kill));
+      EXPECT_THROW(readSite(folder / "out"), files::FileError);
+      const SitePassage resumed = ask(folder / "out", true);
+      expectSame(resumed, whole);
+      EXPECT_EQ(resumed.tiles.read, whole.tiles.read - kill + (at == At::after_tile ? 0 : 1));
+      EXPECT_EQ(contentsOf(folder / "out"), files);
+      fs::remove_all(folder / "out");
+    }
+  }
+}
+
+TEST_F(ResumedSite, MayBeKilledAgain)
+{
+  const SitePassage whole = ask(folder / "whole", false);
+  std::uint64_t kills = 0;
+  while (askAndDie(folder / "out", kills > 0, At::after_tile, 2)) ASSERT_LT(++kills, whole.tiles.read);
+  EXPECT_EQ(kills, whole.tiles.read / 2);
+  EXPECT_EQ(contentsOf(folder / "out"), contentsOf(folder / "whole"));
+}
+
+TEST_F(ResumedSite, AsksAgainWhatIsNotItsOwnAnswer)
+{
+  const SitePassage whole = ask(folder / "whole", false);
+  const auto expectRead = [&](std::uint64_t tiles, const std::string& question = "where?", bool goes_on = true) {
+    const SitePassage resumed = ask(folder / "out", goes_on, At::nowhere, 0, question);
+    expectSame(resumed, whole);
+    EXPECT_EQ(resumed.tiles.read, tiles);
+    EXPECT_EQ(contentsOf(folder / "out"), contentsOf(folder / "whole"));
+    fs::remove_all(folder / "out");
+  };
+  const auto answers = [&] {
+    std::vector<fs::path> found;
+    for (const auto& entry : fs::directory_iterator(folder / "out/tiles"))
+      if (entry.path().extension() == answer_extension) found.push_back(entry.path());
+    return found;
+  };
+  ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 4));
+  ASSERT_EQ(answers().size(), 4u);
+  expectRead(whole.tiles.read, "and when?"); // another question
+  ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 4));
+  expectRead(whole.tiles.read, "where?", false); // not to go on
+  ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 4));
+  std::ofstream(answers()[0]) << "damaged";
+  std::ofstream(answers()[1], std::ios::app) << "longer";
+  fs::path tile = answers()[2];
+  std::fstream(tile.replace_extension(".pcd"), std::ios::in | std::ios::out | std::ios::binary).seekp(-1, std::ios::end)
+      << '\7';
+  expectRead(whole.tiles.read - 1);
+}
+
+TEST_F(ResumedSite, LeavesNothingOfARunThatFails)
+{
+  std::ofstream(site.folder / site.tiles.back().file) << "damaged";
+  EXPECT_THROW(ask(folder / "out", false), std::runtime_error);
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+/// The program, killed at instants that nobody chose.
+TEST_F(ResumedSite, ByTheProgram)
+{
+  const std::string asked = "collide site body.pcd --clearance 0.3 --trajectory poses.txt --out ";
+  ASSERT_EQ(run("pcl_bsh_site", asked + "whole --report whole.json", folder.path()).exit_code, 0);
+  const auto whole = contentsOf(folder / "whole");
+  const auto answerOf = [&](const std::string& report) { // what was read depends on what was known
+    const std::string text = files::contentOf(folder / report);
+    return text.substr(0, text.find("\"tiles\""));
+  };
+  for (int instant = 1; instant <= 10; ++instant) {
+    const std::string kill = "timeout -s KILL " + std::to_string(0.03 * instant) +
+                             " " PCL_BSH_PROGRAM_DIR "/pcl_bsh_site " + asked +
+                             "out --report out.json > /dev/null 2>&1";
+    EXPECT_NE(std::system(("cd " + folder.path().string() + " && " + kill).c_str()), -1);
+    if (fs::exists(folder / "out/site.json")) fs::remove_all(folder / "out"); // it was quicker
+    const Outcome outcome = run("pcl_bsh_site", asked + "out --report out.json --resume", folder.path());
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(contentsOf(folder / "out"), whole) << instant;
+    EXPECT_EQ(answerOf("out.json"), answerOf("whole.json"));
+    fs::remove_all(folder / "out");
+  }
+  if (!hasMpirun()) GTEST_SKIP() << "no mpirun";
+  ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 3)); // of another question
+  const Outcome two = runOnTwoRanks(asked + "out --report two.json --resume", folder.path());
+  ASSERT_EQ(two.exit_code, 0) << two.err;
+  EXPECT_EQ(contentsOf(folder / "out"), whole);
+  EXPECT_EQ(answerOf("two.json"), answerOf("whole.json"));
+}
+
+TEST_F(ResumedSite, IsRefusedWhereNothingCanBeKept)
+{
+  for (const char* arguments : {"--clearance 1 --report r.json", "--clearance 1 --out out --clashes c.html"}) {
+    const Outcome outcome =
+        run("pcl_bsh_site", std::string("collide site body.pcd --resume ") + arguments, folder.path());
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("--resume: "));
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh::sites
+#endif
