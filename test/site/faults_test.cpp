@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sites that are damaged, disks that are full, and programs that are ended: an error that says so, and never a folder
 // that passes for a site.
+#include "../files/in_a_fork.h"
 #include "../programs/process.h"
 
 #include <pcl_bsh/files/file_error.h>
@@ -154,26 +155,13 @@ protected:
   /// In a process that is killed at the n-th call of its progress. @return whether it lived to the end
   bool makeAndDie(int calls)
   {
-    const pid_t id = fork();
-    if (id == 0) {
-      MakeOptions dying = options;
-      dying.progress = [&](MakeStep, std::uint64_t, std::uint64_t) {
+    return files::endsInAFork([&] {
+      options.progress = [&](MakeStep, std::uint64_t, std::uint64_t) {
         if (calls-- == 0) ::kill(::getpid(), SIGKILL);
         return true;
       };
-      options = dying;
-      try {
-        makeBoth();
-      }
-      catch (...) {
-        _exit(1);
-      }
-      _exit(0);
-    }
-    int status = 0;
-    waitpid(id, &status, 0);
-    EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
-    return WIFEXITED(status);
+      makeBoth();
+    });
   }
 
   /// The points that all steps of a run tell together.

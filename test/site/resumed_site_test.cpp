@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A question to a site that was killed goes on with the tiles that it has answered, and says what it would have said.
+#include "../files/in_a_fork.h"
 #include "../programs/program_run.h"
 #include "float64_cloud.h"
 #include "two_ranks.h"
@@ -16,7 +17,6 @@
 
 #include <gmock/gmock.h>
 
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -95,20 +95,7 @@ protected:
   /// In a process that is killed there. @return whether it was
   bool askAndDie(const fs::path& out, bool goes_on, At at, std::uint64_t kill)
   {
-    const pid_t id = fork();
-    if (id == 0) {
-      try {
-        ask(out, goes_on, at, kill);
-      }
-      catch (...) {
-        _exit(1);
-      }
-      _exit(0);
-    }
-    int status = 0;
-    waitpid(id, &status, 0);
-    EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
-    return WIFSIGNALED(status);
+    return !files::endsInAFork([&] { ask(out, goes_on, at, kill); });
   }
 
   static void expectSame(const SitePassage& a, const SitePassage& b)

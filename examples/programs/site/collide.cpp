@@ -8,6 +8,7 @@
 
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 
@@ -27,8 +28,8 @@ namespace pcl_bsh::cli {
 namespace {
 
 /// The answer, the same on all ranks.
-Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const SiteOptions& options, SiteOutput& out,
-                SiteClashList& clashes, MeasuredRun& run, Step* step)
+Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const Poses& poses, const SiteOptions& options,
+                SiteOutput& out, SiteClashList& clashes, MeasuredRun& run, Step* step)
 {
   HierarchyOptions building;
   building.threads = options.threads;
@@ -78,7 +79,6 @@ Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const SiteO
     break;
   }
   case SiteQuestion::path: {
-    const std::vector<Eigen::Isometry3d> poses = posesOf(options);
     request.swept = options.swept;
     request.pose_summaries = clashes.isWanted() && !options.swept;
     const sites::SitePassage found =
@@ -116,14 +116,15 @@ int answer(const SiteOptions& options)
   if (tells) warn(site_program, clashes.warnings());
   std::optional<ObstacleCloud> cloud;
   if (!options.obstacleIsSite()) cloud.emplace(options);
-  SiteOutput output(site, cloud ? &*cloud : nullptr, options);
+  const Poses poses = options.trajectory.empty() ? Poses{options.pose} : io::readPoses(options.trajectory);
+  SiteOutput output(site, cloud ? &*cloud : nullptr, poses, options);
   MeasuredRun run;
   Json report;
   std::optional<Step> shown;
   if (tells) shown.emplace("Asking about tiles");
   Step* const step = tells ? &*shown : nullptr;
   if (cloud)
-    report = askOfCloud(site, *cloud, options, output, clashes, run, step);
+    report = askOfCloud(site, *cloud, poses, options, output, clashes, run, step);
   else
     report = askOfSite(site, options, output, run, step);
   if (tells) shown->done(report["tiles"]["read"].dump() + " tiles read");

@@ -8,6 +8,14 @@ namespace pcl_bsh::cli {
 
 namespace {
 
+/// The tiles of both sites.
+template <typename Found>
+void putBoth(Json& report, const Found& found, MeasuredRun& run)
+{
+  put(report, found.tiles, run);
+  putTiles(report, "tiles_of_obstacle", found.tiles_b);
+}
+
 /// Flags of both sides: each in tiles of its own.
 void askFlags(const sites::Site& site, const sites::PlacedSite& obstacle, const SiteOptions& options, SiteOutput& out,
               Json& report, MeasuredRun& run, Step* step)
@@ -19,8 +27,7 @@ void askFlags(const sites::Site& site, const sites::PlacedSite& obstacle, const 
   const sites::SitePairFlags found = sites::collisionFlags(site, obstacle, request, out.flags());
   report["colliding"] = found.colliding;
   report["undecided"] = found.undecided;
-  put(report, found.tiles, run);
-  putTiles(report, "tiles_of_obstacle", found.tiles_b);
+  putBoth(report, found, run);
   if (!obstacle_out) return;
   const sites::SitePairFlags of_obstacle =
       sites::collisionFlagsOfB(site, obstacle, request,
@@ -45,8 +52,7 @@ Json askOfSite(const sites::Site& site, const SiteOptions& options, SiteOutput& 
     const sites::SitePairAny found = sites::anyCollision(site, obstacle, request);
     report["collides"] = found.verdict == Verdict::colliding;
     report["undecided"] = found.verdict == Verdict::undecided;
-    put(report, found.tiles, run);
-    putTiles(report, "tiles_of_obstacle", found.tiles_b);
+    putBoth(report, found, run);
     break;
   }
   case SiteQuestion::flags:
@@ -60,8 +66,7 @@ Json askOfSite(const sites::Site& site, const SiteOptions& options, SiteOutput& 
       report["point"] = named(site, *found.point);
       report["point_of_obstacle"] = named(other, *found.point_b);
     }
-    put(report, found.tiles, run);
-    putTiles(report, "tiles_of_obstacle", found.tiles_b);
+    putBoth(report, found, run);
     break;
   }
   case SiteQuestion::distances: {
@@ -70,8 +75,7 @@ Json askOfSite(const sites::Site& site, const SiteOptions& options, SiteOutput& 
     report["max_distance"] = orNull(options.max_distance);
     report["measured"] = found.measured;
     report["greatest"] = orNull(found.greatest);
-    put(report, found.tiles, run);
-    putTiles(report, "tiles_of_obstacle", found.tiles_b);
+    putBoth(report, found, run);
     break;
   }
   case SiteQuestion::path:

@@ -5,9 +5,9 @@
 #include "cli/interruption.h"
 
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/filters/selected_records.h>
 
+#include <boost/crc.hpp>
 #include <nlohmann/json.hpp>
 
 #include <limits>
@@ -46,15 +46,18 @@ std::vector<sites::ResultField> resultFields(const SiteOptions& options)
 }
 
 /// All that the answer depends on, as a text.
-std::string questionOf(const sites::Site& site, const ObstacleCloud& obstacle, const SiteOptions& options)
+std::string questionOf(const sites::Site& site, const ObstacleCloud& obstacle, const Poses& poses,
+                       const SiteOptions& options)
 {
+  boost::crc_32_type of_points;
+  of_points.process_bytes(obstacle.cloud.data.data(), obstacle.cloud.data.size());
   nlohmann::json question = {{"site", sites::siteText(site)},        {"question", options.question},
                              {"clearance", options.clearance},       {"accuracy", options.accuracy.text()},
                              {"max_distance", options.max_distance}, {"swept", options.swept.value_or(-1.0)},
-                             {"obstacle", obstacle.cloud.data},      {"poses", nlohmann::json::array()}};
+                             {"obstacle", of_points.checksum()},     {"poses", nlohmann::json::array()}};
   for (const Uncertainty* of : {&options.uncertainty, &options.obstacle_uncertainty})
     question["uncertainty"].push_back({of->field, of->length, of->sigmas});
-  for (const Eigen::Isometry3d& pose : posesOf(options))
+  for (const Eigen::Isometry3d& pose : poses)
     question["poses"].push_back(std::vector<double>(pose.data(), pose.data() + 16));
   for (const pcl::PCLPointField& field : obstacle.cloud.fields)
     question["fields"].push_back({field.name, field.offset, field.datatype, field.count});
@@ -70,11 +73,6 @@ std::vector<float> inFloats(const std::vector<double>& numbers)
 }
 
 } // namespace
-
-std::vector<Eigen::Isometry3d> posesOf(const SiteOptions& options)
-{
-  return options.trajectory.empty() ? std::vector{options.pose} : io::readPoses(options.trajectory);
-}
 
 sites::ResultField collisionField()
 {
@@ -95,13 +93,14 @@ void ObstacleCloud::write(const std::vector<std::uint8_t>& flags, const SiteOpti
   io::writeCloud(options.obstacle_out, withField(cloud, collision_field_name, flags), viewpoint, las);
 }
 
-SiteOutput::SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, const SiteOptions& options)
+SiteOutput::SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, const Poses& poses,
+                       const SiteOptions& options)
 : options_(options)
 {
   if (options.out.empty()) return;
   sites::Continuation continuation;
   if (obstacle != nullptr && options.clashes.empty()) {
-    continuation = {questionOf(site, *obstacle, options), options.resume};
+    continuation = {questionOf(site, *obstacle, poses, options), options.resume};
     setWhatStays("what was found stays, and the same command with --resume goes on");
   }
   out_.emplace(site, options.out, resultFields(options), continuation);

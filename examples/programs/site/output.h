@@ -28,7 +28,7 @@ struct ObstacleCloud {
 };
 
 /// Where the obstacle is asked about.
-std::vector<Eigen::Isometry3d> posesOf(const SiteOptions& options);
+using Poses = std::vector<Eigen::Isometry3d>;
 
 /// The field of flags at one pose.
 sites::ResultField collisionField();
@@ -38,7 +38,7 @@ class SiteOutput {
 public:
   /// @param obstacle null where that is a site, too
   /// @throws files::FileError for a folder that cannot be one
-  SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, const SiteOptions& options);
+  SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, const Poses& poses, const SiteOptions& options);
 
   /// What an earlier run has found, and where this one keeps what it finds; null: nothing is kept.
   sites::TileAnswers* answers() { return out_ ? out_->answers() : nullptr; }
