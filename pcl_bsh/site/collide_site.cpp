@@ -104,11 +104,7 @@ SiteAny anyCollision(const Site& site, const Placed& b, const SiteRequest& reque
   };
   result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request.uncertainty), ask,
                                [&](std::size_t) { return !(collides = sumOfAllRanks(collides ? 1 : 0) > 0); });
-  const bool none_is_sure = sumOfAllRanks(is_undecided ? 1 : 0) > 0;
-  if (collides)
-    result.verdict = Verdict::colliding;
-  else if (none_is_sure)
-    result.verdict = Verdict::undecided;
+  result.verdict = verdictOfAllRanks(collides, is_undecided);
   return result;
 }
 

@@ -159,11 +159,7 @@ SitePairAny anyCollision(const Site& site, const PlacedSite& b, const SiteReques
   result.tiles = inquiry.visit(inquiry.tilesNear(request.clearance), ask,
                                [&](std::size_t) { return !(collides = sumOfAllRanks(collides ? 1 : 0) > 0); });
   result.tiles_b = inquiry.readOfOthers();
-  const bool none_is_sure = sumOfAllRanks(is_undecided ? 1 : 0) > 0;
-  if (collides)
-    result.verdict = Verdict::colliding;
-  else if (none_is_sure)
-    result.verdict = Verdict::undecided;
+  result.verdict = verdictOfAllRanks(collides, is_undecided);
   return result;
 }
 

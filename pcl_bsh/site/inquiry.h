@@ -24,6 +24,14 @@ inline std::uint8_t surer(std::uint8_t a, std::uint8_t b)
   return a == collides || b == collides ? collides : std::max(a, b);
 }
 
+/// Of all tiles. @param collides the same on all ranks. @param is_undecided whether a tile of this rank is
+inline Verdict verdictOfAllRanks(bool collides, bool is_undecided)
+{
+  const bool none_is_sure = sumOfAllRanks(is_undecided ? 1 : 0) > 0;
+  if (collides) return Verdict::colliding;
+  return none_is_sure ? Verdict::undecided : Verdict::free;
+}
+
 class Inquiry {
 public:
   Inquiry(const Site& site, const SiteRequest& request) : site_(site), request_(request), visitor_(site, request.memory)
