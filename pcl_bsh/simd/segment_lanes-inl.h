@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -130,6 +131,58 @@ HWY_INLINE std::uint32_t arcsInBoxes(const ArcAt& arc, LaneVector ball, const Lo
                   gapToBox(arc(2), ball, low(2), high(2), clip));
   return bits & bitsOf(d, hn::Le(squared, hn::Add(hn::Mul(ball, ball), hn::Set(d, kVanishingSquare))));
 }
+
+// Of a place at an instant that is rounded: 3 u of twice the largest coordinate and of four times the bow beside the
+// above, and 3 u for a point's shift and the gap to it.
+static_assert(1.7321 * (8 + 7 + 6 + 3) * kFloatUnit < kSegmentRounding);
+
+/// Where an arc is at as many instants as there are lanes: step / steps, (step + 1) / steps, ...
+struct PlacesOnArc {
+  LaneVector x, y, z;
+
+  /// @param steps 2^22 at most
+  template <std::size_t Count>
+  HWY_INLINE PlacesOnArc(const Segments<Count>& segments, std::uint32_t i, std::uint32_t step, float steps)
+  {
+    const LaneTag d;
+    const LaneVector t = hn::Mul(hn::Iota(d, static_cast<float>(step)), hn::Set(d, steps > 0.0f ? 1.0f / steps : 0.0f));
+    const auto along = [&](std::size_t axis) HWY_ATTR {
+      const LaneVector none = hn::Zero(d);
+      return placeOn(ArcLanes{hn::Set(d, segments.start[axis][i]), hn::Set(d, segments.motion[axis][i]), none,
+                              hn::Set(d, segments.bow[axis][i]), none},
+                     t);
+    };
+    x = along(0);
+    y = along(1);
+    z = along(2);
+  }
+
+  /// From a box.
+  HWY_INLINE LaneVector squaredDistance(const float* low, const float* high) const
+  {
+    const LaneTag d;
+    const auto beside = [&](LaneVector place, std::size_t axis) HWY_ATTR {
+      const LaneVector under = hn::Sub(hn::Set(d, low[axis]), place), over = hn::Sub(place, hn::Set(d, high[axis]));
+      return hn::Max(hn::Max(under, over), hn::Zero(d));
+    };
+    return squaredNorm(beside(x, 0), beside(y, 1), beside(z, 2));
+  }
+
+  /// From the nearest of `count` points, at (others + shift).
+  HWY_INLINE LaneVector nearestSquared(const float* others_x, const float* others_y, const float* others_z,
+                                       std::size_t count, const float* shift) const
+  {
+    const LaneTag d;
+    const LaneVector from_x = hn::Sub(x, hn::Set(d, shift[0])), from_y = hn::Sub(y, hn::Set(d, shift[1])),
+                     from_z = hn::Sub(z, hn::Set(d, shift[2]));
+    LaneVector nearest = hn::Set(d, std::numeric_limits<float>::infinity());
+    for (std::size_t j = 0; j < count; ++j)
+      nearest = hn::Min(nearest,
+                        squaredNorm(hn::Sub(from_x, hn::Set(d, others_x[j])), hn::Sub(from_y, hn::Set(d, others_y[j])),
+                                    hn::Sub(from_z, hn::Set(d, others_z[j]))));
+    return nearest;
+  }
+};
 
 /// Bit i: segment i may be in the box at an instant j / steps; at any instant when steps is 0.
 template <std::size_t Count, std::size_t Reaches>

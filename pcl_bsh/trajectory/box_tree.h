@@ -6,6 +6,7 @@
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/result.h>
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -107,6 +108,13 @@ public:
 
   /// From the tree's origin to the voxel's.
   Point3 offset(std::uint32_t index) const;
+
+  /// The same, rounded.
+  std::array<float, 3> shift(std::uint32_t index) const
+  {
+    const Point3 at = offset(index);
+    return {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
+  }
 
 private:
   struct Entry {

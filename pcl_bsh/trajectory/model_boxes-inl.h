@@ -29,6 +29,8 @@ struct ModelBox {
 
   const BoxNode& box() const { return boxes[node]; }
   bool isLeaf() const { return voxel != kAboveVoxels && box().isLeaf(lane); }
+  /// Of a leaf.
+  BoxLeaf points(const BoxTree& tree) const { return tree.leaf(voxel, box().leaf(lane)); }
   /// Half of its longest side, where sides along the way count for less. @param stretch of the tree
   float size(const float (&stretch)[3]) const
   {

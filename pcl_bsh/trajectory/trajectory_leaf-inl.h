@@ -8,12 +8,8 @@
 #define PCL_BSH_TRAJECTORY_TRAJECTORY_LEAF_INL_H_
 #endif
 
-#include <pcl_bsh/trajectory/leaf_visit-inl.h>
-#include <pcl_bsh/trajectory/model_boxes-inl.h>
-#include <pcl_bsh/trajectory/pose_ranges-inl.h>
+#include <pcl_bsh/trajectory/arcs_at_poses-inl.h>
 #include <pcl_bsh/trajectory/swept_leaf-inl.h>
-#include <pcl_bsh/trajectory/voxel_results.h>
-#include <pcl_bsh/traversal/uncertain_points-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -35,8 +31,8 @@ public:
     stop_check_(stop_check),
     results_(results),
     swept_(query, voxel_frame, results),
-    reach_(voxel_frame.error, query.path.skew, 1.0, query.of_pairs.leastInCommon(), query.of_pairs.mostInCommon(),
-           query.model.storage().uncertainty.most, 0.0f)
+    at_pose_(query, voxel_frame, results),
+    on_arcs_(query, voxel_frame, results, at_pose_)
   {
   }
 
@@ -61,9 +57,7 @@ public:
       if (results_.bestBounds(points.begin + i, motion.interval->first))
         leaf.lowerReach(voxel_frame_, i, results_.best[points.begin + i].reach, motion);
     ++results_.work.volumes_carried;
-    if (query_.request.pose_summaries) pose_hits_.assign(motion.interval->last - motion.interval->first + 1, 0);
-
-    places_.beginVisit();
+    at_pose_.beginVisit(motion);
     if (motion.at_rest && query_.everything())
       nearestFirst(candidates, points, motion);
     else
@@ -81,13 +75,14 @@ public:
       if (leaf.open == 0) break;
     }
     stack_.clear();
-    if (query_.request.pose_summaries) countPoses(leaf, motion, node.points(lane));
+    on_arcs_.finish(leaf, motion);
+    if (query_.request.pose_summaries) at_pose_.countPoses(leaf, motion, node.points(lane));
     if (!query_.everything()) results_.settled[slot] = results_.hit[slot];
     return (all & ~results_.settled[slot]) != 0;
   }
 
   /// Of pairs of points with uncertainties of their own.
-  const UncertainReach& reach() const { return reach_; }
+  const UncertainReach& reach() const { return at_pose_.reach(); }
 
 private:
   /// The candidates by their distance from the leaf, at one pose: the sooner its points' bounds are small, the fewer
@@ -119,12 +114,12 @@ private:
     const ModelBox box = boxes[static_cast<std::uint32_t>(std::countr_zero(boxes.lanes))];
     const BoxEnds ends(box);
     results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(leaf.open));
-    const LeafPoints& at = places_.at(voxel_frame_, leaf.points, motion, motion.interval->first);
+    const LeafPoints& at = at_pose_.placesAt(leaf, motion, motion.interval->first);
     const std::uint32_t points =
         leaf.open & pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, leaf.near_squared);
     if (points == 0) return;
     if (box.isLeaf())
-      compareAt(leaf, points, box, motion.interval->first, motion);
+      at_pose_.compare(leaf, points, box, motion.interval->first, motion);
     else if (model_.mayOpen(box))
       push(leaf, model_.near(leaf.around, model_.below(box), motion.steps), leaf.open, motion);
     else
@@ -187,13 +182,13 @@ private:
     results_.undecided[leaf.slot] = static_cast<std::uint16_t>(results_.undecided[leaf.slot] | points);
   }
 
-  BoxLeaf pointsIn(const ModelBox& leaf) const { return tree_.leaf(leaf.voxel, leaf.box().leaf(leaf.lane)); }
-
   /// Two leaves, at each pose that brings them near.
   HWY_INLINE void comparePoses(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
                                const ModelBox& box, const VoxelMotion& motion)
   {
     const bool narrows = motion.squares && tree_.unit(box.voxel) == 1.0;
+    if (narrows && on_arcs_.areFor(motion))
+      return on_arcs_.compare(leaf, rangesOf(lanes, clipped, motion), box, motion);
     std::uint32_t near_points[kLeafPoints];
     if (narrows) lanes = nearPoints(leaf, lanes, box, motion, clipped, near_points);
     const PoseRanges ranges = rangesOf(lanes, clipped, motion);
@@ -204,7 +199,7 @@ private:
         const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
         if ((leaf.open >> i & 1) == 0) continue;
         const std::uint32_t k = ranges.first[i] + (ranges.last[i] - ranges.first[i]) / 2;
-        compareAt(leaf, ranges.at(k, lanes & leaf.open), box, k, motion);
+        at_pose_.compare(leaf, ranges.at(k, lanes & leaf.open), box, k, motion);
       }
     }
     for (std::uint32_t k = ranges.begin; k < ranges.end && (lanes & leaf.open) != 0 && !stop_check_.isOver(); ++k) {
@@ -214,7 +209,7 @@ private:
           const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
           if (results_.first[leaf.points.begin + i] <= k) here &= ~(1u << i);
         }
-      if (here != 0) compareAt(leaf, here, box, k, motion);
+      if (here != 0) at_pose_.compare(leaf, here, box, k, motion);
     }
   }
 
@@ -222,7 +217,7 @@ private:
   void sweepPast(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped, const ModelBox& box,
                  const VoxelMotion& motion)
   {
-    const BoxLeaf other = pointsIn(box);
+    const BoxLeaf other = box.points(tree_);
     std::uint32_t near_points[kLeafPoints];
     if (motion.squares && tree_.unit(box.voxel) == 1.0)
       lanes = nearPoints(leaf, lanes, box, motion, clipped, near_points);
@@ -236,151 +231,10 @@ private:
   std::uint32_t nearPoints(const LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, const VoxelMotion& motion,
                            ClippedSegments<kLeafPoints>& clipped, std::uint32_t (&near_points)[kLeafPoints]) const
   {
-    const BoxLeaf other = pointsIn(box);
-    const Point3 at = tree_.offset(box.voxel);
-    const float shift[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
-    return segmentsNearPoints(leaf.segments, lanes, other.x(), other.y(), other.z(), other.count, shift, motion.steps,
-                              motion.smallest, motion.rounding, clipped, near_points);
-  }
-
-  /// Two leaves at pose k: by float bands, and exactly within the bands.
-  void compareAt(LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, std::uint32_t k, const VoxelMotion& motion)
-  {
-    const LeafPoints& at = places_.at(voxel_frame_, leaf.points, motion, k);
-    const BoxEnds ends(box);
-    alignas(64) float near_squared[kLeafPoints];
-    std::copy(leaf.near_squared, leaf.near_squared + kLeafPoints, near_squared);
-    if (query_.request.pose_summaries) boundAtPose(leaf, lanes, k, motion, near_squared);
-    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, near_squared);
-    if (lanes == 0) return;
-    ++results_.work.leaf_pairs;
-    const BoxLeaf other = pointsIn(box);
-    const double unit = tree_.unit(box.voxel);
-    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], tree_.offset(box.voxel), unit);
-    bool certain = (query_.everything() ? query_.nearestDecides() : query_.radii == 0.0) && unit == 1.0 &&
-                   voxel_frame_.frame.unit == 1.0;
-    for (const float g : map.g) certain = certain && std::abs(g) <= voxel_frame_.far;
-    LeafPoints points;
-    carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, points.x, points.y,
-          points.z);
-    alignas(64) float nearest[kLeafPoints];
-    std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
-    std::uint32_t hit = 0;
-    if (certain) {
-      std::uint32_t undecided = 0;
-      if (query_.of_pairs.isOne()) {
-        nearestSquared(points, other.x(), other.y(), other.z(), firstBits(other.count), nearest);
-        hit = lanes & atMost(nearest, voxel_frame_.band.hit);
-        undecided = lanes & ~hit & ~above(nearest, voxel_frame_.band.miss);
-      }
-      else {
-        compareUncertain(leaf, lanes, points, other, hit, undecided);
-      }
-      if (undecided != 0)
-        eachPairNotBeyond(points, undecided, other, voxel_frame_.band.miss,
-                          [&](std::uint32_t i, std::uint32_t j, float) {
-                            if ((hit >> i & 1) == 0 && results_.collide({leaf.points.record(i), other.record(j)}, k))
-                              hit |= 1u << i;
-                            return (undecided & ~hit) == 0;
-                          });
-    }
-    else {
-      for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-        for (std::uint32_t j = 0; j < other.count && (hit >> i & 1) == 0; ++j)
-          if (results_.collide({leaf.points.record(i), other.record(j)}, k)) hit |= 1u << i;
-      }
-    }
-    if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, motion);
-  }
-
-  /// Points with uncertainties of their own, as the query asks about them. @param hit, undecided become those in
-  /// `lanes` that collide for certain, and those of which single pairs have to be asked
-  HWY_NOINLINE void compareUncertain(const LeafVisit& leaf, std::uint32_t lanes, const LeafPoints& points,
-                                     const BoxLeaf& other, std::uint32_t& hit, std::uint32_t& undecided) const
-  {
-    static constexpr float kNone[kLeafPoints] = {};
-    const SphereHierarchy::Storage& scan = query_.scan.hierarchy().storage();
-    const auto voxel = static_cast<std::size_t>(&voxel_frame_.voxel - scan.voxels.get());
-    const UncertainPoints limits(reach_, ownOf(ownUncertainties(scan, voxel), leaf.points));
-    alignas(64) float longer[kLeafPoints], shorter[kLeafPoints];
-    std::fill(std::begin(longer), std::end(longer), std::numeric_limits<float>::infinity());
-    std::fill(std::begin(shorter), std::end(shorter), std::numeric_limits<float>::infinity());
-    nearestWithLengths(points, other.x(), other.y(), other.z(), other.lengths ? other.lengths : kNone, reach_.scale_up,
-                       firstBits(other.count), longer, shorter);
-    hit = lanes & (query_.certain ? atMostEach(longer, limits.sure) : atMostEach(shorter, limits.maybe));
-    undecided =
-        lanes & ~hit & ~(query_.certain ? aboveEach(longer, limits.sure_miss) : aboveEach(shorter, limits.miss));
-  }
-
-  /// A point that is known to collide at pose k matters again only where it may be nearer than the nearest so far, of
-  /// itself or of the pose. Nothing is bounded where the nearest pair does not decide: no reach is known there.
-  void boundAtPose(LeafVisit& leaf, std::uint32_t lanes, std::uint32_t k, const VoxelMotion& motion,
-                   float* near_squared) const
-  {
-    for (std::uint32_t bits = lanes & pose_hits_[k - motion.interval->first]; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      float best = results_.poseReach(k);
-      if (query_.closest) best = std::max(best, results_.best[leaf.points.begin + i].reach);
-      if (motion.at_rest) leaf.lowerReach(voxel_frame_, i, best, motion);
-      near_squared[i] = std::min(near_squared[i], voxel_frame_.nearSquared(motion, best));
-    }
-  }
-
-  /// What follows from the points in `hit`, which collide at pose k.
-  void note(LeafVisit& leaf, std::uint32_t hit, const LeafPoints& points, const float* nearest, bool certain,
-            const BoxLeaf& other, std::uint32_t k, const VoxelMotion& motion)
-  {
-    results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | hit);
-    if (!query_.everything() && (!query_.first || k == motion.interval->first)) leaf.open &= ~hit;
-    if (query_.request.pose_summaries) {
-      std::uint16_t& at = pose_hits_[k - motion.interval->first];
-      at = static_cast<std::uint16_t>(at | hit);
-    }
-    for (std::uint32_t bits = hit; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (query_.first) {
-        double& first = results_.first[leaf.points.begin + i];
-        first = std::min(first, static_cast<double>(k));
-      }
-      if (!query_.everything()) continue;
-      // It collides at this pose: what is farther at this pose changes nothing.
-      if (motion.at_rest && certain) leaf.lowerReach(voxel_frame_, i, roundUp(voxel_frame_.highOf(nearest[i])), motion);
-      // Only what may be as near as the nearest in floats is worth an exact look.
-      const float within = certain ? voxel_frame_.notBeyond(nearest[i]) : std::numeric_limits<float>::infinity();
-      NearestPoint* best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
-      const bool for_point = best && !(certain && nearest[i] > best->limit);
-      const bool for_pose = query_.request.pose_summaries && !(certain && nearest[i] > results_.poseLimit(k));
-      if (!for_point && !for_pose) continue;
-      for (std::uint32_t j = 0; j < other.count; ++j) {
-        const float dx = points.x[i] - other.x()[j], dy = points.y[i] - other.y()[j], dz = points.z[i] - other.z()[j];
-        const float squared = (dx * dx + dy * dy) + dz * dz;
-        if (certain && squared > within) continue;
-        const PointPair pair{leaf.points.record(i), other.record(j)};
-        if (!query_.of_pairs.isOne() && !results_.collide(pair, k)) continue;
-        if (for_point) results_.consider(*best, pair, k);
-        if (for_pose) results_.considerPose(pair, k);
-      }
-      if (for_point && certain) {
-        const double high = voxel_frame_.highOf(nearest[i]);
-        best->limit = std::min(best->limit, voxel_frame_.notBeyond(nearest[i]));
-        best->reach = std::min(best->reach, roundUp(high));
-        if (results_.bestBounds(leaf.points.begin + i, motion.interval->first))
-          leaf.lowerReach(voxel_frame_, i, best->reach, motion);
-      }
-      if (for_pose && certain)
-        results_.lowerPoseLimit(k, voxel_frame_.notBeyond(nearest[i]), roundUp(voxel_frame_.highOf(nearest[i])));
-    }
-  }
-
-  void countPoses(const LeafVisit& leaf, const VoxelMotion& motion, std::size_t points)
-  {
-    for (std::size_t i = 0; i < pose_hits_.size(); ++i) {
-      const auto hits = static_cast<std::size_t>(std::popcount(pose_hits_[i]));
-      if (hits != 0)
-        results_.countPose(motion.interval->first + static_cast<std::uint32_t>(i),
-                           points > leaf.points.count ? points : hits);
-    }
+    const BoxLeaf other = box.points(tree_);
+    return segmentsNearPoints(leaf.segments, lanes, other.x(), other.y(), other.z(), other.count,
+                              tree_.shift(box.voxel).data(), motion.steps, motion.smallest, motion.rounding, clipped,
+                              near_points);
   }
 
   const TrajectoryQuery& query_;
@@ -391,13 +245,12 @@ private:
   StopCheck& stop_check_;
   VoxelResults& results_;
   SweptLeaf swept_;
-  const UncertainReach reach_;
+  LeafAtPose at_pose_;
+  ArcsAtPoses on_arcs_;
   std::vector<Siblings> near_; // what the leaf may meet
   std::vector<PointsNearBoxes> stack_;
   ClippedSegments<kLanes> clips_[kLeafPoints]; // of each point, when it is in the boxes it is compared with
   BoxesByDistance by_distance_;
-  PlacesAtPoses places_;
-  std::vector<std::uint16_t> pose_hits_; // per pose of a motion: points of a leaf
 };
 
 } // namespace HWY_NAMESPACE
