@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points that move along segments, against boxes and points: when they are inside, or near.
+// Points that move along segments, against boxes: when they are inside.
 
 #if defined(PCL_BSH_SIMD_SEGMENT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_SIMD_SEGMENT_LANES_INL_H_
@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -131,58 +130,6 @@ HWY_INLINE std::uint32_t arcsInBoxes(const ArcAt& arc, LaneVector ball, const Lo
                   gapToBox(arc(2), ball, low(2), high(2), clip));
   return bits & bitsOf(d, hn::Le(squared, hn::Add(hn::Mul(ball, ball), hn::Set(d, kVanishingSquare))));
 }
-
-// Of a place at an instant that is rounded: 3 u of twice the largest coordinate and of four times the bow beside the
-// above, and 3 u for a point's shift and the gap to it.
-static_assert(1.7321 * (8 + 7 + 6 + 3) * kFloatUnit < kSegmentRounding);
-
-/// Where an arc is at as many instants as there are lanes: step / steps, (step + 1) / steps, ...
-struct PlacesOnArc {
-  LaneVector x, y, z;
-
-  /// @param steps 2^22 at most
-  template <std::size_t Count>
-  HWY_INLINE PlacesOnArc(const Segments<Count>& segments, std::uint32_t i, std::uint32_t step, float steps)
-  {
-    const LaneTag d;
-    const LaneVector t = hn::Mul(hn::Iota(d, static_cast<float>(step)), hn::Set(d, steps > 0.0f ? 1.0f / steps : 0.0f));
-    const auto along = [&](std::size_t axis) HWY_ATTR {
-      const LaneVector none = hn::Zero(d);
-      return placeOn(ArcLanes{hn::Set(d, segments.start[axis][i]), hn::Set(d, segments.motion[axis][i]), none,
-                              hn::Set(d, segments.bow[axis][i]), none},
-                     t);
-    };
-    x = along(0);
-    y = along(1);
-    z = along(2);
-  }
-
-  /// From a box.
-  HWY_INLINE LaneVector squaredDistance(const float* low, const float* high) const
-  {
-    const LaneTag d;
-    const auto beside = [&](LaneVector place, std::size_t axis) HWY_ATTR {
-      const LaneVector under = hn::Sub(hn::Set(d, low[axis]), place), over = hn::Sub(place, hn::Set(d, high[axis]));
-      return hn::Max(hn::Max(under, over), hn::Zero(d));
-    };
-    return squaredNorm(beside(x, 0), beside(y, 1), beside(z, 2));
-  }
-
-  /// From the nearest of `count` points, at (others + shift).
-  HWY_INLINE LaneVector nearestSquared(const float* others_x, const float* others_y, const float* others_z,
-                                       std::size_t count, const float* shift) const
-  {
-    const LaneTag d;
-    const LaneVector from_x = hn::Sub(x, hn::Set(d, shift[0])), from_y = hn::Sub(y, hn::Set(d, shift[1])),
-                     from_z = hn::Sub(z, hn::Set(d, shift[2]));
-    LaneVector nearest = hn::Set(d, std::numeric_limits<float>::infinity());
-    for (std::size_t j = 0; j < count; ++j)
-      nearest = hn::Min(nearest,
-                        squaredNorm(hn::Sub(from_x, hn::Set(d, others_x[j])), hn::Sub(from_y, hn::Set(d, others_y[j])),
-                                    hn::Sub(from_z, hn::Set(d, others_z[j]))));
-    return nearest;
-  }
-};
 
 /// Bit i: segment i may be in the box at an instant j / steps; at any instant when steps is 0.
 template <std::size_t Count, std::size_t Reaches>
@@ -306,75 +253,6 @@ HWY_INLINE void lowerToFarthestCorner(const float (*places)[kLanes], const float
   };
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
     hn::Store(hn::Min(hn::Load(d, least + i), squaredNorm(away(0, i), away(1, i), away(2, i))), d, least + i);
-}
-
-/// Bit i of `lanes`: arc i may come within its reach of one of `count` points, at (x, y, z) + shift, at an instant
-/// j / steps (at any instant when steps is 0) of its clipped part. That part is taken for a segment: it bows by the
-/// square of its share of the whole. Few arcs reach into a box: each by itself, against all points at once.
-/// @param x, y, z readable for whole vectors. @param rounding in lengths: what that may amount to, at least 64 u of the
-///   largest coordinate
-/// @param clipped becomes when that is: from the first instant for any of the points to the last; of lanes whose bit is
-///   set
-/// @param near_points becomes which points it may be, as bits; likewise. @pre count <= 32
-template <std::size_t Count>
-HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, std::uint32_t lanes, const float* x,
-                                            const float* y, const float* z, std::size_t count, const float* shift,
-                                            float steps, float smallest, float rounding,
-                                            ClippedSegments<Count>& clipped, std::uint32_t (&near_points)[Count])
-{
-  const LaneTag d;
-  const LaneVector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  std::uint32_t near_lanes = 0;
-  for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-    const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-    const float begin = clipped.from[i], end = clipped.to[i], part = end - begin;
-    float first[3], way[3], reach = segments.reach[0][i] + rounding, squared = 0.0f;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float bow = segments.bow[axis][i];
-      const auto place = [&](float t) {
-        return segments.start[axis][i] + t * (segments.motion[axis][i] + 4.0f * bow * (1.0f - t));
-      };
-      const float at = place(begin);
-      first[axis] = at - shift[axis];
-      way[axis] = place(end) - at;
-      squared += way[axis] * way[axis];
-      reach += std::abs(bow) * (part * part);
-    }
-    float length = std::sqrt(squared);
-    if (!(length > smallest)) {
-      way[0] = way[1] = way[2] = 0.0f;
-      length = smallest;
-    }
-    const LaneVector inverse = hn::Set(d, 1.0f / length), limit = hn::Set(d, reach * reach);
-    const LaneVector slack = hn::Set(d, rounding / length);
-    const LaneVector mx = hn::Set(d, way[0]), my = hn::Set(d, way[1]), mz = hn::Set(d, way[2]);
-    LaneVector from = one, to = zero;
-    near_points[i] = 0;
-    for (std::size_t j = 0; j < count; j += hn::Lanes(d)) {
-      const LaneVector wx = hn::Sub(hn::LoadU(d, x + j), hn::Set(d, first[0])),
-                       wy = hn::Sub(hn::LoadU(d, y + j), hn::Set(d, first[1])),
-                       wz = hn::Sub(hn::LoadU(d, z + j), hn::Set(d, first[2]));
-      const LaneVector along = hn::Add(hn::Add(hn::Mul(wx, mx), hn::Mul(wy, my)), hn::Mul(wz, mz));
-      const LaneVector at = hn::Mul(hn::Mul(along, inverse), inverse);
-      const LaneVector left = hn::Sub(
-          limit, squaredNorm(hn::Sub(wx, hn::Mul(at, mx)), hn::Sub(wy, hn::Mul(at, my)), hn::Sub(wz, hn::Mul(at, mz))));
-      const auto within = hn::And(hn::FirstN(d, count - j), hn::Ge(left, zero));
-      if (hn::AllFalse(d, within)) continue;
-      const LaneVector half = hn::Add(hn::Mul(hn::Sqrt(hn::Max(left, zero)), inverse), slack);
-      // Of the whole way.
-      const LaneVector enter = hn::Add(hn::Set(d, begin), hn::Mul(hn::Set(d, part), hn::Max(hn::Sub(at, half), zero)));
-      const LaneVector leave = hn::Add(hn::Set(d, begin), hn::Mul(hn::Set(d, part), hn::Min(hn::Add(at, half), one)));
-      const auto near = hn::And(within, isInsideAtStep(d, {enter, leave}, steps));
-      if (hn::AllFalse(d, near)) continue;
-      near_lanes |= 1u << i;
-      near_points[i] |= bitsOf(d, near) << j;
-      from = hn::Min(from, hn::IfThenElse(near, enter, one));
-      to = hn::Max(to, hn::IfThenElse(near, leave, zero));
-    }
-    clipped.from[i] = hn::GetLane(hn::MinOfLanes(d, from));
-    clipped.to[i] = std::min(hn::GetLane(hn::MaxOfLanes(d, to)), 1.0f);
-  }
-  return near_lanes;
 }
 
 } // namespace HWY_NAMESPACE

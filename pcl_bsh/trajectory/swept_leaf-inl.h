@@ -9,9 +9,11 @@
 #endif
 
 #include <pcl_bsh/trajectory/leaf_visit-inl.h>
+#include <pcl_bsh/trajectory/model_boxes-inl.h>
 #include <pcl_bsh/trajectory/point_segment.h>
 #include <pcl_bsh/trajectory/voxel_results.h>
 
+#include <optional>
 #include <tuple>
 
 HWY_BEFORE_NAMESPACE();
@@ -22,52 +24,44 @@ class SweptLeaf {
 public:
   SweptLeaf(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results)
   : query_(query),
+    tree_(query.boxes),
     voxel_frame_(voxel_frame),
     results_(results)
   {
   }
 
   /// Points that move in straight lines against points at rest, in double. What that gets wrong is small against the
-  /// tolerance (checkTolerance()).
-  /// @param clipped during which part of the interval each may be near. @param near_points to which points of the
-  /// model's leaf, as bits: the others are farther than the reach, at every instant
-  void compare(LeafVisit& leaf, std::uint32_t lanes, const ClippedSegments<kLeafPoints>& clipped, const BoxLeaf& other,
-               const std::uint32_t (&near_points)[kLeafPoints], const VoxelMotion& motion)
+  /// tolerance (checkTolerance()). Floats say first which of the pairs can change an answer.
+  /// @param clipped during which part of the interval each may be near
+  void compare(LeafVisit& leaf, std::uint32_t lanes, const ClippedSegments<kLeafPoints>& clipped, const ModelBox& box,
+               const VoxelMotion& motion)
   {
     ++results_.work.leaf_pairs;
+    const BoxLeaf other = box.points(tree_);
     const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
+    const double unused = unusedIn(motion);
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      const double earliest_here = begin + steps * clipped.from[i];
-      if (isSettled(leaf, i, earliest_here)) continue;
-      const std::uint32_t record = leaf.points.record(i);
-      const PointSegment segment(query_, record, *motion.interval);
-      for (std::uint32_t its = near_points[i]; its != 0; its &= its - 1) {
+      if (isSettled(leaf, i, begin + steps * clipped.from[i])) continue;
+      pass(leaf, i, other, box, motion);
+      std::optional<PointSegment> segment;
+      for (std::uint32_t left = mattering(leaf, i, passages_.near, motion); left != 0;) {
+        const std::uint32_t j = nearest(left);
+        left &= ~(1u << j);
+        if (!segment) segment.emplace(query_, leaf.points.record(i), *motion.interval);
+        const PointPair pair{leaf.points.record(i), other.record(j)};
         ++results_.work.exact_decisions;
-        const std::uint32_t q = other.record(static_cast<std::uint32_t>(std::countr_zero(its)));
-        const double near_enough = query_.nearEnough({record, q});
+        const double near_enough = query_.nearEnough(pair) - unused;
         if (near_enough < 0.0) continue;
-        const ClosestApproach approach = segment.approachTo(query_, q, near_enough);
+        const ClosestApproach approach = segment->approachTo(query_, pair.b, near_enough);
         if (!approach.contact) continue;
-        if (query_.witness) return keepWitness(leaf, {record, q});
-        results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | 1u << i);
-        double& first = results_.first[leaf.points.begin + i];
-        first = std::min(first, begin + steps * approach.enter);
-        results_.earliest = std::min(results_.earliest, first);
-        if (!query_.closest) {
-          if (isSettled(leaf, i, earliest_here)) break;
-          continue;
-        }
-        const double radii = query_.scan.hierarchy().view().radius(record) + query_.model.view().radius(q);
-        consider(results_.best[leaf.points.begin + i], approach.distance - radii, begin + steps * approach.at, q);
+        if (query_.witness) return keepWitness(leaf, pair);
+        keep(leaf, i, pair, approach, begin, steps);
+        left = mattering(leaf, i, left, motion);
       }
       if (isSettled(leaf, i, begin)) leaf.open &= ~(1u << i);
-      if (query_.closest && query_.radii == 0.0) {
-        NearestPoint& best = results_.best[leaf.points.begin + i];
-        best.reach = std::min(best.reach, roundUp(best.gap));
-        if (results_.bestBounds(leaf.points.begin + i, motion.interval->first))
-          leaf.lowerReach(voxel_frame_, i, best.reach, motion);
-      }
+      if (query_.closest && results_.bestBounds(leaf.points.begin + i, motion.interval->first))
+        leaf.lowerReach(voxel_frame_, i, results_.best[leaf.points.begin + i].reach, motion);
     }
   }
 
@@ -75,8 +69,70 @@ private:
   /// Whether nothing that a point meets from this time on changes an answer.
   bool isSettled(const LeafVisit& leaf, std::uint32_t i, double from) const
   {
-    return !query_.closest && !query_.witness && (results_.hit[leaf.slot] >> i & 1) != 0 &&
-           results_.firstOf(leaf.points.begin + i) <= from;
+    return !query_.closest && !query_.witness && isHit(leaf, i) && results_.firstOf(leaf.points.begin + i) <= from;
+  }
+
+  bool isHit(const LeafVisit& leaf, std::uint32_t i) const { return (results_.hit[leaf.slot] >> i & 1) != 0; }
+
+  /// How point i passes those of the model's leaf, in floats. Where these do not hold the lengths, all are near.
+  void pass(const LeafVisit& leaf, std::uint32_t i, const BoxLeaf& other, const ModelBox& box,
+            const VoxelMotion& motion)
+  {
+    if (!motion.squares || tree_.unit(box.voxel) != 1.0) {
+      passages_ = {firstBits(other.count), {}, {}};
+      return;
+    }
+    passPoints(leaf.segments, i, other.x(), other.y(), other.z(), other.count, tree_.shift(box.voxel).data(),
+               roundUp(query_.reach - unusedIn(motion)) + astrayIn(motion), motion.smallest, motion.rounding, passages_);
+  }
+
+  /// What the interval leaves of the tolerance's share for straying from its line.
+  double unusedIn(const VoxelMotion& motion) const { return std::max(0.0, query_.path.stray - motion.line_stray); }
+
+  /// How much farther apart a pair may be in floats than it is.
+  float astrayIn(const VoxelMotion& motion) const
+  {
+    return (motion.reach - static_cast<float>(motion.stray) - static_cast<float>(query_.reach)) + motion.rounding;
+  }
+
+  /// Those of `points` that can change an answer: all of them while no contact of point i is known, then those that it
+  /// may come near earlier, or as near as the best.
+  std::uint32_t mattering(const LeafVisit& leaf, std::uint32_t i, std::uint32_t points, const VoxelMotion& motion) const
+  {
+    if (points == 0 || query_.witness || !isHit(leaf, i)) return points;
+    const std::uint32_t point = leaf.points.begin + i;
+    const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
+    const auto part = steps > 0.0 ? roundUp((results_.firstOf(point) - begin) / steps) : 2.0f;
+    const float farthest = query_.closest ? results_.best[point].reach + astrayIn(motion) : -1.0f;
+    const float limit = query_.closest ? farthest * farthest * (1.0f + kRadiusMargin) : -1.0f;
+    return passages_.before(points, part, limit);
+  }
+
+  /// Of the others: it bounds what is left.
+  std::uint32_t nearest(std::uint32_t points) const
+  {
+    auto nearest = static_cast<std::uint32_t>(std::countr_zero(points));
+    for (std::uint32_t bits = points & (points - 1); bits != 0; bits &= bits - 1) {
+      const auto j = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (passages_.squared[j] < passages_.squared[nearest]) nearest = j;
+    }
+    return nearest;
+  }
+
+  /// A pair that comes near enough.
+  void keep(const LeafVisit& leaf, std::uint32_t i, const PointPair& pair, const ClosestApproach& approach,
+            double begin, double steps)
+  {
+    const std::uint32_t point = leaf.points.begin + i;
+    results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | 1u << i);
+    double& first = results_.first[point];
+    first = std::min(first, begin + steps * approach.enter);
+    results_.earliest = std::min(results_.earliest, first);
+    if (!query_.closest) return;
+    const double radii = query_.scan.hierarchy().view().radius(pair.a) + query_.model.view().radius(pair.b);
+    NearestPoint& best = results_.best[point];
+    consider(best, approach.distance - radii, begin + steps * approach.at, pair.b);
+    if (query_.radii == 0.0) best.reach = std::min(best.reach, roundUp(best.gap));
   }
 
   void keepWitness(LeafVisit& leaf, const PointPair& pair)
@@ -95,8 +151,10 @@ private:
   }
 
   const TrajectoryQuery& query_;
+  const BoxTree& tree_;
   const VoxelInModelFrame& voxel_frame_;
   VoxelResults& results_;
+  Passages<kLeafPoints> passages_{}; // of one point
 };
 
 } // namespace HWY_NAMESPACE

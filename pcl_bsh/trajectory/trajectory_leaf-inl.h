@@ -172,7 +172,7 @@ private:
       return push(leaf, model_.below(box), lanes, motion);
     }
     if (path_.is_swept)
-      sweepPast(leaf, lanes, clipped, box, motion);
+      swept_.compare(leaf, lanes, clipped, box, motion);
     else
       comparePoses(leaf, lanes, clipped, box, motion);
   }
@@ -211,19 +211,6 @@ private:
         }
       if (here != 0) at_pose_.compare(leaf, here, box, k, motion);
     }
-  }
-
-  /// Two leaves, at all instants.
-  void sweepPast(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped, const ModelBox& box,
-                 const VoxelMotion& motion)
-  {
-    const BoxLeaf other = box.points(tree_);
-    std::uint32_t near_points[kLeafPoints];
-    if (motion.squares && tree_.unit(box.voxel) == 1.0)
-      lanes = nearPoints(leaf, lanes, box, motion, clipped, near_points);
-    else
-      std::fill(std::begin(near_points), std::end(near_points), firstBits(other.count));
-    if (lanes != 0) swept_.compare(leaf, lanes, clipped, other, near_points, motion);
   }
 
   /// Bits of the leaf's points whose segments come near to points of the model's leaf, and when.

@@ -10,7 +10,7 @@
 
 #include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/query/acceptance.h>
-#include <pcl_bsh/simd/segment_lanes-inl.h>
+#include <pcl_bsh/simd/passing_points-inl.h>
 #include <pcl_bsh/trajectory/trajectory_query.h>
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 
