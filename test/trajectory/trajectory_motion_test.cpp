@@ -272,6 +272,41 @@ TEST(TrajectoryMotion, TrueWhereSurfacesGraze)
     }
 }
 
+/// Floats do not hold the squares of the smallest lengths, nor, in the unit of the clouds, the largest: all pairs are
+/// compared there.
+TEST(TrajectoryMotion, IsTheSameAtAnyScale)
+{
+  const auto at = [](double scale) {
+    Random random(5);
+    const auto uniform = [&](std::size_t count, double reach) {
+      std::vector<Point3> points;
+      for (std::size_t i = 0; i < count; ++i)
+        points.push_back(random.point([&] { return random.uniform(-1, 1) * reach; }));
+      return Cloud(points, {Scalar::float64, 0, 0});
+    };
+    const Cloud wall = uniform(300, scale), body = uniform(60, 0.25 * scale);
+    Poses poses;
+    for (int k = 0; k < 6; ++k) poses.push_back(Eigen::Isometry3d(Eigen::Translation3d(0.4 * (k - 3) * scale, 0, 0)));
+    TrajectoryRequest request;
+    request.clearance = 0.05 * scale;
+    request.swept = 0.01 * scale;
+    request.first_poses = request.closest_poses = request.distances = true;
+    const SphereHierarchy scan(wall.view()), model(body.view());
+    return collideAlong({scan}, model, poses, request);
+  };
+  const TrajectoryResult one = at(1.0);
+  EXPECT_GT(one.colliding, 5u);
+  EXPECT_LT(one.colliding, 200u);
+  for (const double scale : {0x1p-70, 0x1p-60, 0x1p-45, 0x1p40, 0x1p60, 0x1p90}) {
+    SCOPED_TRACE(scale);
+    const TrajectoryResult scaled = at(scale);
+    EXPECT_EQ(scaled.flags, one.flags);
+    EXPECT_EQ(scaled.first_pose, one.first_pose);
+    EXPECT_EQ(scaled.closest_point, one.closest_point);
+    EXPECT_NEAR(scaled.first_contact->fraction, one.first_contact->fraction, 1e-9);
+  }
+}
+
 /// A model point at (1, 0, 0), under a pose that shrinks by 2.8e-7, which is accepted.
 TEST(TrajectoryMotion, IncludesGivenPosesExactlyAsGiven)
 {
