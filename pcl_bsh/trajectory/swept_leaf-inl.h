@@ -83,7 +83,8 @@ private:
       return;
     }
     passPoints(leaf.segments, i, other.x(), other.y(), other.z(), other.count, tree_.shift(box.voxel).data(),
-               roundUp(query_.reach - unusedIn(motion)) + astrayIn(motion), motion.smallest, motion.rounding, passages_);
+               roundUp(query_.reach - unusedIn(motion)) + astrayIn(motion), motion.smallest, motion.rounding,
+               passages_);
   }
 
   /// What the interval leaves of the tolerance's share for straying from its line.
