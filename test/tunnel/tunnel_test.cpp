@@ -190,6 +190,29 @@ TEST(TightTunnel, ListsOfClashesAndSweptMotionAreAFewTimesTheWorkOfFlags)
   EXPECT_LT(work(), 3.3 * flags);
 }
 
+/// Where the model is dense along the way, a point collides with several of its points at each pose: one of them is
+/// enough, and another pair is compared only where it may be the nearest.
+TEST(TightTunnel, FewPairsOfADenseModelAreComparedAtEachPose)
+{
+  Size size = Size::atScale(0.01);
+  size.wagon *= 40;
+  size.poses *= 40;
+  const Passage run = makePassage(size, Course::tight);
+  const SphereHierarchy scan(viewOf(run.scan)), wagon(viewOf(run.wagon));
+  TrajectoryRequest request;
+  request.clearance = clearance;
+  request.first_poses = request.distances = request.closest_poses = request.pose_summaries = true;
+  const TrajectoryResult clashes = collideAlong({scan}, wagon, run.poses, request);
+  std::size_t contacts = 0;
+  for (const PoseSummary& pose : clashes.poses) contacts += pose.colliding_points;
+  EXPECT_GT(contacts, 10 * clashes.colliding);
+  EXPECT_LT(clashes.work.leaf_pairs, 1.8 * static_cast<double>(contacts)) << "2.6 if each is compared at its pose";
+  request.pose_summaries = false;
+  request.swept = 0.01;
+  const TrajectoryResult swept = collideAlong({scan}, wagon, run.poses, request);
+  EXPECT_LT(swept.work.exact_decisions, 12 * swept.colliding) << "24 if all that come near are judged";
+}
+
 TEST(TightTunnel, TenTimesThePosesAreLittleMoreWork)
 {
   EXPECT_LT(workAt(0.02, 10), 2.0 * workAt(0.02));
