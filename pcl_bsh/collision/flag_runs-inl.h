@@ -11,6 +11,7 @@
 #endif
 
 #include <pcl_bsh/collision/flag_leaf-inl.h>
+#include <pcl_bsh/collision/obstacle_boxes-inl.h>
 #include <pcl_bsh/hierarchy/local_points-inl.h>
 
 #include <utility>
@@ -40,7 +41,8 @@ public:
     query_(query),
     sink_(sink),
     work_(work),
-    slack_(storedSlack(voxel.frame))
+    slack_(roundUp(storedSlack(voxel.frame))),
+    boxes_(obstacles)
   {
   }
 
@@ -89,7 +91,9 @@ private:
   bool isTooWide() const
   {
     const ObstacleVoxel& obstacle = obstacles_.front();
-    return !(around_.radius * obstacle.frame.stretch_a <= kWidestGroup * obstacle.sure_reach);
+    const float(&half)[3] = around_.half;
+    const float radius = std::sqrt((half[0] * half[0] + half[1] * half[1]) + half[2] * half[2]);
+    return !(radius * obstacle.frame.stretch_a <= kWidestGroup * obstacle.sure_reach);
   }
 
   /// Flags a group of points: first by the leaf of b that hit the group before it, then voxel by voxel of b.
@@ -117,8 +121,13 @@ private:
     begun_ = true;
     const ObstacleVoxel* const before = hit_in_;
     if (before && flagIn(*before)) return;
-    for (const ObstacleVoxel& obstacle : obstacles_)
-      if (&obstacle != before && flagIn(obstacle)) return;
+    work_.node_pairs += boxes_.count();
+    const std::uint64_t near = boxes_.near(around_);
+    for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+      const ObstacleVoxel& obstacle = obstacles_[k];
+      const bool may_be_near = k >= 64 || (near >> k & 1) != 0;
+      if (may_be_near && &obstacle != before && flagIn(obstacle)) return;
+    }
   }
 
   /// What collides with one voxel of b. The leaf that a point is nearest to settles its neighbours, where most points
@@ -128,8 +137,7 @@ private:
   {
     const Node& root = obstacle.voxel->nodes[0];
     approach(obstacle);
-    work_.node_pairs += root.count;
-    if ((nearOf(obstacle, root, ball_, nullptr) & firstBits(root.count)) == 0) return false;
+    if (nearBox(obstacle, root) == 0) return false;
     carryTo(obstacle);
     for (int before = 2 * kLeafPoints; open_ != 0 && 2 * std::popcount(open_) <= before;) {
       before = std::popcount(open_);
@@ -137,8 +145,10 @@ private:
       seek(obstacle, root, {carried_.x[target], carried_.y[target], carried_.z[target], obstacle.prune_reach, 0.0f});
     }
     if (open_ == 0 || isTooMuch()) return true;
-    enclose();
-    approach(obstacle);
+    if (open_ != enclosed_) {
+      enclose();
+      approach(obstacle);
+    }
     collect(obstacle, root);
     compareCollected(obstacle);
     return open_ == 0 || isTooMuch();
@@ -151,11 +161,11 @@ private:
     return static_cast<std::uint32_t>(std::countr_zero(bits));
   }
 
-  /// The sphere around the open points.
+  /// The box around the open points. Points follow each other in a line mostly: a sphere would hold far more.
   void enclose()
   {
     const LaneTag d;
-    const auto middle = [&](const float* values) {
+    const auto middle = [&](const float* values, float& half) {
       LaneVector low = hn::Set(d, std::numeric_limits<float>::max()), high = hn::Neg(low);
       for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
         const auto is_open = laneMask(d, open_ >> i);
@@ -163,17 +173,14 @@ private:
         low = hn::Min(low, hn::IfThenElse(is_open, value, low));
         high = hn::Max(high, hn::IfThenElse(is_open, value, high));
       }
-      return 0.5f * hn::GetLane(hn::MinOfLanes(d, low)) + 0.5f * hn::GetLane(hn::MaxOfLanes(d, high));
+      const float least = hn::GetLane(hn::MinOfLanes(d, low)), most = hn::GetLane(hn::MaxOfLanes(d, high));
+      const float center = 0.5f * least + 0.5f * most;
+      half = std::max(most - center, center - least) * (1.0f + kRadiusMargin) + slack_;
+      return center;
     };
-    around_.center = {middle(stored_.x), middle(stored_.y), middle(stored_.z)};
-    LaneVector most = hn::Zero(d);
-    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
-      const LaneVector squared = squaredNorm(hn::Sub(hn::Load(d, stored_.x + i), hn::Set(d, around_.center.x)),
-                                             hn::Sub(hn::Load(d, stored_.y + i), hn::Set(d, around_.center.y)),
-                                             hn::Sub(hn::Load(d, stored_.z + i), hn::Set(d, around_.center.z)));
-      most = hn::Max(most, hn::IfThenElseZero(laneMask(d, open_ >> i), squared));
-    }
-    around_.radius = roundUp(radiusOver(hn::GetLane(hn::MaxOfLanes(d, most)), slack_));
+    around_.center = {middle(stored_.x, around_.half[0]), middle(stored_.y, around_.half[1]),
+                      middle(stored_.z, around_.half[2])};
+    enclosed_ = open_;
   }
 
   static hn::Mask<LaneTag> laneMask(LaneTag d, std::uint32_t bits)
@@ -182,13 +189,11 @@ private:
     return hn::LoadMaskBits(d, lowest);
   }
 
-  /// Takes the sphere into an obstacle's frame.
+  /// Takes the box into an obstacle's frame.
   void approach(const ObstacleVoxel& obstacle)
   {
-    const RelativeFrame& frame = obstacle.frame;
-    const Point center = carryPoint(frame.m.data(), frame.g.data(), around_.center);
+    seen_ = carryBox(obstacle.frame, around_);
     ++work_.volumes_carried;
-    ball_ = {center.x, center.y, center.z, around_.radius * frame.stretch_a + obstacle.prune_reach, 0.0f};
   }
 
   void carryTo(const ObstacleVoxel& obstacle)
@@ -199,9 +204,16 @@ private:
     carried_to_ = &obstacle;
   }
 
-  static std::uint32_t nearOf(const ObstacleVoxel& obstacle, const Node& node, const QueryBall& ball, float* gap)
+  /// Bits of a node's children that the open points may be near.
+  std::uint32_t nearBox(const ObstacleVoxel& obstacle, const Node& node)
   {
-    return spheresNear({node.x, node.y, node.z, node.r, obstacle.frame.stretch_b}, ball, gap);
+    work_.node_pairs += node.count;
+    return spheresNearBox(spheresOf(obstacle, node), seen_, obstacle.prune_reach) & firstBits(node.count);
+  }
+
+  static SphereLanes spheresOf(const ObstacleVoxel& obstacle, const Node& node)
+  {
+    return {node.x, node.y, node.z, node.r, obstacle.frame.stretch_b};
   }
 
   /// Compares the open points with the leaves below a node that are near the ball, the nearest first, until some
@@ -210,7 +222,7 @@ private:
   {
     alignas(32) float gap[kLanes];
     work_.node_pairs += node.count;
-    std::uint32_t near = nearOf(obstacle, node, ball, gap) & firstBits(node.count);
+    std::uint32_t near = spheresNear(spheresOf(obstacle, node), ball, gap) & firstBits(node.count);
     while (near != 0 && !isTooMuch()) {
       const std::uint32_t lane = smallestLane(gap, near);
       near &= ~(1u << lane);
@@ -225,9 +237,7 @@ private:
   /// is too much.
   void collect(const ObstacleVoxel& obstacle, const Node& node)
   {
-    work_.node_pairs += node.count;
-    for (std::uint32_t near = nearOf(obstacle, node, ball_, nullptr) & firstBits(node.count);
-         near != 0 && open_ != 0 && !isTooMuch(); near &= near - 1) {
+    for (std::uint32_t near = nearBox(obstacle, node); near != 0 && open_ != 0 && !isTooMuch(); near &= near - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
       if (!node.isLeaf(lane)) {
         collect(obstacle, obstacle.voxel->nodes[node.child[lane]]);
@@ -310,7 +320,8 @@ private:
   const FlagQuery& query_;
   Sink& sink_;
   Work& work_;
-  const double slack_;
+  const float slack_;
+  const ObstacleBoxes boxes_;
 
   std::uint64_t allowed_ = 0; ///< steps
   bool begun_ = false, given_up_ = false;
@@ -318,8 +329,9 @@ private:
   LeafPoints stored_, carried_; ///< the group, in the frames of its voxel and of an obstacle
   const ObstacleVoxel* carried_to_ = nullptr;
   std::uint32_t open_ = 0; ///< bits of those that are not flagged
-  BoundingSphere around_;  ///< of the open points, or more, in the frame of their voxel
-  QueryBall ball_;         ///< the same in an obstacle's frame, as far as its points matter
+  QueryBox around_;        ///< of the points in `enclosed_`, in the frame of their voxel
+  std::uint32_t enclosed_ = 0;
+  QueryBox seen_; ///< the same in an obstacle's frame
   const ObstacleVoxel* hit_in_ = nullptr;
   LeafRange hit_leaf_; ///< the last one that points collided with
   NearLeaf near_[kMostCollected];

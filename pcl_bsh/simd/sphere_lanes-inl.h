@@ -180,6 +180,33 @@ HWY_INLINE std::uint32_t spheresNear(const SphereLanes& spheres, const QueryBall
   return apart ^ ((1u << kLanes) - 1);
 }
 
+/// The points within `half` of a centre along each axis, in the frame of spheres that it is compared with.
+struct QueryBox {
+  Point center;
+  float half[3];
+};
+
+/// Bit i: sphere i is not proven to be farther than `reach` from the box. As nearLimit() has it; the margins of the
+/// centre's distance and of the box pay for the rounding of differences.
+HWY_INLINE std::uint32_t spheresNearBox(const SphereLanes& spheres, const QueryBox& box, float reach)
+{
+  const LaneTag d;
+  const auto beside = [d](const float* places, float at, float half) HWY_ATTR {
+    const LaneVector away = hn::Abs(hn::Sub(hn::LoadU(d, places), hn::Set(d, at)));
+    const LaneVector less = hn::Set(d, 1.0f - kSphereMargin);
+    return hn::Max(hn::Sub(hn::Mul(away, less), hn::Set(d, half * (1.0f + kSphereMargin))), hn::Zero(d));
+  };
+  std::uint32_t apart = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const LaneVector s =
+        squaredNorm(beside(spheres.x + i, box.center.x, box.half[0]), beside(spheres.y + i, box.center.y, box.half[1]),
+                    beside(spheres.z + i, box.center.z, box.half[2]));
+    const LaneVector radius = hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch));
+    apart |= bitsOf(d, hn::Gt(s, nearLimit(radius, hn::Set(d, reach), hn::Set(d, 1.0f + kSphereMargin)))) << i;
+  }
+  return apart ^ ((1u << kLanes) - 1);
+}
+
 /// Bit i: (x, y, z) is not proven to be farther than reaches[i] + more from the centre of sphere i; proven it is where
 /// that sum is below 0. As nearLimit() has it, both rounded outward. @param gap as spheresNear() has it, or null
 HWY_INLINE std::uint32_t spheresNearEach(const SphereLanes& spheres, const float* reaches, const Point& to, float more,

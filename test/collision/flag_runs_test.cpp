@@ -123,6 +123,69 @@ TEST(FlagRuns, OfASubsetInShortRuns)
   }
 }
 
+/// Rows of sixteen in any direction, and obstacles in their line, near to their last point alone.
+struct Rows {
+  std::vector<Point3> points, beyond;
+
+  Rows(std::size_t count, double away, double scale, Random& random)
+  {
+    for (std::size_t row = 0; row < count; ++row) {
+      const Eigen::Vector3d along =
+          Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+      const Eigen::Vector3d from(60.0 * static_cast<double>(row % 8), 60.0 * static_cast<double>(row / 8), 0.0);
+      const auto at = [&](double k) {
+        const Eigen::Vector3d place = scale * (from + k * along);
+        return Point3{place.x(), place.y(), place.z()};
+      };
+      for (int k = 0; k < 16; ++k) points.push_back(at(k));
+      points.push_back(Point3{std::numeric_limits<double>::quiet_NaN(), 0, 0}); // no group has points of two rows
+      beyond.push_back(at(15 + away));
+      beyond.push_back(at(15 + away + (row % 2 == 0 ? 0.25 : 5.0))); // voxels of two points, near and apart
+    }
+  }
+};
+
+TEST(FlagRuns, ReachBeyondTheEndsOfRows)
+{
+  Random random(76);
+  for (const double edge : {20.0, 1000.0}) {
+    const Rows rows(64, 4.0, 1.0, random);
+    const Cloud a(rows.points), b(rows.beyond);
+    EXPECT_GT(expectFlags(a, b, random.pose(10), random.pose(10), 4.001, withEdge(edge), "elsewhere"), 0u);
+    const Eigen::Isometry3d pose = random.pose(10);
+    EXPECT_GT(expectFlags(a, b, pose, pose, 4.001, withEdge(edge), "edge " + std::to_string(edge)), 0u);
+    const SphereHierarchy ha(a.view(), withEdge(edge)), hb(b.view());
+    EXPECT_EQ(collisionFlags({ha, pose}, {hb, pose}, within(4.001)).colliding_a, 64u);
+  }
+}
+
+/// More obstacles than are tested at once, which cover one voxel of a.
+TEST(FlagRuns, AmongManyObstacles)
+{
+  Random random(77);
+  const Rows rows(64, 4.0, 1.0, random);
+  const Cloud a(rows.points), b(rows.beyond);
+  const SphereHierarchy ha(a.view(), withEdge(1000)), hb(b.view(), withEdge(1));
+  ASSERT_GT(hb.statistics().voxels, 70u);
+  const FlagsResult found = collisionFlags({ha}, {hb}, within(4.001));
+  EXPECT_EQ(found.a, brute_force::collisionFlags({ha}, {hb}, within(4.001)).a);
+  EXPECT_EQ(found.colliding_a, 64u);
+  EXPECT_EQ(ha.statistics().voxels_built, 0u);
+}
+
+/// Voxels of a large cloud have frames of their own units.
+TEST(FlagRuns, AmongObstaclesOfOtherUnits)
+{
+  Random random(78);
+  const double scale = 0x1p70;
+  const Rows rows(64, 4.0, scale, random);
+  const Cloud a(rows.points, {Scalar::float64}), b(rows.beyond, {Scalar::float64});
+  const SphereHierarchy ha(a.view(), withEdge(1000 * scale)), hb(b.view(), withEdge(30 * scale));
+  const FlagsResult found = collisionFlags({ha}, {hb}, within(4.001 * scale));
+  EXPECT_EQ(found.a, brute_force::collisionFlags({ha}, {hb}, within(4.001 * scale)).a);
+  EXPECT_EQ(found.colliding_a, 64u);
+}
+
 TEST(FlagRuns, BuildATreeForTheSecondQuery)
 {
   Random random(73);
