@@ -53,6 +53,9 @@ class CloudBoxes {
 public:
   explicit CloudBoxes(const PointsView& points);
 
+  /// The box about points that are not at hand.
+  explicit CloudBoxes(const Bounds& box) : whole_(box), parts_{box} {}
+
   bool empty() const noexcept { return parts_.empty(); }
   const Bounds& whole() const { return *whole_; } ///< @pre not empty
   const std::vector<Bounds>& parts() const noexcept { return parts_; }

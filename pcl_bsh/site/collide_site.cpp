@@ -5,11 +5,10 @@
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/inquiry.h>
 #include <pcl_bsh/site/needed_tiles.h>
-#include <pcl_bsh/trajectory/add_summary.h>
+#include <pcl_bsh/site/passage_sum.h>
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace pcl_bsh::sites {
 
@@ -20,68 +19,6 @@ SiteRequest measured(SiteRequest request)
 {
   request.uncertainty = {};
   return request;
-}
-
-/// Refuses what the query would refuse of the whole site, although no tile may be asked: the site's corners are.
-void refuse(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
-            const TrajectoryRequest& request)
-{
-  std::vector<Point3> corners;
-  if (site.bounds) corners = {site.bounds->low, site.bounds->high};
-  const SphereHierarchy scan(viewOf(corners.empty() ? nullptr : corners.front().data(), corners.size()));
-  pcl_bsh::collideAlong({scan}, model, poses, request);
-}
-
-/// Its number, as those of poses, is exact as a double.
-constexpr FirstContact no_contact = {std::size_t{1} << 53, 1.0};
-
-FirstContact earlier(const FirstContact& a, const FirstContact& b)
-{
-  return std::pair(b.pose, b.fraction) < std::pair(a.pose, a.fraction) ? b : a;
-}
-
-/// @pre one of them is a contact
-FirstContact earliestOfAllRanks(const FirstContact& own)
-{
-  const double pose = leastOfAllRanks(static_cast<double>(own.pose));
-  const bool mine = static_cast<double>(own.pose) == pose;
-  return {static_cast<std::size_t>(pose), leastOfAllRanks(mine ? own.fraction : 1.0)};
-}
-
-/// What `more` says of other points of the site, too.
-void add(std::vector<PoseSummary>& poses, const std::vector<PoseSummary>& more)
-{
-  poses.resize(std::max(poses.size(), more.size()));
-  for (std::size_t k = 0; k < more.size(); ++k) addSummary(poses[k], more[k]);
-}
-
-void append(std::vector<double>& numbers, const std::vector<PoseSummary>& poses)
-{
-  for (const PoseSummary& pose : poses) {
-    numbers.insert(numbers.end(), {pose.colliding ? 1.0 : 0.0, static_cast<double>(pose.colliding_points),
-                                   static_cast<double>(pose.undecided_points), pose.distance});
-  }
-}
-
-std::vector<PoseSummary> posesOf(const std::vector<double>& numbers, std::size_t begin, std::size_t end)
-{
-  std::vector<PoseSummary> poses;
-  for (std::size_t i = begin; i < end; i += 4) {
-    poses.push_back({numbers[i] != 0.0, static_cast<std::size_t>(numbers[i + 1]),
-                     static_cast<std::size_t>(numbers[i + 2]), numbers[i + 3]});
-  }
-  return poses;
-}
-
-std::vector<PoseSummary> summedOverAllRanks(const std::vector<PoseSummary>& own)
-{
-  std::vector<double> numbers;
-  append(numbers, own);
-  const std::vector<double> all = gatheredFromAllRanks(numbers);
-  std::vector<PoseSummary> sum;
-  for (std::size_t begin = 0; begin < all.size(); begin += numbers.size())
-    add(sum, posesOf(all, begin, begin + numbers.size()));
-  return sum;
 }
 
 } // namespace
@@ -237,66 +174,20 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
 SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
                          const SiteRequest& request, const PassageSink& sink)
 {
-  TrajectoryRequest wanted;
-  wanted.clearance = request.clearance;
-  wanted.accuracy = request.accuracy;
-  wanted.threads = request.threads;
-  const bool measures = !request.accuracy.stopsEarly();
-  wanted.distances = wanted.first_poses = wanted.closest_poses = measures;
-  wanted.swept = request.swept;
-  wanted.pivot = request.pivot;
-  wanted.pose_summaries = request.pose_summaries;
-  refuse(site, model, poses, wanted);
+  const TrajectoryRequest wanted = alongPath(request);
+  refusePassage(site, model, poses, wanted);
   requireUncertainty(site, request.uncertainty);
-
-  PathReach reach;
-  // Colliding is what comes within clearance + tolerance.
-  reach.distance = request.clearance + request.swept.value_or(0.0);
-  reach.moves = request.swept.has_value();
-  reach.pivot = request.pivot;
-  SitePassage result;
-  if (request.pose_summaries) result.poses.resize(poses.size());
-  double least = infinity, first = infinity;
-  FirstContact contact = no_contact, certain = no_contact;
+  PassageSum sum(request, poses.size());
   Inquiry inquiry(site, request);
   const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
-    double nearest = infinity, earliest = infinity;
-    for (std::size_t i = 0; i < found.distance.size(); ++i) {
-      if (found.flags[i] == 0) continue;
-      nearest = std::min(nearest, double{found.distance[i]});
-      earliest = std::min(earliest, static_cast<double>(found.first_pose[i]));
-    }
-    std::vector<double> numbers = {static_cast<double>(found.colliding), static_cast<double>(found.undecided), nearest,
-                                   earliest};
-    for (const auto& met : {found.first_contact, found.certain_contact})
-      numbers.insert(numbers.end(),
-                     {static_cast<double>(met.value_or(no_contact).pose), met.value_or(no_contact).fraction});
-    append(numbers, found.poses);
     if (sink) sink(tile, cloud, found);
-    return numbers;
+    return PassageSum::numbersOf(found);
   };
-  const auto add_tile = [&](const std::vector<double>& numbers) {
-    result.colliding += static_cast<std::uint64_t>(numbers[0]);
-    result.undecided += static_cast<std::uint64_t>(numbers[1]);
-    least = std::min(least, numbers[2]);
-    first = std::min(first, numbers[3]);
-    contact = earlier(contact, {static_cast<std::size_t>(numbers[4]), numbers[5]});
-    certain = earlier(certain, {static_cast<std::size_t>(numbers[6]), numbers[7]});
-    add(result.poses, posesOf(numbers, 8, numbers.size()));
-  };
-  result.tiles = inquiry.visitAndAdd(tilesAlong(site, model, poses, reach, request.uncertainty), find, add_tile);
-  result.colliding = sumOfAllRanks(result.colliding);
-  result.undecided = sumOfAllRanks(result.undecided);
-  if (request.pose_summaries) result.poses = summedOverAllRanks(result.poses);
-  least = leastOfAllRanks(least);
-  first = leastOfAllRanks(first);
-  if (measures && result.colliding + result.undecided > 0) {
-    result.distance = static_cast<float>(least);
-    result.first_pose = static_cast<std::int32_t>(first);
-    if (request.swept) result.first_contact = earliestOfAllRanks(contact);
-  }
-  if (sumOfAllRanks(certain.pose == no_contact.pose ? 0 : 1) > 0) result.certain_contact = earliestOfAllRanks(certain);
+  const std::vector<std::uint32_t> tiles = tilesAlong(site, model, poses, pathReach(request), request.uncertainty);
+  const TilesRead read = inquiry.visitAndAdd(tiles, find, [&](const auto& numbers) { sum.add(numbers); });
+  SitePassage result = sum.ofAllRanks();
+  result.tiles = read;
   return result;
 }
 

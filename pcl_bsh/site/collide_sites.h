@@ -58,6 +58,11 @@ struct SitePairDistances {
   TilesRead tiles, tiles_b;
 };
 
+/// What a site meets of another one that moves along a path.
+struct SitePairPassage : SitePassage {
+  TilesRead tiles_b;
+};
+
 /// Called for each tile of the first site that was read, with its points and the distance of each, NaN where it has
 /// none.
 using PairDistancesSink =
@@ -85,6 +90,16 @@ SitePairClosest closestPair(const Site& site, const PlacedSite& b, const SiteReq
 /// @throws std::invalid_argument also for an accuracy that stops early
 SitePairDistances pointDistances(const Site& site, const PlacedSite& b, double max_distance, const SiteRequest& request,
                                  const PairDistancesSink& sink = nullptr);
+
+/// The site `model` along its poses, in the first site's frame: flags, distances, first and closest poses of each point
+/// of the first site; flags alone where the accuracy stops early. Of tiles of the model those are read that come near a
+/// tile of the first on their way.
+/// @param model_uncertainty as PlacedSite has it
+/// @throws std::invalid_argument also for poses and a tolerance that no tile is asked about, and for pose summaries: of
+///   several tiles of the model, each counts the points that it meets
+SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertainty& model_uncertainty,
+                             const std::vector<Eigen::Isometry3d>& poses, const SiteRequest& request,
+                             const PassageSink& sink = nullptr);
 
 } // namespace pcl_bsh::sites
 PCL_BSH_EXPORT_END

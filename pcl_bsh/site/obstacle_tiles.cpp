@@ -60,10 +60,15 @@ const pcl::PCLPointCloud2& ObstacleTiles::load(std::uint32_t i)
   return kept_.front().second;
 }
 
+PointsView ObstacleTiles::points(std::uint32_t i)
+{
+  needed_.insert(i);
+  return Inquiry::pointsOf(load(i), site_.site, tile(i), site_.uncertainty);
+}
+
 PointsView ObstacleTiles::cut(std::uint32_t i, const Bounds& box, double distance, std::vector<std::int32_t>& indices)
 {
-  PointsView points = Inquiry::pointsOf(load(i), site_.site, tile(i), site_.uncertainty);
-  needed_.insert(i);
+  PointsView points = this->points(i);
   const PointsNear is_near(box, distance + straying(tile(i), site_.uncertainty), *tile(i).bounds, site_.pose);
   indices.clear();
   indices.reserve(points.count);

@@ -26,7 +26,10 @@ public:
   /// are the tile's, is good until `indices` or this changes.
   PointsView cut(std::uint32_t tile, const Bounds& box, double distance, std::vector<std::int32_t>& indices);
 
-  /// The tile that was cut last.
+  /// All points of a tile, likewise.
+  PointsView points(std::uint32_t tile);
+
+  /// The tile that was asked for last.
   const pcl::PCLPointCloud2& last() const { return kept_.front().second; }
 
   const PlacedSite& site() const noexcept { return site_; }

@@ -80,6 +80,9 @@ protected:
     return point.record + (point.source == 0 ? 0 : points.size() / 3);
   }
 
+  void expectSamePassage(const Points& a, const Points& b, const std::vector<Eigen::Isometry3d>& poses,
+                         double clearance, double uncertainty);
+
   /// Compares all questions with those of one hierarchy for each, for several tilings of both.
   void expectSameAnswers(const Points& a, const Points& b, const Eigen::Isometry3d& pose, double clearance,
                          double uncertainty_a = 0.0, double uncertainty_b = 0.0)
@@ -189,6 +192,124 @@ TEST_F(CollideSites, NearTies)
   expectSameAnswers(a, b, Eigen::Isometry3d::Identity(), 1.0);
 }
 
+/// Compares the site b along a path with one hierarchy for each, for several tilings of both.
+void CollideSites::expectSamePassage(const Points& a, const Points& b, const std::vector<Eigen::Isometry3d>& poses,
+                                     double clearance, double uncertainty)
+{
+  PointsView view_a = viewOf(a.front().data(), a.size()), view_b = viewOf(b.front().data(), b.size());
+  view_a.uncertainty = view_b.uncertainty = uncertainty;
+  const SphereHierarchy all_a(view_a), all_b(view_b);
+  TrajectoryRequest wanted;
+  wanted.clearance = clearance;
+  wanted.distances = wanted.first_poses = wanted.closest_poses = true;
+  const TrajectoryResult right = pcl_bsh::collideAlong({all_a}, all_b, poses, wanted);
+  EXPECT_GT(right.colliding + right.undecided, 20u);
+  const std::uint64_t tilings[][2] = {{100000, 100000}, {300, 70}, {30, 900}};
+  for (const auto& tiling : tilings) {
+    SCOPED_TRACE(std::to_string(tiling[0]) + " and " + std::to_string(tiling[1]));
+    const Site site = siteOf("a", a, tiling[0]), other = siteOf("b", b, tiling[1]);
+    SiteRequest request;
+    request.clearance = clearance;
+    request.uncertainty.length = uncertainty;
+    TrajectoryResult found = right;
+    std::fill(found.flags.begin(), found.flags.end(), 0);
+    std::fill(found.distance.begin(), found.distance.end(), std::numeric_limits<float>::quiet_NaN());
+    std::fill(found.first_pose.begin(), found.first_pose.end(), -1);
+    std::fill(found.closest_pose.begin(), found.closest_pose.end(), -1);
+    const SitePairPassage passage = collideAlong(site, other, request.uncertainty, poses, request,
+                                                 [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
+                                                   for (std::uint32_t i = 0; i < cloud.width; ++i) {
+                                                     const std::size_t place = placeOf(cloud, i, a);
+                                                     found.flags[place] = result.flags[i];
+                                                     found.distance[place] = result.distance[i];
+                                                     found.first_pose[place] = result.first_pose[i];
+                                                     found.closest_pose[place] = result.closest_pose[i];
+                                                   }
+                                                 });
+    EXPECT_EQ(found.flags, right.flags);
+    EXPECT_EQ(found.first_pose, right.first_pose);
+    EXPECT_EQ(found.closest_pose, right.closest_pose);
+    EXPECT_THAT(found.distance, testing::Pointwise(testing::NanSensitiveFloatEq(), right.distance));
+    EXPECT_EQ(passage.colliding, right.colliding);
+    EXPECT_EQ(passage.undecided, right.undecided);
+    float least = std::numeric_limits<float>::infinity();
+    for (const float distance : right.distance) least = std::fmin(least, distance);
+    EXPECT_EQ(passage.distance, least);
+    EXPECT_EQ(passage.tiles.read, passage.tiles.needed);
+  }
+}
+
+std::vector<Eigen::Isometry3d> pathOver(std::size_t count, double step, double turn, double height)
+{
+  std::vector<Eigen::Isometry3d> poses;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double way = step * static_cast<double>(k);
+    poses.push_back(Eigen::Translation3d(way - 4, 0.3 * way, height) *
+                    Eigen::AngleAxisd(turn * way, Eigen::Vector3d(0.2, 0.1, 1).normalized()));
+  }
+  return poses;
+}
+
+TEST_F(CollideSites, AlongAPath)
+{
+  Points body = floorOf(500, 14);
+  for (Point3& p : body) p = {0.2 * p[0], 0.2 * p[1], 0.2 * p[2]};
+  expectSamePassage(floorOf(2000, 13), body, pathOver(25, 0.3, 0.2, 0.4), 0.3, 0.0);
+  expectSamePassage(floorOf(2000, 13), body, pathOver(25, 0.3, 0.2, 0.4), 0.3, 0.02);
+  expectSamePassage(floorOf(2000, 15), body, pathOver(1, 0.0, 0.0, 0.1), 0.5, 0.0);
+}
+
+/// A row passes another one: each point is as near to all tiles of the body, one pose after another. Where the height
+/// differs by less than a float tells, exact arithmetic chooses the pose.
+TEST_F(CollideSites, AlongAPathOfTies)
+{
+  Points row, body;
+  for (int i = 0; i < 90; ++i) row.push_back({double(i), 0, 0});
+  for (int i = 0; i < 75; ++i) body.push_back({double(i), 0, 0});
+  for (const double differs : {0.0, 1e-9, -1e-9}) {
+    std::vector<Eigen::Isometry3d> poses;
+    for (int k = 0; k < 40; ++k)
+      poses.push_back(Eigen::Isometry3d(Eigen::Translation3d(k - 20, 0, 1.0 + differs * (k * 7 % 40))));
+    expectSamePassage(row, body, poses, 1.25, 0.0);
+  }
+}
+
+TEST_F(CollideSites, AlongAPathOfSweptMotion)
+{
+  Points body = floorOf(300, 16);
+  for (Point3& p : body) p = {0.1 * p[0], 0.1 * p[1], 0.1 * p[2]};
+  const Points a = floorOf(1500, 17);
+  const std::vector<Eigen::Isometry3d> poses = pathOver(6, 1.5, 0.3, 0.3);
+  const SphereHierarchy all_a(viewOf(a.front().data(), a.size())), all_b(viewOf(body.front().data(), body.size()));
+  const Site site = siteOf("a", a, 200), other = siteOf("b", body, 60);
+  SiteRequest request;
+  request.clearance = 0.2;
+  request.swept = 0.05;
+  TrajectoryRequest wanted;
+  wanted.clearance = request.clearance;
+  wanted.swept = 1e-4; // as good as exact here
+  const std::vector<std::uint8_t> least = pcl_bsh::collideAlong({all_a}, all_b, poses, wanted).flags;
+  wanted.clearance += *request.swept;
+  const std::vector<std::uint8_t> most = pcl_bsh::collideAlong({all_a}, all_b, poses, wanted).flags;
+  std::vector<std::uint8_t> found(a.size(), 0);
+  const SitePairPassage passage = collideAlong(site, other, {}, poses, request,
+                                               [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
+                                                 for (std::uint32_t i = 0; i < cloud.width; ++i)
+                                                   found[placeOf(cloud, i, a)] = result.flags[i];
+                                               });
+  EXPECT_GT(passage.colliding, 20u);
+  ASSERT_TRUE(passage.first_contact);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_LE(least[i], found[i]) << i;
+    EXPECT_LE(found[i], most[i]) << i;
+  }
+  request.pose_summaries = true;
+  EXPECT_THROW(collideAlong(site, other, {}, poses, request), std::invalid_argument);
+  request.pose_summaries = false;
+  request.clearance = -1.0;
+  EXPECT_THROW(collideAlong(site, other, {}, poses, request), std::invalid_argument);
+}
+
 TEST_F(CollideSites, ASiteAgainstItself)
 {
   const Points points = floorOf(1200, 5);
@@ -292,6 +413,7 @@ protected:
   }
 
   const Points a = floorOf(1500, 10), b = floorOf(1200, 11);
+  static constexpr auto poses_text = "1 0 0 0 0 1 0 0 0 0 1 0.5\n1 0 0 0 0 1 0 0 0 0 1 0.25\n1 0 0 0 0 1 0 0 0 0 1 0\n";
 };
 
 TEST_F(SitePairProgram, WritesWhatCollidesOfBoth)
@@ -327,11 +449,35 @@ TEST_F(SitePairProgram, WritesWhatCollidesOfBoth)
         << i;
 }
 
+TEST_F(SitePairProgram, WritesWhatCollidesAlongAPath)
+{
+  std::ofstream(folder / "poses.txt") << poses_text;
+  const Outcome outcome = collide("--clearance 0.05 --trajectory poses.txt --out found --report r.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const SphereHierarchy of_a(viewOf(a.front().data(), a.size())), of_b(viewOf(b.front().data(), b.size()));
+  std::vector<Eigen::Isometry3d> poses(3, Eigen::Isometry3d::Identity());
+  for (std::size_t k = 0; k < 3; ++k) poses[k].translation().z() = 0.25 * static_cast<double>(2 - k);
+  TrajectoryRequest wanted;
+  wanted.clearance = 0.05;
+  wanted.distances = wanted.first_poses = wanted.closest_poses = true;
+  const TrajectoryResult right = pcl_bsh::collideAlong({of_a}, of_b, poses, wanted);
+  EXPECT_EQ(valuesOf("found", "collision", a), std::vector<double>(right.flags.begin(), right.flags.end()));
+  EXPECT_EQ(valuesOf("found", "first_pose", a), std::vector<double>(right.first_pose.begin(), right.first_pose.end()));
+  EXPECT_EQ(valuesOf("found", "closest_pose", a),
+            std::vector<double>(right.closest_pose.begin(), right.closest_pose.end()));
+  const std::string report = files::contentOf(folder / "r.json");
+  EXPECT_THAT(report, HasSubstr("\"poses\": 3,"));
+  EXPECT_THAT(report, HasSubstr("\"colliding\": " + std::to_string(right.colliding) + ","));
+  EXPECT_THAT(report, HasSubstr("\"tiles_of_obstacle\""));
+}
+
 TEST_F(SitePairProgram, SaysTheSameOnTwoRanks)
 {
   if (!hasMpirun()) GTEST_SKIP() << "no mpirun";
-  for (const std::string question : {"--clearance 0.05 --out found --obstacle-out before_found", "--closest",
-                                     "--any --clearance 0.001", "--distances --out found"}) {
+  std::ofstream(folder / "poses.txt") << poses_text;
+  for (const std::string question :
+       {"--clearance 0.05 --out found --obstacle-out before_found", "--closest", "--any --clearance 0.001",
+        "--distances --out found", "--clearance 0.05 --trajectory poses.txt --out found"}) {
     const Outcome one = collide(question + " --report report.json");
     ASSERT_EQ(one.exit_code, 0) << one.err;
     fs::create_directory(folder / "one");
@@ -361,9 +507,6 @@ TEST_F(SitePairProgram, RefusesInOneLine)
     EXPECT_THAT(outcome.err, HasSubstr(line)) << arguments;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   };
-  std::ofstream(folder / "poses.txt") << "1 0 0 0 0 1 0 0 0 0 1 0\n";
-  expectRefused("--clearance 0.1 --trajectory poses.txt --report r.json", 2,
-                "--trajectory: OBSTACLE, before, is a site");
   expectRefused("--clearance 0.1 --clashes c.html", 2, "--clashes: OBSTACLE, before, is a site");
   expectRefused("--clearance 0.1 --report before/r.json", 2, "lies in the folder of OBSTACLE");
   expectRefused("--clearance 0.1 --obstacle-out before/found", 2, "lies in the folder of OBSTACLE");

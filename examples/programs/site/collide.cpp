@@ -83,17 +83,7 @@ Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const Poses
     request.pose_summaries = clashes.isWanted() && !options.swept;
     const sites::SitePassage found =
         sites::collideAlong(site, obstacle.hierarchy(), poses, request, clashes.after(out.passage()));
-    report["poses"] = poses.size();
-    report["colliding"] = found.colliding;
-    report["undecided"] = found.undecided;
-    report["distance"] = orNull(double{found.distance});
-    report["first_pose"] = found.first_pose < 0 ? Json(nullptr) : Json(found.first_pose);
-    if (options.swept) report["swept"] = *options.swept;
-    if (found.first_contact)
-      report["first_contact"] = {{"pose", found.first_contact->pose}, {"fraction", found.first_contact->fraction}};
-    if (found.certain_contact)
-      report["certain_contact"] = {{"pose", found.certain_contact->pose},
-                                   {"fraction", found.certain_contact->fraction}};
+    putPassage(report, found, poses.size(), options);
     if (clashes.isWanted()) report["clashes"] = clashes.finish(obstacle.hierarchy(), poses, found);
     put(report, found.tiles, run);
     break;
@@ -126,7 +116,7 @@ int answer(const SiteOptions& options)
   if (cloud)
     report = askOfCloud(site, *cloud, poses, options, output, clashes, run, step);
   else
-    report = askOfSite(site, options, output, run, step);
+    report = askOfSite(site, poses, options, output, run, step);
   if (tells) shown->done(report["tiles"]["read"].dump() + " tiles read");
   run.seconds = seconds();
   output.finish();

@@ -2,8 +2,6 @@
 #ifdef PCL_BSH_SITE_QUERIES
 #include "collide_sites.h"
 
-#include <stdexcept>
-
 namespace pcl_bsh::cli {
 
 namespace {
@@ -40,7 +38,8 @@ void askFlags(const sites::Site& site, const sites::PlacedSite& obstacle, const 
 
 } // namespace
 
-Json askOfSite(const sites::Site& site, const SiteOptions& options, SiteOutput& out, MeasuredRun& run, Step* step)
+Json askOfSite(const sites::Site& site, const Poses& poses, const SiteOptions& options, SiteOutput& out,
+               MeasuredRun& run, Step* step)
 {
   const sites::Site other = sites::readSite(options.obstacle);
   const sites::PlacedSite obstacle{other, options.pose, options.obstacle_uncertainty};
@@ -78,8 +77,15 @@ Json askOfSite(const sites::Site& site, const SiteOptions& options, SiteOutput& 
     putBoth(report, found, run);
     break;
   }
-  case SiteQuestion::path:
-    throw std::logic_error("OBSTACLE is a site: paths and clash lists are refused before");
+  case SiteQuestion::path: {
+    sites::SiteRequest moving = request;
+    moving.swept = options.swept;
+    const sites::SitePairPassage found =
+        sites::collideAlong(site, other, options.obstacle_uncertainty, poses, moving, out.passage());
+    putPassage(report, found, poses.size(), options);
+    putBoth(report, found, run);
+    break;
+  }
   }
   return report;
 }

@@ -9,6 +9,7 @@
 namespace pcl_bsh::cli {
 
 /// The answer, the same on all ranks. Writes the site of the obstacle's flags, where it is asked for.
-Json askOfSite(const sites::Site& site, const SiteOptions& options, SiteOutput& out, MeasuredRun& run, Step* step);
+Json askOfSite(const sites::Site& site, const Poses& poses, const SiteOptions& options, SiteOutput& out,
+               MeasuredRun& run, Step* step);
 
 } // namespace pcl_bsh::cli

@@ -169,8 +169,8 @@ struct CollideTexts {
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
     if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
     const bool two_sites = options.obstacleIsSite();
-    if (two_sites && (moves || lists)) {
-      throw UsageError(std::string(moves ? "--trajectory" : "--clashes") + ": OBSTACLE, " + options.obstacle.string() +
+    if (two_sites && lists) {
+      throw UsageError("--clashes: OBSTACLE, " + options.obstacle.string() +
                        ", is a site, for which this is not answered: give a cloud, or leave the option out");
     }
     const auto require_outside_sites = [&](const char* option, const std::filesystem::path& file) {

@@ -42,6 +42,21 @@ void putTiles(Json& report, const char* key, const sites::TilesRead& tiles)
   report[key] = {{"all", tiles.tiles}, {"needed", tiles.needed}, {"read", tiles.read}};
 }
 
+void putPassage(Json& report, const sites::SitePassage& found, std::size_t poses, const SiteOptions& options)
+{
+  report["poses"] = poses;
+  report["colliding"] = found.colliding;
+  report["undecided"] = found.undecided;
+  report["distance"] = orNull(double{found.distance});
+  report["first_pose"] = found.first_pose < 0 ? Json(nullptr) : Json(found.first_pose);
+  if (options.swept) report["swept"] = *options.swept;
+  const auto put_contact = [&](const char* key, const std::optional<FirstContact>& contact) {
+    if (contact) report[key] = {{"pose", contact->pose}, {"fraction", contact->fraction}};
+  };
+  put_contact("first_contact", found.first_contact);
+  put_contact("certain_contact", found.certain_contact);
+}
+
 Json named(const sites::Site& site, const sites::SitePoint& point)
 {
   return {{"source", site.sources.at(point.source).file}, {"record", point.record}};

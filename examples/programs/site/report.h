@@ -29,6 +29,9 @@ void putTiles(Json& report, const char* key, const sites::TilesRead& tiles);
 /// The tiles of the site asked about, and what they have cost.
 void put(Json& report, const sites::TilesRead& tiles, MeasuredRun& run);
 
+/// What a site meets along a path of so many poses.
+void putPassage(Json& report, const sites::SitePassage& found, std::size_t poses, const SiteOptions& options);
+
 /// A point of a site, by its name.
 Json named(const sites::Site& site, const sites::SitePoint& point);
 

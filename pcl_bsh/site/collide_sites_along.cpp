@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/site/collide_sites.h>
+#include <pcl_bsh/site/inquiry.h>
+#include <pcl_bsh/site/needed_tiles.h>
+#include <pcl_bsh/site/obstacle_tiles.h>
+#include <pcl_bsh/site/passage_sum.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <unordered_map>
+
+namespace pcl_bsh::sites {
+
+namespace {
+
+using Poses = std::vector<Eigen::Isometry3d>;
+
+/// What several models that move together meet of a scan.
+class JoinedResults {
+public:
+  JoinedResults(const PointsView& scan, const Poses& poses, const TrajectoryRequest& request)
+  : scan_(scan),
+    poses_(poses),
+    is_swept_(request.swept.has_value())
+  {
+    joined_.flags.assign(scan.count, flagOf(Verdict::free));
+    if (!request.distances) return;
+    joined_.distance.assign(scan.count, std::numeric_limits<float>::quiet_NaN());
+    joined_.first_pose.assign(scan.count, -1);
+    joined_.closest_pose.assign(scan.count, -1);
+  }
+
+  /// What one of them meets.
+  void add(const TrajectoryResult& found, const PointsView& model)
+  {
+    std::transform(joined_.flags.begin(), joined_.flags.end(), found.flags.begin(), joined_.flags.begin(), surer);
+    for (std::uint32_t i = 0; i < joined_.distance.size(); ++i) {
+      if (found.first_pose[i] < 0) continue;
+      std::int32_t& first = joined_.first_pose[i];
+      first = first < 0 ? found.first_pose[i] : std::min(first, found.first_pose[i]);
+      const Point3 nearest = model.point(found.closest_point[i]);
+      if (!isNearer(i, found, nearest)) continue;
+      joined_.distance[i] = found.distance[i];
+      joined_.closest_pose[i] = found.closest_pose[i];
+      nearest_[i] = nearest;
+    }
+    keepEarlier(joined_.first_contact, found.first_contact);
+    keepEarlier(joined_.certain_contact, found.certain_contact);
+  }
+
+  const TrajectoryResult& result()
+  {
+    const auto counted = [&](Verdict verdict) {
+      return static_cast<std::size_t>(std::count(joined_.flags.begin(), joined_.flags.end(), flagOf(verdict)));
+    };
+    joined_.colliding = counted(Verdict::colliding);
+    joined_.undecided = counted(Verdict::undecided);
+    return joined_;
+  }
+
+private:
+  /// Whether point i is nearer to this model, or as near at an earlier pose. Distances that are one float may differ:
+  /// exact arithmetic decides. Those of swept motion are not exact.
+  bool isNearer(std::uint32_t i, const TrajectoryResult& found, const Point3& nearest) const
+  {
+    const float before = joined_.distance[i], now = found.distance[i];
+    if (std::isnan(before) || now != before) return !(now > before);
+    const std::int32_t pose = found.closest_pose[i], pose_before = joined_.closest_pose[i];
+    int sign = 0;
+    if (!is_swept_) {
+      const ExactDistance at(Eigen::Isometry3d::Identity(), poses_[static_cast<std::size_t>(pose)]);
+      const ExactDistance at_before(Eigen::Isometry3d::Identity(), poses_[static_cast<std::size_t>(pose_before)]);
+      const Point3 p = scan_.point(i);
+      sign = at.compareGaps({p, nearest, 0.0, 0.0}, at_before, {p, nearest_.at(i), 0.0, 0.0});
+    }
+    return sign != 0 ? sign < 0 : pose < pose_before;
+  }
+
+  static void keepEarlier(std::optional<FirstContact>& kept, const std::optional<FirstContact>& other)
+  {
+    if (other) kept = kept ? earlier(*kept, *other) : *other;
+  }
+
+  const PointsView& scan_;
+  const Poses& poses_;
+  const bool is_swept_;
+  TrajectoryResult joined_;
+  std::unordered_map<std::uint32_t, Point3> nearest_; ///< of the points that meet something: where on the models
+};
+
+/// For each tile of a site the tiles of the model that may come near to it on their way.
+std::vector<std::vector<std::uint32_t>> tilesOfModelNear(const Site& site, const Uncertainty& uncertainty,
+                                                         const Site& model, const Uncertainty& of_model,
+                                                         const Poses& poses, const PathReach& reach)
+{
+  std::vector<std::vector<std::uint32_t>> near(site.tiles.size());
+  for (std::uint32_t j = 0; j < model.tiles.size(); ++j) {
+    if (!model.tiles[j].bounds) continue;
+    const CloudBoxes box(trueBounds(model.tiles[j], of_model));
+    const PathBoxes way(box, poses, reach);
+    for (std::uint32_t i = 0; i < site.tiles.size(); ++i)
+      if (site.tiles[i].bounds && way.mayReach(trueBounds(site.tiles[i], uncertainty))) near[i].push_back(j);
+  }
+  return near;
+}
+
+} // namespace
+
+SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertainty& model_uncertainty,
+                             const Poses& poses, const SiteRequest& request, const PassageSink& sink)
+{
+  if (request.pose_summaries)
+    throw std::invalid_argument("pose_summaries: are not answered of two sites: leave them out");
+  const TrajectoryRequest wanted = alongPath(request);
+  const std::vector<Point3> corners = cornersOf(model);
+  refusePassage(site, SphereHierarchy(viewOf(corners.empty() ? nullptr : corners.front().data(), corners.size())),
+                poses, wanted);
+  requireUncertainty(site, request.uncertainty);
+  Inquiry inquiry(site, request);
+  ObstacleTiles models({model, Eigen::Isometry3d::Identity(), model_uncertainty},
+                       request.memory - std::min(request.memory, inquiry.bytesForLargest()));
+  const auto near = tilesOfModelNear(site, request.uncertainty, model, model_uncertainty, poses, pathReach(request));
+  std::vector<std::uint32_t> tiles;
+  for (std::uint32_t i = 0; i < near.size(); ++i)
+    if (!near[i].empty()) tiles.push_back(i);
+
+  PassageSum sum(request, poses.size());
+  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+    JoinedResults joined(hierarchy.view(), poses, wanted);
+    for (const std::uint32_t j : near[static_cast<std::size_t>(&tile - site.tiles.data())]) {
+      const PointsView points = models.points(j);
+      joined.add(pcl_bsh::collideAlong({hierarchy}, SphereHierarchy(points, inquiry.building()), poses, wanted),
+                 points);
+    }
+    sum.add(PassageSum::numbersOf(joined.result()));
+    if (sink) sink(tile, cloud, joined.result());
+  };
+  SitePairPassage result;
+  const TilesRead read = inquiry.visit(tiles, ask);
+  static_cast<SitePassage&>(result) = sum.ofAllRanks();
+  result.tiles = read;
+  result.tiles_b = models.read();
+  return result;
+}
+
+} // namespace pcl_bsh::sites
