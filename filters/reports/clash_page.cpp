@@ -181,10 +181,11 @@ private:
     return Object{{"cards", cards}, {"most_pictures", all ? Data(false) : Data(std::to_string(most_pictures))}};
   }
 
-  std::string scanPointName(std::uint32_t number) const
+  static std::string nameOfPart(const std::function<SourcePoint(std::uint32_t)>& source_of, std::uint32_t number,
+                                std::uint32_t part)
   {
-    if (!report_.source_of) return std::to_string(number);
-    const SourcePoint point = report_.source_of(number);
+    if (!source_of) return std::to_string(part);
+    const SourcePoint point = source_of(number);
     return std::to_string(point.record) + " of " + plain(point.file);
   }
 
@@ -192,9 +193,10 @@ private:
   {
     const Eigen::Vector3d p = report_.scanPoint(clash);
     Object card = factsOf(clash);
-    card["scan_point"] = scanPointName(clash.scan_point);
+    card["scan_point"] = nameOfPart(report_.source_of, clash.scan_point, clash.scan_point);
     card["scan_place"] = coordinate(p.x()) + ", " + coordinate(p.y()) + ", " + coordinate(p.z());
-    card["model_part"] = report_.partName() + (' ' + std::to_string(report_.modelPart(clash)));
+    card["model_part"] =
+        report_.partName() + (' ' + nameOfPart(report_.model_source_of, clash.model_point, report_.modelPart(clash)));
     card["top_view"] = topView(clash);
     card["approach"] = approach(clash);
     return card;

@@ -14,6 +14,11 @@
 namespace pcl_bsh::io {
 namespace {
 
+Json sourceJson(const SourcePoint& point)
+{
+  return {{"source", point.file}, {"record", point.record}};
+}
+
 Json toJson(const ClashReport& report, const Clash& clash)
 {
   Json json = {{"id", clash.id},
@@ -29,12 +34,11 @@ Json toJson(const ClashReport& report, const Clash& clash)
     return named;
   };
   Json input = {{"point", clash.scan_point}};
-  if (report.source_of) {
-    const SourcePoint point = report.source_of(clash.scan_point);
-    input = {{"source", point.file}, {"record", point.record}};
-  }
+  if (report.source_of) input = sourceJson(report.source_of(clash.scan_point));
+  Json obstacle = {{report.partName(), report.modelPart(clash)}};
+  if (report.model_source_of) obstacle = sourceJson(report.model_source_of(clash.model_point));
   json["closest_pair"] = {{"input", side(input, report.scanPoint(clash))},
-                          {"obstacle", side({{report.partName(), report.modelPart(clash)}}, report.modelPoint(clash))}};
+                          {"obstacle", side(obstacle, report.modelPoint(clash))}};
   return json;
 }
 
@@ -108,10 +112,11 @@ std::string clashJson(const ClashReport& report)
 
 std::string clashCsv(const ClashReport& report)
 {
-  std::string csv = "id,status,points,distance,first_pose,closest_pose,min_x,min_y,min_z,max_x,max_y,max_z,"
-                    "input_" +
-                    std::string(report.source_of ? "source,input_record" : "point") +
-                    ",input_x,input_y,input_z,obstacle_" + report.partName() + ",obstacle_x,obstacle_y,obstacle_z\n";
+  std::string csv =
+      "id,status,points,distance,first_pose,closest_pose,min_x,min_y,min_z,max_x,max_y,max_z,"
+      "input_" +
+      std::string(report.source_of ? "source,input_record" : "point") + ",input_x,input_y,input_z,obstacle_" +
+      (report.model_source_of ? "source,obstacle_record" : report.partName()) + ",obstacle_x,obstacle_y,obstacle_z\n";
   const auto cell = [&](const std::string& text) { csv += (csv.back() == '\n' ? "" : ",") + text; };
   for (const Clash& clash : report.clashes) {
     cell(csvText(clash.id));
@@ -123,19 +128,18 @@ std::string clashCsv(const ClashReport& report)
     for (const Point3& corner : {clash.low, clash.high})
       for (const double coordinate : corner) cell(numberText(coordinate));
     if (clash.status == ClashStatus::resolved) {
-      csv += report.source_of ? ",,,,,,,,,\n" : ",,,,,,,,\n";
+      csv += std::string(8U + (report.source_of ? 1U : 0U) + (report.model_source_of ? 1U : 0U), ',') + '\n';
       continue;
     }
-    if (report.source_of) {
-      const SourcePoint point = report.source_of(clash.scan_point);
+    const auto cell_of = [&](const auto& source_of, std::uint32_t number, std::uint32_t part) {
+      if (!source_of) return cell(std::to_string(part));
+      const SourcePoint point = source_of(number);
       cell(csvText(point.file));
       cell(std::to_string(point.record));
-    }
-    else {
-      cell(std::to_string(clash.scan_point));
-    }
+    };
+    cell_of(report.source_of, clash.scan_point, clash.scan_point);
     for (const double coordinate : report.scanPoint(clash)) cell(numberText(coordinate));
-    cell(std::to_string(report.modelPart(clash)));
+    cell_of(report.model_source_of, clash.model_point, report.modelPart(clash));
     for (const double coordinate : report.modelPoint(clash)) cell(numberText(coordinate));
     csv += '\n';
   }

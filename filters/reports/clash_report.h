@@ -42,6 +42,8 @@ struct ClashReport {
   const Obstacle* surface = nullptr; ///< the obstacle, where it is one; `model` are its balls
   /// Of a point of `scan`, where the input is several files.
   std::function<SourcePoint(std::uint32_t)> source_of = nullptr;
+  /// The same of a point of `model`.
+  std::function<SourcePoint(std::uint32_t)> model_source_of = nullptr;
 
   /// Of the obstacle: a point, or a triangle.
   std::uint32_t modelPart(const Clash& clash) const

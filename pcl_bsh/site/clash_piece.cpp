@@ -9,7 +9,7 @@ namespace pcl_bsh::sites {
 
 namespace {
 
-constexpr std::size_t member_numbers = 9, piece_numbers = member_numbers + 10;
+constexpr std::size_t member_numbers = 9, piece_numbers = member_numbers + 14;
 
 /// Numbers of 32 bits, floats and numbers of points are exact as doubles.
 void write(std::vector<double>& out, const Member& member)
@@ -40,7 +40,8 @@ void write(std::vector<double>& out, const Piece& piece)
   out.insert(out.end(), clash.low.begin(), clash.low.end());
   out.insert(out.end(), clash.high.begin(), clash.high.end());
   out.push_back(clash.distance);
-  out.push_back(static_cast<double>(clash.model_point));
+  out.insert(out.end(), {static_cast<double>(piece.met.point.source), static_cast<double>(piece.met.point.record)});
+  out.insert(out.end(), piece.met.place.begin(), piece.met.place.end());
   out.push_back(static_cast<double>(clash.first_pose));
 }
 
@@ -54,8 +55,8 @@ Piece readPiece(const double* in)
   clash.low = {in[1], in[2], in[3]};
   clash.high = {in[4], in[5], in[6]};
   clash.distance = in[7];
-  clash.model_point = static_cast<std::uint32_t>(in[8]);
-  clash.first_pose = static_cast<std::int32_t>(in[9]);
+  piece.met = {{static_cast<std::uint32_t>(in[8]), static_cast<std::uint32_t>(in[9])}, {in[10], in[11], in[12]}};
+  clash.first_pose = static_cast<std::int32_t>(in[13]);
   clash.closest_pose = piece.nearest.closest_pose;
   return piece;
 }
@@ -104,9 +105,9 @@ void join(Piece& piece, const Piece& other)
   clash.first_pose = std::min(clash.first_pose, other.clash.first_pose);
   if (std::pair(clash.distance, piece.nearest.point) <= std::pair(other.clash.distance, other.nearest.point)) return;
   clash.distance = other.clash.distance;
-  clash.model_point = other.clash.model_point;
   clash.closest_pose = other.clash.closest_pose;
   piece.nearest = other.nearest;
+  piece.met = other.met;
 }
 
 void drawSome(std::vector<Member>& members, std::size_t most)

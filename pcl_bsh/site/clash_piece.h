@@ -20,6 +20,7 @@ struct Member {
 struct Piece {
   Clash clash;    ///< without records
   Member nearest; ///< its point of the closest pair
+  MetPoint met;   ///< the model's
 };
 
 /// Those of all ranks of an MPI job, on all of them.

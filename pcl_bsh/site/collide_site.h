@@ -92,6 +92,12 @@ struct SitePoint {
   bool operator==(const SitePoint& other) const noexcept { return source == other.source && record == other.record; }
 };
 
+/// A point of a site that another one meets.
+struct MetPoint {
+  SitePoint point;
+  Point3 place = {0, 0, 0}; ///< in its own site
+};
+
 /// Whether anything of a site collides.
 struct SiteAny {
   Verdict verdict = Verdict::free; ///< undecided only where points are uncertain, or the accuracy stops early

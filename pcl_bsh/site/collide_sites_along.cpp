@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/site/candidate.h>
 #include <pcl_bsh/site/collide_sites.h>
 #include <pcl_bsh/site/inquiry.h>
 #include <pcl_bsh/site/needed_tiles.h>
@@ -8,8 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
-#include <unordered_map>
 
 namespace pcl_bsh::sites {
 
@@ -33,14 +34,14 @@ public:
   }
 
   /// What one of them meets.
-  void add(const TrajectoryResult& found, const PointsView& model)
+  void add(const TrajectoryResult& found, const PointsView& model, const pcl::PCLPointCloud2& cloud)
   {
     std::transform(joined_.flags.begin(), joined_.flags.end(), found.flags.begin(), joined_.flags.begin(), surer);
     for (std::uint32_t i = 0; i < joined_.distance.size(); ++i) {
       if (found.first_pose[i] < 0) continue;
       std::int32_t& first = joined_.first_pose[i];
       first = first < 0 ? found.first_pose[i] : std::min(first, found.first_pose[i]);
-      const Point3 nearest = model.point(found.closest_point[i]);
+      const MetPoint nearest{nameOf(cloud, found.closest_point[i]), model.point(found.closest_point[i])};
       if (!isNearer(i, found, nearest)) continue;
       joined_.distance[i] = found.distance[i];
       joined_.closest_pose[i] = found.closest_pose[i];
@@ -50,8 +51,16 @@ public:
     keepEarlier(joined_.certain_contact, found.certain_contact);
   }
 
-  const TrajectoryResult& result()
+  /// @param met gets the nearest points, where given
+  const TrajectoryResult& result(std::vector<MetPoint>* met)
   {
+    if (met && !joined_.distance.empty()) {
+      joined_.closest_point.assign(scan_.count, TrajectoryResult::kNoPoint);
+      for (const auto& [i, nearest] : nearest_) {
+        joined_.closest_point[i] = static_cast<std::uint32_t>(met->size());
+        met->push_back(nearest);
+      }
+    }
     const auto counted = [&](Verdict verdict) {
       return static_cast<std::size_t>(std::count(joined_.flags.begin(), joined_.flags.end(), flagOf(verdict)));
     };
@@ -61,9 +70,9 @@ public:
   }
 
 private:
-  /// Whether point i is nearer to this model, or as near at an earlier pose. Distances that are one float may differ:
-  /// exact arithmetic decides. Those of swept motion are not exact.
-  bool isNearer(std::uint32_t i, const TrajectoryResult& found, const Point3& nearest) const
+  /// Whether point i is nearer to this model, or as near at an earlier pose, or there to a smaller point. Distances
+  /// that are one float may differ: exact arithmetic decides. Those of swept motion are not exact.
+  bool isNearer(std::uint32_t i, const TrajectoryResult& found, const MetPoint& nearest) const
   {
     const float before = joined_.distance[i], now = found.distance[i];
     if (std::isnan(before) || now != before) return !(now > before);
@@ -73,9 +82,10 @@ private:
       const ExactDistance at(Eigen::Isometry3d::Identity(), poses_[static_cast<std::size_t>(pose)]);
       const ExactDistance at_before(Eigen::Isometry3d::Identity(), poses_[static_cast<std::size_t>(pose_before)]);
       const Point3 p = scan_.point(i);
-      sign = at.compareGaps({p, nearest, 0.0, 0.0}, at_before, {p, nearest_.at(i), 0.0, 0.0});
+      sign = at.compareGaps({p, nearest.place, 0.0, 0.0}, at_before, {p, nearest_.at(i).place, 0.0, 0.0});
     }
-    return sign != 0 ? sign < 0 : pose < pose_before;
+    if (sign != 0) return sign < 0;
+    return pose != pose_before ? pose < pose_before : nearest.point < nearest_.at(i).point;
   }
 
   static void keepEarlier(std::optional<FirstContact>& kept, const std::optional<FirstContact>& other)
@@ -87,7 +97,7 @@ private:
   const Poses& poses_;
   const bool is_swept_;
   TrajectoryResult joined_;
-  std::unordered_map<std::uint32_t, Point3> nearest_; ///< of the points that meet something: where on the models
+  std::map<std::uint32_t, MetPoint> nearest_; ///< of the points that meet something
 };
 
 /// For each tile of a site the tiles of the model that may come near to it on their way.
@@ -109,7 +119,8 @@ std::vector<std::vector<std::uint32_t>> tilesOfModelNear(const Site& site, const
 } // namespace
 
 SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertainty& model_uncertainty,
-                             const Poses& poses, const SiteRequest& request, const PassageSink& sink)
+                             const Poses& poses, const SiteRequest& request, const PassageSink& sink,
+                             std::vector<MetPoint>* met)
 {
   if (request.pose_summaries)
     throw std::invalid_argument("pose_summaries: are not answered of two sites: leave them out");
@@ -131,11 +142,12 @@ SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertai
     JoinedResults joined(hierarchy.view(), poses, wanted);
     for (const std::uint32_t j : near[static_cast<std::size_t>(&tile - site.tiles.data())]) {
       const PointsView points = models.points(j);
-      joined.add(pcl_bsh::collideAlong({hierarchy}, SphereHierarchy(points, inquiry.building()), poses, wanted),
-                 points);
+      joined.add(pcl_bsh::collideAlong({hierarchy}, SphereHierarchy(points, inquiry.building()), poses, wanted), points,
+                 models.last());
     }
-    sum.add(PassageSum::numbersOf(joined.result()));
-    if (sink) sink(tile, cloud, joined.result());
+    const TrajectoryResult& found = joined.result(met);
+    sum.add(PassageSum::numbersOf(found));
+    if (sink) sink(tile, cloud, found);
   };
   SitePairPassage result;
   const TilesRead read = inquiry.visit(tiles, ask);

@@ -20,7 +20,8 @@ public:
     findClashes(PointsView{}, TrajectoryResult(), cluster_distance); // refuses a distance although no tile may collide
   }
 
-  void add(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found)
+  void add(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
+           const std::vector<MetPoint>* met)
   {
     const PointsView view = viewOf(cloud);
     const std::size_t source_at = offsetOf(cloud, source_field_name), record_at = offsetOf(cloud, record_field_name);
@@ -43,12 +44,13 @@ public:
       drawSome(some, most_points);
       some_.insert(some_.end(), some.begin(), some.end());
       const Member nearest = memberOf(clash.scan_point, piece);
+      const MetPoint of_model = met ? (*met)[clash.model_point] : MetPoint{{0, clash.model_point}, {0, 0, 0}};
       clash.records.clear();
-      pieces_.push_back({std::move(clash), nearest});
+      pieces_.push_back({std::move(clash), nearest, of_model});
     }
   }
 
-  SiteClashes finish()
+  SiteClashes finish(bool model_is_site)
   {
     pieces_ = gathered(pieces_);
     std::sort(pieces_.begin(), pieces_.end(),
@@ -56,7 +58,7 @@ public:
     const std::vector<std::size_t> clash_of = joinPieces(gathered(border_));
     std::vector<std::vector<Member>> some(pieces_.size());
     for (const Member& member : gathered(some_)) some[clash_of[numberOf(member.piece)]].push_back(member);
-    return listed(some);
+    return listed(some, model_is_site);
   }
 
 private:
@@ -116,12 +118,14 @@ private:
     return clash_of;
   }
 
-  SiteClashes listed(std::vector<std::vector<Member>>& some)
+  SiteClashes listed(std::vector<std::vector<Member>>& some, bool model_is_site)
   {
     SiteClashes list;
     for (std::size_t i = 0; i < clashes_.size(); ++i) {
       Clash& clash = clashes_[i].clash;
       const Member& nearest = clashes_[i].nearest;
+      clash.model_point = model_is_site ? static_cast<std::uint32_t>(i) : clashes_[i].met.point.record;
+      if (model_is_site) list.met.push_back(clashes_[i].met);
       std::vector<Member>& members = some[i];
       drawSome(members, most_points);
       members.push_back(nearest);
@@ -159,14 +163,15 @@ ClashFinder::ClashFinder(const Site& site, double cluster_distance)
 
 ClashFinder::~ClashFinder() = default;
 
-void ClashFinder::add(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found)
+void ClashFinder::add(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
+                      const std::vector<MetPoint>* met)
 {
-  pieces_->add(tile, cloud, found);
+  pieces_->add(tile, cloud, found, met);
 }
 
-SiteClashes ClashFinder::finish()
+SiteClashes ClashFinder::finish(bool model_is_site)
 {
-  return pieces_->finish();
+  return pieces_->finish(model_is_site);
 }
 
 double spacingOf(const Site& site)

@@ -31,6 +31,8 @@ struct SiteClashes {
   std::vector<Point3> places;    ///< where they are
   std::vector<float> distance;   ///< what was found of them
   std::vector<std::int32_t> closest_pose;
+  /// Where the model is a site: its points of the closest pairs. The clashes' model_point are their numbers.
+  std::vector<MetPoint> met;
 };
 
 /// Gathers what collides along a path from the tiles of a site, and makes clashes of it.
@@ -46,10 +48,13 @@ public:
   ClashFinder& operator=(const ClashFinder&) = delete;
 
   /// What was found of the points of a tile. To be called by the sink of collideAlong().
-  void add(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found);
+  /// @param met where the model is a site: what closest_point are numbers of
+  void add(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
+           const std::vector<MetPoint>* met = nullptr);
 
   /// All clashes, on all ranks of an MPI job. To be called once, by all of them.
-  SiteClashes finish();
+  /// @param model_is_site whether add() was told what was met
+  SiteClashes finish(bool model_is_site = false);
 
 private:
   class Pieces;

@@ -39,7 +39,6 @@ public:
     ++results_.work.leaf_pairs;
     const BoxLeaf other = box.points(tree_);
     const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
-    const double unused = unusedIn(motion);
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (isSettled(leaf, i, begin + steps * clipped.from[i])) continue;
@@ -51,7 +50,7 @@ public:
         if (!segment) segment.emplace(query_, leaf.points.record(i), *motion.interval);
         const PointPair pair{leaf.points.record(i), other.record(j)};
         ++results_.work.exact_decisions;
-        const double near_enough = query_.nearEnough(pair) - unused;
+        const double near_enough = query_.nearEnough(pair);
         if (near_enough < 0.0) continue;
         const ClosestApproach approach = segment->approachTo(query_, pair.b, near_enough);
         if (!approach.contact) continue;
@@ -83,12 +82,8 @@ private:
       return;
     }
     passPoints(leaf.segments, i, other.x(), other.y(), other.z(), other.count, tree_.shift(box.voxel).data(),
-               roundUp(query_.reach - unusedIn(motion)) + astrayIn(motion), motion.smallest, motion.rounding,
-               passages_);
+               roundUp(query_.reach) + astrayIn(motion), motion.smallest, motion.rounding, passages_);
   }
-
-  /// What the interval leaves of the tolerance's share for straying from its line.
-  double unusedIn(const VoxelMotion& motion) const { return std::max(0.0, query_.path.stray - motion.line_stray); }
 
   /// How much farther apart a pair may be in floats than it is.
   float astrayIn(const VoxelMotion& motion) const

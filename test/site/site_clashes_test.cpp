@@ -9,6 +9,7 @@
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/collide_sites.h>
 #include <pcl_bsh/site/make_site.h>
 #include <pcl_bsh/site/site_clashes.h>
 
@@ -112,6 +113,7 @@ protected:
     const auto half = static_cast<std::ptrdiff_t>(scene.points.size() / 3);
     io::writeCloud(folder / "1.pcd", float64Cloud({scene.points.begin(), scene.points.begin() + half}));
     io::writeCloud(folder / "2.pcd", float64Cloud({scene.points.begin() + half, scene.points.end()}));
+    io::writeCloud(folder / "model.pcd", float64Cloud(scene.model));
     const auto nameOf = [&](std::uint32_t i) {
       const auto begin = static_cast<std::uint32_t>(half);
       return i < begin ? SitePoint{0, i} : SitePoint{1, i - begin};
@@ -156,6 +158,25 @@ protected:
         if (drawn.size() == i) drawn.push_back(list.points);
         EXPECT_TRUE(list.points == drawn[i]) << "the same points of large clashes";
       }
+      if (scene.swept) continue; // what is between the bounds depends on tiles
+      request.pose_summaries = false;
+      options.tile_points = std::max<std::uint64_t>(4, tile_points / 5);
+      const Site moved = makeSite({folder / "model.pcd"}, folder / std::to_string(places++), options);
+      std::vector<MetPoint> met;
+      ClashFinder finder(site, scene.cluster_distances.back());
+      collideAlong(
+          site, moved, {}, scene.poses, request,
+          [&](const Tile& tile, const Cloud& cloud, const TrajectoryResult& found) {
+            finder.add(tile, cloud, found, &met);
+          },
+          &met);
+      SiteClashes list = finder.finish(true);
+      for (Clash& clash : list.clashes) {
+        const MetPoint& point = list.met.at(clash.model_point);
+        EXPECT_EQ(point.place, scene.model.at(point.point.record));
+        clash.model_point = point.point.record;
+      }
+      expectList(list, expected.back(), all.view(), in_memory, nameOf);
     }
   }
 
@@ -284,6 +305,26 @@ TEST_F(SiteClashList, OfThePrograms)
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), static_cast<std::ptrdiff_t>(found["clashes"].size()) + 1);
   EXPECT_THAT(files::contentOf(folder / "1.html"), HasSubstr(" of "));
 
+  // The obstacle as a site.
+  options.tile_points = 9;
+  makeSite({folder / "b.pcd"}, folder / "moved", options);
+  const std::string of_both = "collide site moved" + asked;
+  const Outcome sites =
+      run("pcl_bsh_site", of_both + "--clashes s.json --clashes s.csv --clashes s.html", folder.path());
+  ASSERT_EQ(sites.exit_code, 0) << sites.err;
+  const Json found_of_both = Json::parse(files::contentOf(folder / "s.json"));
+  Json as_cloud = found_of_both;
+  as_cloud["obstacle"] = "b.pcd";
+  for (Json& clash : as_cloud["clashes"]) {
+    Json& obstacle = clash["closest_pair"]["obstacle"];
+    EXPECT_EQ(fs::path(obstacle["source"].get<std::string>()).filename(), "b.pcd");
+    obstacle["point"] = obstacle["record"];
+    obstacle.erase("source");
+    obstacle.erase("record");
+  }
+  EXPECT_EQ(as_cloud, found);
+  EXPECT_THAT(files::contentOf(folder / "s.csv"), HasSubstr(",obstacle_source,obstacle_record,obstacle_x,"));
+
   // An earlier list may be of either program.
   const Outcome again =
       run("pcl_bsh_site", "collide site b.pcd" + asked + "--clashes 1.json --previous 1.json", folder.path());
@@ -298,6 +339,10 @@ TEST_F(SiteClashList, OfThePrograms)
   EXPECT_EQ(Json::parse(files::contentOf(folder / "2.json")), found);
   EXPECT_EQ(files::contentOf(folder / "2.csv"), csv);
   EXPECT_EQ(files::contentOf(folder / "2.html"), files::contentOf(folder / "1.html"));
+  const Outcome sites_on_two = runOnTwoRanks(of_both + "--clashes s2.json --clashes s2.html", folder.path());
+  ASSERT_EQ(sites_on_two.exit_code, 0) << sites_on_two.err;
+  EXPECT_EQ(Json::parse(files::contentOf(folder / "s2.json")), found_of_both);
+  EXPECT_EQ(files::contentOf(folder / "s2.html"), files::contentOf(folder / "s.html"));
 }
 
 TEST_F(SiteClashList, OfThePrograms_AreRefused)

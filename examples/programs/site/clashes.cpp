@@ -33,7 +33,7 @@ sites::PassageSink SiteClashList::after(sites::PassageSink next)
   if (!finder_) return next;
   return [this, next = std::move(next)](const sites::Tile& tile, const pcl::PCLPointCloud2& cloud,
                                         const TrajectoryResult& found) {
-    finder_->add(tile, cloud, found);
+    finder_->add(tile, cloud, found, options_.obstacleIsSite() ? &met_ : nullptr);
     if (next) next(tile, cloud, found);
   };
 }
@@ -41,7 +41,26 @@ sites::PassageSink SiteClashList::after(sites::PassageSink next)
 std::size_t SiteClashList::finish(const SphereHierarchy& obstacle, const std::vector<Eigen::Isometry3d>& poses,
                                   const sites::SitePassage& found)
 {
-  sites::SiteClashes clashes = finder_->finish();
+  return write(finder_->finish(), obstacle.view(), poses, found, nullptr);
+}
+
+std::size_t SiteClashList::finish(const sites::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses,
+                                  const sites::SitePassage& found)
+{
+  sites::SiteClashes clashes = finder_->finish(true);
+  const std::vector<sites::MetPoint> met = clashes.met;
+  std::vector<Point3> places;
+  for (const sites::MetPoint& point : met) places.push_back(point.place);
+  return write(std::move(clashes), viewOf(places.empty() ? nullptr : places.front().data(), places.size()), poses,
+               found, [&](std::uint32_t i) {
+                 return io::SourcePoint{obstacle.sources.at(met[i].point.source).file, met[i].point.record};
+               });
+}
+
+std::size_t SiteClashList::write(sites::SiteClashes clashes, const PointsView& model,
+                                 const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found,
+                                 std::function<io::SourcePoint(std::uint32_t)> model_source_of)
+{
   const PointsView places =
       viewOf(clashes.places.empty() ? nullptr : clashes.places.front().data(), clashes.places.size());
   TrajectoryResult of_places;
@@ -56,7 +75,7 @@ std::size_t SiteClashList::finish(const SphereHierarchy& obstacle, const std::ve
                        {},
                        std::move(clashes.clashes),
                        places,
-                       obstacle.view(),
+                       model,
                        poses,
                        of_places,
                        options_.swept,
@@ -64,7 +83,8 @@ std::size_t SiteClashList::finish(const SphereHierarchy& obstacle, const std::ve
                        [&](std::uint32_t i) {
                          const sites::SitePoint& point = clashes.points[i];
                          return io::SourcePoint{site_.sources.at(point.source).file, point.record};
-                       }};
+                       },
+                       std::move(model_source_of)};
   if (options_.previous) {
     list.previous = options_.previous->string();
     compareWithEarlier(list.clashes, earlier_, distance_);

@@ -7,6 +7,7 @@
 #include <pcl_bsh/filters/reports/clash_report.h>
 #include <pcl_bsh/site/site_clashes.h>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,16 +29,27 @@ public:
   /// Finds clashes in what `next` gets, too.
   sites::PassageSink after(sites::PassageSink next);
 
+  /// What the question about an obstacle that is a site has to fill; null where no list is wanted.
+  std::vector<sites::MetPoint>* met() noexcept { return isWanted() ? &met_ : nullptr; }
+
   /// After the question. To be called by all ranks; the first writes the lists.
   /// @return how many clashes there are now, those that are resolved left out
   std::size_t finish(const SphereHierarchy& obstacle, const std::vector<Eigen::Isometry3d>& poses,
                      const sites::SitePassage& found);
 
+  /// The same of an obstacle that is a site.
+  std::size_t finish(const sites::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses,
+                     const sites::SitePassage& found);
+
 private:
+  std::size_t write(sites::SiteClashes clashes, const PointsView& model, const std::vector<Eigen::Isometry3d>& poses,
+                    const sites::SitePassage& found, std::function<io::SourcePoint(std::uint32_t)> model_source_of);
+
   const sites::Site& site_;
   const SiteOptions& options_;
   double distance_ = 0.0;
   std::vector<Clash> earlier_;
+  std::vector<sites::MetPoint> met_;
   std::vector<std::string> warnings_;
   std::optional<sites::ClashFinder> finder_;
 };

@@ -116,7 +116,7 @@ int answer(const SiteOptions& options)
   if (cloud)
     report = askOfCloud(site, *cloud, poses, options, output, clashes, run, step);
   else
-    report = askOfSite(site, poses, options, output, run, step);
+    report = askOfSite(site, poses, options, output, clashes, run, step);
   if (tells) shown->done(report["tiles"]["read"].dump() + " tiles read");
   run.seconds = seconds();
   output.finish();

@@ -39,7 +39,7 @@ void askFlags(const sites::Site& site, const sites::PlacedSite& obstacle, const 
 } // namespace
 
 Json askOfSite(const sites::Site& site, const Poses& poses, const SiteOptions& options, SiteOutput& out,
-               MeasuredRun& run, Step* step)
+               SiteClashList& clashes, MeasuredRun& run, Step* step)
 {
   const sites::Site other = sites::readSite(options.obstacle);
   const sites::PlacedSite obstacle{other, options.pose, options.obstacle_uncertainty};
@@ -80,9 +80,10 @@ Json askOfSite(const sites::Site& site, const Poses& poses, const SiteOptions& o
   case SiteQuestion::path: {
     sites::SiteRequest moving = request;
     moving.swept = options.swept;
-    const sites::SitePairPassage found =
-        sites::collideAlong(site, other, options.obstacle_uncertainty, poses, moving, out.passage());
+    const sites::SitePairPassage found = sites::collideAlong(site, other, options.obstacle_uncertainty, poses, moving,
+                                                             clashes.after(out.passage()), clashes.met());
     putPassage(report, found, poses.size(), options);
+    if (clashes.isWanted()) report["clashes"] = clashes.finish(other, poses, found);
     putBoth(report, found, run);
     break;
   }

@@ -2,6 +2,7 @@
 // pcl_bsh_site collide SITE OBSTACLE, where the obstacle is a site, too.
 #pragma once
 
+#include "clashes.h"
 #include "options.h"
 #include "output.h"
 #include "report.h"
@@ -10,6 +11,6 @@ namespace pcl_bsh::cli {
 
 /// The answer, the same on all ranks. Writes the site of the obstacle's flags, where it is asked for.
 Json askOfSite(const sites::Site& site, const Poses& poses, const SiteOptions& options, SiteOutput& out,
-               MeasuredRun& run, Step* step);
+               SiteClashList& clashes, MeasuredRun& run, Step* step);
 
 } // namespace pcl_bsh::cli

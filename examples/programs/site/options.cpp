@@ -169,10 +169,6 @@ struct CollideTexts {
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
     if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
     const bool two_sites = options.obstacleIsSite();
-    if (two_sites && lists) {
-      throw UsageError("--clashes: OBSTACLE, " + options.obstacle.string() +
-                       ", is a site, for which this is not answered: give a cloud, or leave the option out");
-    }
     const auto require_outside_sites = [&](const char* option, const std::filesystem::path& file) {
       requireOutside(options.site, "SITE", option, file);
       if (two_sites) requireOutside(options.obstacle, "OBSTACLE", option, file);
