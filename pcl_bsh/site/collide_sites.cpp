@@ -44,20 +44,31 @@ public:
     return tiles;
   }
 
-  /// Calls ask(tile, cloud, its points where they stand).
+  /// Calls ask(tile, cloud, its points where they stand), in this order of the tiles.
   template <typename Ask>
   TilesRead visit(const std::vector<std::pair<double, std::uint32_t>>& tiles, const Ask& ask,
-                  const std::function<bool(std::size_t)>& go_on = nullptr)
+                  const std::function<bool(std::size_t)>& go_on)
   {
-    std::vector<std::uint32_t> numbers;
-    for (const auto& [lower, tile] : tiles) numbers.push_back(tile);
-    if (!go_on) std::sort(numbers.begin(), numbers.end());
     return inquiry_.visit(
-        numbers,
+        numbersOf(tiles),
         [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
           ask(tile, cloud, Placed(hierarchy, asked_.pose));
         },
         go_on);
+  }
+
+  /// As Inquiry has it, with points where they stand, in the order of the site's tiles.
+  template <typename Find, typename Add>
+  TilesRead visitAndAdd(const std::vector<std::pair<double, std::uint32_t>>& tiles, const Find& find, const Add& add)
+  {
+    std::vector<std::uint32_t> numbers = numbersOf(tiles);
+    std::sort(numbers.begin(), numbers.end());
+    return inquiry_.visitAndAdd(
+        numbers,
+        [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+          return find(tile, cloud, Placed(hierarchy, asked_.pose));
+        },
+        add);
   }
 
   /// Calls compare(a tile of the other site, those of its points that are near where they stand), nearest tiles first,
@@ -77,6 +88,13 @@ public:
   TilesRead readOfOthers() const { return others_.read(); }
 
 private:
+  static std::vector<std::uint32_t> numbersOf(const std::vector<std::pair<double, std::uint32_t>>& tiles)
+  {
+    std::vector<std::uint32_t> numbers;
+    for (const auto& [lower, tile] : tiles) numbers.push_back(tile);
+    return numbers;
+  }
+
   const PlacedSite& asked_;
   Inquiry inquiry_;
   ObstacleTiles others_;
@@ -106,7 +124,7 @@ SitePairFlags flagsOf(const PlacedSite& asked, const PlacedSite& other, const Si
   pcl_bsh::collisionFlags(nothing.at(asked.pose), nothing.at(other.pose), wanted); // refuses what no tile may be asked
   SitePairFlags result;
   PairInquiry inquiry(asked, other, request);
-  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& a) {
+  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& a) {
     FlagsResult all;
     all.a.assign(a.hierarchy().view().count, flagOf(Verdict::free));
     FlagsResult found;
@@ -122,11 +140,14 @@ SitePairFlags flagsOf(const PlacedSite& asked, const PlacedSite& other, const Si
     };
     all.colliding_a = counted(Verdict::colliding);
     all.undecided_a = counted(Verdict::undecided);
-    result.colliding += all.colliding_a;
-    result.undecided += all.undecided_a;
     if (sink) sink(tile, cloud, all);
+    return std::vector<double>{static_cast<double>(all.colliding_a), static_cast<double>(all.undecided_a)};
   };
-  result.tiles = inquiry.visit(inquiry.tilesNear(request.clearance), ask);
+  const auto add = [&](const std::vector<double>& numbers) {
+    result.colliding += static_cast<std::uint64_t>(numbers[0]);
+    result.undecided += static_cast<std::uint64_t>(numbers[1]);
+  };
+  result.tiles = inquiry.visitAndAdd(inquiry.tilesNear(request.clearance), find, add);
   result.tiles_b = inquiry.readOfOthers();
   result.colliding = sumOfAllRanks(result.colliding);
   result.undecided = sumOfAllRanks(result.undecided);
@@ -241,7 +262,7 @@ SitePairDistances pointDistances(const Site& site, const PlacedSite& placed, dou
   SitePairDistances result;
   double greatest = -infinity;
   PairInquiry inquiry(a, b, request);
-  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& points) {
+  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& points) {
     const PointsView& view = points.hierarchy().view();
     std::vector<double> distance(view.count, std::numeric_limits<double>::quiet_NaN());
     double reach = max_distance; // what is farther than all points' distances changes none
@@ -259,14 +280,20 @@ SitePairDistances pointDistances(const Site& site, const PlacedSite& placed, dou
           }
           reach = std::min(reach, farthest);
         });
+    std::vector<double> numbers = {0.0, -infinity};
     for (const double d : distance) {
       if (std::isnan(d)) continue;
-      ++result.measured;
-      greatest = std::max(greatest, d);
+      ++numbers[0];
+      numbers[1] = std::max(numbers[1], d);
     }
     if (sink) sink(tile, cloud, distance);
+    return numbers;
   };
-  result.tiles = inquiry.visit(inquiry.tilesNear(max_distance), ask);
+  const auto add = [&](const std::vector<double>& numbers) {
+    result.measured += static_cast<std::uint64_t>(numbers[0]);
+    greatest = std::max(greatest, numbers[1]);
+  };
+  result.tiles = inquiry.visitAndAdd(inquiry.tilesNear(max_distance), find, add);
   result.tiles_b = inquiry.readOfOthers();
   result.measured = sumOfAllRanks(result.measured);
   greatest = -leastOfAllRanks(-greatest);

@@ -138,7 +138,7 @@ SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertai
     if (!near[i].empty()) tiles.push_back(i);
 
   PassageSum sum(request, poses.size());
-  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     JoinedResults joined(hierarchy.view(), poses, wanted);
     for (const std::uint32_t j : near[static_cast<std::size_t>(&tile - site.tiles.data())]) {
       const PointsView points = models.points(j);
@@ -146,11 +146,11 @@ SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertai
                  models.last());
     }
     const TrajectoryResult& found = joined.result(met);
-    sum.add(PassageSum::numbersOf(found));
     if (sink) sink(tile, cloud, found);
+    return PassageSum::numbersOf(found);
   };
   SitePairPassage result;
-  const TilesRead read = inquiry.visit(tiles, ask);
+  const TilesRead read = inquiry.visitAndAdd(tiles, find, [&](const auto& numbers) { sum.add(numbers); });
   static_cast<SitePassage&>(result) = sum.ofAllRanks();
   result.tiles = read;
   result.tiles_b = models.read();

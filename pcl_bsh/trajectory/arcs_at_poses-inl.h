@@ -25,7 +25,6 @@ public:
               LeafAtPose& at_pose)
   : query_(query),
     tree_(query.boxes),
-    voxel_frame_(voxel_frame),
     results_(results),
     at_pose_(at_pose),
     summing_(query.request.pose_summaries && query.nearestDecides() && voxel_frame.frame.unit == 1.0),
@@ -156,7 +155,6 @@ private:
 
   const TrajectoryQuery& query_;
   const BoxTree& tree_;
-  const VoxelInModelFrame& voxel_frame_;
   VoxelResults& results_;
   LeafAtPose& at_pose_;
   const bool summing_;

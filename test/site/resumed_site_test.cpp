@@ -12,6 +12,7 @@
 
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/collide_sites.h>
 #include <pcl_bsh/site/result_site.h>
 #include <pcl_bsh/site/tile_file.h>
 
@@ -176,6 +177,88 @@ TEST_F(ResumedSite, AsksAgainWhatIsNotItsOwnAnswer)
   std::fstream(tile.replace_extension(".pcd"), std::ios::in | std::ios::out | std::ios::binary).seekp(-1, std::ios::end)
       << '\7';
   expectRead(whole.tiles.read - 1);
+}
+
+/// Flags, distances and paths of two sites, killed after some tiles.
+TEST_F(ResumedSite, AboutTwoSites)
+{
+  MakeOptions options;
+  options.tile_points = 70;
+  const Site other = makeSite({folder / "body.pcd"}, folder / "other", options);
+  SiteRequest request;
+  request.clearance = 0.3;
+  /// @return what was found, and how many tiles were read
+  const auto askBoth = [&](int question, const fs::path& out, bool goes_on, std::uint64_t kill) {
+    ResultSite results(site, out, {{"found", pcl::PCLPointField::FLOAT32, -1.0}},
+                       {"question " + std::to_string(question), goes_on});
+    request.answers = results.answers();
+    request.progress = [&](std::uint64_t done, std::uint64_t) {
+      if (done == kill) ::kill(::getpid(), SIGKILL);
+      return true;
+    };
+    const auto write = [&](const Tile& tile, const Cloud& cloud, const auto& numbers) {
+      std::vector<float> values;
+      for (const auto number : numbers) values.push_back(static_cast<float>(number));
+      results.write(tile, cloud, {values.data()});
+    };
+    std::pair<double, std::uint64_t> found;
+    if (question == 0) {
+      const SitePairFlags flags =
+          collisionFlags(site, {other}, request, [&](const auto& tile, const auto& cloud, const FlagsResult& result) {
+            write(tile, cloud, result.a);
+          });
+      found = {static_cast<double>(flags.colliding), flags.tiles.read};
+    }
+    else if (question == 1) {
+      const SitePairDistances distances = pointDistances(
+          site, {other}, 4.0, request,
+          [&](const auto& tile, const auto& cloud, const std::vector<double>& result) { write(tile, cloud, result); });
+      found = {distances.greatest + static_cast<double>(distances.measured), distances.tiles.read};
+    }
+    else {
+      const SitePairPassage passage = collideAlong(
+          site, other, {}, poses, request, [&](const auto& tile, const auto& cloud, const TrajectoryResult& result) {
+            write(tile, cloud, result.flags);
+          });
+      found = {static_cast<double>(passage.colliding) + double{passage.distance} + passage.first_pose,
+               passage.tiles.read};
+    }
+    results.finish();
+    return found;
+  };
+  for (int question = 0; question < 3; ++question) {
+    SCOPED_TRACE(question);
+    const auto whole = askBoth(question, folder / "whole", false, 0);
+    ASSERT_GT(whole.second, 2u);
+    ASSERT_FALSE(files::endsInAFork([&] { askBoth(question, folder / "out", false, 2); }));
+    const auto resumed = askBoth(question, folder / "out", true, 0);
+    EXPECT_EQ(resumed.first, whole.first);
+    EXPECT_EQ(resumed.second, whole.second - 2);
+    EXPECT_EQ(contentsOf(folder / "out"), contentsOf(folder / "whole"));
+    fs::remove_all(folder / "out");
+    fs::remove_all(folder / "whole");
+  }
+}
+
+/// The program, about a site as obstacle, one of whose tiles is written anew.
+TEST_F(ResumedSite, ByTheProgramAboutTwoSites)
+{
+  MakeOptions options;
+  options.tile_points = 70;
+  const Site other = makeSite({folder / "body.pcd"}, folder / "other", options);
+  const std::string asked = "collide site other --clearance 0.3 --trajectory poses.txt --out ";
+  ASSERT_EQ(run("pcl_bsh_site", asked + "whole", folder.path()).exit_code, 0);
+  for (const bool changes : {false, true}) {
+    const std::string kill =
+        "timeout -s KILL 0.15 " PCL_BSH_PROGRAM_DIR "/pcl_bsh_site " + asked + "out > /dev/null 2>&1";
+    EXPECT_NE(std::system(("cd " + folder.path().string() + " && " + kill).c_str()), -1);
+    if (fs::exists(folder / "out/site.json")) fs::remove_all(folder / "out"); // it was quicker
+    if (changes) fs::last_write_time(other.folder / other.tiles[0].file, fs::file_time_type::clock::now());
+    const Outcome outcome = run("pcl_bsh_site", asked + "out --resume", folder.path());
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(contentsOf(folder / "out"), contentsOf(folder / "whole"));
+    fs::remove_all(folder / "out");
+  }
 }
 
 TEST_F(ResumedSite, LeavesNothingOfARunThatFails)

@@ -21,12 +21,14 @@ void askFlags(const sites::Site& site, const sites::PlacedSite& obstacle, const 
   std::optional<sites::ResultSite> obstacle_out;
   if (!options.obstacle_out.empty())
     obstacle_out.emplace(obstacle.site, options.obstacle_out, std::vector{collisionField()});
-  const sites::SiteRequest request = requestOf(options, step);
+  sites::SiteRequest request = requestOf(options, step);
+  request.answers = out.answers();
   const sites::SitePairFlags found = sites::collisionFlags(site, obstacle, request, out.flags());
   report["colliding"] = found.colliding;
   report["undecided"] = found.undecided;
   putBoth(report, found, run);
   if (!obstacle_out) return;
+  request.answers = nullptr; // those are of the tiles of the site
   const sites::SitePairFlags of_obstacle =
       sites::collisionFlagsOfB(site, obstacle, request,
                                [&](const sites::Tile& tile, const pcl::PCLPointCloud2& cloud,
@@ -43,7 +45,8 @@ Json askOfSite(const sites::Site& site, const Poses& poses, const SiteOptions& o
 {
   const sites::Site other = sites::readSite(options.obstacle);
   const sites::PlacedSite obstacle{other, options.pose, options.obstacle_uncertainty};
-  const sites::SiteRequest request = requestOf(options, step);
+  sites::SiteRequest request = requestOf(options, step);
+  request.answers = out.answers();
   Json report = beginReport(site, options);
   report["points_of_obstacle"] = other.points;
   switch (options.question) {
@@ -78,9 +81,8 @@ Json askOfSite(const sites::Site& site, const Poses& poses, const SiteOptions& o
     break;
   }
   case SiteQuestion::path: {
-    sites::SiteRequest moving = request;
-    moving.swept = options.swept;
-    const sites::SitePairPassage found = sites::collideAlong(site, other, options.obstacle_uncertainty, poses, moving,
+    request.swept = options.swept;
+    const sites::SitePairPassage found = sites::collideAlong(site, other, options.obstacle_uncertainty, poses, request,
                                                              clashes.after(out.passage()), clashes.met());
     putPassage(report, found, poses.size(), options);
     if (clashes.isWanted()) report["clashes"] = clashes.finish(other, poses, found);

@@ -160,10 +160,9 @@ struct CollideTexts {
     if (!options.out.empty() && (any || closest))
       throw UsageError("--out: --any and --closest find nothing of each point: leave it away");
     if (options.resume && options.out.empty()) throw UsageError("--resume: there is nothing to go on with: add --out");
-    if (options.resume && (lists || options.obstacleIsSite()))
-      throw UsageError(std::string("--resume: is not answered ") +
-                       (lists ? "with --clashes" : "where OBSTACLE is a site") +
-                       ": leave it out, and the question is asked from its beginning");
+    if (options.resume && lists)
+      throw UsageError("--resume: is not answered with --clashes: leave it out, and the question is asked from its "
+                       "beginning");
     if (max_distance->count() > 0 && !distances) throw UsageError("--max-distance: goes with --distances: add it");
     if (options.swept && !moves) throw UsageError("--swept: goes with --trajectory: add it");
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");

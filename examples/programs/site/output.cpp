@@ -45,22 +45,45 @@ std::vector<sites::ResultField> resultFields(const SiteOptions& options)
   }
 }
 
+/// What tells one obstacle from another: the points of a cloud; of a site, which is too large for that, how it is made
+/// and when its tiles were written.
+nlohmann::json obstacleText(const ObstacleCloud* cloud, const SiteOptions& options)
+{
+  nlohmann::json text = nlohmann::json::array();
+  if (cloud != nullptr) {
+    boost::crc_32_type of_points;
+    of_points.process_bytes(cloud->cloud.data.data(), cloud->cloud.data.size());
+    text.push_back(of_points.checksum());
+    for (const pcl::PCLPointField& field : cloud->cloud.fields)
+      text.push_back({field.name, field.offset, field.datatype, field.count});
+    return text;
+  }
+  const sites::Site other = sites::readSite(options.obstacle);
+  text.push_back(sites::siteText(other));
+  for (const sites::Tile& tile : other.tiles) {
+    const std::filesystem::path file = other.folder / tile.file;
+    text.push_back(
+        {std::filesystem::file_size(file), std::filesystem::last_write_time(file).time_since_epoch().count()});
+  }
+  return text;
+}
+
 /// All that the answer depends on, as a text.
-std::string questionOf(const sites::Site& site, const ObstacleCloud& obstacle, const Poses& poses,
+std::string questionOf(const sites::Site& site, const ObstacleCloud* obstacle, const Poses& poses,
                        const SiteOptions& options)
 {
-  boost::crc_32_type of_points;
-  of_points.process_bytes(obstacle.cloud.data.data(), obstacle.cloud.data.size());
-  nlohmann::json question = {{"site", sites::siteText(site)},        {"question", options.question},
-                             {"clearance", options.clearance},       {"accuracy", options.accuracy.text()},
-                             {"max_distance", options.max_distance}, {"swept", options.swept.value_or(-1.0)},
-                             {"obstacle", of_points.checksum()},     {"poses", nlohmann::json::array()}};
+  nlohmann::json question = {{"site", sites::siteText(site)},
+                             {"question", options.question},
+                             {"clearance", options.clearance},
+                             {"accuracy", options.accuracy.text()},
+                             {"max_distance", options.max_distance},
+                             {"swept", options.swept.value_or(-1.0)},
+                             {"obstacle", obstacleText(obstacle, options)},
+                             {"poses", nlohmann::json::array()}};
   for (const Uncertainty* of : {&options.uncertainty, &options.obstacle_uncertainty})
     question["uncertainty"].push_back({of->field, of->length, of->sigmas});
   for (const Eigen::Isometry3d& pose : poses)
     question["poses"].push_back(std::vector<double>(pose.data(), pose.data() + 16));
-  for (const pcl::PCLPointField& field : obstacle.cloud.fields)
-    question["fields"].push_back({field.name, field.offset, field.datatype, field.count});
   const auto bytes = nlohmann::json::to_cbor(question);
   return {bytes.begin(), bytes.end()};
 }
@@ -99,8 +122,8 @@ SiteOutput::SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, c
 {
   if (options.out.empty()) return;
   sites::Continuation continuation;
-  if (obstacle != nullptr && options.clashes.empty()) {
-    continuation = {questionOf(site, *obstacle, poses, options), options.resume};
+  if (options.clashes.empty()) {
+    continuation = {questionOf(site, obstacle, poses, options), options.resume};
     setWhatStays("what was found stays, and the same command with --resume goes on");
   }
   out_.emplace(site, options.out, resultFields(options), continuation);

@@ -38,6 +38,7 @@ class SiteOutput {
 public:
   /// @param obstacle null where that is a site, too
   /// @throws files::FileError for a folder that cannot be one
+  /// @param obstacle null where it is a site
   SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, const Poses& poses, const SiteOptions& options);
 
   /// What an earlier run has found, and where this one keeps what it finds; null: nothing is kept.
