@@ -125,8 +125,7 @@ private:
     const std::uint64_t near = boxes_.near(around_);
     for (std::size_t k = 0; k < obstacles_.size(); ++k) {
       const ObstacleVoxel& obstacle = obstacles_[k];
-      const bool may_be_near = k >= 64 || (near >> k & 1) != 0;
-      if (may_be_near && &obstacle != before && flagIn(obstacle)) return;
+      if (ObstacleBoxes::isAmong(near, k) && &obstacle != before && flagIn(obstacle)) return;
     }
   }
 

@@ -50,7 +50,7 @@ public:
 
   std::size_t count() const { return count_; }
 
-  /// Bits of the first 64 obstacles: those that the box may be near. @param box in the frame of a's voxel
+  /// Those that the box may be near, for isAmong(). @param box in the frame of a's voxel
   std::uint64_t near(const QueryBox& box) const
   {
     const QueryBox turned = carryBox(turned_, box);
@@ -71,6 +71,9 @@ public:
     }
     return ~apart;
   }
+
+  /// Whether near() has obstacle k.
+  static bool isAmong(std::uint64_t near, std::size_t k) { return k >= kMost || (near >> k & 1) != 0; }
 
 private:
   static constexpr std::size_t kMost = 64;
