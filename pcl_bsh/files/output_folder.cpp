@@ -15,6 +15,9 @@ OutputFolder::OutputFolder(const fs::path& path) : path_(path)
   std::error_code error;
   std::vector<fs::path> missing;
   for (fs::path at = fs::weakly_canonical(fs::absolute(path)); !fs::exists(at, error); at = at.parent_path()) {
+    if (fs::is_symlink(fs::symlink_status(at, error)))
+      throw FileError(path, "'" + at.string() + "' is a link to what is not there",
+                      "remove the link, or name another folder");
     if (at.has_filename()) missing.push_back(at); // "a/" is "a"
   }
   const auto lock = lockUnfinished();

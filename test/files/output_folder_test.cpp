@@ -51,4 +51,24 @@ TEST(OutputFolder, SaysWhatIsInTheWay)
   EXPECT_EQ(folder.files(), 1U);
 }
 
+TEST(OutputFolder, IsNoLinkToNothing)
+{
+  const TemporaryFolder folder;
+  fs::create_symlink("nowhere", folder / "link");
+  for (const char* name : {"link", "link/sub"}) {
+    try {
+      const OutputFolder made(folder / name);
+      ADD_FAILURE() << name;
+    }
+    catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("link' is a link to what is not there"), std::string::npos);
+    }
+  }
+  EXPECT_FALSE(fs::exists(folder / "nowhere"));
+  fs::create_directory(folder / "somewhere");
+  fs::create_symlink("somewhere", folder / "good");
+  const OutputFolder made(folder / "good/sub");
+  EXPECT_TRUE(fs::is_directory(folder / "somewhere/sub"));
+}
+
 } // namespace pcl_bsh::files
