@@ -8,6 +8,7 @@
 #include "site/options.h"
 
 #include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/files/one_line.h>
 #include <pcl_bsh/files/output_folder.h>
 #include <pcl_bsh/filters/text_files/small_letters.h>
 #include <pcl_bsh/site/check_site.h>
@@ -153,9 +154,10 @@ int info(const Options& options)
             << "spacing: " << range.finest << " to " << range.coarsest << " (medians of tiles)\n";
   if (site.bounds) std::cout << "bounds:  " << texted(site.bounds->low) << " to " << texted(site.bounds->high) << '\n';
   std::cout << "fields: ";
-  for (const auto& field : site.fields) std::cout << ' ' << field.name;
+  for (const auto& field : site.fields) std::cout << ' ' << files::oneLine(field.name);
   std::cout << "\nsources:\n";
-  for (const sites::Source& source : site.sources) std::cout << "  " << source.file << ": " << source.points << '\n';
+  for (const sites::Source& source : site.sources)
+    std::cout << "  " << files::oneLine(source.file) << ": " << source.points << '\n';
   return 0;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/query/cancelled.h>
-#include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/records.h>
+#include <pcl_bsh/site/tile_file.h>
 
 #include <string>
 #include <utility>
@@ -13,10 +13,19 @@ namespace pcl_bsh::sites {
 
 namespace {
 
+bool isSame(const std::optional<Bounds>& a, const std::optional<Bounds>& b)
+{
+  return a.has_value() == b.has_value() && (!a || (a->low == b->low && a->high == b->high));
+}
+
 class Checker {
 public:
   explicit Checker(const Site& site) : site_(site)
   {
+    // Before memory is taken for as many points as site.json says.
+    for (const Tile& tile : site.tiles) openTile(site.folder / tile.file, site.fields, tile.points);
+    const std::filesystem::path overview = site.folder / overview_file_name;
+    if (std::filesystem::exists(overview)) openRecords(overview, site.fields);
     for (const Source& source : site.sources) seen_.emplace_back(source.points, false);
   }
 
@@ -24,17 +33,14 @@ public:
   {
     tile_ = &tile;
     const pcl::PCLPointCloud2 cloud = readTile(site_, tile);
-    checkBounds(cloud);
+    checkMeasures(cloud);
     checkRecords(cloud);
   }
 
   /// Of the site, as the union of what its tiles have.
   void checkAll() const
   {
-    const auto same = [](const std::optional<Bounds>& a, const std::optional<Bounds>& b) {
-      return a.has_value() == b.has_value() && (!a || (a->low == b->low && a->high == b->high));
-    };
-    if (!same(all_, site_.bounds))
+    if (!isSame(all_, site_.bounds))
       throw files::FileError(site_.folder / site_file_name, "its bounds are not those of its tiles",
                              "make the site again");
   }
@@ -50,19 +56,21 @@ private:
     return "has record " + std::to_string(name.second) + " of source " + std::to_string(name.first);
   }
 
-  void checkBounds(const pcl::PCLPointCloud2& cloud)
+  /// Tiles are left out by these, so none may say less than the points do. A greatest value that is not there leaves
+  /// none out.
+  void checkMeasures(const pcl::PCLPointCloud2& cloud)
   {
-    const PointsView view = viewOf(cloud);
-    std::optional<Bounds> bounds;
-    for (std::uint32_t i = 0; i < view.count; ++i) {
-      const Point3 point = view.point(i);
-      if (!isFinite(point)) continue;
-      extend(bounds, point);
-      extend(all_, point);
+    Tile measured;
+    measureExtremes(cloud, measured);
+    if (!isSame(measured.bounds, tile_->bounds)) fail("its points have other bounds than site.json says");
+    for (const auto& [field, greatest] : tile_->greatest) {
+      const auto found = measured.greatest.find(field);
+      if (found == measured.greatest.end() || found->second != greatest)
+        fail("its field '" + field + "' has another greatest value than site.json says");
     }
-    if (bounds.has_value() != tile_->bounds.has_value() ||
-        (bounds && (bounds->low != tile_->bounds->low || bounds->high != tile_->bounds->high)))
-      fail("its points have other bounds than site.json says");
+    if (!measured.bounds) return;
+    extend(all_, measured.bounds->low);
+    extend(all_, measured.bounds->high);
   }
 
   void checkRecords(const pcl::PCLPointCloud2& cloud)

@@ -13,9 +13,9 @@ namespace pcl_bsh::sites {
 
 /// Reads all tiles. Holds one of them, and a bit for each point of the site.
 /// @param progress called after each tile with the points done and all points; false: stop. May be null
-/// @throws files::FileError naming the first tile that is not what site.json says: fields, number of points, checksum,
-///   a point outside the bounds, bounds that are too large, records not in order, a record that is there twice or that
-///   no source has; Cancelled
+/// @throws files::FileError naming the first file that is not what site.json says: fields, number of points, checksum,
+///   bounds, greatest values of fields, records not in order, a record that is there twice or that no source has;
+///   an overview of other fields; Cancelled
 void checkSite(const Site& site, const std::function<bool(std::uint64_t, std::uint64_t)>& progress = nullptr);
 
 } // namespace pcl_bsh::sites

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/filters/cloud_files/cloud_stream.h>
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/text_files/format_error.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
@@ -105,16 +104,28 @@ std::filesystem::path answerFileName(std::size_t tile)
   return std::filesystem::path(tileFileName(tile)).replace_extension(answer_extension);
 }
 
-pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points)
+std::unique_ptr<io::CloudStream> openRecords(const std::filesystem::path& path, const Fields& fields)
 {
-  const auto stream = io::openCloud(path, 0);
+  auto stream = io::openCloud(path, 0);
   if (!isSame(stream->header().fields, fields))
     throw files::FileError(path, "has other fields than the site says", site_remedy);
+  return stream;
+}
+
+std::unique_ptr<io::CloudStream> openTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points)
+{
+  auto stream = openRecords(path, fields);
   if (stream->size() != points) {
     throw files::FileError(path,
                            "has " + std::to_string(stream->size()) + " points, the site says " + std::to_string(points),
                            site_remedy);
   }
+  return stream;
+}
+
+pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points)
+{
+  const auto stream = openTile(path, fields, points);
   pcl::PCLPointCloud2 cloud = stream->header();
   io::allocate(cloud, static_cast<std::uint32_t>(points));
   stream->read(cloud.data.data(), cloud.width);
@@ -135,7 +146,7 @@ std::size_t recordBytes(const Site& site)
   return layoutOf(site.fields).point_step;
 }
 
-void measure(const pcl::PCLPointCloud2& cloud, Tile& tile)
+void measureExtremes(const pcl::PCLPointCloud2& cloud, Tile& tile)
 {
   const PointsView view = viewOf(cloud);
   tile.bounds.reset();
@@ -143,8 +154,6 @@ void measure(const pcl::PCLPointCloud2& cloud, Tile& tile)
     const Point3 point = view.point(i);
     if (isFinite(point)) extend(tile.bounds, point);
   }
-  tile.spacing = spacingOf(SphereHierarchy(view)).median;
-  tile.crc32 = crcOf(cloud.data);
   tile.greatest.clear();
   for (const auto& field : cloud.fields) {
     if (field.count != 1 || isAxis(field.name)) continue;
@@ -153,6 +162,13 @@ void measure(const pcl::PCLPointCloud2& cloud, Tile& tile)
     if (field.datatype == pcl::PCLPointField::FLOAT64) greatest = greatestOf<double>(cloud, view, field.offset);
     if (greatest) tile.greatest[field.name] = *greatest;
   }
+}
+
+void measure(const pcl::PCLPointCloud2& cloud, Tile& tile)
+{
+  measureExtremes(cloud, tile);
+  tile.spacing = spacingOf(SphereHierarchy(viewOf(cloud))).median;
+  tile.crc32 = crcOf(cloud.data);
 }
 
 } // namespace pcl_bsh::sites

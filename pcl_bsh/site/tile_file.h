@@ -3,11 +3,13 @@
 #pragma once
 
 #include <pcl_bsh/files/new_file.h>
+#include <pcl_bsh/filters/cloud_files/cloud_stream.h>
 #include <pcl_bsh/site/records.h>
 #include <pcl_bsh/site/site.h>
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -52,10 +54,20 @@ std::string tileFileName(std::size_t tile);
 inline constexpr std::string_view answer_extension = ".answer";
 std::filesystem::path answerFileName(std::size_t tile);
 
-/// The points of a file of a site. @throws files::FileError when it has other fields or another number of points
+/// A file of records of a site. @throws files::FileError when it has other fields
+std::unique_ptr<io::CloudStream> openRecords(const std::filesystem::path& path, const Fields& fields);
+
+/// That of a tile. @throws files::FileError when it has other fields or another number of points
+std::unique_ptr<io::CloudStream> openTile(const std::filesystem::path& path, const Fields& fields,
+                                          std::uint64_t points);
+
+/// The points of a tile's file. @throws files::FileError when it has other fields or another number of points
 pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points);
 
-/// Sets bounds, spacing, checksum and the greatest values of a tile from its points.
+/// Sets bounds and the greatest values of a tile from its points.
+void measureExtremes(const pcl::PCLPointCloud2& cloud, Tile& tile);
+
+/// The same, spacing and checksum.
 void measure(const pcl::PCLPointCloud2& cloud, Tile& tile);
 
 } // namespace pcl_bsh::sites

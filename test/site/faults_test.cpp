@@ -3,6 +3,7 @@
 // that passes for a site.
 #include "../files/in_a_fork.h"
 #include "../programs/process.h"
+#include "../programs/program_run.h"
 
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/query/cancelled.h>
@@ -110,10 +111,46 @@ TEST_F(SiteFaults, Documents)
   each("\"name\": \"source\"", "\"name\": \"sauce\"", "there is no field 'source'");
   each("\"name\": \"x\"", "\"name\": \"y\"", "'y' is there twice");
   each("\"version\"", "version", "site.json");
+  each("\"spacing\"", "\"greatest\": { \"z\": 0.06 }, \"spacing\"", "'z' has another greatest value");
   folder.write("site/site.json", text);
   fs::create_symlink(folder / "scan.xyz", folder / "site/tiles/link.pcd");
   replace("tile_000001.pcd", "link.pcd");
   expectDefect("leaves the folder");
+}
+
+/// Memory for as many points as site.json says is taken when the tiles have as many.
+TEST_F(SiteFaults, CountsOfNoPoints)
+{
+  const Site made = make();
+  Site site = made;
+  const std::uint64_t more = std::uint64_t{1} << 53;
+  site.points = site.sources[0].points = more;
+  site.tiles.back().points += more - made.points;
+  folder.write("site/site.json", siteText(site));
+  expectDefect(site.tiles.back().file + ": has ");
+}
+
+/// Names in a document of someone else must not steer the terminal.
+TEST_F(SiteFaults, NamesThatSteer)
+{
+  Site site = make();
+  site.sources[0].file = "\x1b[2Jscan";
+  folder.write("site/site.json", siteText(site));
+  const Outcome info = run("pcl_bsh_site", "info site", folder.path());
+  EXPECT_EQ(info.exit_code, 0);
+  EXPECT_THAT(info.out, HasSubstr("  ?[2Jscan: 20000"));
+}
+
+TEST_F(SiteFaults, AnOverviewOfOtherFields)
+{
+  const Site site = make();
+  const std::string overview = files::contentOf(site.folder / overview_file_name);
+  std::string other = overview;
+  other.replace(other.find("record"), 6, "rekord");
+  folder.write("site/overview.pcd", other);
+  expectDefect("overview.pcd: has other fields than the site says");
+  fs::remove(site.folder / overview_file_name); // sites may be made without
+  EXPECT_NO_THROW(checkSite(readSite(folder / "site")));
 }
 
 TEST_F(SiteFaults, AFullDisk)

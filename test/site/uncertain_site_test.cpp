@@ -9,6 +9,7 @@
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/make_site.h>
 
@@ -245,6 +246,15 @@ TEST_F(UncertainSite, RefusesWhatItCannotKnow)
   const Site old = readSite(site.folder);
   EXPECT_EQ(refusal(old, Uncertainty(0.1)), "none");
   EXPECT_THAT(refusal(old, {"sigma", 1.0}), HasSubstr("does not say how large 'sigma' is"));
+
+  // A greatest value that is too small would leave tiles out.
+  const Site whole = siteOf(200);
+  EXPECT_NO_THROW(checkSite(whole));
+  Site lowered = whole;
+  lowered.tiles.back().greatest["sigma"] *= 0.5;
+  EXPECT_THROW(checkSite(lowered), files::FileError);
+  lowered.tiles.back().greatest.clear(); // leaves none out
+  EXPECT_NO_THROW(checkSite(lowered));
 
   // A sigma that is no length, where its tile is read.
   double sigma = -0.5;
