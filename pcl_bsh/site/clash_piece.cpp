@@ -61,16 +61,22 @@ Piece readPiece(const double* in)
   return piece;
 }
 
-/// Those of all ranks.
-template <typename Item, typename Read>
-std::vector<Item> gatheredItems(const std::vector<Item>& own, std::size_t numbers, const Read& read)
+template <typename Item>
+void writeAll(std::vector<double>& out, const std::vector<Item>& items)
 {
-  std::vector<double> out;
-  for (const Item& item : own) write(out, item);
-  const std::vector<double> all = gatheredFromAllRanks(out);
-  std::vector<Item> items;
-  for (std::size_t i = 0; i < all.size(); i += numbers) items.push_back(read(all.data() + i));
-  return items;
+  out.push_back(static_cast<double>(items.size()));
+  for (const Item& item : items) write(out, item);
+}
+
+/// @return where the next list begins
+template <typename Item, typename Read>
+const double* readAll(std::vector<Item>& items, const double* in, std::size_t numbers, const Read& read)
+{
+  for (auto left = static_cast<std::size_t>(*in++); left > 0; --left) {
+    items.push_back(read(in));
+    in += numbers;
+  }
+  return in;
 }
 
 /// Mixes all bits of a point's name (the finalizer of MurmurHash3).
@@ -84,14 +90,31 @@ std::uint64_t lotOf(const SitePoint& point)
 
 } // namespace
 
-std::vector<Member> gathered(const std::vector<Member>& own)
+std::vector<double> numbersOf(const Pieces& pieces)
 {
-  return gatheredItems(own, member_numbers, readMember);
+  std::vector<double> numbers = {pieces.of_site ? 1.0 : 0.0};
+  writeAll(numbers, pieces.pieces);
+  writeAll(numbers, pieces.border);
+  writeAll(numbers, pieces.some);
+  return numbers;
 }
 
-std::vector<Piece> gathered(const std::vector<Piece>& own)
+void add(Pieces& pieces, const double* begin, const double* end)
 {
-  return gatheredItems(own, piece_numbers, readPiece);
+  while (begin != end) {
+    pieces.of_site = *begin++ != 0.0 || pieces.of_site;
+    begin = readAll(pieces.pieces, begin, piece_numbers, readPiece);
+    begin = readAll(pieces.border, begin, member_numbers, readMember);
+    begin = readAll(pieces.some, begin, member_numbers, readMember);
+  }
+}
+
+Pieces gathered(const Pieces& own)
+{
+  const std::vector<double> numbers = gatheredFromAllRanks(numbersOf(own));
+  Pieces all;
+  add(all, numbers.data(), numbers.data() + numbers.size());
+  return all;
 }
 
 void join(Piece& piece, const Piece& other)

@@ -23,9 +23,20 @@ struct Piece {
   MetPoint met;   ///< the model's
 };
 
+/// What tiles have of clashes.
+struct Pieces {
+  bool of_site = false; ///< whether the model is a site: the met points tell theirs
+  std::vector<Piece> pieces;
+  std::vector<Member> border; ///< points that a step of the cluster distance may lead to another tile
+  std::vector<Member> some;   ///< of each piece
+};
+
+/// As numbers, one sequence after another of which add() understands.
+std::vector<double> numbersOf(const Pieces& pieces);
+void add(Pieces& pieces, const double* begin, const double* end);
+
 /// Those of all ranks of an MPI job, on all of them.
-std::vector<Member> gathered(const std::vector<Member>& own);
-std::vector<Piece> gathered(const std::vector<Piece>& own);
+Pieces gathered(const Pieces& own);
 
 /// Two pieces of one clash. Of pairs of one distance that of the smaller point of the site counts, as in memory.
 void join(Piece& piece, const Piece& other);

@@ -182,7 +182,7 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     const TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
     if (sink) sink(tile, cloud, found);
-    return PassageSum::numbersOf(found);
+    return sum.numbersOf(tile, cloud, found);
   };
   const std::vector<std::uint32_t> tiles = tilesAlong(site, model, poses, pathReach(request), request.uncertainty);
   const TilesRead read = inquiry.visitAndAdd(tiles, find, [&](const auto& numbers) { sum.add(numbers); });

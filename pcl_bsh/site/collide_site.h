@@ -48,6 +48,8 @@ public:
   virtual void keep(std::size_t tile, const std::vector<double>& numbers) = 0;
 };
 
+class ClashFinder;
+
 /// What is asked about a site, and with which means.
 struct SiteRequest {
   double clearance = 0.0;      ///< finite, >= 0; inclusive
@@ -56,7 +58,8 @@ struct SiteRequest {
   Point3 pivot = {0, 0, 0};    ///< of that motion, as there
   Uncertainty uncertainty;     ///< of the site's points: for verdicts, as in PointsView. A field is one of the site's
   bool pose_summaries = false; ///< of collideAlong(): what collides at each pose, as there
-  unsigned threads = 1;        ///< of each process; 0: all of the machine's
+  ClashFinder* clashes = nullptr;                ///< of collideAlong(): gets what collides; needs distances
+  unsigned threads = 1;                          ///< of each process; 0: all of the machine's
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
   /// Of flags, distances and paths: tiles that are known are not read, and their sinks not called. ResultSite has some.
   TileAnswers* answers = nullptr;
@@ -179,7 +182,8 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
 
 /// The model along its poses, in the site's frame: flags, distances, first and closest poses of each point; flags alone
 /// where the accuracy stops early.
-/// @throws std::invalid_argument also for poses and a tolerance that no tile is asked about
+/// @throws std::invalid_argument also for poses and a tolerance that no tile is asked about, and for clashes where the
+///   accuracy stops early
 SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
                          const SiteRequest& request, const PassageSink& sink = nullptr);
 

@@ -51,14 +51,14 @@ public:
     keepEarlier(joined_.certain_contact, found.certain_contact);
   }
 
-  /// @param met gets the nearest points, where given
-  const TrajectoryResult& result(std::vector<MetPoint>* met)
+  /// @param met gets the nearest points, where distances are asked for
+  const TrajectoryResult& result(std::vector<MetPoint>& met)
   {
-    if (met && !joined_.distance.empty()) {
+    if (!joined_.distance.empty()) {
       joined_.closest_point.assign(scan_.count, TrajectoryResult::kNoPoint);
       for (const auto& [i, nearest] : nearest_) {
-        joined_.closest_point[i] = static_cast<std::uint32_t>(met->size());
-        met->push_back(nearest);
+        joined_.closest_point[i] = static_cast<std::uint32_t>(met.size());
+        met.push_back(nearest);
       }
     }
     const auto counted = [&](Verdict verdict) {
@@ -119,8 +119,7 @@ std::vector<std::vector<std::uint32_t>> tilesOfModelNear(const Site& site, const
 } // namespace
 
 SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertainty& model_uncertainty,
-                             const Poses& poses, const SiteRequest& request, const PassageSink& sink,
-                             std::vector<MetPoint>* met)
+                             const Poses& poses, const SiteRequest& request, const PassageSink& sink)
 {
   if (request.pose_summaries)
     throw std::invalid_argument("pose_summaries: are not answered of two sites: leave them out");
@@ -145,9 +144,10 @@ SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertai
       joined.add(pcl_bsh::collideAlong({hierarchy}, SphereHierarchy(points, inquiry.building()), poses, wanted), points,
                  models.last());
     }
+    std::vector<MetPoint> met;
     const TrajectoryResult& found = joined.result(met);
     if (sink) sink(tile, cloud, found);
-    return PassageSum::numbersOf(found);
+    return sum.numbersOf(tile, cloud, found, &met);
   };
   SitePairPassage result;
   const TilesRead read = inquiry.visitAndAdd(tiles, find, [&](const auto& numbers) { sum.add(numbers); });

@@ -12,6 +12,17 @@ namespace pcl_bsh::sites {
 namespace fs = std::filesystem;
 using io::Json;
 
+namespace {
+
+std::uint32_t crcOfNumbers(const std::vector<double>& numbers)
+{
+  Checksum checksum;
+  checksum.add(numbers.data(), numbers.size() * sizeof(double));
+  return checksum.value();
+}
+
+} // namespace
+
 KeptAnswers::KeptAnswers(const fs::path& folder, const std::string& question)
 : folder_(folder),
   question_(crcOf(question))
@@ -27,7 +38,10 @@ const std::vector<double>* KeptAnswers::known(std::size_t tile) const
 void KeptAnswers::keep(std::size_t tile, const std::vector<double>& numbers)
 {
   // CBOR keeps doubles as they are, infinity and NaN too.
-  const auto bytes = Json::to_cbor({{"question", question_}, {"crc32", checksums_.at(tile)}, {"numbers", numbers}});
+  const auto bytes = Json::to_cbor({{"question", question_},
+                                    {"crc32", checksums_.at(tile)},
+                                    {"crc32_of_numbers", crcOfNumbers(numbers)},
+                                    {"numbers", numbers}});
   files::replaceFile(folder_ / answerFileName(tile), [&](std::ostream& out) {
     out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   });
@@ -43,7 +57,9 @@ std::optional<KeptAnswers::Answer> KeptAnswers::read(std::size_t tile) const
   if (json.is_discarded() || !json.is_object()) return std::nullopt;
   try {
     if (json.at("question").get<std::uint32_t>() != question_) return std::nullopt;
-    return Answer{json.at("crc32").get<std::uint32_t>(), json.at("numbers").get<std::vector<double>>()};
+    Answer answer{json.at("crc32").get<std::uint32_t>(), json.at("numbers").get<std::vector<double>>()};
+    if (json.at("crc32_of_numbers").get<std::uint32_t>() != crcOfNumbers(answer.numbers)) return std::nullopt;
+    return answer;
   }
   catch (const Json::exception&) {
     return std::nullopt; // not ours: the tile is asked about again

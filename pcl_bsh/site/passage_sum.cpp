@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/site/inquiry.h>
 #include <pcl_bsh/site/passage_sum.h>
+#include <pcl_bsh/site/site_clashes.h>
 #include <pcl_bsh/trajectory/add_summary.h>
 
 #include <algorithm>
@@ -103,15 +104,20 @@ FirstContact earlier(const FirstContact& a, const FirstContact& b)
 PassageSum::PassageSum(const SiteRequest& request, std::size_t poses)
 : measures_(!request.accuracy.stopsEarly()),
   moves_(request.swept.has_value()),
+  clashes_(request.clashes),
   least_(infinity),
   first_(infinity),
   contact_(no_contact),
   certain_(no_contact)
 {
+  if (clashes_ != nullptr && !measures_)
+    throw std::invalid_argument("accuracy " + request.accuracy.text() +
+                                ": clashes need distances: give exact, float or a tolerance");
   if (request.pose_summaries) sum_.poses.resize(poses);
 }
 
-std::vector<double> PassageSum::numbersOf(const TrajectoryResult& found)
+std::vector<double> PassageSum::numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud,
+                                          const TrajectoryResult& found, const std::vector<MetPoint>* met) const
 {
   double nearest = infinity, earliest = infinity;
   for (std::size_t i = 0; i < found.distance.size(); ++i) {
@@ -121,10 +127,13 @@ std::vector<double> PassageSum::numbersOf(const TrajectoryResult& found)
   }
   std::vector<double> numbers = {static_cast<double>(found.colliding), static_cast<double>(found.undecided), nearest,
                                  earliest};
-  for (const auto& met : {found.first_contact, found.certain_contact})
+  for (const auto& contact : {found.first_contact, found.certain_contact})
     numbers.insert(numbers.end(),
-                   {static_cast<double>(met.value_or(no_contact).pose), met.value_or(no_contact).fraction});
+                   {static_cast<double>(contact.value_or(no_contact).pose), contact.value_or(no_contact).fraction});
   append(numbers, found.poses);
+  if (clashes_ == nullptr) return numbers;
+  const std::vector<double> of_clashes = clashes_->numbersOf(tile, cloud, found, met);
+  numbers.insert(numbers.end(), of_clashes.begin(), of_clashes.end());
   return numbers;
 }
 
@@ -136,7 +145,9 @@ void PassageSum::add(const std::vector<double>& numbers)
   first_ = std::min(first_, numbers[3]);
   contact_ = earlier(contact_, {static_cast<std::size_t>(numbers[4]), numbers[5]});
   certain_ = earlier(certain_, {static_cast<std::size_t>(numbers[6]), numbers[7]});
-  addPoses(sum_.poses, posesOf(numbers, 8, numbers.size()));
+  const std::size_t end = 8 + 4 * sum_.poses.size();
+  addPoses(sum_.poses, posesOf(numbers, 8, end));
+  if (clashes_ != nullptr) clashes_->add(numbers, end);
 }
 
 SitePassage PassageSum::ofAllRanks()

@@ -29,11 +29,12 @@ FirstContact earlier(const FirstContact& a, const FirstContact& b);
 
 class PassageSum {
 public:
-  /// @param poses how many there are
+  /// @param poses how many there are. @throws std::invalid_argument for clashes without distances
   PassageSum(const SiteRequest& request, std::size_t poses);
 
-  /// What is known of a tile, as numbers.
-  static std::vector<double> numbersOf(const TrajectoryResult& found);
+  /// What is known of a tile, as numbers. @param met what closest_point are numbers of, where the model is a site
+  std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
+                                const std::vector<MetPoint>* met = nullptr) const;
 
   void add(const std::vector<double>& numbers);
 
@@ -42,6 +43,7 @@ public:
 
 private:
   bool measures_, moves_;
+  ClashFinder* clashes_; ///< null: none are wanted
   SitePassage sum_;
   double least_, first_;
   FirstContact contact_, certain_;

@@ -13,16 +13,18 @@
 
 namespace pcl_bsh::sites {
 
-class ClashFinder::Pieces {
+class ClashFinder::Joining {
 public:
-  Pieces(const Site& site, double cluster_distance) : site_(site), distance_(cluster_distance)
+  Joining(const Site& site, double cluster_distance) : site_(site), distance_(cluster_distance)
   {
     findClashes(PointsView{}, TrajectoryResult(), cluster_distance); // refuses a distance although no tile may collide
   }
 
-  void add(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
-           const std::vector<MetPoint>* met)
+  Pieces piecesOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
+                  const std::vector<MetPoint>* met) const
   {
+    Pieces of_tile;
+    of_tile.of_site = met != nullptr;
     const PointsView view = viewOf(cloud);
     const std::size_t source_at = offsetOf(cloud, source_field_name), record_at = offsetOf(cloud, record_field_name);
     const auto memberOf = [&](std::uint32_t i, const SitePoint& piece) {
@@ -39,26 +41,29 @@ public:
       std::vector<Member> some;
       for (const std::uint32_t i : clash.records) {
         some.push_back(memberOf(i, piece));
-        if (isNear(some.back().place, others)) border_.push_back(some.back());
+        if (isNear(some.back().place, others)) of_tile.border.push_back(some.back());
       }
       drawSome(some, most_points);
-      some_.insert(some_.end(), some.begin(), some.end());
+      of_tile.some.insert(of_tile.some.end(), some.begin(), some.end());
       const Member nearest = memberOf(clash.scan_point, piece);
       const MetPoint of_model = met ? (*met)[clash.model_point] : MetPoint{{0, clash.model_point}, {0, 0, 0}};
       clash.records.clear();
-      pieces_.push_back({std::move(clash), nearest, of_model});
+      of_tile.pieces.push_back({std::move(clash), nearest, of_model});
     }
+    return of_tile;
   }
 
-  SiteClashes finish(bool model_is_site)
+  void add(const double* begin, const double* end) { sites::add(found_, begin, end); }
+
+  SiteClashes finish()
   {
-    pieces_ = gathered(pieces_);
-    std::sort(pieces_.begin(), pieces_.end(),
+    found_ = gathered(found_);
+    std::sort(found_.pieces.begin(), found_.pieces.end(),
               [](const Piece& a, const Piece& b) { return a.nearest.piece < b.nearest.piece; });
-    const std::vector<std::size_t> clash_of = joinPieces(gathered(border_));
-    std::vector<std::vector<Member>> some(pieces_.size());
-    for (const Member& member : gathered(some_)) some[clash_of[numberOf(member.piece)]].push_back(member);
-    return listed(some, model_is_site);
+    const std::vector<std::size_t> clash_of = joinPieces();
+    std::vector<std::vector<Member>> some(clashes_.size());
+    for (const Member& member : found_.some) some[clash_of[numberOf(member.piece)]].push_back(member);
+    return listed(some);
   }
 
 private:
@@ -82,15 +87,17 @@ private:
   /// @pre pieces are in the order of their smallest points
   std::size_t numberOf(const SitePoint& piece) const
   {
-    const auto place = std::lower_bound(pieces_.begin(), pieces_.end(), piece,
+    const auto place = std::lower_bound(found_.pieces.begin(), found_.pieces.end(), piece,
                                         [](const Piece& a, const SitePoint& b) { return a.nearest.piece < b; });
-    return static_cast<std::size_t>(place - pieces_.begin());
+    return static_cast<std::size_t>(place - found_.pieces.begin());
   }
 
-  /// Leaves one piece of each clash, in the order of their smallest points. @return of each earlier piece, its clash
-  std::vector<std::size_t> joinPieces(const std::vector<Member>& border)
+  /// Makes clashes of the pieces, in the order of their smallest points. @return of each piece, its clash
+  std::vector<std::size_t> joinPieces()
   {
-    DisjointSets sets(pieces_.size());
+    const std::vector<Piece>& pieces = found_.pieces;
+    const std::vector<Member>& border = found_.border;
+    DisjointSets sets(pieces.size());
     std::vector<Point3> places;
     for (const Member& member : border) places.push_back(member.place);
     const SphereHierarchy hierarchy(viewOf(places.empty() ? nullptr : places.front().data(), places.size()));
@@ -102,30 +109,28 @@ private:
       if (of_cluster == none) of_cluster = piece;
       sets.unite(of_cluster, piece);
     }
-    std::vector<std::size_t> clash_of(pieces_.size());
-    std::vector<Piece> joined;
-    for (std::uint32_t i = 0; i < pieces_.size(); ++i) {
+    std::vector<std::size_t> clash_of(pieces.size());
+    for (std::uint32_t i = 0; i < pieces.size(); ++i) {
       const std::uint32_t root = sets.find(i); // the smallest of its set: comes first
       if (root == i) {
-        clash_of[i] = joined.size();
-        joined.push_back(pieces_[i]);
+        clash_of[i] = clashes_.size();
+        clashes_.push_back(pieces[i]);
         continue;
       }
       clash_of[i] = clash_of[root];
-      join(joined[clash_of[i]], pieces_[i]);
+      join(clashes_[clash_of[i]], pieces[i]);
     }
-    clashes_ = std::move(joined);
     return clash_of;
   }
 
-  SiteClashes listed(std::vector<std::vector<Member>>& some, bool model_is_site)
+  SiteClashes listed(std::vector<std::vector<Member>>& some)
   {
     SiteClashes list;
     for (std::size_t i = 0; i < clashes_.size(); ++i) {
       Clash& clash = clashes_[i].clash;
       const Member& nearest = clashes_[i].nearest;
-      clash.model_point = model_is_site ? static_cast<std::uint32_t>(i) : clashes_[i].met.point.record;
-      if (model_is_site) list.met.push_back(clashes_[i].met);
+      clash.model_point = found_.of_site ? static_cast<std::uint32_t>(i) : clashes_[i].met.point.record;
+      if (found_.of_site) list.met.push_back(clashes_[i].met);
       std::vector<Member>& members = some[i];
       drawSome(members, most_points);
       members.push_back(nearest);
@@ -151,27 +156,31 @@ private:
 
   const Site& site_;
   const double distance_;
-  std::vector<Piece> pieces_, clashes_;
-  std::vector<Member> border_; ///< points that a step of the distance may lead to another tile
-  std::vector<Member> some_;   ///< of each piece
+  Pieces found_;
+  std::vector<Piece> clashes_;
 };
 
 ClashFinder::ClashFinder(const Site& site, double cluster_distance)
-: pieces_(std::make_unique<Pieces>(site, cluster_distance))
+: joining_(std::make_unique<Joining>(site, cluster_distance))
 {
 }
 
 ClashFinder::~ClashFinder() = default;
 
-void ClashFinder::add(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
-                      const std::vector<MetPoint>* met)
+std::vector<double> ClashFinder::numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud,
+                                           const TrajectoryResult& found, const std::vector<MetPoint>* met) const
 {
-  pieces_->add(tile, cloud, found, met);
+  return sites::numbersOf(joining_->piecesOf(tile, cloud, found, met));
 }
 
-SiteClashes ClashFinder::finish(bool model_is_site)
+void ClashFinder::add(const std::vector<double>& numbers, std::size_t begin)
 {
-  return pieces_->finish(model_is_site);
+  joining_->add(numbers.data() + begin, numbers.data() + numbers.size());
+}
+
+SiteClashes ClashFinder::finish()
+{
+  return joining_->finish();
 }
 
 double spacingOf(const Site& site)

@@ -3,9 +3,8 @@
 // ids, although a clash may lie in many tiles.
 //
 //   sites::ClashFinder finder(valley, 0.25);
-//   sites::collideAlong(valley, wagon, poses, request, [&](const auto& tile, const auto& cloud, const auto& found) {
-//     finder.add(tile, cloud, found);
-//   });
+//   request.clashes = &finder;
+//   sites::collideAlong(valley, wagon, poses, request);
 //   sites::SiteClashes list = finder.finish();
 //
 // Of a tile's clashes that come near other tiles the points near these are kept until all tiles have been visited: a
@@ -47,18 +46,20 @@ public:
   ClashFinder(const ClashFinder&) = delete;
   ClashFinder& operator=(const ClashFinder&) = delete;
 
-  /// What was found of the points of a tile. To be called by the sink of collideAlong().
-  /// @param met where the model is a site: what closest_point are numbers of
-  void add(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
-           const std::vector<MetPoint>* met = nullptr);
+  /// For collideAlong(): what a tile has of clashes, as numbers that may be kept for a finder of the same distance.
+  /// @param met where the model is a site: what closest_point are numbers of; else null
+  std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
+                                const std::vector<MetPoint>* met) const;
+
+  /// For collideAlong(): adds those from the given one on.
+  void add(const std::vector<double>& numbers, std::size_t begin);
 
   /// All clashes, on all ranks of an MPI job. To be called once, by all of them.
-  /// @param model_is_site whether add() was told what was met
-  SiteClashes finish(bool model_is_site = false);
+  SiteClashes finish();
 
 private:
-  class Pieces;
-  std::unique_ptr<Pieces> pieces_;
+  class Joining;
+  std::unique_ptr<Joining> joining_;
 };
 
 /// The median of the tiles' spacings, each of which counts as often as it has points; 0 of a site without.

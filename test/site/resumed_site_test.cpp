@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A question to a site that was killed goes on with the tiles that it has answered, and says what it would have said.
 #include "../files/in_a_fork.h"
+#include "../programs/process.h"
 #include "../programs/program_run.h"
 #include "float64_cloud.h"
 #include "two_ranks.h"
@@ -14,9 +15,12 @@
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/collide_sites.h>
 #include <pcl_bsh/site/result_site.h>
+#include <pcl_bsh/site/site_clashes.h>
 #include <pcl_bsh/site/tile_file.h>
 
 #include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
 
 #include <unistd.h>
 
@@ -24,6 +28,7 @@
 #include <csignal>
 #include <map>
 #include <random>
+#include <thread>
 
 namespace pcl_bsh::sites {
 namespace {
@@ -31,6 +36,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using Cloud = pcl::PCLPointCloud2;
+using Json = nlohmann::json;
 
 std::map<std::string, std::string> contentsOf(const fs::path& folder)
 {
@@ -38,6 +44,15 @@ std::map<std::string, std::string> contentsOf(const fs::path& folder)
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file()) contents[fs::relative(entry.path(), folder).string()] = files::contentOf(entry.path());
   return contents;
+}
+
+/// Whether a run has answered about a tile.
+bool hasAnswer(const fs::path& out)
+{
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(out / tiles_folder_name, error))
+    if (entry.path().extension() == answer_extension) return true;
+  return false;
 }
 
 /// Where a run is killed.
@@ -61,10 +76,30 @@ protected:
     site = makeSite({folder / "scan.pcd"}, folder / "site", options);
   }
 
+  /// What a path met.
+  struct Asked : SitePassage {
+    std::vector<std::string> clashes;
+  };
+
+  /// Each clash as a line.
+  static std::vector<std::string> linesOf(const SiteClashes& list)
+  {
+    std::vector<std::string> lines;
+    for (const Clash& clash : list.clashes) {
+      std::string line = clash.id;
+      for (const std::size_t number :
+           {clash.points, clash.records.size(), std::size_t{list.points[clash.scan_point].record}})
+        line += " " + std::to_string(number);
+      if (!list.met.empty()) line += " " + std::to_string(list.met[clash.model_point].point.record);
+      lines.push_back(std::move(line));
+    }
+    return lines;
+  }
+
   /// Asks about the path, on a site of results. @param kill the tile, counted as they are asked, at which this process
   /// dies
-  SitePassage ask(const fs::path& out, bool goes_on, At at = At::nowhere, std::uint64_t kill = 0,
-                  const std::string& question = "where?")
+  Asked ask(const fs::path& out, bool goes_on, At at = At::nowhere, std::uint64_t kill = 0,
+            const std::string& question = "where?")
   {
     const SphereHierarchy model(viewOf(body.front().data(), body.size()));
     ResultSite results(site, out,
@@ -78,6 +113,8 @@ protected:
     SiteRequest request;
     request.clearance = 0.3;
     request.pose_summaries = true;
+    ClashFinder finder(site, 0.5);
+    request.clashes = &finder;
     request.answers = results.answers();
     request.progress = [&](std::uint64_t done, std::uint64_t) {
       dieAt(At::after_tile, done);
@@ -90,7 +127,7 @@ protected:
                                                dieAt(At::before_keeping, asked);
                                              });
     results.finish();
-    return passage;
+    return {passage, linesOf(finder.finish())};
   }
 
   /// In a process that is killed there. @return whether it was
@@ -99,8 +136,9 @@ protected:
     return !files::endsInAFork([&] { ask(out, goes_on, at, kill); });
   }
 
-  static void expectSame(const SitePassage& a, const SitePassage& b)
+  static void expectSame(const Asked& a, const Asked& b)
   {
+    EXPECT_EQ(a.clashes, b.clashes);
     EXPECT_EQ(a.colliding, b.colliding);
     EXPECT_EQ(a.distance, b.distance);
     EXPECT_EQ(a.first_pose, b.first_pose);
@@ -122,8 +160,9 @@ protected:
 
 TEST_F(ResumedSite, SaysTheSameAfterAKillAnywhere)
 {
-  const SitePassage whole = ask(folder / "whole", false);
+  const Asked whole = ask(folder / "whole", false);
   const auto files = contentsOf(folder / "whole");
+  ASSERT_GT(whole.clashes.size(), 4u);
   ASSERT_GT(whole.tiles.read, 5u);
   ASSERT_GT(whole.colliding, 0u);
   for (const At at : {At::before_writing, At::before_keeping, At::after_tile}) {
@@ -131,7 +170,7 @@ TEST_F(ResumedSite, SaysTheSameAfterAKillAnywhere)
       SCOPED_TRACE(std::to_string(static_cast<int>(at)) + " " + std::to_string(kill));
       ASSERT_TRUE(askAndDie(folder / "out", false, at, kill));
       EXPECT_THROW(readSite(folder / "out"), files::FileError);
-      const SitePassage resumed = ask(folder / "out", true);
+      const Asked resumed = ask(folder / "out", true);
       expectSame(resumed, whole);
       EXPECT_EQ(resumed.tiles.read, whole.tiles.read - kill + (at == At::after_tile ? 0 : 1));
       EXPECT_EQ(contentsOf(folder / "out"), files);
@@ -142,7 +181,7 @@ TEST_F(ResumedSite, SaysTheSameAfterAKillAnywhere)
 
 TEST_F(ResumedSite, MayBeKilledAgain)
 {
-  const SitePassage whole = ask(folder / "whole", false);
+  const Asked whole = ask(folder / "whole", false);
   std::uint64_t kills = 0;
   while (askAndDie(folder / "out", kills > 0, At::after_tile, 2)) ASSERT_LT(++kills, whole.tiles.read);
   EXPECT_EQ(kills, whole.tiles.read / 2);
@@ -151,9 +190,9 @@ TEST_F(ResumedSite, MayBeKilledAgain)
 
 TEST_F(ResumedSite, AsksAgainWhatIsNotItsOwnAnswer)
 {
-  const SitePassage whole = ask(folder / "whole", false);
+  const Asked whole = ask(folder / "whole", false);
   const auto expectRead = [&](std::uint64_t tiles, const std::string& question = "where?", bool goes_on = true) {
-    const SitePassage resumed = ask(folder / "out", goes_on, At::nowhere, 0, question);
+    const Asked resumed = ask(folder / "out", goes_on, At::nowhere, 0, question);
     expectSame(resumed, whole);
     EXPECT_EQ(resumed.tiles.read, tiles);
     EXPECT_EQ(contentsOf(folder / "out"), contentsOf(folder / "whole"));
@@ -177,6 +216,15 @@ TEST_F(ResumedSite, AsksAgainWhatIsNotItsOwnAnswer)
   std::fstream(tile.replace_extension(".pcd"), std::ios::in | std::ios::out | std::ios::binary).seekp(-1, std::ios::end)
       << '\7';
   expectRead(whole.tiles.read - 1);
+
+  ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 4));
+  const std::string answer = files::contentOf(answers()[0]);
+  Json json = Json::from_cbor(answer);
+  json["numbers"][0] = json["numbers"][0].get<double>() + 1;
+  const auto changed = Json::to_cbor(json);
+  std::ofstream(answers()[0], std::ios::binary)
+      .write(reinterpret_cast<const char*>(changed.data()), static_cast<std::streamsize>(changed.size()));
+  expectRead(whole.tiles.read - 3);
 }
 
 /// Flags, distances and paths of two sites, killed after some tiles.
@@ -201,27 +249,32 @@ TEST_F(ResumedSite, AboutTwoSites)
       for (const auto number : numbers) values.push_back(static_cast<float>(number));
       results.write(tile, cloud, {values.data()});
     };
-    std::pair<double, std::uint64_t> found;
+    std::pair<std::vector<std::string>, std::uint64_t> found;
     if (question == 0) {
       const SitePairFlags flags =
           collisionFlags(site, {other}, request, [&](const auto& tile, const auto& cloud, const FlagsResult& result) {
             write(tile, cloud, result.a);
           });
-      found = {static_cast<double>(flags.colliding), flags.tiles.read};
+      found = {{std::to_string(flags.colliding)}, flags.tiles.read};
     }
     else if (question == 1) {
       const SitePairDistances distances = pointDistances(
           site, {other}, 4.0, request,
           [&](const auto& tile, const auto& cloud, const std::vector<double>& result) { write(tile, cloud, result); });
-      found = {distances.greatest + static_cast<double>(distances.measured), distances.tiles.read};
+      found = {{std::to_string(distances.greatest), std::to_string(distances.measured)}, distances.tiles.read};
     }
     else {
+      ClashFinder finder(site, 0.5);
+      request.clashes = &finder;
       const SitePairPassage passage = collideAlong(
           site, other, {}, poses, request, [&](const auto& tile, const auto& cloud, const TrajectoryResult& result) {
             write(tile, cloud, result.flags);
           });
-      found = {static_cast<double>(passage.colliding) + double{passage.distance} + passage.first_pose,
-               passage.tiles.read};
+      const SiteClashes list = finder.finish();
+      EXPECT_FALSE(list.met.empty());
+      found = {linesOf(list), passage.tiles.read};
+      for (const double number : {double(passage.colliding), double{passage.distance}, double(passage.first_pose)})
+        found.first.push_back(std::to_string(number));
     }
     results.finish();
     return found;
@@ -240,23 +293,44 @@ TEST_F(ResumedSite, AboutTwoSites)
   }
 }
 
-/// The program, about a site as obstacle, one of whose tiles is written anew.
+/// The program, about a site as obstacle: of the same question, of one whose obstacle is written anew, and of other
+/// clashes.
 TEST_F(ResumedSite, ByTheProgramAboutTwoSites)
 {
   MakeOptions options;
   options.tile_points = 70;
   const Site other = makeSite({folder / "body.pcd"}, folder / "other", options);
-  const std::string asked = "collide site other --clearance 0.3 --trajectory poses.txt --out ";
-  ASSERT_EQ(run("pcl_bsh_site", asked + "whole", folder.path()).exit_code, 0);
-  for (const bool changes : {false, true}) {
-    const std::string kill =
-        "timeout -s KILL 0.15 " PCL_BSH_PROGRAM_DIR "/pcl_bsh_site " + asked + "out > /dev/null 2>&1";
-    EXPECT_NE(std::system(("cd " + folder.path().string() + " && " + kill).c_str()), -1);
-    if (fs::exists(folder / "out/site.json")) fs::remove_all(folder / "out"); // it was quicker
-    if (changes) fs::last_write_time(other.folder / other.tiles[0].file, fs::file_time_type::clock::now());
-    const Outcome outcome = run("pcl_bsh_site", asked + "out --resume", folder.path());
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::vector<std::string> asked = {"collide",   "site",      "other",    "--clearance", "0.3",   "--trajectory",
+                                          "poses.txt", "--clashes", "list.csv", "--report",    "r.json"};
+  const auto tilesRead = [&] {
+    return Json::parse(files::contentOf(folder / "r.json"))["tiles"]["read"].get<std::size_t>();
+  };
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), asked.begin(), asked.end());
+    return more;
+  };
+  ASSERT_EQ(Process("pcl_bsh_site", with({"--out", "whole"}), folder.path()).end(), 0);
+  const std::string list = files::contentOf(folder / "list.csv");
+  const std::size_t all = tilesRead();
+  for (const std::string change : {"", "tile", "clusters"}) {
+    SCOPED_TRACE(change);
+    fs::remove(folder / "list.csv");
+    std::vector<std::string> killed = {"--out", "out"};
+    if (change == "clusters") killed.insert(killed.end(), {"--cluster-distance", "30"});
+    {
+      Process program("pcl_bsh_site", with(killed), folder.path());
+      while (!program.hasEnded() && !hasAnswer(folder / "out")) std::this_thread::yield();
+      program.send(SIGKILL);
+      program.end();
+    }
+    const bool was_killed = !fs::exists(folder / "out/site.json");
+    if (!was_killed) fs::remove_all(folder / "out"); // it was quicker
+    if (change == "tile") fs::last_write_time(other.folder / other.tiles[0].file, fs::file_time_type::clock::now());
+    Process resumed("pcl_bsh_site", with({"--out", "out", "--resume"}), folder.path());
+    ASSERT_EQ(resumed.end(), 0) << resumed.err();
     EXPECT_EQ(contentsOf(folder / "out"), contentsOf(folder / "whole"));
+    EXPECT_EQ(files::contentOf(folder / "list.csv"), list);
+    EXPECT_EQ(tilesRead() < all, was_killed && change.empty()) << tilesRead() << " of " << all;
     fs::remove_all(folder / "out");
   }
 }
@@ -271,8 +345,9 @@ TEST_F(ResumedSite, LeavesNothingOfARunThatFails)
 /// The program, killed at instants that nobody chose.
 TEST_F(ResumedSite, ByTheProgram)
 {
-  const std::string asked = "collide site body.pcd --clearance 0.3 --trajectory poses.txt --out ";
+  const std::string asked = "collide site body.pcd --clearance 0.3 --trajectory poses.txt --clashes list.json --out ";
   ASSERT_EQ(run("pcl_bsh_site", asked + "whole --report whole.json", folder.path()).exit_code, 0);
+  const std::string list = files::contentOf(folder / "list.json");
   const auto whole = contentsOf(folder / "whole");
   const auto answerOf = [&](const std::string& report) { // what was read depends on what was known
     const std::string text = files::contentOf(folder / report);
@@ -288,6 +363,8 @@ TEST_F(ResumedSite, ByTheProgram)
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_EQ(contentsOf(folder / "out"), whole) << instant;
     EXPECT_EQ(answerOf("out.json"), answerOf("whole.json"));
+    EXPECT_EQ(files::contentOf(folder / "list.json"), list);
+    fs::remove(folder / "list.json");
     fs::remove_all(folder / "out");
   }
   if (!hasMpirun()) GTEST_SKIP() << "no mpirun";
@@ -296,16 +373,15 @@ TEST_F(ResumedSite, ByTheProgram)
   ASSERT_EQ(two.exit_code, 0) << two.err;
   EXPECT_EQ(contentsOf(folder / "out"), whole);
   EXPECT_EQ(answerOf("two.json"), answerOf("whole.json"));
+  EXPECT_EQ(files::contentOf(folder / "list.json"), list);
 }
 
 TEST_F(ResumedSite, IsRefusedWhereNothingCanBeKept)
 {
-  for (const char* arguments : {"--clearance 1 --report r.json", "--clearance 1 --out out --clashes c.html"}) {
-    const Outcome outcome =
-        run("pcl_bsh_site", std::string("collide site body.pcd --resume ") + arguments, folder.path());
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("--resume: "));
-  }
+  const Outcome outcome =
+      run("pcl_bsh_site", "collide site body.pcd --resume --clearance 1 --report r.json", folder.path());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--resume: "));
 }
 
 } // namespace

@@ -19,7 +19,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <deque>
 #include <random>
 
 namespace pcl_bsh::sites {
@@ -141,19 +140,16 @@ protected:
       request.clearance = scene.clearance;
       request.swept = scene.swept;
       request.pose_summaries = !scene.swept;
-      std::deque<ClashFinder> finders;
-      for (const double distance : scene.cluster_distances) finders.emplace_back(site, distance);
-      const SitePassage passage = collideAlong(
-          site, model, scene.poses, request, [&](const Tile& tile, const Cloud& cloud, const TrajectoryResult& found) {
-            for (ClashFinder& finder : finders) finder.add(tile, cloud, found);
-          });
-      ASSERT_EQ(passage.poses.size(), in_memory.poses.size());
-      for (std::size_t k = 0; k < passage.poses.size(); ++k) {
-        EXPECT_EQ(passage.poses[k].colliding_points, in_memory.poses[k].colliding_points);
-        EXPECT_EQ(passage.poses[k].distance, in_memory.poses[k].distance);
-      }
       for (std::size_t i = 0; i < expected.size(); ++i) {
-        const SiteClashes list = finders[i].finish();
+        ClashFinder finder(site, scene.cluster_distances[i]);
+        request.clashes = &finder;
+        const SitePassage passage = collideAlong(site, model, scene.poses, request);
+        ASSERT_EQ(passage.poses.size(), in_memory.poses.size());
+        for (std::size_t k = 0; k < passage.poses.size(); ++k) {
+          EXPECT_EQ(passage.poses[k].colliding_points, in_memory.poses[k].colliding_points);
+          EXPECT_EQ(passage.poses[k].distance, in_memory.poses[k].distance);
+        }
+        const SiteClashes list = finder.finish();
         expectList(list, expected[i], all.view(), in_memory, nameOf);
         if (drawn.size() == i) drawn.push_back(list.points);
         EXPECT_TRUE(list.points == drawn[i]) << "the same points of large clashes";
@@ -162,15 +158,10 @@ protected:
       request.pose_summaries = false;
       options.tile_points = std::max<std::uint64_t>(4, tile_points / 5);
       const Site moved = makeSite({folder / "model.pcd"}, folder / std::to_string(places++), options);
-      std::vector<MetPoint> met;
       ClashFinder finder(site, scene.cluster_distances.back());
-      collideAlong(
-          site, moved, {}, scene.poses, request,
-          [&](const Tile& tile, const Cloud& cloud, const TrajectoryResult& found) {
-            finder.add(tile, cloud, found, &met);
-          },
-          &met);
-      SiteClashes list = finder.finish(true);
+      request.clashes = &finder;
+      collideAlong(site, moved, {}, scene.poses, request);
+      SiteClashes list = finder.finish();
       for (Clash& clash : list.clashes) {
         const MetPoint& point = list.met.at(clash.model_point);
         EXPECT_EQ(point.place, scene.model.at(point.point.record));
@@ -257,10 +248,19 @@ TEST_F(SiteClashList, NothingCollides)
 
 TEST_F(SiteClashList, RefusesADistance)
 {
-  io::writeCloud(folder / "a.pcd", float64Cloud({{0, 0, 0}}));
+  const std::vector<Point3> point = {{0, 0, 0}};
+  io::writeCloud(folder / "a.pcd", float64Cloud(point));
   const Site site = makeSite({folder / "a.pcd"}, folder / "site", {});
   for (const double distance : {0.0, -1.0, std::nan("")})
     EXPECT_THROW(ClashFinder(site, distance), std::invalid_argument);
+  // Where nothing is measured there are no closest pairs.
+  ClashFinder finder(site, 1.0);
+  SiteRequest request;
+  request.clashes = &finder;
+  request.accuracy = Accuracy::level(2);
+  const SphereHierarchy model(viewOf(point.front().data(), 1));
+  EXPECT_THROW(collideAlong(site, model, {Eigen::Isometry3d::Identity()}, request), std::invalid_argument);
+  EXPECT_THROW(collideAlong(site, site, {}, {Eigen::Isometry3d::Identity()}, request), std::invalid_argument);
 }
 
 /// Lists of the program for one and two ranks, and of pcl_bsh_collide for the same points.

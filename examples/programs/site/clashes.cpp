@@ -28,16 +28,6 @@ SiteClashList::SiteClashList(const sites::Site& site, const SiteOptions& options
   earlier_ = list.clashes;
 }
 
-sites::PassageSink SiteClashList::after(sites::PassageSink next)
-{
-  if (!finder_) return next;
-  return [this, next = std::move(next)](const sites::Tile& tile, const pcl::PCLPointCloud2& cloud,
-                                        const TrajectoryResult& found) {
-    finder_->add(tile, cloud, found, options_.obstacleIsSite() ? &met_ : nullptr);
-    if (next) next(tile, cloud, found);
-  };
-}
-
 std::size_t SiteClashList::finish(const SphereHierarchy& obstacle, const std::vector<Eigen::Isometry3d>& poses,
                                   const sites::SitePassage& found)
 {
@@ -47,7 +37,7 @@ std::size_t SiteClashList::finish(const SphereHierarchy& obstacle, const std::ve
 std::size_t SiteClashList::finish(const sites::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses,
                                   const sites::SitePassage& found)
 {
-  sites::SiteClashes clashes = finder_->finish(true);
+  sites::SiteClashes clashes = finder_->finish();
   const std::vector<sites::MetPoint> met = clashes.met;
   std::vector<Point3> places;
   for (const sites::MetPoint& point : met) places.push_back(point.place);

@@ -26,11 +26,11 @@ public:
   /// Warnings of the earlier list, a line each.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-  /// Finds clashes in what `next` gets, too.
-  sites::PassageSink after(sites::PassageSink next);
+  /// For the question; null where no list is wanted.
+  sites::ClashFinder* finder() noexcept { return isWanted() ? &*finder_ : nullptr; }
 
-  /// What the question about an obstacle that is a site has to fill; null where no list is wanted.
-  std::vector<sites::MetPoint>* met() noexcept { return isWanted() ? &met_ : nullptr; }
+  /// Points of a clash are so near to each other; 0 where no list is wanted.
+  double clusterDistance() const noexcept { return distance_; }
 
   /// After the question. To be called by all ranks; the first writes the lists.
   /// @return how many clashes there are now, those that are resolved left out
@@ -49,7 +49,6 @@ private:
   const SiteOptions& options_;
   double distance_ = 0.0;
   std::vector<Clash> earlier_;
-  std::vector<sites::MetPoint> met_;
   std::vector<std::string> warnings_;
   std::optional<sites::ClashFinder> finder_;
 };

@@ -80,9 +80,9 @@ Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const Poses
   }
   case SiteQuestion::path: {
     request.swept = options.swept;
+    request.clashes = clashes.finder();
     request.pose_summaries = clashes.isWanted() && !options.swept;
-    const sites::SitePassage found =
-        sites::collideAlong(site, obstacle.hierarchy(), poses, request, clashes.after(out.passage()));
+    const sites::SitePassage found = sites::collideAlong(site, obstacle.hierarchy(), poses, request, out.passage());
     putPassage(report, found, poses.size(), options);
     if (clashes.isWanted()) report["clashes"] = clashes.finish(obstacle.hierarchy(), poses, found);
     put(report, found.tiles, run);
@@ -107,7 +107,7 @@ int answer(const SiteOptions& options)
   std::optional<ObstacleCloud> cloud;
   if (!options.obstacleIsSite()) cloud.emplace(options);
   const Poses poses = options.trajectory.empty() ? Poses{options.pose} : io::readPoses(options.trajectory);
-  SiteOutput output(site, cloud ? &*cloud : nullptr, poses, options);
+  SiteOutput output(site, cloud ? &*cloud : nullptr, poses, clashes.clusterDistance(), options);
   MeasuredRun run;
   Json report;
   std::optional<Step> shown;

@@ -82,8 +82,9 @@ Json askOfSite(const sites::Site& site, const Poses& poses, const SiteOptions& o
   }
   case SiteQuestion::path: {
     request.swept = options.swept;
-    const sites::SitePairPassage found = sites::collideAlong(site, other, options.obstacle_uncertainty, poses, request,
-                                                             clashes.after(out.passage()), clashes.met());
+    request.clashes = clashes.finder();
+    const sites::SitePairPassage found =
+        sites::collideAlong(site, other, options.obstacle_uncertainty, poses, request, out.passage());
     putPassage(report, found, poses.size(), options);
     if (clashes.isWanted()) report["clashes"] = clashes.finish(other, poses, found);
     putBoth(report, found, run);

@@ -105,8 +105,7 @@ struct CollideTexts {
            "OBSTACLE's points with all their fields, and which of them collide with SITE in a field 'collision'; "
            "a new site where OBSTACLE is one; not with --trajectory or --clashes")
         ->type_name("FILE");
-    app.add_flag("--resume", options.resume,
-                 "goes on with what the same command has left in --out when it was killed; not with --clashes");
+    app.add_flag("--resume", options.resume, "goes on with what the same command has left in --out when it was killed");
     app.add_option(
            "--accuracy", accuracy,
            "what may be given up for time: exact (default); float: without proof; tolerance=LENGTH: pairs up to "
@@ -160,9 +159,6 @@ struct CollideTexts {
     if (!options.out.empty() && (any || closest))
       throw UsageError("--out: --any and --closest find nothing of each point: leave it away");
     if (options.resume && options.out.empty()) throw UsageError("--resume: there is nothing to go on with: add --out");
-    if (options.resume && lists)
-      throw UsageError("--resume: is not answered with --clashes: leave it out, and the question is asked from its "
-                       "beginning");
     if (max_distance->count() > 0 && !distances) throw UsageError("--max-distance: goes with --distances: add it");
     if (options.swept && !moves) throw UsageError("--swept: goes with --trajectory: add it");
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");

@@ -70,15 +70,12 @@ nlohmann::json obstacleText(const ObstacleCloud* cloud, const SiteOptions& optio
 
 /// All that the answer depends on, as a text.
 std::string questionOf(const sites::Site& site, const ObstacleCloud* obstacle, const Poses& poses,
-                       const SiteOptions& options)
+                       double cluster_distance, const SiteOptions& options)
 {
-  nlohmann::json question = {{"site", sites::siteText(site)},
-                             {"question", options.question},
-                             {"clearance", options.clearance},
-                             {"accuracy", options.accuracy.text()},
-                             {"max_distance", options.max_distance},
-                             {"swept", options.swept.value_or(-1.0)},
-                             {"obstacle", obstacleText(obstacle, options)},
+  nlohmann::json question = {{"site", sites::siteText(site)},        {"question", options.question},
+                             {"clearance", options.clearance},       {"accuracy", options.accuracy.text()},
+                             {"max_distance", options.max_distance}, {"swept", options.swept.value_or(-1.0)},
+                             {"clusters", cluster_distance},         {"obstacle", obstacleText(obstacle, options)},
                              {"poses", nlohmann::json::array()}};
   for (const Uncertainty* of : {&options.uncertainty, &options.obstacle_uncertainty})
     question["uncertainty"].push_back({of->field, of->length, of->sigmas});
@@ -117,16 +114,13 @@ void ObstacleCloud::write(const std::vector<std::uint8_t>& flags, const SiteOpti
 }
 
 SiteOutput::SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, const Poses& poses,
-                       const SiteOptions& options)
+                       double cluster_distance, const SiteOptions& options)
 : options_(options)
 {
   if (options.out.empty()) return;
-  sites::Continuation continuation;
-  if (options.clashes.empty()) {
-    continuation = {questionOf(site, obstacle, poses, options), options.resume};
-    setWhatStays("what was found stays, and the same command with --resume goes on");
-  }
-  out_.emplace(site, options.out, resultFields(options), continuation);
+  setWhatStays("what was found stays, and the same command with --resume goes on");
+  out_.emplace(site, options.out, resultFields(options),
+               sites::Continuation{questionOf(site, obstacle, poses, cluster_distance, options), options.resume});
 }
 
 sites::FlagsSink SiteOutput::flags()

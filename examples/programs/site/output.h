@@ -37,9 +37,10 @@ sites::ResultField collisionField();
 class SiteOutput {
 public:
   /// @param obstacle null where that is a site, too
+  /// @param cluster_distance of the lists of clashes; 0 where none is wanted
   /// @throws files::FileError for a folder that cannot be one
-  /// @param obstacle null where it is a site
-  SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, const Poses& poses, const SiteOptions& options);
+  SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, const Poses& poses, double cluster_distance,
+             const SiteOptions& options);
 
   /// What an earlier run has found, and where this one keeps what it finds; null: nothing is kept.
   sites::TileAnswers* answers() { return out_ ? out_->answers() : nullptr; }
