@@ -26,7 +26,8 @@ TileActors::TileActors(const SiteContent& site, vtkRenderer& renderer, const Clo
   alike_.all_distances = coloring == Coloring::distance && !site.allDistances(0).empty();
 }
 
-/// What the camera sees lies within its four sides, and is not cut away.
+/// What the camera sees lies within its four sides, before it, and is not cut away. A box behind it may have a corner
+/// on the positive side of each of the four.
 Eye TileActors::eye() const
 {
   vtkCamera& camera = *renderer_.GetActiveCamera();
@@ -38,6 +39,10 @@ Eye TileActors::eye() const
     std::array<double, 4> plane;
     std::copy_n(planes + 4 * side, 4, plane.begin());
     eye.planes.push_back(plane);
+  }
+  if (!camera.GetParallelProjection()) {
+    const double *const to = camera.GetDirectionOfProjection(), *const from = camera.GetPosition();
+    eye.planes.push_back({to[0], to[1], to[2], -(to[0] * from[0] + to[1] * from[1] + to[2] * from[2])});
   }
   if (const std::optional<Cut>& cut = site_.options().cut) {
     const std::array<double, 3>&n = cut->normal, &p = cut->point;

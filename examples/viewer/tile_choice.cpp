@@ -9,13 +9,14 @@ namespace {
 
 constexpr double nearer_where_held = 0.8;
 
-/// Whether some of the box may lie on the positive side of all planes.
+/// Whether some of the box may lie on the positive side of all planes: beyond them, as sides of the eye's pyramid touch
+/// the boxes behind an eye where these meet.
 bool isSeen(const sites::Bounds& box, const Eye& eye)
 {
   return std::all_of(eye.planes.begin(), eye.planes.end(), [&box](const std::array<double, 4>& plane) {
     double most = plane[3];
     for (std::size_t k = 0; k < 3; ++k) most += plane[k] * (plane[k] >= 0.0 ? box.high[k] : box.low[k]);
-    return most >= 0.0;
+    return most > 0.0;
   });
 }
 

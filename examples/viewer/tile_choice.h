@@ -19,7 +19,7 @@ namespace pcl_bsh::view {
 
 struct Eye {
   Point3 place = {};
-  /// What is seen lies on the positive side of each: a x + b y + c z + d >= 0. None: all is seen.
+  /// What is seen lies on the positive side of each: a x + b y + c z + d > 0. None: all is seen.
   std::vector<std::array<double, 4>> planes;
 };
 

@@ -221,7 +221,7 @@ TEST_F(SiteView, OfARealScan)
   sites::makeSite({scan}, folder / "room", make);
   Options near = options();
   near.site = folder / "room";
-  near.budget = 40'000;
+  near.budget = 70'000;
   near.camera = {Camera::Kind::given, {0, 0, 0.5}, {5, 2, 0}, {0, 0, 1}};
   OffscreenView view(near);
   const std::size_t before = drawn(view.draw());

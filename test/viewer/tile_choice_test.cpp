@@ -48,6 +48,15 @@ TEST(TileChoice, TakesTheNearestFirstWithinTheBudget)
   EXPECT_EQ(choice.wanted(), 4u);
 }
 
+TEST(TileChoice, DoesNotSeeWhatTouchesTheEyeFromBehind)
+{
+  sites::Site site = row(2);
+  site.tiles[0].bounds = sites::Bounds{{-1, 0, 0}, {0, 1, 1}};
+  TileChoice choice(site, 10);
+  const Eye along_x = {{0, 0, 0}, {{1, 2, 0, 0}, {1, -2, 0, 0}, {1, 0, 2, 0}, {1, 0, -2, 0}}};
+  EXPECT_THAT(settle(choice, along_x), ElementsAre(1));
+}
+
 TEST(TileChoice, DropsWhatLeavesTheBudgetBeforeItLoads)
 {
   TileChoice choice(row(10), 30);
