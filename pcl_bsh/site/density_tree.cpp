@@ -130,63 +130,65 @@ void DensityTree::add(const Point3& point)
   }
 }
 
-std::uint64_t DensityTree::sumUp(std::uint32_t cell)
+/// The undivided cells of an octree, also where nothing was counted: a point counted above may lie there.
+void DensityTree::collect(std::size_t octant, const Place& place, std::uint32_t above, std::uint64_t most_above,
+                          Undivided& all)
 {
-  std::uint64_t total = cells_[cell].own;
-  for (const std::uint32_t part : cells_[cell].part)
-    if (part != none) total += sumUp(part);
-  return cells_[cell].total = total;
-}
-
-/// Adds a cell to the last tile, or to a new one. Points counted above the cell may lie in it: each tile that has cells
-/// below must have room for them.
-void DensityTree::place(std::uint32_t cell, const std::vector<std::uint32_t>& above)
-{
-  const auto room_for = [&] {
-    std::uint64_t room = cells_[cell].total;
-    for (const std::uint32_t other : above)
-      if (cells_[other].tile != tiles_ - 1) room += cells_[other].own;
-    return room;
+  const auto signedPoint = [&](Point3 magnitudes) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if ((octant >> k & 1) != 0) magnitudes[k] = -magnitudes[k];
+    return magnitudes;
   };
-  if (tiles_ == 0 || in_tile_ + room_for() > tile_points_) {
-    ++tiles_;
-    in_tile_ = 0;
-  }
-  in_tile_ += room_for();
-  for (const std::uint32_t other : above) cells_[other].tile = tiles_ - 1;
-  cells_[cell].tile = tiles_ - 1;
-}
-
-/// Deals cells to tiles in their order along the Morton curve, the largest ones that fit.
-void DensityTree::assign(std::uint32_t cell, std::vector<std::uint32_t>& above)
-{
-  std::uint64_t most = cells_[cell].total;
-  for (const std::uint32_t other : above) most += cells_[other].own;
-  if (most <= tile_points_ || !cells_[cell].is_divided) {
-    place(cell, above);
-    cells_[cell].is_divided = false;
+  const Cell cell = cells_[place.cell];
+  if (!cell.is_divided) {
+    Point3 middle;
+    for (std::size_t k = 0; k < 3; ++k)
+      middle[k] = cell.own > 0 ? cell.low[k] / 2 + cell.high[k] / 2 : place.corner[k] + place.edge / 2;
+    all.cells.push_back(place.cell);
+    all.voxels.push_back({signedPoint(middle), cell.own, above, most_above});
     return;
   }
-  above.push_back(cell);
+  all.above.push_back({cell.own, above});
+  above = static_cast<std::uint32_t>(all.above.size() - 1);
   for (std::size_t part = 0; part < 8; ++part) {
-    if (cells_[cell].part[part] == none) { // one of the points counted above may lie there
+    if (cells_[place.cell].part[part] == none) {
       const std::uint32_t below = addCell();
-      cells_[cell].part[part] = below;
+      cells_[place.cell].part[part] = below;
     }
-    assign(cells_[cell].part[part], above);
+    collect(octant, step(place, part), above, most_above + cell.own, all);
   }
-  above.pop_back();
+}
+
+/// What is of one tile need not be divided.
+void DensityTree::simplify(std::uint32_t number)
+{
+  Cell& cell = cells_[number];
+  if (!cell.is_divided) return;
+  for (const std::uint32_t part : cell.part) simplify(part);
+  const Cell& first = cells_[cell.part[0]];
+  const bool is_one = std::all_of(cell.part.begin(), cell.part.end(), [&](std::uint32_t part) {
+    return !cells_[part].is_divided && cells_[part].tile == first.tile;
+  });
+  if (!is_one) return;
+  cell.is_divided = false;
+  cell.tile = first.tile;
 }
 
 std::uint32_t DensityTree::plan()
 {
-  std::vector<std::uint32_t> above;
-  for (Octree& tree : octrees_) {
+  Undivided all;
+  for (std::size_t octant = 0; octant < octrees_.size(); ++octant) {
+    Octree& tree = octrees_[octant];
     tree.last = {none, {}, 0.0};
-    if (tree.root == none) continue;
-    sumUp(tree.root);
-    assign(tree.root, above);
+    if (tree.root != none) collect(octant, {tree.root, {}, std::ldexp(1.0, tree.exponent)}, DividedVoxel::none, 0, all);
   }
+  const std::vector<std::uint32_t> tiles = tilesOf(all.voxels, all.above, tile_points_);
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    cells_[all.cells[i]].tile = tiles[i];
+    tiles_ = std::max(tiles_, tiles[i] + 1);
+  }
+  for (const Octree& tree : octrees_)
+    if (tree.root != none) simplify(tree.root);
   return tiles_;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <pcl_bsh/geometry/point3.h>
+#include <pcl_bsh/site/tile_partition.h>
 
 #include <array>
 #include <cstddef>
@@ -45,11 +46,10 @@ private:
   /// Coordinates are magnitudes: the signs chose the octree.
   struct Cell {
     std::array<std::uint32_t, 8> part = {none, none, none, none, none, none, none, none};
-    std::uint64_t own = 0;   ///< counted here
-    std::uint64_t total = 0; ///< counted here and in its parts
+    std::uint64_t own = 0; ///< counted here
     Point3 low = {}, high = {};
-    std::uint32_t tile = none; ///< of a cell above tiles: the last tile that has room for its own points
-    bool is_divided = false;   ///< after plan(): is above tiles
+    std::uint32_t tile = none; ///< after plan(), of a cell that is not divided
+    bool is_divided = false;   ///< after plan(): has parts of several tiles
   };
 
   struct Place {
@@ -64,21 +64,25 @@ private:
     Place last = {none, {}, 0.0};
   };
 
+  struct Undivided {
+    std::vector<std::uint32_t> cells;
+    std::vector<CountedVoxel> voxels; ///< the same ones
+    std::vector<DividedVoxel> above;
+  };
+
   std::uint32_t addCell();
   Octree& octreeOf(const Point3& point, Point3& magnitudes);
   void grow(Octree& tree, const Point3& magnitudes);
   static std::size_t partOf(const Place& place, const Point3& magnitudes);
   Place step(const Place& place, std::size_t part);
   void divide(const Place& place);
-  std::uint64_t sumUp(std::uint32_t cell);
-  void place(std::uint32_t cell, const std::vector<std::uint32_t>& above);
-  void assign(std::uint32_t cell, std::vector<std::uint32_t>& above);
+  void collect(std::size_t octant, const Place& place, std::uint32_t above, std::uint64_t most_above, Undivided& all);
+  void simplify(std::uint32_t number);
 
   std::uint64_t tile_points_, most_in_cell_;
   std::vector<Cell> cells_;
   std::array<Octree, 8> octrees_;
   std::uint32_t tiles_ = 0;
-  std::uint64_t in_tile_ = 0; ///< points that the last tile may get
 };
 
 } // namespace pcl_bsh::sites
