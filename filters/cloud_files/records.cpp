@@ -42,12 +42,29 @@ void requireBytes(std::uint64_t points, std::uint64_t least_bytes, std::uint64_t
                     std::to_string(bytes_left / least_bytes) + " at most");
 }
 
-void allocate(pcl::PCLPointCloud2& cloud, std::uint32_t width, std::uint32_t height)
+namespace {
+
+void setSize(pcl::PCLPointCloud2& cloud, std::uint32_t width, std::uint32_t height)
 {
   cloud.width = width;
   cloud.height = height;
   cloud.row_step = width * cloud.point_step;
+}
+
+} // namespace
+
+void allocate(pcl::PCLPointCloud2& cloud, std::uint32_t width, std::uint32_t height)
+{
+  setSize(cloud, width, height);
   cloud.data.assign(std::size_t{width} * height * cloud.point_step, 0);
+}
+
+void resizeRecords(pcl::PCLPointCloud2& cloud, std::uint32_t width)
+{
+  setSize(cloud, width, 1);
+  const std::size_t bytes = std::size_t{width} * cloud.point_step;
+  if (bytes > cloud.data.capacity()) cloud.data = {}; // nothing to be copied
+  cloud.data.resize(bytes);
 }
 
 void setDense(pcl::PCLPointCloud2& cloud)

@@ -34,6 +34,9 @@ void requireBytes(std::uint64_t points, std::uint64_t least_bytes, std::uint64_t
 /// Gives the cloud width x height records, all bytes zero.
 void allocate(pcl::PCLPointCloud2& cloud, std::uint32_t width, std::uint32_t height = 1);
 
+/// The same for records that are all written then: bytes that the cloud has are as they were.
+void resizeRecords(pcl::PCLPointCloud2& cloud, std::uint32_t width);
+
 /// Sets is_dense: no value of any floating-point field is NaN or infinite.
 void setDense(pcl::PCLPointCloud2& cloud);
 

@@ -32,9 +32,9 @@ public:
   void check(const Tile& tile)
   {
     tile_ = &tile;
-    const pcl::PCLPointCloud2 cloud = readTile(site_, tile);
-    checkMeasures(cloud);
-    checkRecords(cloud);
+    cloud_ = readTile(site_, tile, std::move(cloud_));
+    checkMeasures(cloud_);
+    checkRecords(cloud_);
   }
 
   /// Of the site, as the union of what its tiles have.
@@ -91,6 +91,7 @@ private:
 
   const Site& site_;
   const Tile* tile_ = nullptr;
+  pcl::PCLPointCloud2 cloud_;
   std::vector<std::vector<bool>> seen_;
   std::optional<Bounds> all_;
 };

@@ -63,15 +63,15 @@ struct SiteRequest {
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
   /// Of flags, distances and paths: tiles that are known are not read, and their sinks not called. ResultSite has some.
   TileAnswers* answers = nullptr;
-  /// Called after each tile by the rank that had it, with the tiles that it has done and those that it may have to do.
-  /// False: stop, the query throws Cancelled.
+  /// Called after each tile by the rank that had it, with its number in the order in which tiles are dealt to all
+  /// ranks, from 1, and the number of those that may have to be asked about. False: stop, the query throws Cancelled.
   std::function<bool(std::uint64_t done, std::uint64_t all)> progress;
 };
 
 /// What a tile has cost, in seconds of the clock on the wall.
 struct TileCost {
   std::uint32_t tile = 0;  ///< its number among the site's
-  std::uint32_t place = 0; ///< in the order in which tiles are dealt to ranks, one each in turn
+  std::uint32_t place = 0; ///< in the order in which tiles are dealt to ranks
   double reading = 0.0;
   double asking = 0.0; ///< its hierarchy, the question and the sink
 };

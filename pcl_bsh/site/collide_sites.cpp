@@ -68,7 +68,7 @@ public:
         [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
           return find(tile, cloud, Placed(hierarchy, asked_.pose));
         },
-        add);
+        add, true);
   }
 
   /// Calls compare(a tile of the other site, those of its points that are near where they stand), nearest tiles first,

@@ -150,7 +150,8 @@ SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertai
     return sum.numbersOf(tile, cloud, found, &met);
   };
   SitePairPassage result;
-  const TilesRead read = inquiry.visitAndAdd(tiles, find, [&](const auto& numbers) { sum.add(numbers); });
+  const TilesRead read = inquiry.visitAndAdd(
+      tiles, find, [&](const auto& numbers) { sum.add(numbers); }, true);
   static_cast<SitePassage&>(result) = sum.ofAllRanks();
   result.tiles = read;
   result.tiles_b = models.read();

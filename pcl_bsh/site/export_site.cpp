@@ -61,8 +61,9 @@ private:
   void fill(std::uint64_t begin, std::uint64_t end)
   {
     std::uint64_t filled = 0;
+    pcl::PCLPointCloud2 cloud;
     for (const Tile& tile : site_.tiles) {
-      const pcl::PCLPointCloud2 cloud = readTile(site_, tile);
+      cloud = readTile(site_, tile, std::move(cloud));
       const std::size_t source_at = offsetOf(cloud, source_field_name), record_at = offsetOf(cloud, record_field_name);
       for (std::size_t i = 0; i < cloud.width; ++i) {
         const std::uint8_t* const bytes = cloud.data.data() + i * cloud.point_step;

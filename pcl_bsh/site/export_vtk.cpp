@@ -183,11 +183,12 @@ void exportPieces(const Site& site, const fs::path& file,
   std::vector<std::unique_ptr<files::NewFile>> written;
   std::vector<std::string> pieces;
   std::uint64_t done = 0;
+  pcl::PCLPointCloud2 cloud;
   for (const Tile& tile : site.tiles) {
     const std::string name = fs::path(tileFileName(pieces.size())).stem().string() + ".vtp";
     written.push_back(std::make_unique<files::NewFile>(folder / name));
     pieces.push_back(folder.filename().string() + "/" + name);
-    const pcl::PCLPointCloud2 cloud = readTile(site, tile);
+    cloud = readTile(site, tile, std::move(cloud));
     PieceWriter(cloud, *written.back()).write();
     if (progress && !progress(done += tile.points, site.points)) throw Cancelled();
   }

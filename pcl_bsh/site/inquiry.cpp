@@ -3,6 +3,17 @@
 
 namespace pcl_bsh::sites {
 
+/// To be called by all ranks, after the visit.
+TilesRead Inquiry::readOf(std::size_t needed) const
+{
+  TilesRead found;
+  found.tiles = site_.tiles.size();
+  found.needed = needed;
+  found.read = sumOfAllRanks(visitor_.read());
+  found.costs = costsOfAllRanks();
+  return found;
+}
+
 std::vector<TileCost> Inquiry::costsOfAllRanks() const
 {
   std::vector<double> own;

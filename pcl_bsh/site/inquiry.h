@@ -36,33 +36,24 @@ class Inquiry {
 public:
   Inquiry(const Site& site, const SiteRequest& request) : site_(site), request_(request), visitor_(site, request.memory)
   {
-    found_.tiles = site.tiles.size();
   }
 
-  /// Calls ask(tile, cloud, its hierarchy) for these tiles, on one of the ranks each.
-  /// @param go_on as that of TileVisitor::visit()
+  /// Calls ask(tile, cloud, its hierarchy) for the first of these tiles, on one of the ranks each.
+  /// @param go_on as that of TileVisitor::visitInTurn()
   template <typename Ask>
   TilesRead visit(const std::vector<std::uint32_t>& tiles, const Ask& ask,
-                  const std::function<bool(std::size_t)>& go_on = nullptr)
+                  const std::function<bool(std::size_t)>& go_on)
   {
-    found_.needed = tiles.size();
-    const auto number_of_ranks = static_cast<std::size_t>(ranks());
-    const std::size_t mine =
-        (tiles.size() + number_of_ranks - 1 - static_cast<std::size_t>(rankHere())) / number_of_ranks;
-    const auto use = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
-      ask(tile, cloud, SphereHierarchy(pointsOf(cloud, site_, tile, request_.uncertainty), building()));
-      if (request_.progress && !request_.progress(visitor_.read(), mine)) throw Cancelled();
-    };
-    visitor_.visit(tiles, use, go_on);
-    found_.read = sumOfAllRanks(visitor_.read());
-    found_.costs = costsOfAllRanks();
-    return found_;
+    visitor_.visitInTurn(tiles, use(ask, tiles.size()), go_on);
+    return readOf(tiles.size());
   }
 
-  /// The same where what is found of a tile is added to the rest by numbers, which may be known from an earlier run.
+  /// The same for all of them where what is found of a tile is added to the rest by numbers, which may be known from an
+  /// earlier run.
   /// @param find (tile, cloud, its hierarchy): its numbers, after the sink. @param add (numbers)
+  /// @param runs whether tiles that follow each other are better asked about on one rank
   template <typename Find, typename Add>
-  TilesRead visitAndAdd(const std::vector<std::uint32_t>& tiles, const Find& find, const Add& add)
+  TilesRead visitAndAdd(const std::vector<std::uint32_t>& tiles, const Find& find, const Add& add, bool runs = false)
   {
     std::vector<std::uint32_t> left;
     for (const std::uint32_t tile : tiles) {
@@ -77,9 +68,10 @@ public:
       add(numbers);
       if (request_.answers) request_.answers->keep(static_cast<std::size_t>(&tile - site_.tiles.data()), numbers);
     };
-    TilesRead read = visit(left, ask);
-    read.needed = tiles.size();
-    return read;
+    constexpr std::size_t runs_of_rank = 4; // so many that the last ones make up for those that took long
+    const std::size_t run = left.size() / (runs_of_rank * static_cast<std::size_t>(ranks()));
+    visitor_.visitAll(left, use(ask, left.size()), runs ? std::max<std::size_t>(run, 1) : 1);
+    return readOf(tiles.size());
   }
 
   std::uint64_t bytesForLargest() const noexcept { return visitor_.bytesForLargest(); }
@@ -100,12 +92,21 @@ public:
   }
 
 private:
+  template <typename Ask>
+  TileVisitor::Use use(const Ask& ask, std::size_t tiles)
+  {
+    return [this, &ask, tiles](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
+      ask(tile, cloud, SphereHierarchy(pointsOf(cloud, site_, tile, request_.uncertainty), building()));
+      if (request_.progress && !request_.progress(visitor_.place() + 1, tiles)) throw Cancelled();
+    };
+  }
+
+  TilesRead readOf(std::size_t needed) const;
   std::vector<TileCost> costsOfAllRanks() const;
 
   const Site& site_;
   const SiteRequest& request_;
   TileVisitor visitor_;
-  TilesRead found_;
 };
 
 } // namespace pcl_bsh::sites

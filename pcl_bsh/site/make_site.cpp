@@ -272,6 +272,7 @@ private:
     state_.dealt = site_.points;
     std::uint64_t done = 0, next = 0;
     if (saved_) save();
+    pcl::PCLPointCloud2 cloud;
     for (std::size_t i = 0; i < files_.size(); ++i) {
       const TileFile& file = files_[i];
       Tile tile;
@@ -284,7 +285,8 @@ private:
         next = done;
         continue;
       }
-      measure(loadTile(file.path(), site_.fields, tile.points), tile);
+      cloud = loadTile(file.path(), site_.fields, tile.points, std::move(cloud));
+      measure(cloud, tile);
       state_.measured.push_back(tile);
       site_.tiles.push_back(std::move(tile));
       if (saved_ && done >= next + options_.save_points) {

@@ -50,11 +50,13 @@ const pcl::PCLPointCloud2& ObstacleTiles::load(std::uint32_t i)
     kept_.splice(kept_.begin(), kept_, kept);
     return kept_.front().second;
   }
+  pcl::PCLPointCloud2 reused;
   while (!kept_.empty() && kept_points_ + tile(i).points > most_kept_points_) {
     kept_points_ -= kept_.back().second.width;
+    reused = std::move(kept_.back().second);
     kept_.pop_back();
   }
-  kept_.emplace_front(i, readTile(site_.site, tile(i)));
+  kept_.emplace_front(i, readTile(site_.site, tile(i), std::move(reused)));
   kept_points_ += tile(i).points;
   ++read_;
   return kept_.front().second;

@@ -232,9 +232,11 @@ private:
     std::vector<bool> done(site_.tiles.size(), false);
     for (std::size_t i = 0; i < written.size(); i += 2) done[static_cast<std::size_t>(written[i])] = true;
     int next = 0;
+    pcl::PCLPointCloud2 cloud;
     for (std::size_t i = 0; i < done.size(); ++i) {
-      if (done[i]) continue;
-      if (next++ % ranks() == rankHere()) write(site_.tiles[i], readTile(site_, site_.tiles[i]), {});
+      if (done[i] || next++ % ranks() != rankHere()) continue;
+      cloud = readTile(site_, site_.tiles[i], std::move(cloud));
+      write(site_.tiles[i], cloud, {});
     }
   }
 

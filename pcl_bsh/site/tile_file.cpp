@@ -14,6 +14,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace pcl_bsh::sites {
 
@@ -123,18 +124,20 @@ std::unique_ptr<io::CloudStream> openTile(const std::filesystem::path& path, con
   return stream;
 }
 
-pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points)
+pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points,
+                             pcl::PCLPointCloud2 reused)
 {
   const auto stream = openTile(path, fields, points);
   pcl::PCLPointCloud2 cloud = stream->header();
-  io::allocate(cloud, static_cast<std::uint32_t>(points));
+  cloud.data = std::move(reused.data);
+  io::resizeRecords(cloud, static_cast<std::uint32_t>(points));
   stream->read(cloud.data.data(), cloud.width);
   return cloud;
 }
 
-pcl::PCLPointCloud2 readTile(const Site& site, const Tile& tile)
+pcl::PCLPointCloud2 readTile(const Site& site, const Tile& tile, pcl::PCLPointCloud2 reused)
 {
-  pcl::PCLPointCloud2 cloud = loadTile(site.folder / tile.file, site.fields, tile.points);
+  pcl::PCLPointCloud2 cloud = loadTile(site.folder / tile.file, site.fields, tile.points, std::move(reused));
   if (crcOf(cloud.data) != tile.crc32)
     throw files::FileError(site.folder / tile.file, "its points are not those that the site was made with",
                            site_remedy);

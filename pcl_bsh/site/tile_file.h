@@ -61,8 +61,9 @@ std::unique_ptr<io::CloudStream> openRecords(const std::filesystem::path& path, 
 std::unique_ptr<io::CloudStream> openTile(const std::filesystem::path& path, const Fields& fields,
                                           std::uint64_t points);
 
-/// The points of a tile's file. @throws files::FileError when it has other fields or another number of points
-pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points);
+/// The points of a tile's file. @throws as openTile() does. @param reused as that of readTile()
+pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fields, std::uint64_t points,
+                             pcl::PCLPointCloud2 reused = {});
 
 /// Sets bounds and the greatest values of a tile from its points.
 void measureExtremes(const pcl::PCLPointCloud2& cloud, Tile& tile);

@@ -32,13 +32,19 @@ public:
 
   using Use = std::function<void(const Tile&, const pcl::PCLPointCloud2&)>;
 
-  /// Calls `use` with each of these tiles, on one of the ranks. To be called by all ranks with the same list.
-  /// @param go_on if not null, asked by all ranks whenever each has had a tile more, with the number of tiles visited
-  /// by
-  ///   all: false ends the visit on all ranks, so it must be the same on all
+  /// Calls `use` with each of these tiles, on one of the ranks: each takes the next tile, or run of so many, when it
+  /// has done one. To be called by all ranks with the same list.
   /// @throws what reading or `use` throws; where another rank has failed, std::runtime_error
-  void visit(const std::vector<std::uint32_t>& tiles, const Use& use,
-             const std::function<bool(std::size_t)>& go_on = nullptr);
+  void visitAll(const std::vector<std::uint32_t>& tiles, const Use& use, std::size_t run = 1);
+
+  /// The same with the first of these tiles, dealt to the ranks in turn.
+  /// @param go_on asked by all ranks whenever each has had a tile more, with the number of tiles visited by all: false
+  ///   ends the visit on all ranks, so it must be the same on all
+  void visitInTurn(const std::vector<std::uint32_t>& tiles, const Use& use,
+                   const std::function<bool(std::size_t)>& go_on);
+
+  /// The number in the list of the tile that `use` is called with.
+  std::uint64_t place() const noexcept { return place_; }
 
   /// What each tile has cost that this rank has visited.
   const std::vector<TileCost>& costs() const noexcept { return costs_; }
@@ -47,9 +53,12 @@ public:
   std::uint64_t read() const noexcept { return read_; }
 
 private:
+  void visit(std::uint32_t tile, std::uint32_t place, const Use& use);
+
   const Site& site_;
   std::uint64_t bytes_for_largest_ = 0;
-  std::uint64_t read_ = 0;
+  std::uint64_t read_ = 0, place_ = 0;
+  pcl::PCLPointCloud2 cloud_; ///< the tile that is visited; its memory is used for the next
   std::vector<TileCost> costs_;
 };
 

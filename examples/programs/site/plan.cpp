@@ -13,11 +13,11 @@ double secondsOf(const sites::TileCost& tile)
   return tile.reading + tile.asking;
 }
 
-/// The most that one of so many ranks has to do.
+/// The most that one of so many ranks has to do, where each takes the next tile when it has done one.
 double busiestOf(const std::vector<sites::TileCost>& tiles, std::size_t ranks)
 {
   std::vector<double> load(std::min(ranks, std::max<std::size_t>(tiles.size(), 1)), 0.0);
-  for (std::size_t i = 0; i < tiles.size(); ++i) load[i % ranks] += secondsOf(tiles[i]);
+  for (const sites::TileCost& tile : tiles) *std::min_element(load.begin(), load.end()) += secondsOf(tile);
   return *std::max_element(load.begin(), load.end());
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "dealer.h"
+
 #include <pcl_bsh/site/tile_visitor.h>
 
 #include <stdexcept> // which DIY does not include
@@ -13,6 +15,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <exception>
+#include <utility>
 
 namespace pcl_bsh::sites {
 
@@ -51,6 +54,14 @@ void* makeBlock()
 void destroyBlock(void* block)
 {
   delete static_cast<Block*>(block);
+}
+
+/// To be called by all ranks.
+void throwOfAnyRank(const std::exception_ptr& failure)
+{
+  const std::uint64_t failures = sumOfAllRanks(failure ? 1 : 0);
+  if (failure) std::rethrow_exception(failure);
+  if (failures > 0) throw std::runtime_error("another rank has failed: its line says why");
 }
 
 } // namespace
@@ -114,8 +125,49 @@ TileVisitor::TileVisitor(const Site& site, std::uint64_t memory) : site_(site)
   }
 }
 
-void TileVisitor::visit(const std::vector<std::uint32_t>& tiles, const Use& use,
-                        const std::function<bool(std::size_t)>& go_on)
+void TileVisitor::visit(std::uint32_t tile, std::uint32_t place, const Use& use)
+{
+  using Clock = std::chrono::steady_clock;
+  const auto seconds = [](Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double>(to - from).count();
+  };
+  const Clock::time_point begin = Clock::now();
+  cloud_ = readTile(site_, site_.tiles[tile], std::move(cloud_));
+  const Clock::time_point there = Clock::now();
+  ++read_;
+  place_ = place;
+  use(site_.tiles[tile], cloud_);
+  costs_.push_back({tile, place, seconds(begin, there), seconds(there, Clock::now())});
+}
+
+void TileVisitor::visitAll(const std::vector<std::uint32_t>& tiles, const Use& use, std::size_t run)
+{
+  const diy::mpi::communicator comm = world();
+  Dealer dealer(comm);
+  diy::Master master(comm, 1, -1, makeBlock, destroyBlock); // all ranks make it together
+  std::exception_ptr failure;
+  const auto visit_block = [&](Block* block, const diy::Master::ProxyWithLink&) {
+    try {
+      visit(block->tile, block->place, use);
+    }
+    catch (...) {
+      failure = std::current_exception();
+    }
+  };
+  const std::size_t runs = (tiles.size() + run - 1) / run;
+  for (std::size_t number = dealer.next(); number < runs; number = dealer.next()) {
+    for (std::size_t place = number * run; place < std::min((number + 1) * run, tiles.size()) && !failure; ++place) {
+      master.clear();
+      master.add(0, new Block{tiles[place], static_cast<std::uint32_t>(place)}, new diy::Link);
+      master.foreach (visit_block);
+    }
+    if (failure) dealer.end(runs);
+  }
+  throwOfAnyRank(failure);
+}
+
+void TileVisitor::visitInTurn(const std::vector<std::uint32_t>& tiles, const Use& use,
+                              const std::function<bool(std::size_t)>& go_on)
 {
   const diy::mpi::communicator comm = world();
   diy::Master master(comm, 1, -1, makeBlock, destroyBlock);
@@ -126,34 +178,21 @@ void TileVisitor::visit(const std::vector<std::uint32_t>& tiles, const Use& use,
     master.add(gid, new Block{tiles[static_cast<std::size_t>(gid)], static_cast<std::uint32_t>(gid)}, new diy::Link);
 
   std::exception_ptr failure;
-  const auto visit = [&](Block* block, const diy::Master::ProxyWithLink&) {
-    if (block == nullptr) return; // DIY calls for blocks that are skipped, too
-    try {
-      const Tile& tile = site_.tiles[block->tile];
-      using Clock = std::chrono::steady_clock;
-      const auto seconds = [](Clock::time_point from, Clock::time_point to) {
-        return std::chrono::duration<double>(to - from).count();
-      };
-      const Clock::time_point begin = Clock::now();
-      const pcl::PCLPointCloud2 cloud = readTile(site_, tile);
-      const Clock::time_point there = Clock::now();
-      ++read_;
-      use(tile, cloud);
-      costs_.push_back({block->tile, block->place, seconds(begin, there), seconds(there, Clock::now())});
-    }
-    catch (...) {
-      failure = std::current_exception();
-    }
-  };
   const auto per_rank = static_cast<std::size_t>(comm.size());
-  const std::size_t rounds = go_on ? (tiles.size() + per_rank - 1) / per_rank : 1;
-  for (std::size_t round = 0; round < rounds; ++round) {
+  for (std::size_t round = 0; round < (tiles.size() + per_rank - 1) / per_rank; ++round) {
     master.foreach (
-        visit, [&](int i, const diy::Master&) { return failure || (go_on && static_cast<std::size_t>(i) != round); });
-    const std::uint64_t failures = sumOfAllRanks(failure ? 1 : 0);
-    if (failure) std::rethrow_exception(failure);
-    if (failures > 0) throw std::runtime_error("another rank has failed: its line says why");
-    if (go_on && !go_on(std::min((round + 1) * per_rank, tiles.size()))) return;
+        [&](Block* block, const diy::Master::ProxyWithLink&) {
+          if (block == nullptr) return; // DIY calls for blocks that are skipped, too
+          try {
+            visit(block->tile, block->place, use);
+          }
+          catch (...) {
+            failure = std::current_exception();
+          }
+        },
+        [&](int i, const diy::Master&) { return static_cast<std::size_t>(i) != round; });
+    throwOfAnyRank(failure);
+    if (!go_on(std::min((round + 1) * per_rank, tiles.size()))) return;
   }
 }
 
