@@ -96,14 +96,15 @@ public:
   bool hasMoved() const { return moved_; }
 
 private:
-  /// The voxel's cube in the voxel's frame; where points have strayed from it since they were sorted, one around them.
+  /// The voxel's cube in the voxel's frame; one around its points where they have strayed from it since they were
+  /// sorted, or where they are so close together that the cube's edge overflows in their unit.
   Cube localCube(const Cube& cube) const
   {
     const LocalFrame& frame = voxel_.frame;
     const PointBounds bounds = boundsOf(sorted_.data(), sorted_.size());
     Cube local{{}, cube.edge / frame.unit};
     const double outside = kRoundedOutside * local.edge;
-    bool holds = true;
+    bool holds = std::isfinite(local.edge);
     for (std::size_t k = 0; k < 3; ++k) {
       local.low[k] = (cube.low[k] - frame.origin[k]) / frame.unit;
       holds = holds && static_cast<double>(bounds.low[k]) >= local.low[k] - outside &&
