@@ -7,6 +7,7 @@
 #include <vtkNew.h>
 #include <vtkXMLPolyDataWriter.h>
 
+#include <stdexcept>
 #include <system_error>
 
 namespace pcl_bsh::vtk {
@@ -14,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// VTK's writer goes back in its file, which a pipe or a device cannot.
+/// What is exported is read by name, and has files of its own beside it: not a pipe or a device.
 void requireFile(const fs::path& path)
 {
   std::error_code error;
@@ -22,21 +23,17 @@ void requireFile(const fs::path& path)
     throw files::FileError(path, "is no ordinary file", "name another file");
 }
 
-/// Fills the file that is to be renamed to `path`, and tells it by that name when this fails.
-void fill(files::FileReplacement& file, vtkPolyData& data, const fs::path& path)
+/// As a text, since VTK's writer crashes where a disk is full (9.1: vtkXMLUnstructuredDataWriter frees what it has not
+/// set).
+void fill(files::FileReplacement& file, vtkPolyData& data)
 {
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputData(&data);
-  writer->SetFileName(file.name().c_str());
+  writer->WriteToOutputStringOn();
   writer->SetDataModeToBinary(); // appended data is refused by expat since its mends of 2024
   writer->SetCompressorTypeToNone();
-  const int displayed = vtkObject::GetGlobalWarningDisplay(); // of the whole process
-  vtkObject::GlobalWarningDisplayOff();
-  const int written = writer->Write();
-  vtkObject::SetGlobalWarningDisplay(displayed);
-  std::error_code error; // VTK removes what it could not write to the end
-  if (written != 1 || writer->GetErrorCode() != 0 || !fs::exists(file.name(), error))
-    throw files::FileError(path, "cannot be written", "choose a folder with room that you may write to");
+  if (writer->Write() != 1) throw std::runtime_error("VTK: could not write poly data as XML");
+  file.stream() << writer->GetOutputString();
 }
 
 } // namespace
@@ -45,7 +42,7 @@ void writeVtp(vtkPolyData& data, const fs::path& path)
 {
   requireFile(path);
   files::FileReplacement file(path);
-  fill(file, data, path);
+  fill(file, data);
   file.commit();
 }
 
@@ -58,7 +55,7 @@ void writeVtm(const std::vector<NamedData>& blocks, const fs::path& path)
   for (const NamedData& block : blocks) {
     const fs::path name = pieces.next();
     files::FileReplacement file(name);
-    fill(file, *block.second, name);
+    fill(file, *block.second);
     pieces.commit(file, name, block.first);
   }
   list.stream() << pieces.list();

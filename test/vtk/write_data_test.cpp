@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "../files/temporary_folder.h"
 
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/vtk/write_data.h>
 
 #include <gtest/gtest.h>
@@ -12,6 +13,9 @@
 #include <vtkPoints.h>
 #include <vtkXMLMultiBlockDataReader.h>
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <set>
 #include <stdexcept>
 
@@ -66,6 +70,23 @@ std::vector<std::pair<std::string, vtkIdType>> read(const fs::path& path)
                         block != nullptr ? block->GetNumberOfPoints() : -1);
   }
   return blocks;
+}
+
+/// VTK's own writer of files crashes there.
+TEST(WriteVtm, LeavesNothingOnAFullDisk)
+{
+  const TemporaryFolder folder;
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before = {};
+  getrlimit(RLIMIT_FSIZE, &before);
+  for (const rlim_t room : {rlim_t{0}, rlim_t{300}, rlim_t{4000}}) {
+    const rlimit limits = {room, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limits);
+    EXPECT_THROW(writeVtm({{"a", dataOf(5000)}}, folder / "a.vtm"), files::FileError);
+    EXPECT_THROW(writeVtp(*dataOf(5000), folder / "a.vtp"), files::FileError);
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_EQ(folder.files(), 0U);
+  }
 }
 
 TEST(WriteVtm, VtkReadsItBack)
