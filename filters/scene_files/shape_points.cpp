@@ -17,7 +17,8 @@ void add(std::vector<float>& xyz, double x, double y, double z)
 /// Fibonacci's spiral: evenly spread.
 void addSphere(std::vector<float>& xyz, double radius, double spacing)
 {
-  const auto count = static_cast<std::size_t>(std::ceil(4.0 * kPi * radius * radius / (spacing * spacing))) + 2;
+  const double steps = radius / spacing;
+  const auto count = static_cast<std::size_t>(std::ceil(4.0 * kPi * steps * steps)) + 2;
   const double golden = kPi * (3.0 - std::sqrt(5.0));
   for (std::size_t i = 0; i < count; ++i) {
     const double z = 1.0 - 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(count);

@@ -128,7 +128,7 @@ TEST(SceneFile, NamesThePlaceOfWhatIsWrong)
   expect("[1, 2, 3]", "[1, 2]", "clouds.crate.box.size: [1,2] is no list of 3 numbers: give [x, y, z]");
   expect("\"radius\": 0.5 }", "\"radius\": 0 }", "clouds.ball.sphere.radius: 0 is too small: give more than 0");
   expect("\"spacing\": 0.2 }", "\"spacing\": 1e-310 }",
-         "clouds.ball.spacing: 1e-310 is too small: give at least 1e-300");
+         "clouds.ball.spacing: 1e-310 is too small: give at least 1e-30");
   expect("\"threads\": 1", "\"threads\": 1025", "threads: 1025 is too large: give at most 1024");
   expect("\"any\": true", "\"any\": 1", "effects.any: 1 is no boolean: give true or false");
   expect("\"distance\": \"all\"", "\"distance\": \"al\"", "effects.distance: 'al' is unknown: did you mean 'all'?");
@@ -293,6 +293,20 @@ TEST(SceneFile, RefusesShiftsBeyondAllNumbers)
       testing::ThrowsMessage<JsonError>(HasSubstr("clouds.a: scale and shift take point 0 beyond all numbers")));
 }
 
+/// Its points would be infinite, and so free, or one.
+TEST(SceneFile, RefusesShapesThatFloatsCannotHold)
+{
+  for (const char* shape :
+       {R"("sphere": {"radius": 1e39}, "spacing": 1e39)", R"("sphere": {"radius": 1e-300}, "spacing": 1e-300)",
+        R"("box": {"size": [1, 1e39, 1]}, "spacing": 1e38)", R"("box": {"size": [1, -1, 1]})",
+        R"("cylinder": {"radius": 1, "height": 1e39}, "spacing": 1e38)"}) {
+    SCOPED_TRACE(shape);
+    const std::string text = R"({"clouds": {"a": {)" + std::string(shape) +
+                             R"(}}, "objects": [{"name": "A", "cloud": "a"}], "effects": {"any": true}})";
+    EXPECT_THAT([&] { parseScene(text, "scene.json"); }, testing::ThrowsMessage<JsonError>(HasSubstr("clouds.a")));
+  }
+}
+
 constexpr auto square = "OFF\n4 1 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n4 0 1 2 3\n";
 
 /// A point that stands over the middle of a square at a height.
@@ -408,6 +422,9 @@ TEST(ShapePoints, LieOnTheirSurfaces)
   });
   each(shapePoints("cylinder", {1, 2, 0}, 0.3),
        [](const Eigen::Vector3d& p) { EXPECT_NEAR(std::min(1 - p.head<2>().norm(), 1 - std::abs(p.z())), 0, 1e-5); });
+  each(shapePoints("sphere", {1e30, 0, 0}, 5e29), [](const Eigen::Vector3d& p) { EXPECT_NEAR(p.norm(), 1e30, 1e24); });
+  each(shapePoints("sphere", {1e-30, 0, 0}, 5e-31),
+       [](const Eigen::Vector3d& p) { EXPECT_NEAR(p.norm(), 1e-30, 1e-36); });
   for (const char* shape : {"sphere", "box", "cylinder"}) {
     const auto count = static_cast<double>(shapePoints(shape, {1, 2, 3}, 0.1).size() / 3);
     EXPECT_LE(count, 2 * shapePointCount(shape, {1, 2, 3}, 0.1));
