@@ -10,10 +10,20 @@
 namespace pcl_bsh::cli {
 namespace {
 
+/// What a shell makes of a variable that is not set must not pass for what was left out.
+void requireNoneEmpty(const CLI::App& app)
+{
+  for (const CLI::Option* const option : app.get_options())
+    for (const std::string& value : option->results())
+      if (value.empty()) throw UsageError(option->get_name() + ": is empty: give a value, or leave it out");
+  for (const CLI::App* const command : app.get_subcommands()) requireNoneEmpty(*command); // those that were given
+}
+
 bool understood(CLI::App& app, const std::string& program, const std::function<void()>& parse)
 {
   try {
     parse();
+    requireNoneEmpty(app);
     return true;
   }
   catch (const CLI::CallForHelp&) {

@@ -167,9 +167,30 @@ TEST(HostileMachine, StandardOutput)
     close(STDOUT_FILENO);
     close(STDIN_FILENO);
   });
-  EXPECT_EQ(scene.end(), 0) << scene.err();
+  EXPECT_EQ(scene.end(), 1) << "its summary is lost";
+  EXPECT_THAT(scene.err(), HasSubstr("pcl_bsh_scene: standard output: cannot be written"));
   EXPECT_THAT(files::contentOf(folder / "run/steps.csv"), StartsWith("step,time_s"));
   EXPECT_THAT(files::contentOf(folder / "run/steps.csv"), testing::Not(HasSubstr("scene.json")));
+}
+
+/// A variable of the shell that is not set must not pass for an option that was left out.
+TEST(HostileMachine, EmptyValues)
+{
+  files::TemporaryFolder folder;
+  prepareJobs(folder);
+  using Arguments = std::vector<std::string>;
+  for (const auto& [name, arguments] :
+       {std::pair{"pcl_bsh_collide", Arguments{"scan.xyz", "robot.xyz", "out.pcd", "--clearance", "0.1", "--pose", ""}},
+        {"pcl_bsh_collide", {"scan.xyz", "robot.xyz", "out.pcd", "--clearance", "0.1", "--trajectory", ""}},
+        {"pcl_bsh_collide", {"scan.xyz", "robot.xyz", "", "--clearance", "0.1"}},
+        {"pcl_bsh_scene", {"scene.json", "--out", ""}},
+        {"pcl_bsh_tunnel", {""}},
+        {"pcl_bsh_site", {"make", "scan.xyz", "--out", ""}}}) {
+    Process program(name, arguments, folder.path());
+    EXPECT_EQ(program.end(), 2) << name;
+    EXPECT_THAT(program.err(), HasSubstr(": is empty: give a value, or leave it out"));
+  }
+  EXPECT_FALSE(fs::exists(folder / "out.pcd"));
 }
 
 } // namespace pcl_bsh
