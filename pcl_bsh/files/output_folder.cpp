@@ -14,7 +14,13 @@ OutputFolder::OutputFolder(const fs::path& path) : path_(path)
 {
   std::error_code error;
   std::vector<fs::path> missing;
-  for (fs::path at = fs::weakly_canonical(fs::absolute(path)); !fs::exists(at, error); at = at.parent_path()) {
+  const auto fail = [&path](const std::string& why) {
+    throw FileError(path, "cannot be made (" + why + ")", "name a folder that can");
+  };
+  const fs::path whole = fs::weakly_canonical(fs::absolute(path, error), error);
+  if (error) fail(error.message());
+  for (fs::path at = whole; !fs::exists(at, error); at = at.parent_path()) {
+    if (error) fail(error.message());
     if (fs::is_symlink(fs::symlink_status(at, error)))
       throw FileError(path, "'" + at.string() + "' is a link to what is not there",
                       "remove the link, or name another folder");
@@ -29,7 +35,7 @@ OutputFolder::OutputFolder(const fs::path& path) : path_(path)
         fs::remove(*made, ignored);
         dropUnfinished(*made);
       }
-      throw FileError(path, "cannot be made (" + error.message() + ")", "name a folder that can");
+      fail(error.message());
     }
     made_.push_back(*folder);
     addUnfinished(*folder);

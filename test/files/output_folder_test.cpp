@@ -65,6 +65,8 @@ TEST(OutputFolder, IsNoLinkToNothing)
     }
   }
   EXPECT_FALSE(fs::exists(folder / "nowhere"));
+  fs::create_symlink("loop", folder / "loop");
+  EXPECT_THROW(OutputFolder made(folder / "loop"), FileError);
   fs::create_directory(folder / "somewhere");
   fs::create_symlink("somewhere", folder / "good");
   const OutputFolder made(folder / "good/sub");
