@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/json/json_document.h>
 #include <pcl_bsh/filters/text_files/file_bytes.h>
@@ -45,18 +46,22 @@ void KeptAnswers::keep(std::size_t tile, const std::vector<double>& numbers)
   files::replaceFile(folder_ / answerFileName(tile), [&](std::ostream& out) {
     out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   });
+  has_kept_ = true;
 }
 
 std::optional<KeptAnswers::Answer> KeptAnswers::read(std::size_t tile) const
 {
   const fs::path file = folder_ / answerFileName(tile);
   std::error_code error;
-  if (!fs::is_regular_file(file, error)) return std::nullopt;
+  if (!fs::is_regular_file(file, error) || fs::is_empty(file, error)) return std::nullopt;
   const io::FileBytes bytes(file);
   const Json json = Json::from_cbor(bytes.view(), true, false);
   if (json.is_discarded() || !json.is_object()) return std::nullopt;
   try {
-    if (json.at("question").get<std::uint32_t>() != question_) return std::nullopt;
+    if (json.at("question").get<std::uint32_t>() != question_) {
+      throw files::FileError(folder_, "holds what another question has found, or one about other clouds",
+                             "repeat that one, begin anew without --resume, or name a new folder");
+    }
     Answer answer{json.at("crc32").get<std::uint32_t>(), json.at("numbers").get<std::vector<double>>()};
     if (json.at("crc32_of_numbers").get<std::uint32_t>() != crcOfNumbers(answer.numbers)) return std::nullopt;
     return answer;

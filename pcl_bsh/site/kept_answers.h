@@ -25,13 +25,17 @@ public:
   /// To be called before keep(): the checksum of the tile's file, which is complete.
   void setChecksum(std::size_t tile, std::uint32_t crc32) { checksums_[tile] = crc32; }
 
-  /// The checksum that an earlier run has kept with an answer to the same question; none: there is no such answer.
+  /// The checksum that an earlier run has kept with an answer; none: there is no answer that can be understood.
+  /// @throws files::FileError for one to another question
   std::optional<std::uint32_t> checksumKept(std::size_t tile) const;
 
   /// Makes the answers of these tiles, which are of the ranks that have looked at them, known to all ranks.
   void share(const std::vector<std::size_t>& mine);
 
   std::set<std::size_t> all() const;
+
+  /// Whether any was kept, by an earlier run or by this one.
+  bool any() const noexcept { return has_kept_ || !known_.empty(); }
 
 private:
   struct Answer {
@@ -42,6 +46,7 @@ private:
 
   std::filesystem::path folder_;
   std::uint32_t question_ = 0; ///< its checksum
+  bool has_kept_ = false;
   std::map<std::size_t, std::uint32_t> checksums_;
   std::map<std::size_t, std::vector<double>> known_;
 };

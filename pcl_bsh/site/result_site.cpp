@@ -11,6 +11,7 @@
 #include <pcl_bsh/site/unfinished_site.h>
 
 #include <algorithm>
+#include <exception>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -82,7 +83,7 @@ public:
 
   ~Writer()
   {
-    if (made_ && answers_ && ranks() == 1 && !is_finished_) made_->forget(); // not killed: nothing is left
+    if (made_ && answers_ && ranks() == 1 && !is_finished_ && !answers_->any()) made_->forget();
   }
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
@@ -174,11 +175,21 @@ private:
   void goOn()
   {
     std::vector<std::size_t> mine;
-    for (std::size_t i = static_cast<std::size_t>(rankHere()); i < site_.tiles.size();
-         i += static_cast<std::size_t>(ranks()))
-      if (takeOver(i)) mine.push_back(i);
+    std::exception_ptr other;
+    try {
+      for (std::size_t i = static_cast<std::size_t>(rankHere()); i < site_.tiles.size();
+           i += static_cast<std::size_t>(ranks()))
+        if (takeOver(i)) mine.push_back(i);
+    }
+    catch (const files::FileError&) { // of another question
+      other = std::current_exception();
+    }
+    throwOfAnyRank(other);
     answers_->share(mine);
-    if (made_) made_->discardTiles(answers_->all());
+    if (made_) {
+      made_->discardTiles(answers_->all());
+      made_->discard(overview_file_name);
+    }
     sumOfAllRanks(0);
   }
 
@@ -296,6 +307,15 @@ TileAnswers* ResultSite::answers()
 Site ResultSite::finish()
 {
   return writer_->finish();
+}
+
+bool hasAnswers(const fs::path& folder)
+{
+  std::error_code error;
+  if (!isUnfinished(folder)) return false;
+  const fs::directory_iterator tiles(folder / tiles_folder_name, error);
+  return std::any_of(begin(tiles), end(tiles),
+                     [](const auto& entry) { return entry.path().extension() == answer_extension; });
 }
 
 } // namespace pcl_bsh::sites

@@ -32,20 +32,20 @@ struct ResultField {
 /// Lets a run of the same question use what an earlier one has found that was killed.
 struct Continuation {
   std::string question; ///< all that was asked; empty: nothing is kept for another run
-  bool goes_on = false; ///< whether to use what there is; else it is cleared
+  bool goes_on = false; ///< whether to use what there is, which must be of the same question; else it is cleared
 };
 
 /// Made and finished by all ranks of an MPI job together; each writes the tiles that it has. Until finish() has
-/// returned the folder is marked as not complete. Where finish() is not reached, one process removes what it made; of
-/// an MPI job a marked folder may be left, which the next ResultSite, or makeSite(), clears. So may be one of a process
-/// that was killed: with a question, each tile is in place as soon as it is written, and what was found of it is beside
-/// it, so that the same question can go on.
+/// returned the folder is marked as not complete. With a question, each tile is in place as soon as it is written, and
+/// what was found of it is beside it, so that the same question can go on where finish() is not reached. Without, or
+/// before any tile, one process removes what it made; of an MPI job, or of a process that was killed, a marked folder
+/// may be left, which the next ResultSite, or makeSite(), clears.
 class ResultSite {
 public:
   /// @param folder a new or empty one, or one that was left not complete
   /// @param fields of the results. Those that the site has already are written anew: the others stay as they are
   /// @throws files::FileError for a folder that holds anything, or cannot be written; for a field of the site that has
-  ///   the name of one of these and another type
+  ///   the name of one of these and another type; where it shall go on with what another question has found
   ResultSite(const Site& site, const std::filesystem::path& folder, const std::vector<ResultField>& fields,
              const Continuation& continuation = {});
   ~ResultSite();
@@ -68,6 +68,9 @@ private:
   class Writer;
   std::unique_ptr<Writer> writer_;
 };
+
+/// Whether a folder that is no site yet holds answers of a question that can go on.
+bool hasAnswers(const std::filesystem::path& folder);
 
 } // namespace pcl_bsh::sites
 PCL_BSH_EXPORT_END

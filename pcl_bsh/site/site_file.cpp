@@ -83,8 +83,9 @@ void requireInside(const fs::path& folder, const JsonReader& file)
   for (const fs::path& step : path) leaves = leaves || step == "..";
   std::error_code error;
   const fs::path target = fs::weakly_canonical(folder / path, error), home = fs::weakly_canonical(folder, error);
+  if (error) throw files::FileError(folder / path, "cannot be read (" + error.message() + ")", "ask for the right to");
   const auto [home_end, unused] = std::mismatch(home.begin(), home.end(), target.begin(), target.end());
-  if (leaves || error || home_end != home.end())
+  if (leaves || home_end != home.end())
     file.fail("'" + path.string() + "' leaves the folder of the site", "move the tile into the folder");
 }
 
@@ -137,6 +138,7 @@ void requireFolder(const fs::path& folder)
   std::error_code error;
   if (!fs::is_directory(folder, error)) throw files::FileError(folder, "is no folder", "name the folder of a site");
   if (fs::exists(folder / site_file_name, error)) return;
+  if (error) throw files::FileError(folder, "cannot be read (" + error.message() + ")", "ask for the right to");
   if (isUnfinished(folder))
     throw files::FileError(folder, "is a site that is not complete", "make it again with pcl_bsh_site make");
   throw files::FileError(folder, "is no site: it has no site.json", "make one with pcl_bsh_site make");

@@ -7,6 +7,7 @@
 #include <pcl_bsh/site/site.h>
 
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <string>
 #include <vector>
@@ -20,6 +21,10 @@ std::uint64_t sumOfAllRanks(std::uint64_t value);
 std::vector<double> gatheredFromAllRanks(const std::vector<double>& values);
 
 std::string gatheredFromAllRanks(const std::string& bytes);
+
+/// Lets all ranks fail where one has. To be called by all of them.
+/// @param failure of this rank, or null. @throws it; where another rank has one, std::runtime_error
+void throwOfAnyRank(const std::exception_ptr& failure);
 
 class TileVisitor {
 public:

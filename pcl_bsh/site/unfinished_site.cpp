@@ -2,16 +2,19 @@
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/files/unfinished.h>
+#include <pcl_bsh/files/write_error.h>
 #include <pcl_bsh/site/make_site.h>
 #include <pcl_bsh/site/tile_file.h>
 #include <pcl_bsh/site/unfinished_site.h>
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <set>
 #include <string>
 
@@ -35,7 +38,8 @@ bool isTileName(const std::string& name)
   const std::size_t dot = std::min(name.find('.'), name.size());
   const std::string_view digits = std::string_view(name).substr(begin.size(), dot - begin.size());
   const std::string_view end = std::string_view(name).substr(dot);
-  return !digits.empty() &&
+  constexpr std::size_t least_digits = 6; // tileFileName() writes so many
+  return digits.size() >= least_digits &&
          (end == ".pcd" || end == answer_extension || end.starts_with(std::string(answer_extension) + ".part")) &&
          std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
@@ -82,7 +86,10 @@ UnfinishedSite::UnfinishedSite(const fs::path& folder, Use use) : folder_(folder
   if (fs::exists(folder / site_file_name, error))
     throw files::FileError(folder, "is a site already", "name a new folder");
   const bool was_begun = isUnfinished(folder);
-  if (!was_begun && !fs::is_empty(folder, error)) throw files::FileError(folder, "is not empty", "name a new folder");
+  if (!was_begun && !fs::is_empty(folder, error)) {
+    throw files::FileError(folder, error ? "cannot be read (" + error.message() + ")" : "is not empty",
+                           "name a new folder");
+  }
   if (!was_begun) {
     mark_file_ = std::make_unique<files::NewFile>(folder / mark_name);
     mark_file_->append(mark_text);
@@ -151,6 +158,7 @@ void UnfinishedSite::forget()
   catch (const fs::filesystem_error&) { // what cannot be removed stays, with the mark
     return;
   }
+  fs::remove(folder() / tiles_folder_name, ignored);
   stays_ = false;
 }
 
@@ -192,10 +200,21 @@ void UnfinishedSite::save(const std::string& state)
 void UnfinishedSite::mark()
 {
   mark_ = open((folder() / mark_name).c_str(), O_RDWR | O_CLOEXEC);
+  if (mark_ < 0 && errno != ENOENT) files::failToWrite(folder() / mark_name, errno);
   if (mark_ < 0 || flock(mark_, LOCK_EX | LOCK_NB) != 0) {
     if (mark_ >= 0) close(mark_);
     mark_ = -1;
     throw files::FileError(folder(), "another program makes a site there", "wait for it, or name a new folder");
+  }
+  // It may have been complete before the lock was ours, and its mark be gone.
+  struct stat locked = {}, named = {};
+  const bool is_there = fstat(mark_, &locked) == 0 && stat((folder() / mark_name).c_str(), &named) == 0 &&
+                        locked.st_dev == named.st_dev && locked.st_ino == named.st_ino;
+  std::error_code error;
+  if (!is_there || fs::exists(folder() / site_file_name, error)) {
+    close(mark_);
+    mark_ = -1;
+    throw files::FileError(folder(), "another program has made a site there", "name a new folder");
   }
 }
 
@@ -219,7 +238,6 @@ files::NewFile& UnfinishedSite::add(const fs::path& name)
 
 void UnfinishedSite::finish(const Site& site)
 {
-  removeTiles(folder(), [](const std::string& name) { return !name.ends_with(".pcd"); });
   files::syncDisk(folder());
   files::FileReplacement document(folder() / site_file_name);
   document.stream() << siteText(site) << '\n';
@@ -227,6 +245,11 @@ void UnfinishedSite::finish(const Site& site)
     for (const auto& file : files_) file->keep();
   });
   finished_ = true;
+  try { // answers may be needed until the site is there
+    removeTiles(folder(), [](const std::string& name) { return !name.ends_with(".pcd"); });
+  }
+  catch (const fs::filesystem_error&) { // they are in nobody's way
+  }
 }
 
 } // namespace pcl_bsh::sites

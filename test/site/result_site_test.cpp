@@ -158,8 +158,10 @@ TEST_F(SiteResults, AreTheSameOfTwoRanks)
 TEST_F(SiteResults, RefuseWhatTheyMustNotWriteOver)
 {
   const std::string before = files::contentOf(folder / "site/site.json");
-  EXPECT_EQ(collide("--clearance 0.3 --out " + in("site")), 1);
-  EXPECT_THAT(err, HasSubstr("is a site already"));
+  for (const char* inside : {"site", "site/sub"}) {
+    EXPECT_EQ(collide("--clearance 0.3 --out " + in(inside)), 2);
+    EXPECT_THAT(err, HasSubstr("lies in the folder of SITE"));
+  }
   EXPECT_EQ(files::contentOf(folder / "site/site.json"), before);
   fs::create_directory(folder / "mine");
   folder.write("mine/letter.txt", "dear");
@@ -188,7 +190,9 @@ TEST_F(SiteResults, AreWholeOrNotThere)
   folder.write(name, damaged);
   EXPECT_EQ(collide("--clearance 0.3 --out " + in("out")), 1);
   EXPECT_THAT(err, HasSubstr("not those that the site was made with"));
-  EXPECT_FALSE(fs::exists(folder / "out"));
+  EXPECT_THAT(err, HasSubstr("; what was found stays, and the same command with --resume goes on"));
+  EXPECT_THROW(readSite(folder / "out"), files::FileError);
+  fs::remove_all(folder / "out");
   folder.write(name, whole);
 
   const std::vector<std::string> arguments = {"collide", "site", "machine.pcd", "--clearance", "0.3", "--out", "out"};

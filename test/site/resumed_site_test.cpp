@@ -206,16 +206,17 @@ TEST_F(ResumedSite, AsksAgainWhatIsNotItsOwnAnswer)
   };
   ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 4));
   ASSERT_EQ(answers().size(), 4u);
-  expectRead(whole.tiles.read, "and when?"); // another question
-  ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 4));
+  EXPECT_THROW(ask(folder / "out", true, At::nowhere, 0, "and when?"), files::FileError);
+  EXPECT_EQ(answers().size(), 4u) << "of the first question";
   expectRead(whole.tiles.read, "where?", false); // not to go on
   ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 4));
   std::ofstream(answers()[0]) << "damaged";
   std::ofstream(answers()[1], std::ios::app) << "longer";
+  std::ofstream(answers()[3]).close(); // empty
   fs::path tile = answers()[2];
   std::fstream(tile.replace_extension(".pcd"), std::ios::in | std::ios::out | std::ios::binary).seekp(-1, std::ios::end)
       << '\7';
-  expectRead(whole.tiles.read - 1);
+  expectRead(whole.tiles.read);
 
   ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 4));
   const std::string answer = files::contentOf(answers()[0]);
@@ -293,8 +294,8 @@ TEST_F(ResumedSite, AboutTwoSites)
   }
 }
 
-/// The program, about a site as obstacle: of the same question, of one whose obstacle is written anew, and of other
-/// clashes.
+/// The program, about a site as obstacle: with the same question; one whose obstacle is written anew, or of other
+/// clashes, is told from it.
 TEST_F(ResumedSite, ByTheProgramAboutTwoSites)
 {
   MakeOptions options;
@@ -327,7 +328,15 @@ TEST_F(ResumedSite, ByTheProgramAboutTwoSites)
     if (!was_killed) fs::remove_all(folder / "out"); // it was quicker
     if (change == "tile") fs::last_write_time(other.folder / other.tiles[0].file, fs::file_time_type::clock::now());
     Process resumed("pcl_bsh_site", with({"--out", "out", "--resume"}), folder.path());
-    ASSERT_EQ(resumed.end(), 0) << resumed.err();
+    const int code = resumed.end();
+    if (was_killed && !change.empty()) {
+      EXPECT_EQ(code, 1);
+      EXPECT_THAT(resumed.err(), HasSubstr("out: holds what another question has found"));
+      Process anew("pcl_bsh_site", with({"--out", "out"}), folder.path());
+      EXPECT_EQ(anew.end(), 0) << anew.err();
+    }
+    else
+      EXPECT_EQ(code, 0) << resumed.err();
     EXPECT_EQ(contentsOf(folder / "out"), contentsOf(folder / "whole"));
     EXPECT_EQ(files::contentOf(folder / "list.csv"), list);
     EXPECT_EQ(tilesRead() < all, was_killed && change.empty()) << tilesRead() << " of " << all;
@@ -335,11 +344,54 @@ TEST_F(ResumedSite, ByTheProgramAboutTwoSites)
   }
 }
 
-TEST_F(ResumedSite, LeavesNothingOfARunThatFails)
+TEST_F(ResumedSite, LeavesWhatItFoundOfARunThatFails)
 {
-  std::ofstream(site.folder / site.tiles.back().file) << "damaged";
+  const Asked whole = ask(folder / "whole", false);
+  const fs::path last = site.folder / site.tiles.back().file;
+  const std::string content = files::contentOf(last);
+  std::ofstream(last) << "damaged";
+  EXPECT_THROW(ask(folder / "out", false), std::runtime_error);
+  EXPECT_THROW(ask(folder / "out", true), std::runtime_error);
+  EXPECT_TRUE(hasAnswers(folder / "out"));
+  std::ofstream(last) << content;
+  const Asked resumed = ask(folder / "out", true);
+  expectSame(resumed, whole);
+  EXPECT_LE(resumed.tiles.read, 1u);
+  EXPECT_EQ(contentsOf(folder / "out"), contentsOf(folder / "whole"));
+}
+
+TEST_F(ResumedSite, LeavesNothingOfARunThatFailsAtOnce)
+{
+  for (const Tile& tile : site.tiles) std::ofstream(site.folder / tile.file) << "damaged";
   EXPECT_THROW(ask(folder / "out", false), std::runtime_error);
   EXPECT_FALSE(fs::exists(folder / "out"));
+  fs::create_directories(folder / "out");
+  EXPECT_THROW(ask(folder / "out", true), std::runtime_error);
+  EXPECT_TRUE(fs::is_empty(folder / "out"));
+}
+
+/// Killed while it ends: tiles and answers are there, and an overview.
+TEST_F(ResumedSite, GoesOnFromTheEnd)
+{
+  const Asked whole = ask(folder / "whole", false);
+  ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, whole.tiles.read));
+  std::ofstream(folder / "out/overview.pcd") << "half";
+  const Asked resumed = ask(folder / "out", true);
+  expectSame(resumed, whole);
+  EXPECT_EQ(resumed.tiles.read, 0u);
+  EXPECT_EQ(contentsOf(folder / "out"), contentsOf(folder / "whole"));
+}
+
+/// Another one had it when it was looked at, and has made a site of it before it was locked.
+TEST_F(ResumedSite, TakesNoSiteForWhatIsLeft)
+{
+  ask(folder / "out", false);
+  const auto files = contentsOf(folder / "out");
+  std::ofstream(folder / "out/unfinished_site") << "left";
+  EXPECT_THROW(ask(folder / "out", true), files::FileError);
+  EXPECT_THROW(ask(folder / "out", false), files::FileError);
+  fs::remove(folder / "out/unfinished_site");
+  EXPECT_EQ(contentsOf(folder / "out"), files);
 }
 
 /// The program, killed at instants that nobody chose.
@@ -369,6 +421,13 @@ TEST_F(ResumedSite, ByTheProgram)
   }
   if (!hasMpirun()) GTEST_SKIP() << "no mpirun";
   ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 3)); // of another question
+  const Outcome refused = runOnTwoRanks(asked + "out --report two.json --resume", folder.path());
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("out: holds what another question has found"));
+  fs::remove_all(folder / "out");
+  const std::string kill = "timeout -s KILL 0.2 " PCL_BSH_PROGRAM_DIR "/pcl_bsh_site " + asked + "out > /dev/null 2>&1";
+  EXPECT_NE(std::system(("cd " + folder.path().string() + " && " + kill).c_str()), -1);
+  if (fs::exists(folder / "out/site.json")) fs::remove_all(folder / "out"); // it was quicker
   const Outcome two = runOnTwoRanks(asked + "out --report two.json --resume", folder.path());
   ASSERT_EQ(two.exit_code, 0) << two.err;
   EXPECT_EQ(contentsOf(folder / "out"), whole);

@@ -9,6 +9,7 @@
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 
@@ -92,7 +93,8 @@ Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const Poses
   return report;
 }
 
-int answer(const SiteOptions& options)
+/// @param keeps set where what is found stays in --out although the run fails
+int answer(const SiteOptions& options, bool& keeps)
 {
   const auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
@@ -108,6 +110,7 @@ int answer(const SiteOptions& options)
   if (!options.obstacleIsSite()) cloud.emplace(options);
   const Poses poses = options.trajectory.empty() ? Poses{options.pose} : io::readPoses(options.trajectory);
   SiteOutput output(site, cloud ? &*cloud : nullptr, poses, clashes.clusterDistance(), options);
+  keeps = output.answers() != nullptr;
   MeasuredRun run;
   Json report;
   std::optional<Step> shown;
@@ -139,11 +142,18 @@ int answer(const SiteOptions& options)
 
 int collideSite(const SiteOptions& options)
 {
+  bool keeps = false;
   try {
-    return answer(options);
+    return answer(options, keeps);
+  }
+  catch (const Cancelled&) {
+    throw;
   }
   catch (const std::exception& error) {
-    if (sites::ranks() == 1) throw;
+    if (sites::ranks() == 1) {
+      if (!keeps || !sites::hasAnswers(options.out)) throw;
+      throw std::runtime_error(std::string(error.what()) + "; " + what_stays);
+    }
     std::cerr << site_program << ": rank " << sites::rankHere() << ": " << error.what() << '\n';
     sites::endAllRanks();
   }

@@ -6,6 +6,7 @@
 #include "cli/pose.h"
 #include "cli/uncertainty.h"
 
+#include <pcl_bsh/filters/text_files/small_letters.h>
 #include <pcl_bsh/site/site.h>
 
 #include <algorithm>
@@ -42,9 +43,8 @@ void addMemory(CLI::App& app, SiteOptions& options)
       ->transform(amount(1024, std::uint64_t{64} << 20, "give 64M or more"));
 }
 
-#ifdef PCL_BSH_SITE_QUERIES
 /// Whatever lies in the site's folder is its own: no file of an answer may take a tile's place.
-void requireOutside(const std::filesystem::path& site, const char* name, const char* option,
+void requireOutside(const std::filesystem::path& site, const std::string& name, const std::string& option,
                     const std::filesystem::path& file)
 {
   namespace fs = std::filesystem;
@@ -53,10 +53,20 @@ void requireOutside(const std::filesystem::path& site, const char* name, const c
   const fs::path home = fs::weakly_canonical(site, error), target = fs::weakly_canonical(fs::absolute(file), error);
   const auto [home_end, unused] = std::mismatch(home.begin(), home.end(), target.begin(), target.end());
   if (!error && home_end == home.end())
-    throw UsageError(std::string(option) + ": " + file.string() + ": lies in the folder of " + name +
-                     ": choose another place");
+    throw UsageError(option + ": " + file.string() + ": lies in the folder of " + name + ": choose another place");
 }
 
+void requireExport(const SiteOptions& options)
+{
+  requireOutside(options.site, "SITE", "OUT", options.out);
+  const std::string extension = io::inSmallLetters(options.out.extension().string());
+  for (const char* other : {".ply", ".las", ".laz", ".obj", ".off", ".stl", ".pts", ".ptx", ".csv", ".xyz", ".txt"})
+    if (extension == other)
+      throw UsageError("OUT: " + options.out.string() + ": sites are not written as " + other +
+                       ": name a .pcd file, a .pvtp, or a folder");
+}
+
+#ifdef PCL_BSH_SITE_QUERIES
 /// The options of `collide` as they are written.
 struct CollideTexts {
   bool any = false, closest = false, distances = false;
@@ -168,6 +178,10 @@ struct CollideTexts {
       requireOutside(options.site, "SITE", option, file);
       if (two_sites) requireOutside(options.obstacle, "OBSTACLE", option, file);
     };
+    require_outside_sites("--out", options.out);
+    if (!options.out.empty()) requireOutside(options.out, "--out", "--obstacle-out", options.obstacle_out);
+    if (two_sites && !options.obstacle_out.empty())
+      requireOutside(options.obstacle_out, "--obstacle-out", "--out", options.out);
     require_outside_sites("--report", options.report);
     require_outside_sites("--obstacle-out", options.obstacle_out);
     for (const std::filesystem::path& list : options.clashes) require_outside_sites("--clashes", list);
@@ -231,6 +245,7 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
   addMemory(*collide, options);
 #endif
   if (!understood(app, site_program, argc, argv)) return std::nullopt;
+  if (options.command == SiteCommand::write) requireExport(options);
 #ifdef PCL_BSH_SITE_QUERIES
   if (options.command == SiteCommand::collide) texts.read(options);
 #endif

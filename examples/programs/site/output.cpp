@@ -118,7 +118,7 @@ SiteOutput::SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, c
 : options_(options)
 {
   if (options.out.empty()) return;
-  setWhatStays("what was found stays, and the same command with --resume goes on");
+  setWhatStays(what_stays);
   out_.emplace(site, options.out, resultFields(options),
                sites::Continuation{questionOf(site, obstacle, poses, cluster_distance, options), options.resume});
 }

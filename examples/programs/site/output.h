@@ -27,6 +27,9 @@ struct ObstacleCloud {
   io::LasHeaderPtr las;
 };
 
+/// Of a run with --out that ends before it has answered.
+inline constexpr auto what_stays = "what was found stays, and the same command with --resume goes on";
+
 /// Where the obstacle is asked about.
 using Poses = std::vector<Eigen::Isometry3d>;
 

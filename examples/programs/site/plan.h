@@ -31,7 +31,8 @@ struct RunPlan {
   double reading = 0.0; ///< of all tiles together: the least that a disk takes which serves one rank at a time
 };
 
-/// Tiles are dealt as TileVisitor deals them, to each rank when it has done one; ranks compute and read as fast as those of the run.
+/// Tiles are dealt as TileVisitor deals them, to each rank when it has done one; ranks compute and read as fast as
+/// those of the run.
 RunPlan planRun(const MeasuredRun& run, unsigned ranks);
 
 } // namespace pcl_bsh::cli

@@ -56,14 +56,6 @@ void destroyBlock(void* block)
   delete static_cast<Block*>(block);
 }
 
-/// To be called by all ranks.
-void throwOfAnyRank(const std::exception_ptr& failure)
-{
-  const std::uint64_t failures = sumOfAllRanks(failure ? 1 : 0);
-  if (failure) std::rethrow_exception(failure);
-  if (failures > 0) throw std::runtime_error("another rank has failed: its line says why");
-}
-
 } // namespace
 
 int rankHere()
@@ -112,6 +104,13 @@ std::string gatheredFromAllRanks(const std::string& bytes)
   std::string all;
   for (const std::vector<char>& part : parts) all.append(part.begin(), part.end());
   return all;
+}
+
+void throwOfAnyRank(const std::exception_ptr& failure)
+{
+  const std::uint64_t failures = sumOfAllRanks(failure ? 1 : 0);
+  if (failure) std::rethrow_exception(failure);
+  if (failures > 0) throw std::runtime_error("another rank has failed: its line says why");
 }
 
 TileVisitor::TileVisitor(const Site& site, std::uint64_t memory) : site_(site)
