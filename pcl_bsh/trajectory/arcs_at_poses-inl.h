@@ -18,7 +18,8 @@ namespace HWY_NAMESPACE {
 /// With summaries of poses a point matters at each pose at which it collides, and most do so near several points of the
 /// model. How far it is from its arc at most is known: so its distances there, of many poses at once, say for certain
 /// that it collides, or that it passes. What they do not decide is compared at the pose itself once all boxes were
-/// seen: by then another point of the model has decided most of it, or is nearer.
+/// seen: by then another point of the model has decided most of it, or is nearer. Where very many pairs are at just the
+/// clearance, or equally near, those seen so far are compared earlier, so that few are kept.
 class ArcsAtPoses {
 public:
   ArcsAtPoses(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results,
@@ -70,16 +71,12 @@ public:
   void finish(LeafVisit& leaf, const VoxelMotion& motion)
   {
     is_begun_ = false;
-    for (const Candidate& candidate : candidates_) {
-      const std::uint32_t i = candidate.point, k = candidate.step;
-      if (!isHit(i, k) || candidate.squared <= std::max(limits_[k], bestLimit(leaf, i)))
-        at_pose_.compare(leaf, 1u << i, candidate.box, motion.interval->first + k, motion);
-    }
-    candidates_.clear();
+    compareCandidates(leaf, motion);
   }
 
 private:
   static constexpr float kMostSteps = 0x1p22f;
+  static constexpr std::size_t kMostCandidates = std::size_t{1} << 14;
 
   /// A point and a leaf of the model at a step after the motion's first pose, and their squared distance on the arc.
   struct Candidate {
@@ -98,6 +95,18 @@ private:
     const std::uint32_t poses = motion.interval->last - motion.interval->first + 1;
     limits_.resize(poses + kLanes);
     for (std::uint32_t k = 0; k < poses; ++k) limits_[k] = limitOf(results_.poseReach(motion.interval->first + k));
+  }
+
+  void compareCandidates(LeafVisit& leaf, const VoxelMotion& motion)
+  {
+    for (const Candidate& candidate : candidates_) {
+      const std::uint32_t i = candidate.point, k = candidate.step;
+      if (isHit(i, k) && candidate.squared > std::max(limits_[k], bestLimit(leaf, i))) continue;
+      const std::uint32_t pose = motion.interval->first + k;
+      at_pose_.compare(leaf, 1u << i, candidate.box, pose, motion);
+      limits_[k] = std::min(limits_[k], limitOf(results_.poseReach(pose)));
+    }
+    candidates_.clear();
   }
 
   bool isHit(std::uint32_t i, std::uint32_t k) const { return (at_pose_.hits()[k] >> i & 1) != 0; }
@@ -141,6 +150,7 @@ private:
     }
     const bool hit = isHit(i, k);
     if (hit && squared > std::max(limits_[k], bestLimit(leaf, i))) return;
+    if (candidates_.size() == kMostCandidates) compareCandidates(leaf, motion);
     candidates_.push_back({box, i, k, squared});
     if (!hit) return;
     const float high =

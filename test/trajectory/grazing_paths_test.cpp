@@ -3,6 +3,7 @@
 // short cut takes together, against brute force.
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include "../query/allocations.h"
 #include "journeys.h"
 
 #include <gmock/gmock.h>
@@ -10,6 +11,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -164,6 +166,36 @@ TEST(GrazingPaths, AnswerAsBruteForce)
       EXPECT_EQ(measured.first_contact->fraction, moved.first_contact->fraction);
       EXPECT_THAT(measured.distance, Pointwise(NanSensitiveFloatEq(), each.distance));
     }
+}
+
+/// Around each point of the scan, points of the model at just the clearance, all along a way that floats hardly see: so
+/// that each pair has to be compared at each pose. What is kept of that until then is little.
+TEST(GrazingPaths, PassManyPointsAtTheClearance)
+{
+  constexpr int kAround = 150;
+  Cloud points, around;
+  for (int i = 0; i < 16; ++i) points.push_back(Eigen::Vector3d(i % 4, i / 4, 0));
+  for (const Eigen::Vector3d& p : points)
+    for (int i = 0; i < kAround; ++i) {
+      const double z = 1 - (2 * i + 1.0) / kAround, across = std::sqrt(1 - z * z), angle = 2.4 * i;
+      around.push_back(p + 0.25 * Eigen::Vector3d(across * std::cos(angle), across * std::sin(angle), z));
+    }
+  Poses poses;
+  for (int k = 0; k < 150; ++k) poses.push_back(placed(0, Eigen::Vector3d::UnitZ(), {1e-9 * k, 0, 0}));
+  const SphereHierarchy scan(viewOf(points)), model(viewOf(around));
+  const double clearance = 0.25 + 0.5e-7;
+  test::takeLargestAllocation();
+  const TrajectoryResult found = collideAlong({scan}, model, poses, everything(clearance));
+  EXPECT_LT(test::takeLargestAllocation(), std::size_t{1} << 20);
+  EXPECT_GT(found.work.leaf_pairs, std::size_t{3} << 14); // several times what is kept
+  std::vector<float> nearest(points.size(), std::numeric_limits<float>::infinity());
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const TrajectoryResult at = collideAlong({scan}, model, {poses[k]}, everything(clearance));
+    EXPECT_EQ(found.poses[k].colliding_points, at.poses[0].colliding_points) << k;
+    EXPECT_EQ(found.poses[k].distance, at.poses[0].distance) << k;
+    for (std::size_t i = 0; i < points.size(); ++i) nearest[i] = std::fmin(nearest[i], at.distance[i]);
+  }
+  EXPECT_EQ(found.distance, nearest);
 }
 
 } // namespace
