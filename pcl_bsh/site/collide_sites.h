@@ -95,8 +95,8 @@ SitePairDistances pointDistances(const Site& site, const PlacedSite& b, double m
 /// of the first site; flags alone where the accuracy stops early. Of tiles of the model those are read that come near a
 /// tile of the first on their way.
 /// @param model_uncertainty as PlacedSite has it
-/// @throws std::invalid_argument also for poses and a tolerance that no tile is asked about, for clashes where the
-///   accuracy stops early, and for pose summaries: of several tiles of the model, each counts the points that it meets
+/// @throws std::invalid_argument also for poses and a tolerance that no tile is asked about, and for clashes where the
+///   accuracy stops early
 SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertainty& model_uncertainty,
                              const std::vector<Eigen::Isometry3d>& poses, const SiteRequest& request,
                              const PassageSink& sink = nullptr);

@@ -3,6 +3,7 @@
 #include <pcl_bsh/site/candidate.h>
 #include <pcl_bsh/site/collide_sites.h>
 #include <pcl_bsh/site/inquiry.h>
+#include <pcl_bsh/site/joined_poses.h>
 #include <pcl_bsh/site/needed_tiles.h>
 #include <pcl_bsh/site/obstacle_tiles.h>
 #include <pcl_bsh/site/passage_sum.h>
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <stdexcept>
 
 namespace pcl_bsh::sites {
 
@@ -52,7 +52,7 @@ public:
   }
 
   /// @param met gets the nearest points, where distances are asked for
-  const TrajectoryResult& result(std::vector<MetPoint>& met)
+  TrajectoryResult& result(std::vector<MetPoint>& met)
   {
     if (!joined_.distance.empty()) {
       joined_.closest_point.assign(scan_.count, TrajectoryResult::kNoPoint);
@@ -121,8 +121,6 @@ std::vector<std::vector<std::uint32_t>> tilesOfModelNear(const Site& site, const
 SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertainty& model_uncertainty,
                              const Poses& poses, const SiteRequest& request, const PassageSink& sink)
 {
-  if (request.pose_summaries)
-    throw std::invalid_argument("pose_summaries: are not answered of two sites: leave them out");
   const TrajectoryRequest wanted = alongPath(request);
   const std::vector<Point3> corners = cornersOf(model);
   refusePassage(site, SphereHierarchy(viewOf(corners.empty() ? nullptr : corners.front().data(), corners.size())),
@@ -139,13 +137,21 @@ SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertai
   PassageSum sum(request, poses.size());
   const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     JoinedResults joined(hierarchy.view(), poses, wanted);
-    for (const std::uint32_t j : near[static_cast<std::size_t>(&tile - site.tiles.data())]) {
+    JoinedPoses joined_poses(hierarchy, poses, wanted);
+    const std::vector<std::uint32_t>& numbers = near[static_cast<std::size_t>(&tile - site.tiles.data())];
+    for (const std::uint32_t j : numbers) {
       const PointsView points = models.points(j);
-      joined.add(pcl_bsh::collideAlong({hierarchy}, SphereHierarchy(points, inquiry.building()), poses, wanted), points,
-                 models.last());
+      const TrajectoryResult of_model =
+          pcl_bsh::collideAlong({hierarchy}, SphereHierarchy(points, inquiry.building()), poses, wanted);
+      joined.add(of_model, points, models.last());
+      if (request.pose_summaries) joined_poses.add(of_model.poses);
     }
     std::vector<MetPoint> met;
-    const TrajectoryResult& found = joined.result(met);
+    TrajectoryResult& found = joined.result(met);
+    if (request.pose_summaries) {
+      found.poses = joined_poses.joined(
+          [&](std::size_t m) { return SphereHierarchy(models.points(numbers[m]), inquiry.building()); });
+    }
     if (sink) sink(tile, cloud, found);
     return sum.numbersOf(tile, cloud, found, &met);
   };

@@ -201,7 +201,7 @@ void CollideSites::expectSamePassage(const Points& a, const Points& b, const std
   const SphereHierarchy all_a(view_a), all_b(view_b);
   TrajectoryRequest wanted;
   wanted.clearance = clearance;
-  wanted.distances = wanted.first_poses = wanted.closest_poses = true;
+  wanted.distances = wanted.first_poses = wanted.closest_poses = wanted.pose_summaries = true;
   const TrajectoryResult right = pcl_bsh::collideAlong({all_a}, all_b, poses, wanted);
   EXPECT_GT(right.colliding + right.undecided, 20u);
   const std::uint64_t tilings[][2] = {{100000, 100000}, {300, 70}, {30, 900}};
@@ -211,6 +211,7 @@ void CollideSites::expectSamePassage(const Points& a, const Points& b, const std
     SiteRequest request;
     request.clearance = clearance;
     request.uncertainty.length = uncertainty;
+    request.pose_summaries = true;
     TrajectoryResult found = right;
     std::fill(found.flags.begin(), found.flags.end(), 0);
     std::fill(found.distance.begin(), found.distance.end(), std::numeric_limits<float>::quiet_NaN());
@@ -236,6 +237,14 @@ void CollideSites::expectSamePassage(const Points& a, const Points& b, const std
     for (const float distance : right.distance) least = std::fmin(least, distance);
     EXPECT_EQ(passage.distance, least);
     EXPECT_EQ(passage.tiles.read, passage.tiles.needed);
+    ASSERT_EQ(passage.poses.size(), right.poses.size());
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      SCOPED_TRACE(k);
+      EXPECT_EQ(passage.poses[k].colliding, right.poses[k].colliding);
+      EXPECT_EQ(passage.poses[k].colliding_points, right.poses[k].colliding_points);
+      EXPECT_EQ(passage.poses[k].undecided_points, right.poses[k].undecided_points);
+      EXPECT_EQ(passage.poses[k].distance, right.poses[k].distance);
+    }
   }
 }
 

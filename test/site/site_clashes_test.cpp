@@ -155,7 +155,6 @@ protected:
         EXPECT_TRUE(list.points == drawn[i]) << "the same points of large clashes";
       }
       if (scene.swept) continue; // what is between the bounds depends on tiles
-      request.pose_summaries = false;
       options.tile_points = std::max<std::uint64_t>(4, tile_points / 5);
       const Site moved = makeSite({folder / "model.pcd"}, folder / std::to_string(places++), options);
       ClashFinder finder(site, scene.cluster_distances.back());
