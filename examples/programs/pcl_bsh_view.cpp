@@ -20,7 +20,9 @@ void check(const view::Options& options)
 {
   cli::CommandFiles files = options.files;
   if (options.scene) {
-    for (const io::CloudSource& cloud : io::readSceneFile(*options.scene).clouds) files.reads("--scene", cloud.file);
+    const io::SceneFile scene = io::readSceneFile(*options.scene);
+    for (const io::CloudSource& cloud : scene.clouds) files.reads("--scene", cloud.file);
+    for (const std::filesystem::path& trajectory : scene.trajectories) files.reads("--scene", trajectory);
   }
   files.requireApart();
   if (options.screenshot) files::requireWritable(*options.screenshot);

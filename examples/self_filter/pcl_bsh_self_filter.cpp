@@ -132,10 +132,21 @@ Json filterCloud(const Options& options, const std::string& name, const JointVal
   return {{"cloud", name}, {"points", flags.size()}, {"robot", robot}, {"seconds", taken.count()}};
 }
 
+/// The meshes that a robot names are read as its URDF is.
+void requireMeshesApart(cli::CommandFiles files, const self_filter::Robot& robot)
+{
+  for (const self_filter::Link& link : robot.links)
+    for (const self_filter::Shape& shape : link.shapes)
+      if (const auto* const mesh = std::get_if<self_filter::MeshFile>(&shape.form))
+        files.reads("mesh of link '" + link.name + "'", mesh->path);
+  files.requireApart();
+}
+
 int run(const Options& options)
 {
   const std::vector<JointValues> states = statesOf(options);
   const self_filter::Robot robot = self_filter::readRobot(options.urdf, packagesOf(options));
+  requireMeshesApart(options.files, robot);
   for (const JointValues& values : states) robot.requireValues(values);
   const std::size_t frame = options.frame.empty() ? 0 : robot.linkNamed(options.frame);
 

@@ -302,6 +302,7 @@ private:
   Motion parseTrajectory(const JsonReader& reader)
   {
     const std::filesystem::path file = existing(reader.at("file"));
+    file_.trajectories.push_back(file);
     double interval = file_.dt;
     read(reader, "interval", interval);
     const Eigen::Isometry3d base =

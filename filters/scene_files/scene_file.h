@@ -73,6 +73,7 @@ struct SceneFile {
   std::size_t steps = 1;
   double dt = 0.1; ///< seconds
   std::vector<CloudSource> clouds;
+  std::vector<std::filesystem::path> trajectories; ///< the files of poses that motions were read from
   std::vector<ObjectEntry> objects;
   std::vector<RuleEntry> rules;
   CloudOutput cloud_output = CloudOutput::none;

@@ -107,6 +107,19 @@ TEST(SceneProgram, KeepsItsInputs)
   const Outcome cloud = run("pcl_bsh_scene", "own.json --out .", folder.path());
   EXPECT_EQ(cloud.exit_code, 2);
   EXPECT_THAT(cloud.err, HasSubstr("--out: ./still_000004.pcd: is the file of cloud 'ball', which is read"));
+
+  const std::string path = "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n";
+  folder.write("steps.csv", path);
+  folder.write("moved.json", R"({"clouds": {"a": "still_000004.xyz"}, "effects": {"any": true}, "objects": [
+    {"name": "A", "cloud": "a"},
+    {"name": "B", "cloud": "a", "motion": {"trajectory": {"file": "steps.csv"}}}]})");
+  for (const char* arguments : {"pcl_bsh_scene moved.json --out ."}) {
+    const std::string program = std::string(arguments).substr(0, std::string(arguments).find(' '));
+    const Outcome moved = run(program, std::string(arguments).substr(program.size()), folder.path());
+    EXPECT_EQ(moved.exit_code, 2) << moved.err;
+    EXPECT_THAT(moved.err, HasSubstr("steps.csv: is the file of "));
+    EXPECT_EQ(io::contentOf(folder / "steps.csv"), path);
+  }
 }
 
 TEST(SceneProgram, ResponsesKeepObjectsApart)

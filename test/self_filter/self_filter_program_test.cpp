@@ -100,6 +100,10 @@ TEST_F(SelfFilterProgram, FailsInOneLine)
   std::ofstream(folder / "states.csv") << "slide\n0\n1\n2\n";
   expectFailure("ball.urdf a.csv b.csv --states states.csv --out out", 2, "3 lines of values for 2 clouds");
   self_filter::writeMadeRobot(folder.path());
+  expectFailure("robot.urdf a.csv --out out --report meshes/forearm.stl", 2,
+                "--report: meshes/forearm.stl: is the file of mesh of link 'forearm', which is read");
+  std::ofstream(folder / "forearm.stl") << written("meshes/forearm.stl");
+  expectFailure("robot.urdf forearm.stl --out meshes", 2, "--out: meshes/forearm.stl: is the file of mesh of link");
   std::filesystem::remove(folder / "meshes/forearm.stl");
   expectFailure("robot.urdf a.csv --out out", 1,
                 "robot.urdf: link 'forearm' has the mesh meshes/forearm.stl, which is not there");
