@@ -97,7 +97,7 @@ private:
     for (std::uint32_t k = 0; k < poses; ++k) limits_[k] = limitOf(results_.poseReach(motion.interval->first + k));
   }
 
-  void compareCandidates(LeafVisit& leaf, const VoxelMotion& motion)
+  HWY_NOINLINE void compareCandidates(LeafVisit& leaf, const VoxelMotion& motion)
   {
     for (const Candidate& candidate : candidates_) {
       const std::uint32_t i = candidate.point, k = candidate.step;
