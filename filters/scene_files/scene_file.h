@@ -110,7 +110,7 @@ public:
     return found ? &*found : nullptr;
   }
   std::size_t points() const;                                            ///< of all clouds; of surfaces, balls
-  const std::vector<std::string>& warnings() const { return warnings_; } ///< of surfaces, a line each
+  const std::vector<std::string>& warnings() const { return warnings_; } ///< of clouds, a line each
 
   /// Puts the points of waving objects where they are at this time; at first they are where they are at 0.
   void deform(double time);

@@ -253,6 +253,8 @@ void SceneWorld::load(const CloudSource& source, const SceneFile& file, Loaded& 
     loaded.points = std::move(mesh.vertices);
     const PointsView view = uncertainView(viewOf(loaded.points), loaded.points.fields, source, file.path.string());
     loaded.hierarchy = std::make_shared<SphereHierarchy>(view, options);
+    if (loaded.hierarchy->empty())
+      warnings_.push_back(source.file.string() + ": has no finite point: nothing collides with it");
     return;
   }
   loaded.surface = surfaceOf(std::move(mesh), source, file);

@@ -126,7 +126,7 @@ public:
   : chart_(chart),
     part_left_(part.left),
     frame_{part.left, part.bottom + 100, part.right - 52, part.top - 70},
-    lowest_top_(frame_.bottom + 66)
+    lowest_top_(frame_.bottom + (chart.lowest.empty() ? 0 : 66))
   {
   }
 

@@ -289,6 +289,17 @@ TEST_F(CollisionStages, PrintedMatricesStandForTheirRotations)
   EXPECT_THAT(error("filters.bsh_flag", R"("pose": [)" + coarse.str() + "]"), HasSubstr("/pose: not rigid, |R'R - I|"));
 }
 
+/// "Free" is not all that there is to say of it.
+TEST_F(CollisionStages, TellOfAnObstacleWithoutAPoint)
+{
+  const auto nothing = std::make_shared<StageCloud>(*model);
+  nothing->cloud.width = 0;
+  nothing->cloud.row_step = 0;
+  nothing->cloud.data.clear();
+  const PipelineResult result = runStage(scan, stage("filters.bsh_flag", R"("clearance": 0.1)"), nothing);
+  EXPECT_THAT(result.warnings, testing::ElementsAre(HasSubstr("has no finite point: nothing comes near it")));
+}
+
 TEST_F(CollisionStages, AccuracyAlongATrajectory)
 {
   const auto kept = [&](const std::string& accuracy, const std::string& keep) {

@@ -293,6 +293,19 @@ TEST(SceneFile, RefusesShiftsBeyondAllNumbers)
       testing::ThrowsMessage<JsonError>(HasSubstr("clouds.a: scale and shift take point 0 beyond all numbers")));
 }
 
+TEST(SceneFile, TellsOfACloudWithoutAPoint)
+{
+  const TemporaryFolder folder;
+  folder.write("some.xyz", "nan 0 0\n1 2 3\n");
+  folder.write("none.xyz", "nan 0 0\n");
+  std::unique_ptr<SceneWorld> world;
+  placed(folder, "some.xyz", R"("scale": 1)", world);
+  EXPECT_THAT(world->warnings(), testing::IsEmpty());
+  placed(folder, "none.xyz", R"("scale": 1)", world);
+  EXPECT_THAT(world->warnings(),
+              testing::ElementsAre(HasSubstr("none.xyz: has no finite point: nothing collides with it")));
+}
+
 /// Its points would be infinite, and so free, or one.
 TEST(SceneFile, RefusesShapesThatFloatsCannotHold)
 {
