@@ -9,6 +9,7 @@
 #include <viewer/render_view.h>
 #include <viewer/view_content.h>
 
+#include <pcl_bsh/vtk/display.h>
 #include <pcl_bsh/vtk/offscreen_window.h>
 
 #include <gtest/gtest.h>
@@ -127,6 +128,17 @@ class Xvfb {
 public:
   Xvfb()
   {
+    constexpr int attempts = 5; // one that begins while that of another test ends may not answer
+    for (int attempt = 1; !start() && attempt < attempts; ++attempt) stop();
+  }
+  ~Xvfb() { stop(); }
+  Xvfb(const Xvfb&) = delete;
+  Xvfb& operator=(const Xvfb&) = delete;
+
+private:
+  /// @return whether it answers
+  bool start()
+  {
     int ends[2];
     if (pipe(ends) != 0) throw std::runtime_error("no pipe");
     server_ = fork();
@@ -144,17 +156,16 @@ public:
     close(ends[0]);
     if (display.empty()) throw std::runtime_error("Xvfb does not start: install the package xvfb");
     setenv("DISPLAY", (":" + display).c_str(), 1);
+    return vtk::haveDisplay();
   }
-  ~Xvfb()
+
+  void stop() const
   {
     unsetenv("DISPLAY");
     kill(server_, SIGTERM);
     waitpid(server_, nullptr, 0);
   }
-  Xvfb(const Xvfb&) = delete;
-  Xvfb& operator=(const Xvfb&) = delete;
 
-private:
   pid_t server_ = -1;
 };
 
