@@ -58,7 +58,8 @@ public:
   std::uint64_t read() const noexcept { return read_; }
 
 private:
-  void visit(std::uint32_t tile, std::uint32_t place, const Use& use);
+  /// @return what reading or `use` has thrown; null: nothing
+  std::exception_ptr visit(std::uint32_t tile, std::uint32_t place, const Use& use);
 
   const Site& site_;
   std::uint64_t bytes_for_largest_ = 0;

@@ -1,36 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dealer.h"
 
+#include <pcl_bsh/site/collide_site.h>
+
 namespace pcl_bsh::sites {
 
-namespace {
-
-int rankOf(MPI_Comm ranks)
-{
-  int rank = 0;
-  MPI_Comm_rank(ranks, &rank);
-  return rank;
-}
-
-int sizeOf(MPI_Comm ranks)
-{
-  int size = 1;
-  MPI_Comm_size(ranks, &size);
-  return size;
-}
-
-} // namespace
-
-Dealer::Dealer(MPI_Comm ranks) : is_alone_(sizeOf(ranks) == 1)
+Dealer::Dealer() : is_alone_(ranks() == 1)
 {
   if (is_alone_) return;
   // Memory that MPI allocates is shared within a machine, so that the first rank need not stop to answer. DIY's window
   // is of memory of its own: there the others wait until the first rank has done its tile.
-  const bool has_counter = rankOf(ranks) == 0;
-  MPI_Win_allocate(has_counter ? sizeof(std::uint64_t) : 0, sizeof(std::uint64_t), MPI_INFO_NULL, ranks, &counter_,
-                   &window_);
+  const bool has_counter = rankHere() == 0;
+  MPI_Win_allocate(has_counter ? sizeof(std::uint64_t) : 0, sizeof(std::uint64_t), MPI_INFO_NULL, MPI_COMM_WORLD,
+                   &counter_, &window_);
   if (has_counter) *counter_ = 0;
-  MPI_Barrier(ranks);
+  MPI_Barrier(MPI_COMM_WORLD);
   MPI_Win_lock_all(MPI_MODE_NOCHECK, window_);
 }
 

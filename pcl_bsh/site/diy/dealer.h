@@ -11,7 +11,7 @@ namespace pcl_bsh::sites {
 class Dealer {
 public:
   /// To be called by all ranks, as the destructor.
-  explicit Dealer(MPI_Comm ranks);
+  Dealer();
   ~Dealer();
   Dealer(const Dealer&) = delete;
   Dealer& operator=(const Dealer&) = delete;

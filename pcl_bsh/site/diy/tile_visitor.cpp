@@ -124,8 +124,8 @@ TileVisitor::TileVisitor(const Site& site, std::uint64_t memory) : site_(site)
   }
 }
 
-void TileVisitor::visit(std::uint32_t tile, std::uint32_t place, const Use& use)
-{
+std::exception_ptr TileVisitor::visit(std::uint32_t tile, std::uint32_t place, const Use& use)
+try {
   using Clock = std::chrono::steady_clock;
   const auto seconds = [](Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
@@ -137,21 +137,20 @@ void TileVisitor::visit(std::uint32_t tile, std::uint32_t place, const Use& use)
   place_ = place;
   use(site_.tiles[tile], cloud_);
   costs_.push_back({tile, place, seconds(begin, there), seconds(there, Clock::now())});
+  return nullptr;
+}
+catch (...) {
+  return std::current_exception();
 }
 
 void TileVisitor::visitAll(const std::vector<std::uint32_t>& tiles, const Use& use, std::size_t run)
 {
   const diy::mpi::communicator comm = world();
-  Dealer dealer(comm);
+  Dealer dealer;
   diy::Master master(comm, 1, -1, makeBlock, destroyBlock); // all ranks make it together
   std::exception_ptr failure;
   const auto visit_block = [&](Block* block, const diy::Master::ProxyWithLink&) {
-    try {
-      visit(block->tile, block->place, use);
-    }
-    catch (...) {
-      failure = std::current_exception();
-    }
+    failure = visit(block->tile, block->place, use);
   };
   const std::size_t runs = (tiles.size() + run - 1) / run;
   for (std::size_t number = dealer.next(); number < runs; number = dealer.next()) {
@@ -181,13 +180,8 @@ void TileVisitor::visitInTurn(const std::vector<std::uint32_t>& tiles, const Use
   for (std::size_t round = 0; round < (tiles.size() + per_rank - 1) / per_rank; ++round) {
     master.foreach (
         [&](Block* block, const diy::Master::ProxyWithLink&) {
-          if (block == nullptr) return; // DIY calls for blocks that are skipped, too
-          try {
-            visit(block->tile, block->place, use);
-          }
-          catch (...) {
-            failure = std::current_exception();
-          }
+          if (block != nullptr) // DIY calls for blocks that are skipped, too
+            failure = visit(block->tile, block->place, use);
         },
         [&](int i, const diy::Master&) { return static_cast<std::size_t>(i) != round; });
     throwOfAnyRank(failure);
