@@ -175,16 +175,16 @@ private:
   void goOn()
   {
     std::vector<std::size_t> mine;
-    std::exception_ptr other;
+    std::exception_ptr failure;
     try {
       for (std::size_t i = static_cast<std::size_t>(rankHere()); i < site_.tiles.size();
            i += static_cast<std::size_t>(ranks()))
         if (takeOver(i)) mine.push_back(i);
     }
-    catch (const files::FileError&) { // of another question
-      other = std::current_exception();
+    catch (...) { // as of answers to another question
+      failure = std::current_exception();
     }
-    throwOfAnyRank(other);
+    throwOfAnyRank(failure);
     answers_->share(mine);
     if (made_) {
       made_->discardTiles(answers_->all());
