@@ -28,6 +28,13 @@ SiteClashList::SiteClashList(const sites::Site& site, const SiteOptions& options
   earlier_ = list.clashes;
 }
 
+void SiteClashList::addTo(sites::SiteRequest& request)
+{
+  if (!isWanted()) return;
+  request.clashes = &*finder_;
+  request.pose_summaries = !options_.swept;
+}
+
 std::size_t SiteClashList::finish(const SphereHierarchy& obstacle, const std::vector<Eigen::Isometry3d>& poses,
                                   const sites::SitePassage& found)
 {

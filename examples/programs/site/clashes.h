@@ -26,8 +26,8 @@ public:
   /// Warnings of the earlier list, a line each.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-  /// For the question; null where no list is wanted.
-  sites::ClashFinder* finder() noexcept { return isWanted() ? &*finder_ : nullptr; }
+  /// Adds to a question along a path what the lists need; nothing where none is wanted.
+  void addTo(sites::SiteRequest& request);
 
   /// Points of a clash are so near to each other; 0 where no list is wanted.
   double clusterDistance() const noexcept { return distance_; }

@@ -80,9 +80,7 @@ Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const Poses
     break;
   }
   case SiteQuestion::path: {
-    request.swept = options.swept;
-    request.clashes = clashes.finder();
-    request.pose_summaries = clashes.isWanted() && !options.swept;
+    clashes.addTo(request);
     const sites::SitePassage found = sites::collideAlong(site, obstacle.hierarchy(), poses, request, out.passage());
     putPassage(report, found, poses.size(), options);
     if (clashes.isWanted()) report["clashes"] = clashes.finish(obstacle.hierarchy(), poses, found);

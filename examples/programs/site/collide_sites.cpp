@@ -81,9 +81,7 @@ Json askOfSite(const sites::Site& site, const Poses& poses, const SiteOptions& o
     break;
   }
   case SiteQuestion::path: {
-    request.swept = options.swept;
-    request.clashes = clashes.finder();
-    request.pose_summaries = clashes.isWanted() && !options.swept;
+    clashes.addTo(request);
     const sites::SitePairPassage found =
         sites::collideAlong(site, other, options.obstacle_uncertainty, poses, request, out.passage());
     putPassage(report, found, poses.size(), options);

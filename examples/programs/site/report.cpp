@@ -14,6 +14,7 @@ sites::SiteRequest requestOf(const SiteOptions& options, Step* step)
   request.memory = options.memory;
   request.accuracy = options.accuracy;
   request.uncertainty = options.uncertainty;
+  request.swept = options.swept;
   if (step != nullptr) {
     request.progress = [step](std::uint64_t done, std::uint64_t all) {
       step->share(static_cast<double>(done) / static_cast<double>(all));
