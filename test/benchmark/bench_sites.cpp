@@ -4,10 +4,11 @@
 // known.
 #include "program.h"
 
-#include <pcl_bsh/filters/text_files/parse_number.h>
 #ifdef PCL_BSH_BENCH_CHARTS
 #include <pcl_bsh/vtk/chart.h>
 #endif
+
+#include <nlohmann/json.hpp>
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -18,7 +19,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -103,7 +103,7 @@ public:
                              options_.clearance, "--trajectory", (asker / "poses.txt").string(), "--memory",
                              options_.memory, "--report", report.string()});
     growth.path = medianOf("path", scale, [&] { return costOf(path); });
-    growth.points = numberIn(report, "points");
+    growth.points = nlohmann::json::parse(std::ifstream(report)).at("points").get<double>();
     add(growth, "make", 1, growth.make);
     add(growth, "path", options_.ranks, growth.path);
     fs::remove_all(site);
@@ -135,16 +135,6 @@ private:
       megabytes.push_back(cost.megabytes);
     }
     return {median(wall), median(processor), median(megabytes)};
-  }
-
-  static double numberIn(const fs::path& report, const std::string& key)
-  {
-    std::ifstream in(report);
-    const std::string json{std::istreambuf_iterator<char>(in), {}};
-    std::smatch found;
-    if (!std::regex_search(json, found, std::regex('"' + key + "\": ([0-9]+)")))
-      throw std::runtime_error(report.string() + ": has no '" + key + "'");
-    return pcl_bsh::io::parseNumber<double>(found[1].str());
   }
 
   void add(const Growth& growth, const char* question, unsigned ranks, const Cost& cost)
