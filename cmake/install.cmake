@@ -32,8 +32,6 @@ if(PCL_BSH_BUILD_CERTIFY) # find_package(pcl_bsh COMPONENTS certify)
     FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT certify)
   install(EXPORT pcl_bsh_certify FILE pcl_bsh_certifyTargets.cmake NAMESPACE pcl_bsh:: DESTINATION "${package_dir}"
           COMPONENT certify)
-  install(FILES "${PROJECT_SOURCE_DIR}/pcl_bsh/certify/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}/certify"
-          COMPONENT certify)
 endif()
 
 if(TARGET pcl_bsh_vtk) # find_package(pcl_bsh COMPONENTS vtk)

@@ -7,6 +7,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_PACKAGE_DIRECTORY "${PROJECT_BINARY_DIR}/packages")
 set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
 set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_STRIP_FILES ON)
 
 set(CPACK_COMPONENTS_ALL libs dev)
 if(PCL_BSH_BUILD_PARAVIEW)
@@ -78,6 +79,18 @@ set(CPACK_DEBIAN_PYTHON_VTK_PACKAGE_DEPENDS "python3-vtk9")
 set(CPACK_COMPONENT_PYTHON_VTK_DESCRIPTION "Filters for point clouds in the pipelines of VTK's Python.")
 set(CPACK_COMPONENT_PYTHON_VTK_DEPENDS python vtk)
 
+# What Python compiles beside the package's modules is no file of the package: dpkg alone would leave it.
+foreach(component IN ITEMS PYTHON PYTHON_VTK)
+  set(package "${CPACK_DEBIAN_${component}_PACKAGE_NAME}")
+  set(scripts "")
+  foreach(script IN ITEMS postinst prerm)
+    configure_file("${PROJECT_SOURCE_DIR}/cmake/debian/${script}.in" "${PROJECT_BINARY_DIR}/debian/${package}/${script}" @ONLY)
+    list(APPEND scripts "${PROJECT_BINARY_DIR}/debian/${package}/${script}")
+  endforeach()
+  set(CPACK_DEBIAN_${component}_PACKAGE_CONTROL_EXTRA "${scripts}")
+endforeach()
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
 set(CPACK_DEBIAN_PARAVIEW_PACKAGE_NAME pcl-bsh-paraview)
 set(CPACK_DEBIAN_PARAVIEW_PACKAGE_SECTION science)
 set(CPACK_COMPONENT_PARAVIEW_DESCRIPTION "Collisions and distances of point clouds in ParaView: a plugin.")
@@ -90,5 +103,16 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/pcl_bsh" "${PROJECT_BINARY_DIR}/pcl_bsh/files"
     "${PROJECT_BINARY_DIR}/pcl_bsh/certify" "${PROJECT_BINARY_DIR}/pcl_bsh/vtk" "${PROJECT_BINARY_DIR}/pcl_bsh/site"
     "${PROJECT_BINARY_DIR}/filters")
+
+# Each package tells under which licence it is, where Debian's do.
+foreach(component IN LISTS CPACK_COMPONENTS_ALL)
+  string(TOUPPER "${component}" name)
+  set(licence "${PROJECT_SOURCE_DIR}/LICENSE")
+  if(component STREQUAL "certify")
+    set(licence "${PROJECT_SOURCE_DIR}/pcl_bsh/certify/LICENSE")
+  endif()
+  install(FILES "${licence}" RENAME copyright COMPONENT ${component}
+          DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/doc/${CPACK_DEBIAN_${name}_PACKAGE_NAME}")
+endforeach()
 
 include(CPack)

@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Makes the clouds and poses that the pipelines beside this file name, so that each of them can be run in that folder.
 # The programs are found in PATH, or where `bash cmake/setup.sh release programs` builds them.
-#   bash examples/pipelines/make_clouds.sh FOLDER
+#   bash make_clouds.sh FOLDER
 set -euo pipefail
 PATH="$PATH:$PWD/build/release/bin"
 
 die() { printf 'make_clouds.sh: %s\n' "$*" >&2; exit 1; }
 
 (($# == 1)) || die "FOLDER: is missing: say where the clouds shall go"
-command -v pcl_bsh_tunnel >/dev/null || die "pcl_bsh_tunnel: not found: run bash cmake/setup.sh release programs, or set PATH"
+command -v pcl_bsh_tunnel >/dev/null || die "pcl_bsh_tunnel: not found: install pcl-bsh-tools, or run bash cmake/setup.sh release programs"
 mkdir -p "$1"
 cd "$1"
 

@@ -2,12 +2,14 @@
 // The error of reading and writing files.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/files/one_line.h>
 
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 
+PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::files {
 
 /// A file that cannot be read or written. what() is one line: `path: what is wrong: what to do`.
@@ -20,3 +22,4 @@ public:
 };
 
 } // namespace pcl_bsh::files
+PCL_BSH_EXPORT_END

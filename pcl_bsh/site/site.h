@@ -9,6 +9,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/geometry/point3.h>
 
 #include <pcl/PCLPointCloud2.h>
@@ -82,9 +83,8 @@ struct Site {
 };
 
 /// Reads a folder's site.json; of the tiles, only whether their files are there.
-/// @throws std::runtime_error (io::JsonError, files::FileError): a folder that is no site or is not complete, another
-///   version, a document that the schema does not allow, numbers of points that disagree, a tile's file that is missing
-///   or lies outside the folder
+/// @throws std::runtime_error: a folder that is no site or is not complete, another version, a document that the schema
+///   does not allow, numbers of points that disagree, a tile's file that is missing or lies outside the folder
 Site readSite(const std::filesystem::path& folder);
 
 /// The site as the text of its site.json.

@@ -22,9 +22,22 @@ execute_process(COMMAND ${CMAKE_COMMAND} -S "${CMAKE_CURRENT_LIST_DIR}" -B "${WO
 if(status EQUAL 0 OR NOT text MATCHES "no[ \n]+component[ \n]+tree")
   message(FATAL_ERROR "the component `tree` was not refused by its name: status ${status}, ${text}")
 endif()
+
+# What is installed to copy from is built with what is installed.
+file(GLOB samples "${WORK}/prefix/share/doc/pcl_bsh/cpp")
+run(${CMAKE_COMMAND} -S "${samples}" -B "${WORK}/samples" -G Ninja -D CMAKE_BUILD_TYPE=Debug -D
+    "CMAKE_PREFIX_PATH=${WORK}/prefix")
+run(${CMAKE_COMMAND} --build "${WORK}/samples")
+foreach(program IN ITEMS filter_chain search_chain own_stage)
+  execute_process(COMMAND "${WORK}/samples/pcl_bsh_${program}" RESULT_VARIABLE status ERROR_VARIABLE text)
+  if(NOT status EQUAL 2 OR NOT text MATCHES "^usage: pcl_bsh_${program} ")
+    message(FATAL_ERROR "pcl_bsh_${program}: status ${status}, ${text}")
+  endif()
+endforeach()
 run(${CMAKE_COMMAND} --build "${WORK}/build")
 run("${WORK}/build/core_only")
 run("${WORK}/build/own_point_type")
+run("${WORK}/build/site_error")
 if(EXISTS "${WORK}/build/certified")
   run("${WORK}/build/certified")
 endif()

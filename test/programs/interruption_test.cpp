@@ -40,9 +40,9 @@ TEST_P(Interruption, LeavesNothingBehind)
     prepareJobs(folder);
     Job job = GetParam();
     for (std::string& argument : job.arguments) {
-      if (argument == "scan.xyz" || argument == "float.pcd") argument = "pipe.xyz";
+      if (argument == "scan.xyz") argument = "pipe.xyz";
     }
-    if (job.program == "pcl_bsh_pipeline" || job.program == "pcl_bsh_own_stage") job.arguments[0] = "pipe.json";
+    if (job.program == "pcl_bsh_pipeline") job.arguments[0] = "pipe.json";
     if (job.program == "pcl_bsh_scene") {
       std::string scene = files::contentOf(folder / "scene.json");
       scene.replace(scene.find("scan.xyz"), 8, "pipe.xyz");

@@ -28,10 +28,8 @@ inline std::vector<Job> allJobs()
       {"pcl_bsh_pipeline",
        {"pipeline.json", "--metadata", "run.json"},
        {"run.json", "out.pcd", "out.ply", "list.html", "list.csv", "distances.html", "distances.json"}},
-      {"pcl_bsh_own_stage", {"own.json"}, {"out.pcd"}},
       {"pcl_bsh_scene", {"scene.json", "--out", "run"}, {"run/"}},
       {"pcl_bsh_tunnel", {"run", "--scale", "0.0005"}, {"run/"}},
-      {"pcl_bsh_filter_chain", {"float.pcd", "robot.xyz", "out.ply", "0.2", "0.1"}, {"out.ply"}},
       {"pcl_bsh_demo", {"scan.xyz", "robot.xyz", "out.pcd"}, {"out.pcd"}},
       {"pcl_bsh_certify", {"scan.xyz", "--sample", "5", "--fit", "box", "--report", "report.json"}, {"report.json"}},
       {"pcl_bsh_view", {"scan.xyz", "--export", "out.vtm"}, {"out.vtm", "out/"}},
@@ -53,8 +51,6 @@ inline void prepareJobs(const files::TemporaryFolder& folder)
   }
   folder.write("scan.xyz", scan);
   folder.write("robot.xyz", robot);
-  std::string pcd = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 3000\nDATA ascii\n";
-  folder.write("float.pcd", pcd + scan.substr(scan.find('\n') + 1));
   folder.write("pipeline.json",
                R"(["scan.xyz", {"type": "filters.bsh_flag", "tag": "f", "obstacle": "robot.xyz", "clearance": 0.1},
                    {"type": "writers.clashes", "obstacle": "robot.xyz", "clearance": 0.1, "filename": "list.html",
@@ -62,7 +58,6 @@ inline void prepareJobs(const files::TemporaryFolder& folder)
                    {"type": "writers.distances", "obstacle": "robot.xyz", "filename": "distances.html",
                     "also": "distances.json"}, {"type": "writers.pcd", "inputs": "f", "filename": "out.pcd"},
                    {"type": "writers.ply", "inputs": "f", "filename": "out.ply"}])");
-  folder.write("own.json", R"(["scan.xyz", {"type": "filters.every_nth", "step": 10}, "out.pcd"])");
   folder.write("scene.json",
                R"({"clouds": {"ball": {"sphere": {"radius": 0.5}, "spacing": 0.1}, "scan": "scan.xyz"},
                    "objects": [{"name": "still", "cloud": "scan", "fixed": true},

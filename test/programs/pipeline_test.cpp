@@ -223,7 +223,7 @@ TEST_F(PipelineProgram, SampleGeoreferenced)
 TEST_F(PipelineProgram, SampleOwnStage)
 {
   put("scan.pcd", cloudOf(wall(0)));
-  const std::string sample = std::string(PCL_BSH_SOURCE_DIR) + "/examples/pipelines/every_nth.json";
+  const std::string sample = std::string(PCL_BSH_SOURCE_DIR) + "/examples/cpp/every_nth.json";
   const Outcome done = run("pcl_bsh_own_stage", sample, folder.path());
   EXPECT_EQ(done.exit_code, 0) << done.err;
   const pcl::PCLPointCloud2 thin = readCloud(folder / "thin.pcd");

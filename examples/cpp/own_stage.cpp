@@ -2,11 +2,10 @@
 // A stage of one's own, to copy from: every_nth.json runs here as any pipeline does in pcl_bsh_pipeline.
 //
 //   pcl_bsh_own_stage every_nth.json
-#include "cli/program.h"
-
 #include <pcl_bsh/filters/pipeline/pipeline.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 
+#include <exception>
 #include <iostream>
 
 namespace {
@@ -38,17 +37,20 @@ const bool registered = registerStage(describe<EveryNth>("filters.every_nth", "K
                                           .option(&EveryNth::step, "step", "keep one of so many points")
                                           .atLeast(1));
 
-int run(int argc, char** argv)
-{
-  if (argc != 2 || !registered) throw pcl_bsh::cli::UsageError("command line: give the name of a pipeline's file");
-  const pcl_bsh::PipelineResult result = pcl_bsh::Pipeline::read(argv[1]).run();
-  std::cout << result.metadata;
-  return 0;
-}
-
 } // namespace
 
 int main(int argc, char** argv)
 {
-  return pcl_bsh::cli::runProgram("pcl_bsh_own_stage", [&] { return run(argc, argv); });
+  if (argc != 2 || !registered) {
+    std::cerr << "usage: pcl_bsh_own_stage PIPELINE.json\n";
+    return 2;
+  }
+  try {
+    std::cout << pcl_bsh::Pipeline::read(argv[1]).run().metadata;
+    return 0;
+  }
+  catch (const std::exception& error) {
+    std::cerr << "pcl_bsh_own_stage: " << error.what() << '\n';
+    return 1;
+  }
 }

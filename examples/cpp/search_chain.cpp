@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // BoundingSphereSearch in a chain of PCL algorithms: aligns a scan with another (ICP), estimates its normals, and parts
 // it into clusters.
-#include "cli/command_line.h"
-#include "cli/used_files.h"
-
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+//
+//   pcl_bsh_search_chain scan.pcd reference.pcd 0.1
 #include <pcl_bsh/search/bounding_sphere_search.h>
 
 #include <pcl/common/point_tests.h>
-#include <pcl/conversions.h>
 #include <pcl/features/normal_3d.h>
+#include <pcl/io/pcd_io.h>
 #include <pcl/point_types.h>
 #include <pcl/registration/icp.h>
 #include <pcl/segmentation/extract_clusters.h>
 
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -28,17 +27,11 @@ using Point = pcl::PointXYZ;
 using Cloud = pcl::PointCloud<Point>;
 using Search = pcl_bsh::search::BoundingSphereSearch<Point>;
 
-constexpr auto program = "pcl_bsh_search_chain";
-
 /// The finite points of a file: ICP and clustering expect no others.
 Cloud::Ptr read(const std::string& path)
 {
-  const pcl::PCLPointCloud2 file = pcl_bsh::io::readCloud(path);
-  if (pcl_bsh::viewOf(file).scalar != pcl_bsh::Scalar::float32) {
-    throw std::runtime_error(path + ": x y z are float64: convert them, pcl::PointXYZ holds float32 only");
-  }
   Cloud all;
-  pcl::fromPCLPointCloud2(file, all);
+  if (pcl::io::loadPCDFile(path, all) != 0) throw std::runtime_error(path + ": cannot be read: give a .pcd file");
   auto cloud = std::make_shared<Cloud>();
   for (const Point& p : all)
     if (pcl::isFinite(p)) cloud->push_back(p);
@@ -47,14 +40,13 @@ Cloud::Ptr read(const std::string& path)
   return cloud;
 }
 
-Cloud::Ptr aligned(const Cloud::Ptr& scan, const Cloud::Ptr& reference, int iterations)
+Cloud::Ptr aligned(const Cloud::Ptr& scan, const Cloud::Ptr& reference)
 {
-  std::printf("aligning, %d iterations at most ...\n", iterations);
   pcl::IterativeClosestPoint<Point, Point> icp;
   icp.setSearchMethodTarget(std::make_shared<Search>());
   icp.setInputSource(scan);
   icp.setInputTarget(reference);
-  icp.setMaximumIterations(iterations);
+  icp.setMaximumIterations(20);
   auto result = std::make_shared<Cloud>();
   icp.align(*result);
   if (!icp.hasConverged()) throw std::runtime_error("ICP did not converge: give scans that overlap");
@@ -63,12 +55,12 @@ Cloud::Ptr aligned(const Cloud::Ptr& scan, const Cloud::Ptr& reference, int iter
   return result;
 }
 
-void reportNormals(const Cloud::Ptr& cloud, const Search::Ptr& search, int neighbours)
+void reportNormals(const Cloud::Ptr& cloud, const Search::Ptr& search)
 {
   pcl::NormalEstimation<Point, pcl::Normal> estimation;
   estimation.setInputCloud(cloud);
   estimation.setSearchMethod(search);
-  estimation.setKSearch(neighbours);
+  estimation.setKSearch(12);
   pcl::PointCloud<pcl::Normal> normals;
   estimation.compute(normals);
   double curvature = 0.0;
@@ -92,28 +84,20 @@ void reportClusters(const Cloud::Ptr& cloud, const Search::Ptr& search, double t
 
 int main(int argc, char** argv)
 {
-  CLI::App app("Aligns SCAN with REFERENCE, then estimates its normals and parts it into clusters: all of PCL, with\n"
-               "pcl_bsh's search class.");
-  app.footer("Example: pcl_bsh_search_chain scan.pcd reference.pcd 0.1");
-  std::string scan, reference;
-  double tolerance = 0.0;
-  int neighbours = 12, iterations = 20;
-  app.add_option("SCAN", scan, "Point cloud with float32 coordinates: .pcd or .ply")->required();
-  app.add_option("REFERENCE", reference, "Likewise, overlapping SCAN")->required();
-  app.add_option("TOLERANCE", tolerance, "Points no farther apart share a cluster, in the clouds' unit")
-      ->required()
-      ->check(CLI::PositiveNumber);
-  app.add_option("--neighbours", neighbours, "Points that a normal is fitted to")
-      ->check(CLI::Range(3, 1000))
-      ->capture_default_str();
-  app.add_option("--iterations", iterations, "Of ICP, at most")->check(CLI::Range(1, 1000))->capture_default_str();
-  return pcl_bsh::cli::runProgram(program, [&] {
-    if (!pcl_bsh::cli::understood(app, program, argc, argv)) return 0;
-    pcl_bsh::cli::CommandFiles().reads("SCAN", scan).reads("REFERENCE", reference).requireApart();
-    const Cloud::Ptr cloud = aligned(read(scan), read(reference), iterations);
+  if (argc != 4) {
+    std::fprintf(stderr, "usage: pcl_bsh_search_chain SCAN.pcd REFERENCE.pcd TOLERANCE\n"
+                         "Points no farther apart than TOLERANCE, in the clouds' unit, share a cluster.\n");
+    return 2;
+  }
+  try {
+    const Cloud::Ptr cloud = aligned(read(argv[1]), read(argv[2]));
     const auto search = std::make_shared<Search>();
-    reportNormals(cloud, search, neighbours);
-    reportClusters(cloud, search, tolerance);
+    reportNormals(cloud, search);
+    reportClusters(cloud, search, std::stod(argv[3]));
     return 0;
-  });
+  }
+  catch (const std::exception& error) {
+    std::fprintf(stderr, "pcl_bsh_search_chain: %s\n", error.what());
+    return 1;
+  }
 }

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What headers of sites say that they throw is known to those who have them installed.
+#include <pcl_bsh/site/site.h>
+
+#include <cstdio>
+
+int main()
+{
+  try {
+    pcl_bsh::sites::Site site;
+    site.folder = "nowhere";
+    pcl_bsh::sites::readTile(site, {});
+  }
+  catch (const pcl_bsh::files::FileError& error) {
+    std::printf("refused: %s\n", error.what());
+    return 0;
+  }
+  return 1;
+}
