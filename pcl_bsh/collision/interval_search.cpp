@@ -196,8 +196,11 @@ private:
     ++walk_.work.exact_decisions;
     if (pair_ && !pairs_.isNearer(candidate, upper_)) return;
     const double gap = pairs_.gap(candidate);
+    if (pair_ && gap > gap_) return; // nearer than the bound, which is rounded, but not than the pair
+    const double gap_lower = std::max(lower, std::nextafter(gap, -kInfinity));
+    pair_lower_ = pair_ && gap == gap_ ? std::min(pair_lower_, gap_lower) : gap_lower;
     pair_ = candidate;
-    pair_lower_ = std::max(lower, std::nextafter(gap, -kInfinity));
+    gap_ = gap;
     upper_ = gap == 0.0 && !pairs_.haveRadii() ? 0.0 : std::nextafter(gap, kInfinity);
     if (clearance_ && upper_ > *clearance_ && gap <= *clearance_ && pairs_.collide(candidate, walk_.work))
       upper_ = *clearance_;
@@ -247,6 +250,7 @@ private:
   PointPairs pairs_;
   std::vector<Open> open_; // a stack, the nearest last, or a heap, the least lower bound first
   std::optional<PointPair> pair_;
+  double gap_ = kInfinity;        // of pair_, rounded to the nearest double
   double pair_lower_ = kInfinity; // at most the gap of pair_, the least of all that were looked at
   double upper_ = kInfinity;      // at least the gap of pair_
   double cut_lower_ = kInfinity;  // of what was not to be opened

@@ -53,7 +53,8 @@ public:
                                   b.x(),
                                   b.y(),
                                   b.z(),
-                                  (radius[0] + radius[1]) * (1.0 + 2 * kPoseStretch) + added * 0x1p-46};
+                                  (radius[0] + radius[1]) * (1.0 + 2 * kPoseStretch) + added * 0x1p-46 +
+                                      kVanishingLength};
     for (std::size_t k = 0; k < kColumns; ++k) columns_[k].push_back(row[k]);
   }
 
@@ -92,7 +93,7 @@ public:
     const double limit = reach * (1.0 + 0x1p-40) + t.lpNorm<1>() * 0x1p-46;
     for (std::size_t i = from; i < end; ++i) {
       const double apart = (limit + columns_[kRadius][i]) * (1.0 + 0x1p-40);
-      if (!(squared_[i] > apart * apart)) near(i, squared_[i]);
+      if (!(squared_[i] > apart * apart + kVanishingLength)) near(i, squared_[i]);
     }
   }
 

@@ -61,15 +61,16 @@ BodyBall::BodyBall(const SphereHierarchy& body)
 
 /// |T p - S p| <= |T c - S c| + |R - Q| |p - c|, with the spectral norm: 1 / sqrt(2) of Frobenius' for rotations R, Q.
 /// Poses are within 0.51e-6 of rotations each, which 2e-6 covers twice over. Rounding: a few v of all that is added.
+/// Squares must not underflow: poses that differ would be one.
 double motionBound(const BodyBall& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to)
 {
   const double turned = (from.linear() - to.linear()).norm();
   if (turned == 0.0 && from.translation() == to.translation()) return 0.0;
   const Eigen::Vector3d there = from * body.center, here = to * body.center;
-  const double bound = (there - here).norm() + body.radius * (turned * std::sqrt(0.5) + 2e-6);
+  const double bound = (there - here).stableNorm() + body.radius * (turned * std::sqrt(0.5) + 2e-6);
   const double added = from.linear().cwiseAbs().sum() * body.center.cwiseAbs().maxCoeff() +
                        from.translation().cwiseAbs().maxCoeff() + to.translation().cwiseAbs().maxCoeff();
-  const double safe = bound * (1.0 + 0x1p-40) + added * 0x1p-46;
+  const double safe = bound * (1.0 + 0x1p-40) + added * 0x1p-46 + kVanishingLength;
   return std::isfinite(safe) ? safe : std::numeric_limits<double>::infinity();
 }
 

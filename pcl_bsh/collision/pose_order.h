@@ -13,6 +13,9 @@
 
 namespace pcl_bsh {
 
+/// Above what lengths of the smallest doubles, and squares that underflow, are rounded by: a few of them added.
+inline constexpr double kVanishingLength = 0x1p-1060;
+
 /// A ball that holds all points of a body, with their radii, in the body's frame.
 struct BodyBall {
   /// @param body not empty

@@ -4,37 +4,56 @@
 #include <pcl_bsh/traversal/point_pairs.h>
 
 namespace pcl_bsh {
+namespace {
+
+/// The greatest of the distances from a, as a pair (a, b). @param precedes which of two pairs is named where their
+/// distances are equal
+template <class Precedes>
+std::optional<PointPair> greatestOf(const Placed& a, const Placed& b, const PointDistances& result,
+                                    const Precedes& precedes)
+{
+  std::optional<PointPair> greatest;
+  const PointPairs pairs(a, b, 0.0);
+  for (std::uint32_t i = 0; i < result.nearest.size(); ++i) {
+    if (result.nearest[i] == PointDistances::kNoPoint) continue;
+    const PointPair pair{i, result.nearest[i]};
+    if (greatest) {
+      // Rounding keeps the order: only of equal doubles one may be the greater.
+      if (result.distance[i] < result.distance[greatest->a]) continue;
+      if (result.distance[i] == result.distance[greatest->a]) {
+        const int sign = pairs.distance.compareGaps(pairs.posed(pair), pairs.posed(*greatest));
+        if (sign < 0 || (sign == 0 && !precedes(pair, *greatest))) continue;
+      }
+    }
+    greatest = pair;
+  }
+  return greatest;
+}
+
+PointPair swapped(const PointPair& pair)
+{
+  return {pair.b, pair.a};
+}
+
+} // namespace
 
 void findGreatest(const Placed& a, const Placed& b, PointDistances& result)
 {
   result.measured = 0;
-  std::size_t greatest = 0; // a record, once any is measured
-  const PointPairs pairs(a, b, 0.0);
-  const auto posed = [&](std::size_t record) {
-    return pairs.posed({static_cast<std::uint32_t>(record), result.nearest[record]});
-  };
-  for (std::size_t i = 0; i < result.nearest.size(); ++i) {
-    if (result.nearest[i] == PointDistances::kNoPoint) continue;
-    // Rounding keeps the order: only of equal doubles one may be the greater.
-    const double here = result.distance[i];
-    const bool greater =
-        result.measured == 0 || here > result.distance[greatest] ||
-        (here == result.distance[greatest] && pairs.distance.compareGaps(posed(i), posed(greatest)) > 0);
-    if (greater) greatest = i;
-    ++result.measured;
-  }
-  result.greatest = std::numeric_limits<double>::quiet_NaN();
-  result.greatest_pair.reset();
-  if (result.measured == 0) return;
-  result.greatest = result.distance[greatest];
-  result.greatest_pair = PointPair{static_cast<std::uint32_t>(greatest), result.nearest[greatest]};
+  for (const std::uint32_t nearest : result.nearest) result.measured += nearest != PointDistances::kNoPoint;
+  result.greatest_pair =
+      greatestOf(a, b, result, [](const PointPair&, const PointPair&) { return false; }); // the first is the smallest
+  result.greatest =
+      result.greatest_pair ? result.distance[result.greatest_pair->a] : std::numeric_limits<double>::quiet_NaN();
 }
 
 void findGreatestOfBoth(const Placed& a, const Placed& b, SymmetricDistances& result)
 {
   const std::optional<PointPair>& of_a = result.a.greatest_pair;
-  std::optional<PointPair> of_b;
-  if (result.b.greatest_pair) of_b = {result.b.greatest_pair->b, result.b.greatest_pair->a};
+  std::optional<PointPair> of_b; // of several the smallest (a, b): in the order of b it may be another one
+  if (result.b.greatest_pair)
+    of_b = swapped(*greatestOf(
+        b, a, result.b, [](const PointPair& pair, const PointPair& other) { return swapped(pair) < swapped(other); }));
   const PointPairs pairs(a, b, 0.0);
   const auto isFromA = [&] {
     if (!of_a || !of_b) return of_a.has_value();

@@ -96,6 +96,7 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
     for (unsigned j = 0; j < 3; ++j) {
       const double entry = rotation.matrix(i, j) * scale;
       m[3 * i + j] = roundToFloat(entry);
+      overflows = overflows || !(std::abs(entry) < kLargestCarried); // however short what it is multiplied with
       moved += std::abs(entry) * a.reach[j];
       slack += std::abs(entry) * a.slack(static_cast<int>(j));
       misturned += 2 * kRotationError * scale * a.reach[j]; // twice: what follows from it is of second order
@@ -115,7 +116,7 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
     g.fill(0.0f);
   }
   prune_error_ = overflows ? kInfinity : float_error_;
-  error = in_range ? float_error_ : kInfinity;
+  error = in_range && !overflows ? float_error_ : kInfinity;
 
   stretch_a = roundUp(rotation.stretch * scale);
   stretch_b = roundUp(1.0 + skew_);

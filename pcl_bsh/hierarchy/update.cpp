@@ -132,6 +132,31 @@ LocalFrame frameOfAll(const std::vector<Voxel*>& voxels, Scalar scalar)
   return frameBetween(bounds.low, bounds.high, scalar == Scalar::float32);
 }
 
+/// Whether a voxel was made for other lengths of its points than they have now, though none of them moved: other
+/// radii, or uncertainties that part points of one place, of which one stands for all.
+bool isOutdated(const Voxel& voxel, const PointsView& now)
+{
+  const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;
+  if (now.radii && built) {
+    for (std::uint32_t i = 0; i < voxel.count; ++i)
+      if (voxel.radii[i] != now.radii[voxel.records()[i]]) return true;
+  }
+  else if (now.radii) {
+    float largest = 0.0f;
+    voxel.forEachRecord([&](std::uint32_t record) { largest = std::max(largest, now.radii[record]); });
+    if (largest != voxel.largest_radius) return true;
+  }
+  if (!now.uncertainties || !built) return false;
+  for (const Node& node : voxel.nodes)
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      if (!node.isLeaf(i) || !node.isCoincident(i)) continue;
+      const std::uint32_t* const records = voxel.records();
+      for (std::uint32_t k = node.begin[i]; k < node.begin[i + 1]; ++k)
+        if (now.uncertainties[records[k]] != now.uncertainties[records[node.begin[i]]]) return true;
+    }
+  return false;
+}
+
 } // namespace
 
 HierarchyUpdate::HierarchyUpdate(SphereHierarchy& hierarchy, const std::int32_t* records, std::size_t count)
@@ -195,8 +220,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
   if (announced < now.count - before.count || (!records_.empty() && records_.back() >= now.count))
     refuse("the new view has " + std::to_string(now.count - before.count) + " more records, of which " +
            std::to_string(announced) + " were announced: announce each of them, and no others");
-  if (now.radii)
-    for (const std::uint32_t record : records_) checkRadius("HierarchyUpdate", now, record);
+  for (std::size_t record = 0; now.radii && record < now.count; ++record) checkRadius("HierarchyUpdate", now, record);
   checkUncertainties("HierarchyUpdate", now);
   if (hierarchy_.empty()) return sortAnew(now);
 
@@ -227,6 +251,8 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
     last->add(record, p);
   });
   if (outside) return sortAnew(now);
+  for (std::size_t v = 0; (now.radii || now.uncertainties) && v < storage.voxel_count; ++v)
+    if (isOutdated(storage.voxels[v], now)) touch(storage.voxels[v].key);
   std::sort(touched.begin(), touched.end(), [](const Touched& l, const Touched& r) { return l.key < r.key; });
 
   for (Touched& voxel : touched) {

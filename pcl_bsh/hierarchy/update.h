@@ -19,7 +19,7 @@ namespace pcl_bsh {
 
 /// What an update did. Counts are free of noise.
 struct UpdateReport {
-  std::size_t voxels_touched = 0; ///< that a point left or entered
+  std::size_t voxels_touched = 0; ///< that a point left or entered, or that were made for other radii or uncertainties
   std::size_t voxels_added = 0;   ///< of these, new ones
   std::size_t voxels_removed = 0; ///< of these, ones left without a point
   std::size_t points_read = 0;    ///< of the touched voxels, afterwards
@@ -37,7 +37,7 @@ public:
   HierarchyUpdate(SphereHierarchy& hierarchy, const std::int32_t* records, std::size_t count);
 
   /// @param now at least as many records as before, of the same scalar type; all that are new were announced; becomes
-  ///   the view of the hierarchy
+  ///   the view of the hierarchy. Its radii and uncertainties may be others, of all records
   /// @throws std::invalid_argument when `now` is none of that; std::bad_alloc. The hierarchy is then as it was, and
   ///   commit() may be called again.
   UpdateReport commit(const PointsView& now);

@@ -10,6 +10,7 @@
 
 #include <pcl_bsh/trajectory/leaf_visit-inl.h>
 #include <pcl_bsh/trajectory/model_boxes-inl.h>
+#include <pcl_bsh/trajectory/model_descent.h>
 #include <pcl_bsh/trajectory/voxel_results.h>
 #include <pcl_bsh/traversal/uncertain_points-inl.h>
 
@@ -34,6 +35,7 @@ public:
   void beginVisit(const VoxelMotion& motion)
   {
     places_.beginVisit();
+    met_.clear();
     if (query_.request.pose_summaries)
       pose_hits_.assign(motion.interval->last - motion.interval->first + 1 + kLanes, 0);
   }
@@ -54,6 +56,7 @@ public:
   /// Two leaves at pose k: by float bands, and exactly within the bands.
   void compare(LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, std::uint32_t k, const VoxelMotion& motion)
   {
+    if (!met_.empty() && (lanes &= ~metBefore(box.voxel, k, motion)) == 0) return;
     const LeafPoints& at = placesAt(leaf, motion, k);
     const BoxEnds ends(box);
     alignas(64) float near_squared[kLeafPoints];
@@ -102,6 +105,40 @@ public:
     if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, motion);
   }
 
+  /// Points of the leaf at pose k against a box that is not a leaf, each by itself, in double: against all points of
+  /// the model's voxel, where the box is within one.
+  HWY_NOINLINE void meetInDoubles(LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, std::uint32_t k,
+                                  const VoxelMotion& motion)
+  {
+    const bool in_voxel = box.voxel != kAboveVoxels;
+    if (in_voxel) {
+      if (met_.empty()) met_.resize(motion.interval->last - motion.interval->first + 1);
+      const std::uint32_t before = metBefore(box.voxel, k, motion);
+      met_[k - motion.interval->first] = {box.voxel, before | lanes};
+      lanes &= ~before;
+    }
+    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      NearestPoint* const best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
+      PointMet met;
+      const PointAtPose point{leaf.points.record(i), k, best, query_.request.pose_summaries};
+      if (in_voxel)
+        met = meetVoxel(query_, results_, point, box.voxel);
+      else
+        met = meetBelow(query_, results_, point, box.node, box.lane);
+      if (!met.collides) continue;
+      noteHits(leaf, 1u << i, k, motion);
+      if (!query_.everything() || !query_.nearestDecides()) continue;
+      const float reach = roundUp(std::nextafter(met.gap, std::numeric_limits<double>::infinity()));
+      if (motion.at_rest) leaf.lowerReach(voxel_frame_, i, reach, motion);
+      if (point.for_pose) results_.lowerPoseLimit(k, std::numeric_limits<float>::infinity(), reach);
+      if (!best) continue;
+      best->reach = std::min(best->reach, reach);
+      if (results_.bestBounds(leaf.points.begin + i, motion.interval->first))
+        leaf.lowerReach(voxel_frame_, i, best->reach, motion);
+    }
+  }
+
   /// Adds the points that were found to collide to the poses' numbers. @param points that the leaf holds, of which
   /// those that coincide are compared as one
   void countPoses(const LeafVisit& leaf, const VoxelMotion& motion, std::size_t points)
@@ -148,9 +185,8 @@ private:
     }
   }
 
-  /// What follows from the points in `hit`, which collide at pose k.
-  void note(LeafVisit& leaf, std::uint32_t hit, const LeafPoints& points, const float* nearest, bool certain,
-            const BoxLeaf& other, std::uint32_t k, const VoxelMotion& motion)
+  /// The points in `hit` collide at pose k.
+  void noteHits(LeafVisit& leaf, std::uint32_t hit, std::uint32_t k, const VoxelMotion& motion)
   {
     results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | hit);
     if (!query_.everything() && (!query_.first || k == motion.interval->first)) leaf.open &= ~hit;
@@ -158,13 +194,28 @@ private:
       std::uint16_t& at = pose_hits_[k - motion.interval->first];
       at = static_cast<std::uint16_t>(at | hit);
     }
+    for (std::uint32_t bits = query_.first ? hit : 0; bits != 0; bits &= bits - 1) {
+      double& first = results_.first[leaf.points.begin + static_cast<std::uint32_t>(std::countr_zero(bits))];
+      first = std::min(first, static_cast<double>(k));
+    }
+  }
+
+  /// Which of the points met all of a voxel of the model at pose k before, as far as is remembered: its boxes hold
+  /// nothing new for them.
+  std::uint32_t metBefore(std::uint32_t voxel, std::uint32_t k, const VoxelMotion& motion) const
+  {
+    const VoxelMet& met = met_[k - motion.interval->first];
+    return met.voxel == voxel ? met.points : 0;
+  }
+
+  /// What follows from the points in `hit`, which collide at pose k.
+  void note(LeafVisit& leaf, std::uint32_t hit, const LeafPoints& points, const float* nearest, bool certain,
+            const BoxLeaf& other, std::uint32_t k, const VoxelMotion& motion)
+  {
+    noteHits(leaf, hit, k, motion);
+    if (!query_.everything()) return;
     for (std::uint32_t bits = hit; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (query_.first) {
-        double& first = results_.first[leaf.points.begin + i];
-        first = std::min(first, static_cast<double>(k));
-      }
-      if (!query_.everything()) continue;
       // It collides at this pose: what is farther at this pose changes nothing.
       if (motion.at_rest && certain) leaf.lowerReach(voxel_frame_, i, roundUp(voxel_frame_.highOf(nearest[i])), motion);
       // Only what may be as near as the nearest in floats is worth an exact look.
@@ -202,6 +253,13 @@ private:
   const UncertainReach reach_;
   PlacesAtPoses places_;
   std::vector<std::uint16_t> pose_hits_; // per pose of a motion: points of a leaf
+
+  /// The voxel of the model that points of the leaf met last in doubles.
+  struct VoxelMet {
+    std::uint32_t voxel = kNoVoxel;
+    std::uint32_t points = 0;
+  };
+  std::vector<VoxelMet> met_; // per pose of a motion; empty until the first
 };
 
 } // namespace HWY_NAMESPACE

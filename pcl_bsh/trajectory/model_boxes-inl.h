@@ -120,6 +120,13 @@ public:
     return rule_.deepest > 0 && rule_.leavesTimeToBuild(tree_.storage.pointsToBuild(c.box().leaf(c.lane)));
   }
 
+  /// Whether a box is so small that floats do not tell the boxes below it apart during the motion, and holds so many
+  /// points that each point of the scan is quicker to ask the model's spheres (model_descent.h).
+  bool isBlunt(const ModelBox& c, const VoxelMotion& motion) const
+  {
+    return !c.isLeaf() && c.size(tree_.stretch) < motion.blunt && !rule_.mayStop() && holdsMany(c);
+  }
+
   /// The boxes of the node below a candidate that is not a leaf.
   Siblings below(const ModelBox& c)
   {
@@ -144,23 +151,41 @@ public:
       if (const Siblings met = near(segment, candidate, steps); met.lanes != 0) into.push_back(met);
   }
 
-  /// What a thick segment may meet among boxes and below, in boxes no larger than `size`.
-  void collect(const Segment& segment, float steps, float size, const Siblings& boxes, std::vector<Siblings>& into)
+  /// What a thick segment may meet among boxes and below during the motion, in boxes no larger than `size`.
+  void collect(const Segment& segment, const VoxelMotion& motion, float size, const Siblings& boxes,
+               std::vector<Siblings>& into)
   {
     std::uint32_t kept = 0;
-    for (std::uint32_t bits = near(segment, boxes, steps).lanes; bits != 0; bits &= bits - 1) {
+    for (std::uint32_t bits = near(segment, boxes, motion.steps).lanes; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       const ModelBox box = boxes[lane];
-      if (box.isLeaf() || box.size(tree_.stretch) < size || !mayOpen(box))
+      if (box.isLeaf() || box.size(tree_.stretch) < size || isBlunt(box, motion) || !mayOpen(box))
         kept |= 1u << lane;
       else
-        collect(segment, steps, size, below(box), into);
+        collect(segment, motion, size, below(box), into);
     }
     if (kept != 0) into.push_back(boxes.only(kept));
   }
 
 private:
+  static constexpr std::uint32_t kManyLeaves = 3; ///< fewer are compared as quickly in floats
+
   static Siblings all(const Siblings& boxes) { return boxes.only(firstBits(boxes.box().count)); }
+
+  /// Whether a box that is not a leaf has many leaves below it, or above the voxels the points of as many.
+  bool holdsMany(const ModelBox& c) const
+  {
+    if (c.voxel == kAboveVoxels) {
+      const Node& node = tree_.storage.top[c.node];
+      const Voxel &first = tree_.storage.voxels[node.begin[c.lane]],
+                  &last = tree_.storage.voxels[node.begin[c.lane + 1] - 1];
+      return last.begin + last.count - first.begin > kManyLeaves * kMaxLeafPoints;
+    }
+    const BoxNode *first = &c.boxes[c.box().child[c.lane]], *last = first;
+    while (!first->isLeaf(0)) first = &c.boxes[first->child[0]];
+    while (!last->isLeaf(last->count - 1)) last = &c.boxes[last->child[last->count - 1]];
+    return last->leaf(last->count - 1) - first->leaf(0) >= kManyLeaves; // leaves are numbered in order
+  }
 
   const BoxTree& tree_;
   const StopRule& rule_;

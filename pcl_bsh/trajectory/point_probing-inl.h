@@ -33,9 +33,10 @@ public:
   {
   }
 
-  /// Whether the candidate has a point in the probe; the nearest boxes are asked first.
+  /// Whether the candidate has a point in the probe; the nearest boxes are asked first, and of those that floats do not
+  /// tell apart during the motion one alone: it may have one all the same.
   /// @param center of the probe, about where the model sees it.
-  bool hasPoint(const ModelBox& candidate, const ProbeSphere& probe, const Point& center)
+  bool hasPoint(const ModelBox& candidate, const ProbeSphere& probe, const Point& center, const VoxelMotion& motion)
   {
     if (candidate.isLeaf()) {
       const Voxel& voxel = query_.boxes.storage.voxels[candidate.voxel];
@@ -66,7 +67,8 @@ public:
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
         if (distance[lane] < distance[nearest]) nearest = lane;
       }
-      if (hasPoint(children[nearest], probe, center)) return true;
+      if (hasPoint(children[nearest], probe, center, motion)) return true;
+      if (model_.isBlunt(candidate, motion)) return false;
       near &= ~(1u << nearest);
     }
     return false;

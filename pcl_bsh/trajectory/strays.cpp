@@ -105,7 +105,7 @@ std::optional<Strays> findStrays(const Placed& scan, const SphereHierarchy& mode
   double apart = 0.0, coordinates = middle.lpNorm<1>() + scan.pose.translation().lpNorm<1>() +
                                     of_scan.middle().lpNorm<1>() + of_model.middle().lpNorm<1>();
   for (const Eigen::Isometry3d& pose : model_poses) {
-    apart = std::max(apart, (pose * of_model.middle() - middle).norm());
+    apart = std::max(apart, (pose * of_model.middle() - middle).stableNorm());
     coordinates = std::max(coordinates, pose.translation().lpNorm<1>());
   }
   const double scene = (apart + of_scan.radius + of_model.radius + clearance + a.largest_radius + b.largest_radius +

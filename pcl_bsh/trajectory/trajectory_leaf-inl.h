@@ -120,6 +120,8 @@ private:
     if (points == 0) return;
     if (box.isLeaf())
       at_pose_.compare(leaf, points, box, motion.interval->first, motion);
+    else if (model_.isBlunt(box, motion))
+      at_pose_.meetInDoubles(leaf, points, box, motion.interval->first, motion);
     else if (model_.mayOpen(box))
       push(leaf, model_.near(leaf.around, model_.below(box), motion.steps), leaf.open, motion);
     else
@@ -152,7 +154,8 @@ private:
     }
     for (; met != 0; met &= met - 1) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(met));
-      for (std::uint32_t bits = node.isLeaf(k) ? near[k] : 0; bits != 0; bits &= bits - 1) {
+      const bool ends_here = node.isLeaf(k) || model_.isBlunt(candidate.boxes[k], motion);
+      for (std::uint32_t bits = ends_here ? near[k] : 0; bits != 0; bits &= bits - 1) {
         const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
         clipped.from[i] = clips_[i].from[k];
         clipped.to[i] = clips_[i].to[k];
@@ -169,6 +172,7 @@ private:
     if (lanes == 0) return;
     if (!box.isLeaf()) {
       if (!model_.mayOpen(box)) return leaveUndecided(leaf, lanes);
+      if (model_.isBlunt(box, motion)) return eachPose(leaf, rangesOf(lanes, clipped, motion), box, motion);
       return push(leaf, model_.below(box), lanes, motion);
     }
     if (path_.is_swept)
@@ -192,7 +196,7 @@ private:
     std::uint32_t near_points[kLeafPoints];
     if (narrows) lanes = nearPoints(leaf, lanes, box, motion, clipped, near_points);
     const PoseRanges ranges = rangesOf(lanes, clipped, motion);
-    if ((lanes = ranges.lanes) == 0) return;
+    lanes = ranges.lanes;
     if (narrows && !query_.everything() && !query_.first) {
       // Any pose will do: the one in the middle is nearest.
       for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
@@ -202,14 +206,25 @@ private:
         at_pose_.compare(leaf, ranges.at(k, lanes & leaf.open), box, k, motion);
       }
     }
-    for (std::uint32_t k = ranges.begin; k < ranges.end && (lanes & leaf.open) != 0 && !stop_check_.isOver(); ++k) {
-      std::uint32_t here = ranges.at(k, lanes & leaf.open);
+    eachPose(leaf, ranges, box, motion);
+  }
+
+  /// Points against a box, at each pose that brings them near.
+  HWY_INLINE void eachPose(LeafVisit& leaf, const PoseRanges& ranges, const ModelBox& box, const VoxelMotion& motion)
+  {
+    for (std::uint32_t k = ranges.begin; k < ranges.end && (ranges.lanes & leaf.open) != 0 && !stop_check_.isOver();
+         ++k) {
+      std::uint32_t here = ranges.at(k, leaf.open);
       if (query_.first && !query_.everything())
         for (std::uint32_t bits = here; bits != 0; bits &= bits - 1) {
           const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
           if (results_.first[leaf.points.begin + i] <= k) here &= ~(1u << i);
         }
-      if (here != 0) at_pose_.compare(leaf, here, box, k, motion);
+      if (here == 0) continue;
+      if (box.isLeaf())
+        at_pose_.compare(leaf, here, box, k, motion);
+      else
+        at_pose_.meetInDoubles(leaf, here, box, k, motion);
     }
   }
 

@@ -73,8 +73,8 @@ public:
       const VoxelMotion motion = voxel_frame_.motionOf(interval);
       candidates.clear();
       ++results_.work.volumes_carried;
-      model_.collect(voxel_frame_.aroundVoxel(motion), motion.steps,
-                     kSeedSize * static_cast<float>(voxel_frame_.radius), model_.root(), candidates);
+      model_.collect(voxel_frame_.aroundVoxel(motion), motion, kSeedSize * static_cast<float>(voxel_frame_.radius),
+                     model_.root(), candidates);
       if (candidates.empty()) continue;
       if (!voxel_ && !mayEnter()) return leave(true);
       if (!voxel_) enter(motion);
@@ -291,7 +291,7 @@ private:
       const AffineMap map = voxel_frame_.mapAt(query_.path.poses[probe.pose], {0, 0, 0}, 1.0);
       const Point center = carryPoint(map.m, map.g, probe.center);
       ++results_.work.volumes_carried;
-      if (box.squaredDistance(center) > reach * reach || !probing_.hasPoint(candidate, probe, center)) continue;
+      if (box.squaredDistance(center) > reach * reach || !probing_.hasPoint(candidate, probe, center, motion)) continue;
       settle(index, lane);
       open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
     }
@@ -325,7 +325,7 @@ private:
                                   : segmentsInBox(visit.children, ends.low, ends.high, motion.steps,
                                                   static_cast<ClippedSegments<kLanes>*>(nullptr)));
       if (near_lanes == 0) continue;
-      const bool opens = !box.isLeaf() && model_.mayOpen(box);
+      const bool opens = !box.isLeaf() && model_.mayOpen(box) && !model_.isBlunt(box, motion);
       const float size = box.size(query_.boxes.stretch);
       std::uint32_t opening = 0;
       for (std::uint32_t bits = near_lanes; bits != 0; bits &= bits - 1) {

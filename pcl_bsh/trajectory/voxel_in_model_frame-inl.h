@@ -37,6 +37,7 @@ struct VoxelMotion {
   float near_squared;      ///< of that
   float smallest;          ///< motion that floats distinguish from rest
   float rounding;          ///< of places in floats
+  float blunt;             ///< smaller boxes are not told apart at single poses; 0 where motion is swept
   bool squares;            ///< whether squares of places and of such motions are in the range of floats
   bool at_rest;            ///< one pose, and nothing before or after it
 
@@ -137,6 +138,7 @@ public:
         kSmallestRounding;
     motion.reach = roundUp(reach + rounding);
     motion.rounding = roundUp(rounding);
+    motion.blunt = path.is_swept ? 0.0f : motion.rounding;
     motion.near = roundUp(reach - motion.stray + 2 * rounding);
     motion.near_squared = motion.near * motion.near * (1.0f + kReachRounding) + kVanishingSquare;
     motion.smallest = motion.rounding * kSmallestMotion;

@@ -236,5 +236,29 @@ TEST(ClosestPair, RefusesWhatItCannotAnswer)
   EXPECT_THROW(closestPair({point, broken}, {point}), std::invalid_argument);
 }
 
+/// Many pairs at distances that differ by the last place of a double: a later one may be nearer than the upper bound,
+/// and farther than the nearest.
+TEST(ClosestPair, IntervalsHoldTheDistanceOfPairsThatRoundingSwaps)
+{
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Random random(seed);
+    std::vector<Point3> shell;
+    for (int i = 0; i < 400; ++i) {
+      const Eigen::Vector3d p = random.rotation() * Eigen::Vector3d::UnitX();
+      shell.push_back({p[0], p[1], p[2]});
+    }
+    const Cloud one({{0, 0, 0}}, {Scalar::float64, 0, 0}), other(shell, {Scalar::float64, 0, 0});
+    const SphereHierarchy a(one.view()), b(other.view());
+    const double truth = brute_force::closestPair(a, b).distance;
+    for (const Accuracy& accuracy : {Accuracy::level(2), Accuracy::level(9), Accuracy::nodePairs(1'000'000)}) {
+      DistanceRequest request;
+      request.accuracy = accuracy;
+      const DistanceResult found = closestPair(a, b, request);
+      EXPECT_LE(found.interval.lower, truth) << seed << ", " << accuracy.text();
+      EXPECT_GE(found.interval.upper, truth) << seed << ", " << accuracy.text();
+    }
+  }
+}
+
 } // namespace
 } // namespace pcl_bsh

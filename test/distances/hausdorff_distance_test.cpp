@@ -26,9 +26,12 @@ HausdorffDistance truthOf(const Placed& a, const Placed& b)
   const PointDistances of_a = brute_force::pointDistances(a, b), of_b = brute_force::pointDistances(b, a);
   HausdorffDistance truth;
   if (!of_a.greatest_pair || !of_b.greatest_pair) return truth;
-  const PointPair p = *of_a.greatest_pair, q = {of_b.greatest_pair->b, of_b.greatest_pair->a};
   truth.distance = std::max(of_a.greatest, of_b.greatest);
-  truth.pair = of_a.greatest > of_b.greatest || (of_a.greatest == of_b.greatest && p < q) ? p : q;
+  const auto take = [&](double distance, const PointPair& pair) {
+    if (distance == truth.distance && !(truth.pair && *truth.pair < pair)) truth.pair = pair;
+  };
+  for (std::uint32_t i = 0; i < of_a.distance.size(); ++i) take(of_a.distance[i], {i, of_a.nearest[i]});
+  for (std::uint32_t i = 0; i < of_b.distance.size(); ++i) take(of_b.distance[i], {of_b.nearest[i], i});
   return truth;
 }
 
@@ -60,6 +63,21 @@ TEST(HausdorffDistance, OfRandomClouds)
     expectTruth({a, scene.pose_a}, {b, scene.pose_b}, false); // of equal doubles one may be the greater
     if (testing::Test::HasFailure()) return;
   }
+}
+
+/// The greatest distance is b's, and several of its points have it: of (a, b) the smallest is not that of the smallest
+/// b.
+TEST(HausdorffDistance, OfEqualOnesOfTheOtherCloudIsTheSmallestPair)
+{
+  const Cloud one({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}}, {Scalar::float64, 0, 0});
+  const Cloud other({{20, 3, 0}, {0, 1, 0}, {10, 3, 0}, {10, -3, 0}, {10, 0.5, 0}, {20, 0.5, 0}},
+                    {Scalar::float64, 0, 0});
+  const SphereHierarchy a(one.view()), b(other.view());
+  EXPECT_EQ(hausdorffDistance(a, b).pair, (PointPair{1, 2}));
+  EXPECT_EQ(symmetricDistances(a, b).hausdorff_pair, (PointPair{1, 2}));
+  EXPECT_EQ(symmetricDistances(a, b).b.greatest_pair, (PointPair{0, 2})) << "of (b, a)";
+  EXPECT_EQ(hausdorffDistance(b, a).pair, (PointPair{0, 2}));
+  EXPECT_EQ(hausdorffDistance(a, b).distance, 3.0);
 }
 
 /// A lattice beside itself: all distances are equal, or differ by less than a float tells.

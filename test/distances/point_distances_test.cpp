@@ -214,5 +214,35 @@ TEST(PointDistances, OfCloudsBelowFloatResolution)
   }
 }
 
+/// The frame of one place measures in the clouds' unit, that of a tiny cloud in one of its own: the factor between them
+/// is no float.
+TEST(PointDistances, BetweenOnePlaceAndATinyCloud)
+{
+  for (const double scale : {1e-30, 1e-36, 1e-38, 1e-39, 1e-41, 1e-44, 1e-60, 1e-170, 1e-300})
+    for (const Scalar scalar : {Scalar::float32, Scalar::float64}) {
+      if (scalar == Scalar::float32 && scale < 1e-44) continue;
+      SCOPED_TRACE(scale);
+      const Cloud place(std::vector<Point3>(30, {3 * scale, 0, scale}), {scalar, 0, 0});
+      std::vector<Point3> points;
+      for (int i = 0; i < 40; ++i) points.push_back({i % 5 * scale, i / 5 * scale, 0});
+      const Cloud tiny(points, {scalar, 0, 0});
+      const SphereHierarchy a(place.view()), b(tiny.view());
+      for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+        const PointDistances truth = brute_force::pointDistances(*from, *to);
+        test::expectSame(pointDistances(*from, *to), truth);
+        for (const Accuracy& accuracy : {Accuracy::level(0), Accuracy::level(4), Accuracy::tolerance(0.0)}) {
+          PointDistancesRequest request;
+          request.accuracy = accuracy;
+          const PointDistances found = pointDistances(*from, *to, request);
+          for (std::size_t i = 0; i < truth.distance.size(); ++i) {
+            EXPECT_LE(found.interval[i].lower, truth.distance[i]) << accuracy.text();
+            EXPECT_GE(found.interval[i].upper, truth.distance[i]) << accuracy.text();
+          }
+        }
+      }
+      EXPECT_EQ(hausdorffDistance(a, b).distance, symmetricDistances(a, b).hausdorff);
+    }
+}
+
 } // namespace
 } // namespace pcl_bsh

@@ -3,6 +3,7 @@
 
 #include "../query/random_clouds.h"
 
+#include <pcl_bsh/collision/brute_force.h>
 #include <pcl_bsh/collision/collide.h>
 
 #include <gtest/gtest.h>
@@ -242,6 +243,69 @@ TEST(HierarchyUpdate, AtTheLargestNumbers)
   hierarchy.refit(viewOf(xyz.data(), 60), 1e9);
   expectSound(hierarchy);
   EXPECT_EQ(collisionFlags({hierarchy}, {hierarchy}, request).colliding_a, 60u);
+}
+
+/// Thirty points at one place share a leaf, and one of them answers for all as long as they are alike.
+TEST(HierarchyUpdate, OfOtherUncertaintiesWhereNoPointMoved)
+{
+  Random random(9);
+  std::vector<Point3> points = plain(2000, random);
+  std::fill_n(points.begin() + 100, 30, Point3{4.5, 4.5, 0.5});
+  const test::Cloud cloud(points), probe({{4.5, 4.5, 1.5}});
+  const SphereHierarchy of_probe(probe.view());
+  HierarchyOptions options;
+  options.voxel_edge = 1.0;
+  for (const bool had_some : {false, true}) {
+    std::vector<float> own(points.size(), 0.0f);
+    PointsView view = cloud.view();
+    if (had_some) view.uncertainties = own.data();
+    SphereHierarchy hierarchy(view, options);
+    hierarchy.buildAll();
+    HierarchyUpdate update(hierarchy, nullptr, 0); // no record moves
+    for (std::size_t i = 101; i < 130; ++i) own[i] = 0.6f;
+    view.uncertainties = own.data();
+    const UpdateReport report = update.commit(view);
+    EXPECT_FALSE(report.sorted_anew);
+    EXPECT_EQ(report.voxels_touched, 1u);
+    expectSound(hierarchy);
+    FlagsRequest request;
+    request.clearance = 0.5;
+    const FlagsResult found = collisionFlags(hierarchy, of_probe, request);
+    EXPECT_EQ(found.undecided_a, 29u);
+    EXPECT_EQ(found.a, brute_force::collisionFlags(hierarchy, of_probe, request).a);
+    HierarchyUpdate again(hierarchy, nullptr, 0);
+    EXPECT_EQ(again.commit(view).voxels_touched, 0u) << "nothing is other than it was";
+  }
+}
+
+TEST(HierarchyUpdate, OfOtherRadiiWhereNoPointMoved)
+{
+  Random random(10);
+  std::vector<Point3> points = plain(2000, random);
+  std::fill_n(points.begin() + 100, 30, Point3{4.5, 4.5, 0.5});
+  const test::Cloud cloud(points), probe({{4.5, 4.5, 1.5}});
+  const SphereHierarchy of_probe(probe.view());
+  HierarchyOptions options;
+  options.voxel_edge = 1.0;
+  for (const bool is_built : {false, true}) {
+    std::vector<float> radii(points.size(), 0.01f);
+    PointsView view = cloud.view();
+    view.radii = radii.data();
+    SphereHierarchy hierarchy(view, options);
+    if (is_built) hierarchy.buildAll();
+    HierarchyUpdate update(hierarchy, nullptr, 0);
+    for (std::size_t i = 101; i < 130; ++i) radii[i] = 0.6f;
+    EXPECT_EQ(update.commit(view).voxels_touched, 1u);
+    expectSound(hierarchy);
+    FlagsRequest request;
+    request.clearance = 0.5;
+    EXPECT_EQ(collisionFlags(hierarchy, of_probe, request).a,
+              brute_force::collisionFlags(hierarchy, of_probe, request).a);
+    EXPECT_EQ(collisionFlags(hierarchy, of_probe, request).colliding_a, 29u);
+    radii[7] = -1.0f;
+    HierarchyUpdate negative(hierarchy, nullptr, 0);
+    EXPECT_THROW(negative.commit(view), std::invalid_argument);
+  }
 }
 
 TEST(HierarchyUpdate, RefusesWhatItCannotDo)

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ namespace {
 
 using test::everything;
 using test::expectSame;
+using test::flagsOnly;
 using test::Poses;
 using test::Random;
 
@@ -91,6 +93,69 @@ TEST(Strays, OfBallsThatReachTheOthers)
   EXPECT_FALSE(findStrays(of_scan, of_model, poses, 0.1).has_value());
   expectSame(collideAlong(of_scan, of_model, poses, everything(0.1)),
              brute_force::collideAlong(of_scan, of_model, poses, everything(0.1)));
+}
+
+/// A clearance so large that ordinary points meet a stray.
+TEST(Strays, OfAClearanceThatExceedsTheirDistance)
+{
+  const test::Cloud scan(cubeWith({{1e5, 0, 0}}, 1)), model(cubeWith({{0, 1e6, 0}}, 2));
+  const SphereHierarchy of_scan(scan.view()), of_model(model.view());
+  const Poses poses = ahead(3, 0.2);
+  EXPECT_TRUE(findStrays(of_scan, of_model, poses, 1e4).has_value());
+  EXPECT_FALSE(findStrays(of_scan, of_model, poses, 1.5e5).has_value());
+  const TrajectoryResult found = collideAlong(of_scan, of_model, poses, everything(1.5e5));
+  expectSame(found, brute_force::collideAlong(of_scan, of_model, poses, everything(1.5e5)));
+  EXPECT_EQ(found.flags[7], 1);
+}
+
+/// As far apart as they are, lengths below 1e-162 have squares that vanish.
+TEST(Strays, OfTheSmallestNumbers)
+{
+  for (const double scale : {1e-150, 1e-165, 1e-200, 1e-300}) {
+    SCOPED_TRACE(scale);
+    std::vector<Point3> in_scan = cubeWith({{1e5, 0, 0}, {1e5, 0.5, 0}}, 1), in_model = cubeWith({}, 2);
+    for (auto* points : {&in_scan, &in_model})
+      for (Point3& p : *points)
+        for (double& x : p) x *= scale;
+    const test::Cloud scan(in_scan, {Scalar::float64, 0, 0}), model(in_model, {Scalar::float64, 0, 0});
+    const SphereHierarchy of_scan(scan.view()), of_model(model.view());
+    Poses poses = ahead(2, 1e5 * scale); // the model comes to the stray
+    poses[1].linear().setIdentity();
+    EXPECT_TRUE(findStrays(of_scan, of_model, {poses[0]}, scale).has_value());
+    EXPECT_FALSE(findStrays(of_scan, of_model, poses, scale).has_value());
+    const TrajectoryResult found = collideAlong(of_scan, of_model, poses, flagsOnly(scale));
+    expectSame(found, brute_force::collideAlong(of_scan, of_model, poses, flagsOnly(scale)));
+    EXPECT_EQ(found.flags[7], 1);
+  }
+}
+
+/// Strays that may meet each other, but need not: they are counted as they are flagged.
+TEST(Strays, AreCountedWhereUndecided)
+{
+  test::Cloud scan(cubeWith({{1e9, 0, 0}, {0, 1e9, 0}}, 1)), model(cubeWith({{1e9, 0, 0}, {0, 1e9, 0}}, 2));
+  PointsView uncertain = scan.view();
+  std::vector<float> own(uncertain.count, 0.0f);
+  own[7] = 1e3f; // beside a stray of the model; the next one is there for certain
+  uncertain.uncertainties = own.data();
+  const SphereHierarchy of_scan(uncertain), of_model(model.view());
+  const Poses poses = {Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity()};
+  ASSERT_TRUE(findStrays(of_scan, of_model, poses, 0.1).has_value());
+  for (const bool sums : {false, true}) {
+    TrajectoryRequest request = flagsOnly(0.1);
+    request.pose_summaries = sums;
+    const TrajectoryResult found = collideAlong(of_scan, of_model, poses, request);
+    expectSame(found, brute_force::collideAlong(of_scan, of_model, poses, request));
+    EXPECT_EQ(found.flags[7], flagOf(Verdict::undecided));
+    EXPECT_EQ(found.flags[27], flagOf(Verdict::colliding));
+    const auto count = [&](Verdict verdict) {
+      return static_cast<std::size_t>(std::count(found.flags.begin(), found.flags.end(), flagOf(verdict)));
+    };
+    EXPECT_EQ(found.undecided, count(Verdict::undecided));
+    EXPECT_EQ(found.colliding, count(Verdict::colliding));
+    if (sums) {
+      EXPECT_EQ(found.poses[0].undecided_points, found.undecided);
+    }
+  }
 }
 
 TEST(Strays, OfPointsWhosePlacesAreUncertain)

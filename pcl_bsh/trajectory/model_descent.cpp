@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/trajectory/model_descent.h>
+
+#include <pcl_bsh/geometry/given_sphere.h>
+#include <pcl_bsh/hierarchy/crowded_cell.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace pcl_bsh {
+namespace {
+
+class Descent {
+public:
+  Descent(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point)
+  : query_(query),
+    results_(results),
+    point_(point),
+    model_(query.model.storage()),
+    distance_(query.scan.pose, query.given[query.path.poses[point.pose].given]),
+    sphere_{query.scan.hierarchy().view().point(point.record), query.scan.hierarchy().view().radius(point.record)},
+    reach_(query.between.most)
+  {
+  }
+
+  /// What lies below a node. @param voxel that it is of; null above the voxels
+  void all(const Voxel* voxel, const Node& node)
+  {
+    struct Near {
+      double low;
+      std::uint32_t child;
+      GivenSphere sphere;
+    };
+    std::array<Near, kNodeChildren> children;
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      const GivenSphere sphere = sphereOf(voxel, node, i);
+      children[count++] = {distance_.enclose(sphere_.center, sphere.center).low - sphere.radius, i, sphere};
+    }
+    results_.work.node_pairs += count;
+    std::sort(children.begin(), children.begin() + count, [](const Near& x, const Near& y) { return x.low < y.low; });
+    for (std::size_t i = 0; i < count && !isDone(); ++i)
+      if (!areApart(distance_, sphere_, children[i].sphere, reach_)) open(voxel, node, children[i].child);
+  }
+
+  /// What lies below one of its children.
+  void open(const Voxel* voxel, const Node& node, std::uint32_t child)
+  {
+    if (voxel && node.isLeaf(child)) return compare(*voxel, node, child);
+    if (voxel) return all(voxel, voxel->nodes[node.child[child]]);
+    if (!node.isLeaf(child)) return all(nullptr, model_.top[node.child[child]]);
+    const Voxel& entered = model_.built(node.begin[child], results_.work);
+    all(&entered, entered.nodes[0]);
+  }
+
+  PointMet met;
+
+private:
+  bool asksForNearest() const { return point_.best || point_.for_pose; }
+  bool isDone() const { return met.collides && !asksForNearest(); }
+
+  GivenSphere sphereOf(const Voxel* voxel, const Node& node, std::uint32_t child) const
+  {
+    if (!voxel) return storedSphere(model_.frame, node, child);
+    if (voxel->given.empty()) return storedSphere(voxel->frame, node, child);
+    return givenSphereOf(model_.view, *voxel, node, child);
+  }
+
+  void compare(const Voxel& voxel, const Node& node, std::uint32_t child)
+  {
+    ++results_.work.leaf_pairs;
+    const std::uint32_t end = node.begin[child] + node.comparedPoints(child);
+    for (std::uint32_t i = node.begin[child]; i < end && !isDone(); ++i) {
+      const std::uint32_t other = voxel.records()[i];
+      const ExactDistance::Pair pair{sphere_.center, model_.view.point(other), sphere_.radius,
+                                     model_.view.radius(other)};
+      if (met.collides && distance_.compare(pair.p, pair.q, reach_, pair.radius_p, pair.radius_q) > 0) continue;
+      if (!results_.collide({point_.record, other}, point_.pose)) continue;
+      met.collides = true;
+      if (!asksForNearest()) return;
+      if (point_.best) results_.consider(*point_.best, {point_.record, other}, point_.pose);
+      if (point_.for_pose) results_.considerPose({point_.record, other}, point_.pose);
+      met.gap = std::min(met.gap, distance_.gap(pair));
+      reach_ = std::min(reach_, std::nextafter(met.gap, std::numeric_limits<double>::infinity()));
+    }
+  }
+
+  const TrajectoryQuery& query_;
+  VoxelResults& results_;
+  const PointAtPose point_;
+  const SphereHierarchy::Storage& model_;
+  const ExactDistance distance_;
+  const GivenSphere sphere_; ///< the point
+  double reach_;             ///< what is farther, less radii, does not collide, or is not the nearest
+};
+
+} // namespace
+
+PointMet meetVoxel(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point, std::uint32_t voxel)
+{
+  Descent descent(query, results, point);
+  const Voxel& entered = query.model.storage().built(voxel, results.work);
+  descent.all(&entered, entered.nodes[0]);
+  return descent.met;
+}
+
+PointMet meetBelow(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point, std::uint32_t node,
+                   std::uint32_t child)
+{
+  Descent descent(query, results, point);
+  descent.open(nullptr, query.model.storage().top[node], child);
+  return descent.met;
+}
+
+} // namespace pcl_bsh
