@@ -33,7 +33,8 @@ in examples/scenes. An effect that is not listed is not computed.
 With --json, what is said of a check, an explanation or a run is JSON on standard output.
 With --out, DIR gets steps.csv (a row a step), steps.jsonl (all results, a line a step), summary.json, and the
 flagged clouds if the scene asks for them. Where clouds have an `uncertainty`, what may collide, but does not for
-certain, is undecided, flag 2.
+certain, is undecided, flag 2. In steps.jsonl, `unswept` lists objects that did more in a step than first_contact and
+swept look at: those `reshaped` by a wave, and those `detoured` by a response or gravity.
 Exit code: 0 done; 1 failed, the scene file is wrong included; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example:
@@ -154,6 +155,7 @@ nlohmann::ordered_json summaryOf(const io::SceneFile& file, const cli::SceneTota
     json["colliding_steps"] = totals.colliding_steps;
     json["undecided_steps"] = totals.undecided_steps;
   }
+  if (file.options.effects.first_contact || file.options.effects.swept) json["unswept_steps"] = totals.unswept_steps;
   if (totals.wanted > 0.0)
     json["moves"] = {{"travelled", totals.travelled}, {"wanted", totals.wanted}, {"touched", totals.touched_moves}};
   return json;
@@ -178,6 +180,8 @@ void printSummary(const io::SceneFile& file, const cli::SceneTotals& totals)
   std::printf("%zu steps, median %.3f ms", totals.step_seconds.size(), 1e3 * median(totals.step_seconds));
   if (file.options.effects.any) std::printf("; pairs collide in %zu of them", totals.colliding_steps);
   if (totals.undecided_steps > 0) std::printf(", are undecided in %zu", totals.undecided_steps);
+  if (totals.unswept_steps > 0)
+    std::printf("; in %zu objects changed otherwise than by the motion that was swept", totals.unswept_steps);
   if (totals.wanted > 0.0)
     std::printf("; travelled %.3f of %.3f, %zu moves met something", totals.travelled, totals.wanted,
                 totals.touched_moves);

@@ -22,8 +22,8 @@ Parameters
 clearance : float, default 0
     In the clouds' unit; inclusive.
 any, flags, first_contact, swept, self_collisions : bool
-    Which pairs of objects collide; which points do; when within a step a pair first meets; which points meet another
-    object anywhere between the poses of a step; parts of one object that collide.
+    Which pairs of objects collide; which points do; when, since the last query, a pair first meets; which points meet
+    another object anywhere on this way; parts of one object that collide.
 distance : float, optional
     The smallest distance of each pair that is no farther apart than this; inf: of every pair.
 contacts : int, optional
@@ -190,101 +190,6 @@ PairRule ruleOf(const std::optional<bool>& tested, const std::optional<double>& 
   return {tested, clearance};
 }
 
-py::dict dictOf(const PartPair& pair)
-{
-  py::dict named;
-  named["a"] = pair.a;
-  named["b"] = pair.b;
-  named["part_a"] = pair.part_a;
-  named["part_b"] = pair.part_b;
-  return named;
-}
-
-py::dict dictOf(const CollidingPair& pair)
-{
-  py::dict named = dictOf(static_cast<const PartPair&>(pair));
-  named["witness"] = py::make_tuple(pair.witness.a, pair.witness.b);
-  return named;
-}
-
-py::dict dictOf(const DistantPair& pair)
-{
-  py::dict named = dictOf(static_cast<const PartPair&>(pair));
-  named["distance"] = pair.distance;
-  named["interval"] = tupleOf(pair.interval);
-  named["pair"] = py::make_tuple(pair.pair.a, pair.pair.b);
-  return named;
-}
-
-py::dict dictOf(const PartFirstContact& pair)
-{
-  py::dict named = dictOf(static_cast<const PartPair&>(pair));
-  named["fraction"] = pair.fraction;
-  named["pair"] = py::make_tuple(pair.pair.a, pair.pair.b);
-  return named;
-}
-
-py::dict dictOf(const ContactPair& pair)
-{
-  py::dict named = dictOf(static_cast<const PartPair&>(pair));
-  py::list contacts;
-  for (const Contact& contact : pair.contacts) {
-    py::dict one;
-    one["pair"] = py::make_tuple(contact.pair.a, contact.pair.b);
-    one["distance"] = contact.distance;
-    one["normal"] = py::make_tuple(contact.normal.x(), contact.normal.y(), contact.normal.z());
-    contacts.append(one);
-  }
-  named["contacts"] = contacts;
-  named["complete"] = pair.complete;
-  return named;
-}
-
-py::dict dictOf(const FlaggedPart& part)
-{
-  py::dict named;
-  named["object"] = part.object;
-  named["part"] = part.part;
-  named["colliding"] = part.colliding;
-  named["undecided"] = part.undecided;
-  named["flags"] = py::array_t<std::uint8_t>(static_cast<py::ssize_t>(part.flags.size()), part.flags.data());
-  return named;
-}
-
-py::dict dictOf(const SelfCollision& pair)
-{
-  py::dict named;
-  named["object"] = pair.object;
-  named["part_a"] = pair.part_a;
-  named["part_b"] = pair.part_b;
-  named["witness"] = py::make_tuple(pair.witness.a, pair.witness.b);
-  return named;
-}
-
-py::dict dictOf(const Outcome& outcome)
-{
-  py::dict named;
-  named["object"] = outcome.object;
-  named["touched"] = outcome.touched;
-  named["against"] = outcome.touched ? py::object(py::int_(outcome.against)) : py::none();
-  named["stuck"] = outcome.stuck;
-  named["grounded"] = outcome.grounded;
-  named["wanted"] = outcome.wanted;
-  named["travelled"] = outcome.travelled;
-  return named;
-}
-
-/// A property with a dict for each entry of one of the result's vectors.
-template <class T>
-auto listed(std::vector<T> SceneResult::*entries)
-{
-  return [entries](const SceneResult& result) {
-    py::list list;
-    for (const T& entry : result.*entries) list.append(dictOf(entry));
-    return list;
-  };
-}
-
 void bindMotions(py::module_& module)
 {
   py::class_<VelocityMotion>(module, "VelocityMotion",
@@ -318,29 +223,7 @@ void bindMotions(py::module_& module)
 void bindScene(py::module_& module)
 {
   bindMotions(module);
-  py::class_<SceneResult>(
-      module, "SceneResult",
-      "What a scene computed: a list of dicts for each effect, empty unless it was asked for. Objects "
-      "and parts are numbers, in the order in which they were added.")
-      .def_readonly("time", &SceneResult::time, "Of the scene, seconds.")
-      .def_property_readonly("any", listed(&SceneResult::any), "a, b, part_a, part_b, witness.")
-      .def_property_readonly("undecided", listed(&SceneResult::undecided), "a, b, part_a, part_b.")
-      .def_property_readonly("flags", listed(&SceneResult::flags), "object, part, colliding, undecided, flags.")
-      .def_property_readonly("distance", listed(&SceneResult::distance),
-                             "a, b, part_a, part_b, distance, interval, pair.")
-      .def_property_readonly("contacts", listed(&SceneResult::contacts), "a, b, part_a, part_b, contacts, complete.")
-      .def_property_readonly("first_contact", listed(&SceneResult::first_contact),
-                             "a, b, part_a, part_b, fraction of the step, pair.")
-      .def_property_readonly("swept", listed(&SceneResult::swept), "object, part, colliding, undecided, flags.")
-      .def_property_readonly("self_collisions", listed(&SceneResult::self), "object, part_a, part_b, witness.")
-      .def_property_readonly("outcomes", listed(&SceneResult::outcomes),
-                             "Of moved objects, with a response or gravity: object, touched, against, stuck, grounded, "
-                             "wanted, travelled.")
-      .def("__repr__", [](const SceneResult& result) {
-        return "SceneResult(time=" + std::string(py::str(py::float_(result.time))) +
-               ", colliding pairs=" + std::to_string(result.any.size()) + ")";
-      });
-
+  bindSceneResult(module);
   const auto none = py::none();
   py::class_<SharedScene>(module, "Scene", kScene)
       .def(py::init(&makeScene), py::kw_only(), py::arg("clearance") = 0.0, py::arg("any") = false,

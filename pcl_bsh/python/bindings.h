@@ -18,6 +18,7 @@ void bindClashes(pybind11::module_& module);
 void bindManyPoses(pybind11::module_& module); ///< many poses, many motions
 void bindSurface(pybind11::module_& module);
 void bindScene(pybind11::module_& module);
+void bindSceneResult(pybind11::module_& module);
 void bindFiles(pybind11::module_& module);
 void bindPipeline(pybind11::module_& module);
 

@@ -82,17 +82,21 @@ void Scene::State::findFirstContacts()
   const Timed timed(spent.seconds);
   using Contacts = std::vector<std::optional<PartFirstContact>>;
   Contacts possible(grid.pairs().size()), certain(grid.pairs().size());
-  eachSweptPair(spent,
-                [&](std::size_t k, BroadPair& pair, const PartPair& parts, const SweptPart& a, const SweptPart& b) {
-                  const auto find = [&](Places places, std::optional<PartFirstContact>& first) {
-                    const auto met = firstContactOf(a, b, pair.clearance, options.tolerance, places, pair.memory.work);
-                    if (met && (!first || met->s < first->fraction)) first = PartFirstContact{parts, met->s, met->pair};
-                    return met.has_value();
-                  };
-                  const bool uncertain = areUncertain({a.hierarchy}, {b.hierarchy});
-                  const bool met = find(uncertain ? Places::possible : Places::measured, possible[k]);
-                  if (met && uncertain) find(Places::certain, certain[k]);
-                });
+  eachSweptPair(
+      spent, [&](std::size_t k, BroadPair& pair, const PartPair& parts, const SweptPart& a, const SweptPart& b) {
+        const auto find = [&](Places places) {
+          return firstContactOf(a, b, pair.clearance, options.tolerance, places, pair.memory.work);
+        };
+        const auto keepEarlier = [&](std::optional<PartFirstContact>& first, const std::optional<PairContact>& met) {
+          if (met && (!first || met->s < first->fraction)) first = PartFirstContact{parts, met->s, met->pair};
+        };
+        const bool uncertain = areUncertain({a.hierarchy}, {b.hierarchy});
+        const std::optional<PairContact> met = find(uncertain ? Places::possible : Places::measured);
+        const std::optional<PairContact> surely = met && uncertain ? find(Places::certain) : met;
+        keepEarlier(possible[k], met);
+        keepEarlier(possible[k], surely); // of the two searches, either may halt earlier, within the tolerance
+        keepEarlier(certain[k], surely);
+      });
   for (const auto& contact : possible)
     if (contact) result.first_contact.push_back(*contact);
   for (const auto& contact : certain)

@@ -6,7 +6,7 @@
 #include <pcl_bsh/collision/collide.h>
 #include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/scene/state.h>
-#include <pcl_bsh/scene/sweep.h>
+#include <pcl_bsh/scene/swept_object.h>
 
 #include <chrono>
 #include <limits>
@@ -53,16 +53,13 @@ void Scene::State::eachSweptPair(EffectCost& cost, const Ask& ask)
   const std::vector<BroadPair*>& pairs = grid.pairs();
   eachPair(pairs, cost, [&](std::size_t k) {
     BroadPair& pair = *pairs[k];
-    const ObjectMotion motion_a = motionOf(pair.a), motion_b = motionOf(pair.b);
-    Box3 box = motion_a.swept();
+    const SweptObject a(bodies[pair.a]), b(bodies[pair.b]);
+    Box3 box = a.box();
     box.grow((pair.clearance + options.tolerance) * (1.0 + scene_rounding));
-    if (!box.meets(motion_b.swept())) return;
-    const std::vector<ScenePart>&parts_a = bodies[pair.a].object.parts, &parts_b = bodies[pair.b].object.parts;
-    for (std::uint32_t i = 0; i < parts_a.size(); ++i)
-      for (std::uint32_t j = 0; j < parts_b.size(); ++j) {
-        const SweptPart a{*parts_a[i].hierarchy, parts_a[i].pose, motion_a};
-        const SweptPart b{*parts_b[j].hierarchy, parts_b[j].pose, motion_b};
-        ask(k, pair, PartPair{pair.a, pair.b, i, j}, a, b);
+    if (!box.meets(b.box())) return;
+    for (std::uint32_t i = 0; i < bodies[pair.a].world.size(); ++i)
+      for (std::uint32_t j = 0; j < bodies[pair.b].world.size(); ++j) {
+        ask(k, pair, PartPair{pair.a, pair.b, i, j}, a.part(i), b.part(j));
         ++pair.memory.asked;
       }
   });

@@ -60,8 +60,8 @@ struct Effects {
   /// infinity: of every pair to be tested.
   std::optional<double> distance;
   std::optional<std::size_t> contacts; ///< at most so many per pair of parts, the nearest
-  bool first_contact = false;          ///< when, within the step, a pair first meets
-  bool swept = false;                  ///< which points meet another object anywhere between the poses of a step
+  bool first_contact = false;          ///< when, on the way from the poses of the last query, a pair first meets
+  bool swept = false;                  ///< which points meet another object anywhere on this way
   bool self = false;                   ///< parts of one object that collide with each other
   Response response = Response::none;
   std::optional<Gravity> gravity;
@@ -118,9 +118,9 @@ struct ContactPair : PartPair {
 
 /// Of Effect::first_contact.
 struct PartFirstContact : PartPair {
-  double fraction =
-      0.0;        ///< of the step, in [0, 1]: before it no pair of points collides, at it one is within tolerance
-  PointPair pair; ///< the points that meet
+  double fraction = 0.0; ///< of the way from the last query (SweptMotion::leg), in [0, 1]: before it no pair of points
+                         ///< collides, at it one is within tolerance
+  PointPair pair;        ///< the points that meet
 };
 
 /// The points of a part that collide, or are undecided. Parts without any are not listed.
@@ -154,10 +154,21 @@ struct Outcome {
   std::vector<Leg> legs;
 };
 
-/// Of an object that has moved, from its pose at the last query: what first_contact and swept look at.
+/// Of an object that has moved, from its pose at the last query: what first_contact and swept look at. Its points and
+/// parts are as they are now, all the way.
 struct SweptMotion {
   ObjectId object = 0;
+  std::optional<std::uint32_t> part; ///< of a part whose pose was set: its own leg, of T_world_cloud; else of the whole
   Leg leg;
+};
+
+/// An object that did more since the last query than first_contact and swept look at.
+struct UnsweptObject {
+  ObjectId object = 0;
+  bool added = false;    ///< since then, and no step was made: it is looked at where it stands
+  bool reshaped = false; ///< its points have changed: how they got from their former places is not looked at
+  bool detoured = false; ///< it may have gone another way than its leg: its pose, or a part's, was set before it moved
+                         ///< on by itself, or a response or gravity led it (Outcome::legs)
 };
 
 /// What Scene::query() or Scene::step() found; a list is empty where its effect is not asked for.
@@ -171,9 +182,11 @@ struct SceneResult {
   std::vector<DistantPair> distance;
   std::vector<ContactPair> contacts;
   std::vector<PartFirstContact> first_contact;
-  std::vector<PartFirstContact> certain_contact; ///< the same of what collides for certain, where points are uncertain
+  /// The same of what collides for certain. Pairs of objects without uncertain points are in both lists.
+  std::vector<PartFirstContact> certain_contact;
   std::vector<FlaggedPart> swept;
-  std::vector<SweptMotion> swept_motions; ///< by object; with first_contact or swept
+  std::vector<SweptMotion> swept_motions; ///< by object, the whole before its parts; with first_contact or swept
+  std::vector<UnsweptObject> unswept;     ///< by object; with first_contact or swept
   std::vector<SelfCollision> self;
   std::vector<Outcome> outcomes; ///< of moved objects, with a response or gravity
   BroadPhaseCost broad_phase;

@@ -52,12 +52,12 @@ void Scene::State::prepareGrid()
 void Scene::State::place(ObjectId object)
 {
   Body& body = bodies[object];
-  const bool swept = usesSweptMotion(options.effects) && body.last_version > 0 && body.version != body.last_version;
+  const bool swept = usesSweptMotion(options.effects) && body.isMoved();
   if (body.placed_version == body.version && !body.placed_swept && !swept) return;
   body.placed_version = body.version;
   body.placed_swept = swept;
   ++result.broad_phase.moved;
-  boxes_.assign(1, swept ? motionOf(object).swept() : body.world_box);
+  boxes_.assign(1, swept ? SweptObject(body).box() : body.world_box);
   boxes_.front().grow(0.5 * reach);
   if (!swept && grid.voxelsOf(boxes_.front()) > kCoarse) {
     boxes_.clear();

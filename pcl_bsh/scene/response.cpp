@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Responses to collisions: a moving object stops, slides, or follows the ground.
 #include <pcl_bsh/scene/mover.h>
+#include <pcl_bsh/scene/swept_object.h>
 
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
@@ -96,6 +97,7 @@ void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, con
   const Goal goal{target, turn};
 
   auto begin = Clock::now();
+  const bool was_moved = body.isMoved();
   Mover mover(*this, object, moving);
   const Eigen::Vector3d from = mover.center();
   mover.outcome.wanted = (target * body.center() - from).norm();
@@ -171,23 +173,23 @@ void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, con
   mover.outcome.object = object;
   mover.outcome.travelled = (mover.center() - from).norm();
   body.turned += sumOfTurns(mover.legs);
+  body.detoured = mover.legs.size() > (was_moved ? 0 : 1);
   mover.outcome.legs = std::move(mover.legs);
   result.outcomes.push_back(std::move(mover.outcome));
   place(object);
 }
 
 /// Refuses a motion for which the bounds do not hold. @param rounding that positions may have
-void Scene::State::checkMotion(const Body& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
-                               const Eigen::Vector3d& turn, double rounding) const
+void Scene::State::checkMotion(const Body& body, const ObjectMotion& motion, double rounding) const
 {
   const auto refuse = [&body](const std::string& what) {
     throw InvalidInput(Input::scene, "Scene", "object '" + body.object.name + "' " + what);
   };
-  const double turns = turn.norm() / (2.0 * std::numbers::pi);
+  const double turns = motion.angle() / (2.0 * std::numbers::pi);
   if (!(turns <= kMostTurns))
     refuse(plainText("turns ", turns, " times within a step: make steps so short that it turns at most ", kMostTurns,
                      " times"));
-  const double found = ObjectMotion({from, to, body.center(), turn}, body.box).rounding();
+  const double found = motion.rounding();
   if (found <= rounding) return;
   refuse(plainText("goes where coordinates round by up to ", found, ": give a tolerance of at least ",
                    options.tolerance * found / rounding, " instead of ", options.tolerance,
@@ -201,9 +203,12 @@ void Scene::State::checkMotions(double before, double after) const
   const auto check = [this](const Body& body, const Goal& goal) {
     const double rounding = options.tolerance / 32;
     checkWorld(body.object, goal.pose);
-    checkMotion(body, body.object.pose, goal.pose, goal.turn, rounding);
-    if (usesSweptMotion(options.effects) && body.last_version > 0)
-      checkMotion(body, body.last_pose, goal.pose, body.turned + goal.turn, rounding);
+    checkMotion(body, ObjectMotion({body.object.pose, goal.pose, body.center(), goal.turn}, body.box), rounding);
+    if (usesSweptMotion(options.effects))
+      SweptObject(body, goal.pose, body.turned + goal.turn)
+          .eachLeg([&](std::optional<std::uint32_t>, const Leg&, const ObjectMotion& motion) {
+            checkMotion(body, motion, rounding);
+          });
   };
   // What has not moved was checked when it came where it is.
   for (const ObjectId object : moved) check(bodies[object], {bodies[object].object.pose, Eigen::Vector3d::Zero()});
@@ -229,6 +234,7 @@ void Scene::State::move(double dt)
       if (body.object.pose.matrix() != goal.pose.matrix()) body.follows_motion = false;
     }
     else {
+      body.detoured = body.isMoved();
       body.turned += goal.turn;
       setPose(i, goal.pose);
     }

@@ -24,6 +24,12 @@ bool isWhole(const Eigen::Isometry3d& pose)
 
 } // namespace
 
+/// A product with the identity may turn -0 into 0; beyond that, poses are passed on bit by bit.
+Eigen::Isometry3d worldPoseOf(const Eigen::Isometry3d& pose, const Eigen::Isometry3d& part)
+{
+  return isWhole(part) ? pose : pose * part;
+}
+
 Scene::State::State(SceneOptions scene_options)
 : options(std::move(scene_options)),
   rules(options.clearance, options.test_pairs)
@@ -46,11 +52,8 @@ Body& Scene::State::body(ObjectId object)
 
 void Scene::State::updateWorld(Body& body)
 {
-  for (std::size_t i = 0; i < body.world.size(); ++i) {
-    const Eigen::Isometry3d& part = body.object.parts[i].pose;
-    // A product with the identity may turn -0 into 0; beyond that, poses are passed on bit by bit.
-    body.world[i] = isWhole(part) ? body.object.pose : body.object.pose * part;
-  }
+  for (std::size_t i = 0; i < body.world.size(); ++i)
+    body.world[i] = worldPoseOf(body.object.pose, body.object.parts[i].pose);
   body.world_box = pcl_bsh::moved(body.box, body.object.pose);
   ++body.version;
   if (body.listed) return;
@@ -82,13 +85,18 @@ void Scene::State::followPoints()
   }
 }
 
-void Scene::State::pointsChanged(ObjectId object)
+void Scene::State::shapeChanged(ObjectId object)
 {
   Body& changed = bodies[object];
   changed.box = boxOf(changed.object);
   updateWorld(changed);
-  changed.last_version = 0; // there is no motion from the former points
   if (!grid_stale) grid.forget(object);
+}
+
+void Scene::State::pointsChanged(ObjectId object)
+{
+  shapeChanged(object);
+  bodies[object].reshaped = true;
 }
 
 void Scene::State::recover() noexcept
@@ -110,11 +118,16 @@ SceneResult Scene::State::step(double dt)
   try {
     followPoints();
     move(dt);
-    return query();
+    stepping = true;
+    SceneResult found = query();
+    stepping = false;
+    return found;
   }
   catch (...) {
     time = before;
+    stepping = false;
     for (Body& body : bodies) {
+      body.detoured = false;
       body.follows_motion = body.step_follows_motion;
       body.turned = body.step_turned;
       if (body.object.pose.matrix() != body.step_pose.matrix()) setPose(body.id, body.step_pose);
@@ -209,7 +222,9 @@ void Scene::setPose(ObjectId object, const Eigen::Isometry3d& pose)
   State::checkWorld(body.object, pose);
   body.follows_motion = false;
   state_->setPose(object, pose);
-  if (usesSweptMotion(state_->options.effects)) // one leg there, in the shorter direction
+  if (body.last_version == 0)
+    body.last_pose = pose;                           // no query has seen it anywhere else
+  else if (usesSweptMotion(state_->options.effects)) // one leg there, in the shorter direction
     body.turned = shorterTurn(body.last_pose.linear(), pose.linear());
 }
 
@@ -218,8 +233,15 @@ void Scene::setPartPose(ObjectId object, std::uint32_t part, const Eigen::Isomet
   Body& body = state_->body(object);
   checkPose("pose of a part of object '" + body.object.name + "'", pose);
   checkPose("pose of a part of object '" + body.object.name + "' in the world", body.object.pose * pose);
-  body.object.parts.at(part).pose = pose;
-  state_->pointsChanged(object);
+  ScenePart& set = body.object.parts.at(part);
+  if (usesSweptMotion(state_->options.effects) && body.last_version > 0 && body.last_parts.empty()) {
+    std::vector<Eigen::Isometry3d> poses;
+    poses.reserve(body.object.parts.size());
+    for (const ScenePart& each : body.object.parts) poses.push_back(each.pose);
+    body.last_parts = std::move(poses);
+  }
+  set.pose = pose;
+  state_->shapeChanged(object);
 }
 
 void Scene::setMotion(ObjectId object, const Motion& motion)

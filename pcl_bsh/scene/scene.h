@@ -130,7 +130,8 @@ public:
   /// T_world_cloud of a part: the very pose that queries are given.
   const Eigen::Isometry3d& worldPose(ObjectId object, std::uint32_t part = 0) const;
 
-  /// Takes an object somewhere, whatever is in between; ends nothing of its motion, which goes on from there.
+  /// Takes an object, or a part within its object, somewhere, whatever is in between; ends nothing of its motion, which
+  /// goes on from there. `first_contact` and `swept` look at the way there, unless no query has seen the object yet.
   void setPose(ObjectId object, const Eigen::Isometry3d& pose);
   void setPartPose(ObjectId object, std::uint32_t part, const Eigen::Isometry3d& pose);
   void setMotion(ObjectId object, const Motion& motion);
@@ -151,10 +152,13 @@ public:
   // A query or step that throws (std::bad_alloc) has changed nothing, and may be asked for again.
 
   /// The effects at the present poses. `first_contact` and `swept` look at the motion from the poses of the last query
-  /// (SceneResult::swept_motions): one leg, whatever legs a response took; after setPose() in the shorter direction.
+  /// or step, with the points and rules of now (SceneResult::swept_motions): one leg, whatever legs a response took;
+  /// after setPose() in the shorter direction; of a part after setPartPose() a leg of its own. An object that was added
+  /// since then is looked at where it stands. What is left out of this is listed in SceneResult::unswept.
   SceneResult query();
 
-  /// Moves every object along its motion, as response and gravity allow, and queries. @param dt seconds, finite, >= 0
+  /// Moves every object along its motion, as response and gravity allow, and queries. An object that no query has seen
+  /// yet moves from where it was put. @param dt seconds, finite, >= 0
   SceneResult step(double dt);
 
   class State;

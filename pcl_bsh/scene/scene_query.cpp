@@ -6,34 +6,29 @@
 
 namespace pcl_bsh {
 
-Leg Scene::State::legOf(ObjectId object) const
+/// And what they leave out.
+void Scene::State::listSweptMotions()
 {
-  const Body& body = bodies[object];
-  const Eigen::Isometry3d& to = body.object.pose;
-  if (body.last_version == 0) return {to, to, body.center(), Eigen::Vector3d::Zero()};
-  return {body.last_pose, to, body.center(), turnNearestTo(body.turned, body.last_pose.linear(), to.linear())};
-}
-
-ObjectMotion Scene::State::motionOf(ObjectId object) const
-{
-  return {legOf(object), bodies[object].box};
+  std::vector<ObjectId> objects = moved;
+  std::sort(objects.begin(), objects.end());
+  for (const ObjectId object : objects) {
+    const Body& body = bodies[object];
+    const bool seen = body.last_version > 0;
+    const UnsweptObject left_out{object, !seen && queried && !stepping, seen && body.reshaped, body.detoured};
+    if (left_out.added || left_out.reshaped || left_out.detoured) result.unswept.push_back(left_out);
+    const bool is_moved = body.isMoved();
+    SweptObject(body).eachLeg([&](std::optional<std::uint32_t> part, const Leg& leg, const ObjectMotion& motion) {
+      checkMotion(body, motion, options.tolerance / 16);
+      if (is_moved) result.swept_motions.push_back({object, part, leg});
+    });
+  }
 }
 
 SceneResult Scene::State::query()
 {
   const Effects& effects = options.effects;
   followPoints();
-  if (usesSweptMotion(effects)) {
-    std::vector<SweptMotion> swept_motions;
-    for (const ObjectId object : moved) {
-      const Leg leg = legOf(object);
-      checkMotion(bodies[object], leg.from, leg.to, leg.turn, options.tolerance / 16);
-      if (bodies[object].last_version > 0) swept_motions.push_back({object, leg});
-    }
-    const auto before = [](const SweptMotion& l, const SweptMotion& r) { return l.object < r.object; };
-    std::sort(swept_motions.begin(), swept_motions.end(), before);
-    result.swept_motions = std::move(swept_motions);
-  }
+  if (usesSweptMotion(effects)) listSweptMotions();
   result.time = time;
   const bool of_near = effects.any || effects.flags || effects.contacts;
   if (of_near || effects.distance || usesSweptMotion(effects)) prepareGrid();
@@ -53,11 +48,13 @@ SceneResult Scene::State::query()
         options.remember && body.last_version > 0 ? motionBound(body.box, body.last_pose, body.object.pose) : 0.0;
     body.last_pose = body.object.pose;
     body.last_version = body.version;
+    body.last_parts.clear();
     body.turned.setZero();
-    body.listed = false;
+    body.listed = body.reshaped = body.detoured = false;
   }
   moved_before.swap(moved);
   moved.clear();
+  queried = true;
   SceneResult finished = std::move(result);
   result = SceneResult();
   return finished;

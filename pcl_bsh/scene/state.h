@@ -11,6 +11,9 @@
 
 namespace pcl_bsh {
 
+/// T_world_cloud of a part that is at `part` (T_object_cloud) in an object at `pose`.
+Eigen::Isometry3d worldPoseOf(const Eigen::Isometry3d& pose, const Eigen::Isometry3d& part);
+
 /// An object as it stands.
 struct Body {
   ObjectId id = 0;
@@ -23,8 +26,11 @@ struct Body {
   Box3 box;                             ///< of its points, in the object's frame
   Box3 world_box;
   std::uint64_t version = 1;                        ///< grows with every change of a pose or of points
-  Eigen::Isometry3d last_pose;                      ///< at the last query
+  Eigen::Isometry3d last_pose;                      ///< at the last query; before the first, where it was put
+  std::vector<Eigen::Isometry3d> last_parts;        ///< poses of its parts at the last query, if one was set since
   std::uint64_t last_version = 0;                   ///< at the last query; 0: there was none
+  bool reshaped = false;                            ///< since the last query its points have changed
+  bool detoured = false;                            ///< since the last query it went another way than in one leg
   std::uint64_t placed_version = 0;                 ///< in the grid
   bool placed_swept = false;                        ///< with the motion to its place
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(); ///< since the last query, full turns included
@@ -35,6 +41,19 @@ struct Body {
 
   /// Of its box, in the object's frame: the point that goes straight.
   Eigen::Vector3d center() const { return box.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : box.center(); }
+
+  /// Since the last query.
+  bool isPartMoved(std::size_t part) const
+  {
+    return !last_parts.empty() && last_parts[part].matrix() != object.parts[part].pose.matrix();
+  }
+  bool isMoved() const
+  {
+    if (turned != Eigen::Vector3d::Zero() || last_pose.matrix() != object.pose.matrix()) return true;
+    for (std::size_t i = 0; i < last_parts.size(); ++i)
+      if (isPartMoved(i)) return true;
+    return false;
+  }
 };
 
 /// Whether an effect looks at the motion since the last query.
@@ -63,7 +82,8 @@ public:
 
   void setPose(ObjectId object, const Eigen::Isometry3d& pose);
   void updateWorld(Body& body);
-  void pointsChanged(ObjectId object);
+  void shapeChanged(ObjectId object);  ///< its parts or their points are elsewhere in it
+  void pointsChanged(ObjectId object); ///< the same, and its points have not got there with a part
   void followPoints(); ///< forgets what is known of points that were changed since the last call, also by another scene
 
   SceneResult step(double dt);
@@ -71,13 +91,15 @@ public:
   void respond(ObjectId object, const Eigen::Isometry3d& target, const Eigen::Vector3d& turn);
   void recover() noexcept; ///< after a query that threw: drops its result, and all that is remembered
   void prepareGrid();      ///< the grid, and every object in it
-  SceneResult query();
+  SceneResult query();     ///< at the end of a step, or by itself
 
   SceneOptions options;
   PairRules rules;
   std::vector<Body> bodies;
   std::unordered_map<std::string, ObjectId> names;
   double time = 0.0;
+  bool queried = false;  ///< there was a query
+  bool stepping = false; ///< the query is that of a step
   BroadPhase grid;
   bool grid_stale = true;             ///< must be made anew: rules, clearances or reach have changed
   double reach = 0.0;                 ///< how far apart pairs are of interest
@@ -110,10 +132,8 @@ private:
   void eachPair(const std::vector<BroadPair*>& pairs, EffectCost& cost, const Decide& decide);
   template <class Ask>
   void eachSweptPair(EffectCost& cost, const Ask& ask);
-  Leg legOf(ObjectId object) const; ///< since the last query
-  ObjectMotion motionOf(ObjectId object) const;
-  void checkMotion(const Body& body, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
-                   const Eigen::Vector3d& turn, double rounding) const;
+  void checkMotion(const Body& body, const ObjectMotion& motion, double rounding) const;
+  void listSweptMotions();
   void checkMotions(double before, double after) const;
 
   std::vector<Box3> boxes_;            // scratch

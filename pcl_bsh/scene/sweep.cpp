@@ -81,7 +81,7 @@ private:
       const auto early = first(begin, middle);
       return early ? early : first(middle, end);
     }
-    if (!found.complete) return PairContact{begin, found.pairs.front()};
+    if (!found.complete) return firstOfCrowd(begin, end);
     std::optional<PairContact> earliest;
     for (const PointPair pair : found.pairs) {
       const std::optional<ContactZone> near = zone(pair);
@@ -92,6 +92,22 @@ private:
         earliest = PairContact{*s, pair};
     }
     return earliest;
+  }
+
+  /// What can collide within an interval that is so short, wherever it is in it, is within this at its beginning.
+  double wideClearance(double begin, double end) const
+  {
+    return clearance_ + closingReach(a_.motion, b_.motion, end - begin) + 0.5 * tolerance_;
+  }
+
+  /// Of so many pairs, within so short an interval, that no order of theirs matters: any that can collide in it. Pairs
+  /// collected may be farther apart than their own uncertainties let them be.
+  std::optional<PairContact> firstOfCrowd(double begin, double end)
+  {
+    const AnyResult near = anyCollisionAt(a_.at(begin), b_.at(begin), {wideClearance(begin, end), {}}, places_);
+    work_ += near.work;
+    if (!near.witness) return std::nullopt;
+    return PairContact{begin, *near.witness};
   }
 
   void flag(double begin, double end)
@@ -105,7 +121,7 @@ private:
     }
     if (!found.complete) {
       FlagsRequest wide;
-      wide.clearance = clearance_ + closingReach(a_.motion, b_.motion, end - begin) + 0.5 * tolerance_;
+      wide.clearance = wideClearance(begin, end);
       wide.flagged = Side::both;
       const FlagsResult near = collisionFlags(a_.at(begin), b_.at(begin), wide);
       work_ += near.work;

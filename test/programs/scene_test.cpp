@@ -193,6 +193,38 @@ TEST(SceneProgram, SaysWhatUncertainPointsLeaveOpen)
   EXPECT_THAT(run("pcl_bsh_scene", scene + " --explain").out, HasSubstr("points of cloud 'ball' may be elsewhere"));
 }
 
+TEST(SceneProgram, SaysWhatItDidNotSweep)
+{
+  const io::TemporaryFolder folder;
+  const auto runOf = [&](const std::string& wave) {
+    std::string text = crashWith(R"("first_contact": true, "swept": true, "deform": 1.5)");
+    text.insert(text.find("\"motion\""), wave);
+    return run("pcl_bsh_scene",
+               folder.write("crash.json", text).string() + " --json --out " + (folder / "out").string());
+  };
+  const Outcome waving = runOf(R"("wave": { "amplitude": [0, 0, 0.01], "length": 1, "period": 2 }, )");
+  ASSERT_EQ(waving.exit_code, 0) << waving.err;
+  EXPECT_EQ(Json::parse(waving.out)["unswept_steps"], 4);
+  std::istringstream each(io::contentOf(folder / "out" / "steps.jsonl"));
+  std::size_t met = 0;
+  for (std::string line; std::getline(each, line);) {
+    const Json step = Json::parse(line);
+    met += step["first_contact"].size();
+    if (step["step"] == 0)
+      EXPECT_TRUE(step["unswept"].empty());
+    else
+      EXPECT_EQ(step["unswept"],
+                (Json{{{"object", "moving ball"}, {"added", false}, {"reshaped", true}, {"detoured", false}}}));
+  }
+  EXPECT_GT(met, 0u) << "an object that deforms in each step is swept";
+  const std::string csv = io::contentOf(folder / "out" / "steps.csv");
+  EXPECT_THAT(csv.substr(0, csv.find('\n')), testing::EndsWith(",unswept_objects"));
+
+  const Outcome rigid = runOf("");
+  ASSERT_EQ(rigid.exit_code, 0) << rigid.err;
+  EXPECT_EQ(Json::parse(rigid.out)["unswept_steps"], 0);
+}
+
 TEST(SceneProgram, ExplainsAndValidatesWithoutRunning)
 {
   const io::TemporaryFolder folder;

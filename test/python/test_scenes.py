@@ -87,6 +87,43 @@ def test_parts():
     assert scene.query().self_collisions == []
 
 
+def test_what_was_swept_and_what_was_not():
+    """A dart with a nose that is certain and a tail that is not; it meets a post at 0.475 of its way."""
+    point = pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
+    tail = pcl_bsh.SphereHierarchy(np.zeros((1, 3)), uncertainty=0.005)
+    at, behind = np.eye(4), np.eye(4)
+    at[0, 3], behind[0, 3] = 1, -0.5
+    scene = pcl_bsh.Scene(first_contact=True, swept=True, clearance=0.05, deform=1.5)
+    scene.add("post", point, at, fixed=True)
+    dart = scene.add("dart", [("nose", point), ("tail", tail, behind)], motion=pcl_bsh.VelocityMotion([2, 0, 0]))
+    result = scene.step(1.0)
+    for contact in result.first_contact[0], result.certain_contact[0]:
+        assert contact["fraction"] == pytest.approx(0.475, abs=1e-4) and contact["part_b"] == 0
+    (motion,) = result.swept_motions
+    assert motion["object"] == dart and motion["part"] is None and result.unswept == []
+    np.testing.assert_array_equal(motion["leg"]["from"], np.eye(4))
+    np.testing.assert_array_equal(motion["leg"]["to"], scene.pose("dart"))
+    assert motion["leg"]["turn"] == (0, 0, 0) and len(motion["leg"]["center"]) == 3
+
+    scene.deform("dart", np.full((1, 3), 0.01), 1)
+    scene.set_part_pose("dart", 0, behind)
+    scene.add("late", point, at * 1.0)
+    result = scene.query()
+    assert [(m["object"], m["part"]) for m in result.swept_motions] == [(dart, None), (dart, 0)]
+    assert result.unswept == [
+        {"object": dart, "added": False, "reshaped": True, "detoured": False},
+        {"object": 2, "added": True, "reshaped": False, "detoured": False},
+    ]
+
+
+def test_outcomes_have_their_legs():
+    point = pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
+    scene = pcl_bsh.Scene(response="stop")
+    scene.add("ball", point, motion=pcl_bsh.VelocityMotion([2, 0, 0]))
+    (outcome,) = scene.step(0.5).outcomes
+    assert outcome["legs"][0]["to"][0, 3] == 1.0 and outcome["travelled"] == 1.0
+
+
 def test_gravity():
     x, y = np.meshgrid(np.arange(-1, 3, 0.05), np.arange(-1, 1, 0.05))
     floor = pcl_bsh.SphereHierarchy(np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1))

@@ -171,6 +171,84 @@ TEST(SceneUncertainty, NothingCollidesForCertainWhereTheClearanceIsLessThanTheUn
   EXPECT_TRUE(result.certain_contact.empty());
 }
 
+/// The nose is certain, the tail is not: the first certain contact is the nose's.
+TEST(SceneUncertainty, WhatIsCertainOfAnObjectThatIsNotAllCertainMeetsForCertain)
+{
+  for (const bool only_nose : {true, false}) {
+    Shelf shelf;
+    Cloud tail({{0, 0, 0}}, doubles);
+    tail.setUncertainties(0.005, {});
+    SceneOptions options;
+    options.effects.first_contact = true;
+    options.clearance = 0.05;
+    Scene scene(options);
+    const auto sure = shelf.add({{0, 0, 0}});
+    scene.add(fixedObject("post", sure, at(1, 0, 0)));
+    SceneObject dart = object("dart", sure);
+    dart.parts.push_back({"tail", shelf.add(std::move(tail)), at(-0.5, only_nose ? 1.0 : 0.0, 0)});
+    dart.motion = VelocityMotion{{2, 0, 0}};
+    scene.add(dart);
+    const SceneResult result = scene.step(1);
+    ASSERT_EQ(result.first_contact.size(), 1u);
+    ASSERT_EQ(result.certain_contact.size(), 1u);
+    for (const auto* contact : {&result.first_contact[0], &result.certain_contact[0]}) {
+      EXPECT_NEAR(contact->fraction, 0.475, 1e-4);
+      EXPECT_EQ(contact->part_b, 0u);
+    }
+  }
+}
+
+/// Just within the tolerance of what may collide, and just beyond that of what does for certain, from the start.
+TEST(SceneUncertainty, NoContactIsCertainBeforeItIsPossible)
+{
+  Shelf shelf;
+  SceneOptions options;
+  options.effects.first_contact = true;
+  options.clearance = 0.5;
+  options.tolerance = 1e-3;
+  Scene scene(options);
+  Cloud point({{0, 0, 0}}, doubles);
+  point.setUncertainties(1e-6, {});
+  const auto unsure = shelf.add(std::move(point));
+  scene.add(fixedObject("still", unsure));
+  SceneObject moving = object("moving", unsure, at(-0.5 - 0.5 * options.tolerance, 0, 0));
+  moving.motion = VelocityMotion{{1, 0, 0}};
+  scene.add(moving);
+  const SceneResult result = scene.step(1);
+  ASSERT_EQ(result.first_contact.size(), 1u);
+  ASSERT_EQ(result.certain_contact.size(), 1u);
+  EXPECT_LE(result.first_contact[0].fraction, result.certain_contact[0].fraction);
+}
+
+/// So many pairs that they are not followed one by one: those that meet are uncertain, and are none for certain.
+TEST(SceneUncertainty, NoPairOfACrowdMeetsForCertainThatOnlyMay)
+{
+  std::vector<Point3> moving(200, Point3{0, 0, 0}), fixed = moving;
+  std::vector<float> crowd(200, 0.3f);
+  moving.push_back({-1, 0, 0});
+  fixed.push_back({0, 0.3, 0});
+  crowd.push_back(0.0f);
+  Cloud a(moving, doubles), b(fixed, doubles);
+  a.setUncertainties(0.0, crowd);
+  b.setUncertainties(0.0, crowd);
+  Shelf shelf;
+  SceneOptions options;
+  options.effects.first_contact = true;
+  options.clearance = 0.5;
+  options.tolerance = 0.05;
+  Scene scene(options);
+  SceneObject swarm = object("swarm", shelf.add(std::move(a)), at(-3, 0, 0));
+  swarm.motion = VelocityMotion{{6, 0, 0}};
+  scene.add(swarm);
+  scene.add(fixedObject("still", shelf.add(std::move(b))));
+  const SceneResult result = scene.step(1);
+  ASSERT_EQ(result.first_contact.size(), 1u);
+  EXPECT_NEAR(result.first_contact[0].fraction, (3 - 1.1) / 6, 0.05 / 6);
+  ASSERT_EQ(result.certain_contact.size(), 1u);
+  EXPECT_NEAR(result.certain_contact[0].fraction, (3 + 0.6) / 6, 0.05 / 6);
+  EXPECT_EQ(result.certain_contact[0].pair, (PointPair{200, 200}));
+}
+
 TEST(SceneUncertainty, AResponseHaltsBeforeWhatMayCollide)
 {
   for (const Response response : {Response::stop, Response::slide}) {

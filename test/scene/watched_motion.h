@@ -159,7 +159,7 @@ public:
     const auto count = static_cast<ObjectId>(before_.size());
     const auto poseAt = [&](ObjectId id, double s) {
       for (const SweptMotion& way : result.swept_motions)
-        if (way.object == id) return s >= 1.0 ? way.leg.to : s <= 0.0 ? way.leg.from : poseOn(way.leg, s);
+        if (way.object == id && !way.part) return s >= 1.0 ? way.leg.to : s <= 0.0 ? way.leg.from : poseOn(way.leg, s);
       return after(id);
     };
     for (const SweptMotion& way : result.swept_motions)

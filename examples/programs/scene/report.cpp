@@ -75,6 +75,7 @@ void SceneTotals::add(const SceneResult& result, double seconds)
   broad_phase.seconds += result.broad_phase.seconds;
   colliding_steps += result.any.empty() ? 0 : 1;
   undecided_steps += result.undecided.empty() ? 0 : 1;
+  unswept_steps += result.unswept.empty() ? 0 : 1;
   for (const Outcome& outcome : result.outcomes) {
     touched_moves += outcome.touched ? 1 : 0;
     travelled += outcome.travelled;
@@ -99,6 +100,7 @@ void SceneTable::writeHeader(std::ostream& out) const
     out << ',' << name << "_queries," << name << "_reused," << name << "_node_pairs," << name << "_updates," << name
         << "_seconds";
   }
+  if (sweeps()) out << ",unswept_objects";
   if (moves()) out << ",touched,stuck,grounded,travelled,wanted";
   out << '\n';
 }
@@ -132,6 +134,7 @@ void SceneTable::writeRow(std::ostream& out, std::size_t step, const SceneResult
     out << ',' << cost.pairs << ',' << cost.reused << ',' << cost.work.node_pairs << ',' << cost.work.updates() << ','
         << shortest(cost.seconds);
   }
+  if (sweeps()) out << ',' << result.unswept.size();
   if (moves()) {
     std::size_t touched = 0, stuck = 0, grounded = 0;
     double travelled = 0.0, wanted = 0.0;
@@ -211,6 +214,14 @@ nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const
     if (open) list("certain_contact", result.certain_contact, contact_of);
   }
   if (effects.swept) json["swept"] = flagged(result.swept);
+  if (effects.first_contact || effects.swept) {
+    json["unswept"] = Json::array();
+    for (const UnsweptObject& unswept : result.unswept)
+      json["unswept"].push_back({{"object", scene[unswept.object].name},
+                                 {"added", unswept.added},
+                                 {"reshaped", unswept.reshaped},
+                                 {"detoured", unswept.detoured}});
+  }
   if (effects.self) {
     json["self"] = Json::array();
     for (const SelfCollision& hit : result.self)

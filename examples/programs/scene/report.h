@@ -20,6 +20,7 @@ struct SceneTotals {
   std::vector<double> step_seconds;
   std::size_t colliding_steps = 0; ///< in which `any` found a pair
   std::size_t undecided_steps = 0; ///< in which it left one undecided
+  std::size_t unswept_steps = 0;   ///< in which an object did more than first_contact and swept look at
   std::size_t touched_moves = 0;
   double travelled = 0.0, wanted = 0.0;
 
@@ -38,6 +39,7 @@ public:
   void writeRow(std::ostream& out, std::size_t step, const SceneResult& result) const;
 
 private:
+  bool sweeps() const { return effects_.first_contact || effects_.swept; }
   bool moves() const { return effects_.response != Response::none || effects_.gravity.has_value(); }
 
   const Effects& effects_;

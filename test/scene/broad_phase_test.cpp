@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pairs of objects that share a voxel, where points have radii or may be elsewhere than they were measured.
+#include <pcl_bsh/scene/scene.h>
+
+#include "random_world.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace pcl_bsh {
+namespace {
+
+using test::at;
+using test::Cloud;
+using test::Layout;
+using test::sheet;
+using test::Shelf;
+
+constexpr double reach = 2.5; // of a point, beyond its place
+
+/// @param uncertain whether it may be elsewhere by the reach, or has it as its radius
+Cloud reaching(const std::vector<Point3>& points, bool uncertain)
+{
+  Cloud cloud(points, {Scalar::float64, 0, 0});
+  if (uncertain)
+    cloud.setUncertainties(reach, {});
+  else
+    cloud.setRadii(std::vector<float>(points.size(), static_cast<float>(reach)));
+  return cloud;
+}
+
+/// A sheet of more than 64 voxels, and a dot above it: nearer than the points of one reach.
+TEST(BroadPhase, ALargeObjectIsAsFarAsItsPointsMayBe)
+{
+  const auto large = sheet({-10, -10, 0}, {0.5, 0, 0}, {0, 0.5, 0}, 41, 41);
+  const std::vector<Point3> small = {{0, 0, 0}};
+  for (const bool uncertain : {false, true})
+    for (const bool of_large : {false, true})
+      for (const bool turned : {false, true})
+        for (const double height : {2.4, -2.4, 2.6}) {
+          SCOPED_TRACE((uncertain ? "uncertainty" : "radius") +
+                       std::string(of_large ? " of the large" : " of the small") + " at " + std::to_string(height));
+          Shelf shelf;
+          const auto plain = [](const std::vector<Point3>& points) { return Cloud(points, {Scalar::float64, 0, 0}); };
+          SceneOptions options;
+          options.effects.any = options.effects.flags = true;
+          options.clearance = 0.05;
+          options.voxel_edge = 0.5;
+          Scene scene(options);
+          Eigen::Isometry3d pose = at(0.2, 0.1, 0.2);
+          if (turned) pose.linear() = Eigen::AngleAxisd(1.0, Eigen::Vector3d(1, 2, 2) / 3).toRotationMatrix();
+          scene.add(object("large", shelf.add(of_large ? reaching(large, uncertain) : plain(large)), pose));
+          scene.add(object("small", shelf.add(of_large ? plain(small) : reaching(small, uncertain)),
+                           pose * at(0.25, 0.25, height)));
+          for (int again = 0; again < 2; ++again) {
+            const SceneResult result = scene.query();
+            const bool near = height < 2.5;
+            EXPECT_EQ(result.any.size(), near && !uncertain ? 1u : 0u);
+            EXPECT_EQ(result.undecided.size(), near && uncertain ? 1u : 0u);
+            const FlagsResult expected =
+                brute_force::collisionFlags(test::placed(scene, 0, 0), test::placed(scene, 1, 0), test::within(0.05));
+            ASSERT_EQ(result.flags.size(), near ? 2u : 0u);
+            if (!near) break;
+            EXPECT_EQ(result.flags[0].flags, expected.a);
+            EXPECT_EQ(result.flags[1].flags, expected.b);
+            scene.setPose(1, pose * at(8.25, -8.25, height)); // over other voxels
+          }
+        }
+}
+
+} // namespace
+} // namespace pcl_bsh
