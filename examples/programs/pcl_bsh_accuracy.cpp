@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What does accuracy cost in time, on these two clouds? A table, a plot, and which setting to choose.
 #include "cli/command_line.h"
+#include "cli/obstacle.h"
 #include "cli/pose.h"
-#include "cli/step.h"
+#include "cli/surface_options.h"
 #include "cli/used_files.h"
 #include "collide/options.h"
 #include "programs/accuracy/peers.h"
@@ -10,9 +11,7 @@
 
 #include <pcl_bsh/files/output_folder.h>
 #include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
-#include <pcl_bsh/search/cloud_view.h>
 
 #include <array>
 #include <cmath>
@@ -45,6 +44,7 @@ struct Options {
   unsigned poses = 1, repetitions = 5, threads = 1;
   std::string unit;
   bool peers = false;
+  io::SurfaceSettings surface;
   cli::CommandFiles files;
 };
 
@@ -55,8 +55,8 @@ std::optional<Options> parse(int argc, char** argv)
   Options options;
   CLI::App app("Measures what accuracy costs in time, on two clouds.", program);
   app.footer(footer);
-  app.add_option("A", options.a, "the cloud whose points are tested")->type_name("")->required();
-  app.add_option("B", options.b, "cloud to collide with")->type_name("")->required();
+  app.add_option("A", options.a, "the cloud whose points are tested, or a mesh")->type_name("")->required();
+  app.add_option("B", options.b, "cloud or mesh to collide with")->type_name("")->required();
   app.add_option("--clearance", options.clearance, "greatest distance that counts as collision, in the clouds' unit")
       ->type_name("D")
       ->transform(cli::number<double>(cli::give_length))
@@ -79,7 +79,10 @@ std::optional<Options> parse(int argc, char** argv)
       ->type_name("N")
       ->transform(cli::number<unsigned>(cli::give_threads));
   app.add_option("--unit", options.unit, "name of the clouds' unit, for the picture")->type_name("NAME");
-  app.add_flag("--peers", options.peers, "measure PCL's kd-tree, octree and VoxelGrid on the same clouds, too");
+  cli::addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
+  app.add_flag("--peers", options.peers,
+               "measure PCL's kd-tree, octree and VoxelGrid on the same clouds, too, which\n"
+               "must be points");
   if (!cli::understood(app, program, argc, argv)) return std::nullopt;
   if (!options.trajectory.empty() && (!pose.empty() || poses))
     throw cli::UsageError(std::string(pose.empty() ? "--poses" : "--pose") + ": --trajectory is given too: give one");
@@ -95,12 +98,25 @@ std::optional<Options> parse(int argc, char** argv)
   return options;
 }
 
-pcl::PCLPointCloud2 load(const std::filesystem::path& path)
+io::Obstacle load(const Options& options, const std::filesystem::path& path, io::SurfaceSettings settings)
 {
-  cli::Step step("Loading " + path.string());
-  pcl::PCLPointCloud2 cloud = io::readCloud(path);
-  step.done(std::to_string(std::size_t{cloud.width} * cloud.height) + " points");
-  return cloud;
+  double seconds = 0.0;
+  io::Obstacle loaded = cli::loadObstacle(path, settings, options.clearance, seconds);
+  cli::warn(program, cli::warningsOf(loaded, path));
+  if (options.peers && loaded.isSurface())
+    throw std::runtime_error("--peers: are measured on points, and " + path.string() +
+                             " has faces: leave it out, or give --vertices-only");
+  return loaded;
+}
+
+/// What was compared.
+std::string describe(const io::Obstacle& compared, const std::filesystem::path& path)
+{
+  const std::string records = std::to_string(compared.view().count);
+  const std::string what = compared.isSurface()
+                               ? std::to_string(compared.triangles()->size()) + " triangles in " + records + " balls"
+                               : records + " points";
+  return "`" + path.filename().string() + "` (" + what + ")";
 }
 
 struct Box {
@@ -150,8 +166,11 @@ int study(const Options& options)
       options.trajectory.empty() ? std::vector<Eigen::Isometry3d>() : posesOfFile(options.trajectory);
   const files::OutputFolder folder(options.out);
   for (const char* name : results) files::requireWritable(options.out / name);
-  const pcl::PCLPointCloud2 cloud_a = load(options.a), cloud_b = load(options.b);
-  accuracy::Subject subject{viewOf(cloud_a), viewOf(cloud_b), options.clearance, {}, 0.0, options.unit};
+  io::SurfaceSettings asked_about = options.surface; // as pcl_bsh_collide takes an input
+  asked_about.triangles_apart = true;
+  const io::Obstacle given_a = load(options, options.a, asked_about),
+                     given_b = load(options, options.b, options.surface);
+  accuracy::Subject subject{given_a.view(), given_b.view(), options.clearance, {}, 0.0, options.unit};
   const Box a(subject.a), b(subject.b);
   if (a.box.isEmpty() || b.box.isEmpty())
     throw std::runtime_error((a.box.isEmpty() ? options.a : options.b).string() +
@@ -168,9 +187,8 @@ int study(const Options& options)
       result.measurements.push_back(std::move(m));
   }
 
-  const std::string heading = "`" + options.a.filename().string() + "` (" + std::to_string(subject.a.count) +
-                              " points) against `" + options.b.filename().string() + "` (" +
-                              std::to_string(subject.b.count) + " points).";
+  std::string heading = describe(given_a, options.a) + " against " + describe(given_b, options.b) + ".";
+  if (given_b.isSurface()) heading += " Here " + io::promiseOf(given_b, "a setting") + ".";
   accuracy::writeReports(options.out, heading, subject, result);
   std::cout << accuracy::advice(subject, result) << "\nWrote " << (options.out / "accuracy.md").string()
             << ", accuracy.csv and accuracy.png beside it.\n";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which points of a cloud collide with an obstacle, at a pose or along a path? From two files to a third, with reports.
+#include "cli/obstacle.h"
 #include "cli/program.h"
 #include "cli/step.h"
 #include "collide/checks.h"
@@ -340,7 +341,8 @@ int collide(const Options& options)
   const std::shared_ptr<const SurfaceCover> cover = coverOf(options, input, report.seconds.load, report.warnings);
   if (!cover && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
-  const io::Obstacle obstacle = loadObstacle(options, report.seconds.load);
+  const io::Obstacle obstacle =
+      cli::loadObstacle(options.obstacle, options.surface, options.clearance, report.seconds.load);
   cli::requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
   const auto a = cli::build(cover ? cover->view() : viewOf(input.cloud), input.cloud.fields, options.input,
                             options.input_uncertainty, options.threads, report.seconds.build);
@@ -363,8 +365,8 @@ int collide(const Options& options)
   report.voxels_total = a.statistics().voxels + b.statistics().voxels;
   warnOf(report.input, a, report.clearance, report.warnings);
   warnOf(report.obstacle, given, report.clearance, report.warnings);
-  for (const std::string& remark : obstacle.remarks())
-    report.warnings.push_back(options.obstacle.string() + ": " + remark);
+  for (std::string& warning : cli::warningsOf(obstacle, options.obstacle))
+    report.warnings.push_back(std::move(warning));
   if (options.asks_collisions) warnOfHoles(report);
 
   write(options, input, found, distances, report.seconds.write);

@@ -75,6 +75,7 @@ int make(const Options& options)
   sites::MakeOptions wanted;
   wanted.memory = options.memory;
   wanted.tile_points = options.tile_points;
+  wanted.vertices_only = options.surface.vertices_only;
   constexpr auto goes_on = "what is done was noted, and the same command goes on";
   wanted.progress = [&](sites::MakeStep step, std::uint64_t done, std::uint64_t all) {
     if (step != sites::MakeStep::count && all >= wanted.save_points) cli::setWhatStays(goes_on);

@@ -2,7 +2,9 @@
 #include <pcl_bsh/filters/cloud_files/obstacle.h>
 
 #include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/filters/text_files/file_bytes.h>
 #include <pcl_bsh/filters/text_files/number_text.h>
+#include <pcl_bsh/filters/text_files/small_letters.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -132,10 +134,24 @@ std::string promiseOf(const Obstacle& surface, const std::string& beside)
 }
 
 Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& settings, double clearance,
-                      const std::function<bool(double)>& progress)
+                      const std::function<bool(double)>& progress, Viewpoint* viewpoint, LasHeaderPtr* las)
 {
-  if (settings.vertices_only) return Obstacle(std::make_shared<pcl::PCLPointCloud2>(readCloud(path)));
-  return obstacleOf(path, readMesh(path), settings, clearance, progress);
+  if (settings.vertices_only) return Obstacle(std::make_shared<pcl::PCLPointCloud2>(readCloud(path, viewpoint, las)));
+  return obstacleOf(path, readMesh(path, viewpoint, las), settings, clearance, progress);
+}
+
+bool hasFaces(const std::filesystem::path& path)
+{
+  const std::string extension = extensionOf(path);
+  if (extension != ".obj" && extension != ".off" && extension != ".ply" && extension != ".stl") return false;
+  if (extension == ".ply") {
+    constexpr std::size_t usual = std::size_t{1} << 16; // bytes of a header
+    const FileBytes beginning(path, usual);
+    const std::string_view header = beginning.view().substr(0, beginning.view().find("end_header"));
+    const auto names = [&](const char* element) { return header.find(element) != std::string_view::npos; };
+    if (header.size() < beginning.view().size() && !names("face") && !names("tristrips")) return false;
+  }
+  return !readMesh(path).triangles.empty();
 }
 
 Obstacle obstacleOf(const std::filesystem::path& path, Mesh mesh, const SurfaceSettings& settings, double clearance,

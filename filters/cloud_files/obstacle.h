@@ -103,13 +103,18 @@ private:
 std::string promiseOf(const Obstacle& surface, const std::string& beside = "");
 
 /// Reads any file that readCloud() reads.
+/// @param viewpoint and @param las as readCloud() takes them
 /// @throws files::FileError as readMesh() does, and where its faces cannot be covered. Cancelled
 Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& settings, double clearance,
-                      const std::function<bool(double)>& progress = nullptr);
+                      const std::function<bool(double)>& progress = nullptr, Viewpoint* viewpoint = nullptr,
+                      LasHeaderPtr* las = nullptr);
 
 /// That of a file whose mesh is read already.
 /// @throws files::FileError naming the file, where its faces cannot be covered. Cancelled
 Obstacle obstacleOf(const std::filesystem::path& path, Mesh mesh, const SurfaceSettings& settings, double clearance,
                     const std::function<bool(double)>& progress = nullptr);
+
+/// Whether readMesh() finds triangles in a file, which it reads where a beginning cannot tell. Throws as it does.
+bool hasFaces(const std::filesystem::path& path);
 
 } // namespace pcl_bsh::io

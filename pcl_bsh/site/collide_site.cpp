@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/collision/any_collision.h>
 #include <pcl_bsh/collision/closest_pair.h>
+#include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/site/candidate.h>
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/inquiry.h>
@@ -127,8 +128,10 @@ SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& as
   lower = leastOfAllRanks(lower);
   if (last.points.empty()) return result;
   wanted.accuracy = {};
-  const DistanceResult nearest = pcl_bsh::closestPair({last.hierarchy()}, b, wanted);
-  result.interval = {std::min(lower, nearest.interval.lower), nearest.interval.upper};
+  DistanceResult nearest = pcl_bsh::closestPair({last.hierarchy()}, b, wanted);
+  nearest.interval.lower = std::min(lower, nearest.interval.lower);
+  if (request.surface) tellOfSurface(*request.surface, nearest);
+  result.interval = nearest.interval;
   result.distance = nearest.distance;
   result.point = last.points[nearest.pair->a];
   result.b = nearest.pair->b;
@@ -148,7 +151,8 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
   double greatest = -infinity;
   Inquiry inquiry(site, request);
   const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
-    const PointDistances found = pcl_bsh::pointDistances({hierarchy}, b, wanted);
+    PointDistances found = pcl_bsh::pointDistances({hierarchy}, b, wanted);
+    if (request.surface) tellOfSurface(*request.surface, found);
     if (sink) sink(tile, cloud, found);
     return std::vector<double>{static_cast<double>(found.measured), static_cast<double>(found.undecided),
                                found.greatest};
@@ -180,7 +184,8 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   PassageSum sum(request, poses.size());
   Inquiry inquiry(site, request);
   const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
-    const TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
+    TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
+    if (request.surface) tellOfSurface(found);
     if (sink) sink(tile, cloud, found);
     return sum.numbersOf(tile, cloud, found);
   };

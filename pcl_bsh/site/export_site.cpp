@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/files/free_space.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/cloud_files/pcd.h>
@@ -43,8 +44,10 @@ public:
                              "name a .pcd file");
     if (points_ > io::max_points)
       throw files::FileError(path, "would have more than 2147483647 points", "export the sources one by one");
+    const std::string head = io::binaryPcdHeader(layout_.fields, static_cast<std::uint32_t>(points_));
+    files::requireSpace({{path, head.size() + points_ * layout_.point_step}});
     files::FileReplacement file(path);
-    file.stream() << io::binaryPcdHeader(layout_.fields, static_cast<std::uint32_t>(points_));
+    file.stream() << head;
     const std::uint64_t step = layout_.point_step;
     const std::uint64_t most = std::max<std::uint64_t>(options_.memory / 2 / step, 1);
     for (std::uint64_t begin = 0; begin < points_; begin += most) {

@@ -21,11 +21,11 @@ struct ExportOptions {
 };
 
 /// Writes all points as one binary PCD file with all fields of the site, in the order of (source, record).
-/// @throws files::FileError; Cancelled
+/// @throws files::FileError, also where the disk has no room; Cancelled
 void exportCloud(const Site& site, const std::filesystem::path& file, const ExportOptions& options = {});
 
-/// Writes one source as a binary PCD file: its points in their order, with the fields it had, in its types, and those
-/// that no source had, as a query adds them.
+/// Writes one source as a binary PCD file: its points in their order, with its fields, in its types, and those that are
+/// no source's: what queries have found.
 /// @param source < site.sources.size()
 void exportSource(const Site& site, std::size_t source, const std::filesystem::path& file,
                   const ExportOptions& options = {});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/cloud_files/cloud_stream.h>
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/hierarchy/retained_memory.h>
 #include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/site/checksum.h>
@@ -56,7 +57,10 @@ public:
   Site make()
   {
     describe();
-    UnfinishedSite unfinished(folder_, UnfinishedSite::Use::continuable);
+    const std::uint64_t least_tiles = site_.points / options_.tile_points + 1;
+    const std::uint64_t overview = std::min(options_.overview_points, site_.points);
+    UnfinishedSite unfinished(folder_, UnfinishedSite::Use::continuable,
+                              diskSpaceOf(site_.fields, site_.points, least_tiles, overview));
     unfinished_ = &unfinished;
     site_.folder = folder_;
     if (unfinished.wasSaved())
@@ -81,6 +85,10 @@ private:
     std::vector<Fields> fields;
     for (std::size_t i = 0; i < clouds_.size(); ++i) {
       const auto stream = open(i);
+      if (!options_.vertices_only && io::hasFaces(clouds_[i])) {
+        throw files::FileError(clouds_[i], "has faces, which a site cannot hold",
+                               "take its vertices alone (--vertices-only), or ask about it as the obstacle of a site");
+      }
       if (stream->size() > std::numeric_limits<std::uint32_t>::max())
         throw files::FileError(clouds_[i], "has more points than a number of 32 bits can count", "split the cloud");
       fields.push_back(packed(stream->header()));

@@ -29,6 +29,8 @@ struct MakeOptions {
   /// After so many points what is done is noted in the folder, so that a run that ends there can be continued; sites of
   /// fewer points begin again. At least 1.
   std::uint64_t save_points = 50'000'000;
+  /// Files with faces are their vertices alone; else they are refused, for a site holds no surface.
+  bool vertices_only = false;
   /// Called now and then with the points done and all points of this step. False: stop, makeSite() throws Cancelled.
   std::function<bool(MakeStep, std::uint64_t done, std::uint64_t all)> progress;
 };
@@ -37,8 +39,9 @@ struct MakeOptions {
 /// neighbouring voxels of one grid, at most `tile_points`; points that are not finite have tiles of their own. The
 /// folder is made, or is empty, or holds what an earlier run has left: of the same clouds and options, what is done is
 /// not done again. When anything is thrown before something was noted, nothing new is left in it.
-/// @throws files::FileError: clouds that cannot be read, or change meanwhile; fields of one name and different types;
-///   formats that must be held in memory, and do not fit; a folder that holds anything else, or cannot be written;
+/// @throws files::FileError: clouds that cannot be read, have faces, or change meanwhile; fields of one name and
+///   different types; formats that must be held in memory, and do not fit; a folder that holds anything else, or cannot
+///   be written; a disk that has no room for the site;
 ///   std::invalid_argument for options; Cancelled
 Site makeSite(const std::vector<std::filesystem::path>& clouds, const std::filesystem::path& folder,
               const MakeOptions& options = {});

@@ -2,6 +2,7 @@
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/unfinished.h>
 #include <pcl_bsh/filters/cloud_files/field_type.h>
+#include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/site/checksum.h>
 #include <pcl_bsh/site/kept_answers.h>
 #include <pcl_bsh/site/records.h>
@@ -11,6 +12,7 @@
 #include <pcl_bsh/site/unfinished_site.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <numeric>
 #include <optional>
@@ -26,10 +28,21 @@ namespace {
 constexpr std::size_t result_buffer = std::size_t{1} << 20;
 constexpr std::uint64_t overview_points = 1'000'000;
 
-/// The fields of a site with those of its results.
+bool has(const std::vector<std::string>& names, const std::string& name)
+{
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void eraseNamed(const std::vector<std::string>& names, Fields& fields)
+{
+  std::erase_if(fields, [&](const auto& field) { return has(names, field.name); });
+}
+
+/// The fields of a site with those of its results, and without those of other questions.
 Fields withResults(const Site& site, const std::vector<ResultField>& results)
 {
   Fields fields = site.fields;
+  eraseNamed(staleFields(site, results), fields);
   for (const ResultField& result : results) {
     const auto same = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.name == result.name; });
     if (same == fields.end()) {
@@ -45,6 +58,12 @@ Fields withResults(const Site& site, const std::vector<ResultField>& results)
     }
   }
   return layoutOf(fields).fields;
+}
+
+std::uint64_t bytesOf(const Site& site, const std::vector<ResultField>& results)
+{
+  return diskSpaceOf(layoutOf(withResults(site, results)).fields, site.points, site.tiles.size(),
+                     std::min(overview_points, site.points));
 }
 
 } // namespace
@@ -63,8 +82,10 @@ public:
   {
     for (const ResultField& result : results) {
       places_.push_back(placeOf(result));
-      written_anew_.push_back(result.name);
+      no_longer_of_sources_.push_back(result.name);
     }
+    const std::vector<std::string> stale = staleFields(site, results);
+    no_longer_of_sources_.insert(no_longer_of_sources_.end(), stale.begin(), stale.end());
     std::uint64_t points = 0;
     for (const Source& source : site.sources) {
       begins_.push_back(points);
@@ -75,7 +96,11 @@ public:
     using Use = UnfinishedSite::Use;
     const bool is_kept = !continuation.question.empty();
     const Use use = continuation.goes_on ? Use::resumed : ranks() > 1 || is_kept ? Use::shared : Use::alone;
-    if (rankHere() == 0) made_ = std::make_unique<UnfinishedSite>(folder, use);
+    if (rankHere() == 0) {
+      const std::uint64_t answers = continuation.goes_on ? 0 : answersIn(folder);
+      made_ = std::make_unique<UnfinishedSite>(folder, use, bytesOf(site, results));
+      thrown_away_ = answers; // now that the folder is this run's
+    }
     sumOfAllRanks(0);
     if (is_kept) answers_.emplace(folder, continuation.question);
     if (continuation.goes_on) goOn();
@@ -89,6 +114,7 @@ public:
   Writer& operator=(const Writer&) = delete;
 
   TileAnswers* answers() { return answers_ ? &*answers_ : nullptr; }
+  std::uint64_t thrownAway() const noexcept { return thrown_away_; }
 
   void write(const Tile& tile, const pcl::PCLPointCloud2& cloud, const std::vector<const void*>& columns)
   {
@@ -123,12 +149,13 @@ public:
     Site out = site_;
     out.folder = folder_;
     out.fields = layout_.fields;
+    for (Source& source : out.sources) eraseNamed(no_longer_of_sources_, source.fields);
     const std::vector<double> written = gatheredFromAllRanks(written_);
     for (std::size_t i = 0; i < written.size(); i += 2) {
       const auto number = static_cast<std::size_t>(written[i]);
       out.tiles[number].file = tileFileName(number);
       out.tiles[number].crc32 = static_cast<std::uint32_t>(written[i + 1]);
-      for (const std::string& name : written_anew_) out.tiles[number].greatest.erase(name);
+      for (const std::string& name : no_longer_of_sources_) out.tiles[number].greatest.erase(name);
     }
     const std::string overview = gatheredFromAllRanks(overview_);
     keepFiles();
@@ -275,7 +302,7 @@ private:
   std::size_t source_at_, record_at_; ///< in a record of the results
   std::vector<std::uint8_t> record_;
   std::vector<Place> places_;
-  std::vector<std::string> written_anew_;              ///< fields whose greatest values are not known
+  std::vector<std::string> no_longer_of_sources_;      ///< fields of results, and those that are left out
   std::vector<std::uint64_t> begins_;                  ///< of each source, the number of its first point in the site
   std::uint64_t every_ = 1;                            ///< points of the site for one of the overview
   std::unique_ptr<UnfinishedSite> made_;               ///< on the first rank
@@ -284,6 +311,7 @@ private:
   std::string overview_;
   std::optional<KeptAnswers> answers_; ///< where the question may go on
   bool is_finished_ = false;
+  std::uint64_t thrown_away_ = 0; ///< answers
 };
 
 ResultSite::ResultSite(const Site& site, const fs::path& folder, const std::vector<ResultField>& fields,
@@ -299,6 +327,11 @@ void ResultSite::write(const Tile& tile, const pcl::PCLPointCloud2& cloud, const
   writer_->write(tile, cloud, columns);
 }
 
+std::uint64_t ResultSite::thrownAway() const
+{
+  return writer_->thrownAway();
+}
+
 TileAnswers* ResultSite::answers()
 {
   return writer_->answers();
@@ -309,13 +342,36 @@ Site ResultSite::finish()
   return writer_->finish();
 }
 
-bool hasAnswers(const fs::path& folder)
+std::vector<std::string> staleFields(const Site& site, const std::vector<ResultField>& fields)
+{
+  constexpr std::array results = {collision_field_name, distance_field_name, first_pose_field_name,
+                                  closest_pose_field_name};
+  const auto has_field = [](const Source& source, const char* name) {
+    return std::any_of(source.fields.begin(), source.fields.end(), [&](const auto& f) { return f.name == name; });
+  };
+  std::vector<std::string> stale;
+  for (const char* name : results) {
+    const bool is_answered = std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return f.name == name; });
+    const auto had_answers = [&](const Source& source) {
+      return has_field(source, collision_field_name) && has_field(source, name);
+    };
+    if (!is_answered && std::any_of(site.sources.begin(), site.sources.end(), had_answers)) stale.emplace_back(name);
+  }
+  return stale;
+}
+
+std::uint64_t spaceWanted(const Site& site, const fs::path& folder, const std::vector<ResultField>& fields)
+{
+  return spaceWanted(folder, bytesOf(site, fields));
+}
+
+std::uint64_t answersIn(const fs::path& folder)
 {
   std::error_code error;
-  if (!isUnfinished(folder)) return false;
+  if (!isUnfinished(folder)) return 0;
   const fs::directory_iterator tiles(folder / tiles_folder_name, error);
-  return std::any_of(begin(tiles), end(tiles),
-                     [](const auto& entry) { return entry.path().extension() == answer_extension; });
+  return static_cast<std::uint64_t>(std::count_if(
+      begin(tiles), end(tiles), [](const auto& entry) { return entry.path().extension() == answer_extension; }));
 }
 
 } // namespace pcl_bsh::sites

@@ -29,6 +29,16 @@ struct ResultField {
   double none = 0.0;         ///< the value of points of which nothing was found
 };
 
+/// The site's fields of an earlier question that its clouds had been asked before it was made: `collision`, `distance`,
+/// `first_pose` and `closest_pose` of a source with a field `collision`, but for those that this question answers.
+/// Beside this question's answers they would pass for its own: ResultSite leaves them out.
+/// @param fields that this question answers
+std::vector<std::string> staleFields(const Site& site, const std::vector<ResultField>& fields);
+
+/// What a site of results takes on the disk, in bytes, beside what an earlier run has left in its folder.
+std::uint64_t spaceWanted(const Site& site, const std::filesystem::path& folder,
+                          const std::vector<ResultField>& fields);
+
 /// Lets a run of the same question use what an earlier one has found that was killed.
 struct Continuation {
   std::string question; ///< all that was asked; empty: nothing is kept for another run
@@ -43,9 +53,11 @@ struct Continuation {
 class ResultSite {
 public:
   /// @param folder a new or empty one, or one that was left not complete
-  /// @param fields of the results. Those that the site has already are written anew: the others stay as they are
-  /// @throws files::FileError for a folder that holds anything, or cannot be written; for a field of the site that has
-  ///   the name of one of these and another type; where it shall go on with what another question has found
+  /// @param fields of the results. Those that the site has already are written anew, and are no longer fields of its
+  ///   sources; but for staleFields() the others stay as they are
+  /// @throws files::FileError for a folder that holds anything, or cannot be written, or whose disk has no room; for a
+  ///   field of the site that has the name of one of these and another type; where it shall go on with what another
+  ///   question has found
   ResultSite(const Site& site, const std::filesystem::path& folder, const std::vector<ResultField>& fields,
              const Continuation& continuation = {});
   ~ResultSite();
@@ -61,6 +73,10 @@ public:
   /// What the continuation's question has found, for SiteRequest::answers. Null where nothing is kept.
   TileAnswers* answers();
 
+  /// Of how many tiles an earlier run had found something that this one has removed, for it was not to go on. On the
+  /// first rank; 0 on the others.
+  std::uint64_t thrownAway() const;
+
   /// Copies the tiles that no rank has written, and makes the folder a site. To be called once.
   Site finish();
 
@@ -69,8 +85,8 @@ private:
   std::unique_ptr<Writer> writer_;
 };
 
-/// Whether a folder that is no site yet holds answers of a question that can go on.
-bool hasAnswers(const std::filesystem::path& folder);
+/// Of how many tiles a folder that is no site yet holds answers of a question that can go on.
+std::uint64_t answersIn(const std::filesystem::path& folder);
 
 } // namespace pcl_bsh::sites
 PCL_BSH_EXPORT_END

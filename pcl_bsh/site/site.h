@@ -57,7 +57,8 @@ inline void extend(std::optional<Bounds>& bounds, const Point3& point)
 struct Source {
   std::string file;
   std::uint64_t points = 0;
-  std::vector<pcl::PCLPointField> fields; ///< side by side, without padding
+  /// That it had, side by side, without padding; but for those that hold what a question has found (result_site.h).
+  std::vector<pcl::PCLPointField> fields;
 };
 
 /// A part of a site: one file.

@@ -93,6 +93,14 @@ void TileFile::finish()
   file_->replaceHead(io::binaryPcdHeader(fields_, static_cast<std::uint32_t>(points_), head_bytes_));
 }
 
+std::uint64_t diskSpaceOf(const Fields& fields, std::uint64_t points, std::uint64_t tiles, std::uint64_t overview)
+{
+  constexpr std::uint64_t block = 4096; // of most disks: each file fills its last one, and has a header
+  constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / 2;
+  const std::uint64_t step = layoutOf(fields).point_step, records = points + overview;
+  return (records > most / step ? most : records * step) + (tiles + 2) * block;
+}
+
 std::string tileFileName(std::size_t tile)
 {
   char name[32];

@@ -47,6 +47,10 @@ private:
   std::string buffer_;
 };
 
+/// What the files of a site take on the disk, in bytes: so many points in so many tiles, and some of them in its
+/// overview.
+std::uint64_t diskSpaceOf(const Fields& fields, std::uint64_t points, std::uint64_t tiles, std::uint64_t overview);
+
 /// The name of a tile's file in the site's folder.
 std::string tileFileName(std::size_t tile);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/files/free_space.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/files/unfinished.h>
 #include <pcl_bsh/files/write_error.h>
@@ -80,7 +81,13 @@ bool isBegun(const fs::path& folder)
   return isUnfinished(folder) && fs::is_regular_file(folder / state_name, error);
 }
 
-UnfinishedSite::UnfinishedSite(const fs::path& folder, Use use) : folder_(folder)
+std::uint64_t spaceWanted(const fs::path& folder, std::uint64_t bytes)
+{
+  const std::uint64_t there = isUnfinished(folder) ? files::spaceTaken(folder / tiles_folder_name) : 0;
+  return bytes - std::min(bytes, there);
+}
+
+UnfinishedSite::UnfinishedSite(const fs::path& folder, Use use, std::uint64_t bytes) : folder_(folder)
 {
   std::error_code error;
   if (fs::exists(folder / site_file_name, error))
@@ -90,6 +97,7 @@ UnfinishedSite::UnfinishedSite(const fs::path& folder, Use use) : folder_(folder
     throw files::FileError(folder, error ? "cannot be read (" + error.message() + ")" : "is not empty",
                            "name a new folder");
   }
+  files::requireSpace({{folder, spaceWanted(folder, bytes)}});
   if (!was_begun) {
     mark_file_ = std::make_unique<files::NewFile>(folder / mark_name);
     mark_file_->append(mark_text);

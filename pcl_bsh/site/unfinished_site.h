@@ -6,6 +6,7 @@
 #include <pcl_bsh/files/output_folder.h>
 #include <pcl_bsh/site/site.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -16,6 +17,10 @@ namespace pcl_bsh::sites {
 
 /// Whether a folder holds what a program has left that was killed while it made a site.
 bool isUnfinished(const std::filesystem::path& folder);
+
+/// What of so many bytes of a site its folder's disk must have free: not what an earlier run has left there, which is
+/// taken over or removed first.
+std::uint64_t spaceWanted(const std::filesystem::path& folder, std::uint64_t bytes);
 
 /// Makes the folder, if need be, and the files in it, which are removed again unless finish() or save() is called. What
 /// an earlier run has left that was killed is removed first, which is told by its mark; nothing else ever is.
@@ -28,9 +33,10 @@ public:
     resumed,     ///< as `shared`, and tiles of an earlier run stay until discardTiles()
   };
 
+  /// @param bytes that the site will take on the disk; what an earlier run has left there is of it, or makes room
   /// @throws files::FileError when there is a site already or anything else, when another program makes a site there,
-  ///   when something was saved and the use is another one, or when the folder cannot be made
-  UnfinishedSite(const std::filesystem::path& folder, Use use);
+  ///   when something was saved and the use is another one, when the folder cannot be made, or the disk has no room
+  UnfinishedSite(const std::filesystem::path& folder, Use use, std::uint64_t bytes);
   ~UnfinishedSite();
   UnfinishedSite(const UnfinishedSite&) = delete;
   UnfinishedSite& operator=(const UnfinishedSite&) = delete;

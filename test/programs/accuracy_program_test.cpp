@@ -117,6 +117,35 @@ TEST_F(AccuracyProgram, TakesPosesFromAFile)
   EXPECT_THAT(io::contentOf(folder / "study" / "accuracy.md"), HasSubstr(", 20 poses, "));
 }
 
+/// The sheet passes through the crate's faces, and none of its corners is near.
+TEST_F(AccuracyProgram, MeasuresSurfacesWhereFilesHaveFaces)
+{
+  const fs::path crate = folder.write(
+      "crate.off", "OFF\n8 6 0\n-1 -1 -1\n0.5 -1 -1\n0.5 2 -1\n-1 2 -1\n-1 -1 1\n0.5 -1 1\n0.5 2 1\n-1 2 1\n"
+                   "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+  const auto study = [&](const std::string& more) {
+    fs::remove_all(folder / "study");
+    const Outcome done =
+        run("pcl_bsh_accuracy", a.string() + " " + crate.string() + " --clearance 0.05 --repeat 1 --out " +
+                                    (folder / "study").string() + more);
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    for (const Row& row : rows()) {
+      if (row.at("certified") == "1" && row.at("query") != "distance" && row.at("knob") != "tolerance")
+        EXPECT_EQ(row.at("wrong"), "0") << row.at("query") << ' ' << row.at("setting");
+    }
+    return io::contentOf(folder / "study" / "accuracy.md");
+  };
+  const std::string covered = study(" --surface-tolerance 0.02"), corners = study(" --vertices-only");
+  EXPECT_THAT(covered, HasSubstr("`a.xyz` (4000 points) against `crate.off` (12 triangles in "));
+  EXPECT_THAT(covered, HasSubstr("to a tolerance of 0.02: free is farther than the clearance from it"));
+  EXPECT_THAT(corners, HasSubstr("against `crate.off` (8 points)."));
+  const Outcome peers = run("pcl_bsh_accuracy", a.string() + " " + crate.string() + " --clearance 0.05 --peers --out " +
+                                                    (folder / "peers").string());
+  EXPECT_EQ(peers.exit_code, 1);
+  EXPECT_THAT(peers.err, HasSubstr("--peers: are measured on points, and " + crate.string() + " has faces"));
+  EXPECT_FALSE(fs::exists(folder / "peers"));
+}
+
 TEST_F(AccuracyProgram, RefusesWhatItCannotMeasure)
 {
   const auto fails = [&](const std::string& arguments, int code, const std::string& message) {

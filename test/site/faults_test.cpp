@@ -6,6 +6,7 @@
 #include "../programs/program_run.h"
 
 #include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/make_site.h>
@@ -128,6 +129,70 @@ TEST_F(SiteFaults, CountsOfNoPoints)
   site.tiles.back().points += more - made.points;
   folder.write("site/site.json", siteText(site));
   expectDefect(site.tiles.back().file + ": has ");
+}
+
+/// An hour's work is not begun where its result would not fit: before a tile is read or a file made.
+TEST_F(SiteFaults, DisksWithoutRoom)
+{
+  const std::uint64_t free = fs::space(folder.path()).free;
+  const auto expectRefusal = [&](const Outcome& refused, const std::string& place) {
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.err, testing::MatchesRegex(".*" + place +
+                                                   ": needs [0-9]+ MiB, and its disk has [0-9]+ MiB "
+                                                   "free: make room, or choose a place on another "
+                                                   "disk\n"));
+    EXPECT_FALSE(fs::exists(folder / place));
+  };
+  Site site = make();
+  const std::uint64_t bytes = 3 * free + (std::uint64_t{1} << 40), points = bytes / recordBytes(site) + 1;
+  { // A cloud of holes, which takes no room itself.
+    std::ofstream cloud(folder / "holes.pcd");
+    constexpr std::uint64_t most = 2147483647, step = 12 + 1000000;
+    cloud << "VERSION 0.7\nFIELDS x y z more\nSIZE 4 4 4 1\nTYPE F F F U\nCOUNT 1 1 1 1000000\nWIDTH "
+          << std::min(bytes / step, most) << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS "
+          << std::min(bytes / step, most) << "\nDATA binary\n";
+  }
+  std::error_code too_large;
+  fs::resize_file(folder / "holes.pcd", bytes + (1 << 20), too_large);
+  if (!too_large)
+    expectRefusal(run("pcl_bsh_site", "make holes.pcd --tile-points 500 --out made", folder.path()), "made");
+  fs::remove(folder / "holes.pcd");
+
+  site.tiles.back().points += points - site.points; // which it has not: that would be noticed when it is read
+  site.points = site.sources[0].points = points;
+  folder.write("site/site.json", siteText(site));
+#ifdef PCL_BSH_SITE_QUERIES
+  const std::string asked = "collide site scan.xyz --clearance 1 --out out";
+  expectRefusal(run("pcl_bsh_site", asked, folder.path()), "out");
+  // Of two outputs each is said to be too large.
+  expectRefusal(run("pcl_bsh_site", "collide site site --clearance 1 --obstacle-out marked", folder.path()), "marked");
+  // What an earlier run has left is still there.
+  fs::create_directories(folder / "out/tiles");
+  folder.write("out/unfinished_site", "left");
+  folder.write("out/tiles/tile_000000.answer", "left");
+  EXPECT_EQ(run("pcl_bsh_site", asked, folder.path()).exit_code, 1);
+  EXPECT_EQ(files::contentOf(folder / "out/tiles/tile_000000.answer"), "left");
+#endif
+}
+
+/// So many points as a file may have, a megabyte each.
+TEST_F(SiteFaults, ExportsThatDoNotFit)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* axis : {"x", "y", "z"}) io::addField(cloud, axis, io::Field::FLOAT32);
+  io::addField(cloud, "more", io::Field::UINT8, 1000000);
+  io::allocate(cloud, 2);
+  io::writeCloud(folder / "wide.pcd", cloud);
+  Site site = makeSite({folder / "wide.pcd"}, folder / "site");
+  constexpr std::uint64_t most = 2147483647;
+  if (fs::space(folder.path()).free > most * recordBytes(site)) GTEST_SKIP() << "a disk of petabytes";
+  site.tiles.back().points += most - site.points;
+  site.points = site.sources[0].points = most;
+  folder.write("site/site.json", siteText(site));
+  const Outcome refused = run("pcl_bsh_site", "export site all.pcd", folder.path());
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, testing::MatchesRegex(".*all.pcd: needs 2048[0-9]+ MiB, and its disk has .*"));
+  EXPECT_FALSE(fs::exists(folder / "all.pcd"));
 }
 
 /// Names in a document of someone else must not steer the terminal.

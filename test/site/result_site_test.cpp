@@ -125,6 +125,66 @@ TEST_F(SiteResults, AreThoseOfMemory)
   io::expectSame(resultOf("distances"), withFields(again = withFields(scan, fieldsOf(way)), {{"distance", &distance}}));
 }
 
+/// Of two sources, one of which was asked before it became a part of the site.
+TEST_F(SiteResults, AreExportedToEachSource)
+{
+  Cloud asked = scan, other = scan;
+  const std::vector<std::uint8_t> old_flags(scan.width, 7);
+  const std::vector<float> old_distance(scan.width, 77.0F);
+  const std::vector<std::int32_t> old_pose(scan.width, 777);
+  asked = withFields(asked, {{"collision", &old_flags}, {"distance", &old_distance}, {"first_pose", &old_pose}});
+  other = withFields(other, {{"distance", &old_distance}}); // a range, as scanners measure it
+  io::writeCloud(folder / "asked.pcd", asked);
+  io::writeCloud(folder / "plain.pcd", scan);
+  io::writeCloud(folder / "other.pcd", other);
+  fs::remove_all(folder / "site");
+  MakeOptions options;
+  options.tile_points = 500;
+  makeSite({folder / "asked.pcd", folder / "plain.pcd"}, folder / "site", options);
+  const SphereHierarchy a(viewOf(scan)), b(viewOf(machine));
+  FlagsRequest flags;
+  flags.clearance = 0.3;
+  const Cloud flagged = withField(scan, "collision", collisionFlags({a}, {b}, flags).a);
+
+  ASSERT_EQ(collide("--clearance 0.3 --out " + in("flags")), 0);
+  EXPECT_THAT(err, HasSubstr("leaves out fields of " + in("site") +
+                             " that answer an earlier question: distance, "
+                             "first_pose\n"));
+  EXPECT_NO_THROW(checkSite(readSite(folder / "flags")));
+  ASSERT_EQ(run("pcl_bsh_site", "export flags sources", folder.path()).exit_code, 0);
+  for (const char* name : {"asked.pcd", "plain.pcd"}) io::expectSame(io::readCloud(folder / "sources" / name), flagged);
+
+  // All that a path tells, in place of what was there.
+  ASSERT_EQ(collide("--clearance 0.3 --trajectory " + in("poses.txt") + " --out " + in("way")), 0);
+  EXPECT_EQ(err, "");
+  EXPECT_NO_THROW(checkSite(readSite(folder / "way")));
+  ASSERT_EQ(run("pcl_bsh_site", "export way of_way", folder.path()).exit_code, 0);
+  TrajectoryRequest along;
+  along.clearance = 0.3;
+  along.distances = along.first_poses = along.closest_poses = true;
+  const TrajectoryResult found = collideAlong({a}, b, poses, along);
+  for (const char* name : {"asked.pcd", "plain.pcd"}) {
+    const Cloud written = io::readCloud(folder / "of_way" / name);
+    EXPECT_EQ(written.fields.size(), 7U);
+    for (std::uint32_t i = 0; i < written.width; i += 37) {
+      EXPECT_EQ(io::valueOf(written, i, "collision"), found.flags[i]);
+      EXPECT_EQ(io::valueOf(written, i, "first_pose"), found.first_pose[i]);
+      EXPECT_EQ(io::valueOf(written, i, "closest_pose"), found.closest_pose[i]);
+    }
+  }
+
+  // What no question has written stays.
+  fs::remove_all(folder / "site");
+  makeSite({folder / "other.pcd", folder / "plain.pcd"}, folder / "site", options);
+  ASSERT_EQ(collide("--clearance 0.3 --out " + in("ranges")), 0);
+  EXPECT_EQ(err, "");
+  ASSERT_EQ(run("pcl_bsh_site", "export ranges of_ranges", folder.path()).exit_code, 0);
+  io::expectSame(io::readCloud(folder / "of_ranges/plain.pcd"), flagged);
+  const Cloud kept = io::readCloud(folder / "of_ranges/other.pcd");
+  EXPECT_EQ(io::valueOf(kept, 5, "distance"), 77.0);
+  EXPECT_EQ(io::valueOf(kept, 5, "collision"), io::valueOf(flagged, 5, "collision"));
+}
+
 TEST_F(SiteResults, AreTheSameOfTwoRanks)
 {
   if (!hasMpirun()) GTEST_SKIP() << "no mpirun";

@@ -22,6 +22,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -35,6 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 using Cloud = pcl::PCLPointCloud2;
 using Json = nlohmann::json;
 
@@ -352,7 +355,7 @@ TEST_F(ResumedSite, LeavesWhatItFoundOfARunThatFails)
   std::ofstream(last) << "damaged";
   EXPECT_THROW(ask(folder / "out", false), std::runtime_error);
   EXPECT_THROW(ask(folder / "out", true), std::runtime_error);
-  EXPECT_TRUE(hasAnswers(folder / "out"));
+  EXPECT_GT(answersIn(folder / "out"), 0U);
   std::ofstream(last) << content;
   const Asked resumed = ask(folder / "out", true);
   expectSame(resumed, whole);
@@ -433,6 +436,42 @@ TEST_F(ResumedSite, ByTheProgram)
   EXPECT_EQ(contentsOf(folder / "out"), whole);
   EXPECT_EQ(answerOf("two.json"), answerOf("whole.json"));
   EXPECT_EQ(files::contentOf(folder / "list.json"), list);
+}
+
+/// A run that is not to go on says what it throws away, and what would not have.
+TEST_F(ResumedSite, SaysWhatIsThrownAway)
+{
+  const std::string asked = "collide site body.pcd --clearance 0.3 --trajectory poses.txt --report r.json --out out";
+  const auto warning = [&](std::size_t tiles) {
+    return "warning: --out: out: what an earlier run had found of " + std::to_string(tiles) + " of " +
+           std::to_string(site.tiles.size()) + " tiles is thrown away, for --resume is not given";
+  };
+  ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 4));
+  const Outcome anew = run("pcl_bsh_site", asked, folder.path());
+  EXPECT_EQ(anew.exit_code, 0);
+  EXPECT_THAT(anew.err, HasSubstr(warning(4)));
+  EXPECT_THAT(Json::parse(files::contentOf(folder / "r.json"))["warnings"][0].get<std::string>(),
+              HasSubstr("is thrown away"));
+  fs::remove_all(folder / "out");
+
+  // Nothing is thrown away: where no tile was answered, and where another program has the folder.
+  ASSERT_TRUE(askAndDie(folder / "out", false, At::before_writing, 1));
+  EXPECT_THAT(run("pcl_bsh_site", asked, folder.path()).err, Not(HasSubstr("thrown away")));
+  fs::remove_all(folder / "out");
+  ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 4));
+  const int mark = ::open((folder / "out/unfinished_site").c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(::flock(mark, LOCK_EX), 0);
+  const Outcome refused = run("pcl_bsh_site", asked, folder.path());
+  ::close(mark);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, Not(HasSubstr("thrown away")));
+  EXPECT_EQ(answersIn(folder / "out"), 4U);
+
+  const Site other = makeSite({folder / "body.pcd"}, folder / "other");
+  const Outcome of_obstacle =
+      run("pcl_bsh_site", "collide site other --clearance 0.3 --obstacle-out out", folder.path());
+  EXPECT_EQ(of_obstacle.exit_code, 0);
+  EXPECT_THAT(of_obstacle.err, HasSubstr("--obstacle-out: out: what an earlier run had found of 4 "));
 }
 
 TEST_F(ResumedSite, IsRefusedWhereNothingCanBeKept)

@@ -11,13 +11,16 @@
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/collide_sites.h>
 #include <pcl_bsh/site/make_site.h>
 
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstring>
+#include <limits>
 #include <random>
 
 namespace pcl_bsh::sites {
@@ -192,6 +195,83 @@ TEST_F(UncertainSite, PathsAreThoseOfMemory)
         expectSame(found.first_contact, expected.first_contact);
         expectSame(found.certain_contact, expected.certain_contact);
       }
+    }
+  }
+}
+
+/// Of a site as obstacle points are compared that lie beyond the clearance, but within their uncertainty of it,
+/// although all others of their tile are far away.
+TEST_F(UncertainSite, AsObstacleIsCutToWhereItsPointsMayBe)
+{
+  const auto write = [&](const char* name, const std::vector<std::array<double, 4>>& points) {
+    io::writeCloud(folder / name,
+                   cloudOf(static_cast<std::uint32_t>(points.size()), [&](std::size_t i) { return points[i]; }));
+    return makeSite({folder / name}, folder / (std::string(name) + "_site"), {});
+  };
+  const Site one = write("one.pcd", {{0, 0, 0, 0}});
+  // The candidate, and what keeps the tile's box wide.
+  const Site other = write("other.pcd", {{1.04, 0, 0, 0.05}, {50, 0, 0, 0.05}, {-60, 30, 9, 0.05}});
+  ASSERT_EQ(other.tiles.size(), 1U);
+  SiteRequest request;
+  request.clearance = 1.0;
+  for (const Uncertainty& uncertainty : {Uncertainty(0.05), Uncertainty("sigma", 1.0)}) {
+    EXPECT_EQ(anyCollision(one, {other, Eigen::Isometry3d::Identity(), uncertainty}, request).verdict,
+              Verdict::undecided);
+    EXPECT_EQ(collisionFlags(one, {other, Eigen::Isometry3d::Identity(), uncertainty}, request).undecided, 1U);
+    EXPECT_EQ(collideAlong(one, other, uncertainty, {Eigen::Isometry3d::Identity()}, request).undecided, 1U);
+    request.uncertainty = uncertainty; // with the roles exchanged
+    EXPECT_EQ(collisionFlagsOfB(one, {other}, request).undecided, uncertainty.field.empty() ? 1U : 0U);
+    request.uncertainty = {};
+  }
+  EXPECT_EQ(anyCollision(one, {other}, request).verdict, Verdict::free);
+}
+
+/// On its way the machine meets nothing for certain, but it may: the report says how near and from when on.
+TEST_F(UncertainSite, APathThatIsOnlyUndecidedHasADistance)
+{
+  scan = cloudOf(40, [&](std::size_t i) -> std::array<double, 4> {
+    return {0.5 * static_cast<double>(i), 0, i % 2 == 0 ? 1.3 : 1.2, 0};
+  });
+  machine = cloudOf(1, [&](std::size_t) -> std::array<double, 4> { return {0, 0, 0, 0}; });
+  poses.clear();
+  for (const double x : {-40.0, -9.0, 3.0, 7.5, 60.0}) poses.emplace_back(Eigen::Translation3d(x, 0, 0));
+  io::writeCloud(folder / "scan.pcd", scan);
+  io::writeCloud(folder / "machine.pcd", machine);
+  io::writePoses(folder / "poses.txt", poses);
+  makeSite({folder / "machine.pcd"}, folder / "machine", {});
+  const Site site = siteOf(7);
+  const SphereHierarchy a(withUncertainty(viewOf(scan), scan.fields, "scan", 0.3)), b(viewOf(machine));
+  for (const std::string swept : {"", " --swept 0.001"}) {
+    TrajectoryRequest wanted;
+    wanted.clearance = 1.0;
+    wanted.distances = wanted.first_poses = true;
+    if (!swept.empty()) wanted.swept = 0.001;
+    const TrajectoryResult expected = pcl_bsh::collideAlong({a}, b, poses, wanted);
+    ASSERT_EQ(expected.colliding, 0U);
+    ASSERT_GT(expected.undecided, 0U);
+    float distance = std::numeric_limits<float>::infinity();
+    std::int32_t first = 1000;
+    for (std::uint32_t i = 0; i < scan.width; ++i) {
+      if (expected.flags[i] == 0) continue;
+      distance = std::min(distance, expected.distance[i]);
+      first = std::min(first, expected.first_pose[i]);
+    }
+    for (const std::string obstacle : {"machine.pcd", "machine"}) {
+      SCOPED_TRACE(obstacle + swept);
+      const Outcome done = run("pcl_bsh_site",
+                               "collide site7 " + obstacle +
+                                   " --clearance 1 --uncertainty 0.3 --trajectory poses.txt "
+                                   "--report r.json" +
+                                   swept,
+                               folder.path());
+      ASSERT_EQ(done.exit_code, 0) << done.err;
+      const Json found = Json::parse(files::contentOf(folder / "r.json"));
+      EXPECT_EQ(found["colliding"], 0);
+      EXPECT_EQ(found["undecided"], expected.undecided);
+      EXPECT_EQ(found["distance"], double{distance});
+      EXPECT_EQ(found["first_pose"], first);
+      EXPECT_EQ(found.contains("first_contact"), !swept.empty());
+      EXPECT_FALSE(found.contains("certain_contact"));
     }
   }
 }

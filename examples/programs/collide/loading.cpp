@@ -46,30 +46,6 @@ std::shared_ptr<const SurfaceCover> coverOf(const CollideOptions& options, const
   return cover;
 }
 
-io::Obstacle loadObstacle(const CollideOptions& options, double& seconds)
-{
-  Step step("Loading " + options.obstacle.string());
-  io::Obstacle obstacle = io::readObstacle(options.obstacle, options.surface, options.clearance, [&](double fraction) {
-    step.share(fraction);
-    return true;
-  });
-  const pcl::PCLPointCloud2& points = obstacle.points();
-  std::string result = std::to_string(std::size_t{points.width} * points.height) + " points";
-  if (obstacle.isSurface()) {
-    result += ", " + std::to_string(obstacle.triangles()->size()) + " triangles in " +
-              std::to_string(obstacle.cover()->centers.size()) + " balls";
-  }
-  seconds += step.done(result);
-  return obstacle;
-}
-
-void requireLength(const io::Obstacle& obstacle, const std::filesystem::path& path, const Uncertainty& uncertainty)
-{
-  if (!obstacle.isSurface() || uncertainty.field.empty()) return;
-  throw std::invalid_argument("--obstacle-uncertainty: " + uncertainty.field + ": " + path.string() +
-                              " is a surface, which has no field: give a length, or --vertices-only");
-}
-
 SphereHierarchy build(const PointsView& points, const std::vector<pcl::PCLPointField>& fields,
                       const std::filesystem::path& path, const Uncertainty& uncertainty, unsigned threads,
                       double& seconds)

@@ -28,12 +28,6 @@ Scan loadInput(const CollideOptions& options, double& seconds);
 std::shared_ptr<const SurfaceCover> coverOf(const CollideOptions& options, const Scan& input, double& seconds,
                                             std::vector<std::string>& warnings);
 
-/// Its cloud or, where the file has faces, its surface. @throws files::FileError
-io::Obstacle loadObstacle(const CollideOptions& options, double& seconds);
-
-/// A field of sigmas is one of points. @throws std::invalid_argument for one of a surface
-void requireLength(const io::Obstacle& obstacle, const std::filesystem::path& path, const Uncertainty& uncertainty);
-
 /// @throws InvalidInput as withUncertainty() does
 SphereHierarchy build(const PointsView& points, const std::vector<pcl::PCLPointField>& fields,
                       const std::filesystem::path& path, const Uncertainty& uncertainty, unsigned threads,

@@ -2,6 +2,8 @@
 // The results of a comparison of two clouds, and what they cost, for people and for programs.
 #pragma once
 
+#include "cli/obstacle.h"
+
 #include <pcl_bsh/collision/closest_pair.h>
 #include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/filters/uncertainty.h>
@@ -82,12 +84,7 @@ struct CollisionReport {
   std::vector<std::string> warnings;
 
   /// Whose tolerance comes on top of the surface's.
-  std::string besideSurface() const
-  {
-    if (path && path->swept) return "swept motion";
-    if (!accuracy.isProven()) return "--accuracy float (without proof)";
-    return accuracy.isExact() || accuracy.stopsEarly() ? "" : "--accuracy " + accuracy.text();
-  }
+  std::string besideSurface() const { return cli::besideSurface(accuracy, path && path->swept); }
 
   bool mayLeaveUndecided() const
   {

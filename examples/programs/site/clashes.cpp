@@ -35,10 +35,10 @@ void SiteClashList::addTo(sites::SiteRequest& request)
   request.pose_summaries = !options_.swept;
 }
 
-std::size_t SiteClashList::finish(const SphereHierarchy& obstacle, const std::vector<Eigen::Isometry3d>& poses,
-                                  const sites::SitePassage& found)
+std::size_t SiteClashList::finish(const SphereHierarchy& obstacle, const io::Obstacle* surface,
+                                  const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found)
 {
-  return write(finder_->finish(), obstacle.view(), poses, found, nullptr);
+  return write(finder_->finish(), obstacle.view(), surface, poses, found, nullptr);
 }
 
 std::size_t SiteClashList::finish(const sites::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses,
@@ -48,13 +48,13 @@ std::size_t SiteClashList::finish(const sites::Site& obstacle, const std::vector
   const std::vector<sites::MetPoint> met = clashes.met;
   std::vector<Point3> places;
   for (const sites::MetPoint& point : met) places.push_back(point.place);
-  return write(std::move(clashes), viewOf(places.empty() ? nullptr : places.front().data(), places.size()), poses,
-               found, [&](std::uint32_t i) {
+  return write(std::move(clashes), viewOf(places.empty() ? nullptr : places.front().data(), places.size()), nullptr,
+               poses, found, [&](std::uint32_t i) {
                  return io::SourcePoint{obstacle.sources.at(met[i].point.source).file, met[i].point.record};
                });
 }
 
-std::size_t SiteClashList::write(sites::SiteClashes clashes, const PointsView& model,
+std::size_t SiteClashList::write(sites::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
                                  const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found,
                                  std::function<io::SourcePoint(std::uint32_t)> model_source_of)
 {
@@ -76,7 +76,7 @@ std::size_t SiteClashList::write(sites::SiteClashes clashes, const PointsView& m
                        poses,
                        of_places,
                        options_.swept,
-                       nullptr,
+                       surface,
                        [&](std::uint32_t i) {
                          const sites::SitePoint& point = clashes.points[i];
                          return io::SourcePoint{site_.sources.at(point.source).file, point.record};

@@ -33,17 +33,19 @@ public:
   double clusterDistance() const noexcept { return distance_; }
 
   /// After the question. To be called by all ranks; the first writes the lists.
+  /// @param surface the obstacle, where it is one; else null
   /// @return how many clashes there are now, those that are resolved left out
-  std::size_t finish(const SphereHierarchy& obstacle, const std::vector<Eigen::Isometry3d>& poses,
-                     const sites::SitePassage& found);
+  std::size_t finish(const SphereHierarchy& obstacle, const io::Obstacle* surface,
+                     const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found);
 
   /// The same of an obstacle that is a site.
   std::size_t finish(const sites::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses,
                      const sites::SitePassage& found);
 
 private:
-  std::size_t write(sites::SiteClashes clashes, const PointsView& model, const std::vector<Eigen::Isometry3d>& poses,
-                    const sites::SitePassage& found, std::function<io::SourcePoint(std::uint32_t)> model_source_of);
+  std::size_t write(sites::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
+                    const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found,
+                    std::function<io::SourcePoint(std::uint32_t)> model_source_of);
 
   const sites::Site& site_;
   const SiteOptions& options_;

@@ -2,6 +2,7 @@
 #include "collide.h"
 
 #include "cli/json_output.h"
+#include "cli/obstacle.h"
 #include "cli/program.h"
 
 #include <stdexcept>
@@ -10,7 +11,6 @@
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/query/cancelled.h>
-#include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 
 #include "clashes.h"
@@ -18,9 +18,12 @@
 #include "output.h"
 #include "report.h"
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <optional>
+#include <string>
+#include <vector>
 #endif
 
 namespace pcl_bsh::cli {
@@ -29,18 +32,21 @@ namespace pcl_bsh::cli {
 namespace {
 
 /// The answer, the same on all ranks.
-Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const Poses& poses, const SiteOptions& options,
-                SiteOutput& out, SiteClashList& clashes, MeasuredRun& run, Step* step)
+Json askOfFile(const sites::Site& site, const ObstacleFile& file, const Poses& poses, const SiteOptions& options,
+               SiteOutput& out, SiteClashList& clashes, MeasuredRun& run, Step* step)
 {
   HierarchyOptions building;
   building.threads = options.threads;
-  const SphereHierarchy hierarchy(
-      withUncertainty(viewOf(cloud.cloud), cloud.cloud.fields, options.obstacle.string(), options.obstacle_uncertainty),
-      building);
+  const SphereHierarchy hierarchy(withUncertainty(file.obstacle.view(), file.obstacle.points().fields,
+                                                  options.obstacle.string(), options.obstacle_uncertainty),
+                                  building);
   const Placed obstacle(hierarchy, options.pose);
+  const io::Obstacle* const surface = file.surface();
   sites::SiteRequest request = requestOf(options, step);
   request.answers = out.answers();
+  if (surface != nullptr) request.surface = surface->tolerance();
   Json report = beginReport(site, options);
+  report["surface"] = io::surfaceJson(surface, besideSurface(options.accuracy, options.swept.has_value()));
   switch (options.question) {
   case SiteQuestion::any: {
     const sites::SiteAny found = sites::anyCollision(site, obstacle, request);
@@ -50,12 +56,20 @@ Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const Poses
     break;
   }
   case SiteQuestion::flags: {
-    const sites::SiteFlags found = sites::collisionFlags(site, obstacle, Side::both, request, out.flags());
-    cloud.write(found.b, options);
+    // Which triangles collide is known where each has balls of its own.
+    const bool of_both = surface == nullptr || surface->cover()->triangles_apart;
+    const sites::SiteFlags found =
+        sites::collisionFlags(site, obstacle, of_both ? Side::both : Side::a, request, out.flags());
     report["colliding"] = found.colliding;
     report["undecided"] = found.undecided;
-    report["colliding_of_obstacle"] = found.colliding_b;
-    report["undecided_of_obstacle"] = found.undecided_b;
+    report["colliding_of_obstacle"] = nullptr;
+    report["undecided_of_obstacle"] = nullptr;
+    if (of_both) {
+      const std::vector<std::uint8_t> flags = file.flagsOfParts(found.b);
+      file.write(flags, options);
+      report["colliding_of_obstacle"] = std::count(flags.begin(), flags.end(), flagOf(Verdict::colliding));
+      report["undecided_of_obstacle"] = std::count(flags.begin(), flags.end(), flagOf(Verdict::undecided));
+    }
     put(report, found.tiles, run);
     break;
   }
@@ -65,7 +79,7 @@ Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const Poses
     report["distance_interval"] = {orNull(found.interval.lower), orNull(found.interval.upper)};
     if (found.point) {
       report["point"] = named(site, *found.point);
-      report["point_of_obstacle"] = found.b;
+      report[std::string(file.obstacle.partName()) + "_of_obstacle"] = file.obstacle.partOf(found.b);
     }
     put(report, found.tiles, run);
     break;
@@ -83,7 +97,7 @@ Json askOfCloud(const sites::Site& site, const ObstacleCloud& cloud, const Poses
     clashes.addTo(request);
     const sites::SitePassage found = sites::collideAlong(site, obstacle.hierarchy(), poses, request, out.passage());
     putPassage(report, found, poses.size(), options);
-    if (clashes.isWanted()) report["clashes"] = clashes.finish(obstacle.hierarchy(), poses, found);
+    if (clashes.isWanted()) report["clashes"] = clashes.finish(obstacle.hierarchy(), surface, poses, found);
     put(report, found.tiles, run);
     break;
   }
@@ -98,24 +112,33 @@ int answer(const SiteOptions& options, bool& keeps)
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   const bool tells = sites::rankHere() == 0;
   options.files.requireApart();
-  if (tells) warn(site_program, options.warnings);
+  std::vector<std::string> warnings;
+  const auto warn_of = [&](const std::vector<std::string>& lines) {
+    if (tells) warn(site_program, lines);
+    warnings.insert(warnings.end(), lines.begin(), lines.end());
+  };
+  warn_of(options.warnings);
   const bool reports = !options.report.empty();
   if (tells && reports) files::requireWritable(options.report);
   const sites::Site site = sites::readSite(options.site);
   SiteClashList clashes(site, options);
-  if (tells) warn(site_program, clashes.warnings());
-  std::optional<ObstacleCloud> cloud;
-  if (!options.obstacleIsSite()) cloud.emplace(options);
+  warn_of(clashes.warnings());
+  std::optional<ObstacleFile> file;
+  if (!options.obstacleIsSite()) {
+    file.emplace(options);
+    warn_of(warningsOf(file->obstacle, options.obstacle));
+  }
   const Poses poses = options.trajectory.empty() ? Poses{options.pose} : io::readPoses(options.trajectory);
-  SiteOutput output(site, cloud ? &*cloud : nullptr, poses, clashes.clusterDistance(), options);
+  SiteOutput output(site, file ? &*file : nullptr, poses, clashes.clusterDistance(), options);
+  warn_of(output.warnings());
   keeps = output.answers() != nullptr;
   MeasuredRun run;
   Json report;
   std::optional<Step> shown;
   if (tells) shown.emplace("Asking about tiles");
   Step* const step = tells ? &*shown : nullptr;
-  if (cloud)
-    report = askOfCloud(site, *cloud, poses, options, output, clashes, run, step);
+  if (file)
+    report = askOfFile(site, *file, poses, options, output, clashes, run, step);
   else
     report = askOfSite(site, poses, options, output, clashes, run, step);
   if (tells) shown->done(report["tiles"]["read"].dump() + " tiles read");
@@ -123,9 +146,11 @@ int answer(const SiteOptions& options, bool& keeps)
   output.finish();
   run.copying = seconds() - run.seconds;
   if (!options.out.empty()) report["out"] = options.out.string();
+  report["warnings"] = warnings;
   if (!tells) return 0;
   std::ostream& summary = options.files.summary();
   if (clashes.isWanted()) summary << report["clashes"] << " clashes\n";
+  if (file && file->surface() != nullptr) summary << report["surface"]["promise"].get<std::string>() << '\n';
   if (!options.obstacle_out.empty())
     summary << "wrote which points of the obstacle collide to " << options.obstacle_out.string() << '\n';
   if (!options.out.empty()) summary << "wrote what was found of each point to " << options.out.string() << '\n';
@@ -149,7 +174,7 @@ int collideSite(const SiteOptions& options)
   }
   catch (const std::exception& error) {
     if (sites::ranks() == 1) {
-      if (!keeps || !sites::hasAnswers(options.out)) throw;
+      if (!keeps || sites::answersIn(options.out) == 0) throw;
       throw std::runtime_error(std::string(error.what()) + "; " + what_stays);
     }
     std::cerr << site_program << ": rank " << sites::rankHere() << ": " << error.what() << '\n';

@@ -2,6 +2,10 @@
 #ifdef PCL_BSH_SITE_QUERIES
 #include "collide_sites.h"
 
+#include "cli/program.h"
+
+#include <pcl_bsh/files/free_space.h>
+
 namespace pcl_bsh::cli {
 
 namespace {
@@ -19,8 +23,16 @@ void askFlags(const sites::Site& site, const sites::PlacedSite& obstacle, const 
               Json& report, MeasuredRun& run, Step* step)
 {
   std::optional<sites::ResultSite> obstacle_out;
-  if (!options.obstacle_out.empty())
-    obstacle_out.emplace(obstacle.site, options.obstacle_out, std::vector{collisionField()});
+  if (!options.obstacle_out.empty()) {
+    const std::vector fields = {collisionField()};
+    if (!options.out.empty()) { // which has checked alone that there is room for it
+      files::requireSpace({{options.out, sites::spaceWanted(site, options.out, fields)},
+                           {options.obstacle_out, sites::spaceWanted(obstacle.site, options.obstacle_out, fields)}});
+    }
+    obstacle_out.emplace(obstacle.site, options.obstacle_out, fields);
+    const auto lines = droppedBy(*obstacle_out, "--obstacle-out", options.obstacle_out, obstacle.site, fields);
+    if (step != nullptr) warn(site_program, lines);
+  }
   sites::SiteRequest request = requestOf(options, step);
   request.answers = out.answers();
   const sites::SitePairFlags found = sites::collisionFlags(site, obstacle, request, out.flags());

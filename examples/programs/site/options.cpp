@@ -4,6 +4,7 @@
 #include "cli/accuracy.h"
 #include "cli/command_line.h"
 #include "cli/pose.h"
+#include "cli/surface_options.h"
 #include "cli/uncertainty.h"
 
 #include <pcl_bsh/filters/text_files/small_letters.h>
@@ -26,6 +27,8 @@ Example: two scans become one site, and a file with the points of both
   pcl_bsh_site make north.las south.las --out valley --memory 2G
   pcl_bsh_site validate valley
   pcl_bsh_site export valley all.pcd
+A site holds points: `make` takes files with faces by --vertices-only alone, and `collide` takes OBSTACLE's faces as a
+surface, as pcl_bsh_collide does.
 With --out: the fields of `collide` are collision (1 collides, 0 free), with --trajectory also distance (NaN: free),
 first_pose and closest_pose (-1: none), with --distances distance alone.
 Example: where does a machine come within 5 cm of it on its way? On one process, or on four:
@@ -77,7 +80,7 @@ struct CollideTexts {
   void addTo(CLI::App& app, SiteOptions& options)
   {
     app.add_option("OBSTACLE", options.obstacle,
-                   "cloud to collide with, which must fit into memory; or another site of any size")
+                   "cloud or mesh to collide with, which must fit into memory; or another site of any size")
         ->type_name("")
         ->required();
     app.add_option("--report", options.report, "JSON file for the answer; -: standard output")->type_name("FILE");
@@ -113,7 +116,7 @@ struct CollideTexts {
     app.add_option(
            "--obstacle-out", options.obstacle_out,
            "OBSTACLE's points with all their fields, and which of them collide with SITE in a field 'collision'; "
-           "a new site where OBSTACLE is one; not with --trajectory or --clashes")
+           "of a mesh its triangles, as .ply; a new site where OBSTACLE is one; not with --trajectory or --clashes")
         ->type_name("FILE");
     app.add_flag("--resume", options.resume, "goes on with what the same command has left in --out when it was killed");
     app.add_option(
@@ -124,6 +127,7 @@ struct CollideTexts {
            "'collision'")
         ->type_name("HOW");
     uncertainties.addTo(app, "SITE");
+    addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
     app.add_option("--plan", options.plan,
                    "numbers of ranks, as 64,1024: by what the tiles have cost, the report says how long the same "
                    "question takes on so many, and what limits it")
@@ -173,6 +177,7 @@ struct CollideTexts {
     if (options.swept && !moves) throw UsageError("--swept: goes with --trajectory: add it");
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
     if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
+    options.surface.triangles_apart = !options.obstacle_out.empty(); // each has a flag of its own
     const bool two_sites = options.obstacleIsSite();
     const auto require_outside_sites = [&](const char* option, const std::filesystem::path& file) {
       requireOutside(options.site, "SITE", option, file);
@@ -222,6 +227,7 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
   make->add_option("--tile-points", options.tile_points, "points of a tile at most, as 500K or 4M (default: 4M)")
       ->type_name("N")
       ->transform(amount(1000, 1, "give 1 or more"));
+  make->add_flag("--vertices-only", options.surface.vertices_only, "clouds with faces are their vertices alone");
   for (CLI::App* const told :
        {command("info", "print what a site holds", SiteCommand::info),
         command("validate", "read all tiles and check that each point is there once, and where it should be",

@@ -4,6 +4,7 @@
 
 #include "cli/used_files.h"
 
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/query/accuracy.h>
 
@@ -33,6 +34,7 @@ struct SiteOptions {
       out; ///< of `write`: a .pcd or .pvtp file, or a folder for the sources; of `collide`: a site, or none
   std::uint64_t memory = std::uint64_t{2} << 30;
   std::uint64_t tile_points = 4'000'000;
+  io::SurfaceSettings surface; ///< of `make`, whether meshes are their vertices; of `collide`, of the obstacle
 
   bool json = false; ///< of `info` and `validate`: what they tell
 

@@ -3,9 +3,11 @@
 #include "output.h"
 
 #include "cli/interruption.h"
+#include "cli/obstacle.h"
 
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/surface/triangle_answers.h>
 
 #include <boost/crc.hpp>
 #include <nlohmann/json.hpp>
@@ -45,17 +47,26 @@ std::vector<sites::ResultField> resultFields(const SiteOptions& options)
   }
 }
 
-/// What tells one obstacle from another: the points of a cloud; of a site, which is too large for that, how it is made
-/// and when its tiles were written.
-nlohmann::json obstacleText(const ObstacleCloud* cloud, const SiteOptions& options)
+template <typename Value>
+std::uint32_t checksumOf(const std::vector<Value>& values)
+{
+  boost::crc_32_type checksum;
+  checksum.process_bytes(values.data(), values.size() * sizeof(Value));
+  return checksum.checksum();
+}
+
+/// What tells one obstacle from another: the points of a cloud, and how faces are covered; of a site, which is too
+/// large for that, how it is made and when its tiles were written.
+nlohmann::json obstacleText(const ObstacleFile* given, const SiteOptions& options)
 {
   nlohmann::json text = nlohmann::json::array();
-  if (cloud != nullptr) {
-    boost::crc_32_type of_points;
-    of_points.process_bytes(cloud->cloud.data.data(), cloud->cloud.data.size());
-    text.push_back(of_points.checksum());
-    for (const pcl::PCLPointField& field : cloud->cloud.fields)
+  if (given != nullptr) {
+    const io::Obstacle& obstacle = given->obstacle;
+    text.push_back(checksumOf(obstacle.points().data));
+    for (const pcl::PCLPointField& field : obstacle.points().fields)
       text.push_back({field.name, field.offset, field.datatype, field.count});
+    if (obstacle.isSurface())
+      text.push_back({checksumOf(*obstacle.triangles()), obstacle.tolerance(), obstacle.cover()->triangles_apart});
     return text;
   }
   const sites::Site other = sites::readSite(options.obstacle);
@@ -69,7 +80,7 @@ nlohmann::json obstacleText(const ObstacleCloud* cloud, const SiteOptions& optio
 }
 
 /// All that the answer depends on, as a text.
-std::string questionOf(const sites::Site& site, const ObstacleCloud* obstacle, const Poses& poses,
+std::string questionOf(const sites::Site& site, const ObstacleFile* obstacle, const Poses& poses,
                        double cluster_distance, const SiteOptions& options)
 {
   nlohmann::json question = {{"site", sites::siteText(site)},        {"question", options.question},
@@ -99,28 +110,69 @@ sites::ResultField collisionField()
   return {collision_field_name, Type::UINT8, 0.0};
 }
 
-ObstacleCloud::ObstacleCloud(const SiteOptions& options)
+ObstacleFile::ObstacleFile(const SiteOptions& options)
 {
-  cloud = io::readCloud(options.obstacle, &viewpoint, &las);
+  double seconds = 0.0;
+  if (sites::rankHere() == 0)
+    obstacle = loadObstacle(options.obstacle, options.surface, options.clearance, seconds, &viewpoint, &las);
+  else
+    obstacle = io::readObstacle(options.obstacle, options.surface, options.clearance, nullptr, &viewpoint, &las);
+  requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
   if (options.obstacle_out.empty()) return;
-  io::requireWritableCloud(options.obstacle_out);
-  withField(withoutRecords(cloud), collision_field_name, {}); // fails now
+  if (obstacle.isSurface()) {
+    io::requireWritableMesh(options.obstacle_out);
+  }
+  else {
+    io::requireWritableCloud(options.obstacle_out);
+    withField(withoutRecords(obstacle.points()), collision_field_name, {}); // fails now
+  }
 }
 
-void ObstacleCloud::write(const std::vector<std::uint8_t>& flags, const SiteOptions& options) const
+std::vector<std::uint8_t> ObstacleFile::flagsOfParts(const std::vector<std::uint8_t>& flags) const
+{
+  return obstacle.isSurface() ? triangleVerdicts(*obstacle.cover(), flags) : flags;
+}
+
+void ObstacleFile::write(const std::vector<std::uint8_t>& flags, const SiteOptions& options) const
 {
   if (options.obstacle_out.empty() || sites::rankHere() != 0) return;
-  io::writeCloud(options.obstacle_out, withField(cloud, collision_field_name, flags), viewpoint, las);
+  if (obstacle.isSurface())
+    io::writeMesh(options.obstacle_out, obstacle.points(), *obstacle.triangles(), {{collision_field_name, &flags}},
+                  viewpoint);
+  else
+    io::writeCloud(options.obstacle_out, withField(obstacle.points(), collision_field_name, flags), viewpoint, las);
 }
 
-SiteOutput::SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, const Poses& poses,
+std::vector<std::string> droppedBy(const sites::ResultSite& out, const std::string& option,
+                                   const std::filesystem::path& folder, const sites::Site& site,
+                                   const std::vector<sites::ResultField>& fields)
+{
+  std::vector<std::string> lines;
+  if (out.thrownAway() > 0) {
+    lines.push_back(
+        option + ": " + folder.string() + ": what an earlier run had found of " + std::to_string(out.thrownAway()) +
+        " of " + std::to_string(site.tiles.size()) +
+        " tiles is thrown away, for --resume is not given: it goes on with what the same question has found");
+  }
+  std::string names;
+  for (const std::string& name : sites::staleFields(site, fields)) names += (names.empty() ? "" : ", ") + name;
+  if (!names.empty()) {
+    lines.push_back(option + ": " + folder.string() + ": leaves out fields of " + site.folder.string() +
+                    " that answer an earlier question: " + names);
+  }
+  return lines;
+}
+
+SiteOutput::SiteOutput(const sites::Site& site, const ObstacleFile* obstacle, const Poses& poses,
                        double cluster_distance, const SiteOptions& options)
 : options_(options)
 {
   if (options.out.empty()) return;
   setWhatStays(what_stays);
-  out_.emplace(site, options.out, resultFields(options),
+  const std::vector<sites::ResultField> fields = resultFields(options);
+  out_.emplace(site, options.out, fields,
                sites::Continuation{questionOf(site, obstacle, poses, cluster_distance, options), options.resume});
+  warnings_ = droppedBy(*out_, "--out", options.out, site, fields);
 }
 
 sites::FlagsSink SiteOutput::flags()

@@ -4,25 +4,35 @@
 
 #include "options.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/site/collide_sites.h>
 #include <pcl_bsh/site/result_site.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace pcl_bsh::cli {
 
 /// What a site is compared with, and how its file says more than points.
-struct ObstacleCloud {
-  /// @throws files::FileError, also where its points shall be written and cannot
-  explicit ObstacleCloud(const SiteOptions& options);
+struct ObstacleFile {
+  /// @throws files::FileError, also where its points shall be written and cannot; std::invalid_argument for an
+  ///   uncertainty that it cannot have
+  explicit ObstacleFile(const SiteOptions& options);
 
-  /// Writes its points with these flags, where they are asked for: on the first rank.
+  /// Null where it is points.
+  const io::Obstacle* surface() const { return obstacle.isSurface() ? &obstacle : nullptr; }
+
+  /// From flags of the records of its view to those of its points or triangles.
+  /// @pre of a surface, its triangles are apart
+  std::vector<std::uint8_t> flagsOfParts(const std::vector<std::uint8_t>& flags) const;
+
+  /// Writes its points or triangles with these flags, where they are asked for: on the first rank.
   void write(const std::vector<std::uint8_t>& flags, const SiteOptions& options) const;
 
-  pcl::PCLPointCloud2 cloud;
+  io::Obstacle obstacle;
   io::Viewpoint viewpoint = io::no_viewpoint;
   io::LasHeaderPtr las;
 };
@@ -36,14 +46,24 @@ using Poses = std::vector<Eigen::Isometry3d>;
 /// The field of flags at one pose.
 sites::ResultField collisionField();
 
+/// What a site of results drops without being asked, a line each: answers of a run that was ended, and fields of
+/// earlier questions. The same on all ranks, or none.
+/// @param option that names its folder
+std::vector<std::string> droppedBy(const sites::ResultSite& out, const std::string& option,
+                                   const std::filesystem::path& folder, const sites::Site& site,
+                                   const std::vector<sites::ResultField>& fields);
+
 /// The site of results, where it is asked for; else its sinks are null.
 class SiteOutput {
 public:
   /// @param obstacle null where that is a site, too
   /// @param cluster_distance of the lists of clashes; 0 where none is wanted
   /// @throws files::FileError for a folder that cannot be one
-  SiteOutput(const sites::Site& site, const ObstacleCloud* obstacle, const Poses& poses, double cluster_distance,
+  SiteOutput(const sites::Site& site, const ObstacleFile* obstacle, const Poses& poses, double cluster_distance,
              const SiteOptions& options);
+
+  /// What users should know before the question is answered, a line each.
+  const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
   /// What an earlier run has found, and where this one keeps what it finds; null: nothing is kept.
   sites::TileAnswers* answers() { return out_ ? out_->answers() : nullptr; }
@@ -59,6 +79,7 @@ public:
 private:
   const SiteOptions& options_;
   std::optional<sites::ResultSite> out_;
+  std::vector<std::string> warnings_;
 };
 
 } // namespace pcl_bsh::cli

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "obstacle.h"
+
+#include "step.h"
+
+#include <stdexcept>
+
+namespace pcl_bsh::cli {
+
+io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double clearance,
+                          double& seconds, io::Viewpoint* viewpoint, io::LasHeaderPtr* las)
+{
+  Step step("Loading " + path.string());
+  const auto progress = [&](double fraction) {
+    step.share(fraction);
+    return true;
+  };
+  io::Obstacle obstacle = io::readObstacle(path, settings, clearance, progress, viewpoint, las);
+  const pcl::PCLPointCloud2& points = obstacle.points();
+  std::string result = std::to_string(std::size_t{points.width} * points.height) + " points";
+  if (obstacle.isSurface()) {
+    result += ", " + std::to_string(obstacle.triangles()->size()) + " triangles in " +
+              std::to_string(obstacle.cover()->centers.size()) + " balls";
+  }
+  seconds += step.done(result);
+  return obstacle;
+}
+
+std::vector<std::string> warningsOf(const io::Obstacle& obstacle, const std::filesystem::path& path)
+{
+  std::vector<std::string> warnings;
+  for (const std::string& remark : obstacle.remarks()) warnings.push_back(path.string() + ": " + remark);
+  return warnings;
+}
+
+void requireLength(const io::Obstacle& obstacle, const std::filesystem::path& path, const Uncertainty& uncertainty)
+{
+  if (!obstacle.isSurface() || uncertainty.field.empty()) return;
+  throw std::invalid_argument("--obstacle-uncertainty: " + uncertainty.field + ": " + path.string() +
+                              " is a surface, which has no field: give a length, or --vertices-only");
+}
+
+std::string besideSurface(const Accuracy& accuracy, bool swept)
+{
+  if (swept) return "swept motion";
+  if (!accuracy.isProven()) return "--accuracy float (without proof)";
+  return accuracy.isExact() || accuracy.stopsEarly() ? "" : "--accuracy " + accuracy.text();
+}
+
+} // namespace pcl_bsh::cli

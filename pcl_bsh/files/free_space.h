@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether a disk has room, asked before the work that fills it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace pcl_bsh::files {
+
+/// What will be written.
+struct WantedSpace {
+  std::filesystem::path place; ///< a file or folder, which need not be there yet
+  std::uint64_t bytes = 0;     ///< beside what is there now, as that of a file that is replaced only in the end
+};
+
+/// Refuses what does not fit: of several outputs on one disk, their sum. File systems that report no size, as some of
+/// networks, refuse nothing.
+/// @throws FileError that says how much is needed, and how much is free
+void requireSpace(const std::vector<WantedSpace>& wanted);
+
+/// What files of a folder, and of those in it, take on the disk, in bytes; of a folder that is not there, 0.
+std::uint64_t spaceTaken(const std::filesystem::path& folder);
+
+} // namespace pcl_bsh::files

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Obstacles with faces: a site is asked about their surface, with the answers of pcl_bsh_collide; and no site is made
+// of faces.
+#include "../programs/process.h"
+#include "../programs/program_run.h"
+#include "float64_cloud.h"
+
+#ifdef PCL_BSH_SITE_QUERIES
+#include "two_ranks.h"
+
+#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/filters/cloud_files/obstacle.h>
+#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/site/make_site.h>
+#include <pcl_bsh/site/result_site.h>
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <random>
+#include <thread>
+
+namespace pcl_bsh::sites {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Json = nlohmann::json;
+
+/// A crate two metres wide, and a site of points on one of its faces, about it and far away.
+class SurfaceSite : public testing::Test {
+protected:
+  static constexpr auto crate_text = "OFF\n8 6 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n0 0 2\n2 0 2\n2 2 2\n0 2 2\n"
+                                     "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
+
+  SurfaceSite()
+  {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    std::vector<Point3> points;
+    for (int i = 0; i < 5000; ++i) points.push_back({1 + 0.9 * unit(random), 1 + 0.9 * unit(random), 2});
+    for (int i = 0; i < 3000; ++i) points.push_back({1 + 6 * unit(random), 1 + 3 * unit(random), 1 + 3 * unit(random)});
+    io::writeCloud(folder / "scan.pcd", float64Cloud(points));
+    folder.write("crate.off", crate_text);
+    std::vector<Eigen::Isometry3d> poses;
+    for (int k = 0; k < 12; ++k)
+      poses.push_back(Eigen::Translation3d(0.7 * k - 4, 0.1 * k, 0.3) *
+                      Eigen::AngleAxisd(0.1 * k, Eigen::Vector3d::UnitZ()));
+    io::writePoses(folder / "poses.txt", poses);
+    MakeOptions options;
+    options.tile_points = 900;
+    site = makeSite({folder / "scan.pcd"}, folder / "site", options);
+  }
+
+  Outcome ask(const std::string& arguments) const
+  {
+    return run("pcl_bsh_site", "collide site crate.off " + arguments, folder.path());
+  }
+  Json json(const std::string& name) const { return Json::parse(files::contentOf(folder / name)); }
+
+  /// The results of a site as they are of each record.
+  std::vector<double> column(const std::string& name, const std::string& field) const
+  {
+    const Site out = readSite(folder / name);
+    std::vector<double> values(out.points, -7.0);
+    for (const Tile& tile : out.tiles) {
+      const pcl::PCLPointCloud2 cloud = readTile(out, tile);
+      for (std::uint32_t i = 0; i < cloud.width; ++i)
+        values[static_cast<std::size_t>(io::valueOf(cloud, i, "record"))] = io::valueOf(cloud, i, field);
+    }
+    return values;
+  }
+
+  /// That the site of results holds what pcl_bsh_collide has written.
+  void expectSame(const std::string& out, const std::string& cloud_file, const std::string& field) const
+  {
+    const pcl::PCLPointCloud2 cloud = io::readCloud(folder / cloud_file);
+    const std::vector<double> found = column(out, field);
+    ASSERT_EQ(found.size(), cloud.width);
+    std::size_t different = 0;
+    for (std::uint32_t i = 0; i < cloud.width; ++i) {
+      const double wanted = io::valueOf(cloud, i, field);
+      if (found[i] != wanted && !(std::isnan(found[i]) && std::isnan(wanted))) ++different;
+    }
+    EXPECT_EQ(different, 0U) << field;
+  }
+
+  /// Runs both programs with these options.
+  Json expectedOf(const std::string& arguments)
+  {
+    for (const char* name : {"out", "m.pcd", "m.json", "r.json"}) fs::remove_all(folder / name);
+    const Outcome memory =
+        run("pcl_bsh_collide", "scan.pcd crate.off m.pcd --report m.json " + arguments, folder.path());
+    EXPECT_EQ(memory.exit_code, 0) << memory.err;
+    const Outcome done = ask("--out out --report r.json " + arguments);
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    said = done.out + done.err;
+    EXPECT_EQ(json("r.json")["surface"], json("m.json")["surface"]);
+    const Json of_memory = json("m.json")["warnings"];
+    for (const Json& warning : json("r.json")["warnings"])
+      EXPECT_EQ(std::count(of_memory.begin(), of_memory.end(), warning), 1) << warning;
+    return json("m.json");
+  }
+
+  files::TemporaryFolder folder;
+  Site site;
+  std::string said;
+};
+
+TEST_F(SurfaceSite, FlagsAreThoseOfMemory)
+{
+  for (const std::string more : {"", "--surface-tolerance 0.03", "--accuracy tolerance=0.01", "--vertices-only"}) {
+    SCOPED_TRACE(more);
+    const Json expected = expectedOf("--clearance 0.2 " + more);
+    const Json found = json("r.json");
+    EXPECT_EQ(found["colliding"], expected["colliding"]);
+    EXPECT_EQ(found["undecided"], expected["undecided"]);
+    expectSame("out", "m.pcd", "collision");
+    const bool is_surface = more != "--vertices-only";
+    EXPECT_EQ(found["colliding"].get<int>() >= 5000, is_surface);
+    EXPECT_EQ(found["surface"].is_null(), !is_surface);
+    if (is_surface) {
+      EXPECT_THAT(said, HasSubstr("a surface of 12 triangles, to a tolerance of "));
+      EXPECT_EQ(found["colliding_of_obstacle"], nullptr) << "balls hold parts of several triangles";
+    }
+    else {
+      EXPECT_LE(found["colliding_of_obstacle"].get<int>(), 8);
+    }
+  }
+  ASSERT_EQ(ask("--clearance 0.2 --any --report any.json").exit_code, 0);
+  EXPECT_EQ(json("any.json")["collides"], true);
+  EXPECT_EQ(json("any.json")["surface"]["tolerance"], 0.02);
+}
+
+TEST_F(SurfaceSite, DistancesAreThoseOfMemory)
+{
+  const Json expected = expectedOf("--distances --surface-tolerance 0.01");
+  expectSame("out", "m.pcd", "distance");
+  EXPECT_GE(json("r.json")["greatest"].get<double>(), 1.0);
+  for (const char* pose : {"0,0,0,0,0,0", "0,0,40,0,0,0"}) {
+    const std::string at = std::string("--surface-tolerance 0.01 --pose ") + pose;
+    ASSERT_EQ(
+        run("pcl_bsh_collide", "scan.pcd crate.off m.pcd --clearance 0 --report m.json " + at, folder.path()).exit_code,
+        0);
+    const Outcome done = ask("--closest --report r.json " + at);
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    const Json found = json("r.json"), wanted = json("m.json");
+    EXPECT_EQ(found["distance"], wanted["distance"]);
+    EXPECT_GE(found["distance"].get<double>(), 0.0) << "a point may lie in a ball";
+    EXPECT_EQ(found["distance_interval"], wanted["distance_interval"]);
+    EXPECT_EQ(found["triangle_of_obstacle"], wanted["closest_pair"][1]);
+    EXPECT_FALSE(found.contains("point_of_obstacle"));
+  }
+}
+
+TEST_F(SurfaceSite, PathsAreThoseOfMemory)
+{
+  for (const std::string swept : {"", " --swept 0.01"}) {
+    SCOPED_TRACE(swept);
+    const std::string lists = " --clearance 0.2 --cluster-distance 0.5 --trajectory poses.txt" + swept;
+    for (const char* name : {"out", "m.json", "r.json"}) fs::remove_all(folder / name);
+    const Outcome memory =
+        run("pcl_bsh_collide", "scan.pcd crate.off m.pcd --report m.json --clashes m_list.json" + lists, folder.path());
+    ASSERT_EQ(memory.exit_code, 0) << memory.err;
+    const Outcome done = ask("--out out --report r.json --clashes r_list.json --clashes r_list.csv" + lists);
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    const Json found = json("r.json"), wanted = json("m.json");
+    EXPECT_EQ(found["surface"], wanted["surface"]);
+    EXPECT_EQ(found["colliding"], wanted["colliding"]);
+    for (const char* field : {"collision", "distance", "first_pose", "closest_pose"}) expectSame("out", "m.pcd", field);
+    EXPECT_GE(found["distance"].get<double>(), 0.0);
+    Json clashes = json("r_list.json"), of_memory = json("m_list.json");
+    EXPECT_EQ(clashes["surface"], of_memory["surface"]);
+    ASSERT_EQ(clashes["clashes"].size(), of_memory["clashes"].size());
+    ASSERT_GT(clashes["clashes"].size(), 0U);
+    for (std::size_t i = 0; i < clashes["clashes"].size(); ++i) {
+      Json &clash = clashes["clashes"][i], &expected = of_memory["clashes"][i];
+      EXPECT_EQ(clash["closest_pair"]["input"]["record"], expected["closest_pair"]["input"]["point"]);
+      EXPECT_EQ(clash["closest_pair"]["obstacle"], expected["closest_pair"]["obstacle"]) << "a triangle, and where";
+      EXPECT_TRUE(clash["closest_pair"]["obstacle"].contains("triangle"));
+      for (const char* key : {"id", "points", "box", "distance", "first_pose", "closest_pose"})
+        EXPECT_EQ(clash[key], expected[key]) << key;
+    }
+    EXPECT_THAT(files::contentOf(folder / "r_list.csv"), HasSubstr("obstacle_triangle,obstacle_x"));
+  }
+}
+
+TEST_F(SurfaceSite, TellsOfTheCoverAsMemoryDoes)
+{
+  std::string loose = crate_text;
+  loose.replace(loose.find("8 6 0"), 5, "9 6 0").replace(loose.find("4 0 3 2 1"), 0, "50 50 50\n");
+  folder.write("crate.off", loose);
+  expectedOf("--clearance 0.2");
+  EXPECT_THAT(said, HasSubstr("crate.off: 1 of its vertices belong to no face"));
+  EXPECT_THAT(json("r.json")["warnings"][0].get<std::string>(), HasSubstr("belong to no face"));
+  expectedOf("--clearance 0");
+  EXPECT_THAT(said, HasSubstr("would take too many balls"));
+}
+
+TEST_F(SurfaceSite, RefusesWhatNoSurfaceHas)
+{
+  const auto fails = [&](const std::string& arguments, int code, const std::string& message) {
+    const Outcome failed = ask(arguments + " --clearance 0.2 --report r.json");
+    EXPECT_EQ(failed.exit_code, code) << arguments;
+    EXPECT_THAT(failed.err, HasSubstr(message));
+    EXPECT_FALSE(fs::exists(folder / "r.json"));
+  };
+  fails("--surface-tolerance 0", 2, "--surface-tolerance");
+  fails("--surface-tolerance 1 --vertices-only", 2, "--vertices-only");
+  fails("--surface-tolerance 1e-30", 1, "crate.off: ");
+  fails("--obstacle-uncertainty sigma", 1, "crate.off is a surface, which has no field: give a length");
+  fails("--obstacle-out marked.pcd", 1, "marked.pcd");
+}
+
+/// Each triangle has its own flag.
+TEST_F(SurfaceSite, MarksTheObstaclesTriangles)
+{
+  const Outcome done =
+      ask("--clearance 0.2 --pose 0,0,0.03,0,0,0 --surface-tolerance 0.01 --obstacle-out marked.ply --report r.json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const io::Mesh marked = io::readMesh(folder / "marked.ply");
+  ASSERT_EQ(marked.triangles.size(), 12U);
+  ASSERT_EQ(marked.face_values.size(), 1U);
+  EXPECT_EQ(marked.face_values[0].name, "collision");
+  // Of the scan as the input of the question the other way round.
+  ASSERT_EQ(run("pcl_bsh_collide",
+                "crate.off scan.pcd expected.ply --clearance 0.2 --pose 0,0,-0.03,0,0,0 --surface-tolerance 0.01",
+                folder.path())
+                .exit_code,
+            0);
+  EXPECT_EQ(marked.face_values[0].values, io::readMesh(folder / "expected.ply").face_values[0].values);
+  const auto colliding = std::count(marked.face_values[0].values.begin(), marked.face_values[0].values.end(), 1.0);
+  EXPECT_EQ(json("r.json")["colliding_of_obstacle"], colliding);
+  EXPECT_GT(colliding, 1);
+  EXPECT_GE(json("r.json")["colliding"].get<int>(), 5000);
+}
+
+/// What was found of another surface is no answer: of another tolerance, of other faces between the same corners.
+TEST_F(SurfaceSite, GoesOnWithTheSameSurfaceAlone)
+{
+  const std::vector<std::string> asked = {"collide",   "site",     "crate.off", "--clearance", "0.2", "--trajectory",
+                                          "poses.txt", "--report", "r.json",    "--out",       "out"};
+  const auto killed = [&] {
+    fs::remove_all(folder / "out");
+    for (int attempt = 0; attempt < 20; ++attempt) {
+      Process program("pcl_bsh_site", asked, folder.path());
+      while (!program.hasEnded() && answersIn(folder / "out") == 0) std::this_thread::yield();
+      program.send(SIGKILL);
+      program.end();
+      if (!fs::exists(folder / "out/site.json")) return;
+      fs::remove_all(folder / "out"); // it was quicker
+    }
+    GTEST_SKIP() << "it is always quicker";
+  };
+  const auto resumed = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), asked.begin(), asked.end());
+    more.emplace_back("--resume");
+    Process program("pcl_bsh_site", more, folder.path());
+    const int code = program.end();
+    return std::pair(code, program.err());
+  };
+  killed();
+  EXPECT_THAT(resumed({"--surface-tolerance", "0.01"}).second, HasSubstr("holds what another question has found"));
+  EXPECT_THAT(resumed({"--vertices-only"}).second, HasSubstr("holds what another question has found"));
+  std::string open = crate_text;
+  open.replace(open.find("8 6 0"), 5, "8 5 0").erase(open.find("4 0 3 2 1"), 10);
+  folder.write("crate.off", open);
+  EXPECT_THAT(resumed({}).second, HasSubstr("holds what another question has found"));
+  folder.write("crate.off", crate_text);
+  const auto [code, err] = resumed({"--surface-tolerance", "0.02"}); // the usual one
+  EXPECT_EQ(code, 0) << err;
+  EXPECT_LT(json("r.json")["tiles"]["read"], json("r.json")["tiles"]["needed"]);
+}
+
+TEST_F(SurfaceSite, IsTheSameOfTwoRanks)
+{
+  if (!hasMpirun()) GTEST_SKIP() << "no mpirun";
+  const std::string asked = "--clearance 0.2 --obstacle-out ";
+  ASSERT_EQ(ask(asked + "one.ply --report one.json").exit_code, 0);
+  const Outcome two = runOnTwoRanks("collide site crate.off " + asked + "two.ply --report two.json", folder.path());
+  ASSERT_EQ(two.exit_code, 0) << two.err;
+  EXPECT_EQ(json("two.json")["colliding"], json("one.json")["colliding"]);
+  EXPECT_EQ(json("two.json")["surface"], json("one.json")["surface"]);
+  EXPECT_TRUE(files::contentOf(folder / "one.ply") == files::contentOf(folder / "two.ply"));
+}
+
+TEST_F(SurfaceSite, IsNotMadeOfFaces)
+{
+  folder.write("faces.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("faces.ply",
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+               "z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 "
+               "0\n3 0 1 2\n");
+  folder.write("faces.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                            "endloop\nendfacet\nendsolid a\n");
+  for (const std::string name : {"crate.off", "faces.obj", "faces.ply", "faces.stl"}) {
+    const Outcome refused = run("pcl_bsh_site", "make scan.pcd " + name + " --out made", folder.path());
+    EXPECT_EQ(refused.exit_code, 1) << name;
+    EXPECT_THAT(refused.err, HasSubstr(name + ": has faces, which a site cannot hold: take its vertices alone "
+                                              "(--vertices-only)"));
+    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
+    EXPECT_FALSE(fs::exists(folder / "made"));
+    EXPECT_EQ(run("pcl_bsh_site", "make " + name + " --vertices-only --out made", folder.path()).exit_code, 0);
+    EXPECT_EQ(readSite(folder / "made").points, name == "crate.off" ? 8U : 3U);
+    fs::remove_all(folder / "made");
+  }
+  // Points in files that may have faces.
+  folder.write("points.ply", "ply\nformat ascii 1.0\ncomment a surface\nelement vertex 1\nproperty float x\nproperty "
+                             "float y\nproperty float z\nelement face 0\nproperty list uchar int vertex_indices\n"
+                             "end_header\n0 0 0\n");
+  folder.write("points.obj", "v 0 0 0\nv 1 0 0\n");
+  folder.write("points.off", "OFF\n2 0 0\n0 0 0\n1 0 0\n");
+  for (const std::string name : {"points.ply", "points.obj", "points.off"}) {
+    EXPECT_EQ(run("pcl_bsh_site", "make " + name + " --out made", folder.path()).exit_code, 0) << name;
+    fs::remove_all(folder / "made");
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh::sites
+#endif
