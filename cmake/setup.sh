@@ -3,8 +3,8 @@
 # Installs the Debian packages that are missing, configures and builds. Does no more than is left to do.
 #   bash cmake/setup.sh [PRESET [TARGET...]]     default: release, all targets; into build/PRESET
 # For the targets `demonstration`, `programs`, `python`, `docs` and `self_filter` it installs the sections of
-# packages.txt that these need, for others all but [python] and [self_filter]. The preset `paraview` needs packages that
-# exclude those of the others: apt-get removes nothing, and fails.
+# packages.txt that these need, for others all but [paraview]. The preset `paraview` needs packages that exclude those of
+# the others: apt-get removes nothing, and fails.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -19,7 +19,7 @@ case "${targets[*]}" in
   python) sections="core demonstration python" ;;
   self_filter) sections="core demonstration self_filter" ;;
   docs) sections="core demonstration docs" ;;
-  *) sections="core demonstration programs tests docs" ;;
+  *) sections="core demonstration programs tests docs self_filter python" ;;
 esac
 if [[ "$preset" == paraview ]]; then sections="core paraview"; fi
 

@@ -3,6 +3,8 @@
 # Runs all tests in a release build, a part of them (hierarchies, queries, memory, fuzz targets) under AddressSanitizer
 # and UndefinedBehaviorSanitizer, and those of the part that use threads under ThreadSanitizer. The tests of the core are
 # compiled once, for the release build. Installs the packages that are missing.
+#   PCL_SOURCE_TEST_DIR=FOLDER bash test/run.sh     FOLDER: test/ of PCL's sources (`apt-get source pcl`): PCL's own tests of
+#                                                   its search classes run on ours, too
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

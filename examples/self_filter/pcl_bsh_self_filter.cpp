@@ -32,10 +32,12 @@ using self_filter::JointValues;
 
 constexpr auto program = "pcl_bsh_self_filter";
 constexpr auto footer =
-    R"(Each output has the name of its cloud, in the folder of --out, and all fields. A point that is kept, or has the flag 0, is
-farther than the padding from every link's surface, for certain; one that is removed, or has the flag 1, is within padding +
-tolerance of one, or has no coordinates. Of a link the bodies for collisions count; where it has none, those to look at.
-Joints are fixed, revolute, continuous or prismatic; limits are not looked at. Meshes are .stl, .obj, .ply or .off.
+    R"(Each output has the name of its cloud, in the folder of --out, and all fields. A point that is kept, or has coordinates and
+the flag 0, is farther than the padding from every link, for certain; one that is removed, or has the flag 1, is within
+padding + tolerance of a link, has no coordinates, or is no return: exactly 0 0 0, where the sensor itself is. Boxes,
+cylinders and spheres are solid, meshes are surfaces. Of a link the bodies for collisions count; where it has none, those
+to look at. Joints are fixed, revolute, continuous or prismatic; limits are not looked at. Meshes are .stl, .obj, .ply or
+.off in metres, or, where assimp was there when this was built, .dae: its <unit> counts, its <up_axis> does not, as in RViz.
 Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example: cut the made robot out of what its camera sees
@@ -104,9 +106,9 @@ void check(Options& options)
   if (options.report) files::requireWritable(*options.report);
 }
 
-/// The cloud without the robot's points, and without those that have no coordinates.
-pcl::PCLPointCloud2 withoutRobot(const pcl::PCLPointCloud2& cloud, const PointsView& view,
-                                 const std::vector<std::uint8_t>& flags)
+/// The cloud without the points that are flagged, and without those that have no coordinates.
+pcl::PCLPointCloud2 withoutFlagged(const pcl::PCLPointCloud2& cloud, const PointsView& view,
+                                   const std::vector<std::uint8_t>& flags)
 {
   pcl::Indices kept;
   for (std::uint32_t i = 0; i < view.count; ++i)
@@ -123,13 +125,23 @@ Json filterCloud(const Options& options, const std::string& name, const JointVal
   const PointsView view = viewOf(cloud);
   const Eigen::Isometry3d T_scan_root = filter.robot().poses(values)[frame].inverse();
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<std::uint8_t>& flags = filter.flags(view, T_scan_root, values);
+  std::vector<std::uint8_t> flags = filter.flags(view, T_scan_root, values);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  const auto robot = std::count(flags.begin(), flags.end(), 1);
+  std::size_t robot = 0, no_returns = 0;
+  for (std::uint32_t i = 0; i < view.count; ++i) {
+    const bool is_return = !self_filter::isNoReturn(view.point(i));
+    robot += is_return ? flags[i] : 0;
+    no_returns += is_return ? 0 : 1;
+    if (!is_return) flags[i] = 1;
+  }
   io::writeCloud(outputOf(options, name),
-                 options.flag ? withField(cloud, collision_field_name, flags) : withoutRobot(cloud, view, flags),
+                 options.flag ? withField(cloud, collision_field_name, flags) : withoutFlagged(cloud, view, flags),
                  viewpoint, las);
-  return {{"cloud", name}, {"points", flags.size()}, {"robot", robot}, {"seconds", taken.count()}};
+  return {{"cloud", name},
+          {"points", flags.size()},
+          {"robot", robot},
+          {"no_returns", no_returns},
+          {"seconds", taken.count()}};
 }
 
 /// The meshes that a robot names are read as its URDF is.
@@ -152,20 +164,19 @@ int run(const Options& options)
 
   cli::Step covering("Covering the links");
   self_filter::SelfFilter filter(robot, options.settings);
-  covering.done(std::to_string(filter.balls()) + " balls");
+  covering.done(std::to_string(filter.balls()) + " balls, " + std::to_string(filter.solids()) + " solids");
 
   const files::OutputFolder folder(options.out);
-  Json report = {{"robot", robot.name},
-                 {"links", robot.links.size()},
-                 {"balls", filter.balls()},
-                 {"padding", options.settings.padding},
-                 {"tolerance", options.settings.tolerance},
-                 {"clouds", Json::array()}};
+  Json report = {
+      {"robot", robot.name},       {"links", robot.links.size()},         {"balls", filter.balls()},
+      {"solids", filter.solids()}, {"padding", options.settings.padding}, {"tolerance", options.settings.tolerance},
+      {"clouds", Json::array()}};
   for (std::size_t i = 0; i < options.clouds.size(); ++i) {
     report["clouds"].push_back(filterCloud(options, options.clouds[i], states[i], frame, filter));
     const Json& told = report["clouds"].back();
     options.files.summary() << options.clouds[i] << ": " << told["robot"] << " of " << told["points"]
-                            << " points are the robot, found in " << 1000 * told["seconds"].get<double>() << " ms\n";
+                            << " points are the robot, " << told["no_returns"] << " are no return, found in "
+                            << 1000 * told["seconds"].get<double>() << " ms\n";
   }
   if (options.report) cli::writeJson(*options.report, report);
   return 0;
@@ -198,12 +209,13 @@ int main(int argc, char** argv)
             cli::number<double>("give a length in metres", [](double m) { return std::isfinite(m) && m >= 0.0; }))
         ->capture_default_str();
     app.add_option("--tolerance", options.tolerance,
-                   "by how much the links' covers may stick out, in metres (default: a\nquarter of the padding, at "
+                   "by how much the covers of meshes may stick out, in metres (default: a\nquarter of the padding, at "
                    "least 0.001)")
         ->type_name("M")
         ->transform(cli::number<double>("give a length in metres above 0",
                                         [](double m) { return std::isfinite(m) && m > 0.0; }));
-    app.add_flag("--flag", options.flag, "keep all points, with a field 'collision' that is 1 where the robot is");
+    app.add_flag("--flag", options.flag,
+                 "keep all points, with a field 'collision' that is 1 where the robot or no return is");
     app.add_option("--package", options.packages, "folder that package://NAME/ stands for; may be given several times")
         ->type_name("NAME=DIR")
         ->expected(1)

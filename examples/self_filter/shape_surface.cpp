@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "self_filter/shape_surface.h"
 
+#include "self_filter/read_surface.h"
+
 #include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/search/cloud_view.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <variant>
 
 namespace pcl_bsh::self_filter {
@@ -30,7 +29,6 @@ std::uint32_t sidesOf(double radius, double sagitta)
 
 Surface triangulated(const Box& box, double)
 {
-  requireSize(box.size.minCoeff(), "a box");
   Surface surface;
   for (int corner = 0; corner < 8; ++corner) {
     const auto at = [&](int axis) { return ((corner >> axis & 1) - 0.5) * box.size[axis]; };
@@ -43,7 +41,6 @@ Surface triangulated(const Box& box, double)
 
 Surface triangulated(const Cylinder& tube, double sagitta)
 {
-  requireSize(std::min(tube.radius, tube.length), "a cylinder");
   const std::uint32_t sides = sidesOf(tube.radius, sagitta);
   Surface surface;
   surface.vertices = {{0, 0, -tube.length / 2}, {0, 0, tube.length / 2}};
@@ -60,7 +57,6 @@ Surface triangulated(const Cylinder& tube, double sagitta)
 
 Surface triangulated(const Sphere& ball, double sagitta)
 {
-  requireSize(ball.radius, "a sphere");
   const std::uint32_t sides = sidesOf(ball.radius, sagitta / 2), rows = (sides + 1) / 2; // two circles' sagittas
   Surface surface;
   for (std::uint32_t row = 0; row <= rows; ++row)
@@ -80,25 +76,14 @@ Surface triangulated(const Sphere& ball, double sagitta)
 
 Surface triangulated(const MeshFile& mesh, double)
 {
-  io::Mesh read = io::readMesh(mesh.path);
-  if (read.triangles.empty()) throw files::FileError(mesh.path, "has no faces", "give a mesh");
-  const PointsView view = viewOf(read.vertices);
-  Surface surface;
-  surface.triangles = std::move(read.triangles);
-  for (std::uint32_t i = 0; i < view.count; ++i) {
-    const Point3 p = view.point(i);
-    surface.vertices.push_back({mesh.scale.x() * p[0], mesh.scale.y() * p[1], mesh.scale.z() * p[2]});
-  }
+  Surface surface = readSurface(mesh.path);
+  if (surface.triangles.empty()) throw files::FileError(mesh.path, "has no faces", "give a mesh");
+  for (Point3& p : surface.vertices)
+    for (std::size_t k = 0; k < 3; ++k) p[k] *= mesh.scale[static_cast<Eigen::Index>(k)];
   return surface;
 }
 
 } // namespace
-
-void requireSize(double size, const char* what)
-{
-  if (!(size > 0.0) || !std::isfinite(size))
-    throw std::runtime_error(std::string(what) + " of size " + std::to_string(size) + ": give one above 0");
-}
 
 Surface surfaceOf(const Shape& shape, double sagitta)
 {

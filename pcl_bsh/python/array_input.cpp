@@ -79,8 +79,21 @@ bool isDescribable(const Layout& layout)
   return by_rows || (at[1] - at[0] >= column && at[2] - at[1] >= column);
 }
 
+/// The step from each record to the next, in the order of their indices; 0 where they have no common one.
+py::ssize_t strideOf(const py::array& array)
+{
+  py::ssize_t count = 1, stride = array.itemsize();
+  for (py::ssize_t k = array.ndim() - 1; k >= 0; --k) {
+    if (array.shape(k) == 1) continue;
+    if (count == 1) stride = array.strides(k);
+    if (array.strides(k) != stride * count) return 0;
+    count *= array.shape(k);
+  }
+  return stride;
+}
+
 /// Records with fields x, y, z of one type; of any shape, taken in order.
-Layout layoutOfRecords(const std::string& name, py::array& array)
+Layout layoutOfRecords(const std::string& name, const py::array& array)
 {
   const py::object fields = array.dtype().attr("fields");
   Layout layout;
@@ -98,10 +111,9 @@ Layout layoutOfRecords(const std::string& name, py::array& array)
     scalar = own;
     layout.offset[k] = field[1].cast<py::ssize_t>();
   }
-  if (array.ndim() != 1) array = array.attr("reshape")(-1);
   layout.scalar = *scalar;
-  layout.count = array.shape(0);
-  layout.stride = array.strides(0);
+  layout.count = array.size();
+  layout.stride = strideOf(array);
   return layout;
 }
 
@@ -116,7 +128,7 @@ Layout layoutOfRows(const std::string& name, const py::array& array)
   return layout;
 }
 
-Layout layoutOf(const std::string& name, py::array& array)
+Layout layoutOf(const std::string& name, const py::array& array)
 {
   return array.dtype().has_fields() ? layoutOfRecords(name, array) : layoutOfRows(name, array);
 }
@@ -126,10 +138,11 @@ py::array copyOf(const py::array& array, Scalar scalar)
 {
   const py::module_ numpy = py::module_::import("numpy");
   const py::dtype type = scalar == Scalar::float32 ? py::dtype::of<float>() : py::dtype::of<double>();
-  py::array copy(type, std::vector<py::ssize_t>{array.shape(0), 3});
+  const bool records = array.dtype().has_fields();
+  py::array copy(type, std::vector<py::ssize_t>{records ? array.size() : array.shape(0), 3});
   for (py::ssize_t k = 0; k < 3; ++k) {
-    const py::object column = array.dtype().has_fields() ? array[py::str(std::string(1, "xyz"[k]))]
-                                                         : py::object(array[py::make_tuple(py::ellipsis(), k)]);
+    const py::object column = records ? array[py::str(std::string(1, "xyz"[k]))].attr("reshape")(-1)
+                                      : py::object(array[py::make_tuple(py::ellipsis(), k)]);
     copy[py::make_tuple(py::ellipsis(), k)] = column;
   }
   return copy;
@@ -183,15 +196,34 @@ bool isPoseShape(const py::array& array, py::ssize_t first)
 const void* KeptArrays::keep(const py::array& array)
 {
   locks_.push_back(std::make_unique<ArrayLock>(array));
-  others_.push_back(array);
   return array.data();
+}
+
+int KeptArrays::traverse(visitproc visit, void* arg) const
+{
+  std::vector<PyObject*> references;
+  if (points) references.push_back(points.ptr());
+  for (const auto& lock : locks_) lock->addReferences(references);
+  // Arrays do not tell the collector of their bases. The reference of one that nobody else has is as good as ours.
+  const bool tell_themselves = PyType_HasFeature(py::detail::npy_api::get().PyArray_Type_, Py_TPFLAGS_HAVE_GC);
+  for (std::size_t i = 0; i < references.size() && !tell_themselves; ++i) {
+    PyObject* const array = references[i];
+    const auto here = references.begin() + static_cast<std::ptrdiff_t>(i);
+    if (!py::isinstance<py::array>(array) || std::find(references.begin(), here, array) != here) continue;
+    if (Py_REFCNT(array) != std::count(here, references.end(), array)) continue;
+    if (PyObject* const base = py::detail::array_proxy(array)->base) references.push_back(base);
+  }
+  for (PyObject* const reference : references) Py_VISIT(reference);
+  return 0;
 }
 
 PointsView viewOfPoints(const std::string& name, const PointsInput& input)
 {
   auto kept = makeOwner<KeptArrays>();
   kept->points = arrayOf(name, input.xyz);
+  const bool converted = !kept->points.is(input.xyz) && kept->points.owndata();
   PointsView view = viewOfArray(name, kept->points, input.copy, kept->in_place);
+  if (converted) kept->in_place = false;
   kept->keep(kept->points);
   const auto floats = [&](const char* what, const py::object& values) -> const float* {
     if (values.is_none()) return nullptr;
@@ -291,7 +323,8 @@ py::array_t<float> floatsOf(const std::string& name, const py::object& values, s
   if (array.ndim() != 1 || static_cast<std::size_t>(array.shape(0)) != count)
     throw InvalidInput(Input::points, name, "have shape " + shapeOf(array),
                        "give one for each of the " + std::to_string(count) + " points");
-  return py::array_t<float, py::array::c_style>::ensure(array);
+  if (count > 1 && array.strides(0) != sizeof(float)) return py::array_t<float, py::array::c_style>::ensure(array);
+  return py::reinterpret_borrow<py::array_t<float>>(array); // not a view of it: what is given is to be locked
 }
 
 std::vector<std::uint32_t> recordsOf(const std::string& name, const py::object& values, py::ssize_t columns)

@@ -6,6 +6,7 @@
 #include <pcl_bsh/geometry/point3.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/python/array_lock.h>
+#include <pcl_bsh/python/interpreter_lock.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/placed.h>
 
@@ -25,7 +26,7 @@ namespace py = pybind11;
 
 /// Points, and what may stand beside them, as Python hands them over.
 struct PointsInput {
-  py::object xyz;                        ///< (n, 3), or of a dtype with fields x, y, z
+  py::object xyz;                        ///< (n, 3), or any shape of a dtype with fields x, y, z
   py::object radii = py::none();         ///< (n,) float32
   py::object indices = py::none();       ///< (k,) whole numbers
   double uncertainty = 0.0;              ///< of every point
@@ -46,8 +47,10 @@ public:
   bool in_place = false; ///< `points` is the caller's own memory
   const void* keep(const py::array& array);
 
+  /// As PyTypeObject::tp_traverse, for whoever alone has this object.
+  int traverse(visitproc visit, void* arg) const;
+
 private:
-  std::vector<py::array> others_;
   std::vector<std::unique_ptr<ArrayLock>> locks_;
 };
 
@@ -57,13 +60,13 @@ std::shared_ptr<Kept> makeOwner()
 {
   return std::shared_ptr<Kept>(new Kept, [](Kept* kept) {
     if (!Py_IsInitialized()) return; // the arrays went with the interpreter
-    py::gil_scoped_acquire lock;
+    const Locked lock;
     delete kept;
   });
 }
 
 /// The view of a hierarchy; its owner keeps the arrays. Memory that a view cannot describe (rows backwards, rows over
-/// each other) is copied.
+/// each other, records of two dimensions without one step from each to the next) is copied.
 /// @param name how errors call the points
 PointsView viewOfPoints(const std::string& name, const PointsInput& input);
 

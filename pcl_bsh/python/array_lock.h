@@ -8,18 +8,28 @@
 
 namespace pcl_bsh::python {
 
-/// Clears the flag `writeable` of an array and of the arrays that it is a view of. The destructor sets the flag again
-/// where it was set, unless another lock holds the array. Both need the interpreter's lock.
+/// Clears the flag `writeable` of an array and of the arrays that it shows memory of: its base, the base of that, and
+/// so on. Where the flag was set, it is set again as soon as no lock reads memory that the array shows. Keeps the
+/// array. All of it needs the interpreter's lock.
 class ArrayLock {
 public:
-  ArrayLock() = default;
   explicit ArrayLock(const pybind11::array& array);
   ~ArrayLock();
   ArrayLock(const ArrayLock&) = delete;
   ArrayLock& operator=(const ArrayLock&) = delete;
 
+  /// Appends what it has references to: an array for each reference.
+  void addReferences(std::vector<PyObject*>& references) const;
+
 private:
-  std::vector<pybind11::array> arrays_; ///< those of which this lock holds the flag
+  bool reads(const pybind11::array& array) const;
+
+  pybind11::array array_;
+  const PyObject* root_ = nullptr;      ///< what the memory belongs to
+  std::vector<pybind11::array> locked_; ///< those of which this lock will set the flag, or pass that on
 };
+
+/// What an array, or another object that stands between arrays, shows memory of; null: nothing else.
+pybind11::object baseOf(const pybind11::object& object);
 
 } // namespace pcl_bsh::python

@@ -21,8 +21,10 @@ hierarchy may be asked by several threads at once.
 Parameters
 ----------
 xyz : array_like, (n, 3) or records with fields x, y, z
-    float32 or float64 in this machine's byte order; other types are refused. It is read where it is, whatever its
-    strides, and kept alive. Only rows that run backwards or lie over each other are copied.
+    float32 or float64 in this machine's byte order; other types are refused. Records may have any shape, as those of an
+    organised cloud, (height, width); they are numbered row by row. It is read where it is, whatever its strides, and kept
+    alive. Only rows that run backwards or lie over each other are copied, and records of several dimensions where the
+    step from one to the next is not always the same (`in_place` tells).
 radii : array_like of float32, (n,), optional
     Each point is a ball; finite, >= 0.
 indices : array_like of int, (k,), optional
@@ -46,9 +48,12 @@ ValueError
 
 Notes
 -----
-The points must not change while the hierarchy lives, so the arrays that it reads, and those they are views of, are
-read-only meanwhile (``flags.writeable`` is False, and True again when the last hierarchy is gone). Other views that were
-made before can still write: do not use them, or give ``copy=True``.
+The points must not change while the hierarchy lives, so the arrays that it reads, and those that are their ``base``, are
+read-only meanwhile (``flags.writeable`` is False, and True again when the last hierarchy that reads some of their memory
+is gone). Other views that were made before can still write: do not use them, or give ``copy=True``.
+
+An array that holds the hierarchy which reads it is freed by Python's garbage collector. ``os.fork`` waits until the
+queries of other threads are done; so does the interpreter's end, for at most ten seconds.
 
 Examples
 --------
@@ -112,6 +117,34 @@ const KeptArrays* arraysOf(const PointsView& view)
   return dynamic_cast<const KeptArrays*>(static_cast<const Owner*>(view.owner.get()));
 }
 
+/// For Python's collector: an array may hold the hierarchy that keeps it.
+int traverse(PyObject* self, visitproc visit, void* arg)
+{
+  Py_VISIT(Py_TYPE(self));
+  auto* const instance = reinterpret_cast<py::detail::instance*>(self);
+  if (!instance->simple_layout && !instance->nonsimple.status) return 0; // not made yet
+  const auto held = instance->get_value_and_holder();
+  if (!held.holder_constructed() || changesBegun() > 0) return 0;
+  // A scene may have it, too. New holders are made with the interpreter's lock, so none comes while the collector
+  // works.
+  const auto& hierarchy = held.holder<std::shared_ptr<SphereHierarchy>>();
+  if (hierarchy.use_count() != 1) return 0;
+  const KeptArrays* const kept = arraysOf(hierarchy->view());
+  return kept ? kept->traverse(visit, arg) : 0;
+}
+
+/// The collector ends a cycle at the array, which forgets its attributes: tp_clear is not needed.
+void setUpCollection(PyHeapTypeObject* heap_type)
+{
+  PyTypeObject& type = heap_type->ht_type;
+  type.tp_flags |= Py_TPFLAGS_HAVE_GC;
+  type.tp_traverse = &traverse;
+  type.tp_dealloc = [](PyObject* self) {
+    PyObject_GC_UnTrack(self);
+    py::detail::pybind11_object_dealloc(self);
+  };
+}
+
 std::size_t sizeOf(const SphereHierarchy& hierarchy)
 {
   return unlocked([&] { return hierarchy.size(); });
@@ -172,7 +205,8 @@ std::shared_ptr<SphereHierarchy> make(const py::object& xyz, const py::object& r
 
 void bindHierarchy(py::module_& module)
 {
-  py::class_<SphereHierarchy, std::shared_ptr<SphereHierarchy>>(module, "SphereHierarchy", kHierarchy)
+  py::class_<SphereHierarchy, std::shared_ptr<SphereHierarchy>>(module, "SphereHierarchy", kHierarchy,
+                                                                py::custom_type_setup(&setUpCollection))
       .def(py::init(&make), py::arg("xyz"), py::kw_only(), py::arg("radii") = py::none(),
            py::arg("indices") = py::none(), py::arg("uncertainty") = 0.0, py::arg("uncertainties") = py::none(),
            py::arg("copy") = false, py::arg("voxel_edge") = 0.0, py::arg("threads") = 1)

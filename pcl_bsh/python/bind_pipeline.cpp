@@ -98,11 +98,15 @@ PipelineResult runUntilInterrupted(Pipeline& pipeline)
   std::future<PipelineResult> run = std::async(std::launch::async, [&] { return pipeline.run(); });
   for (;;) {
     if (run.wait_for(std::chrono::milliseconds(50)) == std::future_status::ready) return run.get();
-    const py::gil_scoped_acquire lock;
+    if (isEnding()) {
+      pipeline.cancel();
+      continue;
+    }
+    const Locked lock;
     if (PyErr_CheckSignals() == 0) continue;
     const py::error_already_set interrupt;
     {
-      const py::gil_scoped_release release; // for a callback that waits for it
+      const Unlocked unlocked; // for a callback that waits for it
       pipeline.cancel();
       run.wait();
     }
@@ -124,9 +128,9 @@ PipelineRun runPipeline(const py::object& document, const py::object& clouds, un
   pipeline.setNumberOfThreads(threads);
   if (!progress.is_none()) {
     pipeline.setProgress([&](const StageProgress& stage) {
-      const py::gil_scoped_acquire lock;
-      const py::object answer = progress(dictOf(stage));
-      if (py::isinstance<py::bool_>(answer) && !answer.cast<bool>()) pipeline.cancel();
+      if (isEnding()) return pipeline.cancel();
+      const Locked lock;
+      if (isFalse(called(progress, dictOf(stage)))) pipeline.cancel();
     });
   }
   PipelineRun run;

@@ -4,9 +4,11 @@
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/python/computing.h>
+#include <pcl_bsh/python/interpreter_lock.h>
 
 #include <pybind11/pybind11.h>
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 
@@ -14,16 +16,24 @@ namespace pcl_bsh::python {
 
 namespace py = pybind11;
 
+/// What a callback returns to end what calls it: Python's False or NumPy's. None and all else let it go on.
+inline bool isFalse(const py::object& answer)
+{
+  static PyObject* numpys = nullptr; // guarded by the interpreter's lock
+  if (!numpys) numpys = py::object(py::module_::import("numpy").attr("bool_")).release().ptr();
+  return (py::isinstance<py::bool_>(answer) || py::isinstance(answer, py::handle(numpys))) && !py::bool_(answer);
+}
+
 /// Calls f(fraction), which stops the query by returning False. Without f, too, Ctrl-C ends the query with
 /// KeyboardInterrupt. The query must be called without the interpreter's lock.
 inline std::function<bool(double)> progressOf(const py::object& f)
 {
   return [&f](double fraction) {
-    const py::gil_scoped_acquire lock;
+    if (isEnding()) return false;
+    const Locked lock;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (f.is_none()) return true;
-    const py::object answer = f(fraction);
-    return !(py::isinstance<py::bool_>(answer) && !answer.cast<bool>());
+    return !isFalse(called(f, py::float_(fraction)));
   };
 }
 
@@ -31,7 +41,7 @@ inline std::function<bool(double)> progressOf(const py::object& f)
 template <class Compute>
 auto unlocked(Compute&& compute)
 {
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   const Computing turn;
   return compute();
 }
@@ -42,19 +52,35 @@ inline PointsView viewNow(const SphereHierarchy& hierarchy)
   return unlocked([&] { return hierarchy.view(); });
 }
 
+/// How many threads change points, or wait to do so. Needs the interpreter's lock: while it is 0 and the lock is held,
+/// the views of hierarchies stay.
+inline std::size_t& changesBegun()
+{
+  static std::size_t count = 0;
+  return count;
+}
+
 /// Changes points of a hierarchy: while no query runs, and none begins.
 /// @param prepare what is passed to `change`, which outlives that; may call Python
 /// @param change without the interpreter's lock
 template <class Prepare, class Change>
 auto whileNoneComputes(Prepare&& prepare, Change&& change)
 {
+  struct Begun {
+    Begun() { ++changesBegun(); }
+    ~Begun() { --changesBegun(); }
+  } const begun;
   std::optional<Changing> turn;
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     turn.emplace();
   }
   const auto prepared = prepare();
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
+  struct Ends { // before this thread wants the interpreter's lock, which it may not get
+    ~Ends() { turn.reset(); }
+    std::optional<Changing>& turn;
+  } const ends{turn};
   return change(prepared);
 }
 

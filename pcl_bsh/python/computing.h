@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Queries of all of Python's threads, or one change of points: never both.
+// Queries of all of Python's threads, or one change of points, or a fork, or the interpreter's end: never two of these.
 #pragma once
 
 namespace pcl_bsh::python {
@@ -24,5 +24,12 @@ public:
   Changing(const Changing&) = delete;
   Changing& operator=(const Changing&) = delete;
 };
+
+/// Lets the interpreter fork only while no other thread computes or changes points: the child has none of these
+/// threads, and what they were about to make would never be done. A fork waits for their queries, and later ones for
+/// the fork. In the callback of a query it waits for none. Likewise the interpreter ends when no thread computes;
+/// queries that report progress are stopped, and those of daemon threads that begin later wait for ever. Needs the
+/// interpreter's lock; to be called once.
+void takeTurnsWithInterpreter();
 
 } // namespace pcl_bsh::python

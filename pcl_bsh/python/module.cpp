@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The extension module of the Python package pcl_bsh; package/pcl_bsh/__init__.py shows its names.
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/computing.h>
 #include <pcl_bsh/version.h>
 
 PYBIND11_MODULE(_core, module)
@@ -11,6 +12,7 @@ PYBIND11_MODULE(_core, module)
   options.disable_enum_members_docstring();
   module.attr("__version__") = std::to_string(PCL_BSH_VERSION_MAJOR) + "." + std::to_string(PCL_BSH_VERSION_MINOR) +
                                "." + std::to_string(PCL_BSH_VERSION_PATCH);
+  takeTurnsWithInterpreter();
   bindWords(module);
   bindHierarchy(module);
   bindCollision(module);

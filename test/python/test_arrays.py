@@ -38,8 +38,20 @@ LAYOUTS = {
     "records": (records_of, True),
     "padded_records": (lambda p: records_of(p, padded=True), True),
     "organised_records": (lambda p: records_of(p).reshape(30, 5), True),
+    "organised_window": (lambda p: np.repeat(records_of(p).reshape(30, 5), 2, axis=1)[:, ::2], True),
+    "organised_as_steps": (lambda p: records_of(p).reshape(1, 30, 1, 5, 1), True),
+    "organised_rows_apart": (lambda p: np.hstack([records_of(p).reshape(30, 5)] * 2)[:, :5], False),
+    "organised_transposed": (lambda p: records_of(p).reshape(30, 5).T.copy().T, False),
+    "organised_columns": (lambda p: np.asfortranarray(records_of(p).reshape(30, 5)), False),
+    "organised_backwards": (lambda p: records_of(p).reshape(30, 5)[::-1].copy()[::-1], False),
+    "organised_all_backwards": (lambda p: records_of(p)[::-1].copy().reshape(30, 5)[::-1, ::-1], False),
+    "organised_read_only": (lambda p: np.frombuffer(records_of(p).tobytes(), records_of(p).dtype).reshape(30, 5), True),
+    "recarray": (lambda p: records_of(p).view(np.recarray), True),
+    "field_of_three": (lambda p: np.array([(r,) for r in p.tolist()], [("xyz", "f8", 3)])["xyz"], True),
+    "strided_by_hand": (lambda p: np.lib.stride_tricks.as_strided(p.copy(), p.shape, p.strides), True),
+    "of_a_buffer": (lambda p: np.asarray(memoryview(p.copy())), True),
     "rows_backwards": (lambda p: p[::-1].copy()[::-1], False),
-    "list": (lambda p: p.tolist(), True),
+    "list": (lambda p: p.tolist(), False),
     "read_only": (lambda p: np.frombuffer(p.tobytes()).reshape(p.shape), True),
 }
 
@@ -52,9 +64,21 @@ def test_any_strides_give_the_same_answer(name):
     hierarchy = pcl_bsh.SphereHierarchy(given)
     assert hierarchy.in_place == in_place
     assert (name == "list") or np.shares_memory(hierarchy.array, given) == in_place
+    assert (hierarchy.array is given) == in_place
+    if name != "list" and not in_place:
+        assert given.flags.writeable
     np.testing.assert_array_equal(flags(given), flags(xyz))
     assert flags(xyz).any() and not flags(xyz).all()
     assert hierarchy.validate() == []
+
+
+@pytest.mark.parametrize("shape", [(0, 5), (5, 0), (), (1, 1), (7, 1), (1, 7), (2, 3, 4)])
+def test_records_have_any_shape(shape):
+    records = np.zeros(shape, records_of(cloud("one")).dtype)
+    hierarchy = pcl_bsh.SphereHierarchy(records)
+    assert len(hierarchy) == hierarchy.records == records.size and hierarchy.in_place == (records.size > 0)
+    hierarchy.refit(np.ones(shape, records.dtype))
+    assert len(hierarchy) == records.size and hierarchy.validate() == []
 
 
 def test_rows_over_each_other_are_copied():
@@ -110,10 +134,77 @@ def test_arrays_are_read_only_while_a_hierarchy_lives():
     with pytest.raises(ValueError):
         base[0] = 1
     del first
-    assert view.flags.writeable and not base.flags.writeable  # the second reads the base
+    assert not view.flags.writeable and not base.flags.writeable  # the second reads what both show
     del second
-    assert base.flags.writeable
-    base[0] = 1
+    assert view.flags.writeable and base.flags.writeable
+    base[0] = view[0] = 1
+
+
+@pytest.mark.parametrize("name", sorted(name for name, (_, in_place) in LAYOUTS.items() if in_place))
+def test_what_is_read_in_place_is_locked_with_all_that_it_shows(name):
+    given = LAYOUTS[name][0](cloud("random", 1))
+    shown, bases = given, []
+    while isinstance(shown, np.ndarray):
+        bases.append(shown)
+        shown = shown.base
+    written = [array.flags.writeable for array in bases]
+    hierarchy = pcl_bsh.SphereHierarchy(given)
+    assert not any(array.flags.writeable for array in bases)
+    with pytest.raises(ValueError):
+        given[...] = given.copy()
+    del hierarchy
+    assert [array.flags.writeable for array in bases] == written
+
+
+def test_the_next_frame_of_an_organised_cloud_is_refused():
+    frames = np.zeros((2, 30, 5), records_of(cloud("random", 1)).dtype)
+    here, there = frames[0], frames[1]
+    hierarchy = pcl_bsh.SphereHierarchy(here)
+    with pytest.raises(ValueError):
+        here["x"] = 7
+    with pytest.raises(ValueError):
+        here[...] = there
+    there["x"] = 7  # another view, and other memory
+    hierarchy.refit(there)
+    here["x"] = 5  # given back
+    with pytest.raises(ValueError):
+        there["x"] = 3
+    hierarchy.refit(here)
+    there["x"] = 3
+    del hierarchy
+    assert frames.flags.writeable and here.flags.writeable and there.flags.writeable
+
+
+def test_views_that_share_no_byte_are_apart():
+    both = np.zeros((20, 6))
+    here, there = both[:, :3], both[:, 3:]
+    hierarchy = pcl_bsh.SphereHierarchy(here)
+    hierarchy.refit(there)
+    assert here.flags.writeable and not there.flags.writeable
+
+
+def test_what_a_view_of_another_kind_shows_is_locked():
+    xyz = cloud("random", 1)
+    for view in (np.lib.stride_tricks.as_strided(xyz, (50, 3), xyz.strides), np.asarray(memoryview(xyz))[5:],
+                 np.frombuffer(xyz, np.float64).reshape(-1, 3)):
+        hierarchy = pcl_bsh.SphereHierarchy(view)
+        assert not xyz.flags.writeable
+        del hierarchy
+        assert xyz.flags.writeable
+
+
+def test_radii_of_a_subclass_are_locked():
+    class Own(np.ndarray):
+        pass
+
+    xyz = cloud("random", 1)
+    radii = np.full(len(xyz), 0.01, np.float32)
+    own = radii.view(Own)
+    for name in ("radii", "uncertainties"):
+        hierarchy = pcl_bsh.SphereHierarchy(xyz, **{name: own})
+        assert not own.flags.writeable and not radii.flags.writeable
+        del hierarchy
+        assert own.flags.writeable and radii.flags.writeable
 
 
 def test_arrays_that_were_read_only_stay_so():

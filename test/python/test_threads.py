@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Queries run without the interpreter's lock, in several threads, and until Ctrl-C."""
+"""Queries run without the interpreter's lock, in several threads, until Ctrl-C or the interpreter's end, and past forks."""
 
 import _thread
 import gc
+import os
+import signal
+import subprocess
 import sys
 import threading
 import time
@@ -147,3 +150,121 @@ def test_a_scene_in_many_threads():
 
     in_threads(4, work)
     assert len(scene.query().any) == 6
+
+
+AT_EXIT = """
+import sys, threading, time
+import numpy as np
+import pcl_bsh
+rng = np.random.default_rng(1)
+a, b = (pcl_bsh.SphereHierarchy(rng.random((20000, 3))) for _ in range(2))
+began = threading.Barrier(4)
+
+def work():
+    began.wait()
+    while True:
+        {query}
+
+for _ in range(3):
+    threading.Thread(target=work, daemon=True).start()
+began.wait()
+time.sleep(0.05)
+"""
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "pcl_bsh.collision_flags(a, b, 0.001)",
+        "pcl_bsh.point_distances(a, b, threads=2, progress=lambda done: time.sleep(0.001))",
+        "pcl_bsh.SphereHierarchy(rng.random((2000, 3))).refit(rng.random((2000, 3)))",
+        "pcl_bsh.run_pipeline([{'type': 'readers.pcd', 'filename': 'none.pcd', 'tag': 'scan'}], {'scan': rng.random((9, 3))},"
+        " progress=lambda stage: None)",
+    ],
+)
+def test_the_interpreter_ends_while_daemons_ask(query):
+    for _ in range(4):
+        done = subprocess.run([sys.executable, "-c", AT_EXIT.format(query=query)], capture_output=True, timeout=60)
+        assert (done.returncode, done.stderr) == (0, b"")
+
+
+def in_child(work):
+    """Whether `work`, done in a forked process, returns True within some seconds."""
+    child = os.fork()
+    if child == 0:
+        code = 1
+        try:
+            code = 0 if work() else 2
+        finally:
+            os._exit(code)
+    for _ in range(1000):
+        ended, status = os.waitpid(child, os.WNOHANG)
+        if ended:
+            return os.waitstatus_to_exitcode(status) == 0
+        time.sleep(0.01)
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    return False
+
+
+def test_a_child_forked_while_others_compute_goes_on():
+    a, b = cloud("random", 1, 5000), cloud("random", 2, 5000)
+    A, B = pcl_bsh.SphereHierarchy(a), pcl_bsh.SphereHierarchy(b)
+    now = a + 0.01
+    expected = pcl_bsh.closest_pair(pcl_bsh.SphereHierarchy(now, copy=True), B).distance
+    ended = threading.Event()
+    began = threading.Barrier(3)
+
+    def work():
+        began.wait()
+        while not ended.is_set():  # hierarchies are built while the process forks
+            pcl_bsh.symmetric_distances(pcl_bsh.SphereHierarchy(b, copy=True), A)
+
+    threads = [threading.Thread(target=work) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    began.wait()
+
+    def moved():
+        A.refit(now)
+        return pcl_bsh.closest_pair(A, B).distance == expected and B.refit(b.copy()) is not None
+
+    try:
+        for _ in range(8):
+            assert in_child(moved)
+    finally:
+        ended.set()
+        for thread in threads:
+            thread.join()
+    A.refit(now)  # and so does this process
+    assert pcl_bsh.closest_pair(A, B).distance == expected
+
+
+def test_a_callback_may_fork():
+    A, B = pcl_bsh.SphereHierarchy(cloud("random", 1, 3000)), pcl_bsh.SphereHierarchy(cloud("random", 2, 3000))
+    asked = []
+
+    def progress(done):
+        if not asked:
+            asked.append(in_child(lambda: pcl_bsh.closest_pair(A, B).distance >= 0))
+
+    pcl_bsh.point_distances(A, B, progress=progress)
+    assert asked == [True]
+    A.refit(cloud("random", 3, 3000))
+
+
+@pytest.mark.parametrize("stop", [False, np.False_, np.bool_(0), np.zeros(3).any()])
+def test_any_false_stops(stop):
+    A, B = pcl_bsh.SphereHierarchy(cloud("random", 1, 3000)), pcl_bsh.SphereHierarchy(cloud("random", 2, 3000))
+    with pytest.raises(pcl_bsh.Cancelled):
+        pcl_bsh.point_distances(A, B, progress=lambda done: stop)
+    with pytest.raises(pcl_bsh.Cancelled):
+        pcl_bsh.run_pipeline([{"type": "readers.pcd", "filename": "none.pcd", "tag": "scan"},
+                              {"type": "filters.voxel_grid", "leaf_size": 0.1}],
+                             {"scan": cloud("random", 1)}, progress=lambda stage: stop)
+
+
+@pytest.mark.parametrize("answer", [None, True, np.True_, 0, 0.0, "", np.zeros(2)])
+def test_nothing_else_stops(answer):
+    A, B = pcl_bsh.SphereHierarchy(cloud("random", 1, 3000)), pcl_bsh.SphereHierarchy(cloud("random", 2, 3000))
+    pcl_bsh.point_distances(A, B, progress=lambda done: answer)

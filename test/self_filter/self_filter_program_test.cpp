@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using Json = nlohmann::json;
 
-/// A robot that is one ball of radius 1, on a slide along x; three points, of which one is in it.
+/// A robot that is one ball of radius 1, on a slide along x; four points, of which one is in it, and one is no return.
 class SelfFilterProgram : public testing::Test {
 protected:
   SelfFilterProgram()
@@ -28,7 +28,7 @@ protected:
       <sphere radius="1"/></geometry></collision></link><joint name="slide" type="prismatic"><parent link="rail"/>
       <child link="ball"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint></robot>)";
     for (const char* name : {"a.csv", "b.csv"})
-      std::ofstream(folder / name) << "x,y,z,time\n0,0,0,7\n5,0,0,8\nnan,0,0,9\n";
+      std::ofstream(folder / name) << "x,y,z,time\n0,0.1,0,7\n5,0,0,8\nnan,0,0,9\n0,0,0,6\n";
   }
 
   Outcome filter(const std::string& arguments) const { return run("pcl_bsh_self_filter", arguments, folder.path()); }
@@ -55,7 +55,7 @@ TEST_F(SelfFilterProgram, RemovesTheRobot)
 {
   const Outcome done = filter("ball.urdf a.csv --out out");
   EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.out, StartsWith("a.csv: 1 of 3 points are the robot"));
+  EXPECT_THAT(done.out, StartsWith("a.csv: 1 of 4 points are the robot, 1 are no return, found in "));
   EXPECT_EQ(written("out/a.csv"), "x,y,z,time\n5,0,0,8\n");
 }
 
@@ -64,11 +64,12 @@ TEST_F(SelfFilterProgram, FlagsItPerFrameWhereTheJointsPutIt)
   std::ofstream(folder / "states.csv") << "slide\n0\n6.01\n";
   const Outcome done = filter("ball.urdf a.csv b.csv --states states.csv --flag --out out --report report.json");
   EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_EQ(written("out/a.csv"), "x,y,z,time,collision\n0,0,0,7,1\n5,0,0,8,0\nnan,0,0,9,0\n");
-  EXPECT_EQ(written("out/b.csv"), "x,y,z,time,collision\n0,0,0,7,0\n5,0,0,8,1\nnan,0,0,9,0\n");
+  EXPECT_EQ(written("out/a.csv"), "x,y,z,time,collision\n0,0.1,0,7,1\n5,0,0,8,0\nnan,0,0,9,0\n0,0,0,6,1\n");
+  EXPECT_EQ(written("out/b.csv"), "x,y,z,time,collision\n0,0.1,0,7,0\n5,0,0,8,1\nnan,0,0,9,0\n0,0,0,6,1\n");
   const Json report = Json::parse(written("report.json"));
   EXPECT_EQ(report["clouds"].size(), 2U);
   EXPECT_EQ(report["clouds"][1]["robot"], 1);
+  EXPECT_EQ(report["clouds"][1]["no_returns"], 1);
   EXPECT_EQ(report["padding"], 0.02);
   const Outcome piped = filter("ball.urdf a.csv b.csv --states states.csv --out out --report -");
   EXPECT_EQ(Json::parse(piped.out)["clouds"].size(), 2U);
@@ -80,7 +81,16 @@ TEST_F(SelfFilterProgram, SeesFromALink)
   EXPECT_EQ(filter("ball.urdf a.csv --joints slide=-5 --frame ball --out out").exit_code, 0);
   EXPECT_EQ(written("out/a.csv"), "x,y,z,time\n5,0,0,8\n"); // the ball is at the origin of its own frame
   EXPECT_EQ(filter("ball.urdf a.csv --joints slide=5.5 --padding 0.6 --out out").exit_code, 0);
-  EXPECT_EQ(written("out/a.csv"), "x,y,z,time\n0,0,0,7\n");
+  EXPECT_EQ(written("out/a.csv"), "x,y,z,time\n0,0.1,0,7\n");
+}
+
+TEST_F(SelfFilterProgram, DropsWhatDidNotReturn)
+{
+  // The ball is elsewhere: what stands at the sensor's own origin is no obstacle, whatever the zero's sign.
+  std::ofstream(folder / "zeros.csv") << "x,y,z\n0,0,0\n-0.0,0,0\n1e-20,0,0\n0,0,0\n";
+  const Outcome done = filter("ball.urdf zeros.csv --joints slide=5.5 --out out");
+  EXPECT_THAT(done.out, StartsWith("zeros.csv: 0 of 4 points are the robot, 3 are no return"));
+  EXPECT_EQ(written("out/zeros.csv"), "x,y,z\n1e-20,0,0\n");
 }
 
 TEST_F(SelfFilterProgram, FailsInOneLine)
@@ -99,6 +109,16 @@ TEST_F(SelfFilterProgram, FailsInOneLine)
   expectFailure("ball.urdf a.csv twice/a.csv --out out", 2, "a.csv");
   std::ofstream(folder / "states.csv") << "slide\n0\n1\n2\n";
   expectFailure("ball.urdf a.csv b.csv --states states.csv --out out", 2, "3 lines of values for 2 clouds");
+  std::ofstream(folder / "bare.urdf") << "<robot name=\"bare\"><link name=\"a\"/></robot>";
+  expectFailure("bare.urdf a.csv --out out", 1, "robot 'bare': has no body");
+  for (const auto& [mesh, message] :
+       {std::pair("m.las", "m.las: is no file of a mesh that is read: save it as .stl, .obj, .ply"),
+        std::pair("m.DAE", "m.DAE: is ")}) {
+    std::ofstream(folder / mesh) << "no mesh";
+    std::ofstream(folder / "mesh.urdf") << "<robot name=\"m\"><link name=\"a\"><visual><geometry><mesh filename=\""
+                                        << mesh << "\"/></geometry></visual></link></robot>";
+    expectFailure("mesh.urdf a.csv --out out", 1, message);
+  }
   self_filter::writeMadeRobot(folder.path());
   expectFailure("robot.urdf a.csv --out out --report meshes/forearm.stl", 2,
                 "--report: meshes/forearm.stl: is the file of mesh of link 'forearm', which is read");

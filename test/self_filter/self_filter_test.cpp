@@ -33,7 +33,7 @@ double distanceToTriangle(const Vector3d& p, const Vector3d& a, const Vector3d& 
   return std::min({toSegment(a, b), toSegment(b, c), toSegment(c, a)});
 }
 
-/// A shape as it truly is: the surface of a box or a cylinder, a solid sphere, triangles.
+/// A shape as it truly is: a solid box, cylinder or sphere, or triangles.
 class TrueShape {
 public:
   explicit TrueShape(const Shape& shape)
@@ -48,8 +48,11 @@ public:
     if (const auto* ball = std::get_if<Sphere>(&shape_.form)) return std::max(0.0, p.norm() - ball->radius);
     if (const auto* tube = std::get_if<Cylinder>(&shape_.form)) {
       const double out = p.head<2>().norm() - tube->radius, over = std::abs(p.z()) - tube->length / 2;
-      return out > 0 && over > 0 ? std::hypot(out, over) : std::abs(std::max(out, over));
+      if (out <= 0 && over <= 0) return 0.0;
+      return out > 0 && over > 0 ? std::hypot(out, over) : std::max(out, over);
     }
+    if (const auto* box = std::get_if<Box>(&shape_.form))
+      if ((2 * p.array().abs() <= box->size.array()).all()) return 0.0;
     double least = std::numeric_limits<double>::infinity();
     const auto corner = [&](std::uint32_t i) { return Vector3d(surface_.vertices[i].data()); };
     for (const Triangle& t : surface_.triangles)
@@ -158,6 +161,80 @@ TEST_F(SelfFilterTest, AnswersAlikeForAnyNumberOfThreadsAndFrameBefore)
   EXPECT_THROW(one.flags(view, pose, {{"nose", 1}}), std::runtime_error);
 }
 
+class SelfFilterOfOneBody : public testing::Test {
+protected:
+  /// Flags of points of a scan in the robot's own frame.
+  static std::vector<std::uint8_t> flags(const Shape& shape, const Settings& settings,
+                                         const std::vector<Vector3d>& points)
+  {
+    Robot robot;
+    robot.links.resize(1);
+    robot.links[0].shapes = {shape};
+    SelfFilter filter(robot, settings);
+    return filter.flags(viewOf(points[0].data(), points.size()), Eigen::Isometry3d::Identity(), {});
+  }
+
+  const Eigen::Isometry3d pose =
+      Eigen::Translation3d(3, -2, 1) * Eigen::AngleAxisd(0.8, Vector3d(1, 2, 3).normalized());
+};
+
+TEST_F(SelfFilterOfOneBody, CutsOutWhatLiesInsideOfEachSolid)
+{
+  // An arm's housing holds the sensor's own cables: far from every surface.
+  for (const Shape& shape : {Shape{Box{{2, 3, 4}}, pose}, Shape{Cylinder{1, 3}, pose}, Shape{Sphere{1.5}, pose}}) {
+    std::vector<Vector3d> points;
+    for (double along = -0.75; along <= 0.75; along += 0.125) points.push_back(pose * Vector3d(0.2, along, 0.3));
+    for (const std::uint8_t flag : flags(shape, {0.02, 0.005, 1}, points)) EXPECT_EQ(flag, 1) << shape.form.index();
+  }
+}
+
+TEST_F(SelfFilterOfOneBody, RoundsEdgesByThePadding)
+{
+  const double padding = 0.5, least = 1e-9;
+  const double along = padding / std::sqrt(3.0), in_plane = padding / std::sqrt(2.0);
+  const auto just = [&](const Shape& shape, const Vector3d& from, const Vector3d& step) {
+    const std::vector<Vector3d> points = {pose * (from + (1 - least) * step), pose * (from + (1 + least) * step)};
+    EXPECT_EQ(flags(shape, {padding, 0.001, 1}, points), (std::vector<std::uint8_t>{1, 0}))
+        << shape.form.index() << ": " << (from + step).transpose();
+  };
+  const Shape box{Box{{2, 3, 4}}, pose}, tube{Cylinder{1, 3}, pose}, ball{Sphere{1.5}, pose};
+  just(box, {1, 1.5, 2}, {along, along, along});
+  just(box, {-1, 0.3, -2}, {-in_plane, 0, -in_plane});
+  just(box, {0.2, -1.5, 0.1}, {0, -padding, 0});
+  just(tube, {0.6, 0.8, 1.5}, {0.6 * in_plane, 0.8 * in_plane, in_plane});
+  just(tube, {0.6, -0.8, 0.2}, {0.6 * padding, -0.8 * padding, 0});
+  just(tube, {0.1, 0.2, -1.5}, {0, 0, -padding});
+  just(ball, {0, -1.5, 0}, {0, -padding, 0});
+  const Shape rod{Box{{7, 0.2, 0.3}}, pose}, pipe{Cylinder{0.1, 9}, pose};
+  for (double at = -1; at <= 1; at += 0.03125) { // all along slender ones
+    just(rod, {3.5 * at, -0.1, 0.15}, {0, -in_plane, in_plane});
+    just(pipe, {0.06, 0.08, 4.5 * at}, {0.6 * padding, 0.8 * padding, 0});
+  }
+}
+
+TEST_F(SelfFilterOfOneBody, KeepsWhatLiesInsideOfAMesh)
+{
+  const io::TemporaryFolder folder;
+  writeMadeRobot(folder.path());
+  const std::vector<Vector3d> points = {pose * Vector3d(0, 0, 0.1), pose * Vector3d(0.12, 0, 0.1)};
+  EXPECT_EQ(flags({MeshFile{folder / "meshes/turret.stl"}, pose}, {0.02, 0.005, 1}, points),
+            (std::vector<std::uint8_t>{0, 1}));
+}
+
+TEST(SelfFilterOfNothing, IsAnError)
+{
+  Robot robot;
+  robot.name = "ghost";
+  robot.links.resize(2);
+  try {
+    SelfFilter(robot, {});
+    ADD_FAILURE();
+  }
+  catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("robot 'ghost': has no body"));
+  }
+}
+
 TEST(LinkBodyTest, NamesTheLinkThatHasNoSize)
 {
   for (const Shape& shape : {Shape{Box{{1, 0, 1}}}, Shape{Cylinder{0.1, -1}}, Shape{Sphere{std::nan("")}}}) {
@@ -174,27 +251,25 @@ TEST(LinkBodyTest, NamesTheLinkThatHasNoSize)
   }
 }
 
-TEST(LinkBodyTest, OfAVastSphereIsOneBall)
+TEST(LinkBodyTest, OfVastSolidsIsAFewBallsToLookIn)
 {
   Link link;
-  link.shapes = {{Sphere{1e9}, Eigen::Isometry3d::Identity()}};
-  EXPECT_EQ(bodyOf(link, 0.001).centers.size(), 1U);
   link.name = "drum";
-  for (const double radius : {1e9, 1e30}) {
-    link.shapes = {{Cylinder{radius, 1.0}, Eigen::Isometry3d::Identity()}};
-    try {
-      bodyOf(link, 0.001);
-      ADD_FAILURE() << radius;
-    }
-    catch (const std::runtime_error& error) {
-      EXPECT_THAT(error.what(), testing::StartsWith("link 'drum': a circle of radius "));
-    }
+  for (const double size : {1e9, 1e30}) {
+    link.shapes = {{Sphere{size}}, {Cylinder{size, 1.0}}, {Box{{1.0, size, 1.0}}}};
+    const LinkBody body = bodyOf(link, 0.001);
+    EXPECT_EQ(body.enclosing.centers.size(), 1U + 1U + 64U);
+    EXPECT_TRUE(body.surfaces.centers.empty());
+    for (const float radius : body.enclosing.radii) EXPECT_TRUE(std::isfinite(radius));
   }
+  link.shapes = {{Cylinder{1e31, 1.0}}};
+  EXPECT_THROW(bodyOf(link, 0.001), std::runtime_error);
 }
 
 TEST(LinkBodyTest, OfALinkWithoutBodiesIsEmpty)
 {
-  EXPECT_EQ(bodyOf({}, 0.01).view().count, 0U);
+  const LinkBody body = bodyOf({}, 0.01);
+  EXPECT_EQ(body.surfaces.view().count + body.enclosing.view().count + body.solids.size(), 0U);
 }
 
 } // namespace

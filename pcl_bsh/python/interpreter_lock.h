@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The interpreter's lock, taken and let go by threads that outlive the interpreter. CPython unwinds a thread that wants
+// the lock when the interpreter is gone, by pthread_exit(): destructors then work on objects without the lock, and
+// std::terminate() ends the process at the first function that nothing may leave by an exception. Here such a thread
+// stops where it is, until the process ends.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <optional>
+
+namespace pcl_bsh::python {
+
+/// Holds the interpreter's lock while it lives.
+class Locked {
+public:
+  Locked();
+
+private:
+  std::optional<pybind11::gil_scoped_acquire> lock_;
+};
+
+/// Lets go of the interpreter's lock, which this thread holds, while it lives.
+class Unlocked {
+public:
+  Unlocked() : state_(PyEval_SaveThread()) {}
+  ~Unlocked();
+  Unlocked(const Unlocked&) = delete;
+  Unlocked& operator=(const Unlocked&) = delete;
+
+private:
+  PyThreadState* state_;
+};
+
+/// What f(argument) returns. Needs the interpreter's lock, which f may let go.
+pybind11::object called(const pybind11::object& f, const pybind11::object& argument);
+
+/// Whether another thread ends the interpreter: this one shall end what it does, and comes back to Python no more.
+bool isEnding() noexcept;
+
+/// This thread ends the interpreter.
+void setEnding() noexcept;
+
+} // namespace pcl_bsh::python
