@@ -6,7 +6,7 @@
 cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
-set(without_pcl "^pcl_bsh/(simd|geometry|hierarchy|query|traversal|collision|distances|neighbors|clusters|trajectory|scene|report|surface|certify)$")
+set(without_pcl "^pcl_bsh/(simd|geometry|hierarchy|query|traversal|collision|distances|neighbors|clusters|trajectory|scene|report|surface|question|certify)$")
 set(never_without_pcl "^(pcl/|pcl_bsh/files/|iostream$|fstream$)")
 set(with_vtk "^(pcl_bsh/vtk|pcl_bsh/vtk_filters|examples/viewer)$")
 set(gpl "^(CGAL/|pcl_bsh/certify/)") # only in pcl_bsh/certify, and in its program what that offers

@@ -81,6 +81,7 @@ PointDistances DistanceQuery::within(const PointsView& input, double max_distanc
   request.threads = threads_;
   request.progress = progress_;
   PointDistances found = pointDistances({hierarchy}, {obstacle, pose_}, request);
+  warnOf(hierarchy, nullptr, obstacle, {pose_}, std::nullopt);
   if (obstacle_.surface()) tellOfSurface(obstacle_.surface()->tolerance, found);
   work_ = found.work;
   return found;

@@ -16,14 +16,14 @@
 namespace pcl_bsh {
 namespace {
 
-/// Of all coordinates, their order and a field, as it is written. Bytes between them may change.
-/// @param field empty: none
-std::uint64_t checksumOf(const PointsView& view, const std::vector<pcl::PCLPointField>& fields,
-                         const std::string& field)
+/// Of a field as it is written. Bytes beside it may change.
+/// @param name empty: none
+std::uint64_t fieldChecksum(const PointsView& view, const std::vector<pcl::PCLPointField>& fields,
+                            const std::string& name)
 {
-  std::uint64_t sum = checksumOf(view);
+  std::uint64_t sum = 0;
   for (const pcl::PCLPointField& named : fields) {
-    if (field.empty() || named.name != field) continue;
+    if (name.empty() || named.name != name) continue;
     const auto bytes = static_cast<std::size_t>(pcl::getFieldSize(named.datatype));
     if (named.offset + bytes > view.stride) continue; // it is refused where it is read
     const auto* record = static_cast<const unsigned char*>(view.data) + named.offset;
@@ -78,6 +78,7 @@ void KeptObstacle::setView(std::function<PointsView()> view, Fields fields)
   view_ = std::move(view);
   fields_ = std::move(fields);
   surface_.reset();
+  first_seen_.reset();
   hierarchy_.reset();
   spacings_.reset();
 }
@@ -95,18 +96,19 @@ const SphereHierarchy& KeptObstacle::hierarchy(unsigned threads)
   if (!view_) throw std::invalid_argument("obstacle cloud is missing: call setObstacleCloud() before filtering");
   const PointsView view = view_();
   const auto fields = uncertainty_.field.empty() ? std::vector<pcl::PCLPointField>() : fields_();
-  const std::uint64_t checksum = checksumOf(view, fields, uncertainty_.field);
-  if (!hierarchy_) {
-    HierarchyOptions options;
-    options.threads = threads;
-    hierarchy_ =
-        std::make_shared<SphereHierarchy>(withUncertainty(view, fields, "obstacle cloud", uncertainty_), options);
-    checksum_ = checksum;
-  }
-  // The hierarchy points into the cloud's memory, and its spheres hold the points as they were.
-  if (hierarchy_->view().data != view.data || hierarchy_->view().count != view.count || checksum_ != checksum) {
+  const Seen seen{view.data, view.count, checksumOf(view)};
+  const std::uint64_t uncertainties = fieldChecksum(view, fields, uncertainty_.field);
+  // The hierarchy points into the cloud's memory, its spheres hold the points as they were, and so do the spacings,
+  // which outlive it.
+  if ((first_seen_ && *first_seen_ != seen) || (hierarchy_ && uncertainties != uncertainties_))
     throw std::invalid_argument("obstacle cloud has changed since setObstacleCloud(): call it again");
-  }
+  if (hierarchy_) return *hierarchy_;
+  HierarchyOptions options;
+  options.threads = threads;
+  hierarchy_ =
+      std::make_shared<SphereHierarchy>(withUncertainty(view, fields, "obstacle cloud", uncertainty_), options);
+  first_seen_ = seen;
+  uncertainties_ = uncertainties;
   return *hierarchy_;
 }
 

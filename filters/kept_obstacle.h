@@ -10,9 +10,11 @@
 #include <pcl/PolygonMesh.h>
 #include <pcl/common/io.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -39,8 +41,8 @@ inline std::vector<pcl::PCLPointField> fieldsOfRecords(const pcl::PCLPointCloud2
 std::shared_ptr<const SurfaceCover> coverOf(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance,
                                             bool polygons_apart = false);
 
-/// The cloud's points must not change from setCloud() on: every use compares a checksum of their coordinates and
-/// uncertainties. That takes some 20 instructions a point, a tenth or less of what building takes.
+/// The cloud's points must not change from setCloud() on, whatever else is set: every use compares a checksum of their
+/// coordinates and uncertainties. That takes some 20 instructions a point, a tenth or less of what building takes.
 class KeptObstacle {
 public:
   /// @throws std::invalid_argument when the pointer is null, or as viewOf() does
@@ -57,7 +59,7 @@ public:
   /// Null where the obstacle is a cloud.
   const std::shared_ptr<const SurfaceCover>& surface() const { return surface_; }
 
-  /// Default: none. The hierarchy is built anew, for it holds its points' uncertainties.
+  /// Default: none. The hierarchy is built anew, for it holds its points' uncertainties, of the same points.
   /// @throws std::invalid_argument for numbers that are not finite and >= 0
   void setUncertainty(const Uncertainty& uncertainty);
   const Uncertainty& uncertainty() const { return uncertainty_; }
@@ -77,6 +79,17 @@ public:
 private:
   using Fields = std::function<std::vector<pcl::PCLPointField>()>;
 
+  /// A cloud's memory, and a checksum of its points.
+  struct Seen {
+    const void* data;
+    std::size_t count;
+    std::uint64_t points;
+    bool operator!=(const Seen& other) const
+    {
+      return data != other.data || count != other.count || points != other.points;
+    }
+  };
+
   void setView(std::function<PointsView()> view, Fields fields);
 
   std::function<PointsView()> view_; ///< owns its cloud
@@ -84,7 +97,8 @@ private:
   Fields fields_; ///< likewise
   Uncertainty uncertainty_;
   std::shared_ptr<const SphereHierarchy> hierarchy_;
-  std::uint64_t checksum_ = 0;                         ///< of what the hierarchy was built from
+  std::uint64_t uncertainties_ = 0;                    ///< checksum of the field that the hierarchy was built with
+  std::optional<Seen> first_seen_;                     ///< what the cloud was at its first use
   std::shared_ptr<const std::vector<float>> spacings_; ///< of the cloud, once they are asked for
   double spaced_gap_ = 0.0;                            ///< for which they are
 };

@@ -4,17 +4,33 @@
 #include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/filters/used_vertices.h>
 #include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/hierarchy/points_checksum.h>
 
 #include <stdexcept>
 #include <utility>
 
 namespace pcl_bsh {
+namespace {
+
+/// Of the vertices' coordinates, and of the polygons.
+std::uint64_t checksumOf(const pcl::PolygonMesh& mesh)
+{
+  std::uint64_t sum = pcl_bsh::checksumOf(viewOf(mesh.cloud));
+  for (const pcl::Vertices& polygon : mesh.polygons) {
+    sum = mixed(sum, polygon.vertices.size());
+    for (const pcl::index_t vertex : polygon.vertices) sum = mixed(sum, static_cast<std::uint64_t>(vertex));
+  }
+  return sum;
+}
+
+} // namespace
 
 void MeshCollisionFilter::setInputMesh(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance)
 {
   if (!mesh) throw std::invalid_argument("input mesh is null: give a mesh without polygons if there is none");
   cover_ = coverOf(mesh, tolerance, true);
   mesh_ = mesh;
+  checksum_ = checksumOf(*mesh);
 }
 
 void MeshCollisionFilter::setInputSurface(const std::shared_ptr<const SurfaceCover>& cover)
@@ -36,6 +52,8 @@ const SurfaceCover& MeshCollisionFilter::requiredInput() const
 
 PointsView MeshCollisionFilter::inputView() const
 {
+  if (mesh_ && checksumOf(*mesh_) != checksum_)
+    throw std::invalid_argument("input mesh has changed since setInputMesh(): call it again");
   return asUncertainInput(requiredInput().view(), {});
 }
 

@@ -30,7 +30,8 @@ namespace pcl_bsh {
 /// field: both are about points. What a closed mesh encloses is not part of it.
 class MeshCollisionFilter : public ObstacleQuery {
 public:
-  /// The mesh that is asked about. It is covered by balls here and now; it must not change until filter().
+  /// The mesh that is asked about. It is covered by balls here and now; its vertices and polygons must not change:
+  /// every use throws when they have, after a filter() that wrote over it, too.
   /// @param tolerance by how much balls may reach beyond the surface, in the mesh's unit; finite and > 0
   /// @throws std::invalid_argument when the pointer is null, or as coverOf() does; then the former input stays
   void setInputMesh(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance);
@@ -66,6 +67,7 @@ private:
 
   std::shared_ptr<const SurfaceCover> cover_;
   pcl::PolygonMesh::ConstPtr mesh_;
+  std::uint64_t checksum_ = 0; ///< of the mesh when it was covered
   bool negative_ = false;
 };
 

@@ -9,8 +9,6 @@
 #include <pcl_bsh/surface/triangle_answers.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include <pcl/console/print.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -39,16 +37,6 @@ const float* ObstacleQuery::obstacleSpacings()
   return obstacle_.spacings(widest_gap_, threads_).data();
 }
 
-void ObstacleQuery::warnOfCoarse(const char* cloud, const SphereHierarchy& hierarchy)
-{
-  const double spacing = hierarchy.coordinateSpacing();
-  if (warned_ || !(clearance_ > 0.0) || spacing <= clearance_ / 10) return;
-  warned_ = true;
-  PCL_WARN("[pcl_bsh::CollisionFilter] the %s cloud's float32 coordinates lie %g apart, coarse for a clearance of %g: "
-           "give float64 coordinates (pcl::PCLPointCloud2), or ones near the origin.\n",
-           cloud, spacing, clearance_);
-}
-
 TrajectoryResult ObstacleQuery::run(const PointsView& input, const SurfaceCover* surface, TrajectoryRequest& request)
 {
   if (density_guard_) {
@@ -61,16 +49,14 @@ TrajectoryResult ObstacleQuery::run(const PointsView& input, const SurfaceCover*
   const SphereHierarchy& obstacle = obstacle_.hierarchy(threads_);
   const SphereHierarchy hierarchy = hierarchyOf(input);
 
-  warnOfCoarse("input", hierarchy);
-  warnOfCoarse("obstacle", obstacle);
-
   request.clearance = clearance_;
   request.threads = threads_;
   request.accuracy = accuracy_;
   if (swept_ != 0.0) request.swept = swept_;
   request.progress = progress_;
-  TrajectoryResult result =
-      collideAlong({hierarchy}, obstacle, trajectory_ ? *trajectory_ : std::vector{pose_}, request);
+  const std::vector<Eigen::Isometry3d> poses = trajectory_ ? *trajectory_ : std::vector{pose_};
+  TrajectoryResult result = collideAlong({hierarchy}, obstacle, poses, request);
+  warnOf(hierarchy, surface, obstacle, poses, clearance_);
   if (obstacle_.surface()) tellOfSurface(result);
   if (surface) result = ofTriangles(*surface, std::move(result));
   work_ = result.work;
@@ -96,9 +82,6 @@ std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input,
   const SphereHierarchy& obstacle = obstacle_.hierarchy(threads_);
   const SphereHierarchy hierarchy = hierarchyOf(input);
 
-  warnOfCoarse("input", hierarchy);
-  warnOfCoarse("obstacle", obstacle);
-
   FlagsRequest request;
   request.clearance = clearance_;
   request.flagged = Side::a;
@@ -110,6 +93,7 @@ std::vector<std::uint8_t> ObstacleQuery::collisionFlags(const PointsView& input,
   }
   request.spacings_of_b = obstacleSpacings();
   FlagsResult result = pcl_bsh::collisionFlags({hierarchy}, {obstacle, pose_}, request);
+  warnOf(hierarchy, surface, obstacle, {pose_}, clearance_);
   work_ = result.work;
   undecided_ = result.undecided_a + result.sparse_a;
   sparse_ = result.sparse_a;

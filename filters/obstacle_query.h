@@ -116,7 +116,6 @@ protected:
   }
 
 private:
-  void warnOfCoarse(const char* cloud, const SphereHierarchy& hierarchy);
   const float* obstacleSpacings();
   TrajectoryResult run(const PointsView& input, const SurfaceCover* surface, TrajectoryRequest& request);
 
@@ -128,7 +127,6 @@ private:
   std::size_t sparse_ = 0;
   bool density_guard_ = false;
   double widest_gap_ = 0.0;
-  bool warned_ = false; ///< of coordinates too coarse for the clearance; once, for clouds come in streams
 
 public:
   PCL_MAKE_ALIGNED_OPERATOR_NEW

@@ -7,6 +7,7 @@
 #include <pcl_bsh/filters/kept_obstacle.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/result.h>
+#include <pcl_bsh/question/warnings.h>
 
 #include <pcl/PolygonMesh.h>
 
@@ -14,7 +15,10 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
@@ -81,6 +85,11 @@ public:
   /// comes out of the filter, too. Either way outputs stay as they were.
   void setProgress(std::function<bool(double)> progress) { progress_ = std::move(progress); }
 
+  /// Called with each sentence that users should know beside the answer (pcl_bsh/question/warnings.h), of each kind
+  /// once in the filter's life, since clouds come in streams. How far points are apart is measured at the first query
+  /// alone. Default: PCL_WARN.
+  void setWarn(std::function<void(const std::string&)> warn) { warn_ = std::move(warn); }
+
   /// What the last query cost.
   const Work& getWork() const { return work_; }
 
@@ -95,8 +104,16 @@ protected:
   /// Of the points that are asked about.
   SphereHierarchy hierarchyOf(const PointsView& input) const;
 
+  /// Tells what is new, after a query. @param surface null, or what the input's records are the balls of
+  /// @param poses of the obstacle. @param clearance none: distances were asked for
+  void warnOf(const SphereHierarchy& input, const SurfaceCover* surface, const SphereHierarchy& obstacle,
+              std::vector<Eigen::Isometry3d> poses, std::optional<double> clearance);
+
   KeptObstacle obstacle_;
   std::function<bool(double)> progress_;
+  std::function<void(const std::string&)> warn_; ///< empty: PCL_WARN
+  WarningsOnce warnings_;
+  bool measured_ = false; ///< spacings
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
   Accuracy accuracy_;
   unsigned threads_ = 1;

@@ -21,6 +21,7 @@ Eigen::Isometry3d parsePose(const std::string& option, const std::string& text, 
   }
   try {
     const std::vector<double> n = io::numbersOf(text);
+    if (const auto warning = io::warningOfAngles(n)) warnings.push_back(option + ": " + *warning);
     if (n.size() == 6) return io::poseFrom(n);
   }
   catch (const io::FormatError&) {

@@ -12,6 +12,7 @@
 #include <pcl_bsh/files/output_folder.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/question/warnings.h>
 
 #include <array>
 #include <cmath>
@@ -177,6 +178,12 @@ int study(const Options& options)
                              ": has no finite point: there is nothing to measure: give another cloud");
   subject.diameter = a.box.diagonal().norm();
   subject.poses = given.empty() ? posesAbout(options, subject.diameter, b.box.center()) : given;
+  std::vector<std::string> told;
+  addTexts(warningsOf({measuredCloud(options.a.string(), SphereHierarchy(subject.a), given_a.cover().get()),
+                       measuredCloud(options.b.string(), SphereHierarchy(subject.b), given_b.cover().get()),
+                       subject.poses, options.clearance}),
+           told);
+  cli::warn(program, told);
 
   const auto progress = [](const std::string& what, double done) {
     std::cerr << "> " << static_cast<int>(100 * done) << " %: " << what << '\n';

@@ -22,6 +22,7 @@
 #include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
+#include <pcl_bsh/question/warnings.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -54,23 +55,6 @@ TrajectoryResult ofInput(const SurfaceCover* cover, TrajectoryResult found, cli:
   if (report.closest.pair) report.closest.pair->a = cover->triangles[report.closest.pair->a];
   if (report.path) report.path->table.clear(); // it counts balls
   return found;
-}
-
-void warnOf(const cli::CloudReport& cloud, const SphereHierarchy& hierarchy, double clearance,
-            std::vector<std::string>& warnings)
-{
-  if (cloud.finite == 0) warnings.push_back(cloud.file + ": has no finite point: nothing collides");
-  if (cloud.finite > 0 && cloud.finite < cloud.points) {
-    warnings.push_back(cloud.file + ": " + std::to_string(cloud.points - cloud.finite) +
-                       " points are not finite: they collide with nothing");
-  }
-  const double spacing = hierarchy.coordinateSpacing();
-  if (clearance > 0 && spacing > clearance / 10) {
-    std::ostringstream warning;
-    warning << cloud.file << ": its float32 coordinates lie " << spacing
-            << " apart, coarse for this clearance: export float64 or coordinates near the origin";
-    warnings.push_back(warning.str());
-  }
 }
 
 pcl::PCLPointCloud2 marked(const fs::path& path, const pcl::PCLPointCloud2& cloud, const std::vector<NewField>& fields)
@@ -218,21 +202,19 @@ TrajectoryResult alongPath(const Options& options, const std::vector<Eigen::Isom
   return found;
 }
 
-void warnOfHoles(cli::CollisionReport& report)
+/// @param cover of the input, where it is a surface
+void warnOfQuestion(const Options& options, const std::vector<Eigen::Isometry3d>& poses, const SphereHierarchy& a,
+                    const SurfaceCover* cover, const SphereHierarchy& b, cli::CollisionReport& report)
 {
-  if (!report.density.couldHide(report.clearance)) return;
-  std::ostringstream warning;
-  warning << "points lie " << report.density.input.median << " apart in the input";
-  if (report.density.obstacle) {
-    warning << " and " << report.density.obstacle->median
-            << " in the obstacle: surfaces may touch with no two points within the clearance of ";
-  }
-  else {
-    warning << ": what was scanned may touch the obstacle with no point within the clearance of ";
-  }
-  warning << report.clearance << ": scan more densely, or give a clearance of " << report.density.blind()
-          << " at least";
-  report.warnings.push_back(warning.str());
+  const SurfaceCover* const surface = report.surface ? report.surface->cover().get() : nullptr;
+  Question question{namedCloud(options.input.string(), a, cover), namedCloud(options.obstacle.string(), b, surface),
+                    poses, options.asks_collisions ? std::optional(options.clearance) : std::nullopt};
+  question.input.spacing = report.density.input;
+  question.obstacle.spacing = report.density.obstacle;
+  addTexts(warningsOf(question), report.warnings);
+  if (!report.surface) return;
+  for (std::string& remark : cli::warningsOf(*report.surface, options.obstacle))
+    addOnce(std::move(remark), report.warnings);
 }
 
 std::vector<Clash> listClashes(const Options& options, const std::vector<Eigen::Isometry3d>& poses,
@@ -242,7 +224,7 @@ std::vector<Clash> listClashes(const Options& options, const std::vector<Eigen::
   cli::Step step("Listing clashes");
   const double distance = options.cluster_distance > 0
                               ? options.cluster_distance
-                              : io::clusterDistanceFor(options.clearance, report.density.input);
+                              : io::clusterDistanceFor(options.clearance, *report.density.input);
   io::ClashReport list{options.input.string(),
                        options.obstacle.string(),
                        report.clearance,
@@ -348,12 +330,15 @@ int collide(const Options& options)
                             options.input_uncertainty, options.threads, report.seconds.build);
   const auto b = cli::build(obstacle.view(), obstacle.points().fields, options.obstacle, options.obstacle_uncertainty,
                             options.threads, report.seconds.build);
-  const SphereHierarchy vertices(obstacle.isSurface() ? viewOf(obstacle.points()) : PointsView());
-  const SphereHierarchy& given = obstacle.isSurface() ? vertices : b; // whose coordinates may be coarse
   report.input = {options.input.string(), a.view().count, a.size()};
+  report.obstacle = {options.obstacle.string(), b.view().count, b.size()};
   if (cover) report.input.points = report.input.finite = input.triangles.size();
-  report.obstacle = {options.obstacle.string(), given.view().count, given.size()};
-  if (obstacle.isSurface()) report.surface = obstacle;
+  if (obstacle.isSurface()) {
+    report.surface = obstacle;
+    const PointsView vertices = viewOf(obstacle.points());
+    report.obstacle.points = vertices.count;
+    report.obstacle.finite = SphereHierarchy(vertices).size();
+  }
 
   const bool by_place = options.moves() || !options.clashes.empty();
   const TrajectoryResult found =
@@ -363,11 +348,7 @@ int collide(const Options& options)
   if (!report.surface) report.density.obstacle = spacingOf(b);
   report.colliding = found.colliding;
   report.voxels_total = a.statistics().voxels + b.statistics().voxels;
-  warnOf(report.input, a, report.clearance, report.warnings);
-  warnOf(report.obstacle, given, report.clearance, report.warnings);
-  for (std::string& warning : cli::warningsOf(obstacle, options.obstacle))
-    report.warnings.push_back(std::move(warning));
-  if (options.asks_collisions) warnOfHoles(report);
+  warnOfQuestion(options, poses, a, cover.get(), b, report);
 
   write(options, input, found, distances, report.seconds.write);
   std::vector<Clash> clashes;

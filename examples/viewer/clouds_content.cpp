@@ -9,6 +9,7 @@
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/filters/surface_distances.h>
+#include <pcl_bsh/question/warnings.h>
 #include <pcl_bsh/surface/triangle_answers.h>
 
 #include <algorithm>
@@ -64,6 +65,20 @@ CloudsContent::CloudsContent(const Options& options) : FieldContent(options), po
     viewed_clouds_.push_back(load(*options.model, ViewedCloud::Role::obstacle, options));
   }
   if (scan().hierarchy->empty()) throw std::invalid_argument(scan().file.string() + ": has no finite point to show");
+  warnOfQuestions();
+}
+
+void CloudsContent::warnOfQuestions() const
+{
+  const auto measured = [](const ViewedCloud& cloud) {
+    return measuredCloud(cloud.file.string(), *cloud.hierarchy, cloud.surface ? cloud.surface->cover().get() : nullptr);
+  };
+  std::vector<std::string> told;
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
+    addTexts(warningsOf({measured(scan()), measured(viewed_clouds_[other]),
+                         other == model_ ? poses_ : std::vector{poseOf(other, 0)}, options_.clearance}),
+             told);
+  cli::warn(program, told);
 }
 
 Eigen::Isometry3d CloudsContent::poseOf(std::size_t cloud, std::size_t step) const

@@ -43,6 +43,7 @@ private:
   {
     return {*viewed_clouds_[cloud].hierarchy, poseOf(cloud, step)};
   }
+  void warnOfQuestions() const; ///< of the scan and each other cloud
   FlagsRequest flagsRequest() const;
   TrajectoryRequest along() const;
   std::optional<ClosestPair> closest(std::size_t step) const;

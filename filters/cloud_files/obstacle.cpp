@@ -32,19 +32,6 @@ Eigen::Vector3d at(const PointsView& vertices, std::uint32_t record)
   return {p[0], p[1], p[2]};
 }
 
-/// How many vertices no triangle names.
-std::size_t looseVertices(const PointsView& vertices, const std::vector<Triangle>& triangles)
-{
-  std::vector<bool> named(vertices.count, false);
-  for (const Triangle& triangle : triangles)
-    for (const std::uint32_t record : triangle)
-      if (record < vertices.count) named[record] = true; // coverSurface() refuses others
-  std::size_t loose = 0;
-  for (std::uint32_t i = 0; i < vertices.count; ++i)
-    if (!named[i] && isFinite(vertices.point(i))) ++loose;
-  return loose;
-}
-
 } // namespace
 
 UsualTolerance usualTolerance(const PointsView& vertices, const std::vector<Triangle>& triangles, double clearance)
@@ -95,10 +82,6 @@ SurfaceCover coverMesh(const PointsView& vertices, const std::vector<Triangle>& 
              << " would take too many balls, or is too fine for its coordinates: give a surface tolerance to choose";
       remarks.push_back(remark.str());
     }
-  }
-  if (const std::size_t loose = looseVertices(vertices, triangles); loose > 0) {
-    remarks.push_back(std::to_string(loose) +
-                      " of its vertices belong to no face: they are no part of the surface that is compared");
   }
   return coverSurface(vertices, triangles, request);
 }

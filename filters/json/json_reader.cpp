@@ -139,6 +139,7 @@ Eigen::Isometry3d JsonReader::pose(std::vector<std::string>& warnings) const
   catch (const InvalidInput&) {
     fail("is no rigid transform", "give a rotation without scale or mirror, and 0 0 0 1 as last row");
   }
+  if (const auto warning = warningOfAngles(n)) warnings.push_back(place_ + ": " + *warning);
   if (rigid.deviation > 0) warnings.push_back(place_ + ": " + nearestRotationWarning(rigid.deviation));
   return rigid.pose;
 }

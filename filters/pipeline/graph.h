@@ -30,6 +30,7 @@ struct Node {
   Json user_data;                                          ///< null when there is none
   bool in_document = true;                                 ///< else it reads a file that another stage's option names
   std::vector<std::pair<std::string, std::filesystem::path>> pose_files; ///< option and file, read with the document
+  std::vector<std::string> warnings;                                     ///< of its options, a line each
   StageCloudPtr given;                                                   ///< instead of a reader's file
 };
 

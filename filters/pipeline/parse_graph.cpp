@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/json/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
 #include <pcl_bsh/filters/pipeline/option_json.h>
+#include <pcl_bsh/filters/pose_files/pose_text.h>
 #include <pcl_bsh/filters/text_files/format_error.h>
 #include <pcl_bsh/filters/text_files/small_letters.h>
 
@@ -250,6 +251,9 @@ private:
         node.options.push_back(valueOf(said, option));
         if (option.kind == Kind::pose && said.is_string())
           node.pose_files.emplace_back(option.name, said.get<std::string>());
+        if (option.kind == Kind::pose && said.is_array())
+          if (const auto warning = io::warningOfAngles(said.get<std::vector<double>>()))
+            node.warnings.push_back(option.name + ": " + *warning);
       }
       catch (const std::invalid_argument& error) {
         throw stageError(graph_, node, option.name, error.what());

@@ -228,7 +228,8 @@ private:
     for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
       const Node& node = graph_.nodes[i];
       if (clouds_[i]) result.clouds.emplace(node.tag, std::move(clouds_[i]));
-      std::vector<std::string> warnings = stages_[i] ? stages_[i]->warnings() : std::vector<std::string>();
+      std::vector<std::string> warnings = node.warnings;
+      if (stages_[i]) warnings.insert(warnings.end(), stages_[i]->warnings().begin(), stages_[i]->warnings().end());
       if (costs_[i].lost_faces) warnings.emplace_back("does not keep the faces of its input: points alone go on");
       for (const std::string& warning : warnings) result.warnings.push_back(node.tag + ": " + warning);
       stages.push_back({{"tag", node.tag},

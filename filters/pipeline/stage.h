@@ -59,7 +59,7 @@ public:
   /// What the user should know of the run, a line each.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-protected:
+  /// For the stage itself, and what computes for it.
   void warn(std::string line) { warnings_.push_back(std::move(line)); }
 
 private:

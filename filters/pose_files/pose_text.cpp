@@ -5,6 +5,8 @@
 #include <pcl_bsh/filters/text_files/format_error.h>
 #include <pcl_bsh/filters/text_files/text_cursor.h>
 
+#include <pcl_bsh/question/warnings.h>
+
 #include <string>
 
 namespace pcl_bsh::io {
@@ -62,6 +64,11 @@ Eigen::Isometry3d poseFrom(const std::vector<double>& n)
     pose.matrix()(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = n[i];
   }
   return pose;
+}
+
+std::optional<std::string> warningOfAngles(const std::vector<double>& n)
+{
+  return n.size() == 6 ? pcl_bsh::warningOfAngles(n[3], n[4], n[5]) : std::nullopt;
 }
 
 Eigen::Isometry3d readPose(const std::filesystem::path& path)

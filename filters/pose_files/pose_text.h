@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +28,9 @@ Eigen::Isometry3d poseFrom(double x, double y, double z, double roll, double pit
 /// x y z roll pitch yaw, or the 12 or 16 numbers of a 3x4 or 4x4 matrix, row by row. Whether that is rigid is for the
 /// query to judge. @throws FormatError for any other number of numbers
 Eigen::Isometry3d poseFrom(const std::vector<double>& numbers);
+
+/// What users should know of these numbers: angles of more than two turns, which are degrees perhaps.
+std::optional<std::string> warningOfAngles(const std::vector<double>& numbers);
 
 /// A file of the 12 or 16 numbers of a pose's matrix, row by row. @throws files::FileError
 Eigen::Isometry3d readPose(const std::filesystem::path& path);

@@ -4,6 +4,7 @@
 #include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/json/json_reader.h>
 #include <pcl_bsh/filters/scene_files/scene_file.h>
+#include <pcl_bsh/filters/scene_files/scene_warnings.h>
 #include <pcl_bsh/filters/scene_files/shape_points.h>
 
 #include <pcl_bsh/geometry/invalid_input.h>
@@ -174,6 +175,13 @@ pcl::PCLPointCloud2 ballsOf(const SurfaceCover& cover)
   return cloud;
 }
 
+/// By a hierarchy of its own: that of the scene is built only where effects go.
+NamedCloud measured(const CloudSource& source, const PointsView& view, const Obstacle* surface)
+{
+  const std::string name = source.file.empty() ? "cloud '" + source.name + "'" : source.file.string();
+  return measuredCloud(name, SphereHierarchy(view), surface ? surface->cover().get() : nullptr);
+}
+
 const std::string& placeOf(const std::string& cloud, const SceneFile& file)
 {
   return std::find_if(file.clouds.begin(), file.clouds.end(), [&](const auto& source) { return source.name == cloud; })
@@ -197,11 +205,14 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
   std::set<std::string> used;
   for (const ObjectEntry& object : file.objects)
     for (const PartEntry& part : object.parts) used.insert(part.cloud);
+  std::map<std::string, NamedCloud> named;
   for (const CloudSource& source : file.clouds) {
     if (used.count(source.name) == 0) continue;
     if (reading) reading(source);
     load(source, file, clouds_[source.name]);
+    named.emplace(source.name, measured(source, clouds_[source.name].hierarchy->view(), surface(source.name)));
   }
+  for (std::string& line : warningsOf(file, named)) warnings_.push_back(std::move(line));
 
   scene_ = std::make_unique<Scene>(file.options);
   for (const ObjectEntry& entry : file.objects) {
@@ -253,8 +264,6 @@ void SceneWorld::load(const CloudSource& source, const SceneFile& file, Loaded& 
     loaded.points = std::move(mesh.vertices);
     const PointsView view = uncertainView(viewOf(loaded.points), loaded.points.fields, source, file.path.string());
     loaded.hierarchy = std::make_shared<SphereHierarchy>(view, options);
-    if (loaded.hierarchy->empty())
-      warnings_.push_back(source.file.string() + ": has no finite point: nothing collides with it");
     return;
   }
   loaded.surface = surfaceOf(std::move(mesh), source, file);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
+#include <pcl_bsh/geometry/coordinate_spacing.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/parallel.h>
@@ -58,8 +59,7 @@ double SphereHierarchy::coordinateSpacing() const noexcept
   double largest = 0.0;
   for (std::size_t k = 0; k < 3; ++k) // less what the reach was rounded outward by
     largest = std::max(largest, std::abs(frame.origin[k]) + frame.reach[k] * (1.0 - 2 * kReachGrowth) * frame.unit);
-  const float number = roundDown(largest);
-  return static_cast<double>(number) - static_cast<double>(std::nextafter(number, 0.0f));
+  return float32Spacing(largest);
 }
 
 void SphereHierarchy::buildAll(unsigned threads) const

@@ -7,7 +7,7 @@
 #include <pcl_bsh/python/array_input.h>
 #include <pcl_bsh/python/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/question_warnings.h>
 #include <pcl_bsh/python/verdict.h>
 
 #include <string>
@@ -47,6 +47,13 @@ Raises
 ------
 ValueError
     A clearance that is negative or not finite, a pose that is not rigid within 1e-6, an accuracy that is none.
+
+Warns
+-----
+UserWarning
+    Of what the flags do not say: a cloud without a finite point, or with some that are not; float32 coordinates that
+    are coarse for the clearance; points so far apart that surfaces may touch between them; clouds that are so far from
+    each other that their frames are not one, perhaps. All queries of two clouds warn likewise.
 
 Examples
 --------
@@ -163,7 +170,8 @@ py::object collisionFlagsOf(const SphereHierarchy& a, const SphereHierarchy& b, 
     spacings = floatsOf("spacings_of_b", spacings_of_b, viewNow(b).count);
     request.spacings_of_b = spacings.data();
   }
-  FlagsResult found = unlocked([&] { return collisionFlags(placed_a, placed_b, request); });
+  FlagsResult found = answered({"a", placed_a, "b", b, {placed_b.pose}, clearance, true},
+                               [&] { return collisionFlags(placed_a, placed_b, request); });
   if (request.flagged == Side::a) return arrayFrom(std::move(found.a));
   if (request.flagged == Side::b) return arrayFrom(std::move(found.b));
   return py::make_tuple(arrayFrom(std::move(found.a)), arrayFrom(std::move(found.b)));
@@ -175,7 +183,8 @@ py::object collidingIndicesOf(const SphereHierarchy& a, const SphereHierarchy& b
 {
   const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
   const FlagsRequest request = flagsRequest(clearance, side, accuracy, threads);
-  CollidingIndices found = unlocked([&] { return collidingIndices(placed_a, placed_b, request); });
+  CollidingIndices found = answered({"a", placed_a, "b", b, {placed_b.pose}, clearance},
+                                    [&] { return collidingIndices(placed_a, placed_b, request); });
   const std::size_t undecided = found.undecided_a.size() + found.undecided_b.size();
   if (undecided > 0)
     throw InvalidInput(Input::accuracy, "colliding_indices", std::to_string(undecided) + " points are undecided",
@@ -193,7 +202,8 @@ AnyResult anyCollisionOf(const SphereHierarchy& a, const SphereHierarchy& b, dou
   request.clearance = clearance;
   request.accuracy = accuracyOf(accuracy);
   request.threads = threads;
-  return unlocked([&] { return anyCollision(placed_a, placed_b, request); });
+  return answered({"a", placed_a, "b", b, {placed_b.pose}, clearance},
+                  [&] { return anyCollision(placed_a, placed_b, request); });
 }
 
 bool isColliding(const AnyResult& result)
@@ -211,7 +221,8 @@ DistanceResult closestPairOf(const SphereHierarchy& a, const SphereHierarchy& b,
   DistanceRequest request;
   request.accuracy = accuracyOf(accuracy);
   request.threads = threads;
-  return unlocked([&] { return closestPair(placed_a, placed_b, request); });
+  return answered({"a", placed_a, "b", b, {placed_b.pose}, std::nullopt},
+                  [&] { return closestPair(placed_a, placed_b, request); });
 }
 
 std::string textOf(const AnyResult& result)

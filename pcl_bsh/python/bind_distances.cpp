@@ -4,6 +4,7 @@
 #include <pcl_bsh/python/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/question_warnings.h>
 
 #include <pybind11/stl.h>
 
@@ -115,7 +116,8 @@ PointDistances pointDistancesOf(const SphereHierarchy& a, const SphereHierarchy&
 {
   const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
   const PointDistancesRequest request = requestOf(max_distance, accuracy, threads, progress);
-  return unlocked([&] { return pointDistances(placed_a, placed_b, request); });
+  return answered({"a", placed_a, "b", b, {placed_b.pose}, std::nullopt},
+                  [&] { return pointDistances(placed_a, placed_b, request); });
 }
 
 SymmetricDistances symmetricDistancesOf(const SphereHierarchy& a, const SphereHierarchy& b,
@@ -125,7 +127,8 @@ SymmetricDistances symmetricDistancesOf(const SphereHierarchy& a, const SphereHi
 {
   const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
   const PointDistancesRequest request = requestOf(max_distance, accuracy, threads, progress);
-  return unlocked([&] { return symmetricDistances(placed_a, placed_b, request); });
+  return answered({"a", placed_a, "b", b, {placed_b.pose}, std::nullopt},
+                  [&] { return symmetricDistances(placed_a, placed_b, request); });
 }
 
 HausdorffDistance hausdorffDistanceOf(const SphereHierarchy& a, const SphereHierarchy& b, const py::object& pose_a,
@@ -133,7 +136,8 @@ HausdorffDistance hausdorffDistanceOf(const SphereHierarchy& a, const SphereHier
 {
   const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
   const HausdorffRequest request{threads, progressOf(progress)};
-  return unlocked([&] { return hausdorffDistance(placed_a, placed_b, request); });
+  return answered({"a", placed_a, "b", b, {placed_b.pose}, std::nullopt},
+                  [&] { return hausdorffDistance(placed_a, placed_b, request); });
 }
 
 py::object distanceArray(const py::object& self)

@@ -3,6 +3,7 @@
 #include <pcl_bsh/python/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/question_warnings.h>
 #include <pcl_bsh/python/trajectory_run.h>
 
 #include <pybind11/stl.h>
@@ -104,7 +105,8 @@ TrajectoryRun collideAlongOf(const SphereHierarchy& scan, const SphereHierarchy&
   if (!pivot.is_none()) request.pivot = point3Of("pivot", pivot);
   request.threads = threads;
   request.progress = progressOf(progress);
-  run.result = unlocked([&] { return collideAlong(placed, model, list, request); });
+  run.result = answered({"scan", placed, "model", model, list, clearance, true},
+                        [&] { return collideAlong(placed, model, list, request); });
   request.progress = nullptr; // it refers to an argument of this call
   return run;
 }

@@ -20,6 +20,7 @@ struct Mesh {
   Vector3d middle = Vector3d::Zero(); ///< of the vertices' box; exact
   std::vector<Vector3d> vertices;     ///< less the middle, rounded; zero where no triangle names them
   double extent = 0.0;                ///< of the coordinates about the middle: none is greater
+  double magnitude = 0.0;             ///< of the coordinates as given: the greatest
   /// Of all roundings together: from a point of the surface to where a computed piece has it, and back to a centre in
   /// the caller's frame.
   double error = 0.0;

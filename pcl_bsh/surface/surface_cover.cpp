@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/surface/surface_cover.h>
 
+#include <pcl_bsh/geometry/coordinate_spacing.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/geometry/rounding.h>
@@ -60,7 +61,6 @@ Mesh meshOf(const PointsView& vertices, const std::vector<Triangle>& triangles, 
   checkTriangles(vertices, triangles);
   Mesh mesh{triangles, Vector3d::Zero(), {}};
   Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  double magnitude = 0.0;
   const auto at = [&](std::uint32_t record) {
     const Point3 p = vertices.point(record);
     return Vector3d(p[0], p[1], p[2]);
@@ -69,7 +69,7 @@ Mesh meshOf(const PointsView& vertices, const std::vector<Triangle>& triangles, 
     for (const std::uint32_t record : triangle) {
       const Vector3d p = at(record);
       low = low.cwiseMin(p), high = high.cwiseMax(p);
-      magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
+      mesh.magnitude = std::max(mesh.magnitude, p.cwiseAbs().maxCoeff());
     }
   }
   if (!triangles.empty()) mesh.middle = 0.5 * low + 0.5 * high;
@@ -77,9 +77,9 @@ Mesh meshOf(const PointsView& vertices, const std::vector<Triangle>& triangles, 
   for (const Triangle& triangle : triangles)
     for (const std::uint32_t record : triangle) mesh.vertices[record] = at(record) - mesh.middle;
   for (const Vector3d& p : mesh.vertices) mesh.extent = std::max(mesh.extent, p.cwiseAbs().maxCoeff());
-  mesh.error = kExtentError * mesh.extent + kPlaceError * magnitude;
+  mesh.error = kExtentError * mesh.extent + kPlaceError * mesh.magnitude;
   if (!(tolerance >= kLeastTolerance * mesh.error)) {
-    refuse(plainText("tolerance ", tolerance, " is too small for coordinates up to ", magnitude),
+    refuse(plainText("tolerance ", tolerance, " is too small for coordinates up to ", mesh.magnitude),
            plainText("give at least ", kLeastTolerance * mesh.error, ", or move the mesh to the origin"), tolerance);
   }
   mesh.room = tolerance * (1 - kRadiusMargin) - 2 * mesh.error;
@@ -173,6 +173,18 @@ private:
   std::vector<Patch> patches_;
 };
 
+/// Those that are finite.
+std::size_t looseVertices(const PointsView& vertices, const std::vector<Triangle>& triangles)
+{
+  std::vector<bool> named(vertices.count, false);
+  for (const Triangle& triangle : triangles)
+    for (const std::uint32_t record : triangle) named[record] = true;
+  std::size_t loose = 0;
+  for (std::uint32_t i = 0; i < vertices.count; ++i)
+    if (!named[i] && isFinite(vertices.point(i))) ++loose;
+  return loose;
+}
+
 } // namespace
 
 PointsView SurfaceCover::view() const noexcept
@@ -192,7 +204,10 @@ SurfaceCover coverSurface(const PointsView& vertices, const std::vector<Triangle
 {
   const DefaultFloatEnvironment environment;
   const Mesh mesh = meshOf(vertices, triangles, request.tolerance);
-  return Covering(mesh, request)();
+  SurfaceCover cover = Covering(mesh, request)();
+  cover.loose = looseVertices(vertices, triangles);
+  if (vertices.scalar == Scalar::float32) cover.coordinate_spacing = float32Spacing(mesh.magnitude);
+  return cover;
 }
 
 } // namespace pcl_bsh

@@ -43,9 +43,11 @@ struct SurfaceCover {
   std::vector<float> radii;             ///< one per ball; <= tolerance
   std::vector<std::uint32_t> triangles; ///< one per ball: of those whose parts it holds, the one its centre lies on
   double tolerance = 0.0;
-  double area = 0.0;              ///< of all triangles, rounded; what lies on another triangle counts again
-  std::size_t triangle_count = 0; ///< of the mesh
-  bool triangles_apart = false;   ///< as the request had it; then triangle_answers.h has answers about triangles
+  double coordinate_spacing = 0.0; ///< of the corners, as SphereHierarchy::coordinateSpacing() has it of points
+  double area = 0.0;               ///< of all triangles, rounded; what lies on another triangle counts again
+  std::size_t loose = 0;           ///< finite vertices that no triangle names: no part of the surface
+  std::size_t triangle_count = 0;  ///< of the mesh
+  bool triangles_apart = false;    ///< as the request had it; then triangle_answers.h has answers about triangles
 
   /// The balls as points with radii; this object must outlive what is built on it.
   PointsView view() const noexcept;

@@ -37,6 +37,8 @@ public:
   /// The cell that a record of the hierarchy lies on, where it is that of a surface.
   vtkIdType cell(std::uint32_t record) const { return cell_of_triangle_[cover_->triangles[record]]; }
 
+  const SurfaceCover* cover() const { return cover_.get(); } ///< null: the hierarchy is that of points
+
   std::size_t built() const noexcept { return built_; } ///< so far
 
 private:

@@ -62,6 +62,7 @@ void vtkBSHCollisionFilter::Answer(const Question& question, vtkPolyData* output
     flags = std::move(found.a);
     colliding = found.colliding_a;
   }
+  this->Warn(question, &this->Clearance);
   addPointArray<vtkUnsignedCharArray>(*output, "collision", [&](std::size_t i) { return flags[i]; });
   output->GetPointData()->SetActiveScalars("collision");
   this->NumberOfCollidingPoints = static_cast<vtkIdType>(colliding);

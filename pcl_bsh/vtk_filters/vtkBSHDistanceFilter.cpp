@@ -54,5 +54,6 @@ void vtkBSHDistanceFilter::Answer(const Question& question, vtkPolyData* output)
       return question.is_surface ? question.kept_obstacle.cell(record) : static_cast<vtkIdType>(record);
     });
   }
+  this->Warn(question, nullptr);
   output->GetPointData()->SetActiveScalars("distance");
 }

@@ -2,6 +2,7 @@
 #include <pcl_bsh/vtk_filters/vtkBSHFilter.h>
 
 #include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/question/warnings.h>
 #include <pcl_bsh/vtk_filters/bsh_question.h>
 #include <pcl_bsh/vtk_filters/pose_table.h>
 
@@ -102,7 +103,7 @@ int vtkBSHFilter::FillInputPortInformation(int port, vtkInformation* info)
   // VTK would execute once for each block of an obstacle, and none of the answers would be that of all: what is not a
   // whole is refused below. A cloud may come in blocks.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPolyData" : "vtkDataObject");
-  if (port == 2) info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // for VTK, which would leave the last answer where an input is gone
   return 1;
 }
 
@@ -117,6 +118,16 @@ int vtkBSHFilter::RequestUpdateExtent(vtkInformation*, vtkInformationVector** in
     info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
   }
   return 1;
+}
+
+void vtkBSHFilter::Warn(const Question& question, const double* clearance)
+{
+  using pcl_bsh::measuredCloud;
+  const pcl_bsh::Question asked{measuredCloud("the cloud", question.cloud),
+                                measuredCloud("the obstacle", question.obstacle, question.kept_obstacle.cover()),
+                                question.poses ? *question.poses : std::vector{question.pose},
+                                clearance ? std::optional(*clearance) : std::nullopt};
+  for (const pcl_bsh::Warning& warning : pcl_bsh::warningsOf(asked)) vtkWarningMacro(<< warning.text);
 }
 
 int vtkBSHFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)

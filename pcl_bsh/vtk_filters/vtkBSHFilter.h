@@ -10,8 +10,11 @@
 ///
 /// The output is the cloud with all its arrays and those that the filter adds. What fails is told by vtkErrorMacro in
 /// one line; then, and after an abort, the output is empty and the execution failed, so that nothing looks like an
-/// answer. Progress is told, and an abort heeded, while a surface is covered, along poses and of distances; the flags
-/// at a single pose are one step. Points that are not finite are no points: they have the values of free points.
+/// answer: a port without a connection, too. vtkWarningMacro tells what else is to be known of a question: clouds
+/// without a finite point, coarse float32 coordinates, holes that a collision may hide in, frames that are not one,
+/// points of a surface that no cell has. Progress is told, and an abort heeded, while a surface is covered, along poses
+/// and of distances; the flags at a single pose are one step. Points that are not finite are no points: they have the
+/// values of free points.
 ///
 /// The hierarchies of cloud and obstacle are kept: nothing is built again when only settings, the transform or the
 /// poses change, nor when the input has other arrays at the same points. All calls by one thread at a time, as VTK has
@@ -80,6 +83,9 @@ protected:
 
   /// Fills the output, which has the cloud's points and arrays. Whatever it throws is told in one line.
   virtual void Answer(const Question& question, vtkPolyData* output) = 0;
+
+  /// Tells by vtkWarningMacro what users should know beside the answer. @param clearance null: distances were asked for
+  void Warn(const Question& question, const double* clearance);
 
   /// Of a surface, where SurfaceTolerance is 0; 0: there is none.
   virtual double UsualTolerance() const = 0;

@@ -332,7 +332,7 @@ TEST(CollisionFilterUtm, WarnsOnceOfFloatsTooCoarseForTheClearance)
   coarse.setInputCloud(fieldCloud<float>(utmRow(5400000.26)));
   coarse.setObstacleCloud(fieldCloud<double>(utmRow(5400000.34)));
   const std::string warning = said(coarse);
-  EXPECT_THAT(warning, testing::HasSubstr("input cloud's float32 coordinates lie 0.5 apart"));
+  EXPECT_THAT(warning, testing::HasSubstr("the input: its float32 coordinates lie 0.5 apart"));
   EXPECT_THAT(warning, testing::HasSubstr("clearance of 0.05"));
   EXPECT_EQ(said(coarse), "");
 

@@ -220,10 +220,11 @@ protected:
     Points wall;
     for (int j = 0; j < 15; ++j)
       for (int i = 0; i < 60; ++i) wall.emplace_back(0.0625 * i, 0.5 * j, 0.0);
+    wall_ = fieldCloud<float>(wall);
     for (int i = 0; i < 20; ++i)
       for (const double z : {0.05, 0.15, 0.5}) points_.emplace_back(1.5, 2.0 + 0.1 * i, z);
     filter_.setInputCloud(fieldCloud<float>(points_));
-    filter_.setObstacleCloud(fieldCloud<float>(wall));
+    filter_.setObstacleCloud(wall_);
     filter_.setClearance(0.1);
     filter_.setDensityGuard(true);
     filter_.setWidestGap(1.0);
@@ -237,8 +238,36 @@ protected:
   }
 
   Points points_;
+  Cloud::Ptr wall_;
   CollisionFilter<Cloud> filter_;
 };
+
+/// Spacings are those of the cloud that was measured, and setters of other things do not make it another one.
+TEST_F(CollisionFilterDensity, WhatHasChangedIsRefusedWhateverElseIsSet)
+{
+  flags();
+  const Cloud former = *wall_;
+  const auto set_again = [&] {
+    filter_.setObstacleUncertainty(Uncertainty("intensity", 0.0));
+    filter_.setObstacleUncertainty(0.0);
+    filter_.setWidestGap(2.0);
+    filter_.setWidestGap(1.0);
+  };
+  const float moved = 0.25f;
+  std::memcpy(wall_->data.data(), &moved, sizeof moved);
+  set_again();
+  EXPECT_THAT([&] { flags(); }, refusedWith("obstacle cloud has changed since setObstacleCloud(): call it again"));
+  *wall_ = former;
+  set_again();
+  EXPECT_NO_THROW(flags()) << "as it was";
+
+  Points more(900 * 4, Eigen::Vector3d(9, 9, 9));
+  *wall_ = *fieldCloud<float>(more);
+  set_again();
+  EXPECT_THAT([&] { flags(); }, refusedWith("has changed since setObstacleCloud(): call it again")) << "it has grown";
+  filter_.setObstacleCloud(wall_);
+  EXPECT_EQ(flags(), std::vector<std::uint8_t>(points_.size(), 0)) << "far away, and all at one place";
+}
 
 TEST_F(CollisionFilterDensity, HolesBetweenLinesAreNotFree)
 {

@@ -228,6 +228,39 @@ TEST(MeshFilter, FlagsPolygonsAndKeepsThem)
   }
 }
 
+/// The cover is that of the mesh as it was.
+TEST(MeshFilter, AMeshThatHasChangedIsNotAskedAbout)
+{
+  const pcl::PolygonMesh::Ptr mesh = crate();
+  auto one_side = std::make_shared<Points>();
+  one_side->emplace_back(1.f, 1.f, 2.f);
+  MeshCollisionFilter filter;
+  filter.setInputMesh(mesh, 0.1);
+  filter.setObstacleCloud(one_side);
+  filter.setClearance(0.05);
+  std::vector<std::uint8_t> flags;
+  filter.computeFlags(flags);
+  EXPECT_THAT(flags, ElementsAre(0, 1, 0, 0, 0, 0));
+  filter.filter(*mesh); // writes over its input
+  EXPECT_EQ(mesh->polygons.size(), 5u);
+  const auto refused = [](const auto& call) {
+    EXPECT_THAT(call, ThrowsMessage<std::invalid_argument>(
+                          HasSubstr("input mesh has changed since setInputMesh(): call it again")));
+  };
+  TrajectoryResult found;
+  refused([&] { filter.filter(*mesh); });
+  refused([&] { filter.computeFlags(flags); });
+  refused([&] { filter.computeTrajectory(found); });
+  EXPECT_EQ(mesh->polygons.size(), 5u);
+  filter.setInputMesh(mesh, 0.1);
+  filter.computeFlags(flags);
+  EXPECT_THAT(flags, ElementsAre(0, 0, 0, 0, 0));
+  std::swap(mesh->polygons[0].vertices[0], mesh->polygons[0].vertices[1]); // vertices alone stay
+  refused([&] { filter.computeFlags(flags); });
+  std::swap(mesh->polygons[0].vertices[0], mesh->polygons[0].vertices[1]);
+  EXPECT_NO_THROW(filter.computeFlags(flags)) << "as it was";
+}
+
 TEST(MeshFilter, RefusesWhatIsNoInput)
 {
   MeshCollisionFilter filter;

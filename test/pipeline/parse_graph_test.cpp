@@ -61,7 +61,7 @@ TEST(ParseGraph, InputsNameEarlierStages)
       {"type": "readers.pcd", "tag": "a", "filename": "a.pcd"},
       {"type": "readers.pcd", "tag": "b", "filename": "b.pcd"},
       {"type": "filters.merge", "inputs": ["a", "b"]},
-      {"type": "filters.bsh_flag", "inputs": "a", "obstacle": "b"},
+      {"type": "filters.bsh_flag", "inputs": "a", "obstacle": "b", "clearance": 1},
       {"type": "filters.merge", "inputs": ["filters_merge1"]},
       {"type": "writers.pcd", "filename": "c.pcd"},
       {"type": "writers.pcd", "filename": "d.pcd", "inputs": ["filters_bsh_flag1"]}]})");
@@ -96,7 +96,7 @@ TEST(ParseGraph, UserDataIsCarriedThrough)
 TEST(ParseGraph, TheDocumentWrittenOutReadsTheSame)
 {
   const std::string json = around(R"({"type": "pcl::VoxelGrid", "leaf_size": 0.1},
-      {"type": "filters.bsh_collision", "obstacle": "r.pcd", "pose": [1,2,3,0,0,1], "keep": "colliding"},
+      {"type": "filters.bsh_collision", "obstacle": "r.pcd", "clearance": 1, "pose": [1,2,3,0,0,1], "keep": "colliding"},
       {"type": "filters.pass_through", "filter_field_name": "z", "filter_limits": [null, 0.3]})");
   const Json document = documentOf(parse(json));
   EXPECT_EQ(documentOf(parse(document.dump())), document);
@@ -163,7 +163,7 @@ TEST(ParseGraph, RefusesUnknownKeysAndWrongValues)
   EXPECT_EQ(
       refusal(around(R"({"type": "filters.voxel_grid"})")),
       "p.json: filters_voxel_grid1: /pipeline/1/leaf_size: is missing: give a number or [x, y, z], each above 0, in m");
-  EXPECT_EQ(refusal(around(R"({"type": "filters.bsh_collision", "obstacle": "r.pcd", "keep": "fre"})")),
+  EXPECT_EQ(refusal(around(R"({"type": "filters.bsh_collision", "obstacle": "r.pcd", "clearance": 1, "keep": "fre"})")),
             "p.json: filters_bsh_collision1: /pipeline/1/keep: is \"fre\": give one of free, colliding");
 }
 
@@ -211,9 +211,11 @@ TEST(ParseGraph, RefusesCloudsThatNobodyReads)
 
 TEST(ParseGraph, RefusesObstaclesThatAreNeitherTagNorFile)
 {
-  EXPECT_EQ(refusal(R"([{"filename": "a.pcd", "tag": "robot"}, {"type": "filters.bsh_flag", "obstacle": "robo"}])"),
-            "p.json: filters_bsh_flag1: /1/obstacle: is \"robo\", neither an earlier stage's tag nor a cloud file: did "
-            "you mean 'robot'?");
+  EXPECT_EQ(
+      refusal(
+          R"([{"filename": "a.pcd", "tag": "robot"}, {"type": "filters.bsh_flag", "obstacle": "robo", "clearance": 1}])"),
+      "p.json: filters_bsh_flag1: /1/obstacle: is \"robo\", neither an earlier stage's tag nor a cloud file: did "
+      "you mean 'robot'?");
 }
 
 TEST(ParseGraph, MessagesAreOneCleanLine)

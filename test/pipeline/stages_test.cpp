@@ -65,7 +65,7 @@ const std::map<std::string, std::string> filters = {
     {"filters.euclidean_cluster", R"("cluster_tolerance": 0.1)"},
     {"filters.merge", R"("tag": "all")"},
     {"filters.bsh_collision", R"("obstacle": "in", "clearance": 0, "keep": "colliding")"},
-    {"filters.bsh_flag", R"("obstacle": "in", "clearance": 0)"}};
+    {"filters.bsh_flag", R"("obstacle": "in", "clearance": 2)"}};
 
 std::string stageOf(const std::string& type)
 {
@@ -144,7 +144,7 @@ TEST(Stages, KeepFloat64AsItIs)
         std::string(R"({"type": "filters.statistical_outlier_removal", "mean_k": 4, "stddev_mul_thresh": 1})"),
         std::string(R"({"type": "filters.radius_outlier_removal", "radius_search": 1, "min_neighbors_in_radius": 2})"),
         std::string(R"({"type": "filters.uniform_sampling", "radius_search": 1})"),
-        std::string(R"({"type": "filters.bsh_collision", "obstacle": "in", "clearance": 0, "keep": "colliding"})")}) {
+        std::string(R"({"type": "filters.bsh_collision", "obstacle": "in", "clearance": 100, "keep": "colliding"})")}) {
     const PipelineResult result = runStage(in, stage);
     const StageCloudPtr out = result.clouds.begin()->second;
     EXPECT_GT(out->cloud.width, 0U) << stage;
@@ -420,8 +420,9 @@ TEST(Stages, OptionsThatContradictEachOther)
               EndsWith("/1/min_cluster_size: exceeds `max_cluster_size`: exchange them"));
   EXPECT_THAT(error(R"({"type": "filters.statistical_outlier_removal", "mean_k": 10})"),
               EndsWith("/1/mean_k: is 10, but there are only 10 finite points: give less"));
-  EXPECT_THAT(error(R"({"type": "filters.bsh_flag", "obstacle": "in", "pose": [1,0,0,0, 0,2,0,0, 0,0,1,0]})"),
-              HasSubstr("/1/pose: "));
+  EXPECT_THAT(
+      error(R"({"type": "filters.bsh_flag", "obstacle": "in", "clearance": 1, "pose": [1,0,0,0, 0,2,0,0, 0,0,1,0]})"),
+      HasSubstr("/1/pose: "));
 }
 
 TEST(Stages, MergeRefusesCloudsThatDiffer)
@@ -477,7 +478,9 @@ TEST(Stages, ValidationReadsHeadersButNoPoints)
   EXPECT_THAT(errorOf([&] { pipeline(file, by_intensity, "none/out.pcd").validate(); }),
               HasSubstr("there is no folder"));
   EXPECT_THAT(
-      errorOf([&] { pipeline(file, R"({"type": "filters.bsh_flag", "obstacle": "none.ply"})", "out.pcd").validate(); }),
+      errorOf([&] {
+        pipeline(file, R"({"type": "filters.bsh_flag", "obstacle": "none.ply", "clearance": 1})", "out.pcd").validate();
+      }),
       EndsWith("readers_ply1: /1/obstacle: none.ply: no such file: check the name"));
   // A stage's own field is known to those after it.
   EXPECT_NO_THROW(pipeline(file, R"({"type": "filters.euclidean_cluster", "cluster_tolerance": 1},

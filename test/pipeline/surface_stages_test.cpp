@@ -190,8 +190,8 @@ TEST_F(SurfaceInput, FlagsTriangles)
   EXPECT_EQ(mesh.face_properties.at(0).name, "collision");
   EXPECT_THAT(faceFlags(mesh), ElementsAre(1, 0, 0, 0));
   EXPECT_THAT(flagsOf(result, "f"), ElementsAre(1, 1, 0, 0, 1, 0, 0, 0, 0)) << "a vertex is what its triangles are";
-  EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("input: 2 of its vertices belong to no face"),
-                                           HasSubstr("the input is a surface of 4 triangles, to a tolerance of 0.01")));
+  EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("the input is a surface of 4 triangles, to a tolerance of 0.01"),
+                                           HasSubstr("the input: 2 of its vertices belong to no face")));
   EXPECT_THAT(files::contentOf(file), HasSubstr("property list uchar int vertex_indices\nproperty uchar collision\n"));
   EXPECT_EQ(io::readMesh(file).triangles.size(), 4u);
   const PipelineResult corners = runStrip(R"({"type": "filters.bsh_flag", "tag": "f", "obstacle": "scan",

@@ -199,7 +199,7 @@ TEST_F(Collide, ReportsWhatItFoundAndWhatItCost)
     EXPECT_GT(json["seconds"][step], 0) << step;
   }
   ASSERT_EQ(json["warnings"].size(), 1U);
-  EXPECT_THAT(json["warnings"][0].get<std::string>(), HasSubstr("input.ply: 1 points are not finite"));
+  EXPECT_THAT(json["warnings"][0].get<std::string>(), HasSubstr("points is not finite: it is left out"));
   EXPECT_THAT(done.err, HasSubstr("pcl_bsh_collide: warning: "));
 }
 
@@ -295,10 +295,11 @@ TEST_F(Collide, WarnsOfFloatsTooCoarseForTheClearance)
   folder.write("utm.ply",
                "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                "end_header\n500000 5400000 100\n");
-  expectDone("{utm.ply} {obstacle.xyz} {out.pcd} --clearance 0.05 --report {report.json}");
+  expectDone(
+      "{utm.ply} {obstacle.xyz} {out.pcd} --clearance 0.05 --pose 500000,5400000,100,0,0,0 --report {report.json}");
   ASSERT_EQ(report()["warnings"].size(), 1U);
   EXPECT_THAT(report()["warnings"][0].get<std::string>(), HasSubstr("utm.ply: its float32 coordinates lie 0.5 apart"));
-  expectDone("{utm.ply} {obstacle.xyz} {out.pcd} --clearance 5 --report {report.json}");
+  expectDone("{utm.ply} {obstacle.xyz} {out.pcd} --clearance 5 --pose 500000,5400000,100,0,0,0 --report {report.json}");
   EXPECT_EQ(report()["warnings"].size(), 0U);
 }
 
@@ -660,7 +661,8 @@ TEST_F(CollideAlong, WarnsOfHolesThatCollisionsHideIn)
   folder.write("sheet.txt", sheet);
   expectDone("{sheet.txt} {sheet.txt} {out.ply} --clearance 1 --report {report.json}");
   ASSERT_EQ(report()["warnings"].size(), 1U);
-  EXPECT_THAT(report()["warnings"][0].get<std::string>(), HasSubstr("points lie 1 apart in the input"));
+  EXPECT_THAT(report()["warnings"][0].get<std::string>(),
+              HasSubstr("sheet.txt: surfaces may touch with no two points"));
   EXPECT_EQ(report()["density"]["could_hide_collisions"], true);
   expectDone("{sheet.txt} {sheet.txt} {out.ply} --clearance 1.5 --report {report.json}");
   EXPECT_EQ(report()["warnings"].size(), 0U);

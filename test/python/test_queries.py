@@ -2,6 +2,7 @@
 """Every query of two clouds against brute force."""
 
 import itertools
+import warnings
 
 import numpy as np
 import pytest
@@ -233,3 +234,52 @@ def test_work_is_counted():
     work = pcl_bsh.closest_pair(A, B).work
     assert work.node_pairs > 0 and work.voxels_built > 0 and work.updates >= work.volumes_carried
     assert repr(work).startswith("Work(node_pairs=")
+
+
+def warnings_of(ask):
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        ask()
+    assert all(warning.category is UserWarning for warning in told)
+    return [str(warning.message) for warning in told]
+
+
+def test_warnings_say_what_answers_do_not():
+    floor = np.array([[i, j, 0] for i in range(20) for j in range(20)], dtype=np.float32)
+    gaps = floor.copy()
+    gaps[7, 1] = np.nan
+    far = np.eye(4)
+    far[0, 3] = 5e6
+    a, b = pcl_bsh.SphereHierarchy(floor), pcl_bsh.SphereHierarchy(floor.astype(np.float64))
+    nothing, some = pcl_bsh.SphereHierarchy(np.zeros((0, 3))), pcl_bsh.SphereHierarchy(gaps)
+    utm = pcl_bsh.SphereHierarchy(floor + np.array([500000, 0, 0], dtype=np.float32))
+    flags = lambda a, b, clearance, **more: warnings_of(lambda: pcl_bsh.collision_flags(a, b, clearance, **more))
+
+    assert flags(a, b, 2.0) == []
+    for _ in range(2):  # measured once
+        (holes,) = flags(a, b, 1.0)
+        assert holes.startswith("points lie 1 apart in a and 1 in b: surfaces may touch")
+    assert flags(a, nothing, 2.0) == ["b: has no finite point: nothing collides with it"]
+    assert flags(some, b, 2.0) == ["a: 1 of 400 points is not finite: it is left out"]
+    (apart,) = flags(a, b, 2.0, pose_b=far)
+    assert apart.startswith("the boxes of a and of b, with all of its motion, are 4.99998e+06 apart")
+    assert flags(a, b, 2.0, pose_a=far, pose_b=far) == []
+    assert flags(utm, utm, 0.25)[0].startswith("a: its float32 coordinates lie 0.03125 apart")
+
+    queries = [
+        lambda b: pcl_bsh.any_collision(a, b, 2.0),
+        lambda b: pcl_bsh.colliding_indices(a, b, 2.0),
+        lambda b: pcl_bsh.closest_pair(a, b),
+        lambda b: pcl_bsh.point_distances(a, b),
+        lambda b: pcl_bsh.symmetric_distances(a, b),
+        lambda b: pcl_bsh.hausdorff_distance(a, b),
+        lambda b: pcl_bsh.collide_along(a, b, [np.eye(4)], 2.0),
+    ]
+    for query in queries:
+        assert warnings_of(lambda: query(b)) == []
+        (told,) = warnings_of(lambda: query(nothing))
+        assert "has no finite point" in told
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(UserWarning):
+            pcl_bsh.collision_flags(a, nothing, 2.0)

@@ -528,11 +528,87 @@ TEST_P(Filters, FailuresLeaveNothingThatLooksLikeAnAnswer)
   }
 }
 
+/// An input that is taken away leaves no answer of before.
+TEST_P(Filters, InputsTakenAwayAreErrors)
+{
+  vtkNew<vtkBSHCollisionFilter> collisions;
+  vtkNew<vtkBSHDistanceFilter> distances;
+  for (vtkBSHFilter* filter : {static_cast<vtkBSHFilter*>(collisions), static_cast<vtkBSHFilter*>(distances)}) {
+    collisions->SetClearance(0.1);
+    for (const int port : {0, 1}) {
+      filter->SetInputData(0, cloud);
+      filter->SetObstacleData(obstacle);
+      filter->Update();
+      EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 900);
+      filter->SetInputDataObject(port, nullptr);
+      expectFailure(*filter, "an input is missing: connect a cloud and an obstacle");
+    }
+    filter->SetInputData(0, cloud);
+    filter->SetObstacleData(nullptr);
+    expectFailure(*filter, "an input is missing: connect a cloud and an obstacle");
+    filter->SetObstacleConnection(nullptr);
+    expectFailure(*filter, "an input is missing: connect a cloud and an obstacle");
+  }
+  EXPECT_EQ(collisions->GetNumberOfCollidingPoints(), 0);
+}
+
+/// As all faces tell it.
+TEST_P(Filters, TellWhatTheAnswerDoesNot)
+{
+  vtkNew<vtkBSHCollisionFilter> filter;
+  Told told(*filter, vtkCommand::WarningEvent);
+  const auto toldOf = [&](vtkPolyData* a, vtkPolyData* b, double clearance) {
+    told.texts.clear();
+    filter->SetInputData(a);
+    filter->SetObstacleData(b);
+    filter->SetClearance(clearance);
+    filter->Update();
+    return told.texts;
+  };
+  std::vector<Point3> floor;
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j) floor.push_back({double(i), double(j), 0.0});
+  const auto scan = dataOf(floor, GetParam());
+  EXPECT_THAT(toldOf(scan, scan, 2.0), testing::IsEmpty());
+  EXPECT_THAT(toldOf(scan, scan, 1.0),
+              testing::ElementsAre(HasSubstr("points lie 1 apart in the cloud and 1 in the obstacle")));
+  EXPECT_THAT(toldOf(scan, dataOf({}, GetParam()), 2.0),
+              testing::ElementsAre(HasSubstr("the obstacle: has no finite point: nothing collides with it")));
+  floor[3][0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(toldOf(scan, dataOf(floor, GetParam()), 2.0),
+              testing::ElementsAre(HasSubstr("the obstacle: 1 of 400 points is not finite")));
+  EXPECT_THAT(toldOf(scan, dataOf({{1 << 23, 1, 1}, {1 << 23, 2, 1}}, GetParam()), 2.0),
+              testing::Contains(HasSubstr("the boxes of the cloud and of the obstacle, with all of its motion")));
+
+  // Of the floor as a surface; its last point is loose.
+  const auto surface = dataOf({{0, 0, -1}, {19, 0, -1}, {0, 19, -1}, {9, 9, -1}}, GetParam());
+  vtkNew<vtkCellArray> faces;
+  faces->InsertNextCell({0, 1, 2});
+  surface->SetPolys(faces);
+  EXPECT_THAT(toldOf(scan, surface, 2.0),
+              testing::ElementsAre(HasSubstr("the obstacle: 1 of its vertices belongs to no face: it is no part of the "
+                                             "surface that is compared")));
+  EXPECT_EQ(filter->GetNumberOfCollidingPoints(), 247) << "at most 21 from the corner, x + y";
+
+  vtkNew<vtkBSHDistanceFilter> distances;
+  Told of_distances(*distances, vtkCommand::WarningEvent);
+  distances->SetInputData(scan);
+  distances->SetObstacleData(surface);
+  distances->SetSurfaceTolerance(0.1);
+  distances->Update();
+  EXPECT_THAT(of_distances.texts,
+              testing::ElementsAre(HasSubstr("the obstacle: 1 of its vertices belongs to no face")));
+  distances->SetObstacleData(dataOf({}, GetParam()));
+  distances->Update();
+  ASSERT_EQ(of_distances.texts.size(), 2u);
+  EXPECT_THAT(of_distances.texts[1], HasSubstr("nothing has a distance from it"));
+}
+
 TEST_P(Filters, WrongPortsAreErrors)
 {
   vtkNew<vtkBSHCollisionFilter> filter;
   filter->SetInputData(cloud);
-  expectFailure(*filter, "Input port 1");
+  expectFailure(*filter, "an input is missing: connect a cloud and an obstacle");
   vtkNew<vtkTable> table;
   vtkNew<vtkTrivialProducer> producer;
   producer->SetOutput(table);

@@ -76,7 +76,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   }
   json["accuracy"] = report.path && report.path->swept ? "swept" : report.accuracy.text();
   json["proven"] = report.accuracy.isProven();
-  json["density"] = {{"input", toJson(report.density.input)},
+  json["density"] = {{"input", toJson(report.density.input.value_or(Spacing()))},
                      {"obstacle", report.density.obstacle ? toJson(*report.density.obstacle) : nullptr},
                      {"blind", report.density.blind()},
                      {"widest_gap", report.widest_gap > 0 ? nlohmann::ordered_json(report.widest_gap) : nullptr},

@@ -7,13 +7,11 @@
 #include <pcl_bsh/collision/closest_pair.h>
 #include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/filters/uncertainty.h>
-#include <pcl_bsh/neighbors/spacing.h>
+#include <pcl_bsh/question/warnings.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -26,22 +24,6 @@ struct CloudReport {
   std::string file;
   std::size_t points = 0;
   std::size_t finite = 0;
-};
-
-/// How wide the holes are that a collision may hide in.
-struct Density {
-  Spacing input;
-  std::optional<Spacing> obstacle; ///< none of a surface, which has no holes
-
-  /// Half a hole each: where two surfaces touch, a point of one may be this far from the nearest of the other.
-  double blind() const { return (input.median + (obstacle ? obstacle->median : 0.0)) / std::sqrt(2.0); }
-
-  /// Clouds of less than a hundred points are no scans, and have no density.
-  bool couldHide(double clearance) const
-  {
-    const std::size_t samples = obstacle ? std::min(input.samples, obstacle->samples) : input.samples;
-    return samples >= 100 && blind() > clearance;
-  }
 };
 
 /// What is known only along a path.

@@ -17,6 +17,7 @@
 #include "collide_sites.h"
 #include "output.h"
 #include "report.h"
+#include "warnings.h"
 
 #include <algorithm>
 #include <chrono>
@@ -31,9 +32,9 @@ namespace pcl_bsh::cli {
 #ifdef PCL_BSH_SITE_QUERIES
 namespace {
 
-/// The answer, the same on all ranks.
+/// The answer, the same on all ranks. @param told what users should know of the question
 Json askOfFile(const sites::Site& site, const ObstacleFile& file, const Poses& poses, const SiteOptions& options,
-               SiteOutput& out, SiteClashList& clashes, MeasuredRun& run, Step* step)
+               SiteOutput& out, SiteClashList& clashes, MeasuredRun& run, Step* step, std::vector<std::string>& told)
 {
   HierarchyOptions building;
   building.threads = options.threads;
@@ -102,6 +103,8 @@ Json askOfFile(const sites::Site& site, const ObstacleFile& file, const Poses& p
     break;
   }
   }
+  const SurfaceCover* const cover = surface != nullptr ? surface->cover().get() : nullptr;
+  told = warningsOf(site, measuredCloud(options.obstacle.string(), hierarchy, cover), poses, options);
   return report;
 }
 
@@ -128,7 +131,9 @@ int answer(const SiteOptions& options, bool& keeps)
     file.emplace(options);
     warn_of(warningsOf(file->obstacle, options.obstacle));
   }
-  const Poses poses = options.trajectory.empty() ? Poses{options.pose} : io::readPoses(options.trajectory);
+  std::vector<std::string> of_poses, of_question;
+  const Poses poses = options.trajectory.empty() ? Poses{options.pose} : io::readPoses(options.trajectory, &of_poses);
+  warn_of(of_poses);
   SiteOutput output(site, file ? &*file : nullptr, poses, clashes.clusterDistance(), options);
   warn_of(output.warnings());
   keeps = output.answers() != nullptr;
@@ -138,10 +143,11 @@ int answer(const SiteOptions& options, bool& keeps)
   if (tells) shown.emplace("Asking about tiles");
   Step* const step = tells ? &*shown : nullptr;
   if (file)
-    report = askOfFile(site, *file, poses, options, output, clashes, run, step);
+    report = askOfFile(site, *file, poses, options, output, clashes, run, step, of_question);
   else
-    report = askOfSite(site, poses, options, output, clashes, run, step);
+    report = askOfSite(site, poses, options, output, clashes, run, step, of_question);
   if (tells) shown->done(report["tiles"]["read"].dump() + " tiles read");
+  warn_of(of_question);
   run.seconds = seconds();
   output.finish();
   run.copying = seconds() - run.seconds;

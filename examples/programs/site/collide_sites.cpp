@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #ifdef PCL_BSH_SITE_QUERIES
 #include "collide_sites.h"
+#include "warnings.h"
 
 #include "cli/program.h"
 
@@ -53,12 +54,13 @@ void askFlags(const sites::Site& site, const sites::PlacedSite& obstacle, const 
 } // namespace
 
 Json askOfSite(const sites::Site& site, const Poses& poses, const SiteOptions& options, SiteOutput& out,
-               SiteClashList& clashes, MeasuredRun& run, Step* step)
+               SiteClashList& clashes, MeasuredRun& run, Step* step, std::vector<std::string>& told)
 {
   const sites::Site other = sites::readSite(options.obstacle);
   const sites::PlacedSite obstacle{other, options.pose, options.obstacle_uncertainty};
   sites::SiteRequest request = requestOf(options, step);
   request.answers = out.answers();
+  told = warningsOf(site, namedSite(other), poses, options);
   Json report = beginReport(site, options);
   report["points_of_obstacle"] = other.points;
   switch (options.question) {

@@ -9,8 +9,9 @@
 
 namespace pcl_bsh::cli {
 
-/// The answer, the same on all ranks. Writes the site of the obstacle's flags, where it is asked for.
+/// The answer, the same on all ranks. @param told what users should know of the question. Writes the site of the
+/// obstacle's flags, where it is asked for.
 Json askOfSite(const sites::Site& site, const Poses& poses, const SiteOptions& options, SiteOutput& out,
-               SiteClashList& clashes, MeasuredRun& run, Step* step);
+               SiteClashList& clashes, MeasuredRun& run, Step* step, std::vector<std::string>& told);
 
 } // namespace pcl_bsh::cli

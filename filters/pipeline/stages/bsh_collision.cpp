@@ -28,7 +28,7 @@ struct BshFlag : Stage, CollisionQuestion {
     output->triangles = inputs[0]->triangles;
     output->face_properties = inputs[0]->face_properties;
     Filter filter;
-    for (std::string& line : setUp(filter, *this)) warn(std::move(line));
+    setUp(filter, *this);
     filter.setInputCloud(pointsOf(inputs[0]));
     filter.setKeepFlagged(true);
     filter.filter(output->cloud);
@@ -42,7 +42,7 @@ private:
   StageCloudPtr flaggedFaces(StageCloudPtr&& input)
   {
     MeshCollisionFilter filter;
-    for (std::string& line : setUp(filter, *input, *this)) warn(std::move(line));
+    setUp(filter, *input, *this);
     TrajectoryResult found;
     if (trajectory)
       filter.computeTrajectory(found);
@@ -80,7 +80,7 @@ protected:
   std::vector<std::uint8_t> passing(const StageCloudPtr& cloud) override
   {
     Filter filter;
-    for (std::string& line : setUp(filter, *this)) warn(std::move(line));
+    setUp(filter, *this);
     filter.setInputCloud(pointsOf(cloud));
     std::vector<std::uint8_t> flags;
     filter.computeFlags(flags);
@@ -97,7 +97,7 @@ private:
       throw OptionError("keep_organized", "is about points, and the input is a surface: leave it out, or give "
                                           "`vertices_only`: true");
     MeshCollisionFilter filter;
-    for (std::string& line : setUp(filter, input, *this)) warn(std::move(line));
+    setUp(filter, input, *this);
     std::vector<std::uint8_t> flags;
     filter.computeFlags(flags);
     if (const std::string warning = undecidedWarning(filter, "triangles"); !warning.empty()) warn(warning);

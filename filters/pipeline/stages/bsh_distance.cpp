@@ -36,6 +36,7 @@ struct BshDistance : Stage, DistanceQuestion, SelectionOptions {
       filter.setObstacleSurface(other.cover());
     else
       filter.setObstacleCloud(pointsOf(obstacle.cloud));
+    filter.setWarn([this](const std::string& line) { warn(line); });
     filter.setPose(obstaclePose());
     filter.setFilterLimits(limitOf(filter_limits.least, 0.0),
                            limitOf(filter_limits.most, std::numeric_limits<double>::infinity()));

@@ -30,7 +30,7 @@ struct ClashWriter : Stage, CollisionQuestion {
   {
     requirePoints(*inputs[0]);
     Filter filter;
-    for (std::string& line : setUp(filter, *this)) warn(std::move(line));
+    setUp(filter, *this);
     filter.setInputCloud(pointsOf(inputs[0]));
     TrajectoryResult found;
     filter.computeTrajectory(found);

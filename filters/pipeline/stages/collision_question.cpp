@@ -93,7 +93,7 @@ std::vector<std::string> CollisionQuestion::check(const CloudHeader& input, bool
   return warnings;
 }
 
-std::vector<std::string> CollisionQuestion::setUp(ObstacleQuery& filter, const Stage& stage)
+void CollisionQuestion::setUp(ObstacleQuery& filter, Stage& stage)
 {
   std::vector<std::string> told;
   compared_ = obstacleOf(obstacle, clearance, Accuracy::parse(accuracy), swept > 0, stage, told);
@@ -102,6 +102,8 @@ std::vector<std::string> CollisionQuestion::setUp(ObstacleQuery& filter, const S
                                                   " does not have: give a length, or `vertices_only`: true");
   }
   if (compared_.isSurface() && density) told.emplace_back("a surface has no holes: `density` guards nothing");
+  for (std::string& line : told) stage.warn(std::move(line));
+  filter.setWarn([&stage](const std::string& line) { stage.warn(line); });
   filter.setProgress([&stage](double) { return !stage.isCancelled(); });
   if (compared_.isSurface())
     filter.setObstacleSurface(compared_.cover());
@@ -117,19 +119,18 @@ std::vector<std::string> CollisionQuestion::setUp(ObstacleQuery& filter, const S
   filter.setInputUncertainty(given(uncertainty));
   filter.setObstacleUncertainty(given(obstacle_uncertainty));
   filter.setNumberOfThreads(number_of_threads);
-  return told;
 }
 
-std::vector<std::string> CollisionQuestion::setUp(MeshCollisionFilter& filter, const StageCloud& input,
-                                                  const Stage& stage)
+void CollisionQuestion::setUp(MeshCollisionFilter& filter, const StageCloud& input, Stage& stage)
 {
   if (!uncertainty.field.empty())
     throw OptionError("uncertainty", "is a field, which the input, a surface, does not have: give a length, or "
                                      "`vertices_only`: true");
   if (density) throw OptionError("density", "is about points, and the input is a surface: give `vertices_only`: true");
-  std::vector<std::string> told = setUp(filter, stage);
+  setUp(filter, stage);
+  std::vector<std::string> told;
   filter.setInputSurface(coverOfInput(input, clearance, stage, told));
-  return told;
+  for (std::string& line : told) stage.warn(std::move(line));
 }
 
 std::string CollisionQuestion::undecidedWarning(const ObstacleQuery& filter, const char* parts) const

@@ -41,11 +41,11 @@ protected:
   std::vector<std::string> check(const CloudHeader& input, bool distances);
 
   /// For run(): all of a filter but its input. Along a trajectory, it stops when the stage is cancelled.
-  /// @return what to tell the user, a line each
-  std::vector<std::string> setUp(ObstacleQuery& filter, const Stage& stage);
+  /// @param stage that warns of what the user should know
+  void setUp(ObstacleQuery& filter, Stage& stage);
 
   /// For run(), where the input has faces that are asked about: covers it, too.
-  std::vector<std::string> setUp(MeshCollisionFilter& filter, const StageCloud& input, const Stage& stage);
+  void setUp(MeshCollisionFilter& filter, const StageCloud& input, Stage& stage);
 
   /// After setUp(): what the obstacle is compared as.
   const io::Obstacle& comparedObstacle() const noexcept { return compared_; }
@@ -72,6 +72,7 @@ StageDescription<S>& withCollisionOptions(StageDescription<S>& description)
       description.option(&S::obstacle, "obstacle", "the cloud or mesh to collide with")
           .required()
           .option(&S::clearance, "clearance", "greatest distance that counts as collision, touching included")
+          .required()
           .unit("m")
           .atLeast(0)
           .option(&S::pose, "pose",

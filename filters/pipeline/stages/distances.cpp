@@ -6,6 +6,7 @@
 #include <pcl_bsh/filters/pipeline/stages/distance_question.h>
 #include <pcl_bsh/filters/reports/distance_report.h>
 #include <pcl_bsh/filters/surface_distances.h>
+#include <pcl_bsh/question/warnings.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 namespace pcl_bsh::pipeline {
@@ -39,6 +40,11 @@ struct DistanceWriter : Stage, DistanceQuestion {
     const io::DistanceQuestion question = {input_name,     obstacle.name, unit,
                                            request(*this), places_beyond, compared.isSurface() ? &compared : nullptr};
     SymmetricDistances found = symmetricDistances(input, other, question.request);
+    const Question warned{namedCloud("the input", a),
+                          namedCloud("the obstacle", b, compared.cover().get()),
+                          {obstaclePose()},
+                          std::nullopt};
+    for (const Warning& warning : warningsOf(warned)) warn(warning.text);
     if (compared.isSurface()) tellOfSurface(compared.tolerance(), found);
     const io::DistanceReport report = io::reportOf(question, input, other, found);
     io::writeDistances(filename.path, report);

@@ -16,13 +16,6 @@ std::string besideSurface(const Accuracy& accuracy, bool swept)
   return accuracy.isExact() || accuracy.stopsEarly() ? "" : "the accuracy " + accuracy.text();
 }
 
-bool hasFinitePoint(const PointsView& view)
-{
-  for (std::uint32_t i = 0; i < view.count; ++i)
-    if (isFinite(view.point(i))) return true;
-  return false;
-}
-
 } // namespace
 
 io::Obstacle SurfaceOptions::obstacleOf(const OtherCloud& other, double clearance, const Accuracy& accuracy, bool swept,
@@ -37,8 +30,6 @@ io::Obstacle SurfaceOptions::obstacleOf(const OtherCloud& other, double clearanc
     if (error.input() == Input::surface && error.value()) throw OptionError("surface_tolerance", error.advice());
     throw OptionError("obstacle", other.name + ": " + error.advice());
   }
-  if (!hasFinitePoint(viewOf(other.cloud->cloud)))
-    told.push_back("obstacle: " + other.name + ": has no finite point: nothing comes near it");
   for (const std::string& remark : obstacle.remarks()) told.push_back("obstacle: " + remark);
   if (obstacle.isSurface()) told.push_back(io::promiseOf(obstacle, besideSurface(accuracy, swept)));
   return obstacle;

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/python/question_warnings.h>
+
+#include <iterator>
+#include <map>
+#include <memory>
+#include <mutex>
+
+namespace pcl_bsh::python {
+namespace {
+
+/// A planner asks about the same clouds thousands of times: measured once for the arrays that a hierarchy stands on.
+Spacing keptSpacing(const SphereHierarchy& hierarchy)
+{
+  struct Kept {
+    std::weak_ptr<const void> arrays;
+    Spacing spacing;
+  };
+  static std::map<const void*, Kept> kept;
+  static std::mutex one_at_a_time;
+  const std::shared_ptr<const void>& arrays = hierarchy.view().owner;
+  {
+    const std::lock_guard lock(one_at_a_time);
+    for (auto each = kept.begin(); each != kept.end();)
+      each = each->second.arrays.expired() ? kept.erase(each) : std::next(each);
+    const auto known = kept.find(arrays.get());
+    if (known != kept.end()) return known->second.spacing;
+  }
+  const Spacing spacing = spacingOf(hierarchy);
+  const std::lock_guard lock(one_at_a_time);
+  if (arrays) kept[arrays.get()] = {arrays, spacing};
+  return spacing;
+}
+
+/// Points with radii are taken for the balls of a surface, which has no holes.
+NamedCloud factsOf(const char* name, const SphereHierarchy& hierarchy, bool measures)
+{
+  NamedCloud cloud = namedCloud(name, hierarchy);
+  if (measures && !hierarchy.view().radii) cloud.spacing = keptSpacing(hierarchy);
+  return cloud;
+}
+
+} // namespace
+
+std::vector<Warning> warningsOf(const Asked& asked)
+{
+  Question question{factsOf(asked.name_a, asked.a.hierarchy(), asked.measures),
+                    factsOf(asked.name_b, asked.b, asked.measures), asked.poses_b, asked.clearance};
+  for (Eigen::Isometry3d& pose : question.poses) pose = asked.a.pose.inverse() * pose;
+  return pcl_bsh::warningsOf(question);
+}
+
+void warn(const std::vector<Warning>& warnings)
+{
+  for (const Warning& warning : warnings)
+    if (PyErr_WarnEx(PyExc_UserWarning, warning.text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+} // namespace pcl_bsh::python

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a question's answer does not say by itself, as each program, filter and package tells it: the conditions and the
+// sentences stand here alone.
+//
+//   const Question question{measuredCloud("hall.ply", hall), measuredCloud("robot.pcd", robot), poses, 0.05};
+//   for (const Warning& warning : warningsOf(question)) tell(warning.text);
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/question/named_cloud.h>
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// What is asked, as far as warnings depend on it. Lengths are in the clouds' own unit.
+struct Question {
+  NamedCloud input, obstacle;
+  std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()}; ///< T_input_obstacle, one after another
+  std::optional<double> clearance; ///< that points collide within; none: distances are asked for
+};
+
+/// How wide the holes between points are that a collision may hide in.
+struct Density {
+  std::optional<Spacing> input, obstacle; ///< none of a surface, which has no holes
+
+  /// Half a hole each: where two surfaces touch, a point of one may be this far from the nearest of the other.
+  double blind() const;
+
+  /// Clouds of less than a hundred points are no scans, and have no density.
+  bool couldHide(double clearance) const;
+};
+
+/// What a warning is about.
+enum class WarningKind : std::uint8_t {
+  empty,      ///< no finite point
+  not_finite, ///< some points are not
+  loose,      ///< vertices of a surface that no face has
+  coarse,     ///< float32 coordinates that are coarse for the clearance
+  sparse,     ///< surfaces may touch while no two points are within the clearance
+  apart,      ///< boxes far from each other: not in one frame, perhaps
+};
+
+/// One sentence for users, which names the cloud and says what to do.
+struct Warning {
+  WarningKind kind;
+  std::string text;
+};
+
+/// All that is to be told of a question. A sentence about two clouds of one name that would be told twice is told once.
+std::vector<Warning> warningsOf(const Question& question);
+
+/// Of one cloud by itself: empty, not finite, loose vertices, coarse.
+std::vector<Warning> warningsOf(const NamedCloud& cloud, std::optional<double> clearance);
+
+/// Of two clouds, where their spacings are known.
+std::optional<Warning> warningOfDensity(const NamedCloud& a, const NamedCloud& b, double clearance);
+
+/// The boxes, in one frame, of two things and all of their motion: farther apart than the clearance and ten times the
+/// diagonal of either.
+std::optional<Warning> warningOfFrames(const std::string& a, const Eigen::AlignedBox3d& box_a, const std::string& b,
+                                       const Eigen::AlignedBox3d& box_b, double clearance);
+
+/// Angles, in radians, of more than two turns: degrees, perhaps. Without a name before it.
+std::optional<std::string> warningOfAngles(double roll, double pitch, double yaw);
+
+/// Appends a sentence, unless it is there.
+void addOnce(std::string text, std::vector<std::string>& texts);
+
+/// The same of each.
+void addTexts(const std::vector<Warning>& warnings, std::vector<std::string>& texts);
+
+/// For who is asked again and again, about a stream of clouds: tells each kind of warning in one question only.
+class WarningsOnce {
+public:
+  /// Those of a kind that no earlier call had.
+  std::vector<Warning> unheard(std::vector<Warning> warnings);
+
+private:
+  std::uint32_t told_ = 0; ///< a bit for each kind
+};
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/question/warnings.h>
+
+#include <pcl_bsh/surface/surface_cover.h>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+std::vector<std::string> textsOf(const std::vector<Warning>& warnings)
+{
+  std::vector<std::string> texts;
+  for (const Warning& warning : warnings) texts.push_back(warning.text);
+  return texts;
+}
+
+/// A plane of n * n points, one apart, its least corner at (x, 0, 0).
+std::vector<float> plane(int n, float x = 0)
+{
+  std::vector<float> xyz;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) xyz.insert(xyz.end(), {x + static_cast<float>(i), static_cast<float>(j), 0.0f});
+  return xyz;
+}
+
+struct Cloud {
+  std::vector<float> xyz;
+  SphereHierarchy hierarchy{viewOf(xyz.data(), xyz.size() / 3)};
+
+  explicit Cloud(std::vector<float> points) : xyz(std::move(points)) {}
+
+  NamedCloud named(const std::string& name, bool measured = false) const
+  {
+    return measured ? measuredCloud(name, hierarchy) : namedCloud(name, hierarchy);
+  }
+};
+
+Eigen::Isometry3d at(double x)
+{
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation().x() = x;
+  return pose;
+}
+
+TEST(Warnings, NoneOfCloudsThatAreInOrder)
+{
+  const Cloud a(plane(12)), b(plane(12, 3));
+  EXPECT_THAT(warningsOf({a.named("a", true), b.named("b", true), {at(0)}, 2.0}), IsEmpty());
+  EXPECT_THAT(warningsOf({a.named("a"), b.named("b"), {at(0)}, 0.5}), IsEmpty()) << "nobody has measured spacings";
+}
+
+TEST(Warnings, EmptyClouds)
+{
+  const Cloud a(plane(3)), nothing({}), no_numbers({nan, 0, 0, 0, nan, 0});
+  for (const Cloud* empty : {&nothing, &no_numbers}) {
+    EXPECT_THAT(textsOf(warningsOf({a.named("a"), empty->named("b"), {at(0)}, 0.5})),
+                ElementsAre("b: has no finite point: nothing collides with it"));
+    EXPECT_THAT(textsOf(warningsOf({empty->named("a"), a.named("b"), {at(0)}, {}})),
+                ElementsAre("a: has no finite point: nothing has a distance from it"));
+  }
+}
+
+TEST(Warnings, PointsThatAreNotFinite)
+{
+  const Cloud one({0, 0, 0, nan, 0, 0}), two({0, 0, 0, nan, 0, 0, 1, 0, nan});
+  EXPECT_THAT(textsOf(warningsOf({one.named("a"), two.named("b"), {at(0)}, 0.5})),
+              ElementsAre("a: 1 of 2 points is not finite: it is left out",
+                          "b: 2 of 3 points are not finite: they are left out"));
+}
+
+/// float32 coordinates at 500 km lie 1/32 apart.
+TEST(Warnings, CoarseCoordinates)
+{
+  const Cloud far(plane(12, 500000)), near(plane(12));
+  const auto told = [&](double clearance) {
+    return textsOf(warningsOf({far.named("a"), near.named("b"), {at(500000)}, clearance}));
+  };
+  EXPECT_THAT(told(0.3), ElementsAre(HasSubstr("a: its float32 coordinates lie 0.03125 apart, coarse for a clearance "
+                                               "of 0.3: ")));
+  EXPECT_THAT(told(0.32), IsEmpty());
+  EXPECT_THAT(told(0.0), IsEmpty());
+  const std::vector<double> wide(far.xyz.begin(), far.xyz.end());
+  const SphereHierarchy float64(viewOf(wide.data(), wide.size() / 3));
+  EXPECT_THAT(warningsOf(namedCloud("a", float64), 0.001), IsEmpty());
+}
+
+/// The corners of a mesh were rounded; the balls that cover it are in double, and are no samples of a scan.
+TEST(Warnings, SurfacesHaveCornersAndNoHoles)
+{
+  const std::vector<float> corners = {500000, 0, 0, 500030, 0, 0, 500000, 30, 0, 9, 9, 9, nan, 0, 0};
+  const SurfaceCover cover = coverSurface(viewOf(corners.data(), 5), {{0, 1, 2}}, {1.0, false, nullptr});
+  const SphereHierarchy balls(cover.view());
+  ASSERT_GE(balls.size(), 100u);
+  const NamedCloud surface = measuredCloud("mesh", balls, &cover);
+  EXPECT_EQ(surface.coordinate_spacing, 0.03125);
+  EXPECT_EQ(namedCloud("balls", balls).coordinate_spacing, 0.0);
+  EXPECT_FALSE(surface.spacing);
+
+  const Cloud scan(plane(12));
+  EXPECT_THAT(textsOf(warningsOf({scan.named("scan", true), surface, {at(-500000)}, 0.25})),
+              ElementsAre("mesh: 1 of its vertices belongs to no face: it is no part of the surface that is compared",
+                          HasSubstr("mesh: its float32 coordinates"),
+                          "points lie 1 apart in scan: what was scanned may touch the surface of mesh with no point "
+                          "within the clearance of 0.25: scan more densely, or give a clearance of 0.707107 at least"));
+  EXPECT_THAT(warningsOf({surface, surface, {at(0)}, 0.5}), testing::SizeIs(1)) << "of the loose vertex";
+
+  const std::vector<double> wide(corners.begin(), corners.end());
+  EXPECT_EQ(coverSurface(viewOf(wide.data(), 3), {{0, 1, 2}}, {1.0, false, nullptr}).coordinate_spacing, 0.0);
+}
+
+TEST(Warnings, HolesBetweenPoints)
+{
+  const Cloud a(plane(12)), b(plane(12, 3)), few(plane(9));
+  const auto told = [&](const Cloud& first, const Cloud& second, double clearance) {
+    return textsOf(warningsOf({first.named("a", true), second.named("b", true), {at(0)}, clearance}));
+  };
+  EXPECT_THAT(told(a, b, 1.4), ElementsAre("points lie 1 apart in a and 1 in b: surfaces may touch with no two points "
+                                           "within the clearance of 1.4: scan more densely, or give a clearance of "
+                                           "1.41421 at least"));
+  EXPECT_THAT(told(a, b, 1.42), IsEmpty());
+  EXPECT_THAT(told(a, few, 0.5), IsEmpty()) << "less than a hundred points are no scan";
+}
+
+TEST(Warnings, OneCloudTwiceIsToldOnce)
+{
+  std::vector<float> xyz = plane(12, 500000);
+  xyz.insert(xyz.end(), {nan, 0, 0});
+  const Cloud a(xyz);
+  EXPECT_THAT(textsOf(warningsOf({a.named("a", true), a.named("a", true), {at(0)}, 0.25})),
+              ElementsAre(HasSubstr("a: 1 of 145 points"), HasSubstr("a: its float32 coordinates"),
+                          HasSubstr("points lie 1 apart in a: surfaces may touch")));
+  std::vector<std::string> texts = {"b"};
+  addTexts({{WarningKind::empty, "a"}, {WarningKind::empty, "b"}, {WarningKind::empty, "a"}}, texts);
+  EXPECT_THAT(texts, ElementsAre("b", "a"));
+}
+
+/// A wagon that stays in another coordinate system than its tunnel.
+TEST(Warnings, FramesThatNeverMeet)
+{
+  const Cloud tunnel(plane(31)), wagon(plane(4));
+  const auto told = [&](const std::vector<Eigen::Isometry3d>& poses) {
+    return textsOf(warningsOf({tunnel.named("tunnel"), wagon.named("wagon"), poses, 0.05}));
+  };
+  EXPECT_THAT(
+      told({at(5e6), at(5e6 + 10)}),
+      ElementsAre("the boxes of tunnel and of wagon, with all of its motion, are 4.99997e+06 apart, and neither "
+                  "is larger than 42.4264: check that both have one coordinate system and one unit, and that "
+                  "poses lead from the frame of wagon to that of tunnel"));
+  EXPECT_THAT(told({at(5e6), at(10)}), IsEmpty()) << "it comes from afar";
+  EXPECT_THAT(told({at(-300), at(-400)}), IsEmpty()) << "within ten diagonals";
+  EXPECT_THAT(told({at(-1000)}), testing::SizeIs(1));
+  const Cloud place({0, 0, 0});
+  EXPECT_THAT(warningsOf({place.named("a"), place.named("b"), {at(7)}, 0.5}), IsEmpty()) << "places have no size";
+  EXPECT_THAT(warningsOf({tunnel.named("a"), wagon.named("b"), {at(1000)}, 5000.0}), IsEmpty()) << "it may collide";
+  EXPECT_THAT(warningsOf({tunnel.named("a"), wagon.named("b"), {at(1000)}, {}}), testing::SizeIs(1)) << "distances";
+}
+
+TEST(Warnings, BoxesAlongAPathHoldTurnedPoints)
+{
+  const Cloud bar({0, 0, 0, 2, 0, 0});
+  Eigen::Isometry3d turned(Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitZ()));
+  const Eigen::AlignedBox3d box = boxAlong(bar.named("bar").box, {at(5), turned});
+  EXPECT_TRUE(box.contains(Eigen::Vector3d(7, 0, 0)));
+  EXPECT_TRUE(box.contains(Eigen::Vector3d(0, 2, 0)));
+  EXPECT_LT(box.max().y(), 2.001);
+  EXPECT_TRUE(boxAlong(Cloud({}).named("empty").box, {at(0)}).isEmpty());
+}
+
+TEST(Warnings, AnglesInDegrees)
+{
+  EXPECT_EQ(warningOfAngles(0, 0, 12.5), std::nullopt);
+  EXPECT_EQ(warningOfAngles(0, 12.6, 0)->substr(0, 26), "an angle of 12.6 radians i");
+  EXPECT_THAT(*warningOfAngles(0, 0, -90), HasSubstr("90 degrees are 1.5708"));
+  EXPECT_TRUE(warningOfAngles(90, 0, 0));
+}
+
+TEST(Warnings, StreamsHearEachKindOnce)
+{
+  const Cloud a(plane(3)), nothing({}), gaps({0, 0, 0, nan, 0, 0});
+  WarningsOnce once;
+  const auto told = [&](const Cloud& input, const Cloud& obstacle) {
+    return textsOf(once.unheard(warningsOf({input.named("a"), obstacle.named("b"), {at(0)}, 0.5})));
+  };
+  EXPECT_THAT(told(a, a), IsEmpty());
+  EXPECT_THAT(told(gaps, gaps), testing::SizeIs(2)) << "of both clouds of one question";
+  EXPECT_THAT(told(a, gaps), IsEmpty());
+  EXPECT_THAT(told(a, nothing), ElementsAre(HasSubstr("b: has no finite point")));
+  EXPECT_THAT(told(nothing, a), IsEmpty());
+}
+
+} // namespace
+} // namespace pcl_bsh
