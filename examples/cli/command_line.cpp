@@ -2,6 +2,7 @@
 #include "command_line.h"
 
 #include <pcl_bsh/filters/text_files/parse_number.h>
+#include <pcl_bsh/version.h>
 
 #include <array>
 #include <cstdint>
@@ -21,6 +22,7 @@ void requireNoneEmpty(const CLI::App& app)
 
 bool understood(CLI::App& app, const std::string& program, const std::function<void()>& parse)
 {
+  app.set_version_flag("--version", program + " " PCL_BSH_VERSION_TEXT, "print the program's version and exit");
   try {
     parse();
     requireNoneEmpty(app);
@@ -28,6 +30,10 @@ bool understood(CLI::App& app, const std::string& program, const std::function<v
   }
   catch (const CLI::CallForHelp&) {
     std::cout << app.help();
+    return false;
+  }
+  catch (const CLI::CallForVersion& version) {
+    std::cout << version.what() << '\n';
     return false;
   }
   catch (const CLI::ValidationError& error) { // of the checks below: says all

@@ -15,7 +15,8 @@
 
 namespace pcl_bsh::cli {
 
-/// Parses all of main()'s arguments; false when they ask for help, which is printed then. Throws UsageError.
+/// Parses all of main()'s arguments; false when they ask for help or the version, which is
+/// printed then. Throws UsageError.
 bool understood(CLI::App& app, const std::string& program, int argc, const char* const* argv);
 
 /// The same for arguments that some were taken out of. @param arguments from last to first, as CLI11 wants them

@@ -217,33 +217,44 @@ void warnOfQuestion(const Options& options, const std::vector<Eigen::Isometry3d>
     addOnce(std::move(remark), report.warnings);
 }
 
-std::vector<Clash> listClashes(const Options& options, const std::vector<Eigen::Isometry3d>& poses,
-                               const SphereHierarchy& a, const SphereHierarchy& b, const TrajectoryResult& found,
-                               const std::vector<Clash>& earlier, cli::CollisionReport& report)
+io::ClashQuestion clashQuestion(const Options& options)
+{
+  return {options.input.string(), options.obstacle.string(), options.clearance,           options.swept,
+          options.accuracy,       options.input_uncertainty, options.obstacle_uncertainty};
+}
+
+/// @return how many there are
+std::string listClashes(const Options& options, const std::vector<Eigen::Isometry3d>& poses, const SphereHierarchy& a,
+                        const SphereHierarchy& b, const TrajectoryResult& found,
+                        const std::optional<io::ClashList>& earlier, cli::CollisionReport& report)
 {
   cli::Step step("Listing clashes");
   const double distance = options.cluster_distance > 0
                               ? options.cluster_distance
                               : io::clusterDistanceFor(options.clearance, *report.density.input);
-  io::ClashReport list{options.input.string(),
-                       options.obstacle.string(),
-                       report.clearance,
-                       distance,
-                       {},
-                       findClashes(a.view(), found, distance),
-                       a.view(),
-                       b.view(),
-                       poses,
-                       found,
-                       options.swept,
-                       report.surface ? &*report.surface : nullptr};
-  if (options.previous) {
-    list.previous = options.previous->string();
-    compareWithEarlier(list.clashes, earlier, distance);
+  io::ClashReport list{.question = clashQuestion(options),
+                       .cluster_distance = distance,
+                       .clashes = findClashes(a.view(), found, distance),
+                       .scan = a.view(),
+                       .model = b.view(),
+                       .poses = poses,
+                       .found = found,
+                       .survey = {poses, extentOf(a.view())},
+                       .unit = options.unit,
+                       .surface = report.surface ? &*report.surface : nullptr};
+  if (earlier) {
+    TrajectoryRequest motion;
+    motion.swept = options.swept;
+    motion.threads = options.threads;
+    for (std::string& warning : io::compareWithList(list, *options.previous, *earlier, [&](FormerPlaces& former) {
+           former.visit(b, poses, motion);
+           former.scan(a.view());
+         }))
+      report.warnings.push_back(std::move(warning));
   }
   for (const fs::path& file : options.clashes) io::writeClashes(file, list);
-  report.seconds.clashes = step.done(std::to_string(list.clashes.size()) + " clashes");
-  return list.clashes;
+  report.seconds.clashes = step.done(io::clashCounts(list));
+  return io::clashCounts(list);
 }
 
 std::vector<Eigen::Isometry3d> posesOf(const Options& options, std::vector<std::string>& warnings)
@@ -252,15 +263,13 @@ std::vector<Eigen::Isometry3d> posesOf(const Options& options, std::vector<std::
   return options.path.empty() ? std::vector{options.pose} : options.path;
 }
 
-std::vector<Clash> readEarlier(const Options& options, std::vector<std::string>& warnings)
+std::optional<io::ClashList> readEarlier(const Options& options, std::vector<std::string>& warnings)
 {
-  if (!options.previous) return {};
-  const io::ClashList list = io::readClashes(*options.previous);
-  for (std::string& warning :
-       io::requireComparable(*options.previous, list,
-                             {options.input.string(), options.obstacle.string(), options.clearance, options.swept, {}}))
+  if (!options.previous) return std::nullopt;
+  io::ClashList list = io::readClashes(*options.previous);
+  for (std::string& warning : io::requireComparable(*options.previous, list, clashQuestion(options)))
     warnings.push_back(std::move(warning));
-  return list.clashes;
+  return list;
 }
 
 PointDistancesRequest distancesRequest(const Options& options)
@@ -296,12 +305,9 @@ std::optional<io::DistanceReport> reportDistances(const Options& options, const 
                                                   const io::Obstacle* surface)
 {
   if (!options.distances) return std::nullopt;
-  const io::DistanceQuestion question = {options.input.string(),
-                                         options.obstacle.string(),
-                                         options.distances->unit,
-                                         distancesRequest(options),
-                                         std::nullopt,
-                                         surface};
+  const io::DistanceQuestion question = {options.input.string(), options.obstacle.string(),
+                                         options.unit,           distancesRequest(options),
+                                         std::nullopt,           surface};
   io::DistanceReport report = io::reportOf(question, {a}, {b, options.pose}, distances.found);
   if (options.distances->page) io::writeDistances(*options.distances->page, report);
   return report;
@@ -313,7 +319,7 @@ int collide(const Options& options)
   cli::CollisionReport report;
   report.warnings = options.warnings;
   const std::vector<Eigen::Isometry3d> poses = posesOf(options, report.warnings);
-  const std::vector<Clash> earlier = readEarlier(options, report.warnings);
+  const std::optional<io::ClashList> earlier = readEarlier(options, report.warnings);
   report.clearance = options.clearance;
   report.accuracy = options.accuracy;
   report.input_uncertainty = options.input_uncertainty;
@@ -351,7 +357,7 @@ int collide(const Options& options)
   warnOfQuestion(options, poses, a, cover.get(), b, report);
 
   write(options, input, found, distances, report.seconds.write);
-  std::vector<Clash> clashes;
+  std::string clashes;
   if (!options.clashes.empty()) clashes = listClashes(options, poses, a, b, found, earlier, report);
   const std::optional<io::DistanceReport> measured =
       reportDistances(options, a, b, distances, report.surface ? &*report.surface : nullptr);

@@ -57,8 +57,7 @@ std::string newBlock()
   setLasNumber(bytes, las_at::global_encoding, well_known_text);
   bytes[las_at::major] = 1;
   bytes.replace(las_at::system, 5, "OTHER");
-  const std::string software = "pcl_bsh " + std::to_string(PCL_BSH_VERSION_MAJOR) + '.' +
-                               std::to_string(PCL_BSH_VERSION_MINOR) + '.' + std::to_string(PCL_BSH_VERSION_PATCH);
+  const std::string software = "pcl_bsh " PCL_BSH_VERSION_TEXT;
   bytes.replace(las_at::software, software.size(), software);
   const auto today = std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now());
   const auto year = std::chrono::year_month_day(today).year();

@@ -2,6 +2,7 @@
 // The numbers of the page; clash_page.html has the page itself.
 #include <pcl_bsh/filters/reports/clash_report.h>
 #include <pcl_bsh/filters/reports/page_text.h>
+#include <pcl_bsh/filters/reports/report_origin.h>
 
 #include "clash_page.html.h"
 #include "page_style.css.h"
@@ -44,8 +45,9 @@ class ClashPage {
 public:
   explicit ClashPage(const ClashReport& report)
   : report_(report),
-    lowest_(report.found.colliding > 0 ? std::min(0.0, report.clashes.front().distance) : 0.0),
-    range_(report.clearance - lowest_)
+    closest_(closestOf(report)),
+    lowest_(std::isfinite(closest_) ? std::min(0.0, closest_) : 0.0),
+    range_(report.question.clearance - lowest_)
   {
   }
 
@@ -57,14 +59,53 @@ public:
   }
 
 private:
+  /// The smallest distance of all that are there now, infinity where there is none.
+  static double closestOf(const ClashReport& report)
+  {
+    double closest = std::numeric_limits<double>::infinity();
+    for (const Clash& clash : report.clashes)
+      if (isPresent(clash.status)) closest = std::min(closest, clash.distance);
+    return closest;
+  }
+
+  static Data textOrNone(const std::string& text) { return text.empty() ? Data(false) : Data(plain(text)); }
+
+  static std::string many(std::size_t count) { return std::to_string(count) + (count == 1 ? " clash" : " clashes"); }
+
+  /// Certain ones first.
+  std::string headline() const
+  {
+    const std::size_t present = report_.present(), perhaps = report_.perhaps();
+    if (!report_.question.isUncertain()) return many(present);
+    return many(present - perhaps) + ", " + std::to_string(perhaps) + " perhaps";
+  }
+
+  /// What is uncertain, where anything is.
+  Data uncertainty() const
+  {
+    const ClashQuestion& question = report_.question;
+    if (!question.isUncertain()) return false;
+    return Object{{"input_uncertainty", plain(uncertaintyText(question.input_uncertainty))},
+                  {"obstacle_uncertainty", plain(uncertaintyText(question.obstacle_uncertainty))},
+                  {"undecided", std::to_string(report_.found.undecided)}};
+  }
+
   Data contents() const
   {
+    const ClashQuestion& question = report_.question;
     Object page = {{"style", std::string(page_style_css)},
-                   {"input", plain(report_.input)},
-                   {"obstacle", plain(report_.obstacle)},
-                   {"present", std::to_string(report_.clashes.size() - report_.count(ClashStatus::resolved))},
-                   {"poses", std::to_string(report_.poses.size())},
-                   {"clearance", number(report_.clearance)},
+                   {"input", plain(question.input)},
+                   {"obstacle", plain(question.obstacle)},
+                   {"headline", headline()},
+                   {"program", reportProgram()},
+                   {"date", reportDate()},
+                   {"unit", textOrNone(report_.unit)},
+                   {"in", report_.unit.empty() ? std::string() : " [" + plain(report_.unit) + "]"},
+                   {"coordinate_system", textOrNone(report_.coordinate_system)},
+                   {"uncertainty", uncertainty()},
+                   {"accuracy", question.accuracy.text()},
+                   {"poses", std::to_string(report_.poses.size()) + (report_.poses.size() == 1 ? " pose" : " poses")},
+                   {"clearance", number(question.clearance)},
                    {"colliding", std::to_string(report_.found.colliding)},
                    {"closest", false},
                    {"swept", false},
@@ -72,28 +113,39 @@ private:
                    {"compared", false},
                    {"previous", false},
                    {"promise", report_.surface != nullptr
-                                   ? Data(promiseOf(*report_.surface, report_.swept ? "swept motion" : ""))
+                                   ? Data(promiseOf(*report_.surface, question.swept ? "swept motion" : ""))
                                    : Data(false)},
                    {"path", path()},
-                   {"table", table()},
+                   {"nothing", report_.clashes.empty()},
+                   {"tables", tables()},
                    {"one_by_one", cards()}};
-    if (report_.count(ClashStatus::resolved) < report_.clashes.size())
-      page["closest"] = number(report_.clashes.front().distance);
-    if (report_.swept) page["swept"] = number(*report_.swept);
+    if (std::isfinite(closest_)) page["closest"] = number(closest_);
+    if (question.swept) page["swept"] = number(*question.swept);
     if (report_.previous) {
       page["previous"] = plain(*report_.previous);
       List compared;
-      for (const auto& [status, name] : status_names)
-        compared.push_back(Object{{"count", std::to_string(report_.count(status))}, {"status", name}});
+      for (std::size_t i = 0; i < clash_statuses; ++i) {
+        const auto status = static_cast<ClashStatus>(i);
+        if (report_.count(status) == 0 && i > static_cast<std::size_t>(ClashStatus::resolved)) continue; // rare ones
+        compared.push_back(Object{{"count", std::to_string(report_.count(status))}, {"status", inWords(status)}});
+      }
       page["compared"] = compared;
     }
     return page;
   }
 
+  static std::string inWords(ClashStatus status)
+  {
+    std::string name = nameOf(status);
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
+  }
+
   /// From deep red where clouds touch to pale yellow at the clearance.
   std::string colorOf(double distance) const
   {
-    const double share = report_.clearance > 0 ? std::clamp(distance / report_.clearance, 0.0, 1.0) : 0.0;
+    const double clearance = report_.question.clearance;
+    const double share = clearance > 0 ? std::clamp(distance / clearance, 0.0, 1.0) : 0.0;
     const auto mix = [&](int from, int to) { return std::to_string(static_cast<int>(from + share * (to - from))); };
     return "rgb(" + mix(150, 245) + ',' + mix(10, 190) + ',' + mix(40, 66) + ')';
   }
@@ -138,7 +190,7 @@ private:
                             {"color", colorOf(nearest)}});
     }
     return Object{{"bars", bars},
-                  {"limit", number(report_.clearance, 3)},
+                  {"limit", number(report_.question.clearance, 3)},
                   {"lowest", number(lowest_, 3)},
                   {"last", std::to_string(poses.size() - 1)}};
   }
@@ -146,25 +198,41 @@ private:
   static Object factsOf(const Clash& clash)
   {
     return {{"id", plain(clash.id)},
-            {"status", nameOf(clash.status)},
+            {"class", nameOf(clash.status)},
+            {"status", inWords(clash.status)},
+            {"perhaps", !clash.isCertain()},
             {"distance", number(clash.distance)},
             {"points", std::to_string(clash.points)},
             {"first_pose", std::to_string(clash.first_pose)},
             {"closest_pose", std::to_string(clash.closest_pose)}};
   }
 
-  Data table() const
+  /// Those that collide only perhaps have a table of their own.
+  Data rowsOf(bool perhaps) const
   {
-    if (report_.clashes.empty()) return false;
     List rows;
     std::size_t cards = 0;
     for (const Clash& clash : report_.clashes) {
+      const bool has_card = isPresent(clash.status) && cards++ < most_pictures;
+      if (clash.isCertain() == perhaps) continue;
       Object row = factsOf(clash);
       row["size"] = number(longestSide(clash), 3);
-      row["linked"] = clash.status != ClashStatus::resolved && cards++ < most_pictures;
+      row["linked"] = has_card;
       rows.push_back(std::move(row));
     }
-    return Object{{"rows", rows}};
+    return rows.empty() ? Data(false) : Data(rows);
+  }
+
+  List tables() const
+  {
+    List tables;
+    for (const bool perhaps : {false, true}) {
+      Data rows = rowsOf(perhaps);
+      if (rows.is_false()) continue;
+      tables.push_back(
+          Object{{"title", perhaps ? "Perhaps" : "By severity"}, {"perhaps_only", perhaps}, {"rows", rows}});
+    }
+    return tables;
   }
 
   Data cards() const
@@ -172,7 +240,7 @@ private:
     List cards;
     bool all = true;
     for (const Clash& clash : report_.clashes) {
-      if (clash.status == ClashStatus::resolved) continue;
+      if (!isPresent(clash.status)) continue;
       all = cards.size() < most_pictures;
       if (!all) break;
       cards.push_back(card(clash));
@@ -258,11 +326,11 @@ private:
     };
     const auto y = [&](double distance) { return area.top + area.height - 4 - (area.height - 12) * shareOf(distance); };
     const auto distanceOf = [&](std::uint32_t record) { return static_cast<double>(report_.found.distance[record]); };
-    const double limit_y = y(report_.clearance);
+    const double limit_y = y(report_.question.clearance);
     return Object{{"dots", dotsOf(
                                clash, [&](std::uint32_t record) { return x(report_.found.closest_pose[record]); },
                                [&](std::uint32_t record) { return y(distanceOf(record)); })},
-                  {"limit", number(report_.clearance, 3)},
+                  {"limit", number(report_.question.clearance, 3)},
                   {"limit_y", number(limit_y, 6)},
                   {"limit_text_y", number(limit_y + 4, 6)},
                   {"lowest", number(lowest_, 3)},
@@ -275,6 +343,7 @@ private:
   }
 
   const ClashReport& report_;
+  const double closest_;
   const double lowest_; ///< where the scale of distances ends
   const double range_;  ///< from there to the clearance
 };

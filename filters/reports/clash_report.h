@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clashes as lists for programs (.json, .csv), read back to compare with, and as a page for people (.html).
+// Clashes as lists for programs (.json, .csv), compared with those of an earlier run, and as a page for people (.html).
 #pragma once
 
 #include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/filters/json/json_document.h>
+#include <pcl_bsh/filters/reports/clash_list.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/report/clashes.h>
+#include <pcl_bsh/report/former_places.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 namespace pcl_bsh::io {
@@ -29,17 +28,18 @@ struct SourcePoint {
 
 /// All that a list of clashes tells, in the frame of the input. Clouds and result are borrowed.
 struct ClashReport {
-  std::string input, obstacle; ///< file names
-  double clearance = 0;
+  ClashQuestion question;
   double cluster_distance = 0;
-  std::optional<std::string> previous; ///< file name
   std::vector<Clash> clashes;
   const PointsView& scan;
   const PointsView& model;
   const std::vector<Eigen::Isometry3d>& poses;
   const TrajectoryResult& found;
-  std::optional<double> swept;
-  const Obstacle* surface = nullptr; ///< the obstacle, where it is one; `model` are its balls
+  Survey survey;
+  std::string unit = {};                    ///< of the clouds' lengths; empty: not known
+  std::string coordinate_system = {};       ///< of the input, where its file names one; else empty
+  std::optional<std::string> previous = {}; ///< file name
+  const Obstacle* surface = nullptr;        ///< the obstacle, where it is one; `model` are its balls
   /// Of a point of `scan`, where the input is several files.
   std::function<SourcePoint(std::uint32_t)> source_of = nullptr;
   /// The same of a point of `model`.
@@ -54,8 +54,19 @@ struct ClashReport {
 
   std::size_t count(ClashStatus status) const
   {
-    return static_cast<std::size_t>(
-        std::count_if(clashes.begin(), clashes.end(), [&](const Clash& clash) { return clash.status == status; }));
+    return countIf([&](const Clash& clash) { return clash.status == status; });
+  }
+
+  /// Clashes that are there now.
+  std::size_t present() const
+  {
+    return countIf([](const Clash& clash) { return isPresent(clash.status); });
+  }
+
+  /// Of these, those that collide only perhaps.
+  std::size_t perhaps() const
+  {
+    return countIf([](const Clash& clash) { return isPresent(clash.status) && !clash.isCertain(); });
   }
 
   Eigen::Vector3d scanPoint(const Clash& clash) const { return vectorOf(scan.point(clash.scan_point)); }
@@ -68,25 +79,24 @@ struct ClashReport {
   }
 
   static Eigen::Vector3d vectorOf(const Point3& p) { return {p[0], p[1], p[2]}; }
+
+private:
+  template <typename Condition>
+  std::size_t countIf(const Condition& condition) const
+  {
+    return static_cast<std::size_t>(std::count_if(clashes.begin(), clashes.end(), condition));
+  }
 };
-
-inline constexpr std::array<std::pair<ClashStatus, const char*>, 3> status_names = {
-    {{ClashStatus::fresh, "new"}, {ClashStatus::persisting, "persisting"}, {ClashStatus::resolved, "resolved"}}};
-
-inline const char* nameOf(ClashStatus status)
-{
-  return status_names[static_cast<std::size_t>(status)].second;
-}
 
 /// What an obstacle is compared as: null where that is its points.
 /// @param beside as promiseOf() takes it
 Json surfaceJson(const Obstacle* surface, const std::string& beside = "");
 
-/// One object per clash, with its closest pair unless it is resolved.
+/// One object per clash, with its closest pair if it is there now.
 std::string clashJson(const ClashReport& report);
 
-/// One clash a line, lengths in the clouds' unit, each with the digits that read back to the same bits. A resolved one
-/// has no pair.
+/// One clash a line, lengths in the clouds' unit, each with the digits that read back to the same bits. One that is not
+/// there now has no pair. What was asked is repeated in each line.
 std::string clashCsv(const ClashReport& report);
 
 /// A page that opens alone in a browser: a chart of the path, a table, and two pictures of each clash.
@@ -96,31 +106,19 @@ std::string clashPage(const ClashReport& report);
 /// @throws files::FileError
 void writeClashes(const std::filesystem::path& path, const ClashReport& report);
 
-/// @throws files::FileError when writeClashes() knows no such extension
+/// @throws files::FileError when writeClashes() knows no such extension. As reportDate()
 void requireClashFormat(const std::filesystem::path& path);
 
-/// What a run asked, and the clashes that it listed, without points and pairs.
-struct ClashList {
-  std::string input, obstacle; ///< file names
-  double clearance = 0;
-  std::optional<double> swept;
-  std::vector<Clash> clashes;
-};
+/// How many there are, as programs tell it in a line: "3 clashes, 140 perhaps, 2 resolved".
+std::string clashCounts(const ClashReport& report);
 
-/// What an earlier run listed, for compareWithEarlier().
-/// @throws files::FileError when the file cannot be read, JsonError naming the place in it that no run would have
-/// written
-ClashList readClashes(const std::filesystem::path& path);
-
-/// The same, of a text. @throws JsonError whose message begins with `name`
-ClashList parseClashes(std::string_view text, const std::string& name);
-
-/// Whether the earlier list, read from `path`, can tell what is new now.
-/// @param now what this run asks; its clashes do not matter
-/// @return warnings, a line each: names of other clouds, motion between poses tested in one run only
-/// @throws files::FileError when the clearances differ, so that clashes between the two would seem new or resolved
-std::vector<std::string> requireComparable(const std::filesystem::path& path, const ClashList& earlier,
-                                           const ClashList& now);
+/// Tells which of the report's clashes were in the earlier list, and appends those that are not found again: resolved,
+/// or not visited or scanned.
+/// @param file that the earlier list was read from
+/// @param look tells FormerPlaces the model and the scan of this run; not called where nothing is resolved
+/// @return warnings of surveyWarnings()
+std::vector<std::string> compareWithList(ClashReport& report, const std::filesystem::path& file,
+                                         const ClashList& earlier, const std::function<void(FormerPlaces&)>& look);
 
 /// The distance within which colliding points are one clash where the user says none: a power of two of at least the
 /// clearance and four times the scan's spacing, so that it stays the same from run to run.

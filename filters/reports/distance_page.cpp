@@ -2,6 +2,7 @@
 // The numbers of the page; distance_page.html has the page itself.
 #include <pcl_bsh/filters/reports/distance_report.h>
 #include <pcl_bsh/filters/reports/page_text.h>
+#include <pcl_bsh/filters/reports/report_origin.h>
 
 #include "distance_page.html.h"
 #include "page_style.css.h"
@@ -58,6 +59,12 @@ private:
     return number(value);
   }
 
+  /// None of none.
+  static Data counted(std::size_t count, const char* one, const char* many)
+  {
+    return count > 0 ? Data(std::to_string(count) + (count == 1 ? one : many)) : Data(false);
+  }
+
   Data contents() const
   {
     const std::size_t farther = report_.input.farther() + report_.obstacle.farther();
@@ -65,6 +72,11 @@ private:
     Object page = {{"style", std::string(page_style_css)},
                    {"input", plain(report_.question.input)},
                    {"obstacle", plain(report_.question.obstacle)},
+                   {"program", reportProgram()},
+                   {"date", reportDate()},
+                   {"coordinate_system", report_.question.coordinate_system.empty()
+                                             ? Data(false)
+                                             : Data(plain(report_.question.coordinate_system))},
                    {"unit", unit_},
                    {"in", report_.question.unit.empty() ? "" : " " + unit_},
                    {"hausdorff", length(report_.hausdorff)},
@@ -75,7 +87,7 @@ private:
                                    ? Data(report_.question.surfaceToTell()["promise"].get<std::string>())
                                    : Data(false)},
                    {"part", report_.question.partName()},
-                   {"farther", farther > 0 ? Data(std::to_string(farther)) : Data(false)}};
+                   {"farther", counted(farther, " point has", " points have")}};
     if (report_.hausdorff_pair) {
       page["pair"] = Object{{"a", std::to_string(report_.hausdorff_pair->a)},
                             {"b", std::to_string(report_.question.partOf(report_.hausdorff_pair->b))}};
@@ -146,7 +158,9 @@ private:
     side["ticks"] = ticks;
     side["most"] = std::to_string(most);
     side["width"] = number(histogram.width);
-    side["above"] = histogram.above > 0 ? Data(std::to_string(histogram.above)) : Data(false);
+    side["above"] = counted(histogram.above, " point is", " points are");
+    side["without"] = counted(from.farther(), " point has", " points have");
+    side["axis_end"] = number(histogram.end());
   }
 
   /// From pale grey where clouds are one, over orange, to deep red.

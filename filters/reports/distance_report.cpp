@@ -4,6 +4,7 @@
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
+#include <pcl_bsh/filters/reports/report_origin.h>
 
 #include <cmath>
 
@@ -98,8 +99,11 @@ DistanceReport reportOf(const DistanceQuestion& question, const Placed& input, c
 Json distanceJson(const DistanceReport& report)
 {
   const DistanceQuestion& question = report.question;
-  return {{"input", question.input},
+  return {{"program", reportProgram()},
+          {"date", reportDate()},
+          {"input", question.input},
           {"obstacle", question.obstacle},
+          {"coordinate_system", question.coordinate_system.empty() ? Json() : Json(question.coordinate_system)},
           {"surface", question.surfaceToTell()},
           {"unit", question.unit.empty() ? Json() : Json(question.unit)},
           {"max_distance", lengthJson(question.request.max_distance)},
@@ -119,6 +123,7 @@ void writeDistances(const std::filesystem::path& path, const DistanceReport& rep
 void requireDistanceFormat(const std::filesystem::path& path)
 {
   distanceFormatOf(path);
+  reportDate(); // refuses one that is none before anything is done
 }
 
 } // namespace pcl_bsh::io

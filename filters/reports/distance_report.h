@@ -21,8 +21,9 @@ struct DistanceQuestion {
   std::string input, obstacle; ///< file names
   std::string unit;            ///< of the clouds' lengths; empty: not known
   PointDistancesRequest request;
-  std::optional<double> beyond;      ///< places have points farther than this; none: than 95 of 100 points
-  const Obstacle* surface = nullptr; ///< the obstacle, where it is one; its balls stand for it
+  std::optional<double> beyond;       ///< places have points farther than this; none: than 95 of 100 points
+  const Obstacle* surface = nullptr;  ///< the obstacle, where it is one; its balls stand for it
+  std::string coordinate_system = {}; ///< of the input, where its file names one; else empty
 
   /// Of the obstacle: a point, or a triangle.
   std::uint32_t partOf(std::uint32_t record) const { return surface != nullptr ? surface->partOf(record) : record; }
@@ -77,7 +78,7 @@ inline constexpr std::size_t most_far_places = 20;
 /// Writes what the extension says: .json or .html. The file appears complete or not at all. @throws files::FileError
 void writeDistances(const std::filesystem::path& path, const DistanceReport& report);
 
-/// @throws files::FileError when writeDistances() knows no such extension
+/// @throws files::FileError when writeDistances() knows no such extension. As reportDate()
 void requireDistanceFormat(const std::filesystem::path& path);
 
 } // namespace pcl_bsh::io

@@ -59,19 +59,6 @@ list of Clash
     The same with `status` set and ids passed on, and after them those of `earlier` that are resolved.
 )";
 
-std::string nameOf(ClashStatus status)
-{
-  switch (status) {
-  case ClashStatus::fresh:
-    return "new";
-  case ClashStatus::persisting:
-    return "persisting";
-  case ClashStatus::resolved:
-    return "resolved";
-  }
-  return {};
-}
-
 } // namespace
 
 void bindClashes(py::module_& module)
@@ -80,6 +67,8 @@ void bindClashes(py::module_& module)
       .def_readonly("id", &Clash::id)
       .def_property_readonly(
           "status", [](const Clash& clash) { return nameOf(clash.status); }, "'new', 'persisting' or 'resolved'.")
+      .def_readonly("certain_points", &Clash::certain_points,
+                    "Of its points, how many collide wherever the points truly are; the others are undecided.")
       .def_property_readonly(
           "records", [](const py::object& self) { return arrayIn(self, self.cast<const Clash&>().records); },
           "uint32: its rows, ascending; empty when resolved.")

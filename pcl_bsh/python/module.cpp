@@ -10,8 +10,7 @@ PYBIND11_MODULE(_core, module)
   pybind11::options options;
   options.disable_function_signatures(); // docstrings begin with one that Python's inspect reads
   options.disable_enum_members_docstring();
-  module.attr("__version__") = std::to_string(PCL_BSH_VERSION_MAJOR) + "." + std::to_string(PCL_BSH_VERSION_MINOR) +
-                               "." + std::to_string(PCL_BSH_VERSION_PATCH);
+  module.attr("__version__") = PCL_BSH_VERSION_TEXT;
   takeTurnsWithInterpreter();
   bindWords(module);
   bindHierarchy(module);

@@ -4,12 +4,16 @@
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
+#include <pcl_bsh/report/near_boxes.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 
 namespace pcl_bsh {
 namespace {
@@ -27,13 +31,25 @@ std::string idAt(const Point3& place, double cell)
   return plainText("C", number(0), "_", number(1), "_", number(2));
 }
 
-/// `id`, or with #2, #3, ... behind it, whichever is not taken yet.
-std::string untaken(const std::string& id, std::set<std::string>& taken)
-{
-  std::string candidate = id;
-  for (int n = 2; !taken.insert(candidate).second; ++n) candidate = id + "#" + std::to_string(n);
-  return candidate;
-}
+/// Ids that are taken.
+class TakenIds {
+public:
+  void take(const std::string& id) { taken_.insert(id); }
+
+  /// `id`, or with #2, #3, ... behind it, whichever is not taken yet; takes it.
+  std::string free(const std::string& id)
+  {
+    if (taken_.insert(id).second) return id;
+    for (int& n = last_.try_emplace(id, 1).first->second;;) {
+      std::string candidate = id + "#" + std::to_string(++n);
+      if (taken_.insert(candidate).second) return candidate;
+    }
+  }
+
+private:
+  std::set<std::string> taken_;
+  std::map<std::string, int> last_; ///< the last number that was tried behind an id
+};
 
 void giveIds(std::vector<Clash>& clashes, double cluster_distance)
 {
@@ -43,14 +59,15 @@ void giveIds(std::vector<Clash>& clashes, double cluster_distance)
   std::stable_sort(by_place.begin(), by_place.end(), [](const Clash* a, const Clash* b) {
     return std::tie(a->low, a->high) < std::tie(b->low, b->high);
   });
-  std::set<std::string> taken;
-  for (Clash* clash : by_place) clash->id = untaken(idAt(middleOf(*clash), cell), taken);
+  TakenIds taken;
+  for (Clash* clash : by_place) clash->id = taken.free(idAt(middleOf(*clash), cell));
 }
 
 void add(Clash& clash, std::uint32_t record, const Point3& point, const TrajectoryResult& found)
 {
   clash.records.push_back(record);
   ++clash.points;
+  if (found.flags[record] == 1) ++clash.certain_points;
   for (std::size_t k = 0; k < 3; ++k) {
     const double coordinate = point[k] + 0.0; // of -0 and 0 the latter, so that boxes tell no order of points
     clash.low[k] = std::min(clash.low[k], coordinate);
@@ -61,6 +78,7 @@ void add(Clash& clash, std::uint32_t record, const Point3& point, const Trajecto
   if (!(distance < clash.distance)) return;
   clash.distance = distance;
   clash.scan_point = record;
+  clash.place = point;
   clash.model_point = found.closest_point[record];
   clash.closest_pose = found.closest_pose[record];
 }
@@ -81,14 +99,6 @@ void check(const PointsView& scan, const TrajectoryResult& found, double cluster
   }
 }
 
-bool touch(const Clash& a, const Clash& b, double nearness)
-{
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (a.low[k] - b.high[k] > nearness || b.low[k] - a.high[k] > nearness) return false;
-  }
-  return true;
-}
-
 double squaredDistance(const Point3& p, const Point3& q)
 {
   double sum = 0.0;
@@ -97,6 +107,13 @@ double squaredDistance(const Point3& p, const Point3& q)
 }
 
 } // namespace
+
+const char* nameOf(ClashStatus status) noexcept
+{
+  constexpr std::array<const char*, clash_statuses> names = {"new", "persisting", "resolved", "not_visited",
+                                                             "not_scanned"};
+  return names[static_cast<std::size_t>(status)];
+}
 
 std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& found, double cluster_distance)
 {
@@ -130,31 +147,35 @@ void nameClashes(std::vector<Clash>& clashes, double cluster_distance)
 {
   giveIds(clashes, cluster_distance);
   std::sort(clashes.begin(), clashes.end(), [](const Clash& a, const Clash& b) {
-    return std::tie(a.distance, b.points, a.id) < std::tie(b.distance, a.points, b.id);
+    const bool perhaps_a = !a.isCertain(), perhaps_b = !b.isCertain();
+    return std::tie(perhaps_a, a.distance, b.points, a.id) < std::tie(perhaps_b, b.distance, a.points, b.id);
   });
 }
 
-void compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness)
+std::uint64_t compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness)
 {
   // Every pair that touches, the nearest first; ids pass on one to one.
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
   std::vector<bool> there_still(earlier.size(), false);
+  std::vector<Extent> boxes;
+  for (const Clash& clash : clashes) boxes.push_back({clash.low, clash.high});
+  NearBoxes now(std::move(boxes));
   for (std::size_t j = 0; j < earlier.size(); ++j) {
     if (earlier[j].status == ClashStatus::resolved) {
       there_still[j] = true; // forgotten
       continue;
     }
-    for (std::size_t i = 0; i < clashes.size(); ++i) {
-      if (!touch(clashes[i], earlier[j], nearness)) continue;
+    now.visitNear({earlier[j].low, earlier[j].high}, nearness, [&](std::size_t i) {
       pairs.emplace_back(squaredDistance(middleOf(clashes[i]), middleOf(earlier[j])), j, i);
       clashes[i].status = ClashStatus::persisting;
       there_still[j] = true;
-    }
+      return false;
+    });
   }
   std::sort(pairs.begin(), pairs.end());
 
-  std::set<std::string> taken;
-  for (const Clash& clash : earlier) taken.insert(clash.id);
+  TakenIds taken;
+  for (const Clash& clash : earlier) taken.take(clash.id);
   std::vector<bool> heir(clashes.size(), false), inherited(earlier.size(), false);
   for (const auto& [distance, j, i] : pairs) {
     if (heir[i] || inherited[j]) continue;
@@ -162,7 +183,7 @@ void compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& e
     clashes[i].id = earlier[j].id;
   }
   for (std::size_t i = 0; i < clashes.size(); ++i) {
-    if (!heir[i]) clashes[i].id = untaken(clashes[i].id, taken);
+    if (!heir[i]) clashes[i].id = taken.free(clashes[i].id);
   }
 
   for (std::size_t j = 0; j < earlier.size(); ++j) {
@@ -171,6 +192,7 @@ void compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& e
     clashes.back().status = ClashStatus::resolved;
     clashes.back().records.clear(); // of an earlier scan
   }
+  return now.compared;
 }
 
 } // namespace pcl_bsh

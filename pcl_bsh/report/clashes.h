@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/report/extent.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <cstdint>
@@ -13,24 +14,41 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Against an earlier list of clashes; without one, all are fresh.
-enum class ClashStatus : std::uint8_t { fresh, persisting, resolved };
+/// Against an earlier list of clashes; without one, all are fresh. Those that were there and are not found again are
+/// resolved if the run looked there. It did not where the path does not come near the place any more (not_visited), or
+/// nothing at all of the scan lies near it (not_scanned): see FormerPlaces.
+enum class ClashStatus : std::uint8_t { fresh, persisting, resolved, not_visited, not_scanned };
+inline constexpr std::size_t clash_statuses = 5; ///< how many there are
+
+/// new, persisting, resolved, not_visited or not_scanned.
+const char* nameOf(ClashStatus status) noexcept;
+
+/// Whether a clash of this status is there now.
+constexpr bool isPresent(ClashStatus status) noexcept
+{
+  return status == ClashStatus::fresh || status == ClashStatus::persisting;
+}
 
 /// Colliding points of a scan that lie together. Coordinates are in the scan's own frame.
 struct Clash {
   std::string id;
   ClashStatus status = ClashStatus::fresh;
-  std::vector<std::uint32_t> records; ///< its points, ascending; empty when resolved
+  std::vector<std::uint32_t> records; ///< its points, ascending; empty unless it is there now
   std::size_t points = 0;
-  Point3 low = {}, high = {};    ///< its bounding box
-  double distance = 0.0;         ///< the smallest, less radii
-  std::uint32_t scan_point = 0;  ///< the pair that realises it; of several, that of the smallest record of the scan
-  std::uint32_t model_point = 0; ///< at the closest pose
+  std::size_t certain_points = 0; ///< of these: that collide wherever the points truly are; the others are undecided
+  Point3 low = {}, high = {};     ///< its bounding box
+  Point3 place = {};              ///< where its point of the closest pair is
+  double distance = 0.0;          ///< the smallest, less radii
+  std::uint32_t scan_point = 0;   ///< the pair that realises it; of several, that of the smallest record of the scan
+  std::uint32_t model_point = 0;  ///< at the closest pose
   std::int32_t first_pose = 0;
   std::int32_t closest_pose = 0;
+
+  bool isCertain() const { return certain_points > 0; } ///< else it collides only perhaps
 };
 
-/// Clusters of the colliding points (euclideanClusters() with that distance), the most severe first: by smallest
+/// Clusters of the points that collide or are undecided (euclideanClusters() with that distance), the most severe
+/// first: those that have a point which collides for certain before those that collide only perhaps, then by smallest
 /// distance, then by most points, then by id.
 ///
 /// An id tells the place: `C12_-3_0` has the middle of its box in cell (12, -3, 0) of a grid through the origin, whose
@@ -50,8 +68,9 @@ void nameClashes(std::vector<Clash>& clashes, double cluster_distance);
 /// Tells which clashes were there before: those whose box comes within `nearness` (per axis) of an earlier one's box
 /// are persisting, and each earlier id passes on to the clash whose middle is nearest to the earlier middle, one to
 /// one, so that a clash that moves or grows across cells keeps its id. Earlier clashes that nothing comes near are
-/// appended as resolved; those that were resolved then already are forgotten.
-void compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness);
+/// appended as resolved, which FormerPlaces then judges; those that were resolved then already are forgotten.
+/// @return how many boxes were compared
+std::uint64_t compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness);
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

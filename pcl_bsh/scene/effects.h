@@ -158,14 +158,14 @@ struct Outcome {
 /// parts are as they are now, all the way.
 struct SweptMotion {
   ObjectId object = 0;
-  std::optional<std::uint32_t> part; ///< of a part whose pose was set: its own leg, of T_world_cloud; else of the whole
   Leg leg;
+  std::optional<std::uint32_t> part; ///< of a part whose pose was set: its own leg, of T_world_cloud; else of the whole
 };
 
 /// An object that did more since the last query than first_contact and swept look at.
 struct UnsweptObject {
   ObjectId object = 0;
-  bool added = false;    ///< since then, and no step was made: it is looked at where it stands
+  bool added = false;    ///< since then, and a query, no step, sees it first: it is looked at where it stands
   bool reshaped = false; ///< its points have changed: how they got from their former places is not looked at
   bool detoured = false; ///< it may have gone another way than its leg: its pose, or a part's, was set before it moved
                          ///< on by itself, or a response or gravity led it (Outcome::legs)
@@ -186,7 +186,7 @@ struct SceneResult {
   std::vector<PartFirstContact> certain_contact;
   std::vector<FlaggedPart> swept;
   std::vector<SweptMotion> swept_motions; ///< by object, the whole before its parts; with first_contact or swept
-  std::vector<UnsweptObject> unswept;     ///< by object; with first_contact or swept
+  std::vector<UnsweptObject> unswept;     ///< likewise; none of a scene's first query, before which nothing moves
   std::vector<SelfCollision> self;
   std::vector<Outcome> outcomes; ///< of moved objects, with a response or gravity
   BroadPhaseCost broad_phase;

@@ -141,12 +141,13 @@ public:
   void setGroupRule(const std::string& group_a, const std::string& group_b, const PairRule& rule);
 
   /// The points of a part have moved: same records, new coordinates. Its spheres follow (SphereHierarchy::refit()), in
-  /// every object that shares them.
+  /// every object that shares them. `first_contact` and `swept` look at the motion of objects with their present
+  /// points, not at how points got there: SceneResult::unswept.
   /// @throws std::invalid_argument when the scene does not list `deform`, or the view does not fit
   RefitReport deform(ObjectId object, std::uint32_t part, const PointsView& now);
 
-  /// Forgets what is remembered of an object's points. Changes of its hierarchies (HierarchyUpdate, refit(), another
-  /// scene's deform()) are seen by the next step or query without it.
+  /// Forgets what is remembered of an object's points, as after deform(). Changes of its hierarchies (HierarchyUpdate,
+  /// refit(), another scene's deform()) are seen by the next step or query without it.
   void pointsChanged(ObjectId object);
 
   // A query or step that throws (std::bad_alloc) has changed nothing, and may be asked for again.

@@ -19,7 +19,7 @@ void Scene::State::listSweptMotions()
     const bool is_moved = body.isMoved();
     SweptObject(body).eachLeg([&](std::optional<std::uint32_t> part, const Leg& leg, const ObjectMotion& motion) {
       checkMotion(body, motion, options.tolerance / 16);
-      if (is_moved) result.swept_motions.push_back({object, part, leg});
+      if (is_moved) result.swept_motions.push_back({object, leg, part});
     });
   }
 }

@@ -9,7 +9,7 @@ namespace pcl_bsh::sites {
 
 namespace {
 
-constexpr std::size_t member_numbers = 9, piece_numbers = member_numbers + 14;
+constexpr std::size_t member_numbers = 9, piece_numbers = member_numbers + 15;
 
 /// Numbers of 32 bits, floats and numbers of points are exact as doubles.
 void write(std::vector<double>& out, const Member& member)
@@ -43,6 +43,7 @@ void write(std::vector<double>& out, const Piece& piece)
   out.insert(out.end(), {static_cast<double>(piece.met.point.source), static_cast<double>(piece.met.point.record)});
   out.insert(out.end(), piece.met.place.begin(), piece.met.place.end());
   out.push_back(static_cast<double>(clash.first_pose));
+  out.push_back(static_cast<double>(clash.certain_points));
 }
 
 Piece readPiece(const double* in)
@@ -57,6 +58,7 @@ Piece readPiece(const double* in)
   clash.distance = in[7];
   piece.met = {{static_cast<std::uint32_t>(in[8]), static_cast<std::uint32_t>(in[9])}, {in[10], in[11], in[12]}};
   clash.first_pose = static_cast<std::int32_t>(in[13]);
+  clash.certain_points = static_cast<std::size_t>(in[14]);
   clash.closest_pose = piece.nearest.closest_pose;
   return piece;
 }
@@ -121,6 +123,7 @@ void join(Piece& piece, const Piece& other)
 {
   Clash& clash = piece.clash;
   clash.points += other.clash.points;
+  clash.certain_points += other.clash.certain_points;
   for (std::size_t k = 0; k < 3; ++k) {
     clash.low[k] = std::min(clash.low[k], other.clash.low[k]);
     clash.high[k] = std::max(clash.high[k], other.clash.high[k]);

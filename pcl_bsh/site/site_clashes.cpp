@@ -129,6 +129,7 @@ private:
     for (std::size_t i = 0; i < clashes_.size(); ++i) {
       Clash& clash = clashes_[i].clash;
       const Member& nearest = clashes_[i].nearest;
+      clash.place = nearest.place;
       clash.model_point = found_.of_site ? static_cast<std::uint32_t>(i) : clashes_[i].met.point.record;
       if (found_.of_site) list.met.push_back(clashes_[i].met);
       std::vector<Member>& members = some[i];

@@ -2,6 +2,7 @@
 #include <pcl_bsh/surface/surface_cover.h>
 
 #include <pcl_bsh/geometry/coordinate_spacing.h>
+#include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/geometry/rounding.h>

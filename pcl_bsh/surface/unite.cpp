@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kPartners = 8; ///< of a patch, the nearest, are tried
 
-using Cube = std::array<std::int64_t, 3>;
+using GridCube = std::array<std::int64_t, 3>;
 
 /// In rooms: no patch has more leeway. Beyond what leewayOf() adds, for rounding.
 constexpr double kMostLeeway = 1.00001;
@@ -57,12 +57,12 @@ public:
   template <class Visit>
   void forEachNear(const Patch& patch, const Visit& visit) const
   {
-    const Cube middle = cubeOf(patch);
+    const GridCube middle = cubeOf(patch);
     const double leeway = leewayOf(patch, room_);
     const double farthest =
         leeway + kMostLeeway * room_; // most cubes are farther away: what is in them is not looked up
     for (std::int64_t k = 0; k < 27; ++k) {
-      const Cube cube = {middle[0] + k % 3 - 1, middle[1] + k / 3 % 3 - 1, middle[2] + k / 9 - 1};
+      const GridCube cube = {middle[0] + k % 3 - 1, middle[1] + k / 3 % 3 - 1, middle[2] + k / 9 - 1};
       if (squaredDistance(cube, patch.middle) > farthest * farthest) continue;
       const auto found = entries_.find(cube);
       if (found == entries_.end()) continue;
@@ -74,15 +74,15 @@ public:
   }
 
 private:
-  Cube cubeOf(const Patch& patch) const
+  GridCube cubeOf(const Patch& patch) const
   {
-    Cube cube;
+    GridCube cube;
     for (std::size_t k = 0; k < 3; ++k)
       cube[k] = static_cast<std::int64_t>(std::floor(patch.middle[static_cast<Eigen::Index>(k)] / edge_));
     return cube;
   }
 
-  double squaredDistance(const Cube& cube, const Vector3d& p) const
+  double squaredDistance(const GridCube& cube, const Vector3d& p) const
   {
     double squared = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -94,7 +94,7 @@ private:
   }
 
   double room_, edge_;
-  std::unordered_map<Cube, std::vector<Entry>, boost::hash<Cube>> entries_;
+  std::unordered_map<GridCube, std::vector<Entry>, boost::hash<GridCube>> entries_;
 };
 
 class Union {

@@ -99,6 +99,9 @@ private:
 
   HWY_NOINLINE void compareCandidates(LeafVisit& leaf, const VoxelMotion& motion)
   {
+    // The nearest first: what they bound is not compared.
+    std::sort(candidates_.begin(), candidates_.end(),
+              [](const Candidate& a, const Candidate& b) { return a.squared < b.squared; });
     for (const Candidate& candidate : candidates_) {
       const std::uint32_t i = candidate.point, k = candidate.step;
       if (isHit(i, k) && candidate.squared > std::max(limits_[k], bestLimit(leaf, i))) continue;

@@ -16,17 +16,24 @@ void requireSameAgain(const io::ClashList& list)
   const PointsView nothing;
   const std::vector<Eigen::Isometry3d> poses;
   const TrajectoryResult found;
-  io::ClashReport report{list.input, list.obstacle, list.clearance, 1.0,   {},        list.clashes,
-                         nothing,    nothing,       poses,          found, list.swept};
+  io::ClashReport report{.question = list.question,
+                         .cluster_distance = 1.0,
+                         .clashes = list.clashes,
+                         .scan = nothing,
+                         .model = nothing,
+                         .poses = poses,
+                         .found = found,
+                         .survey = list.survey.value_or(io::Survey(poses, std::nullopt))};
   for (Clash& clash : report.clashes) clash.status = ClashStatus::resolved;
   const io::ClashList again = io::parseClashes(io::clashJson(report), "again");
-  fuzz::require(again.clearance == list.clearance && again.swept == list.swept &&
+  fuzz::require(again.question.clearance == list.question.clearance && again.question.swept == list.question.swept &&
                     again.clashes.size() == list.clashes.size(),
                 "another list when read again");
   for (std::size_t i = 0; i < list.clashes.size(); ++i) {
     const Clash &before = list.clashes[i], &after = again.clashes[i];
-    fuzz::require(before.id == after.id && before.points == after.points && before.low == after.low &&
-                      before.high == after.high && before.distance == after.distance &&
+    fuzz::require(before.id == after.id && before.points == after.points &&
+                      before.certain_points == after.certain_points && before.place == after.place &&
+                      before.low == after.low && before.high == after.high && before.distance == after.distance &&
                       before.first_pose == after.first_pose && before.closest_pose == after.closest_pose,
                   "another clash when read again");
   }

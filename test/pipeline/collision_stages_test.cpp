@@ -436,6 +436,28 @@ TEST_F(ClashWriter, WritesEveryFormatAndComparesRuns)
   EXPECT_THAT(csv, Not(HasSubstr(",new,")));
 }
 
+TEST_F(ClashWriter, SaysWhatIsUncertainAndWhereItLooked)
+{
+  const std::string near = R"(, "cluster_distance": 0.05)", uncertain = near + R"(, "uncertainty": 0.02, "unit": "m")";
+  const nlohmann::json first = listOf(uncertain);
+  EXPECT_EQ(first["unit"], "m");
+  EXPECT_EQ(first["uncertainty"], (nlohmann::json{{"input", 0.02}, {"obstacle", 0.0}}));
+  std::size_t perhaps = 0;
+  for (const nlohmann::json& clash : first["clashes"]) perhaps += clash["certainty"] == "perhaps" ? 1U : 0U;
+  EXPECT_GT(perhaps, 0U);
+  std::filesystem::copy(list, folder / "first.json");
+  const std::string previous = R"(, "previous": )" + quoted(folder / "first.json");
+  EXPECT_THAT(error("writers.clashes", R"("clearance": 0.03, "trajectory": )" + quoted(track) + R"(, "filename": )" +
+                                           quoted(list) + near + previous),
+              HasSubstr("lists clashes of an uncertainty of the input of 0.02, not of 0 as asked now"));
+
+  // A path that leads elsewhere: what it does not come near to is not resolved.
+  folder.write(track.filename().string(), "0 1000 1000 1000 0 0 0 1\n");
+  const nlohmann::json elsewhere = listOf(uncertain + previous);
+  ASSERT_EQ(elsewhere["clashes"].size(), first["clashes"].size());
+  for (const nlohmann::json& clash : elsewhere["clashes"]) EXPECT_EQ(clash["status"], "not_visited");
+}
+
 TEST_F(ClashWriter, HasASensibleClusterDistance)
 {
   EXPECT_EQ(listOf("")["cluster_distance"],

@@ -130,8 +130,9 @@ TEST_F(AccuracyProgram, MeasuresSurfacesWhereFilesHaveFaces)
                                     (folder / "study").string() + more);
     EXPECT_EQ(done.exit_code, 0) << done.err;
     for (const Row& row : rows()) {
-      if (row.at("certified") == "1" && row.at("query") != "distance" && row.at("knob") != "tolerance")
+      if (row.at("certified") == "1" && row.at("query") != "distance" && row.at("knob") != "tolerance") {
         EXPECT_EQ(row.at("wrong"), "0") << row.at("query") << ' ' << row.at("setting");
+      }
     }
     return io::contentOf(folder / "study" / "accuracy.md");
   };

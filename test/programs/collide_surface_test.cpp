@@ -117,7 +117,7 @@ TEST_F(CollideSurface, FollowsAPathAndListsClashesByTriangles)
   // A list of a surface can be compared with.
   EXPECT_THAT(collideOutput("still.xyz crate.off out.pcd " + path +
                             "--swept 0.001 --clashes later.json --previous clashes.json"),
-              HasSubstr("1 clashes, 0 resolved"));
+              HasSubstr("1 clash, 0 resolved"));
 }
 
 TEST_F(CollideSurface, KnowsUncertaintiesAndAccuracies)

@@ -427,7 +427,7 @@ TEST_F(Collide, DistancesOfNothing)
 TEST_F(Collide, RefusesDistancesThatCannotBe)
 {
   const std::string job = "{input.ply} {obstacle.xyz} {out.pcd} --clearance 0.5 ";
-  for (const std::string option : {"--max-distance 1", "--distance-page {p.html}", "--unit m"})
+  for (const std::string option : {"--max-distance 1", "--distance-page {p.html}"})
     expectFailure(job + option, 2, "no distances are asked for: give --distances");
   expectFailure(job + "--distances --max-distance -1", 2, "--max-distance: -1: give a length >= 0");
   expectFailure(job + "--distances --max-distance nan", 2, "--max-distance: ");
@@ -641,8 +641,78 @@ TEST_F(CollideAlong, ListsClashesAndComparesThem)
   expectDone(job + lists + "--cluster-distance 0.5 --previous {a.json}");
   const Json last = clashes("a.json");
   ASSERT_EQ(last.size(), 3U);
-  EXPECT_EQ(last[2]["status"], "resolved");
+  EXPECT_EQ(last[2]["status"], "not_visited") << "the path does not come there any more";
   EXPECT_EQ(last[2]["id"], "C1_0_0");
+}
+
+TEST_F(CollideAlong, ClashesAreResolvedOnlyWhereTheRunLooked)
+{
+  const std::string options = " {probe.xyz} {out.ply} --clearance 0.3 --trajectory {poses.txt} --cluster-distance 0.5 ";
+  expectDone("{wall.txt}" + options + "--clashes {first.json} --clashes {page.html} --unit m");
+  EXPECT_EQ(Json::parse(io::contentOf(folder / "first.json"))["unit"], "m");
+  EXPECT_THAT(io::contentOf(folder / "page.html"), HasSubstr("Lengths in m."));
+  const std::string again = options + "--clashes {b.json} --clashes {b.html} --clashes {b.csv} --previous {first.json}";
+  const auto statusOf = [&](const std::string& id) -> std::string {
+    for (const Json& clash : clashes("b.json"))
+      if (clash["id"] == id) return clash["status"];
+    return "forgotten";
+  };
+
+  // The wall lies 0.6 farther away: scanned, and free.
+  std::string moved = "x y z\n", half = moved;
+  for (int i = 0; i <= 40; ++i) moved += std::to_string(0.25 * i) + " -0.6 0\n";
+  for (int i = 0; i <= 18; ++i) half += std::to_string(0.25 * i) + " 0 0\n";
+  folder.write("moved.txt", moved);
+  folder.write("half.txt", half);
+  const Outcome free = collide("{moved.txt}" + again);
+  EXPECT_THAT(free.out, HasSubstr("0 clashes, 2 resolved; wrote")) << free.err;
+  EXPECT_THAT(free.err, Not(HasSubstr("of a scan"))) << "a wall that moves by less than a clash's reach";
+
+  // A scan of half of it.
+  const Outcome less = collide("{half.txt}" + again);
+  EXPECT_THAT(less.out, HasSubstr("1 clash, 0 resolved, 1 not scanned; wrote")) << less.err;
+  EXPECT_THAT(less.err,
+              HasSubstr("first.json: lists clashes of a scan from (0, 0, 0) to (10, 0, 0), now it is from (0, "
+                        "0, 0) to (4.5, 0, 0): "));
+  EXPECT_EQ(statusOf("C4_0_0"), "not_scanned");
+  EXPECT_THAT(io::contentOf(folder / "b.html"), HasSubstr("<span class=\"badge not_scanned\">not scanned</span>"));
+  EXPECT_THAT(io::contentOf(folder / "b.csv"), HasSubstr("\nC4_0_0,not_scanned,3,"));
+
+  // What was not scanned is not forgotten, as long as nobody looks.
+  expectDone("{half.txt}" + options + "--clashes {b.json} --previous {b.json}");
+  EXPECT_EQ(statusOf("C4_0_0"), "not_scanned");
+  expectDone("{wall.txt}" + options + "--clashes {b.json} --previous {b.json}");
+  EXPECT_EQ(statusOf("C4_0_0"), "persisting");
+}
+
+TEST_F(CollideAlong, CertainClashesAreToldFromThosePerhaps)
+{
+  const std::string options = "--trajectory {poses.txt} --cluster-distance 0.5 --uncertainty 0.15 ";
+  const Outcome done = collide(job + options + "--clashes {a.json} --clashes {a.html} --clashes {a.csv}");
+  EXPECT_THAT(done.out, HasSubstr("; 1 clash, 1 perhaps; wrote")) << done.err;
+  const Json list = Json::parse(io::contentOf(folder / "a.json"));
+  EXPECT_EQ(list["uncertainty"], (Json{{"input", 0.15}, {"obstacle", 0.0}}));
+  EXPECT_EQ(list["clashes"][0]["id"], "C4_0_0");
+  EXPECT_EQ(list["clashes"][0]["certainty"], "certain");
+  EXPECT_EQ(list["clashes"][1]["certainty"], "perhaps");
+  EXPECT_THAT(io::contentOf(folder / "a.html"), HasSubstr("<h1>1 clash, 1 perhaps</h1>"));
+  EXPECT_THAT(io::contentOf(folder / "a.csv"), HasSubstr(",perhaps,0,0.3,0.15,0,,exact,,\n"));
+  expectDone(job + options + "--clashes {b.json} --previous {a.json}");
+  for (const Json& clash : clashes("b.json")) EXPECT_EQ(clash["status"], "persisting");
+  expectFailure(job + "--trajectory {poses.txt} --clashes {c.json} --previous {a.json}", 1,
+                "a.json: lists clashes of an uncertainty of the input of 0.15, not of 0 as asked now: ");
+}
+
+TEST_F(CollideAlong, AMadeDateMakesTheSameReport)
+{
+  const std::string lists = "--trajectory {poses.txt} --clashes {a.html} ";
+  ASSERT_EQ(setenv("SOURCE_DATE_EPOCH", "86400", 1), 0);
+  expectDone(job + lists);
+  EXPECT_THAT(io::contentOf(folder / "a.html"), HasSubstr(" on 1970-01-02."));
+  ASSERT_EQ(setenv("SOURCE_DATE_EPOCH", "today", 1), 0);
+  for (const std::string asked : {"--trajectory {poses.txt} --clashes {c.html} ", "--distances"})
+    expectFailure(job + asked, 1, "SOURCE_DATE_EPOCH: 'today' is no date: ");
+  unsetenv("SOURCE_DATE_EPOCH");
 }
 
 TEST_F(CollideAlong, ClashesOfOnePose)
@@ -690,6 +760,7 @@ TEST_F(CollideAlong, Refuses)
                 "is the file of --clashes, too: choose another name");
   expectFailure(job + path + "--cluster-distance 1", 2, "--cluster-distance: no clash report is written");
   expectFailure(job + path + "--previous {a.json}", 2, "--previous: no clash report is written");
+  expectFailure(job + path + "--unit m", 2, "--unit: no report tells it: give --distances or --clashes FILE");
   expectFailure(job + path + "--clashes {a.csv} --cluster-distance 0", 2, "--cluster-distance: 0: give a finite");
   expectFailure(job + path + "--clashes {a.csv} --previous {none.json}", 1, "none.json: no such file");
   folder.write("odd.json", "{\"clashes\": [{\"id\": 7}]}");

@@ -129,6 +129,74 @@ TEST(Clashes, AgainstEarlierOnes)
             4);
 }
 
+TEST(Clashes, ThoseThatWereNotLookedAtAreStillThere)
+{
+  std::vector<Clash> earlier = Scan({{0, 0, 0, 0.1f}, {50, 0, 0, 0.2f}}).clashes();
+  earlier[0].status = ClashStatus::not_visited;
+  earlier[1].status = ClashStatus::not_scanned;
+  std::vector<Clash> now = Scan({{50, 0, 0, 0.2f}}).clashes();
+  compareWithEarlier(now, earlier, 1.0);
+  ASSERT_EQ(now.size(), 2u) << "not forgotten, as resolved ones are";
+  EXPECT_EQ(now[0].status, ClashStatus::persisting);
+  EXPECT_EQ(now[1].status, ClashStatus::resolved) << "to be judged by FormerPlaces";
+}
+
+/// Places in a grid, of which half are there again, a little moved.
+TEST(Clashes, ComparingCostsWhatIsNear)
+{
+  const auto boxesCompared = [](int side) {
+    std::vector<Clash> earlier, now;
+    for (int i = 0; i < side * side; ++i) {
+      Clash clash;
+      const double x = 10.0 * (i % side), y = 10.0 * (i / side);
+      clash.id = std::to_string(i);
+      clash.points = 1;
+      clash.low = {x, y, 0};
+      clash.high = {x + 1, y + 1, 1};
+      earlier.push_back(clash);
+      clash.id = "now " + clash.id;
+      clash.low[0] += 0.5;
+      clash.high[0] += 0.5;
+      if (i % 2 == 0) now.push_back(clash);
+    }
+    const std::uint64_t compared = compareWithEarlier(now, earlier, 1.0);
+    EXPECT_EQ(now.size(), earlier.size());
+    EXPECT_EQ(now[0].id, "0");
+    return static_cast<double>(compared);
+  };
+  const double small = boxesCompared(40), large = boxesCompared(160);
+  EXPECT_LT(large, 50 * 160 * 160) << "all pairs are 12,800 a clash";
+  EXPECT_LT(large, 16 * 1.5 * small);
+}
+
+/// A cell full of clashes: each gets a number of its own.
+TEST(Clashes, ManyOfOneCellAreNumbered)
+{
+  std::vector<Clash> clashes(20000);
+  for (std::size_t i = 0; i < clashes.size(); ++i) clashes[i].distance = static_cast<double>(i);
+  nameClashes(clashes, 1.0);
+  EXPECT_EQ(clashes[0].id, "C0_0_0");
+  EXPECT_EQ(clashes[1].id, "C0_0_0#2");
+  EXPECT_EQ(clashes.back().id, "C0_0_0#20000");
+}
+
+/// Flags of 2: whether they collide depends on where the points truly are.
+TEST(Clashes, CertainOnesComeBeforeThoseThatCollidePerhaps)
+{
+  Scan scan({{0, 0, 0, 0.1f}, {50, 0, 0, 0.3f}, {50, 0.5f, 0, 0.2f}, {90, 0, 0, 0.25f}});
+  scan.found.flags = {2, 1, 2, 2};
+  const std::vector<Clash> clashes = scan.clashes();
+  ASSERT_EQ(clashes.size(), 3u);
+  EXPECT_EQ(clashes[0].low, (Point3{50, 0, 0}));
+  EXPECT_TRUE(clashes[0].isCertain());
+  EXPECT_EQ(clashes[0].points, 2u);
+  EXPECT_EQ(clashes[0].certain_points, 1u);
+  EXPECT_EQ(clashes[0].place, (Point3{50, 0.5, 0}));
+  EXPECT_EQ(clashes[1].low, (Point3{0, 0, 0})) << "then by distance";
+  EXPECT_FALSE(clashes[1].isCertain());
+  EXPECT_FALSE(clashes[2].isCertain());
+}
+
 TEST(Clashes, TwoThatBecameOnePersist)
 {
   const std::vector<Clash> earlier = Scan({{0, 0, 0, 0.1f}, {3, 0, 0, 0.2f}}).clashes();

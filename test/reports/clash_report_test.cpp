@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "../cloud_files/samples.h"
 
-#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/json/json_reader.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
 #include <pcl_bsh/filters/text_files/number_text.h>
 #include <pcl_bsh/filters/text_files/parse_number.h>
+#include <pcl_bsh/version.h>
 
 #include <gmock/gmock.h>
 
 #include <charconv>
+#include <cstdlib>
 #include <locale>
 
 namespace pcl_bsh::io {
@@ -114,7 +115,14 @@ protected:
 
   ClashReport report(const std::string& input = "hall.ply", const std::string& obstacle = "wagon.ply") const
   {
-    return {input, obstacle, 0.3, 0.5, {}, findClashes(scan(), found, 0.5), scan_, model_, poses, found, std::nullopt};
+    return {.question = {input, obstacle, 0.3, {}, {}, {}, {}},
+            .cluster_distance = 0.5,
+            .clashes = findClashes(scan(), found, 0.5),
+            .scan = scan_,
+            .model = model_,
+            .poses = poses,
+            .found = found,
+            .survey = {poses, extentOf(scan())}};
   }
 
   ClashReport twoClashes()
@@ -168,15 +176,17 @@ TEST_F(ClashReports, AListIsReadAsItWasWritten)
   const ClashReport written = twoClashes();
   ASSERT_EQ(written.clashes.size(), 2U);
   const ClashList list = parseClashes("\xef\xbb\xbf" + clashJson(written), "list.json");
-  EXPECT_EQ(list.input, "hall.ply");
-  EXPECT_EQ(list.obstacle, "wagon.ply");
-  EXPECT_EQ(list.clearance, 0.3);
-  EXPECT_EQ(list.swept, std::nullopt);
+  EXPECT_EQ(list.question.input, "hall.ply");
+  EXPECT_EQ(list.question.obstacle, "wagon.ply");
+  EXPECT_EQ(list.question.clearance, 0.3);
+  EXPECT_EQ(list.question.swept, std::nullopt);
   ASSERT_EQ(list.clashes.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {
     const Clash &before = written.clashes[i], &after = list.clashes[i];
     EXPECT_EQ(after.id, before.id);
     EXPECT_EQ(after.points, before.points);
+    EXPECT_EQ(after.certain_points, before.points);
+    EXPECT_EQ(after.place, before.place);
     EXPECT_EQ(after.low, before.low);
     EXPECT_EQ(after.high, before.high);
     EXPECT_EQ(after.distance, before.distance);
@@ -191,7 +201,7 @@ TEST_F(ClashReports, TheTableListsEveryClashWithItsNumbers)
   Clash gone;
   gone.id = "C9_0_0";
   gone.status = ClashStatus::resolved;
-  gone.points = 7;
+  gone.points = gone.certain_points = 7;
   gone.distance = 0.25;
   gone.closest_pose = 2;
   list.clashes.push_back(gone);
@@ -213,6 +223,7 @@ TEST_F(ClashReports, TheTableListsEveryClashWithItsNumbers)
   EXPECT_EQ(occurrences(page, "<svg"), 5U) << "of the path, and two of each clash";
   EXPECT_TRUE(has(page, "between point 32 of the input at (8.000, 0.000, 1234567.250) and point 0 of the obstacle; "
                         "<b>3</b> points; first at pose <b>3</b>"));
+  EXPECT_FALSE(has(page, "Perhaps")) << "no point is uncertain";
   for (const char* tile : {"<b>0.3</b><span>clearance", "<b>4</b><span>colliding points", "<b>0.1</b><span>smallest",
                            "<b>2</b><span>new", "<b>0</b><span>persisting", "<b>1</b><span>resolved"})
     EXPECT_TRUE(has(page, tile));
@@ -255,14 +266,14 @@ TEST_F(ClashReports, NamesDoNoHarm)
   const std::string json = clashJson(list);
   EXPECT_EQ(validUtf8(json), json);
   EXPECT_EQ(parseClashes(json, "list.json").clashes[1].id, list.clashes[1].id);
-  EXPECT_EQ(parseClashes(json, "list.json").input, validUtf8(odd));
+  EXPECT_EQ(parseClashes(json, "list.json").question.input, validUtf8(odd));
 }
 
 TEST_F(ClashReports, EveryPlaceOfTheTemplateIsFilled)
 {
   ClashReport list = twoClashes();
   list.previous = "{{clearance}}";
-  list.swept = 0.01;
+  list.question.swept = 0.01;
   const std::string page = clashPage(list);
   EXPECT_TRUE(has(page, "compared with {{clearance}}</p>")) << "names are no templates";
   EXPECT_EQ(occurrences(page, "{{"), 1U);
@@ -277,8 +288,8 @@ TEST_F(ClashReports, CsvReadsBackToTheSameBits)
   list.clashes[1].status = ClashStatus::resolved;
   const auto rows = cellsOf(clashCsv(list));
   ASSERT_EQ(rows.size(), 3U);
-  ASSERT_EQ(rows[0].size(), 20U);
-  ASSERT_EQ(rows[1].size(), 20U);
+  ASSERT_EQ(rows[0].size(), 29U);
+  ASSERT_EQ(rows[1].size(), 29U);
   EXPECT_EQ(rows[1][0], "C4_0_617283");
   EXPECT_EQ(numberIn(rows[1][3]), list.clashes[0].distance);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -289,8 +300,14 @@ TEST_F(ClashReports, CsvReadsBackToTheSameBits)
     EXPECT_EQ(numberIn(rows[1][17 + k]), list.modelPoint(list.clashes[0])[axis]);
   }
   EXPECT_EQ(rows[1][12], "32");
-  ASSERT_EQ(rows[2].size(), 20U);
+  ASSERT_EQ(rows[2].size(), 29U);
   for (std::size_t k = 12; k < 20; ++k) EXPECT_EQ(rows[2][k], "") << "a resolved one has no pair";
+  for (std::size_t i = 1; i < 3; ++i) {
+    EXPECT_EQ(rows[i][20], "certain");
+    EXPECT_EQ(rows[i][21], rows[i][2]);
+    EXPECT_EQ(rows[i][22], "0.3");
+    EXPECT_EQ(rows[i][26], "exact");
+  }
 }
 
 TEST_F(ClashReports, TheHostsLanguageDoesNotMatter)
@@ -309,7 +326,7 @@ TEST_F(ClashReports, TheHostsLanguageDoesNotMatter)
   EXPECT_EQ(clashCsv(list), csv);
   EXPECT_EQ(clashJson(list), json);
   EXPECT_EQ(clashPage(list), page);
-  EXPECT_EQ(parseClashes(json, "list.json").clearance, 0.3);
+  EXPECT_EQ(parseClashes(json, "list.json").question.clearance, 0.3);
 }
 
 TEST_F(ClashReports, RefusesListsThatNoRunWrites)
@@ -346,32 +363,71 @@ TEST_F(ClashReports, RefusesListsThatNoRunWrites)
   EXPECT_THAT(refusal(listOf(entry + "," + entry)), HasSubstr("clashes[1].id: is the id of another clash, too"));
 }
 
-TEST_F(ClashReports, ListsOfOtherQuestionsAreNotCompared)
+/// Two clashes, of which the nearer one collides only perhaps.
+TEST_F(ClashReports, CertainAndPerhapsAreToldApart)
 {
-  ClashList earlier;
-  earlier.input = "scans/monday.ply";
-  earlier.obstacle = "wagon.ply";
-  earlier.clearance = 0.3;
-  ClashList now = earlier;
-  now.input = "/elsewhere/monday.ply";
-  EXPECT_THAT(requireComparable("old.json", earlier, now), testing::IsEmpty()) << "the same name in another folder";
-  now.input = "tuesday.ply";
-  now.obstacle = "lorry.ply";
-  now.swept = 0.01;
-  const std::vector<std::string> warnings = requireComparable("old.json", earlier, now);
-  ASSERT_EQ(warnings.size(), 3U);
-  EXPECT_THAT(warnings[0], HasSubstr("old.json: lists clashes of the input 'monday.ply', now it is 'tuesday.ply': "));
-  EXPECT_THAT(warnings[1], HasSubstr("of the obstacle 'wagon.ply', now it is 'lorry.ply': "));
-  EXPECT_THAT(warnings[2], HasSubstr("at poses alone, now swept motion is asked"));
-  now.clearance = 0.25;
-  try {
-    requireComparable("old.json", earlier, now);
-    ADD_FAILURE() << "was compared";
+  twoClashes();
+  for (const std::size_t i : {31U, 32U, 33U}) found.flags[i] = 2;
+  found.colliding = 1;
+  found.undecided = 3;
+  ClashReport list = report();
+  list.question.input_uncertainty = Uncertainty("sigma", 3);
+  list.question.obstacle_uncertainty = 0.04;
+  ASSERT_EQ(list.clashes.size(), 2U);
+  EXPECT_TRUE(list.clashes[0].isCertain()) << "before those that are nearer, perhaps";
+  EXPECT_FALSE(list.clashes[1].isCertain());
+  EXPECT_EQ(clashCounts(list), "1 clash, 1 perhaps");
+
+  const std::string page = clashPage(list);
+  EXPECT_EQ(faultOfMarkup(page), "");
+  for (const char* told :
+       {"<h1>1 clash, 1 perhaps</h1>", "<b>1</b><span>colliding points",
+        "<b>3</b><span>points of the input collide perhaps", "<b>3 x field sigma</b><span>uncertainty of the input",
+        "<b>0.04</b><span>uncertainty of the obstacle", "<b>exact</b><span>accuracy", "<h2>By severity</h2>",
+        "<h2>Perhaps</h2>", "<b>0.1</b><span>smallest"})
+    EXPECT_TRUE(has(page, told)) << told;
+  EXPECT_LT(page.find(">C1_0_617283</a>"), page.find("<h2>Perhaps</h2>"));
+  EXPECT_GT(page.find(">C4_0_617283</a>"), page.find("<h2>Perhaps</h2>"));
+
+  const Json json = Json::parse(clashJson(list));
+  EXPECT_EQ(json["uncertainty"].dump(), R"({"input":{"field":"sigma","sigmas":3.0},"obstacle":0.04})");
+  EXPECT_EQ(json["accuracy"], "exact");
+  EXPECT_EQ(json["clashes"][0]["certainty"], "certain");
+  EXPECT_EQ(json["clashes"][1]["certainty"], "perhaps");
+  EXPECT_EQ(json["clashes"][1]["certain_points"], 0);
+  const ClashList read = parseClashes(clashJson(list), "list.json");
+  EXPECT_EQ(read.clashes[1].certain_points, 0U);
+  EXPECT_EQ(read.question.input_uncertainty.field, "sigma");
+  EXPECT_EQ(read.question.input_uncertainty.sigmas, 3);
+  EXPECT_EQ(read.question.obstacle_uncertainty.length, 0.04);
+
+  const auto rows = cellsOf(clashCsv(list));
+  EXPECT_EQ(rows[1][20], "certain");
+  EXPECT_EQ(std::vector<std::string>(rows[2].begin() + 20, rows[2].end()),
+            (std::vector<std::string>{"perhaps", "0", "0.3", "sigma", "0.04", "3", "exact", "", ""}));
+}
+
+TEST_F(ClashReports, TellUnitDateVersionAndCoordinateSystem)
+{
+  setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
+  ClashReport list = twoClashes();
+  list.unit = "m";
+  list.coordinate_system = "ETRS89 / UTM 32N";
+  const std::string page = clashPage(list);
+  for (const char* told : {"Lengths in m.", "Coordinate system: ETRS89 / UTM 32N.", " on 2023-11-14.",
+                           "Made by pcl_bsh " PCL_BSH_VERSION_TEXT, "clearance [m]<", "smallest distance [m]<"})
+    EXPECT_TRUE(has(page, told)) << told;
+  const Json json = Json::parse(clashJson(list));
+  EXPECT_EQ(json["date"], "2023-11-14");
+  EXPECT_EQ(json["program"], "pcl_bsh " PCL_BSH_VERSION_TEXT);
+  EXPECT_EQ(json["unit"], "m");
+  EXPECT_EQ(json["coordinate_system"], "ETRS89 / UTM 32N");
+  EXPECT_THAT(clashCsv(list), HasSubstr(",exact,m,ETRS89 / UTM 32N\n"));
+  for (const char* wrong : {"yesterday", "", "-1", "1e99", "999999999999"}) {
+    setenv("SOURCE_DATE_EPOCH", wrong, 1);
+    EXPECT_THROW(clashPage(list), std::runtime_error) << wrong;
   }
-  catch (const files::FileError& error) {
-    EXPECT_STREQ(error.what(), "old.json: lists clashes of a clearance of 0.3, not of 0.25 as asked now: ask for the "
-                               "same clearance, or compare with another list");
-  }
+  unsetenv("SOURCE_DATE_EPOCH");
 }
 
 } // namespace pcl_bsh::io

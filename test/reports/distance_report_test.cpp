@@ -3,10 +3,12 @@
 
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/reports/distance_report.h>
+#include <pcl_bsh/version.h>
 
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 namespace pcl_bsh::io {
@@ -98,7 +100,9 @@ TEST_F(DistanceReports, TellWhatHasNoDistance)
   EXPECT_EQ(told["hausdorff"], Json()) << "not known";
   EXPECT_EQ(told["input_to_obstacle"]["places"][0]["distance"], Json());
   EXPECT_EQ(told["input_to_obstacle"]["places"][0]["nearest"], Json());
-  EXPECT_THAT(page(), HasSubstr("1 points have no distance"));
+  EXPECT_THAT(page(), HasSubstr(">1 point has no distance: "));
+  EXPECT_THAT(page(), HasSubstr("; 1 point has no distance</text>")) << "beside the histogram, too";
+  EXPECT_THAT(page(), Not(HasSubstr("farther than 0.14")));
   EXPECT_THAT(page(), HasSubstr("more than 1<"));
 
   question.request.max_distance = std::numeric_limits<double>::infinity();
@@ -115,6 +119,30 @@ TEST_F(DistanceReports, TellWhatHasNoDistance)
   }
   high.clear();
   EXPECT_THAT(page(), Not(HasSubstr("nan")));
+}
+
+/// Beyond the axis is one number, without a distance another.
+TEST_F(DistanceReports, TellWhatTheHistogramLeavesOut)
+{
+  question.unit = "m";
+  EXPECT_THAT(page(), HasSubstr("; 1 point is farther than 0.145 m</text>"));
+  for (int i = 0; i < 2; ++i) high.insert(high.end(), {50.0 + i, 0.0, 0.0});
+  question.request.max_distance = 5;
+  EXPECT_THAT(page(), HasSubstr("; 1 point is farther than 0.145 m; 2 points have no distance</text>"));
+}
+
+TEST_F(DistanceReports, TellDateVersionAndCoordinateSystem)
+{
+  setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
+  EXPECT_THAT(page(), HasSubstr(" Made by pcl_bsh " PCL_BSH_VERSION_TEXT " on 2023-11-14."));
+  EXPECT_THAT(page(), Not(HasSubstr("Coordinate system")));
+  EXPECT_EQ(json()["date"], "2023-11-14");
+  EXPECT_EQ(json()["program"], "pcl_bsh " PCL_BSH_VERSION_TEXT);
+  EXPECT_EQ(json()["coordinate_system"], Json());
+  question.coordinate_system = "EPSG:25832 <UTM>";
+  EXPECT_THAT(page(), HasSubstr("Coordinate system: EPSG:25832 &lt;UTM&gt;."));
+  EXPECT_EQ(json()["coordinate_system"], "EPSG:25832 <UTM>");
+  unsetenv("SOURCE_DATE_EPOCH");
 }
 
 TEST_F(DistanceReports, PlacesAreInTheFrameOfTheInput)

@@ -19,6 +19,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <random>
 
 namespace pcl_bsh::sites {
@@ -180,6 +181,8 @@ protected:
       SCOPED_TRACE(expected.id);
       EXPECT_EQ(found.id, expected.id);
       EXPECT_EQ(found.points, expected.points);
+      EXPECT_EQ(found.certain_points, expected.certain_points);
+      EXPECT_EQ(found.place, expected.place);
       EXPECT_EQ(found.low, expected.low);
       EXPECT_EQ(found.high, expected.high);
       for (std::size_t k = 0; k < 3; ++k) {
@@ -344,6 +347,64 @@ TEST_F(SiteClashList, OfThePrograms)
   EXPECT_EQ(files::contentOf(folder / "s2.html"), files::contentOf(folder / "s.html"));
 }
 
+/// Where the points are uncertain, and where a later run does not look: as pcl_bsh_collide.
+TEST_F(SiteClashList, OfThePrograms_SayWhatIsNotKnown)
+{
+  Scene scene = floorScene();
+  io::writeCloud(folder / "a.pcd", float64Cloud(scene.points));
+  io::writeCloud(folder / "b.pcd", float64Cloud(scene.model));
+  io::writeCloud(folder / "far.pcd", float64Cloud({{1e6, 0, 0}}));
+  io::writePoses(folder / "poses.txt", scene.poses);
+  io::writePoses(folder / "one.txt", {scene.poses.front()});
+  MakeOptions options;
+  options.tile_points = 70;
+  makeSite({folder / "a.pcd"}, folder / "site", options);
+  makeSite({folder / "far.pcd"}, folder / "empty", options);
+  options.tile_points = 9;
+  makeSite({folder / "b.pcd"}, folder / "moved", options);
+  const std::string alike = " --clearance 0.2 --cluster-distance 0.35 --uncertainty 0.1 --unit m --trajectory ";
+  const auto listOf = [&](const std::string& program, const std::string& arguments) {
+    const Outcome outcome = run(program.c_str(), arguments, folder.path());
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return Json::parse(files::contentOf(folder / "list.json"));
+  };
+  const auto summaryOf = [](const Json& list) {
+    Json lines = Json::array();
+    for (const Json& clash : list["clashes"])
+      lines.push_back({clash["id"], clash["status"], clash["certainty"], clash["certain_points"], clash["distance"]});
+    return lines;
+  };
+  const Json in_memory = listOf("pcl_bsh_collide", "a.pcd b.pcd m.pcd" + alike + "poses.txt --clashes list.json");
+  const Json of_site = listOf("pcl_bsh_site", "collide site b.pcd" + alike +
+                                                  "poses.txt --clashes list.json --clashes first.json --report r.json");
+  EXPECT_EQ(summaryOf(of_site), summaryOf(in_memory));
+  std::size_t perhaps = 0;
+  for (const Json& clash : of_site["clashes"]) perhaps += clash["certainty"] == "perhaps" ? 1U : 0U;
+  const Json report = Json::parse(files::contentOf(folder / "r.json"));
+  EXPECT_EQ(report["clashes_perhaps"], perhaps);
+  EXPECT_EQ(report["clashes"], of_site["clashes"].size() - perhaps);
+  EXPECT_EQ(of_site["unit"], "m");
+  EXPECT_EQ(of_site["uncertainty"], in_memory["uncertainty"]);
+
+  // One pose alone; and a scan of another place.
+  const auto statusesOf = [&](const std::string& what) {
+    std::map<std::string, std::size_t> statuses;
+    const Json list = listOf("pcl_bsh_site", "collide " + what + " --clashes list.json --previous first.json");
+    for (const Json& clash : list["clashes"]) ++statuses[clash["status"]];
+    return statuses;
+  };
+  const Json shorter =
+      listOf("pcl_bsh_collide", "a.pcd b.pcd m.pcd" + alike + "one.txt --clashes list.json --previous first.json");
+  for (const std::string obstacle : {"b.pcd", "moved"}) {
+    EXPECT_EQ(summaryOf(listOf("pcl_bsh_site", "collide site " + obstacle + alike +
+                                                   "one.txt --clashes list.json --previous first.json")),
+              summaryOf(shorter));
+    EXPECT_GT(statusesOf("site " + obstacle + alike + "one.txt")["not_visited"], 0U);
+    EXPECT_EQ(statusesOf("empty " + obstacle + alike + "poses.txt"),
+              (std::map<std::string, std::size_t>{{"not_scanned", of_site["clashes"].size()}}));
+  }
+}
+
 TEST_F(SiteClashList, OfThePrograms_AreRefused)
 {
   io::writeCloud(folder / "a.pcd", float64Cloud({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}}));
@@ -363,7 +424,7 @@ TEST_F(SiteClashList, OfThePrograms_AreRefused)
       run("pcl_bsh_site", "collide site a.pcd --clearance 0.1 --pose 1,0,0,0,0,0 --clashes list.json --out out",
           folder.path());
   ASSERT_EQ(posed.exit_code, 0) << posed.err;
-  EXPECT_THAT(posed.out, HasSubstr("1 clashes"));
+  EXPECT_THAT(posed.out, HasSubstr("1 clash\n"));
   EXPECT_EQ(Json::parse(files::contentOf(folder / "list.json"))["poses"], 1);
   EXPECT_EQ(readSite(folder / "out").fields.back().name, "collision");
 }

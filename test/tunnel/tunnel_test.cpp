@@ -207,6 +207,8 @@ TEST(TightTunnel, FewPairsOfADenseModelAreComparedAtEachPose)
   for (const PoseSummary& pose : clashes.poses) contacts += pose.colliding_points;
   EXPECT_GT(contacts, 10 * clashes.colliding);
   EXPECT_LT(clashes.work.leaf_pairs, 1.8 * static_cast<double>(contacts)) << "2.6 if each is compared at its pose";
+  EXPECT_LT(clashes.work.leaf_pairs, 20 * clashes.colliding) << "23 on arcs as loose as those of flags";
+  EXPECT_LT(clashes.work.exact_decisions, 8 * clashes.colliding) << "11 where the nearest do not come first";
   request.pose_summaries = false;
   request.swept = 0.01;
   const TrajectoryResult swept = collideAlong({scan}, wagon, run.poses, request);

@@ -7,6 +7,7 @@
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/reports/clash_report.h>
+#include <pcl_bsh/filters/reports/report_origin.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -78,6 +79,7 @@ void check(const CollideOptions& options)
     requireClashFormat(list);
     files::requireWritable(list);
   }
+  if (options.distances) io::reportDate(); // refuses one that is none before anything is done
   if (options.distances && options.distances->page) requireDistancePage(*options.distances->page);
 }
 

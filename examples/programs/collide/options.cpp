@@ -40,7 +40,6 @@ struct DistanceTexts {
   bool asked = false;
   std::optional<double> most;
   std::optional<std::filesystem::path> page;
-  std::optional<std::string> unit;
 
   void addTo(CLI::App& app)
   {
@@ -53,7 +52,6 @@ struct DistanceTexts {
         ->transform(number<double>("give a length >= 0", [](double d) { return d >= 0; }));
     app.add_option("--distance-page", page, "page for browsers: statistics, histograms, the farthest places")
         ->type_name("FILE.html");
-    app.add_option("--unit", unit, "name of the clouds' unit, for reports of distances")->type_name("NAME");
   }
 
   /// @throws UsageError where they do not fit each other, or what else is asked
@@ -62,9 +60,8 @@ struct DistanceTexts {
     const auto refuse = [](const char* option, const char* wrong) {
       throw UsageError(std::string(option) + ": " + wrong);
     };
-    for (const auto& [given, option] : {std::pair{most.has_value(), "--max-distance"},
-                                        {page.has_value(), "--distance-page"},
-                                        {unit.has_value(), "--unit"}}) {
+    for (const auto& [given, option] :
+         {std::pair{most.has_value(), "--max-distance"}, {page.has_value(), "--distance-page"}}) {
       if (given && !asked) refuse(option, "no distances are asked for: give --distances");
     }
     if (!asked) return;
@@ -75,7 +72,6 @@ struct DistanceTexts {
     options.distances.emplace();
     options.distances->most = most.value_or(options.distances->most);
     options.distances->page = page;
-    options.distances->unit = unit.value_or("");
   }
 };
 
@@ -164,8 +160,14 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
                  "greater of D and four spacings of INPUT, rounded up to a power of two)")
       ->type_name("L")
       ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-  app.add_option("--previous", options.previous, "earlier .json list: clashes are new, persisting or resolved")
+  app.add_option("--previous", options.previous,
+                 "earlier .json list, of the same clearance, uncertainties and accuracy: clashes\n"
+                 "are new, persisting, resolved, or not visited by the path or not scanned\n"
+                 "any more")
       ->type_name("FILE");
+  CLI::Option* const unit =
+      app.add_option("--unit", options.unit, "name of the clouds' unit, for reports of distances and clashes")
+          ->type_name("NAME");
   if (!understood(app, collide_program, argc, argv)) return std::nullopt;
 
   options.accuracy = parseAccuracy(accuracy);
@@ -177,6 +179,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   options.swept = path.swept;
   requireConsistent(options);
   distances.read(options);
+  if (!unit->empty() && !options.distances && options.clashes.empty())
+    throw UsageError("--unit: no report tells it: give --distances or --clashes FILE");
   options.asks_collisions = !clearance->empty();
   if (!options.asks_collisions && !options.distances)
     throw UsageError(std::string("command line: --clearance is required: see ") + collide_program + " --help");

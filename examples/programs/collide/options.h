@@ -25,7 +25,6 @@ enum class Keep { flagged, colliding, free };
 struct DistanceOptions {
   double most = std::numeric_limits<double>::infinity(); ///< greater ones are not told
   std::optional<std::filesystem::path> page;
-  std::string unit; ///< of the clouds, for reports; empty: not known
 };
 
 struct CollideOptions {
@@ -42,6 +41,7 @@ struct CollideOptions {
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;
   std::optional<DistanceOptions> distances;
+  std::string unit; ///< of the clouds, for reports; empty: not known
   double clearance = 0.0;
   bool asks_collisions = true; ///< a clearance was given
   unsigned threads = 0;        ///< all of the machine's

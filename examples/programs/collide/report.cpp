@@ -24,13 +24,6 @@ nlohmann::ordered_json toJson(const Spacing& spacing)
   return {{"median", spacing.median}, {"nine_of_ten", spacing.wide}, {"sampled_points", spacing.samples}};
 }
 
-/// A length, or a field and how many of its sigmas count.
-nlohmann::ordered_json toJson(const Uncertainty& uncertainty)
-{
-  if (uncertainty.field.empty()) return uncertainty.length;
-  return {{"field", uncertainty.field}, {"sigmas", uncertainty.sigmas}};
-}
-
 nlohmann::ordered_json toJson(const PathReport& path)
 {
   nlohmann::ordered_json json;
@@ -62,8 +55,8 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   json["undecided"] = report.undecided;
   json["not_scanned_densely_enough"] = report.sparse;
   json["free"] = report.input.finite - report.colliding - report.undecided - report.sparse;
-  json["uncertainty"] = {{"input", toJson(report.input_uncertainty)},
-                         {"obstacle", toJson(report.obstacle_uncertainty)}};
+  json["uncertainty"] = {{"input", io::uncertaintyJson(report.input_uncertainty)},
+                         {"obstacle", io::uncertaintyJson(report.obstacle_uncertainty)}};
   json["distance"] = nullptr;
   json["closest_pair"] = nullptr;
   if (report.closest.pair) {

@@ -2,7 +2,6 @@
 #include "summary.h"
 #include "cli/program.h"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -39,7 +38,7 @@ std::string distanceSummary(const io::DistanceReport& report)
 
 } // namespace
 
-void summarise(const CollideOptions& options, const CollisionReport& report, const std::vector<Clash>& clashes,
+void summarise(const CollideOptions& options, const CollisionReport& report, const std::string& clashes,
                const std::optional<io::DistanceReport>& distances)
 {
   warn(collide_program, report.warnings);
@@ -59,12 +58,7 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
     out << "; first contact at pose "
         << static_cast<double>(report.path->first_contact->pose) + report.path->first_contact->fraction;
   }
-  if (!options.clashes.empty()) {
-    const auto resolved = std::count_if(clashes.begin(), clashes.end(),
-                                        [](const Clash& clash) { return clash.status == ClashStatus::resolved; });
-    out << "; " << clashes.size() - static_cast<std::size_t>(resolved) << " clashes";
-    if (options.previous) out << ", " << resolved << " resolved";
-  }
+  if (!clashes.empty()) out << "; " << clashes;
   if (distances) out << distanceSummary(*distances);
   if (report.surface) out << "; " << io::promiseOf(*report.surface, report.besideSurface());
   out << "; wrote " << options.output.string() << '\n';

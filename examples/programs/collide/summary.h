@@ -4,16 +4,16 @@
 #include "options.h"
 #include "report.h"
 
-#include <pcl_bsh/filters/reports/clash_report.h>
 #include <pcl_bsh/filters/reports/distance_report.h>
 
 #include <optional>
-#include <vector>
+#include <string>
 
 namespace pcl_bsh::cli {
 
 /// Tells people in a sentence what was found, after the warnings.
-void summarise(const CollideOptions& options, const CollisionReport& report, const std::vector<Clash>& clashes,
+/// @param clashes how many there are, as io::clashCounts() tells it; empty where none were asked for
+void summarise(const CollideOptions& options, const CollisionReport& report, const std::string& clashes,
                const std::optional<io::DistanceReport>& distances);
 
 } // namespace pcl_bsh::cli

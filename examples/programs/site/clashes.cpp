@@ -3,10 +3,25 @@
 #include "clashes.h"
 
 #include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/search/cloud_view.h>
 
 #include <utility>
 
 namespace pcl_bsh::cli {
+namespace {
+
+io::ClashQuestion questionOf(const SiteOptions& options)
+{
+  return {options.site.string(), options.obstacle.string(), options.clearance,           options.swept,
+          options.accuracy,      options.uncertainty,       options.obstacle_uncertainty};
+}
+
+std::optional<Extent> extentOf(const std::optional<sites::Bounds>& bounds)
+{
+  return bounds ? std::optional(Extent{bounds->low, bounds->high}) : std::nullopt;
+}
+
+} // namespace
 
 SiteClashList::SiteClashList(const sites::Site& site, const SiteOptions& options) : site_(site), options_(options)
 {
@@ -21,11 +36,8 @@ SiteClashList::SiteClashList(const sites::Site& site, const SiteOptions& options
       options.cluster_distance > 0 ? options.cluster_distance : io::clusterDistanceFor(options.clearance, spacing);
   finder_.emplace(site, distance_);
   if (!options.previous) return;
-  const io::ClashList list = io::readClashes(*options.previous);
-  warnings_ =
-      io::requireComparable(*options.previous, list,
-                            {options.site.string(), options.obstacle.string(), options.clearance, options.swept, {}});
-  earlier_ = list.clashes;
+  earlier_ = io::readClashes(*options.previous);
+  warnings_ = io::requireComparable(*options.previous, earlier_, questionOf(options));
 }
 
 void SiteClashList::addTo(sites::SiteRequest& request)
@@ -35,60 +47,86 @@ void SiteClashList::addTo(sites::SiteRequest& request)
   request.pose_summaries = !options_.swept;
 }
 
-std::size_t SiteClashList::finish(const SphereHierarchy& obstacle, const io::Obstacle* surface,
-                                  const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found)
+void SiteClashList::finish(const SphereHierarchy& obstacle, const io::Obstacle* surface,
+                           const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found, Json& report)
 {
-  return write(finder_->finish(), obstacle.view(), surface, poses, found, nullptr);
+  write(
+      finder_->finish(), obstacle.view(), surface, poses, found, nullptr,
+      [&](FormerPlaces& former, const TrajectoryRequest& motion) { former.visit(obstacle, poses, motion); }, report);
 }
 
-std::size_t SiteClashList::finish(const sites::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses,
-                                  const sites::SitePassage& found)
+void SiteClashList::finish(const sites::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses,
+                           const sites::SitePassage& found, Json& report)
 {
   sites::SiteClashes clashes = finder_->finish();
   const std::vector<sites::MetPoint> met = clashes.met;
   std::vector<Point3> places;
   for (const sites::MetPoint& point : met) places.push_back(point.place);
-  return write(std::move(clashes), viewOf(places.empty() ? nullptr : places.front().data(), places.size()), nullptr,
-               poses, found, [&](std::uint32_t i) {
-                 return io::SourcePoint{obstacle.sources.at(met[i].point.source).file, met[i].point.record};
-               });
+  write(
+      std::move(clashes), viewOf(places.empty() ? nullptr : places.front().data(), places.size()), nullptr, poses,
+      found,
+      [&](std::uint32_t i) {
+        return io::SourcePoint{obstacle.sources.at(met[i].point.source).file, met[i].point.record};
+      },
+      [&](FormerPlaces& former, const TrajectoryRequest& motion) {
+        for (const sites::Tile& tile : obstacle.tiles) {
+          if (!tile.bounds || !former.mayVisit({tile.bounds->low, tile.bounds->high}, poses, motion)) continue;
+          const pcl::PCLPointCloud2 cloud = sites::readTile(obstacle, tile);
+          former.visit(SphereHierarchy(viewOf(cloud)), poses, motion);
+        }
+      },
+      report);
 }
 
-std::size_t SiteClashList::write(sites::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
-                                 const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found,
-                                 std::function<io::SourcePoint(std::uint32_t)> model_source_of)
+void SiteClashList::write(sites::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
+                          const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found,
+                          std::function<io::SourcePoint(std::uint32_t)> model_source_of, const Visit& visit,
+                          Json& report)
 {
   const PointsView places =
       viewOf(clashes.places.empty() ? nullptr : clashes.places.front().data(), clashes.places.size());
   TrajectoryResult of_places;
   of_places.colliding = found.colliding;
+  of_places.undecided = found.undecided;
   of_places.poses = found.poses;
   of_places.distance = std::move(clashes.distance);
   of_places.closest_pose = std::move(clashes.closest_pose);
-  io::ClashReport list{options_.site.string(),
-                       options_.obstacle.string(),
-                       options_.clearance,
-                       distance_,
-                       {},
-                       std::move(clashes.clashes),
-                       places,
-                       model,
-                       poses,
-                       of_places,
-                       options_.swept,
-                       surface,
-                       [&](std::uint32_t i) {
-                         const sites::SitePoint& point = clashes.points[i];
-                         return io::SourcePoint{site_.sources.at(point.source).file, point.record};
-                       },
-                       std::move(model_source_of)};
-  if (options_.previous) {
-    list.previous = options_.previous->string();
-    compareWithEarlier(list.clashes, earlier_, distance_);
-  }
-  if (sites::rankHere() == 0)
-    for (const std::filesystem::path& file : options_.clashes) io::writeClashes(file, list);
-  return list.clashes.size() - list.count(ClashStatus::resolved);
+  io::ClashReport list{.question = questionOf(options_),
+                       .cluster_distance = distance_,
+                       .clashes = std::move(clashes.clashes),
+                       .scan = places,
+                       .model = model,
+                       .poses = poses,
+                       .found = of_places,
+                       .survey = {poses, extentOf(site_.bounds)},
+                       .unit = options_.unit,
+                       .surface = surface,
+                       .source_of =
+                           [&](std::uint32_t i) {
+                             const sites::SitePoint& point = clashes.points[i];
+                             return io::SourcePoint{site_.sources.at(point.source).file, point.record};
+                           },
+                       .model_source_of = std::move(model_source_of)};
+  warnings_.clear();
+  report["clashes"] = list.present() - list.perhaps();
+  report["clashes_perhaps"] = list.perhaps();
+  if (sites::rankHere() != 0) return;
+  if (options_.previous) compare(list, visit);
+  for (const std::filesystem::path& file : options_.clashes) io::writeClashes(file, list);
+  counts_ = io::clashCounts(list);
+}
+
+void SiteClashList::compare(io::ClashReport& list, const Visit& visit)
+{
+  TrajectoryRequest motion;
+  motion.swept = options_.swept;
+  motion.threads = options_.threads;
+  warnings_ = io::compareWithList(list, *options_.previous, earlier_, [&](FormerPlaces& former) {
+    visit(former, motion);
+    for (const sites::Tile& tile : site_.tiles)
+      if (tile.bounds && former.mayScan({tile.bounds->low, tile.bounds->high}))
+        former.scan(viewOf(sites::readTile(site_, tile)));
+  });
 }
 
 } // namespace pcl_bsh::cli

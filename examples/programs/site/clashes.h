@@ -3,6 +3,7 @@
 #pragma once
 
 #include "options.h"
+#include "report.h"
 
 #include <pcl_bsh/filters/reports/clash_report.h>
 #include <pcl_bsh/site/site_clashes.h>
@@ -23,7 +24,7 @@ public:
 
   bool isWanted() const noexcept { return finder_.has_value(); }
 
-  /// Warnings of the earlier list, a line each.
+  /// Of the earlier list, a line each; see finish().
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
   /// Adds to a question along a path what the lists need; nothing where none is wanted.
@@ -32,25 +33,32 @@ public:
   /// Points of a clash are so near to each other; 0 where no list is wanted.
   double clusterDistance() const noexcept { return distance_; }
 
-  /// After the question. To be called by all ranks; the first writes the lists.
-  /// @param surface the obstacle, where it is one; else null
-  /// @return how many clashes there are now, those that are resolved left out
-  std::size_t finish(const SphereHierarchy& obstacle, const io::Obstacle* surface,
-                     const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found);
+  /// After the question. To be called by all ranks; the first writes the lists, and warnings() are then of what they
+  /// were compared with. @param surface the obstacle, where it is one; else null. @param report gets the numbers of
+  /// clashes that there are now: certain ones, and those perhaps
+  void finish(const SphereHierarchy& obstacle, const io::Obstacle* surface, const std::vector<Eigen::Isometry3d>& poses,
+              const sites::SitePassage& found, Json& report);
 
   /// The same of an obstacle that is a site.
-  std::size_t finish(const sites::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses,
-                     const sites::SitePassage& found);
+  void finish(const sites::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found,
+              Json& report);
+
+  /// After finish(): as io::clashCounts() tells it.
+  const std::string& counts() const noexcept { return counts_; }
 
 private:
-  std::size_t write(sites::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
-                    const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found,
-                    std::function<io::SourcePoint(std::uint32_t)> model_source_of);
+  using Visit = std::function<void(FormerPlaces&, const TrajectoryRequest& motion)>;
+
+  void write(sites::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
+             const std::vector<Eigen::Isometry3d>& poses, const sites::SitePassage& found,
+             std::function<io::SourcePoint(std::uint32_t)> model_source_of, const Visit& visit, Json& report);
+  void compare(io::ClashReport& list, const Visit& visit);
 
   const sites::Site& site_;
   const SiteOptions& options_;
   double distance_ = 0.0;
-  std::vector<Clash> earlier_;
+  io::ClashList earlier_;
+  std::string counts_;
   std::vector<std::string> warnings_;
   std::optional<sites::ClashFinder> finder_;
 };

@@ -98,7 +98,7 @@ Json askOfFile(const sites::Site& site, const ObstacleFile& file, const Poses& p
     clashes.addTo(request);
     const sites::SitePassage found = sites::collideAlong(site, obstacle.hierarchy(), poses, request, out.passage());
     putPassage(report, found, poses.size(), options);
-    if (clashes.isWanted()) report["clashes"] = clashes.finish(obstacle.hierarchy(), surface, poses, found);
+    if (clashes.isWanted()) clashes.finish(obstacle.hierarchy(), surface, poses, found, report);
     put(report, found.tiles, run);
     break;
   }
@@ -148,6 +148,7 @@ int answer(const SiteOptions& options, bool& keeps)
     report = askOfSite(site, poses, options, output, clashes, run, step, of_question);
   if (tells) shown->done(report["tiles"]["read"].dump() + " tiles read");
   warn_of(of_question);
+  if (clashes.isWanted()) warn_of(clashes.warnings());
   run.seconds = seconds();
   output.finish();
   run.copying = seconds() - run.seconds;
@@ -155,7 +156,7 @@ int answer(const SiteOptions& options, bool& keeps)
   report["warnings"] = warnings;
   if (!tells) return 0;
   std::ostream& summary = options.files.summary();
-  if (clashes.isWanted()) summary << report["clashes"] << " clashes\n";
+  if (clashes.isWanted()) summary << clashes.counts() << '\n';
   if (file && file->surface() != nullptr) summary << report["surface"]["promise"].get<std::string>() << '\n';
   if (!options.obstacle_out.empty())
     summary << "wrote which points of the obstacle collide to " << options.obstacle_out.string() << '\n';

@@ -7,6 +7,10 @@
 
 #include <pcl_bsh/files/free_space.h>
 
+#include "cli/program.h"
+
+#include <pcl_bsh/files/free_space.h>
+
 namespace pcl_bsh::cli {
 
 namespace {
@@ -99,7 +103,7 @@ Json askOfSite(const sites::Site& site, const Poses& poses, const SiteOptions& o
     const sites::SitePairPassage found =
         sites::collideAlong(site, other, options.obstacle_uncertainty, poses, request, out.passage());
     putPassage(report, found, poses.size(), options);
-    if (clashes.isWanted()) report["clashes"] = clashes.finish(other, poses, found);
+    if (clashes.isWanted()) clashes.finish(other, poses, found, report);
     putBoth(report, found, run);
     break;
   }

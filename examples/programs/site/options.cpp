@@ -105,8 +105,12 @@ struct CollideTexts {
                    "of SITE's tiles, rounded up to a power of two)")
         ->type_name("L")
         ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-    app.add_option("--previous", options.previous, "earlier .json list: clashes are new, persisting or resolved")
+    app.add_option(
+           "--previous", options.previous,
+           "earlier .json list, of the same clearance, uncertainties and accuracy: clashes are new, persisting, "
+           "resolved, or not visited by the path or not scanned any more")
         ->type_name("FILE");
+    app.add_option("--unit", options.unit, "name of the clouds' unit, for --clashes")->type_name("NAME");
     app.add_flag("--any", any, "only whether any point collides");
     app.add_flag("--closest", closest, "the smallest distance, and the points that have it");
     app.add_flag("--distances", distances, "how many points have a distance, and the greatest");
@@ -168,6 +172,7 @@ struct CollideTexts {
       throw UsageError(std::string(options.previous ? "--previous" : "--cluster-distance") +
                        ": no clash report is written: give --clashes FILE");
     }
+    if (!lists && !options.unit.empty()) throw UsageError("--unit: no clash report tells it: give --clashes FILE");
     if (!options.plan.empty() && options.report.empty())
       throw UsageError("--plan: is told in the report: add --report");
     if (!options.out.empty() && (any || closest))

@@ -47,6 +47,7 @@ struct SiteOptions {
   std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;
+  std::string unit;    ///< of the clouds, for the clash report; empty: not known
   bool resume = false; ///< go on with what the same question has left in `out`
   double clearance = 0.0;
   Accuracy accuracy;

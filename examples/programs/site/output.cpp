@@ -88,6 +88,7 @@ std::string questionOf(const sites::Site& site, const ObstacleFile* obstacle, co
                              {"max_distance", options.max_distance}, {"swept", options.swept.value_or(-1.0)},
                              {"clusters", cluster_distance},         {"obstacle", obstacleText(obstacle, options)},
                              {"poses", nlohmann::json::array()}};
+  question["numbers"] = 2; // what a tile's clashes are kept as: certain points are among it
   for (const Uncertainty* of : {&options.uncertainty, &options.obstacle_uncertainty})
     question["uncertainty"].push_back({of->field, of->length, of->sigmas});
   for (const Eigen::Isometry3d& pose : poses)

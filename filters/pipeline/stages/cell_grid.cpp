@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/cell_grid.h>
-#include <pcl_bsh/filters/pipeline/stages/extent.h>
+
 #include <pcl_bsh/geometry/plain_text.h>
+#include <pcl_bsh/report/extent.h>
 
 #include <boost/sort/spreadsort/integer_sort.hpp>
 
@@ -30,7 +31,7 @@ std::string sizeOf(const Cell& cells)
 
 CellGrid::CellGrid(const PointsView& points, const Numbers<3>& edge) : edge_(edge)
 {
-  const auto [least, most] = extentOf(points);
+  const auto [least, most] = extentOf(points).value_or(Extent());
   double farthest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     farthest = std::max({farthest, std::abs(least[k] / edge[k]), std::abs(most[k] / edge[k])});

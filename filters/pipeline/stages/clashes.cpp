@@ -15,6 +15,7 @@ struct ClashWriter : Stage, CollisionQuestion {
   std::optional<OutputFile> also;
   std::optional<double> cluster_distance;
   std::optional<InputFile> previous;
+  std::string unit;
   std::string input_name = "input";
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
@@ -53,13 +54,8 @@ private:
   void readEarlier()
   {
     try {
-      const io::ClashList list = io::readClashes(previous->path);
-      const std::optional<double> motion = swept > 0 ? std::optional(swept) : std::nullopt;
-      for (const std::string& warning :
-           io::requireComparable(previous->path, list, {input_name, obstacle.name, clearance, motion, {}})) {
-        warn(warning);
-      }
-      earlier_ = list.clashes;
+      earlier_ = io::readClashes(previous->path);
+      for (const std::string& warning : io::requireComparable(previous->path, earlier_, question())) warn(warning);
     }
     catch (const std::runtime_error& error) {
       throw OptionError("previous", error.what());
@@ -74,31 +70,48 @@ private:
     return io::clusterDistanceFor(clearance, spacingOf(SphereHierarchy(scan, options)));
   }
 
-  void write(const PointsView& scan, const TrajectoryResult& found) const
+  io::ClashQuestion question() const
+  {
+    const std::optional<double> motion = swept > 0 ? std::optional(swept) : std::nullopt;
+    return {input_name,
+            obstacle.name,
+            clearance,
+            motion,
+            Accuracy::parse(accuracy),
+            given(uncertainty),
+            given(obstacle_uncertainty)};
+  }
+
+  void write(const PointsView& scan, const TrajectoryResult& found)
   {
     const double distance = clusterDistance(scan);
     const PointsView model = comparedObstacle().view();
-    io::ClashReport report{input_name,
-                           obstacle.name,
-                           clearance,
-                           distance,
-                           {},
-                           findClashes(scan, found, distance),
-                           scan,
-                           model,
-                           poses(),
-                           found,
-                           swept > 0 ? std::optional(swept) : std::nullopt,
-                           comparedObstacle().isSurface() ? &comparedObstacle() : nullptr};
+    io::ClashReport report{.question = question(),
+                           .cluster_distance = distance,
+                           .clashes = findClashes(scan, found, distance),
+                           .scan = scan,
+                           .model = model,
+                           .poses = poses(),
+                           .found = found,
+                           .survey = {poses(), extentOf(scan)},
+                           .unit = unit,
+                           .surface = comparedObstacle().isSurface() ? &comparedObstacle() : nullptr};
     if (previous) {
-      report.previous = previous->path;
-      compareWithEarlier(report.clashes, earlier_, distance);
+      TrajectoryRequest motion;
+      motion.swept = report.question.swept;
+      motion.threads = number_of_threads;
+      for (const std::string& warning :
+           io::compareWithList(report, previous->path, earlier_, [&](FormerPlaces& former) {
+             former.visit(SphereHierarchy(model), poses(), motion);
+             former.scan(scan);
+           }))
+        warn(warning);
     }
     io::writeClashes(filename.path, report);
     if (also) io::writeClashes(also->path, report);
   }
 
-  std::vector<Clash> earlier_;
+  io::ClashList earlier_;
 };
 
 } // namespace
@@ -120,8 +133,10 @@ StageType clashWriter()
       .unit("m")
       .above(0)
       .option(&ClashWriter::previous, "previous",
-              "the .json of an earlier run: tells new, persisting and resolved clashes; may be `filename`")
+              "the .json of an earlier run with the same clearance, uncertainties and accuracy: tells clashes that are "
+              "new, persisting, resolved, or not visited by the path or not scanned any more; may be `filename`")
       .replaceable()
+      .option(&ClashWriter::unit, "unit", "name of the clouds' unit, for the list and the page")
       .option(&ClashWriter::input_name, "input_name", "name of the input in the list");
 }
 

@@ -53,12 +53,14 @@ protected:
   /// What to tell the user after a query; empty when every point is decided.
   std::string undecidedWarning(const ObstacleQuery& filter, const char* parts = "points") const;
 
+  /// An uncertainty, with the sigmas of this stage.
+  Uncertainty given(const LengthOrField& option) const;
+
   /// After check(): at least one.
   const std::vector<Eigen::Isometry3d>& poses() const noexcept { return poses_; }
 
 private:
   bool isUncertain() const;
-  Uncertainty given(const LengthOrField& option) const;
   void checkUncertainties(const CloudHeader& input) const;
 
   std::vector<Eigen::Isometry3d> poses_;

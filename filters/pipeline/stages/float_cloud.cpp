@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/pipeline/stages/extent.h>
 #include <pcl_bsh/filters/pipeline/stages/float_cloud.h>
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/neighbors/spacing.h>
+#include <pcl_bsh/report/extent.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 Point3 middleOf(const PointsView& points)
 {
-  const auto [least, most] = extentOf(points);
+  const auto [least, most] = extentOf(points).value_or(Extent());
   return {least[0] / 2 + most[0] / 2, least[1] / 2 + most[1] / 2, least[2] / 2 + most[2] / 2};
 }
 
