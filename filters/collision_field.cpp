@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/selected_records.h>
 
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/search/find_field.h>
 #include <pcl_bsh/trajectory/trajectory.h>
@@ -73,8 +74,8 @@ pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vect
   for (const NewField& field : fields) {
     const std::size_t count = withValues(field, [](const auto& values) { return values.size(); });
     if (count != points) {
-      throw std::invalid_argument("field '" + field.name + "' has " + std::to_string(count) +
-                                  " values: the cloud has " + std::to_string(points) + " points");
+      throw std::invalid_argument("field '" + field.name + "' has " + counted(count, "value") + ": the cloud has " +
+                                  counted(points, "point"));
     }
   }
 

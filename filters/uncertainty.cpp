@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/uncertainty.h>
 
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/geometry/rounding.h>
@@ -34,7 +35,7 @@ const Field& fieldNamed(const std::string& name, const std::vector<Field>& field
                   "give a length, or one of its fields: " + names);
   }
   if (found->count > 1) {
-    throw refusal(cloud, "field '" + name + "' holds " + std::to_string(found->count) + " values per point",
+    throw refusal(cloud, "field '" + name + "' holds " + counted(found->count, "value") + " per point",
                   "give one that holds one");
   }
   return *found;

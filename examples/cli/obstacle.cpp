@@ -3,24 +3,26 @@
 
 #include "step.h"
 
+#include <pcl_bsh/geometry/counted.h>
+
 #include <stdexcept>
 
 namespace pcl_bsh::cli {
 
 io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double clearance,
-                          double& seconds, io::Viewpoint* viewpoint, io::LasHeaderPtr* las)
+                          double& seconds, const io::ColumnNames& columns, io::CloudFacts* facts)
 {
   Step step("Loading " + path.string());
   const auto progress = [&](double fraction) {
     step.share(fraction);
     return true;
   };
-  io::Obstacle obstacle = io::readObstacle(path, settings, clearance, progress, viewpoint, las);
+  io::Obstacle obstacle = io::readObstacle(path, settings, clearance, progress, columns, facts);
   const pcl::PCLPointCloud2& points = obstacle.points();
-  std::string result = std::to_string(std::size_t{points.width} * points.height) + " points";
+  std::string result = counted(std::size_t{points.width} * points.height, "point");
   if (obstacle.isSurface()) {
-    result += ", " + std::to_string(obstacle.triangles()->size()) + " triangles in " +
-              std::to_string(obstacle.cover()->centers.size()) + " balls";
+    result += ", " + counted(obstacle.triangles()->size(), "triangle") + " in " +
+              counted(obstacle.cover()->centers.size(), "ball");
   }
   seconds += step.done(result);
   return obstacle;

@@ -16,7 +16,7 @@ namespace pcl_bsh::cli {
 /// @param clearance of the query. @param seconds that it took are added
 /// @throws as io::readObstacle() does, whose last arguments these are
 io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double clearance,
-                          double& seconds, io::Viewpoint* viewpoint = nullptr, io::LasHeaderPtr* las = nullptr);
+                          double& seconds, const io::ColumnNames& columns = {}, io::CloudFacts* facts = nullptr);
 
 /// What users should know of the obstacle, a line each, with the file's name.
 std::vector<std::string> warningsOf(const io::Obstacle& obstacle, const std::filesystem::path& path);

@@ -27,6 +27,11 @@ void warn(const char* name, const std::vector<std::string>& warnings)
   for (const std::string& warning : warnings) std::cerr << name << ": warning: " << warning << '\n';
 }
 
+void warnOfFile(const char* name, const std::filesystem::path& file, const std::vector<std::string>& remarks)
+{
+  for (const std::string& remark : remarks) warn(name, {file.string() + ": " + remark});
+}
+
 int runProgram(const char* name, const std::function<int()>& body)
 {
   openStandardStreams();

@@ -2,6 +2,7 @@
 // How every program ends: with what it did, or with one line that says what is wrong and what to do.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -17,6 +18,9 @@ public:
 
 /// Writes each warning as a line on stderr.
 void warn(const char* name, const std::vector<std::string>& warnings);
+
+/// The same of remarks on a file, which do not name it.
+void warnOfFile(const char* name, const std::filesystem::path& file, const std::vector<std::string>& remarks);
 
 /// Runs `body` as a whole program, which stops cleanly when told to, and returns the exit code: what it returns; 1 when
 /// it fails; 2 for a UsageError.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What does accuracy cost in time, on these two clouds? A table, a plot, and which setting to choose.
+#include "cli/columns.h"
 #include "cli/command_line.h"
 #include "cli/obstacle.h"
 #include "cli/pose.h"
@@ -12,6 +13,7 @@
 #include <pcl_bsh/files/output_folder.h>
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/question/warnings.h>
 
 #include <array>
@@ -46,6 +48,7 @@ struct Options {
   std::string unit;
   bool peers = false;
   io::SurfaceSettings surface;
+  io::ColumnChoice columns;
   cli::CommandFiles files;
 };
 
@@ -79,6 +82,8 @@ std::optional<Options> parse(int argc, char** argv)
   app.add_option("--threads", options.threads, "0: all of the machine's (default: 1)")
       ->type_name("N")
       ->transform(cli::number<unsigned>(cli::give_threads));
+  cli::ColumnOptions columns;
+  columns.addTo(app);
   app.add_option("--unit", options.unit, "name of the clouds' unit, for the picture")->type_name("NAME");
   cli::addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
   app.add_flag("--peers", options.peers,
@@ -93,6 +98,7 @@ std::optional<Options> parse(int argc, char** argv)
     options.pose = cli::parsePose("--pose", pose, warnings);
     cli::warn(program, warnings);
   }
+  options.columns = columns.read({options.a, options.b});
   options.files.reads("A", options.a).reads("B", options.b).reads("--trajectory", options.trajectory);
   options.files.readsPose("--pose", pose);
   for (const char* name : results) options.files.writes("--out", options.out / name);
@@ -102,7 +108,7 @@ std::optional<Options> parse(int argc, char** argv)
 io::Obstacle load(const Options& options, const std::filesystem::path& path, io::SurfaceSettings settings)
 {
   double seconds = 0.0;
-  io::Obstacle loaded = cli::loadObstacle(path, settings, options.clearance, seconds);
+  io::Obstacle loaded = cli::loadObstacle(path, settings, options.clearance, seconds, options.columns.of(path));
   cli::warn(program, cli::warningsOf(loaded, path));
   if (options.peers && loaded.isSurface())
     throw std::runtime_error("--peers: are measured on points, and " + path.string() +
@@ -113,10 +119,10 @@ io::Obstacle load(const Options& options, const std::filesystem::path& path, io:
 /// What was compared.
 std::string describe(const io::Obstacle& compared, const std::filesystem::path& path)
 {
-  const std::string records = std::to_string(compared.view().count);
+  const std::size_t records = compared.view().count;
   const std::string what = compared.isSurface()
-                               ? std::to_string(compared.triangles()->size()) + " triangles in " + records + " balls"
-                               : records + " points";
+                               ? counted(compared.triangles()->size(), "triangle") + " in " + counted(records, "ball")
+                               : counted(records, "point");
   return "`" + path.filename().string() + "` (" + what + ")";
 }
 

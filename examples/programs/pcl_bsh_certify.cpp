@@ -9,6 +9,7 @@
 
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <iostream>
@@ -30,11 +31,13 @@ void check(const Options& options)
   if (options.report) files::requireWritable(*options.report);
 }
 
-pcl::PCLPointCloud2 load(const fs::path& path)
+pcl::PCLPointCloud2 load(const fs::path& path, const io::ColumnChoice& columns)
 {
   cli::Step step("Loading " + path.string());
-  pcl::PCLPointCloud2 cloud = io::readCloud(path);
-  step.done(std::to_string(std::size_t{cloud.width} * cloud.height) + " points");
+  io::CloudFacts facts;
+  pcl::PCLPointCloud2 cloud = io::readCloud(path, &facts, columns.of(path));
+  step.done(counted(std::size_t{cloud.width} * cloud.height, "point"));
+  cli::warnOfFile(program, path, facts.remarks);
   return cloud;
 }
 
@@ -49,7 +52,7 @@ SphereHierarchy build(const PointsView& view, SphereFit fit, const Options& opti
     throw std::runtime_error(options.cloud.string() + ": has no finite point: there is nothing to certify");
   }
   hierarchy.buildAll(options.certify.threads);
-  step.done(std::to_string(hierarchy.statistics().voxels) + " voxels");
+  step.done(counted(hierarchy.statistics().voxels, "voxel"));
   return hierarchy;
 }
 
@@ -67,13 +70,14 @@ Certificate certifyTold(const SphereHierarchy& hierarchy, CertifyOptions options
 void complain(const Options& options, const std::string& name, const Certificate& certificate)
 {
   std::cerr << program << ": " << options.cloud.string() << ": fit " << name << ": ";
-  if (certificate.missing > 0) std::cerr << certificate.missing << " points are in no leaf";
+  if (certificate.missing > 0) std::cerr << counted(certificate.missing, "point is", "points are") << " in no leaf";
   if (certificate.missing > 0 && certificate.total.leaks > 0) std::cerr << ", ";
   if (certificate.total.leaks > 0) {
     const Leak& first = certificate.leaks.front();
-    std::cerr << certificate.total.leaks << " points stick out of their spheres, first point " << first.record
-              << ", by " << first.excess << ", out of child " << first.child << " of node " << first.node
-              << " on level " << cli::nameOf(first.level) << " of voxel " << first.voxel;
+    std::cerr << counted(certificate.total.leaks, "point sticks", "points stick")
+              << " out of their spheres, first point " << first.record << ", by " << first.excess << ", out of child "
+              << first.child << " of node " << first.node << " on level " << cli::nameOf(first.level) << " of voxel "
+              << first.voxel;
   }
   std::cerr << ": report this cloud as a defect of pcl_bsh\n";
 }
@@ -81,7 +85,7 @@ void complain(const Options& options, const std::string& name, const Certificate
 int run(const Options& options)
 {
   check(options);
-  const pcl::PCLPointCloud2 cloud = load(options.cloud);
+  const pcl::PCLPointCloud2 cloud = load(options.cloud, options.columns);
   const PointsView view = viewOf(cloud);
 
   bool holds = true;

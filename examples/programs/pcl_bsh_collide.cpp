@@ -20,6 +20,7 @@
 #include <pcl_bsh/filters/reports/distance_report.h>
 #include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/filters/surface_distances.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/question/warnings.h>
@@ -104,8 +105,9 @@ void write(const Options& options, const Scan& input, const TrajectoryResult& fo
 {
   cli::Step step("Writing " + options.output.string());
   if (!input.triangles.empty()) {
-    const std::size_t written = cli::writeSurface(options, {input.cloud, input.triangles}, input.viewpoint, found);
-    seconds += step.done(std::to_string(written) + " triangles");
+    const std::size_t written =
+        cli::writeSurface(options, {input.cloud, input.triangles}, input.facts.viewpoint, found);
+    seconds += step.done(counted(written, "triangle"));
     return;
   }
   pcl::PCLPointCloud2 cloud;
@@ -113,8 +115,8 @@ void write(const Options& options, const Scan& input, const TrajectoryResult& fo
     cloud = marked(options.input, input.cloud, newFields(options, found, distances));
   if (options.keep != Keep::flagged)
     cloud = select(options.distances ? cloud : input.cloud, viewOf(input.cloud), found.flags, options.keep);
-  io::writeCloud(options.output, cloud, input.viewpoint, input.las);
-  seconds += step.done(std::to_string(std::size_t{cloud.width} * cloud.height) + " points");
+  io::writeCloud(options.output, cloud, input.facts.viewpoint, input.facts.las);
+  seconds += step.done(counted(std::size_t{cloud.width} * cloud.height, "point"));
 }
 
 /// Of the density guard; none where it is not asked for, or the obstacle has no two places.
@@ -178,7 +180,7 @@ DistanceResult closestOf(const TrajectoryResult& found)
 TrajectoryResult alongPath(const Options& options, const std::vector<Eigen::Isometry3d>& poses,
                            const SphereHierarchy& a, const SphereHierarchy& b, cli::CollisionReport& report)
 {
-  cli::Step query("Following " + std::to_string(poses.size()) + " poses");
+  cli::Step query("Following " + counted(poses.size(), "pose"));
   TrajectoryRequest request;
   request.clearance = options.clearance;
   request.accuracy = options.accuracy;
@@ -204,7 +206,8 @@ TrajectoryResult alongPath(const Options& options, const std::vector<Eigen::Isom
 
 /// @param cover of the input, where it is a surface
 void warnOfQuestion(const Options& options, const std::vector<Eigen::Isometry3d>& poses, const SphereHierarchy& a,
-                    const SurfaceCover* cover, const SphereHierarchy& b, cli::CollisionReport& report)
+                    const SurfaceCover* cover, const SphereHierarchy& b, const io::Obstacle& obstacle,
+                    cli::CollisionReport& report)
 {
   const SurfaceCover* const surface = report.surface ? report.surface->cover().get() : nullptr;
   Question question{namedCloud(options.input.string(), a, cover), namedCloud(options.obstacle.string(), b, surface),
@@ -212,9 +215,7 @@ void warnOfQuestion(const Options& options, const std::vector<Eigen::Isometry3d>
   question.input.spacing = report.density.input;
   question.obstacle.spacing = report.density.obstacle;
   addTexts(warningsOf(question), report.warnings);
-  if (!report.surface) return;
-  for (std::string& remark : cli::warningsOf(*report.surface, options.obstacle))
-    addOnce(std::move(remark), report.warnings);
+  for (std::string& remark : cli::warningsOf(obstacle, options.obstacle)) addOnce(std::move(remark), report.warnings);
 }
 
 io::ClashQuestion clashQuestion(const Options& options)
@@ -241,6 +242,7 @@ std::string listClashes(const Options& options, const std::vector<Eigen::Isometr
                        .found = found,
                        .survey = {poses, extentOf(a.view())},
                        .unit = options.unit,
+                       .coordinate_system = report.coordinate_system,
                        .surface = report.surface ? &*report.surface : nullptr};
   if (earlier) {
     TrajectoryRequest motion;
@@ -296,18 +298,19 @@ Distances measure(const Options& options, const SphereHierarchy& a, const Sphere
   distances.field.assign(distances.found.a.distance.begin(), distances.found.a.distance.end());
   report.work += distances.found.a.work;
   report.work += distances.found.b.work;
-  report.seconds.distances = step.done(std::to_string(distances.found.a.measured) + " points");
+  report.seconds.distances = step.done(counted(distances.found.a.measured, "point"));
   return distances;
 }
 
 std::optional<io::DistanceReport> reportDistances(const Options& options, const SphereHierarchy& a,
                                                   const SphereHierarchy& b, const Distances& distances,
-                                                  const io::Obstacle* surface)
+                                                  const cli::CollisionReport& found)
 {
   if (!options.distances) return std::nullopt;
   const io::DistanceQuestion question = {options.input.string(), options.obstacle.string(),
                                          options.unit,           distancesRequest(options),
-                                         std::nullopt,           surface};
+                                         std::nullopt,           found.surface ? &*found.surface : nullptr,
+                                         found.coordinate_system};
   io::DistanceReport report = io::reportOf(question, {a}, {b, options.pose}, distances.found);
   if (options.distances->page) io::writeDistances(*options.distances->page, report);
   return report;
@@ -326,11 +329,12 @@ int collide(const Options& options)
   report.obstacle_uncertainty = options.obstacle_uncertainty;
 
   const Scan input = loadInput(options, report.seconds.load);
+  report.coordinate_system = input.facts.coordinate_system;
   const std::shared_ptr<const SurfaceCover> cover = coverOf(options, input, report.seconds.load, report.warnings);
   if (!cover && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
-  const io::Obstacle obstacle =
-      cli::loadObstacle(options.obstacle, options.surface, options.clearance, report.seconds.load);
+  const io::Obstacle obstacle = cli::loadObstacle(options.obstacle, options.surface, options.clearance,
+                                                  report.seconds.load, options.columns.of(options.obstacle));
   cli::requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
   const auto a = cli::build(cover ? cover->view() : viewOf(input.cloud), input.cloud.fields, options.input,
                             options.input_uncertainty, options.threads, report.seconds.build);
@@ -354,13 +358,14 @@ int collide(const Options& options)
   if (!report.surface) report.density.obstacle = spacingOf(b);
   report.colliding = found.colliding;
   report.voxels_total = a.statistics().voxels + b.statistics().voxels;
-  warnOfQuestion(options, poses, a, cover.get(), b, report);
+  for (const std::string& remark : input.facts.remarks)
+    addOnce(options.input.string() + ": " + remark, report.warnings);
+  warnOfQuestion(options, poses, a, cover.get(), b, obstacle, report);
 
   write(options, input, found, distances, report.seconds.write);
   std::string clashes;
   if (!options.clashes.empty()) clashes = listClashes(options, poses, a, b, found, earlier, report);
-  const std::optional<io::DistanceReport> measured =
-      reportDistances(options, a, b, distances, report.surface ? &*report.surface : nullptr);
+  const std::optional<io::DistanceReport> measured = reportDistances(options, a, b, distances, report);
   if (measured) report.distances = io::distanceJson(*measured);
   if (options.report) cli::writeReport(*options.report, report);
   summarise(options, report, clashes, measured);

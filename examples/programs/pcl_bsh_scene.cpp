@@ -13,6 +13,7 @@
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/scene_files/scene_file.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <algorithm>
 #include <chrono>
@@ -198,7 +199,8 @@ void tell(const io::SceneFile& file, const Options& options)
     return;
   }
   if (options.explain) cli::explain(file, std::cout);
-  if (options.validate) std::cout << file.path.string() << ": is valid: " << file.objects.size() << " objects\n";
+  if (options.validate)
+    std::cout << file.path.string() << ": is valid: " << counted(file.objects.size(), "object") << '\n';
 }
 
 void runScene(const io::SceneFile& file, const Options& options)
@@ -210,7 +212,7 @@ void runScene(const io::SceneFile& file, const Options& options)
   auto start = Clock::now();
   cli::Step loading("Loading clouds");
   io::SceneWorld world(file);
-  loading.done(std::to_string(world.points()) + " points");
+  loading.done(counted(world.points(), "point"));
   cli::warn(program, world.warnings());
   const double load_seconds = seconds(start);
   if (!options.json)

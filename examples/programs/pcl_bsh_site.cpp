@@ -11,6 +11,7 @@
 #include <pcl_bsh/files/one_line.h>
 #include <pcl_bsh/files/output_folder.h>
 #include <pcl_bsh/filters/text_files/small_letters.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/export_site.h>
 #include <pcl_bsh/site/export_vtk.h>
@@ -40,7 +41,7 @@ double shareOf(std::uint64_t done, std::uint64_t all)
 std::string rated(std::uint64_t points, double seconds)
 {
   const double millions = static_cast<double>(points) / std::max(seconds, 1e-3) / 1e6;
-  return std::to_string(points) + " points, " + std::to_string(static_cast<long>(millions * 10) / 10.0).substr(0, 5) +
+  return counted(points, "point") + ", " + std::to_string(static_cast<long>(millions * 10) / 10.0).substr(0, 5) +
          " million a second";
 }
 
@@ -76,6 +77,10 @@ int make(const Options& options)
   wanted.memory = options.memory;
   wanted.tile_points = options.tile_points;
   wanted.vertices_only = options.surface.vertices_only;
+  wanted.columns = [&](const std::filesystem::path& file) { return options.columns.of(file); };
+  wanted.remark = [](const std::filesystem::path& file, const std::vector<std::string>& remarks) {
+    cli::warnOfFile(cli::site_program, file, remarks);
+  };
   constexpr auto goes_on = "what is done was noted, and the same command goes on";
   wanted.progress = [&](sites::MakeStep step, std::uint64_t done, std::uint64_t all) {
     if (step != sites::MakeStep::count && all >= wanted.save_points) cli::setWhatStays(goes_on);
@@ -90,8 +95,8 @@ int make(const Options& options)
       throw std::runtime_error(std::string(error.what()) + "; " + goes_on);
     }
   }();
-  std::cout << "wrote a site of " << site.points << " points in " << site.tiles.size() << " tiles to "
-            << options.site.string() << '\n';
+  std::cout << "wrote a site of " << counted(site.points, "point") << " in " << counted(site.tiles.size(), "tile")
+            << " to " << options.site.string() << '\n';
   return 0;
 }
 
@@ -151,7 +156,8 @@ int info(const Options& options)
   }
   const TileRange range = rangeOf(site);
   std::cout << "points:  " << site.points << '\n'
-            << "tiles:   " << site.tiles.size() << ", of " << range.least << " to " << range.most << " points\n"
+            << "tiles:   " << site.tiles.size() << ", of " << range.least << " to " << counted(range.most, "point")
+            << '\n'
             << "spacing: " << range.finest << " to " << range.coarsest << " (medians of tiles)\n";
   if (site.bounds) std::cout << "bounds:  " << texted(site.bounds->low) << " to " << texted(site.bounds->high) << '\n';
   std::cout << "fields: ";
@@ -171,7 +177,7 @@ sites::Site checkedSite(const Options& options)
     step.share(shareOf(done, all));
     return true;
   });
-  step.done(std::to_string(site.tiles.size()) + " tiles");
+  step.done(counted(site.tiles.size(), "tile"));
   return site;
 }
 
@@ -183,7 +189,7 @@ int validate(const Options& options)
   if (options.json)
     cli::writeJson(std::cout, {{"site", name}, {"sound", true}, {"points", site.points}, {"tiles", site.tiles.size()}});
   else
-    std::cout << "sound: each of " << site.points << " points is there once, in its tile\n";
+    std::cout << "sound: each of " << counted(site.points, "point") << " is there once, in its tile\n";
   return 0;
 }
 
@@ -247,7 +253,7 @@ int write(const Options& options)
       sites::exportCloud(site, names[i], wanted);
     else
       sites::exportSource(site, i, names[i], wanted);
-    step.done(std::to_string(one_cloud ? site.points : site.sources[i].points) + " points");
+    step.done(counted(one_cloud ? site.points : site.sources[i].points, "point"));
     std::cout << "wrote " << names[i].string() << '\n';
   }
   return 0;

@@ -10,6 +10,7 @@
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -44,7 +45,7 @@ void write(const fs::path& path, const std::vector<Eigen::Vector3f>& points)
   io::allocate(cloud, static_cast<std::uint32_t>(points.size()));
   if (!points.empty()) std::memcpy(cloud.data.data(), points.data(), cloud.data.size());
   io::writeCloud(path, cloud);
-  step.done(std::to_string(points.size()) + " points");
+  step.done(counted(points.size(), "point"));
 }
 
 /// The names of the scan's files: one PLY, or so many PCD.
@@ -79,7 +80,7 @@ public:
   {
     while (piece_ < names_.size()) next();
     file_->commit();
-    step_.done(std::to_string(points_) + " points");
+    step_.done(counted(points_, "point"));
   }
 
 private:
@@ -124,15 +125,15 @@ int makeTunnel(const fs::path& folder, double scale, bool tight, unsigned pieces
 
   cli::Step step("Making tunnel and wagon");
   const tunnel::Passage run = tunnel::makePassage(size, tight ? tunnel::Course::tight : tunnel::Course::winding);
-  step.done(std::to_string(run.poses.size()) + " poses");
+  step.done(counted(run.poses.size(), "pose"));
   if (pieces > 0)
     writePieces(scan, scan_points, streams ? nullptr : &run.scan);
   else
     write(scan.front(), run.scan);
   write(folder / "wagon.ply", run.wagon);
   io::writePoses(folder / "poses.txt", run.poses);
-  std::cout << "wrote a tunnel of " << scan_points << " points, a wagon of " << run.wagon.size() << " and "
-            << run.poses.size() << " poses to " << folder.string() << '\n';
+  std::cout << "wrote a tunnel of " << counted(scan_points, "point") << ", a wagon of " << run.wagon.size() << " and "
+            << counted(run.poses.size(), "pose") << " to " << folder.string() << '\n';
   return 0;
 }
 

@@ -9,6 +9,7 @@
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/text_files/number_text.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <cstdio>
 #include <cstring>
@@ -61,8 +62,8 @@ int makeRobot(const fs::path& folder, std::size_t frames)
   }
   files::replaceFile(folder / "states.csv", [&](std::ostream& out) { out << names << '\n' << lines; });
   step.done(std::to_string(frames) + " frames");
-  std::cout << "wrote a robot of " << robot.links.size() << " links and " << frames << " frames to " << folder.string()
-            << '\n';
+  std::cout << "wrote a robot of " << counted(robot.links.size(), "link") << " and " << counted(frames, "frame")
+            << " to " << folder.string() << '\n';
   return 0;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cuts the robot that scans out of its scans: links from a URDF, where the joints' values put them.
+#include "cli/columns.h"
 #include "cli/command_line.h"
 #include "cli/json_output.h"
 #include "cli/step.h"
@@ -13,6 +14,7 @@
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/filters/text_files/format_error.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/point3.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -56,6 +58,7 @@ struct Options {
   std::optional<double> tolerance;
   bool flag = false;
   std::optional<fs::path> report;
+  io::ColumnChoice columns;
   cli::CommandFiles files;
 };
 
@@ -84,9 +87,9 @@ std::vector<JointValues> statesOf(const Options& options)
   }
   if (states.size() == 1) states.resize(options.clouds.size(), states[0]);
   if (states.size() != options.clouds.size())
-    throw cli::UsageError("--states: " + options.states.string() + " has " + std::to_string(states.size()) +
-                          " lines of values for " + std::to_string(options.clouds.size()) +
-                          " clouds: give one line for each cloud, or one for all");
+    throw cli::UsageError("--states: " + options.states.string() + " has " + counted(states.size(), "line") +
+                          " of values for " + counted(options.clouds.size(), "cloud") +
+                          ": give one line for each cloud, or one for all");
   return states;
 }
 
@@ -119,9 +122,9 @@ pcl::PCLPointCloud2 withoutFlagged(const pcl::PCLPointCloud2& cloud, const Point
 Json filterCloud(const Options& options, const std::string& name, const JointValues& values, std::size_t frame,
                  self_filter::SelfFilter& filter)
 {
-  io::Viewpoint viewpoint;
-  io::LasHeaderPtr las;
-  const pcl::PCLPointCloud2 cloud = io::readCloud(name, &viewpoint, &las);
+  io::CloudFacts facts;
+  const pcl::PCLPointCloud2 cloud = io::readCloud(name, &facts, options.columns.of(name));
+  cli::warnOfFile(program, name, facts.remarks);
   const PointsView view = viewOf(cloud);
   const Eigen::Isometry3d T_scan_root = filter.robot().poses(values)[frame].inverse();
   const auto start = std::chrono::steady_clock::now();
@@ -136,7 +139,7 @@ Json filterCloud(const Options& options, const std::string& name, const JointVal
   }
   io::writeCloud(outputOf(options, name),
                  options.flag ? withField(cloud, collision_field_name, flags) : withoutFlagged(cloud, view, flags),
-                 viewpoint, las);
+                 facts.viewpoint, facts.las);
   return {{"cloud", name},
           {"points", flags.size()},
           {"robot", robot},
@@ -164,7 +167,7 @@ int run(const Options& options)
 
   cli::Step covering("Covering the links");
   self_filter::SelfFilter filter(robot, options.settings);
-  covering.done(std::to_string(filter.balls()) + " balls, " + std::to_string(filter.solids()) + " solids");
+  covering.done(counted(filter.balls(), "ball") + ", " + counted(filter.solids(), "solid"));
 
   const files::OutputFolder folder(options.out);
   Json report = {
@@ -174,8 +177,9 @@ int run(const Options& options)
   for (std::size_t i = 0; i < options.clouds.size(); ++i) {
     report["clouds"].push_back(filterCloud(options, options.clouds[i], states[i], frame, filter));
     const Json& told = report["clouds"].back();
-    options.files.summary() << options.clouds[i] << ": " << told["robot"] << " of " << told["points"]
-                            << " points are the robot, " << told["no_returns"] << " are no return, found in "
+    options.files.summary() << options.clouds[i] << ": " << told["robot"] << " of "
+                            << counted(told["points"].get<std::uint64_t>(), "point is", "points are") << " the robot, "
+                            << counted(told["no_returns"].get<std::uint64_t>(), "is", "are") << " no return, found in "
                             << 1000 * told["seconds"].get<double>() << " ms\n";
   }
   if (options.report) cli::writeJson(*options.report, report);
@@ -226,7 +230,10 @@ int main(int argc, char** argv)
         ->capture_default_str();
     app.add_option("--report", options.report, "JSON file for the results and what they cost;\n- is standard output")
         ->type_name("FILE");
+    cli::ColumnOptions columns;
+    columns.addTo(app);
     if (!cli::understood(app, program, argc, argv)) return 0;
+    options.columns = columns.read({options.clouds.begin(), options.clouds.end()});
     options.settings.tolerance = options.tolerance.value_or(std::max(0.001, options.settings.padding / 4));
     check(options);
     return run(options);

@@ -9,6 +9,7 @@
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/filters/surface_distances.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/question/warnings.h>
 #include <pcl_bsh/surface/triangle_answers.h>
 
@@ -29,7 +30,10 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, cons
   cli::Step step("Loading " + file.string());
   io::SurfaceSettings settings = options.surface;
   settings.triangles_apart = role == ViewedCloud::Role::scan;
-  io::Mesh mesh = settings.vertices_only ? io::Mesh{io::readCloud(file), {}} : io::readMesh(file);
+  io::CloudFacts facts;
+  const io::ColumnNames columns = options.columns.of(file);
+  io::Mesh mesh =
+      settings.vertices_only ? io::Mesh{io::readCloud(file, &facts, columns), {}} : io::readMesh(file, &facts, columns);
   viewed.face_values = std::move(mesh.face_values);
   const io::Obstacle read = io::obstacleOf(file, std::move(mesh), settings, options.clearance.value_or(0.0));
   HierarchyOptions how;
@@ -37,11 +41,10 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, cons
   viewed.hierarchy = std::make_shared<SphereHierarchy>(read.view(), how);
   viewed.cloud = read.cloud();
   if (read.isSurface()) viewed.surface = read;
-  step.done(read.isSurface() ? std::to_string(read.triangles()->size()) + " triangles"
-                             : std::to_string(viewed.points().count) + " points");
+  step.done(read.isSurface() ? counted(read.triangles()->size(), "triangle") : counted(viewed.points().count, "point"));
+  cli::warnOfFile(program, file, facts.remarks);
   const bool asks = options.clouds.size() > 1 || options.model; // else nothing depends on the balls
-  for (const std::string& remark : asks ? read.remarks() : std::vector<std::string>())
-    cli::warn(program, {file.string() + ": " + remark});
+  if (asks) cli::warnOfFile(program, file, read.remarks());
   return viewed;
 }
 
@@ -56,7 +59,7 @@ CloudsContent::CloudsContent(const Options& options) : FieldContent(options), po
   }
   if (options.step >= poses_.size())
     throw cli::UsageError("--step: " + std::to_string(options.step) + ": the trajectory has " +
-                          std::to_string(poses_.size()) + " poses, counted from 0");
+                          counted(poses_.size(), "pose") + ", counted from 0");
   for (const std::filesystem::path& file : options.clouds)
     viewed_clouds_.push_back(
         load(file, viewed_clouds_.empty() ? ViewedCloud::Role::scan : ViewedCloud::Role::obstacle, options));
@@ -231,7 +234,7 @@ std::vector<std::int32_t> CloudsContent::firstPoses() const
   std::vector<std::int32_t> first =
       options_.clearance ? std::vector<std::int32_t>(scan().parts(), -1) : FieldContent::firstPoses();
   if (options_.clearance) {
-    cli::Step step("Following " + std::to_string(steps()) + " poses");
+    cli::Step step("Following " + counted(steps(), "pose"));
     TrajectoryRequest asked = along();
     asked.first_poses = true;
     for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
@@ -243,7 +246,7 @@ std::vector<std::int32_t> CloudsContent::firstPoses() const
         if (pose >= 0 && (first[i] < 0 || pose < first[i])) first[i] = pose;
       }
     }
-    step.done(std::to_string(steps()) + " poses");
+    step.done(counted(steps(), "pose"));
   }
   return *(first_poses_ = std::move(first));
 }

@@ -170,7 +170,10 @@ Coloring coloringOf(const ViewContent& content, const StepCollisions& collisions
 {
   if (content.options().color) return *content.options().color;
   if (collisions.known) return Coloring::collision;
-  return content.scan().colors() ? Coloring::rgb : Coloring::height;
+  // Formats with a place for colours are used without them: all is black then.
+  const auto colors = content.scan().colors();
+  const bool seen = colors && std::any_of(colors->begin(), colors->end(), [](const auto& c) { return c != Color{}; });
+  return seen ? Coloring::rgb : Coloring::height;
 }
 
 void paint(CloudActors clouds, ValueBar& bar, const ViewContent& content, Coloring coloring)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
 
+#include "cli/columns.h"
 #include "cli/command_line.h"
 #include "cli/pose.h"
 #include "cli/surface_options.h"
@@ -220,6 +221,8 @@ std::optional<Options> parseOptions(int argc, char** argv)
       ->type_name("D")
       ->transform(cli::number<double>(cli::give_length));
   cli::addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
+  cli::ColumnOptions columns;
+  columns.addTo(app);
   app.add_option("--color", options.color,
                  "collision (default where known), distance, first_pose, height,\nrgb or intensity; distance without "
                  "--clearance is of all points,\nwith a histogram")
@@ -281,6 +284,9 @@ std::optional<Options> parseOptions(int argc, char** argv)
   }
   const auto path = [](const std::optional<std::filesystem::path>& file) { return file.value_or(""); };
   for (const std::filesystem::path& cloud : options.clouds) options.files.reads("CLOUD", cloud);
+  std::vector<std::filesystem::path> read = options.clouds;
+  if (options.model) read.push_back(*options.model);
+  options.columns = columns.read(read);
   options.files.reads("--scene", path(options.scene)).reads("--model", path(options.model));
   options.files.reads("--trajectory", path(options.trajectory)).readsPose("--pose", pose);
   options.files.writes("--screenshot", path(options.screenshot)).writes("--export", path(options.export_to));

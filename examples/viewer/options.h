@@ -56,6 +56,7 @@ struct Options {
   Camera camera;
   std::optional<std::filesystem::path> export_to;
   unsigned threads = 0;
+  io::ColumnChoice columns;
   cli::CommandFiles files; ///< but for a scene's clouds
 };
 

@@ -7,6 +7,7 @@
 #include "export.h"
 #include "text.h"
 
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/vtk/cloud_data.h>
 #include <pcl_bsh/vtk/path_data.h>
 
@@ -128,8 +129,7 @@ void RenderView::writeTexts()
   if (extras_.level) title += "\nspheres of level " + std::to_string(*extras_.level);
   vtkIdType left_out = 0;
   for (const auto& cloud : clouds_) left_out += cloud->leftOut();
-  if (left_out > 0)
-    title += "\nfar off and not drawn: " + std::to_string(left_out) + (left_out == 1 ? " point" : " points");
+  if (left_out > 0) title += "\nfar off and not drawn: " + counted(left_out, "point");
   caption_.setTitle(title);
   caption_.setLegend(legend());
 }

@@ -6,6 +6,7 @@
 #include "text.h"
 
 #include <pcl_bsh/filters/scene_files/scene_file.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <algorithm>
 #include <limits>
@@ -91,7 +92,7 @@ SceneContent::SceneContent(const Options& options) : ViewContent(options), file_
   cli::warn(program, file_.warnings);
   cli::Step step("Loading the clouds of " + name());
   running_scene_ = std::make_unique<io::SceneWorld>(file_);
-  step.done(std::to_string(running_scene_->points()) + " points");
+  step.done(counted(running_scene_->points(), "point"));
   cli::warn(program, running_scene_->warnings());
   addClouds();
   if (points_ == 0) throw std::invalid_argument(file_.path.string() + ": has no finite point to show");
@@ -161,7 +162,7 @@ const SceneContent::StepState& SceneContent::at(std::size_t step) const
     running_scene_->deform(running_scene_->scene().time() + file_.dt);
     states_.push_back(stateAfter(running_scene_->scene().step(file_.dt)));
   }
-  running.done(std::to_string(step + 1 - from) + " steps");
+  running.done(counted(step + 1 - from, "step"));
   return states_[step];
 }
 
@@ -203,9 +204,10 @@ StepCollisions SceneContent::collisions(std::size_t step) const
 std::string SceneContent::heading(const StepCollisions& collisions, std::size_t step) const
 {
   std::ostringstream text;
-  text << name() << ": " << grouped(file_.objects.size()) << " objects, " << grouped(points_) << " points, "
-       << grouped(collisions.colliding) << " collide  (clearance " << lengthOf(clearance(), options_.unit) << ")\nstep "
-       << step << " of 0.." << file_.steps << ", " << shortest(static_cast<double>(step) * file_.dt) << " s";
+  text << name() << ": " << groupedCount(file_.objects.size(), "object") << ", " << groupedCount(points_, "point")
+       << ", " << grouped(collisions.colliding) << " collide  (clearance " << lengthOf(clearance(), options_.unit)
+       << ")\nstep " << step << " of 0.." << file_.steps << ", " << shortest(static_cast<double>(step) * file_.dt)
+       << " s";
   const std::vector<std::string>& contacts = at(step).contacts;
   for (std::size_t i = 0; i < std::min(contacts.size(), most_contacts); ++i) text << '\n' << contacts[i];
   if (contacts.size() > most_contacts) text << "\n... " << contacts.size() - most_contacts << " more meet something";

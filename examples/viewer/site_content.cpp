@@ -7,6 +7,7 @@
 
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <utility>
@@ -79,23 +80,23 @@ SiteContent::SiteContent(const Options& options) : FieldContent(options), site_(
     throw files::FileError(file, "has no finite point to show", "make the site of others");
   const std::uint64_t points = overview.records.count;
   if (points > options.budget)
-    throw cli::UsageError("--budget: " + std::to_string(options.budget) + " points: the overview alone has " +
+    throw cli::UsageError("--budget: " + counted(options.budget, "point") + ": the overview alone has " +
                           std::to_string(points) + ": give more");
   tile_points_ = points == site_.points ? 0 : options.budget - points; // an overview of all points is all there is
   viewed_clouds_.push_back(std::move(overview));
-  step.done(std::to_string(points) + " points");
+  step.done(counted(points, "point"));
   std::size_t large = 0;
   for (const sites::Tile& tile : site_.tiles) large += points < site_.points && tile.points > tile_points_ ? 1 : 0;
   if (large > 0)
-    cli::warn(program,
-              {site_.folder.string() + ": " + std::to_string(large) + " of " + std::to_string(site_.tiles.size()) +
-               " tiles have more points than the overview leaves of the budget, and are not drawn: give a "
-               "greater --budget"});
+    cli::warn(program, {site_.folder.string() + ": " + std::to_string(large) + " of " +
+                        counted(site_.tiles.size(), "tile has", "tiles have") +
+                        " more points than the overview leaves of the budget, and are not drawn: give a "
+                        "greater --budget"});
 }
 
 std::string SiteContent::heading(const StepCollisions& /*collisions*/, std::size_t /*step*/) const
 {
-  return name() + ": " + grouped(site_.points) + " points in " + grouped(site_.tiles.size()) + " tiles";
+  return name() + ": " + groupedCount(site_.points, "point") + " in " + groupedCount(site_.tiles.size(), "tile");
 }
 
 std::unique_ptr<ViewContent> SiteContent::readTile(std::size_t tile, const SharedColors& alike) const

@@ -2,6 +2,8 @@
 // Numbers as they stand in titles.
 #pragma once
 
+#include <pcl_bsh/geometry/counted.h>
+
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -14,6 +16,12 @@ inline std::string grouped(std::size_t number)
   std::string text = std::to_string(number);
   for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, " ");
   return text;
+}
+
+/// "1 234 567 points".
+inline std::string groupedCount(std::size_t number, const std::string& one, const std::string& many = {})
+{
+  return grouped(number) + ' ' + nounOf(number, one, many);
 }
 
 /// Six digits at most.

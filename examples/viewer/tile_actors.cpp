@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tile_actors.h"
 
+#include <pcl_bsh/geometry/counted.h>
+
 #include "coloring.h"
 #include "text.h"
 
@@ -107,8 +109,8 @@ std::optional<TileActors::Part> TileActors::partOf(const vtkProp* prop, vtkIdTyp
 std::string TileActors::text() const
 {
   if (site_.tilePoints() == 0) return "all points are drawn";
-  return "drawn: " + grouped(site_.scan().parts()) + " points of the overview, " + grouped(choice_.heldPoints()) +
-         " of " + std::to_string(choice_.held()) + " tiles" +
+  return "drawn: " + groupedCount(site_.scan().parts(), "point") + " of the overview, " +
+         grouped(choice_.heldPoints()) + " of " + counted(choice_.held(), "tile") +
          (choice_.held() < choice_.wanted() ? ", " + std::to_string(choice_.wanted() - choice_.held()) + " to load"
                                             : "");
 }

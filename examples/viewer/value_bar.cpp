@@ -6,6 +6,7 @@
 #include <vtkTextProperty.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace pcl_bsh::view {
 
@@ -18,7 +19,17 @@ double shareOf(int width)
   return std::clamp(pixels / width, usual, most);
 }
 
+constexpr int usual_labels = 5;
+
 } // namespace
+
+std::string labelFormat(double low, double high, int labels)
+{
+  constexpr int least = 3, most = 17;
+  const double step = (high - low) / (labels - 1);
+  const double digits = std::ceil(std::log10(std::max(std::abs(low), std::abs(high)) / step)) + 1.0;
+  return "%-." + std::to_string(digits > least ? static_cast<int>(std::min<double>(digits, most)) : least) + "g";
+}
 
 ValueBar::ValueBar(vtkRenderer& renderer, int width)
 : share_(shareOf(width)),
@@ -28,7 +39,6 @@ ValueBar::ValueBar(vtkRenderer& renderer, int width)
   bar_->SetPosition(1.0 - share_, 0.3);
   bar_->SetWidth(0.74 * share_);
   bar_->SetHeight(0.45);
-  bar_->SetNumberOfLabels(5);
   bar_->SetVerticalTitleSeparation(10);
   for (vtkTextProperty* look : {bar_->GetTitleTextProperty(), bar_->GetLabelTextProperty()}) {
     setLook(*look, text_size - 2);
@@ -42,9 +52,10 @@ void ValueBar::show(vtkLookupTable& table, const std::string& title, bool counts
 {
   bar_->SetLookupTable(&table);
   bar_->SetTitle(title.c_str());
-  bar_->SetLabelFormat(counts ? "%.0f" : "%-.3g");
   const double* const range = table.GetTableRange();
-  bar_->SetNumberOfLabels(counts ? static_cast<int>(std::clamp(range[1] - range[0] + 1.0, 2.0, 5.0)) : 5);
+  bar_->SetLabelFormat(counts ? "%.0f" : labelFormat(range[0], range[1], usual_labels).c_str());
+  bar_->SetNumberOfLabels(counts ? static_cast<int>(std::clamp(range[1] - range[0] + 1.0, 2.0, 1.0 * usual_labels))
+                                 : usual_labels);
   bar_->VisibilityOn();
 }
 

@@ -13,6 +13,10 @@
 
 namespace pcl_bsh::view {
 
+/// How the labels of a bar from `low` to `high` are written, for printf(): with as many digits as tell them apart,
+/// three at least.
+std::string labelFormat(double low, double high, int labels);
+
 /// Which colour stands for which value, with the unit, at the right edge.
 class ValueBar {
 public:

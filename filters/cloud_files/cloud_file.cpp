@@ -3,6 +3,7 @@
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/cloud_files/las.h>
+#include <pcl_bsh/filters/cloud_files/las_notes.h>
 #include <pcl_bsh/filters/cloud_files/mesh_faces.h>
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/cloud_files/ply.h>
@@ -38,30 +39,39 @@ constexpr std::array readable = {".pcd", ".ply", ".las", ".obj", ".off", ".stl",
 /// What a file holds.
 struct Contents {
   pcl::PCLPointCloud2 cloud;
-  Viewpoint viewpoint = no_viewpoint;
-  LasHeaderPtr las;
+  CloudFacts facts = {};
 };
 
 Contents readAll(LasReader reader)
 {
-  Contents contents;
-  contents.cloud = readLas(reader);
-  contents.las = std::make_shared<LasHeader>(reader.header());
+  Contents contents = {readLas(reader)};
+  const auto header = std::make_shared<const LasHeader>(reader.header());
+  contents.facts.coordinate_system = coordinateSystemOf(*header);
+  contents.facts.remarks = remarksOn(header->block, header->block.endOfPoints() + header->behind_points.size());
+  contents.facts.las = header;
   return contents;
 }
 
-Contents parse(const std::string& extension, std::string_view file)
+void requireColumnText(const std::string& extension, const ColumnNames& columns)
 {
+  if (columns.empty() || isColumnText(extension)) return;
+  throw FormatError("is a " + extension + ", which names its fields itself",
+                    "give names of columns for .xyz, .txt and .csv files alone");
+}
+
+Contents parse(const std::string& extension, std::string_view file, const ColumnNames& columns)
+{
+  requireColumnText(extension, columns);
   if (extension == ".las") return readAll(LasReader(std::make_unique<HeldBytes>(file)));
   Contents contents;
   if (extension == ".pcd") {
-    contents.cloud = parsePcd(file, contents.viewpoint);
+    contents.cloud = parsePcd(file, contents.facts.viewpoint);
   }
   else if (extension == ".ply") {
-    contents.cloud = parsePly(file, contents.viewpoint);
+    contents.cloud = parsePly(file, contents.facts.viewpoint);
   }
   else if (extension == ".ptx") {
-    contents.cloud = parsePtx(file, contents.viewpoint);
+    contents.cloud = parsePtx(file, contents.facts.viewpoint);
   }
   else if (extension == ".obj") {
     contents.cloud = parseObj(file);
@@ -76,7 +86,7 @@ Contents parse(const std::string& extension, std::string_view file)
     contents.cloud = parsePts(file);
   }
   else {
-    contents.cloud = parseColumns(file);
+    contents.cloud = parseColumns(file, columns, &contents.facts.remarks);
   }
   return contents;
 }
@@ -90,8 +100,10 @@ pcl::PCLPointCloud2 lasHeader(const LasReader& reader)
   return header;
 }
 
-pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view file)
+pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view file, bool whole,
+                                const ColumnNames& columns)
 {
+  requireColumnText(extension, columns);
   if (extension == ".pcd") return parsePcdHeader(file);
   if (extension == ".ply") return parsePlyHeader(file);
   if (extension == ".obj") return parseObjHeader(file);
@@ -99,7 +111,7 @@ pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view f
   if (extension == ".stl") return parseStlHeader(file);
   if (extension == ".pts") return parsePtsHeader(file);
   if (extension == ".ptx") return parsePtxHeader(file);
-  return parseColumnNames(file);
+  return parseColumnNames(file, whole, columns);
 }
 
 void print(const std::string& extension, std::ostream& out, const pcl::PCLPointCloud2& cloud,
@@ -171,12 +183,11 @@ bool isLasFile(const std::filesystem::path& path)
 }
 
 /// The cloud, once it is known to be usable.
-pcl::PCLPointCloud2 checked(Contents contents, Viewpoint* viewpoint, LasHeaderPtr* las)
+pcl::PCLPointCloud2 checked(Contents contents, CloudFacts* facts)
 {
   requireCoordinates(contents.cloud);
   setDense(contents.cloud);
-  if (viewpoint != nullptr) *viewpoint = contents.viewpoint;
-  if (las != nullptr) *las = std::move(contents.las);
+  if (facts != nullptr) *facts = std::move(contents.facts);
   return std::move(contents.cloud);
 }
 
@@ -188,39 +199,42 @@ pcl::PCLPointCloud2 checkedHeader(pcl::PCLPointCloud2 header)
   return header;
 }
 
-pcl::PCLPointCloud2 headerOf(const std::filesystem::path& path, const FileBytes& file)
+pcl::PCLPointCloud2 headerOf(const std::filesystem::path& path, const FileBytes& file, const ColumnNames& columns)
 {
   const std::string extension = readableExtension(path, file.view());
-  return naming(path, [&] { return checkedHeader(parseHeader(extension, file.view())); });
+  return naming(path, [&] { return checkedHeader(parseHeader(extension, file.view(), file.isWhole(), columns)); });
 }
 
 } // namespace
 
-pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint, LasHeaderPtr* las)
+pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns)
 {
   if (isLasFile(path)) {
-    return naming(path, [&] { return checked(readAll(LasReader(openBytes(path))), viewpoint, las); });
+    return naming(path, [&] {
+      requireColumnText(".las", columns);
+      return checked(readAll(LasReader(openBytes(path))), facts);
+    });
   }
   const FileBytes file(path);
   const std::string extension = readableExtension(path, file.view());
-  return naming(path, [&] { return checked(parse(extension, file.view()), viewpoint, las); });
+  return naming(path, [&] { return checked(parse(extension, file.view(), columns), facts); });
 }
 
-pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, Viewpoint* viewpoint)
+pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts)
 {
   const FileBytes file(path);
   return naming(path, [&] {
     Contents contents;
-    contents.cloud = parsePtx(file.view(), contents.viewpoint, scan);
-    return checked(std::move(contents), viewpoint, nullptr);
+    contents.cloud = parsePtx(file.view(), contents.facts.viewpoint, scan);
+    return checked(std::move(contents), facts);
   });
 }
 
-Mesh readMesh(const std::filesystem::path& path, Viewpoint* viewpoint, LasHeaderPtr* las)
+Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns)
 {
   Mesh mesh;
   if (isLasFile(path)) {
-    mesh.vertices = readCloud(path, viewpoint, las);
+    mesh.vertices = readCloud(path, facts, columns);
     return mesh;
   }
   const FileBytes file(path);
@@ -228,15 +242,16 @@ Mesh readMesh(const std::filesystem::path& path, Viewpoint* viewpoint, LasHeader
   return naming(path, [&] {
     Contents contents;
     Polygons faces;
+    requireColumnText(extension, columns);
     if (extension == ".stl")
       contents.cloud = parseStl(file.view(), &mesh.triangles);
     else if (extension == ".ply")
-      contents.cloud = parsePly(file.view(), contents.viewpoint, &faces);
+      contents.cloud = parsePly(file.view(), contents.facts.viewpoint, &faces);
     else
-      contents = parse(extension, file.view());
+      contents = parse(extension, file.view(), columns);
     if (extension == ".obj") faces = parseObjFaces(file.view());
     if (extension == ".off") faces = parseOffFaces(file.view());
-    mesh.vertices = checked(std::move(contents), viewpoint, las);
+    mesh.vertices = checked(std::move(contents), facts);
     for (const Triangle& triangle : trianglesOf(faces, viewOf(mesh.vertices), &mesh.face_values))
       mesh.triangles.push_back(triangle);
     return std::move(mesh);
@@ -249,24 +264,27 @@ pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::si
   return naming(path, [&] { return parsePtxHeader(file.view(), scan); });
 }
 
-pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path)
+pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const ColumnNames& columns)
 {
   if (isPipe(path)) {
     throw files::FileError(path, "is a pipe, whose header and points cannot be read one after the other",
                            "save the cloud to a file first");
   }
   if (isLasFile(path)) {
-    return naming(path, [&] { return checkedHeader(lasHeader(LasReader(openBytes(path)))); });
+    return naming(path, [&] {
+      requireColumnText(".las", columns);
+      return checkedHeader(lasHeader(LasReader(openBytes(path))));
+    });
   }
   constexpr std::size_t usual = std::size_t{1} << 16;
   const FileBytes beginning(path, usual);
   try {
-    return headerOf(path, beginning);
+    return headerOf(path, beginning, columns);
   }
   catch (const files::FileError&) {
     if (beginning.isWhole()) throw;
   }
-  return headerOf(path, FileBytes(path)); // a long header, or other elements before the vertices
+  return headerOf(path, FileBytes(path), columns); // a long header, or one that rows decide
 }
 
 void requireWritableCloud(const std::filesystem::path& path)

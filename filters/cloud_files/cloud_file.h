@@ -9,6 +9,7 @@
 #pragma once
 
 #include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/filters/text_files/column_names.h>
 #include <pcl_bsh/surface/surface_cover.h>
 
 #include <pcl/PCLPointCloud2.h>
@@ -24,15 +25,24 @@
 
 namespace pcl_bsh::io {
 
-/// Where the sensor stood, as PCD's VIEWPOINT line has it: tx ty tz qw qx qy qz. Points are not moved by it. PLY's
-/// element `camera` holds it as a position and a matrix, so that the quaternion comes back to within rounding and sign.
-using Viewpoint = std::array<float, 7>;
+/// Where the sensor stood, as PCD's VIEWPOINT line has it: tx ty tz qw qx qy qz. Points are not moved by it. All
+/// formats that hold it keep every bit, but the rotation of a PTX file, which is a matrix and comes back to within
+/// rounding and sign.
+using Viewpoint = std::array<double, 7>;
 inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 
 /// What a LAS file says beside its points: scale and offset, version, records of the coordinate system and others. For
 /// writeCloud(), which keeps it. Null for other formats.
 struct LasHeader;
 using LasHeaderPtr = std::shared_ptr<const LasHeader>;
+
+/// What a file says beside its points.
+struct CloudFacts {
+  Viewpoint viewpoint = no_viewpoint;    ///< of .pcd, .ply, .ptx
+  LasHeaderPtr las = nullptr;            ///< of .las
+  std::string coordinate_system = {};    ///< as a .las names it; empty where it does not
+  std::vector<std::string> remarks = {}; ///< what users should know of how it was read, without the file's name
+};
 
 /// Reads the points of a file; the format is told by its extension, in any case of letters.
 ///
@@ -45,10 +55,8 @@ using LasHeaderPtr = std::shared_ptr<const LasHeader>;
 /// .pts .ptx   Leica's scans (scan_text.h): intensity, colours; of PTX, all scans in their common frame, the scanner's
 ///             pose, and NaN where it saw nothing; x y z as float64
 /// .xyz .txt .csv  a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says;
-/// x y
-/// z
-///             and then column_4, column_5, ... as float64, unless the first line, or a comment before it, names the
-///             columns; comments start with # or //
+///             x y z and then column_4, column_5, ... as float64, unless `columns`, the first line or a comment before
+///             it names the columns (column_names.h); comments start with # or //
 ///
 /// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY, OFF or LAS file does, and
 /// columns otherwise.
@@ -57,15 +65,16 @@ using LasHeaderPtr = std::shared_ptr<const LasHeader>;
 /// what files call them, and what stays as it is, says layOutForPcl() in pcl_names.h. The cloud has float32 or float64
 /// x y z, at most 2^31 - 1 points, and is_dense as PCL defines it. A file that says it holds no points is an empty
 /// cloud.
-/// @param viewpoint if not null, set to the file's (PCD, PLY, PTX), or to no_viewpoint
-/// @param las if not null, set to the header of a LAS file, or to null
-/// @throws files::FileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z
-pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr,
-                              LasHeaderPtr* las = nullptr);
+/// @param facts if not null, set to what the file says beside its points
+/// @param columns of .xyz, .txt and .csv; empty: as the file says
+/// @throws files::FileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z;
+///   for columns of another format
+pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts = nullptr,
+                              const ColumnNames& columns = {});
 
 /// Only one of the scans of a .ptx file, as an organised cloud. Throws as readCloud() does.
 /// @param scan from 0
-pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, Viewpoint* viewpoint = nullptr);
+pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts = nullptr);
 
 /// The fields that readPtxScan() makes. Throws as readCloud() does.
 pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan);
@@ -85,11 +94,11 @@ struct Mesh {
 
 /// Reads the faces, too, of .obj, .off, .ply and .stl; of others the points alone. Polygons are cut into triangles.
 /// Throws as readCloud() does, and where a face names a vertex that is not there.
-Mesh readMesh(const std::filesystem::path& path, Viewpoint* viewpoint = nullptr, LasHeaderPtr* las = nullptr);
+Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts = nullptr, const ColumnNames& columns = {});
 
 /// The fields of a file's cloud and, where its header says so, the number of its points; the points are not read.
 /// Throws as readCloud() does for what a header can tell, and for a pipe.
-pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path);
+pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const ColumnNames& columns = {});
 
 /// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .las (las.h), .xyz, .txt and .csv (named columns)
 /// or .obj (vertices), .pts or .ptx (scan_text.h), with the names that readers of the format expect: nx ny nz, and a

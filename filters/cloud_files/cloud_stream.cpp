@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/cloud_files/cloud_stream.h>
+#include <pcl_bsh/filters/cloud_files/las_notes.h>
 #include <pcl_bsh/filters/cloud_files/las_reader.h>
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/text_files/byte_source.h>
 #include <pcl_bsh/filters/text_files/file_bytes.h>
 #include <pcl_bsh/filters/text_files/format_error.h>
 #include <pcl_bsh/filters/text_files/small_letters.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <algorithm>
 #include <optional>
@@ -24,6 +26,7 @@ public:
 
   const pcl::PCLPointCloud2& header() const override { return reader_.cloudHeader(); }
   std::uint64_t size() const override { return reader_.size(); }
+  std::vector<std::string> remarks() const override { return remarksOn(reader_.block(), fs::file_size(path_)); }
   std::size_t read(std::uint8_t* records, std::size_t most) override
   {
     try {
@@ -48,7 +51,7 @@ public:
     const std::uint64_t wanted = size_ * header_.point_step, there = file_->size() - std::min(file_->size(), at_);
     if (wanted > there) {
       throw files::FileError(path,
-                             "is truncated: its header promises " + std::to_string(size_) + " points, " +
+                             "is truncated: its header promises " + counted(size_, "point") + ", " +
                                  std::to_string(there / header_.point_step) + " are there",
                              remedy_for_damage);
     }
@@ -76,7 +79,9 @@ private:
 
 class HeldCloud : public CloudStream {
 public:
-  explicit HeldCloud(const fs::path& path) : cloud_(readCloud(path)), header_(cloud_)
+  HeldCloud(const fs::path& path, const ColumnNames& columns)
+  : cloud_(readCloud(path, &facts_, columns)),
+    header_(cloud_)
   {
     header_.data.clear();
     header_.width = header_.height = header_.row_step = 0;
@@ -92,9 +97,11 @@ public:
     next_ += points;
     return points;
   }
+  std::vector<std::string> remarks() const override { return facts_.remarks; }
   void skip(std::uint64_t points) override { next_ += std::min(points, size() - next_); }
 
 private:
+  CloudFacts facts_; // which reading cloud_ sets
   pcl::PCLPointCloud2 cloud_, header_;
   std::uint64_t next_ = 0;
 };
@@ -136,16 +143,16 @@ void CloudStream::skip(std::uint64_t points)
   }
 }
 
-std::unique_ptr<CloudStream> openCloud(const fs::path& path, std::uint64_t memory)
+std::unique_ptr<CloudStream> openCloud(const fs::path& path, std::uint64_t memory, const ColumnNames& columns)
 {
-  const pcl::PCLPointCloud2 header = readCloudHeader(path); // which checks that it can be read
+  const pcl::PCLPointCloud2 header = readCloudHeader(path, columns); // which checks that it can be read
   if (extensionOf(path) == ".las") return std::make_unique<LasStream>(path);
   if (std::optional<PcdBody> body = binaryBody(path)) return std::make_unique<PcdStream>(path, std::move(*body));
   if (bytesWhenHeld(path, header) > memory) {
     throw files::FileError(path, "does not fit into the memory given, and its format is not read in pieces",
                            "give more memory, or convert it to .las or binary .pcd");
   }
-  return std::make_unique<HeldCloud>(path);
+  return std::make_unique<HeldCloud>(path, columns);
 }
 
 } // namespace pcl_bsh::io

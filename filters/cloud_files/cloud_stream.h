@@ -6,12 +6,16 @@
 //   while (std::size_t points = scan->read(batch.data(), 1000)) use(batch, points);
 #pragma once
 
+#include <pcl_bsh/filters/text_files/column_names.h>
+
 #include <pcl/PCLPointCloud2.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace pcl_bsh::io {
 
@@ -29,13 +33,17 @@ public:
   /// @return how many; 0 at the end. @throws files::FileError
   virtual std::size_t read(std::uint8_t* records, std::size_t most) = 0;
 
+  /// What users should know of how the file is read, a line each, without its name.
+  virtual std::vector<std::string> remarks() const { return {}; }
+
   /// Leaves out the next points. @throws files::FileError
   virtual void skip(std::uint64_t points);
 };
 
 /// Opens any file that readCloud() reads. LAS and binary PCD are read batch by batch, the other formats at once, for
-/// which `memory`, in bytes, must hold the file and its cloud together.
+/// which `memory`, in bytes, must hold the file and its cloud together. @param columns as readCloud() has it
 /// @throws files::FileError as readCloud() does; for a pipe; for a file that `memory` cannot hold
-std::unique_ptr<CloudStream> openCloud(const std::filesystem::path& path, std::uint64_t memory);
+std::unique_ptr<CloudStream> openCloud(const std::filesystem::path& path, std::uint64_t memory,
+                                       const ColumnNames& columns = {});
 
 } // namespace pcl_bsh::io

@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/cloud_files/las_fields.h>
 #include <pcl_bsh/filters/cloud_files/las_header.h>
 #include <pcl_bsh/filters/text_files/format_error.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <algorithm>
 #include <bit>
@@ -36,7 +37,7 @@ std::uint64_t pointsOf(std::string_view bytes, const LasBlock& block)
   if (block.minor < 4) return old_count;
   const auto count = lasNumber<std::uint64_t>(bytes, las_at::points);
   if (count != 0 && old_count != 0 && count != old_count) {
-    throw FormatError("its header says " + std::to_string(count) + " points, and for readers of LAS 1.3 " +
+    throw FormatError("its header says " + counted(count, "point") + ", and for readers of LAS 1.3 " +
                       std::to_string(old_count) + ", which disagree");
   }
   return std::max(count, old_count);
@@ -61,8 +62,8 @@ void requireInside(const LasBlock& block, std::uint64_t file_bytes)
   }
   const std::uint64_t room = (file_bytes - block.points_at) / block.record_length;
   if (block.points > room) {
-    throw FormatError("is truncated: its header promises " + std::to_string(block.points) +
-                      " points, its size allows " + std::to_string(room) + " at most");
+    throw FormatError("is truncated: its header promises " + counted(block.points, "point") + ", its size allows " +
+                      std::to_string(room) + " at most");
   }
 }
 

@@ -79,7 +79,8 @@ void placeCoordinates(const LasPoints& points, const LasHeader* header, LasPlan&
   for (std::size_t k = 0; k < 3; ++k) {
     if (hasPlaces(points, k, plan.scale[k], plan.offset[k])) continue;
     const double middle = points.least(k) / 2 + points.greatest(k) / 2;
-    plan.offset[k] += std::nearbyint((middle - plan.offset[k]) / plan.scale[k]) * plan.scale[k];
+    // Rounded up, for 32 bits reach one further below zero than above.
+    plan.offset[k] += std::ceil((middle - plan.offset[k]) / plan.scale[k]) * plan.scale[k];
     const bool apart = plan.scale[k] > std::abs(middle) * 0x1p-50; // doubles tell multiples apart
     if (!apart || !hasPlaces(points, k, plan.scale[k], plan.offset[k])) return chooseScale(points, plan);
   }

@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/cloud_files/colour_scan.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 #include <pcl_bsh/filters/cloud_files/text_rows.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <array>
 #include <optional>
@@ -190,7 +191,7 @@ pcl::PCLPointCloud2 parseObj(std::string_view file)
   if (scan.vertices == 0 && scan.promised != 0) throw FormatError("has no vertices", "give it lines 'v x y z'");
   if (scan.vertices < scan.promised.value_or(0)) {
     throw FormatError("is truncated: it has " + std::to_string(scan.vertices) + " of the " +
-                      std::to_string(*scan.promised) + " vertices that a comment promises");
+                      counted(*scan.promised, "vertex", "vertices") + " that a comment promises");
   }
   Vertices vertices(scan.hasNormals(), scan.colours);
   TextRows& rows = vertices.rows();

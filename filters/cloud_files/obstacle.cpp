@@ -5,6 +5,7 @@
 #include <pcl_bsh/filters/text_files/file_bytes.h>
 #include <pcl_bsh/filters/text_files/number_text.h>
 #include <pcl_bsh/filters/text_files/small_letters.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -109,18 +110,21 @@ PointsView Obstacle::view() const
 std::string promiseOf(const Obstacle& surface, const std::string& beside)
 {
   const std::string tolerance = numberText(surface.tolerance(), std::chars_format::general, 6);
-  return "the obstacle is a surface of " + std::to_string(surface.triangles()->size()) +
-         " triangles, to a tolerance of " + tolerance +
-         ": free is farther than the clearance from it for certain, colliding is within the clearance + " + tolerance +
-         ", and a distance is too small by at most " + tolerance +
+  return "the obstacle is a surface of " + counted(surface.triangles()->size(), "triangle") + ", to a tolerance of " +
+         tolerance + ": free is farther than the clearance from it for certain, colliding is within the clearance + " +
+         tolerance + ", and a distance is too small by at most " + tolerance +
          (beside.empty() ? "" : "; the tolerance of " + beside + " comes on top");
 }
 
 Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& settings, double clearance,
-                      const std::function<bool(double)>& progress, Viewpoint* viewpoint, LasHeaderPtr* las)
+                      const std::function<bool(double)>& progress, const ColumnNames& columns, CloudFacts* facts)
 {
-  if (settings.vertices_only) return Obstacle(std::make_shared<pcl::PCLPointCloud2>(readCloud(path, viewpoint, las)));
-  return obstacleOf(path, readMesh(path, viewpoint, las), settings, clearance, progress);
+  CloudFacts own;
+  CloudFacts& told = facts != nullptr ? *facts : own;
+  Mesh mesh = settings.vertices_only ? Mesh{readCloud(path, &told, columns), {}} : readMesh(path, &told, columns);
+  Obstacle obstacle = obstacleOf(path, std::move(mesh), settings, clearance, progress);
+  obstacle.addRemarks(told.remarks);
+  return obstacle;
 }
 
 bool hasFaces(const std::filesystem::path& path)

@@ -88,8 +88,9 @@ public:
   std::uint32_t partOf(std::uint32_t record) const { return cover_ ? cover_->triangles[record] : record; }
   const char* partName() const { return cover_ ? "triangle" : "point"; }
 
-  /// What users should know of the cover, a line each, without the file's name.
+  /// What users should know of the cover, and of how the file was read, a line each, without its name.
   const std::vector<std::string>& remarks() const { return remarks_; }
+  void addRemarks(const std::vector<std::string>& more) { remarks_.insert(remarks_.end(), more.begin(), more.end()); }
 
 private:
   CloudPtr points_;
@@ -103,11 +104,11 @@ private:
 std::string promiseOf(const Obstacle& surface, const std::string& beside = "");
 
 /// Reads any file that readCloud() reads.
-/// @param viewpoint and @param las as readCloud() takes them
+/// @param columns and @param facts as readCloud() takes them
 /// @throws files::FileError as readMesh() does, and where its faces cannot be covered. Cancelled
 Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& settings, double clearance,
-                      const std::function<bool(double)>& progress = nullptr, Viewpoint* viewpoint = nullptr,
-                      LasHeaderPtr* las = nullptr);
+                      const std::function<bool(double)>& progress = nullptr, const ColumnNames& columns = {},
+                      CloudFacts* facts = nullptr);
 
 /// That of a file whose mesh is read already.
 /// @throws files::FileError naming the file, where its faces cannot be covered. Cancelled

@@ -2,10 +2,12 @@
 #include <pcl_bsh/filters/cloud_files/field_text.h>
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <pcl/common/io.h>
 #include <pcl/io/lzf.h>
 
+#include <algorithm>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -67,7 +69,7 @@ PcdHeader readPcdHeader(TextCursor& text)
       header.points = text.number<std::uint64_t>();
     }
     else if (key == "VIEWPOINT") {
-      for (float& value : header.viewpoint) value = text.number<float>();
+      for (double& value : header.viewpoint) value = text.number<double>();
     }
     else if (key == "DATA") {
       header.storage = text.word();
@@ -80,7 +82,8 @@ PcdHeader readPcdHeader(TextCursor& text)
   throw FormatError("is not a PCD file: it has no DATA line");
 }
 
-/// Field by field, with its place in the record. Fields named "_" are padding, which only binary records have to keep.
+/// Field by field, with its place in the record; X Y Z are x y z. Fields named "_" are padding, which only binary
+/// records have to keep.
 void layOut(const PcdHeader& header, pcl::PCLPointCloud2& cloud)
 {
   const std::size_t fields = header.names.size();
@@ -105,6 +108,14 @@ void layOut(const PcdHeader& header, pcl::PCLPointCloud2& cloud)
     }
   }
   if (cloud.fields.empty()) throw FormatError("its header names no fields");
+  for (const auto& [given, axis] : {std::pair{"X", "x"}, {"Y", "y"}, {"Z", "z"}}) {
+    const auto named = [&](const char* name) {
+      return std::find_if(cloud.fields.begin(), cloud.fields.end(),
+                          [&](const pcl::PCLPointField& field) { return field.name == name; });
+    };
+    if (const auto field = named(given); field != cloud.fields.end() && named(axis) == cloud.fields.end())
+      field->name = axis;
+  }
 }
 
 /// Width and height that agree with POINTS, where both are given.
@@ -117,7 +128,7 @@ std::pair<std::uint32_t, std::uint32_t> extent(const PcdHeader& header)
   if (!header.points && !header.width) throw FormatError("its header has no POINTS line");
   if (columns * rows != points) {
     throw FormatError("its header says " + std::to_string(columns) + " x " + std::to_string(rows) + " and " +
-                      std::to_string(points) + " points, which disagree");
+                      counted(points, "point") + ", which disagree");
   }
   return {static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows)};
 }

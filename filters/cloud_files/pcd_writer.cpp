@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
+#include <pcl_bsh/filters/text_files/number_text.h>
 
 #include <pcl/common/io.h>
 #include <pcl/io/lzf.h>
 
-#include <limits>
 #include <sstream>
 
 namespace pcl_bsh::io {
@@ -31,14 +31,13 @@ std::string headerText(const Fields& fields, std::uint32_t width, std::uint32_t 
   using Field = pcl::PCLPointField;
   std::ostringstream header;
   header.imbue(std::locale::classic());
-  header.precision(std::numeric_limits<float>::max_digits10);
   header << first_line << "\nVERSION 0.7\n";
   writeLine(header, "FIELDS", fields, [](const Field& field) { return field.name; });
   writeLine(header, "SIZE", fields, [](const Field& field) { return sizeOf(field.datatype); });
   writeLine(header, "TYPE", fields, [](const Field& field) { return pcl::getFieldType(field.datatype); });
   writeLine(header, "COUNT", fields, [](const Field& field) { return field.count; });
   header << "WIDTH " << width << "\nHEIGHT " << height << '\n';
-  writeLine(header, "VIEWPOINT", viewpoint, [](float value) { return value; });
+  writeLine(header, "VIEWPOINT", viewpoint, [](double value) { return numberText(value); });
   header << "POINTS " << std::uint64_t{width} * height << "\nDATA " << storage << '\n';
   return header.str();
 }

@@ -23,7 +23,7 @@ pcl::PCLPointCloud2 parsePlyHeader(std::string_view file);
 
 /// Writes binary in this machine's byte order, with PLY's names: nx ny nz, and uchar red green blue [alpha] for a
 /// packed colour. A field with a count is a list property, as PCL's own writer has it; a viewpoint is an element
-/// `camera`.
+/// `camera`, and a comment that has it in full.
 /// @throws FormatError when a field cannot be held
 void writePly(std::ostream& out, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint);
 

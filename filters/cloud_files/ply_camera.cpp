@@ -1,13 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/cloud_files/field_type.h>
 #include <pcl_bsh/filters/cloud_files/ply_camera.h>
+#include <pcl_bsh/filters/text_files/number_text.h>
+#include <pcl_bsh/geometry/rounding.h>
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
 namespace pcl_bsh::io {
+
+namespace {
+
+constexpr std::size_t pose_values = 12; // of a camera: position and rotation
+
+std::array<float, pose_values> poseInFloats(const Viewpoint& viewpoint)
+{
+  Eigen::Quaterniond turn(viewpoint[3], viewpoint[4], viewpoint[5], viewpoint[6]);
+  const bool turned = turn.norm() > 0 && std::isfinite(turn.norm());
+  const Eigen::Matrix3d rotation =
+      turned ? turn.normalized().toRotationMatrix() : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  std::array<float, pose_values> floats;
+  for (std::size_t i = 0; i < pose_values; ++i) {
+    const auto at = static_cast<Eigen::Index>(i) - 3;
+    floats[i] = roundToFloat(i < 3 ? viewpoint[i] : rotation(at / 3, at % 3));
+  }
+  return floats;
+}
+
+} // namespace
 
 void PlyCamera::take(const std::string& name, std::uint8_t datatype, const std::uint8_t* bytes)
 {
@@ -20,13 +43,17 @@ void PlyCamera::take(const std::string& name, std::uint8_t datatype, const std::
   }
 }
 
-Viewpoint PlyCamera::viewpoint() const
+Viewpoint PlyCamera::viewpoint(const std::optional<Viewpoint>& in_full) const
 {
-  constexpr double limit = 3.4e38;
+  if (in_full) {
+    const std::array<float, pose_values> floats = poseInFloats(*in_full);
+    if (std::equal(floats.begin(), floats.end(), values_.begin())) return *in_full;
+  }
+  constexpr double limit = 3.4e38; // of PCL's
   Viewpoint viewpoint = no_viewpoint;
   for (std::size_t k = 0; k < 3; ++k) {
     if (!values_[k] || !(std::abs(*values_[k]) <= limit)) return no_viewpoint;
-    viewpoint[k] = static_cast<float>(*values_[k]);
+    viewpoint[k] = *values_[k];
   }
   Eigen::Matrix3d rotation;
   for (std::size_t i = 0; i < 9; ++i) {
@@ -37,28 +64,28 @@ Viewpoint PlyCamera::viewpoint() const
   if (!rigid || !(rotation.determinant() > 0)) return viewpoint;
   const Eigen::Quaterniond turn = Eigen::Quaterniond(rotation).normalized();
   const double quaternion[] = {turn.w(), turn.x(), turn.y(), turn.z()};
-  for (std::size_t k = 0; k < 4; ++k) viewpoint[3 + k] = static_cast<float>(quaternion[k]);
+  std::copy(std::begin(quaternion), std::end(quaternion), viewpoint.begin() + 3);
   return viewpoint;
+}
+
+std::string cameraComment(const Viewpoint& viewpoint)
+{
+  std::string line = "comment " + std::string(ply_viewpoint_comment);
+  for (const double value : viewpoint) line += ' ' + numberText(value);
+  return line + '\n';
 }
 
 std::string cameraRow(const Viewpoint& viewpoint, std::uint32_t width, std::uint32_t height)
 {
-  Eigen::Quaterniond turn(viewpoint[3], viewpoint[4], viewpoint[5], viewpoint[6]);
-  const bool turned = turn.norm() > 0 && std::isfinite(turn.norm());
-  const Eigen::Matrix3d rotation =
-      turned ? turn.normalized().toRotationMatrix() : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  const std::array<float, pose_values> pose = poseInFloats(viewpoint);
   std::string row;
   const auto append = [&](auto value) { row.append(reinterpret_cast<const char*>(&value), sizeof value); };
   for (std::size_t i = 0; i < ply_camera_values.size(); ++i) {
     if (ply_camera_values[i].whole) {
       append(ply_camera_values[i].name == "viewportx" ? width : height);
     }
-    else if (i < 3) {
-      append(viewpoint[i]);
-    }
     else {
-      const auto at = static_cast<Eigen::Index>(i - 3);
-      append(i < 12 ? static_cast<float>(rotation(at / 3, at % 3)) : 0.0F);
+      append(i < pose_values ? pose[i] : 0.0F);
     }
   }
   return row;

@@ -35,6 +35,7 @@ struct PlyHeader {
   std::vector<Element> elements; ///< in the order of the file
   std::uint64_t columns = 0;     ///< of an organised cloud, else 0
   std::uint64_t rows = 0;
+  std::optional<Viewpoint> viewpoint; ///< of a comment
 };
 
 std::uint8_t readType(TextCursor& text)
@@ -59,6 +60,19 @@ Property readProperty(TextCursor& text)
   return property;
 }
 
+/// What a comment says, if it is of cameraComment()'s form.
+std::optional<Viewpoint> readViewpoint(TextCursor comment)
+{
+  if (comment.word() != ply_viewpoint_comment) return std::nullopt;
+  Viewpoint viewpoint;
+  for (double& value : viewpoint) {
+    const std::string_view word = comment.word();
+    if (!isNumber(word)) return std::nullopt;
+    value = parseNumber<double>(word);
+  }
+  return viewpoint;
+}
+
 /// Reads up to and including end_header.
 PlyHeader readPlyHeader(TextCursor& text)
 {
@@ -66,7 +80,10 @@ PlyHeader readPlyHeader(TextCursor& text)
   if (!text.nextLine() || text.word() != "ply") throw FormatError("is not a PLY file: it does not start with 'ply'");
   while (text.nextLine()) {
     const std::string_view key = text.word();
-    if (key == "comment") continue;
+    if (key == "comment") {
+      if (const auto viewpoint = readViewpoint(text)) header.viewpoint = viewpoint;
+      continue;
+    }
     if (key == "end_header") return header;
     if (key == "format") {
       header.format = text.word();
@@ -106,6 +123,12 @@ std::uint64_t readLength(Rows& rows, const Property& property)
   });
 }
 
+/// Their lines may have more values than the header says, which do not count: MeshLab writes such ones.
+bool isFaces(const Element& element)
+{
+  return element.name == "face" || element.name == "tristrips";
+}
+
 template <typename Rows>
 void skipElement(Rows& rows, const Element& element)
 {
@@ -116,7 +139,7 @@ void skipElement(Rows& rows, const Element& element)
       const std::uint64_t length = readLength(rows, property);
       rows.skip(property.datatype, length);
     }
-    rows.end();
+    if (!isFaces(element)) rows.end();
   }
 }
 
@@ -180,7 +203,7 @@ pcl::PCLPointCloud2 readVertices(Rows& rows, const Element& vertices, Part part)
 
 /// Takes what an element `camera` says in its first row.
 template <typename Rows>
-void readCamera(Rows& rows, Element camera, Viewpoint& viewpoint)
+void readCamera(Rows& rows, Element camera, const std::optional<Viewpoint>& in_full, Viewpoint& viewpoint)
 {
   PlyCamera read;
   rows.begin();
@@ -195,7 +218,7 @@ void readCamera(Rows& rows, Element camera, Viewpoint& viewpoint)
     rows.skip(property.datatype, length);
   }
   rows.end();
-  viewpoint = read.viewpoint();
+  viewpoint = read.viewpoint(in_full);
   --camera.count;
   skipElement(rows, camera);
 }
@@ -286,7 +309,6 @@ void readFaces(Rows& rows, const Element& element, Polygons& faces)
         rows.skip(property.datatype, length);
       }
     }
-    rows.end();
   }
 }
 
@@ -297,9 +319,9 @@ pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part, 
   std::optional<pcl::PCLPointCloud2> cloud;
   for (const Element& element : header.elements) {
     if (element.name == "camera" && element.count > 0 && !element.properties.empty()) {
-      readCamera(rows, element, viewpoint);
+      readCamera(rows, element, header.viewpoint, viewpoint);
     }
-    else if (faces != nullptr && (element.name == "face" || element.name == "tristrips")) {
+    else if (faces != nullptr && isFaces(element)) {
       readFaces(rows, element, *faces);
     }
     else if (element.name != "vertex") {

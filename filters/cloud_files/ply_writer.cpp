@@ -59,11 +59,14 @@ void writeFaces(std::ostream& out, const std::vector<Triangle>& triangles, const
 }
 
 /// @param faces of an element `face`, or empty
-std::string headerOf(const pcl::PCLPointCloud2& cloud, const Fields& fields, const std::string& faces, bool camera)
+/// @param camera null: none
+std::string headerOf(const pcl::PCLPointCloud2& cloud, const Fields& fields, const std::string& faces,
+                     const Viewpoint* camera)
 {
   std::ostringstream header;
   header.imbue(std::locale::classic());
   header << "ply\nformat binary_" << (std::endian::native == std::endian::little ? "little" : "big") << "_endian 1.0\n";
+  if (camera) header << cameraComment(*camera);
   if (cloud.height > 1) {
     header << "obj_info num_cols " << cloud.width << "\nobj_info num_rows " << cloud.height << '\n';
   }
@@ -88,7 +91,7 @@ void write(std::ostream& out, const pcl::PCLPointCloud2& cloud, const std::strin
 {
   const Fields fields = namedForFiles(namedFields(cloud), ply_channels);
   const bool camera = viewpoint != no_viewpoint;
-  out << headerOf(cloud, fields, faces, camera);
+  out << headerOf(cloud, fields, faces, camera ? &viewpoint : nullptr);
   forEachPackedBlock(cloud, fields, Lists::counted, [&](std::string_view block) { out << block; });
   write_faces();
   if (camera) out << cameraRow(viewpoint, cloud.width, cloud.height);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/cloud_files/records.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ void addField(pcl::PCLPointCloud2& cloud, const std::string& name, std::uint8_t 
 void requirePoints(std::uint64_t points)
 {
   if (points <= max_points) return;
-  throw FormatError("it has " + std::to_string(points) + " points, more than the " + std::to_string(max_points) +
+  throw FormatError("it has " + counted(points, "point") + ", more than the " + std::to_string(max_points) +
                         " that an index can name",
                     "split the cloud");
 }
@@ -38,7 +39,7 @@ void requireBytes(std::uint64_t points, std::uint64_t least_bytes, std::uint64_t
 {
   requirePoints(points);
   if (points == 0 || points <= bytes_left / least_bytes) return;
-  throw FormatError("is truncated: its header promises " + std::to_string(points) + " points, its size allows " +
+  throw FormatError("is truncated: its header promises " + counted(points, "point") + ", its size allows " +
                     std::to_string(bytes_left / least_bytes) + " at most");
 }
 

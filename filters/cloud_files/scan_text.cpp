@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/cloud_files/scan_text.h>
 #include <pcl_bsh/filters/cloud_files/text_rows.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -160,10 +161,7 @@ Viewpoint scannerPose(const PtxScan& scan)
   turn = svd.matrixU() * sides.asDiagonal() * svd.matrixV().transpose();
   const Eigen::Quaterniond q(turn);
   const Eigen::Vector3d at = scan.transform.row(3);
-  Viewpoint pose;
-  const std::array values = {at.x(), at.y(), at.z(), q.w(), q.x(), q.y(), q.z()};
-  std::transform(values.begin(), values.end(), pose.begin(), [](double value) { return static_cast<float>(value); });
-  return pose;
+  return {at.x(), at.y(), at.z(), q.w(), q.x(), q.y(), q.z()};
 }
 
 /// Into the common frame, and NaN where the scanner saw nothing.
@@ -196,8 +194,7 @@ struct PtxContents {
     }
     if (scans == 0) throw FormatError("is not a PTX file: it has no scan");
     if (wanted && *wanted >= scans) {
-      throw FormatError("has " + std::to_string(scans) + " scans, and no scan " + std::to_string(*wanted),
-                        "count from 0");
+      throw FormatError("has " + counted(scans, "scan") + ", and no scan " + std::to_string(*wanted), "count from 0");
     }
     if (!line) line = PointLine({"", "", ""});
   }
@@ -239,8 +236,8 @@ pcl::PCLPointCloud2 parsePts(std::string_view file)
   std::uint64_t points = 0; // of the block
   const auto requirePromised = [&] {
     if (points < promised) {
-      throw FormatError("is truncated: " + std::to_string(points) + " of " + std::to_string(promised) +
-                        " points are there");
+      throw FormatError("is truncated: " + std::to_string(points) + " of " +
+                        counted(promised, "point is", "points are") + " there");
     }
   };
   for (;;) {

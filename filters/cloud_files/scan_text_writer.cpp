@@ -97,7 +97,7 @@ void flush(std::ostream& out, std::string& text, std::size_t most = std::size_t{
 
 Eigen::Isometry3d poseOf(const Viewpoint& viewpoint)
 {
-  const Eigen::Matrix<double, 7, 1> v = Eigen::Map<const Eigen::Matrix<float, 7, 1>>(viewpoint.data()).cast<double>();
+  const Eigen::Matrix<double, 7, 1> v = Eigen::Map<const Eigen::Matrix<double, 7, 1>>(viewpoint.data());
   const Eigen::Quaterniond turn(v[3], v[4], v[5], v[6]);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   if (!v.allFinite() || !(turn.norm() > 0.0)) return pose;

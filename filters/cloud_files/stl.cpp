@@ -3,6 +3,7 @@
 #include <pcl_bsh/filters/cloud_files/stl.h>
 #include <pcl_bsh/filters/text_files/small_letters.h>
 #include <pcl_bsh/filters/text_files/text_cursor.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <boost/container_hash/hash.hpp>
 
@@ -85,7 +86,7 @@ void readBinary(std::string_view file, Places& places, std::vector<Triangle>& tr
   if (!count) throw FormatError("is not an STL file: it is shorter than a header, and does not start with 'solid'");
   const std::size_t left = file.size() - header_bytes - count_bytes;
   if (left / triangle_bytes != *count) {
-    throw FormatError("has " + std::to_string(left / triangle_bytes) + " triangles, and its header counts " +
+    throw FormatError("has " + counted(left / triangle_bytes, "triangle") + ", and its header counts " +
                       std::to_string(*count));
   }
   triangles.reserve(*count);

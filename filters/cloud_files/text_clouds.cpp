@@ -2,8 +2,13 @@
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 #include <pcl_bsh/filters/cloud_files/text_rows.h>
 
+#include <pcl_bsh/filters/text_files/small_letters.h>
+#include <pcl_bsh/geometry/counted.h>
+
 #include <algorithm>
-#include <cctype>
+#include <array>
+#include <cmath>
+#include <limits>
 
 namespace pcl_bsh::io {
 
@@ -17,6 +22,8 @@ Words wordsOf(TextCursor line)
   while (!line.line().empty()) words.emplace_back(line.word());
   return words;
 }
+
+constexpr auto name_the_columns = "name the columns (--columns of programs, columns of readers), as ";
 
 /// Goes to the next line that is no comment of the // kind.
 bool nextRow(TextCursor& text)
@@ -45,7 +52,13 @@ bool namesColumns(Words& words)
   return std::find(words.begin(), words.end(), "") == words.end();
 }
 
-/// The names that a comment before the first row gives: it has x, y and z among them, in any case of letters.
+bool namesAxis(const Words& names, char axis)
+{
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return inSmallLetters(name) == std::string(1, axis); });
+}
+
+/// The names that a comment before the first row gives: it has x, y and z among them, or what stands for them.
 Words namesInComments(std::string_view file)
 {
   for (TextCursor text(file); text.nextLine();) {
@@ -55,20 +68,100 @@ Words namesInComments(std::string_view file)
     if (!comment.nextLine()) continue;
     comment.separateBy(separatorOf(comment.line()));
     Words words = wordsOf(comment);
-    const auto names = [&](char axis) {
-      return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
-        return word.size() == 1 && std::tolower(static_cast<unsigned char>(word[0])) == axis;
-      });
-    };
-    if (names('x') && names('y') && names('z') && namesColumns(words)) return words;
+    const Words axes = withAxes(words);
+    if (namesAxis(axes, 'x') && namesAxis(axes, 'y') && namesAxis(axes, 'z') && namesColumns(words)) return words;
   }
   return {};
 }
 
 struct Columns {
   Fields values;
-  bool at_row = false; ///< the text is at the first point; false when there is none
+  bool at_row = false;    ///< the text is at the first point; false when there is none
+  bool rows_tell = false; ///< the values depend on all rows
+  std::vector<std::string> remarks;
 };
+
+/// Gives the numbers of each row, from this one on, to `use`, until that says no. What is no number is NaN.
+template <typename Use>
+void forEachRow(TextCursor text, std::size_t columns, const Use& use)
+{
+  std::vector<double> numbers(columns);
+  do {
+    for (double& number : numbers) {
+      const std::string_view word = text.word();
+      number = isNumber(word) ? parseNumber<double>(word) : std::numeric_limits<double>::quiet_NaN();
+    }
+    if (!use(numbers)) return;
+    while (text.nextNumbers(numbers))
+      if (!use(numbers)) return;
+  } while (nextRow(text));
+}
+
+/// What the numbers of columns without names show.
+class ShownColumns {
+public:
+  explicit ShownColumns(std::size_t columns) : counts_(columns > 3), coloured_(columns >= 6), normals_(columns >= 9) {}
+
+  /// @return whether another row may tell more
+  bool see(const std::vector<double>& row)
+  {
+    counts_ = counts_ && std::trunc(row[0]) == row[0] && (rows_ == 0 || row[0] == previous_ + 1);
+    previous_ = row[0];
+    ++rows_;
+    for (std::size_t k = 0; coloured_ && k < 3; ++k) {
+      coloured_ = isByte(row[3 + k]);
+      greatest_[k] = std::max(greatest_[k], row[3 + k]);
+    }
+    if (coloured_ && normals_) {
+      const double* const n = row.data() + row.size() - 3;
+      const double length = std::hypot(n[0], n[1], n[2]);
+      constexpr double few_digits = 1e-3;
+      normals_ = length == 0 || std::abs(length - 1) <= few_digits;
+    }
+    return counts_ || coloured_;
+  }
+
+  bool counts() const { return counts_ && rows_ > 2; } ///< the first column, by one
+  bool mayBeColoured() const { return coloured_; }     ///< by the rows so far
+  bool isColoured() const
+  {
+    constexpr double greatest_class = 31;
+    return coloured_ && *std::min_element(greatest_.begin(), greatest_.end()) > greatest_class;
+  }
+  bool hasNormals() const { return normals_; }
+
+private:
+  bool counts_, coloured_, normals_;
+  std::array<double, 3> greatest_ = {};
+  double previous_ = 0;
+  std::size_t rows_ = 0;
+};
+
+/// x y z column_4 column_5 ..., or r g b and normals where the numbers leave no doubt. The text is at the first row.
+void nameByNumbers(const TextCursor& text, Words& names, Columns& columns)
+{
+  const std::size_t count = names.size();
+  names = defaultNames(count);
+  ShownColumns shown(count);
+  forEachRow(text, count, [&](const std::vector<double>& row) { return shown.see(row); });
+  columns.rows_tell = shown.mayBeColoured();
+  if (shown.counts()) {
+    std::string example = "_,x,y,z";
+    for (std::size_t i = 4; i < count; ++i) example += ",_";
+    columns.remarks.push_back("its first column counts up by one, and is taken for x: if it numbers the points, " +
+                              std::string(name_the_columns) + example);
+  }
+  if (!shown.isColoured()) return;
+  std::copy(text_channels.begin(), text_channels.begin() + 3, names.begin() + 3);
+  std::string assumed = "no line names its columns: 4 to 6, whole numbers from 0 to 255, are taken for r g b";
+  std::string example = "x,y,z,r,g,b";
+  if (shown.hasNormals()) {
+    for (std::size_t k = 0; k < 3; ++k) names[count - 3 + k] = std::string("n") + "xyz"[k];
+    assumed += ", and the last three, of length 1, for nx ny nz";
+  }
+  for (std::size_t i = 6; i < count; ++i) example += ',' + names[i];
+  columns.remarks.push_back(assumed + ": if they are something else, " + name_the_columns + example);
+}
 
 /// Columns that all rows fill with whole numbers from 0 to 255 can be channels of a colour. The text is at the first
 /// row, if there is one.
@@ -80,6 +173,8 @@ void findBytes(TextCursor text, bool at_row, Fields& values)
   layOutForPcl(values, laid_out);
   const bool coloured = std::any_of(laid_out.fields.begin(), laid_out.fields.end(), isPackedColour);
   std::vector<bool> bytes(values.size(), coloured);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (values[i].count == 0) bytes[i] = false;
   for (at_row = at_row && coloured; at_row; at_row = nextRow(text)) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const std::string_view word = text.word(); // empty where the row ends early
@@ -98,45 +193,75 @@ void findBytes(TextCursor text, bool at_row, Fields& values)
   }
 }
 
+void requireAxes(const Words& given)
+{
+  const Words names = withAxes(given);
+  for (const char axis : {'x', 'y', 'z'}) {
+    if (namesAxis(names, axis)) continue;
+    std::string all;
+    for (const std::string& name : given) all += ' ' + name;
+    throw FormatError("its columns are named" + all + ": none of them is " + axis,
+                      std::string(name_the_columns) + "x,y,z,_");
+  }
+}
+
 /// Goes to the first row.
-Columns readColumns(TextCursor& text, std::string_view file)
+Columns readColumns(TextCursor& text, std::string_view file, const ColumnNames& given)
 {
   Words in_comments = namesInComments(file);
   Columns columns;
   columns.at_row = nextRow(text);
   text.separateBy(separatorOf(text.line()));
   Words words = wordsOf(text);
-  if (columns.at_row && namesColumns(words)) {
+  const std::size_t count = words.size();
+  const bool lined = columns.at_row, headed = lined && namesColumns(words);
+  if (lined && !given.empty() && given.size() != count)
+    text.fail("has " + counted(count, "value") + ", and names of " + counted(given.size(), "column") + " are given",
+              "name all columns: _ for one that is not read");
+  if (headed) {
     columns.at_row = nextRow(text);
     if (columns.at_row) text.separateBy(separatorOf(text.line()));
   }
-  else if (columns.at_row && words.size() < 3) {
+  else if (lined && count < 3) {
     text.fail("is no point: it has fewer than three numbers");
   }
-  else if (in_comments.empty() || (columns.at_row && in_comments.size() != words.size())) {
-    words = defaultNames(words.size());
-    if (!columns.at_row) throw FormatError("holds no points", "give it a line of x y z per point");
-  }
-  else {
+  else if (!in_comments.empty() && (!lined || in_comments.size() == count)) {
     words = std::move(in_comments);
   }
-  for (const std::string& name : words) columns.values.push_back(textValue(name));
+  else if (!lined) {
+    throw FormatError("holds no points", "give it a line of x y z per point");
+  }
+  else if (given.empty()) {
+    nameByNumbers(text, words, columns);
+  }
+  if (!given.empty()) words = given;
+  requireAxes(words);
+  for (const std::string& name : withAxes(words)) {
+    columns.values.push_back(textValue(name));
+    if (name == skipped_column) columns.values.back().count = 0;
+  }
   findBytes(text, columns.at_row, columns.values);
+  for (const pcl::PCLPointField& value : columns.values)
+    if (value.datatype == pcl::PCLPointField::UINT8) columns.rows_tell = true;
   return columns;
 }
 
 } // namespace
 
-pcl::PCLPointCloud2 parseColumnNames(std::string_view file)
+pcl::PCLPointCloud2 parseColumnNames(std::string_view file, bool whole, const ColumnNames& given)
 {
+  if (!whole) file = file.substr(0, file.find_last_of("\r\n") + 1); // no part of a row
   TextCursor text(file, '#');
-  return TextRows(readColumns(text, file).values).finished();
+  const Columns columns = readColumns(text, file, given);
+  if (!whole && columns.rows_tell) throw FormatError("is known in part, and all of its rows tell what they are");
+  return TextRows(columns.values).finished();
 }
 
-pcl::PCLPointCloud2 parseColumns(std::string_view file)
+pcl::PCLPointCloud2 parseColumns(std::string_view file, const ColumnNames& given, std::vector<std::string>* remarks)
 {
   TextCursor text(file, '#');
-  const Columns columns = readColumns(text, file);
+  const Columns columns = readColumns(text, file, given);
+  if (remarks) remarks->insert(remarks->end(), columns.remarks.begin(), columns.remarks.end());
   TextRows rows(columns.values);
   std::vector<double> numbers(columns.values.size());
   rows.reserveLines(text.rest());

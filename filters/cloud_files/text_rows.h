@@ -69,10 +69,14 @@ public:
   }
 
   /// Takes values i from `first` to `last` (exclusive) of that record from the line. What is empty between separators
-  /// is NaN; a coordinate must not be.
+  /// is NaN; a coordinate must not be. A value of count 0 may be any word.
   void take(TextCursor& text, std::size_t record, std::size_t first, std::size_t last)
   {
     for (std::size_t i = first; i < last; ++i) {
+      if (isSkipped(i)) {
+        text.word();
+        continue;
+      }
       if (values_[i].datatype == pcl::PCLPointField::FLOAT64 && !isCoordinate(i) && text.takeEmptyWord()) {
         put(record, i, std::numeric_limits<double>::quiet_NaN());
         continue;
@@ -89,12 +93,13 @@ public:
   bool add(std::span<const double> numbers)
   {
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      const bool byte = values_[i].datatype == pcl::PCLPointField::UINT8;
+      const bool byte = values_[i].datatype == pcl::PCLPointField::UINT8 && !isSkipped(i);
       if (byte && !isByte(numbers[i])) return false;
     }
     const std::size_t record = size();
     add();
-    for (std::size_t i = 0; i < numbers.size(); ++i) put(record, i, numbers[i]);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      if (!isSkipped(i)) put(record, i, numbers[i]);
     return true;
   }
 
@@ -117,6 +122,8 @@ public:
   }
 
 private:
+  bool isSkipped(std::size_t i) const { return values_[i].count == 0; }
+
   bool isCoordinate(std::size_t i) const
   {
     return std::any_of(cloud_.fields.begin(), cloud_.fields.end(), [&](const pcl::PCLPointField& field) {

@@ -4,6 +4,7 @@
 #include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 #include <pcl_bsh/filters/text_files/text_cursor.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <algorithm>
 #include <array>
@@ -81,7 +82,7 @@ void writeColumns(std::ostream& out, const pcl::PCLPointCloud2& cloud, char sepa
   std::vector<TextValue> values;
   for (const pcl::PCLPointField& field : fields) {
     if (field.count > 1) {
-      throw FormatError("field '" + field.name + "' has " + std::to_string(field.count) + " values per point",
+      throw FormatError("field '" + field.name + "' has " + counted(field.count, "value") + " per point",
                         "write a .pcd instead");
     }
     if (looksLikeNumber(field.name) || field.name.find_first_of("#,;\"") != std::string::npos ||

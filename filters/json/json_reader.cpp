@@ -6,6 +6,7 @@
 #include <pcl_bsh/filters/pose_files/rigid_pose.h>
 #include <pcl_bsh/filters/text_files/format_error.h>
 
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/request_check.h>
 
@@ -112,7 +113,7 @@ std::string JsonReader::oneOf(const std::vector<std::string>& valid) const
 std::vector<double> JsonReader::numbers(std::size_t count) const
 {
   if (!json_->is_array() || json_->size() != count)
-    fail(shown(*json_) + " is no list of " + std::to_string(count) + " numbers", "give [ ... ]");
+    fail(shown(*json_) + " is no list of " + counted(count, "number"), "give [ ... ]");
   std::vector<double> list;
   for (const JsonReader& element : elements()) list.push_back(element.number());
   return list;

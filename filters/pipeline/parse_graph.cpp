@@ -5,6 +5,7 @@
 #include <pcl_bsh/filters/pose_files/pose_text.h>
 #include <pcl_bsh/filters/text_files/format_error.h>
 #include <pcl_bsh/filters/text_files/small_letters.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <algorithm>
 #include <cctype>
@@ -291,7 +292,7 @@ private:
     if (type.isReader()) throw stageError(graph_, node, "inputs", "is given to a reader: remove it");
     if (graph_.nodes.empty()) throw stageError(graph_, node, "", "has nothing to read: begin with a reader");
     throw stageError(graph_, node, "inputs",
-                     "names " + std::to_string(count) + " stages: " + type.name +
+                     "names " + counted(count, "stage") + ": " + type.name +
                          (type.least_inputs == type.most_inputs ? " takes " : " takes at least ") +
                          std::to_string(type.least_inputs));
   }

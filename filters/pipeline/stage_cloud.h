@@ -32,7 +32,7 @@ struct FaceProperty {
 /// mesh its triangles. A stage that removes, adds or reorders records leaves the triangles out, and the pipeline warns.
 struct StageCloud {
   pcl::PCLPointCloud2 cloud;
-  std::array<float, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};
+  std::array<double, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};
   std::shared_ptr<const io::LasHeader> las_header = nullptr;
   std::shared_ptr<const std::vector<Triangle>> triangles = nullptr; ///< by records of `cloud`; null where it is no mesh
   std::vector<FaceProperty> face_properties = {};                   ///< empty where it is no mesh

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/filters/pose_files/pose_columns.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
 #include <pcl_bsh/filters/pose_files/pose_text.h>
 #include <pcl_bsh/filters/pose_files/rigid_pose.h>
@@ -9,12 +10,14 @@
 #include <pcl_bsh/filters/text_files/number_text.h>
 #include <pcl_bsh/filters/text_files/text_cursor.h>
 
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/request_check.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 namespace pcl_bsh::io {
 
@@ -22,7 +25,7 @@ namespace {
 
 constexpr auto forms_of_a_pose =
     "give 12 or 16 numbers of a rigid matrix, row by row, or time tx ty tz qx qy qz qw, a pose to "
-    "a line";
+    "a line; or a first line that names the columns, tx ty tz qx qy qz qw among them";
 
 Eigen::Isometry3d fromMatrix(const std::vector<double>& numbers)
 {
@@ -33,6 +36,7 @@ Eigen::Isometry3d fromMatrix(const std::vector<double>& numbers)
   return pose;
 }
 
+/// @param n time tx ty tz qx qy qz qw
 Eigen::Isometry3d fromQuaternion(const std::vector<double>& n, const TextCursor& cursor)
 {
   const Eigen::Quaterniond rotation(n[7], n[4], n[5], n[6]);
@@ -55,6 +59,41 @@ void requireRigid(const Eigen::Isometry3d& pose, const TextCursor& cursor)
   }
 }
 
+/// The last comment before the first pose that names the columns.
+std::optional<PoseColumns> columnsInComments(std::string_view text)
+{
+  std::optional<PoseColumns> columns;
+  for (TextCursor cursor(text); cursor.nextLine() && cursor.line().starts_with('#');) {
+    TextCursor comment(cursor.line().substr(1));
+    if (!comment.nextLine()) continue;
+    if (const auto named = poseColumnsOf(wordsOfLine(comment))) columns = named;
+  }
+  return columns;
+}
+
+/// Whether nothing in the line is a number or meant for one.
+bool namesColumns(const std::vector<std::string>& words)
+{
+  return std::none_of(words.begin(), words.end(), looksLikeNumber);
+}
+
+/// The line's pose as time tx ty tz qx qy qz qw.
+std::vector<double> numbersByName(TextCursor& cursor, const PoseColumns& columns)
+{
+  const TextCursor line = cursor;
+  const std::vector<std::string> words = wordsOfLine(cursor);
+  if (words.size() != columns.count)
+    line.fail("has " + counted(words.size(), "value") + ", and " + counted(columns.count, "column is", "columns are") +
+              " named");
+  std::vector<double> numbers = {0.0};
+  const auto take = [&](std::size_t column) {
+    line.naming([&] { numbers.push_back(parseNumber<double>(words[column])); });
+  };
+  for (const std::size_t column : columns.position) take(column);
+  for (const std::size_t column : columns.quaternion) take(column);
+  return numbers;
+}
+
 } // namespace
 
 std::vector<Eigen::Isometry3d> parsePoses(std::string_view text, std::vector<std::string>* warnings)
@@ -64,8 +103,17 @@ std::vector<Eigen::Isometry3d> parsePoses(std::string_view text, std::vector<std
   std::size_t replaced = 0; // matrices that others took the place of
   double worst = 0;         // deviation of these
   TextCursor cursor(text, '#');
-  while (cursor.nextLine()) {
-    const std::vector<double> numbers = numbersOfLine(cursor);
+  std::optional<PoseColumns> named = columnsInComments(text);
+  for (bool first = true; cursor.nextLine(); first = false) {
+    TextCursor line = cursor;
+    const std::vector<std::string> words = first ? wordsOfLine(line) : std::vector<std::string>();
+    if (first && namesColumns(words)) {
+      named = poseColumnsOf(words);
+      if (!named) cursor.fail("names columns, and not one each of tx ty tz qx qy qz qw");
+      continue;
+    }
+    if (first && named && named->count != words.size()) named.reset(); // a comment on something else
+    const std::vector<double> numbers = named ? numbersByName(cursor, *named) : numbersOfLine(cursor);
     const std::string count = std::to_string(numbers.size());
     if (numbers.size() != 8 && numbers.size() != 12 && numbers.size() != 16) {
       cursor.fail("has " + count + " numbers, not 8, 12 or 16");
@@ -82,7 +130,7 @@ std::vector<Eigen::Isometry3d> parsePoses(std::string_view text, std::vector<std
   }
   if (poses.empty()) throw FormatError("holds no pose");
   if (warnings && replaced > 0)
-    warnings->push_back(std::to_string(replaced) + " of " + std::to_string(poses.size()) + " poses: the worst " +
+    warnings->push_back(std::to_string(replaced) + " of " + counted(poses.size(), "pose") + ": the worst " +
                         nearestRotationWarning(worst));
   return poses;
 }

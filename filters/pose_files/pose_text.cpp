@@ -4,6 +4,7 @@
 #include <pcl_bsh/filters/text_files/file_bytes.h>
 #include <pcl_bsh/filters/text_files/format_error.h>
 #include <pcl_bsh/filters/text_files/text_cursor.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <pcl_bsh/question/warnings.h>
 
@@ -58,7 +59,7 @@ Eigen::Isometry3d poseFrom(double x, double y, double z, double roll, double pit
 Eigen::Isometry3d poseFrom(const std::vector<double>& n)
 {
   if (n.size() == 6) return poseFrom(n[0], n[1], n[2], n[3], n[4], n[5]);
-  if (n.size() != 12 && n.size() != 16) throw FormatError("holds " + std::to_string(n.size()) + " numbers");
+  if (n.size() != 12 && n.size() != 16) throw FormatError("holds " + counted(n.size(), "number"));
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (std::size_t i = 0; i < n.size(); ++i) {
     pose.matrix()(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = n[i];

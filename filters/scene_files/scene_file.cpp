@@ -156,9 +156,18 @@ private:
 
   static void parseSurface(const JsonReader& reader, CloudSource& cloud)
   {
-    for (const char* key : {"surface_tolerance", "vertices_only"}) {
+    for (const auto& [key, what] :
+         {std::pair{"surface_tolerance", "faces"}, {"vertices_only", "faces"}, {"columns", "files"}}) {
       if (reader.has(key) && !cloud.shape.empty())
-        reader.at(key).fail("is about faces, and a " + cloud.shape + " is points", "leave it out");
+        reader.at(key).fail(std::string("is about ") + what + ", and a " + cloud.shape + " is points", "leave it out");
+    }
+    if (reader.has("columns")) {
+      try {
+        cloud.columns = columnNamesOf(reader.at("columns").text());
+      }
+      catch (const FormatError& error) {
+        reader.at("columns").fail(error.what(), error.remedy());
+      }
     }
     if (reader.has("surface_tolerance")) cloud.surface.tolerance = reader.at("surface_tolerance").number();
     read(reader, "vertices_only", cloud.surface.vertices_only);

@@ -32,6 +32,7 @@ struct CloudSource {
   Eigen::Vector3d shift = {0, 0, 0}; ///< afterwards
   Uncertainty uncertainty;           ///< of its points; sigmas of a field are scaled with the cloud
   SurfaceSettings surface;           ///< of a file with faces
+  ColumnNames columns;               ///< of a file of columns; empty: as it says
   std::string place;                 ///< in the document
 };
 

@@ -251,12 +251,14 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
 void SceneWorld::load(const CloudSource& source, const SceneFile& file, Loaded& loaded)
 {
   Mesh mesh;
+  CloudFacts facts;
   if (!source.shape.empty())
     mesh.vertices = cloudOf(shapePoints(source.shape, source.size, source.spacing));
   else if (source.surface.vertices_only)
-    mesh.vertices = readCloud(source.file);
+    mesh.vertices = readCloud(source.file, &facts, source.columns);
   else
-    mesh = readMesh(source.file);
+    mesh = readMesh(source.file, &facts, source.columns);
+  for (const std::string& remark : facts.remarks) warnings_.push_back(source.file.string() + ": " + remark);
   scaleAndShift(mesh.vertices, source, file.path.string());
   HierarchyOptions options;
   options.threads = file.options.threads;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Spheres follow points that move: every voxel keeps its points and its tree, its frame and spheres are measured anew.
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/hierarchy/bounds.h>
@@ -23,7 +24,7 @@ void requireFit(const PointsView& before, const PointsView& now, double most_gro
   if (!(std::isfinite(most_growth) && most_growth >= 1.0))
     refuse("growth " + std::to_string(most_growth) + " is not finite and >= 1", Input::growth);
   if (now.count != before.count || now.size() != before.size())
-    refuse("the view has " + std::to_string(now.count) + " records instead of " + std::to_string(before.count));
+    refuse("the view has " + counted(now.count, "record") + " instead of " + std::to_string(before.count));
   if (now.scalar != before.scalar) refuse("the view has coordinates of another type");
   if (!now.indices != !before.indices) refuse("the view is of another subset");
   if (now.indices && now.indices != before.indices &&

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/update.h>
 
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
@@ -213,8 +214,8 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
   if (before.count > 0 && !now.radii != !before.radii)
     refuse("the new view has radii and the old one none, or the other way round");
   if (now.count < before.count)
-    refuse("the new view has " + std::to_string(now.count) + " records, fewer than the " +
-           std::to_string(before.count) + " before: keep them, NaN where a point is gone");
+    refuse("the new view has " + counted(now.count, "record") + ", fewer than the " + std::to_string(before.count) +
+           " before: keep them, NaN where a point is gone");
   const std::size_t announced = static_cast<std::size_t>(
       records_.end() - std::lower_bound(records_.begin(), records_.end(), static_cast<std::uint32_t>(before.count)));
   if (announced < now.count - before.count || (!records_.empty() && records_.back() >= now.count))

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/hierarchy/morton.h>
@@ -33,8 +34,7 @@ public:
         checkNode(voxel.nodes, 0, 0, voxel.count, voxel.frame, v);
     }
     name_ = "cloud";
-    if (points != s_.size)
-      defect("voxels hold " + std::to_string(points) + " of " + std::to_string(s_.size) + " points");
+    if (points != s_.size) defect("voxels hold " + std::to_string(points) + " of " + counted(s_.size, "point"));
     if (s_.size > 0) checkNode(s_.top, 0, 0, static_cast<std::uint32_t>(s_.voxel_count), s_.frame, kAboveVoxels);
     checkNoneLost();
     return std::move(defects_);
@@ -175,7 +175,7 @@ private:
     }
     for (std::size_t i = 0; i < expected.size(); ++i)
       if (seen_[i] != expected[i])
-        defect("point " + std::to_string(i) + " is held " + std::to_string(seen_[i]) + " times, not " +
+        defect("point " + std::to_string(i) + " is held " + counted(seen_[i], "time") + ", not " +
                std::to_string(expected[i]));
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/view_check.h>
 
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 
@@ -31,8 +32,8 @@ void checkLayout(const std::string& name, const PointsView& view)
   };
   const std::size_t width = view.scalar == Scalar::float32 ? sizeof(float) : sizeof(double);
   if (view.count > 1 && view.stride < width)
-    fail("the view's stride of " + std::to_string(view.stride) + " bytes puts its " + std::to_string(view.count) +
-             " records over each other",
+    fail("the view's stride of " + std::to_string(view.stride) + " bytes puts its " + counted(view.count, "record") +
+             " over each other",
          "give the bytes from one record to the next, at least " + std::to_string(width));
   constexpr const char* kAxes[3] = {"x", "y", "z"};
   for (std::size_t j = 0; j < 3; ++j)
@@ -52,9 +53,10 @@ void checkView(const std::string& name, const PointsView& view)
     throw InvalidInput(input, name, what);
   };
   if (view.count > kMostRecords)
-    fail(std::to_string(view.count) + " points are more than an index can name (" + std::to_string(kMostRecords) + ")");
+    fail(counted(view.count, "point is", "points are") + " more than an index can name (" +
+         std::to_string(kMostRecords) + ")");
   if (view.count > 0) {
-    if (!view.data) fail("the view's data is null though it has " + std::to_string(view.count) + " points");
+    if (!view.data) fail("the view's data is null though it has " + counted(view.count, "point"));
     checkLayout(name, view);
   }
   if (!view.indices) return;
@@ -62,8 +64,7 @@ void checkView(const std::string& name, const PointsView& view)
     fail(std::to_string(view.index_count) + " indices are more than the limit of 2^31 - 1");
   for (std::size_t i = 0; i < view.index_count; ++i)
     if (view.indices[i] < 0 || static_cast<std::size_t>(view.indices[i]) >= view.count)
-      fail("index " + std::to_string(view.indices[i]) + " is outside the cloud of " + std::to_string(view.count) +
-               " points",
+      fail("index " + std::to_string(view.indices[i]) + " is outside the cloud of " + counted(view.count, "point"),
            Input::index);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/python/array_input.h>
 
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 
 #include <algorithm>
@@ -322,7 +323,7 @@ py::array_t<float> floatsOf(const std::string& name, const py::object& values, s
                        "convert them, and mind which way that rounds: numpy.asarray(..., numpy.float32)");
   if (array.ndim() != 1 || static_cast<std::size_t>(array.shape(0)) != count)
     throw InvalidInput(Input::points, name, "have shape " + shapeOf(array),
-                       "give one for each of the " + std::to_string(count) + " points");
+                       "give one for each of the " + counted(count, "point"));
   if (count > 1 && array.strides(0) != sizeof(float)) return py::array_t<float, py::array::c_style>::ensure(array);
   return py::reinterpret_borrow<py::array_t<float>>(array); // not a view of it: what is given is to be locked
 }

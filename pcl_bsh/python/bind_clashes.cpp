@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/python/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/callback.h>
@@ -81,8 +82,8 @@ void bindClashes(py::module_& module)
       .def_readonly("first_pose", &Clash::first_pose)
       .def_readonly("closest_pose", &Clash::closest_pose)
       .def("__repr__", [](const Clash& clash) {
-        return "Clash('" + clash.id + "', " + nameOf(clash.status) + ", " + std::to_string(clash.points) +
-               " points, distance " + std::string(py::str(py::float_(clash.distance))) + ")";
+        return "Clash('" + clash.id + "', " + nameOf(clash.status) + ", " + counted(clash.points, "point") +
+               ", distance " + std::string(py::str(py::float_(clash.distance))) + ")";
       });
   module.def(
       "find_clashes",

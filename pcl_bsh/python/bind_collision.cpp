@@ -3,6 +3,7 @@
 #include <pcl_bsh/collision/closest_pair.h>
 #include <pcl_bsh/collision/colliding_indices.h>
 #include <pcl_bsh/collision/collision_flags.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/python/array_input.h>
 #include <pcl_bsh/python/array_output.h>
@@ -187,7 +188,8 @@ py::object collidingIndicesOf(const SphereHierarchy& a, const SphereHierarchy& b
                                     [&] { return collidingIndices(placed_a, placed_b, request); });
   const std::size_t undecided = found.undecided_a.size() + found.undecided_b.size();
   if (undecided > 0)
-    throw InvalidInput(Input::accuracy, "colliding_indices", std::to_string(undecided) + " points are undecided",
+    throw InvalidInput(Input::accuracy, "colliding_indices",
+                       counted(undecided, "point is", "points are") + " undecided",
                        "ask collision_flags(), whose answer says which");
   if (request.flagged == Side::a) return arrayFrom(std::move(found.a));
   if (request.flagged == Side::b) return arrayFrom(std::move(found.b));

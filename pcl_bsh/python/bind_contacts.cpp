@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/python/array_input.h>
 #include <pcl_bsh/python/array_output.h>
 #include <pcl_bsh/python/bindings.h>
@@ -108,8 +109,8 @@ py::object pairsWithinOf(const SphereHierarchy& a, const SphereHierarchy& b, dou
   const ContactsRequest request = requestOf(clearance, most);
   const PairsWithin found = unlocked([&] { return pairsWithin(placed_a, placed_b, request); });
   if (!found.complete)
-    throw py::value_error("pairs_within: there are more than " + std::to_string(request.most) +
-                          " pairs: ask contacts() for the nearest, or for more");
+    throw py::value_error("pairs_within: there are more than " + counted(request.most, "pair") +
+                          ": ask contacts() for the nearest, or for more");
   py::array_t<std::uint32_t> pairs({static_cast<py::ssize_t>(found.pairs.size()), py::ssize_t{2}});
   std::uint32_t* record = pairs.mutable_data();
   for (const PointPair& pair : found.pairs) {

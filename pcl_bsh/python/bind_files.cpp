@@ -7,13 +7,14 @@
 
 #include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
 #include <tuple>
 
 namespace pcl_bsh::python {
 namespace {
 
-constexpr auto kRead = R"(read(path)
+constexpr auto kRead = R"(read(path, columns=None)
 --
 
 The points of a file as a structured array, every field in its type.
@@ -22,6 +23,9 @@ Parameters
 ----------
 path : str or path-like
     .pcd, .ply, .las, .pts, .ptx, .csv, .xyz, .txt, .obj, .off or .stl.
+columns : sequence of str, optional
+    Of .csv, .xyz and .txt: names of all columns in place of what the file says, ``["x", "y", "z", "_"]``; "_" is not
+    read.
 
 Returns
 -------
@@ -34,12 +38,17 @@ Raises
 FileError
     A ValueError and an OSError: missing, unreadable, malformed, truncated, without x y z.
 
+Warns
+-----
+UserWarning
+    Of what was taken for granted, as of columns without names, and of records that a LAS header does not count.
+
 See Also
 --------
 read_with_header : the viewpoint, and what a LAS file says beside its points, too.
 )";
 
-constexpr auto kReadWithHeader = R"(read_with_header(path)
+constexpr auto kReadWithHeader = R"(read_with_header(path, columns=None)
 --
 
 As `read`, and what the file says beside its points.
@@ -48,8 +57,8 @@ Returns
 -------
 records : ndarray
 header : FileHeader
-    `viewpoint` (tx, ty, tz, qw, qx, qy, qz); of LAS files scale, offset, coordinate system and all other records, which
-    `write` keeps.
+    `viewpoint` (tx, ty, tz, qw, qx, qy, qz); of LAS files `coordinate_system`, its name, and scale, offset and all
+    records, which `write` keeps.
 )";
 
 constexpr auto kWrite = R"(write(path, records, header=None)
@@ -99,21 +108,21 @@ vertices : ndarray
 triangles : ndarray of uint32, (t, 3)
 )";
 
-struct FileHeader {
-  io::Viewpoint viewpoint = io::no_viewpoint;
-  io::LasHeaderPtr las;
-};
+using FileHeader = io::CloudFacts;
 
 std::string pathOf(const py::object& path)
 {
   return py::module_::import("os").attr("fsdecode")(path).cast<std::string>();
 }
 
-py::tuple readWithHeader(const py::object& path)
+py::tuple readWithHeader(const py::object& path, const std::optional<io::ColumnNames>& columns)
 {
   const std::string file = pathOf(path);
   FileHeader header;
-  pcl::PCLPointCloud2 cloud = unlocked([&] { return io::readCloud(file, &header.viewpoint, &header.las); });
+  pcl::PCLPointCloud2 cloud =
+      unlocked([&] { return io::readCloud(file, &header, columns.value_or(io::ColumnNames())); });
+  for (const std::string& remark : header.remarks)
+    if (PyErr_WarnEx(PyExc_UserWarning, (file + ": " + remark).c_str(), 1) != 0) throw py::error_already_set();
   return py::make_tuple(recordsFrom(std::move(cloud)), std::move(header));
 }
 
@@ -147,11 +156,18 @@ void bindFiles(py::module_& module)
       .def_property_readonly(
           "viewpoint", [](const FileHeader& header) { return py::tuple(py::cast(header.viewpoint)); },
           "Where the sensor stood: tx, ty, tz, qw, qx, qy, qz.")
+      .def_property_readonly(
+          "coordinate_system", [](const FileHeader& header) { return header.coordinate_system; },
+          "As a LAS file names it; empty where it does not.")
       .def_property_readonly("is_las", [](const FileHeader& header) { return header.las != nullptr; })
       .def("__repr__", [](const FileHeader& header) { return header.las ? "FileHeader(las)" : "FileHeader()"; });
   module.def(
-      "read", [](const py::object& path) { return py::object(readWithHeader(path)[0]); }, kRead, py::arg("path"));
-  module.def("read_with_header", &readWithHeader, kReadWithHeader, py::arg("path"));
+      "read",
+      [](const py::object& path, const std::optional<io::ColumnNames>& columns) {
+        return py::object(readWithHeader(path, columns)[0]);
+      },
+      kRead, py::arg("path"), py::arg("columns") = py::none());
+  module.def("read_with_header", &readWithHeader, kReadWithHeader, py::arg("path"), py::arg("columns") = py::none());
   module.def("read_mesh", &readMeshOf, kReadMesh, py::arg("path"));
   module.def("write", &writeRecords, kWrite, py::arg("path"), py::arg("records"), py::arg("header") = py::none());
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/python/array_input.h>
@@ -154,7 +155,7 @@ std::string textOf(const SphereHierarchy& hierarchy)
 {
   const PointsView view = viewNow(hierarchy);
   const std::size_t finite = sizeOf(hierarchy);
-  std::string text = "SphereHierarchy(" + std::to_string(finite) + " points";
+  std::string text = "SphereHierarchy(" + counted(finite, "point");
   if (finite != view.size()) text += " of " + std::to_string(view.size());
   text += view.scalar == Scalar::float32 ? ", float32" : ", float64";
   if (view.radii) text += ", with radii";

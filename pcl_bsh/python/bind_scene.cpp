@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/python/array_input.h>
 #include <pcl_bsh/python/array_output.h>
@@ -135,7 +136,7 @@ std::vector<ScenePart> partsOf(const std::string& name, const py::object& cloud)
   for (const py::handle item : cloud) {
     const auto part = item.cast<py::tuple>();
     if (part.size() != 2 && part.size() != 3)
-      throw InvalidInput(Input::scene, name, "has a part of " + std::to_string(part.size()) + " values",
+      throw InvalidInput(Input::scene, name, "has a part of " + counted(part.size(), "value"),
                          "give (name, hierarchy) or (name, hierarchy, pose)");
     const py::object pose = part.size() == 3 ? py::object(part[2]) : py::none();
     parts.push_back(
@@ -324,7 +325,7 @@ void bindScene(py::module_& module)
           py::arg("dt"),
           "Moves every object along its motion for `dt` seconds, as response and gravity allow, and queries.")
       .def("__repr__", [](SharedScene& s) {
-        return inTurn(s, [](Scene& scene) { return "Scene(" + std::to_string(scene.size()) + " objects)"; });
+        return inTurn(s, [](Scene& scene) { return "Scene(" + counted(scene.size(), "object") + ")"; });
       });
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/python/array_input.h>
 #include <pcl_bsh/python/array_output.h>
 #include <pcl_bsh/python/bindings.h>
@@ -98,7 +99,7 @@ void bindSurface(py::module_& module)
            "The hierarchy of the balls; it keeps them alive.")
       .def("__len__", [](const SurfaceCover& cover) { return cover.radii.size(); })
       .def("__repr__", [](const SurfaceCover& cover) {
-        return "SurfaceCover(" + std::to_string(cover.radii.size()) + " balls, tolerance " +
+        return "SurfaceCover(" + counted(cover.radii.size(), "ball") + ", tolerance " +
                std::string(py::str(py::float_(cover.tolerance))) + ")";
       });
   module.def("cover_surface", &coverOf, kCover, py::arg("vertices"), py::arg("triangles"), py::arg("tolerance"),

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/python/array_input.h>
 #include <pcl_bsh/python/array_output.h>
 #include <pcl_bsh/python/bindings.h>
@@ -177,7 +178,7 @@ void bindTrajectory(py::module_& module)
           "The same of what collides for certain, where points are uncertain.")
       .def_property_readonly("work", [](const TrajectoryRun& run) { return run.result.work; })
       .def("__repr__", [](const TrajectoryRun& run) {
-        return "Trajectory(" + std::to_string(run.result.colliding) + " points collide" +
+        return "Trajectory(" + counted(run.result.colliding, "point") + " collide" +
                (run.result.undecided ? ", " + std::to_string(run.result.undecided) + " are undecided" : "") + ")";
       });
   module.def("collide_along", &collideAlongOf, kCollideAlong, py::arg("scan"), py::arg("model"), py::arg("poses"),

@@ -2,6 +2,7 @@
 #include <pcl_bsh/report/clashes.h>
 
 #include <pcl_bsh/clusters/clusters.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/report/near_boxes.h>
@@ -94,7 +95,7 @@ void check(const PointsView& scan, const TrajectoryResult& found, double cluster
                                  found.closest_pose.size(), found.closest_point.size()}) {
     if (size == scan.count) continue;
     throw InvalidInput(Input::result, "result",
-                       "has " + std::to_string(size) + " values for " + std::to_string(scan.count) + " points",
+                       "has " + counted(size, "value") + " for " + counted(scan.count, "point"),
                        "ask for flags, distances, first_poses and closest_poses of this scan");
   }
 }

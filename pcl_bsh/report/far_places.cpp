@@ -2,6 +2,7 @@
 #include <pcl_bsh/report/far_places.h>
 
 #include <pcl_bsh/clusters/clusters.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 
@@ -24,8 +25,7 @@ void check(const PointsView& cloud, const PointDistances& found, double beyond, 
   }
   if (found.distance.size() != cloud.count || found.nearest.size() != cloud.count) {
     throw InvalidInput(Input::result, "result",
-                       "has " + std::to_string(found.distance.size()) + " values for " + std::to_string(cloud.count) +
-                           " points",
+                       "has " + counted(found.distance.size(), "value") + " for " + counted(cloud.count, "point"),
                        "ask for the distances of this cloud");
   }
 }

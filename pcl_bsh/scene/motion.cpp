@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/scene/motion.h>
 
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/geometry/polar_decomposition.h>
@@ -102,7 +103,7 @@ struct Check {
   {
     if (motion.poses.empty()) fail("waypoints without a pose");
     if (motion.poses.size() != motion.times.size())
-      fail(plainText(motion.poses.size()) + " waypoints for " + plainText(motion.times.size()) + " times");
+      fail(counted(motion.poses.size(), "waypoint") + " for " + counted(motion.times.size(), "time"));
     for (std::size_t i = 0; i < motion.times.size(); ++i)
       if (!std::isfinite(motion.times[i]) || (i > 0 && motion.times[i] <= motion.times[i - 1]))
         fail("time " + plainText(motion.times[i]) + " of waypoint " + plainText(i) + " does not ascend");

@@ -2,6 +2,7 @@
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/cloud_files/cloud_stream.h>
 #include <pcl_bsh/filters/cloud_files/obstacle.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/hierarchy/retained_memory.h>
 #include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/site/checksum.h>
@@ -38,8 +39,8 @@ void check(const std::vector<fs::path>& clouds, const MakeOptions& options)
   if (options.memory < std::uint64_t{64} << 20)
     throw std::invalid_argument("memory " + megabytes(options.memory) + " is too little: give 64 MiB or more");
   if (options.tile_points < 1 || options.tile_points > io::max_points)
-    throw std::invalid_argument("a tile of " + std::to_string(options.tile_points) +
-                                " points cannot be: give from 1 to 2147483647");
+    throw std::invalid_argument("a tile of " + counted(options.tile_points, "point") +
+                                " cannot be: give from 1 to 2147483647");
 }
 
 /// The clouds one after the other, twice.
@@ -76,7 +77,8 @@ public:
 private:
   std::unique_ptr<io::CloudStream> open(std::size_t cloud) const
   {
-    return io::openCloud(clouds_[cloud], options_.memory / 2);
+    const fs::path& file = clouds_[cloud];
+    return io::openCloud(file, options_.memory / 2, options_.columns ? options_.columns(file) : io::ColumnNames());
   }
 
   /// Of all clouds the fields and the numbers of points, before anything is written.
@@ -91,6 +93,8 @@ private:
       }
       if (stream->size() > std::numeric_limits<std::uint32_t>::max())
         throw files::FileError(clouds_[i], "has more points than a number of 32 bits can count", "split the cloud");
+      if (const auto remarks = stream->remarks(); options_.remark && !remarks.empty())
+        options_.remark(clouds_[i], remarks);
       fields.push_back(packed(stream->header()));
       site_.sources.push_back({clouds_[i].string(), stream->size(), fields.back()});
       site_.points += stream->size();
@@ -100,8 +104,8 @@ private:
     // A tile and its hierarchy, which takes at most twice 32 bytes for each point while it is built.
     const std::uint64_t tile = std::min(options_.tile_points, site_.points) * (layout_.point_step + 64);
     if (tile > options_.memory) {
-      throw std::invalid_argument("a tile of " + std::to_string(options_.tile_points) + " points needs " +
-                                  megabytes(tile) + ", more than the memory given: make tiles smaller, or give more");
+      throw std::invalid_argument("a tile of " + counted(options_.tile_points, "point") + " needs " + megabytes(tile) +
+                                  ", more than the memory given: make tiles smaller, or give more");
     }
   }
 
@@ -200,7 +204,7 @@ private:
 
   [[noreturn]] void failAsTooFine() const
   {
-    throw std::invalid_argument("tiles of " + std::to_string(options_.tile_points) + " points are too many for " +
+    throw std::invalid_argument("tiles of " + counted(options_.tile_points, "point") + " are too many for " +
                                 megabytes(options_.memory) + ": make tiles larger, or give more memory");
   }
 

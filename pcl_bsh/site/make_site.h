@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -31,6 +32,10 @@ struct MakeOptions {
   std::uint64_t save_points = 50'000'000;
   /// Files with faces are their vertices alone; else they are refused, for a site holds no surface.
   bool vertices_only = false;
+  /// Names of a cloud's columns, as readCloud() takes them; null: as the files say. A run that goes on needs the same.
+  std::function<std::vector<std::string>(const std::filesystem::path&)> columns;
+  /// Called with a cloud and what users should know of how it is read; null: not told.
+  std::function<void(const std::filesystem::path&, const std::vector<std::string>& remarks)> remark;
   /// Called now and then with the points done and all points of this step. False: stop, makeSite() throws Cancelled.
   std::function<bool(MakeStep, std::uint64_t done, std::uint64_t all)> progress;
 };

@@ -3,6 +3,7 @@
 #include <pcl_bsh/filters/cloud_files/field_type.h>
 #include <pcl_bsh/filters/json/json_schema.h>
 #include <pcl_bsh/filters/text_files/file_bytes.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/site/records.h>
 #include <pcl_bsh/site/site.h>
 #include <pcl_bsh/site/unfinished_site.h>
@@ -128,7 +129,7 @@ void requireVersion(const JsonReader& json)
 void requireSum(const JsonReader& list, std::uint64_t sum, std::uint64_t points)
 {
   if (sum != points) {
-    list.fail("they have " + std::to_string(sum) + " points together, the site has " + std::to_string(points),
+    list.fail("they have " + counted(sum, "point") + " together, the site has " + std::to_string(points),
               "make the site again");
   }
 }

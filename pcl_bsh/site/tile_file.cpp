@@ -2,6 +2,7 @@
 #include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/cloud_files/pcd.h>
 #include <pcl_bsh/filters/text_files/format_error.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/search/cloud_view.h>
@@ -125,9 +126,8 @@ std::unique_ptr<io::CloudStream> openTile(const std::filesystem::path& path, con
 {
   auto stream = openRecords(path, fields);
   if (stream->size() != points) {
-    throw files::FileError(path,
-                           "has " + std::to_string(stream->size()) + " points, the site says " + std::to_string(points),
-                           site_remedy);
+    throw files::FileError(
+        path, "has " + counted(stream->size(), "point") + ", the site says " + std::to_string(points), site_remedy);
   }
   return stream;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/surface/triangle_answers.h>
 
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/query/result.h>
@@ -23,7 +24,7 @@ void requireApart(const SurfaceCover& cover)
 void requireOnePerBall(const SurfaceCover& cover, const char* what, std::size_t count)
 {
   if (count == cover.centers.size()) return;
-  throw InvalidInput(Input::result, what, plainText(count, " values for ", cover.centers.size(), " balls"),
+  throw InvalidInput(Input::result, what, counted(count, "value") + " for " + counted(cover.centers.size(), "ball"),
                      "give those of a query about this cover, all of them");
 }
 

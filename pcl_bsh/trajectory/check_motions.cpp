@@ -2,6 +2,7 @@
 #include <pcl_bsh/trajectory/check_motions.h>
 
 #include <pcl_bsh/collision/pose_tasks.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/hierarchy/parallel.h>
@@ -98,7 +99,7 @@ void check(const Placed& scan, const PoseList& poses, const std::vector<PoseMoti
                        "ask for fewer at a time");
   for (std::size_t m = 0; m < motions.size(); ++m)
     if (motions[m].from >= poses.size() || motions[m].to >= poses.size())
-      throw InvalidInput(Input::motion, nameOf(motions, m), plainText("the list has ", poses.size(), " poses"),
+      throw InvalidInput(Input::motion, nameOf(motions, m), "the list has " + counted(poses.size(), "pose"),
                          "name poses by their indices in the list, from 0")
           .withIndex(m);
 }

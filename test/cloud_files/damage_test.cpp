@@ -114,8 +114,9 @@ TEST(Damage, Text)
   expectSurvival(parseObj, "v 1 2 3\nf 1 1 1\n");
   expectSurvival(parseOff, "CNOFF\n2 1 0\n1 2 3 0 0 1 9 8 7 6\n4 5 6 0 1 0 5 4 3 2\n2 0 1\n");
   expectSurvival(parseObj, "vn 0 0 1\nv 1 2 3 0.2 0.4 1\nf 1//1 1 1\n");
-  expectSurvival(parseColumns, "x y z i\n1 2 3 4\n5 6 7 8\n");
-  expectSurvival(parseColumns, "//X,Y,Z,R,G,B\n1,2,3,40,50,60\n5,6,7,8,9,10\n");
+  const auto columns = [](std::string_view file) { return parseColumns(file); };
+  expectSurvival(columns, "x y z i\n1 2 3 4\n5 6 7 8\n");
+  expectSurvival(columns, "//X,Y,Z,R,G,B\n1,2,3,40,50,60\n5,6,7,8,9,10\n");
 }
 
 TEST(Damage, Las)

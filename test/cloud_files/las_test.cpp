@@ -579,13 +579,13 @@ TEST(Las, FilesKeepTheirHeaders)
 {
   const TemporaryFolder folder;
   const std::string sound = fullSample().text();
-  LasHeaderPtr las;
-  const pcl::PCLPointCloud2 cloud = readCloud(folder.write("a.las", sound), nullptr, &las);
-  writeCloud(folder / "b.las", cloud, no_viewpoint, las);
+  CloudFacts facts;
+  const pcl::PCLPointCloud2 cloud = readCloud(folder.write("a.las", sound), &facts);
+  writeCloud(folder / "b.las", cloud, no_viewpoint, facts.las);
   EXPECT_EQ(difference(contentOf(folder / "b.las"), sound), "");
   EXPECT_EQ(readCloudHeader(folder / "a.las").width, 50U);
-  readCloud(folder.write("a.xyz", "1 2 3\n"), nullptr, &las);
-  EXPECT_EQ(las, nullptr);
+  readCloud(folder.write("a.xyz", "1 2 3\n"), &facts);
+  EXPECT_EQ(facts.las, nullptr);
 }
 
 /// Real files of many programs.

@@ -228,7 +228,7 @@ TEST(MeshFile, RefusesFilesThatLie)
               HasSubstr("vertex -1"));
   const std::string stl = binaryStl({{0, 0, 0, 1, 0, 0, 1, 1, 0}, {0, 0, 0, 1, 1, 0, 0, 1, 0}});
   EXPECT_THAT(failureOf(folder.write("a.stl", stl.substr(0, stl.size() - 1))),
-              HasSubstr("has 1 triangles, and its header counts 2"));
+              HasSubstr("has 1 triangle, and its header counts 2"));
   EXPECT_THAT(failureOf(folder.write("b.stl", stl + std::string(50, 'x'))), HasSubstr("has 3 triangles"));
   EXPECT_THAT(failureOf(folder.write("c.stl", "short")), HasSubstr("is not an STL file"));
   EXPECT_THAT(failureOf(folder.write("d.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n")),
@@ -275,9 +275,9 @@ TEST(Mesh, WrittenWithValuesOfTriangles)
   const Mesh same = readMesh(path);
   EXPECT_EQ(same.triangles, mesh.triangles);
   EXPECT_EQ(same.vertices.data, mesh.vertices.data);
-  Viewpoint viewpoint;
-  readCloud(path, &viewpoint);
-  EXPECT_EQ(viewpoint[1], 2.0F);
+  CloudFacts facts;
+  readCloud(path, &facts);
+  EXPECT_EQ(facts.viewpoint[1], 2.0);
   std::ifstream file(path, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(file)), {});
   EXPECT_THAT(bytes, HasSubstr("element face 3\nproperty list uchar int vertex_indices\nproperty uchar collision\n"

@@ -58,12 +58,23 @@ TEST(Pcd, EveryTypeComesBackAsItWas)
 
 TEST(Pcd, ViewpointComesBackToTheLastBit)
 {
-  const Viewpoint viewpoint = {0.1F, 1.0F / 3, -1e-7F, 0.70710678F, 0, 0.70710678F, 123456.78F};
+  const Viewpoint viewpoint = {0.1, 1.0 / 3, -1e-7, 0.7071067811865476, 0, 0.7071067811865475, 5400000.123456789};
   std::ostringstream out;
   writePcd(out, randomCloud<float>(1, 1, {}), viewpoint);
   Viewpoint read;
   parsePcd(out.str(), read);
   EXPECT_EQ(read, viewpoint);
+}
+
+TEST(Pcd, AxesMayBeCapitals)
+{
+  const auto file = [](const std::string& names) {
+    return "FIELDS " + names + "\nSIZE 4 4 4 4\nTYPE F F F F\nPOINTS 1\nDATA ascii\n1 2 3 4\n";
+  };
+  EXPECT_EQ(namesOf(parse(file("X Y Z Intensity"))), "x y z Intensity");
+  EXPECT_EQ(valueOf(parse(file("Intensity Z Y X")), 0, "x"), 4);
+  EXPECT_EQ(namesOf(parsePcdHeader(file("X y z i"))), "x y z i");
+  EXPECT_EQ(namesOf(parse(file("X x y z"))), "X x y z") << "the name is taken";
 }
 
 TEST(Pcd, EmptyCloudKeepsItsFields)

@@ -148,8 +148,8 @@ TEST(Ply, ReadsTheSensorOfPclsCamera)
     Viewpoint viewpoint;
     EXPECT_EQ(parsePly(file, viewpoint).width, 2U);
     for (int k = 0; k < 3; ++k) EXPECT_EQ(viewpoint[static_cast<std::size_t>(k)], origin[k]);
-    const Eigen::Quaternionf read(viewpoint[3], viewpoint[4], viewpoint[5], viewpoint[6]);
-    EXPECT_LT(read.angularDistance(turn), 1e-6F);
+    const Eigen::Quaterniond read(viewpoint[3], viewpoint[4], viewpoint[5], viewpoint[6]);
+    EXPECT_LT(read.angularDistance(turn.cast<double>()), 1e-6);
   };
   pcl::PLYWriter().writeASCII((folder / "a.ply").string(), cloud, origin, turn, 9, true);
   check(contentOf(folder / "a.ply"));
@@ -183,6 +183,45 @@ TEST(Ply, ACameraThatMakesNoSenseIsNoViewpoint)
   const std::string lists = "element camera 2\nproperty list uchar float view_px\nproperty float k1\n" + xyz(1);
   EXPECT_EQ(parsePly(ascii(lists, "2 1 1 0\n0 0\n1 2 3\n"), viewpoint).width, 1U);
   EXPECT_EQ(viewpoint, no_viewpoint);
+}
+
+TEST(Ply, FacesMayHaveMoreValuesThanTheHeaderSays)
+{
+  const std::string header = xyz(3) + "element face 2\nproperty list uchar int vertex_indices\n";
+  const std::string rows = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0 255\n3 2 1 0 0 255 0 255\n";
+  Viewpoint viewpoint;
+  Polygons faces;
+  EXPECT_EQ(parsePly(ascii(header, rows), viewpoint, &faces).width, 3U);
+  ASSERT_EQ(faces.size(), 2U);
+  EXPECT_EQ(faces[1][0], 2U);
+  EXPECT_EQ(parse(ascii(header, rows)).width, 3U) << "where the faces are skipped";
+  EXPECT_EQ(defectOf([&] { parse(ascii(xyz(1), "1 2 3 4\n")); }).substr(0, 4), "line") << "but points may not";
+  EXPECT_EQ(defectOf([&] { parsePly(ascii(header, "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1\n"), viewpoint, &faces); }),
+            "line 15 has fewer values than it should");
+}
+
+TEST(Ply, AMovedCameraOutdoesTheComment)
+{
+  const pcl::PCLPointCloud2 cloud = parse(ascii(xyz(1), "1 2 3\n"));
+  const Viewpoint viewpoint = {500000.123, 2, 3, 1, 0, 0, 0};
+  std::ostringstream out;
+  writePly(out, cloud, viewpoint);
+  std::string file = out.str();
+  Viewpoint read;
+  parsePly(file, read);
+  EXPECT_EQ(read, viewpoint);
+  const std::string comment = "comment viewpoint 500000.123 2 3 1 0 0 0\n";
+  const std::size_t at = file.find(comment);
+  ASSERT_NE(at, std::string::npos);
+  parsePly(std::string(file).erase(at, comment.size()), read);
+  EXPECT_EQ(read[0], 500000.125) << "as PCL's reader takes it";
+  const std::string moved = "comment viewpoint 500001.123 2 3 1 0 0 0\n"; // of another place than the camera's
+  parsePly(std::string(file).replace(at, comment.size(), moved), read);
+  EXPECT_EQ(read[0], 500000.125);
+  for (const char* other : {"comment viewpoint\n", "comment viewpoint 1 2 3 1 0 0 east\n", "comment\n"}) {
+    parsePly(std::string(file).replace(at, comment.size(), other), read);
+    EXPECT_EQ(read[0], 500000.125) << other;
+  }
 }
 
 TEST(Ply, PclReadsWhatIsWritten)

@@ -3,9 +3,13 @@
 
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 
+#include <gmock/gmock.h>
+
 #include <sstream>
 
 namespace pcl_bsh::io {
+
+using ::testing::HasSubstr;
 
 TEST(TextClouds, ColumnsAreFloat64)
 {
@@ -113,6 +117,81 @@ TEST(TextClouds, OnlyBytesAreColours)
   const pcl::PCLPointCloud2 cloud = parseColumns("x y z red green blue ring\n1 2 3 4 5 6 7\n");
   EXPECT_EQ(namesOf(cloud), "x y z rgb ring");
   EXPECT_EQ(cloud.fields[4].datatype, Field::FLOAT64) << "as all columns but colours";
+}
+
+TEST(TextClouds, NamesThatAreGivenHoldInPlaceOfTheFiles)
+{
+  const pcl::PCLPointCloud2 numbered = parseColumns("1 10 20 30 7\n2 11 21 31 8\n", {"_", "E", "N", "h", "intensity"});
+  EXPECT_EQ(namesOf(numbered), "x y z intensity");
+  EXPECT_EQ(valueOf(numbered, 1, "x"), 11);
+  EXPECT_EQ(valueOf(numbered, 1, "z"), 31);
+  EXPECT_EQ(valueOf(numbered, 1, "intensity"), 8);
+  const pcl::PCLPointCloud2 headed = parseColumns("a,b,c,d\nP1,1,2,3\n\"\",4,5,6\n", {"_", "y", "x", "z"});
+  ASSERT_EQ(headed.width, 2U) << "a column that is not read may be no number";
+  EXPECT_EQ(valueOf(headed, 0, "x"), 2);
+  EXPECT_EQ(valueOf(headed, 1, "y"), 4);
+  const pcl::PCLPointCloud2 coloured = parseColumns("9 1 2 3 255 0 7\n", {"_", "x", "y", "z", "r", "g", "b"});
+  EXPECT_EQ(namesOf(coloured), "x y z rgb");
+  EXPECT_EQ(namesOf(parseColumnNames("9 1 2 3\n", true, {"_", "x", "y", "z"})), "x y z");
+  EXPECT_THAT(defectOf([] {
+                parseColumns("1 2 3 4\n", {"x", "y", "z"});
+              }),
+              HasSubstr("line 1 has 4 values, and names of 3 columns are given"));
+  EXPECT_THAT(defectOf([] { parseColumns("1 2 3\n4 5 6 7\n", {"x", "y", "z"}); }), HasSubstr("line 2 has more values"));
+  EXPECT_THAT(defectOf([] { parseColumns("1 2 3\n", {"x", "y", "_"}); }), HasSubstr("none of them is z"));
+}
+
+TEST(TextClouds, SurveyorsNamesAreAxes)
+{
+  for (const char* header : {"E N H", "Easting,Northing,Elevation", "# E N H", "//EAST NORTH HEIGHT"}) {
+    const pcl::PCLPointCloud2 cloud = parseColumns(header + std::string("\n500000.25 5400000.5 7\n"));
+    ASSERT_EQ(namesOf(cloud), "x y z") << header;
+    EXPECT_EQ(valueOf(cloud, 0, "y"), 5400000.5) << header;
+  }
+  EXPECT_EQ(valueOf(parseColumns("Point;N;E;H\n1;20;10;3\n"), 0, "x"), 10);
+  EXPECT_THAT(defectOf([] { parseColumns("lat,lon,h\n1,2,3\n"); }),
+              HasSubstr("its columns are named lat lon h: none of them is x"));
+}
+
+TEST(TextClouds, WarnsOfAFirstColumnThatCounts)
+{
+  const auto remarksOf = [](const std::string& rows) {
+    std::vector<std::string> remarks;
+    parseColumns(rows, {}, &remarks);
+    return remarks;
+  };
+  ASSERT_EQ(remarksOf("7 1.5 2 3\n8 4 5 6\n// a comment\n9 1 2 3\n").size(), 1U);
+  EXPECT_THAT(remarksOf("0,1.5,2,3\n1,4,5,6\n2,1,2,3\n")[0], HasSubstr("counts up by one, and is taken for x"));
+  EXPECT_THAT(remarksOf("0,1.5,2,3\n1,4,5,6\n2,1,2,3\n")[0], HasSubstr("--columns"));
+  EXPECT_THAT(remarksOf("1 0 0 0 5 6\n2 1 1 1 5 6\n3 0 0 0 5 6\n")[0], testing::EndsWith(", as _,x,y,z,_,_"));
+  for (const char* rows : {"1 1 1\n2 2 2\n3 3 3\n", "1 2 3 4\n2 2 3 4\n", "1 2 3 4\n2 2 3 4\n4 2 3 4\n",
+                           "x y z i\n1 2 3 4\n2 2 3 4\n3 2 3 4\n", "0.5 2 3 4\n1.5 2 3 4\n2.5 2 3 4\n"})
+    EXPECT_TRUE(remarksOf(rows).empty()) << rows;
+}
+
+TEST(TextClouds, ColoursWithoutNames)
+{
+  std::vector<std::string> remarks;
+  const pcl::PCLPointCloud2 agisoft =
+      parseColumns("1.5 2 3 200 40 33 0 0.6 0.8\n4 5 6 0 90 255 1 0 0\n7 8 9 1 2 3 0 0 0\n", {}, &remarks);
+  EXPECT_EQ(namesOf(agisoft), "x y z rgb normal_x normal_y normal_z");
+  EXPECT_EQ(valueOf(agisoft, 0, "normal_z"), 0.8);
+  EXPECT_EQ(colourOf(agisoft, 1), 0x005affU);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_THAT(remarks[0], HasSubstr("4 to 6, whole numbers from 0 to 255, are taken for r g b, and the last three"));
+  const std::string comparer = "1,2,3,200,40,33,0.5\n4,5,6,0,90,255,7\n";
+  EXPECT_EQ(namesOf(parseColumns(comparer)), "x y z rgb column_7");
+  EXPECT_EQ(namesOf(parseColumnNames(comparer)), "x y z rgb column_7");
+  EXPECT_THAT(defectOf([&] { parseColumnNames(comparer, false); }), HasSubstr("all of its rows tell"));
+  for (const char* others : {"1 2 3 0 0 1\n4 5 6 1 0 0\n",            // normals
+                             "1 2 3 200 31 31\n4 5 6 100 2 2\n",      // intensity, class and return
+                             "1 2 3 200 40 33\n4 5 6 256 90 255\n",   // more than bytes
+                             "1 2 3 200 40 33\n4 5 6 100.5 90 255\n", // no whole number
+                             "1 2 3 200 40 33\n4 5 6 -1 90 255\n"}) {
+    remarks.clear();
+    EXPECT_EQ(namesOf(parseColumns(others, {}, &remarks)), "x y z column_4 column_5 column_6") << others;
+    EXPECT_TRUE(remarks.empty()) << others;
+  }
 }
 
 TEST(TextClouds, AFileOfNamesAloneIsAnEmptyCloud)

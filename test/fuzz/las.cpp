@@ -4,6 +4,7 @@
 #include "read.h"
 
 #include <pcl_bsh/filters/cloud_files/las.h>
+#include <pcl_bsh/filters/cloud_files/las_notes.h>
 
 namespace {
 
@@ -17,6 +18,9 @@ io::LasReader readerOf(std::string_view file)
 pcl::PCLPointCloud2 parse(std::string_view file)
 {
   io::LasReader reader = readerOf(file);
+  for (const char c : io::coordinateSystemOf(reader.header()))
+    fuzz::require(c >= ' ' && c <= '~', "a coordinate system's name that no report can show");
+  io::remarksOn(reader.block(), file.size());
   return io::readLas(reader);
 }
 

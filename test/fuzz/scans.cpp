@@ -28,6 +28,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
         data, size, parse, [&](std::string_view file) { return io::parsePtxHeader(file, scan); }, writeNothing);
   }
   const auto write = [](std::ostream& out, const pcl::PCLPointCloud2& cloud) { io::writeColumns(out, cloud, ','); };
-  fuzz::readAny(data, size, io::parseColumns, io::parseColumnNames, write);
+  const auto parse = [](std::string_view file) { return io::parseColumns(file); };
+  const auto parse_header = [](std::string_view file) { return io::parseColumnNames(file); };
+  fuzz::readAny(data, size, parse, parse_header, write);
   return 0;
 }

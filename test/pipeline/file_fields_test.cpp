@@ -83,13 +83,14 @@ TEST_F(FileFields, TheSensorsPlaceIsKept)
   pcl::PCLPointCloud2 cloud;
   for (const char* axis : {"x", "y", "z"}) io::addField(cloud, axis, pcl::PCLPointField::FLOAT32);
   io::allocate(cloud, 1);
-  io::writeCloud(folder / "a.ply", cloud, {5, 0, 0, 1, 0, 0, 0});
+  io::writeCloud(folder / "a.ply", cloud, {5400000.123, 0, 0, 1, 0, 0, 0});
   run("a.ply", turn, "b.ply");
-  io::Viewpoint viewpoint;
-  io::readCloud(folder / "b.ply", &viewpoint);
-  EXPECT_NEAR(viewpoint[1], 5, 1e-6);
-  EXPECT_NEAR(viewpoint[3], std::sqrt(0.5), 1e-6);
-  EXPECT_NEAR(viewpoint[6], std::sqrt(0.5), 1e-6);
+  io::CloudFacts facts;
+  io::readCloud(folder / "b.ply", &facts);
+  const io::Viewpoint& viewpoint = facts.viewpoint;
+  EXPECT_NEAR(viewpoint[1], 5400000.123, 1e-8);
+  EXPECT_NEAR(viewpoint[3], std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(viewpoint[6], std::sqrt(0.5), 1e-15);
 }
 
 /// Scale, offset, records and waveforms travel with the points through every kind of stage.
@@ -132,7 +133,7 @@ TEST_F(FileFields, LasLeavesOutWhatIsNotFinite)
   folder.write("a.xyz", "0 0 0\nnan 0 0\n1 1 1\n");
   const auto warnings = run("a.xyz", R"({"type": "filters.merge"})", "b.las").warnings;
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_THAT(warnings[0], HasSubstr("1 are left out"));
+  EXPECT_THAT(warnings[0], HasSubstr("1 is left out"));
   EXPECT_EQ(io::readCloud(folder / "b.las").width, 2U);
 }
 
@@ -144,8 +145,9 @@ TEST_F(FileFields, OneScanOfSeveral)
     Pipeline::parse("[{\"type\": \"readers.ptx\", \"filename\": \"" + (folder / "a.ptx").string() + "\"" + option +
                     "}, \"" + (folder / "b.pcd").string() + "\"]")
         .run();
-    io::Viewpoint viewpoint;
-    const pcl::PCLPointCloud2 cloud = io::readCloud(folder / "b.pcd", &viewpoint);
+    io::CloudFacts facts;
+    const pcl::PCLPointCloud2 cloud = io::readCloud(folder / "b.pcd", &facts);
+    const io::Viewpoint& viewpoint = facts.viewpoint;
     return io::namesOf(cloud) + " " + std::to_string(cloud.width) + " " +
            std::to_string(static_cast<int>(viewpoint[2]));
   };

@@ -55,6 +55,33 @@ TEST_F(PoseFile, ToldApartByTheirColumns)
   expectQuarterTurn(read("0.0 0 0 0 0 0 0 1\n1e9 1 2 3 0 0 0.70710678118654752 0.70710678118654752\n"));
 }
 
+TEST_F(PoseFile, NamesOfColumnsDecide)
+{
+  const std::string half = "0.70710678118654752";
+  // EuRoC: w first, and more columns behind, of which v_RS_R_x and b_w_RS_S_x are no position.
+  expectQuarterTurn(read("#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+                         "q_RS_z [], v_RS_R_x [m s^-1], b_w_RS_S_x [rad s^-1]\n"
+                         "1403636580838555648,0,0,0,1,0,0,0,9,9\n1403636580843555648,1,2,3," +
+                         half + ",0,0," + half + ",9,9\n"));
+  expectQuarterTurn(read("timestamp tx ty tz qx qy qz qw\n0 0 0 0 0 0 0 1\n1 1 2 3 0 0 " + half + " " + half + "\n"));
+  expectQuarterTurn(
+      read("# by someone\n# time qw qx qy qz tx ty tz\n0 1 0 0 0 0 0 0\n1 " + half + " 0 0 " + half + " 1 2 3\n"));
+  expectQuarterTurn(
+      read("%time,field.header.frame_id,field.pose.position.x,field.pose.position.y,field.pose.position.z,"
+           "field.pose.orientation.x,field.pose.orientation.y,field.pose.orientation.z,field.pose.orientation.w\n"
+           "0,/world,0,0,0,0,0,0,1\n1,/world,1,2,3,0,0," +
+           half + "," + half + "\n"));
+  expectQuarterTurn(read("X;Y;Z;QW;QX;QY;QZ\n0;0;0;1;0;0;0\n1;2;3;" + half + ";0;0;" + half + "\n"));
+  // Of another number of columns than the poses: a comment like any other.
+  expectQuarterTurn(read("# made of tx ty tz qx qy qz qw\n1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 1 1 0 0 2 0 0 1 3\n"));
+  expectRefused("timestamp x y z\n0 1 2 3\n", "line 1 names columns, and not one each of tx ty tz qx qy qz qw");
+  expectRefused("tx ty tz qx qy qz qw tx\n", "line 1 names columns, and not one each");
+  expectRefused("tx ty tz qx qy qz qw\n0 0 0 0 0 1\n", "line 2 has 6 values, and 7 columns are named");
+  expectRefused("tx ty tz qx qy qz qw\n0 0 zero 0 0 0 1\n", "line 2 is damaged: 'zero' is not a number");
+  expectRefused("tx ty tz qx qy qz qw\n0 0 0 0 0 0 2\n", "line 2 has a quaternion of length 2");
+  expectRefused("tx ty tz qx qy qz qw\n", "holds no pose");
+}
+
 TEST_F(PoseFile, NumbersAreSeparatedAlike)
 {
   const std::string row = "line 1 separates numbers by several characters, or has decimal commas";

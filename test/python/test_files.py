@@ -169,3 +169,25 @@ def test_real_files_read_as_they_are():
         pytest.skip("no real scans beside the sources")
     read = pcl_bsh.read(shared / "lidar_sweep_a.pcd")
     assert len(pcl_bsh.SphereHierarchy(read)) > 10000
+
+
+def test_columns_may_be_named(tmp_path):
+    rows = "".join(f"{i} {i / 4} 0.5 0.25\n" for i in range(1, 5))
+    (tmp_path / "a.xyz").write_text(rows)
+    with pytest.warns(UserWarning, match="its first column counts up by one"):
+        assert pcl_bsh.read(tmp_path / "a.xyz")["x"][1] == 2
+    named = pcl_bsh.read(tmp_path / "a.xyz", columns=["_", "E", "N", "H"])
+    assert named.dtype.names == ("x", "y", "z") and named["x"][1] == 0.5
+    with pytest.raises(pcl_bsh.FileError, match="names of 3 columns are given"):
+        pcl_bsh.read_with_header(tmp_path / "a.xyz", columns=["x", "y", "z"])
+
+
+def test_the_viewpoint_keeps_its_bits(tmp_path):
+    (tmp_path / "a.pcd").write_text(
+        "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nVIEWPOINT 500000.123456789 5400000.1 2 1 0 0 0\nPOINTS 1\nDATA ascii\n1 2 3\n"
+    )
+    cloud, header = pcl_bsh.read_with_header(tmp_path / "a.pcd")
+    assert header.viewpoint[:2] == (500000.123456789, 5400000.1) and header.coordinate_system == ""
+    for name in ("b.pcd", "b.ply"):
+        pcl_bsh.write(tmp_path / name, cloud, header)
+        assert pcl_bsh.read_with_header(tmp_path / name)[1].viewpoint == header.viewpoint

@@ -143,7 +143,7 @@ def test_gravity():
         (lambda s, p: s.add("", p), "name"),
         (lambda s, p: s.add("a", p), "a"),
         (lambda s, p: s.add("c", []), "part"),
-        (lambda s, p: s.add("c", [("x",)]), "1 values"),
+        (lambda s, p: s.add("c", [("x",)]), "1 value"),
         (lambda s, p: s.pose("b"), "there is no object `b`"),
         (lambda s, p: s.pose(7), "there is no object 7"),
         (lambda s, p: s.set_part_pose("a", 1, np.eye(4)), "there is no part 1"),

@@ -377,6 +377,10 @@ TEST(SceneFile, RefusesWhatSurfacesCannotDo)
   ball.replace(ball.find("\"spacing\": 0.2"), 0, "\"vertices_only\": true, ");
   EXPECT_THAT([&] { parseScene(ball, "scene.json"); },
               testing::ThrowsMessage<JsonError>(HasSubstr("is about faces, and a sphere is points")));
+  std::string named = whole;
+  named.replace(named.find("\"spacing\": 0.2"), 0, "\"columns\": \"x,y,z\", ");
+  EXPECT_THAT([&] { parseScene(named, "scene.json"); },
+              testing::ThrowsMessage<JsonError>(HasSubstr("is about files, and a sphere is points")));
 }
 
 TEST(SceneFile, WhatTheCallbackThrowsComesOutUnchanged)

@@ -242,6 +242,21 @@ TEST_F(Picture, EveryColouringHasItsBarAndNeedsItsField)
   EXPECT_FALSE(std::filesystem::exists(folder / "x.png"));
 }
 
+TEST_F(Picture, ACloudWithoutAColourIsDrawnByHeight)
+{
+  const auto cloud = [&](const std::string& last_blue) {
+    std::string file = "x y z r g b\n";
+    for (int i = 0; i < 400; ++i)
+      file += std::to_string(i % 20) + ' ' + std::to_string(i / 20) + ' ' + std::to_string(i % 7) + " 0 0 " +
+              (i == 399 ? last_blue : "0") + '\n';
+    return folder.write("black.xyz", file).string();
+  };
+  const auto words = [](const Pixels& pixels) { return pixels.countNear(text_color, 345, 150, 54, 40); };
+  EXPECT_GT(words(drawn(cloud("0"))), 5u) << "all is black: a bar of heights";
+  EXPECT_EQ(words(drawn(cloud("0") + " --color rgb")), 0u) << "as it is asked for";
+  EXPECT_EQ(words(drawn(cloud("1"))), 0u) << "a colour";
+}
+
 TEST_F(Picture, TheClosestPairIsDrawn)
 {
   Options apart = options();

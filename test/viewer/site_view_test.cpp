@@ -162,7 +162,7 @@ TEST_F(SiteView, AWindowLoadsTilesWhileNothingMovesAndOutlivesADamagedOne)
   EXPECT_NE(viewer.renderView().tilesText(), before);
   damageTiles();
   for (std::size_t i = 0; i < 2 * made.tiles.size(); ++i) viewer.loadTile(); // no error ends the window
-  EXPECT_THAT(viewer.renderView().tilesText(), HasSubstr(" of 1 tiles"));
+  EXPECT_THAT(viewer.renderView().tilesText(), HasSubstr(" of 1 tile"));
 }
 
 /// What is wrong with the arguments; "nothing" if nothing is.

@@ -5,6 +5,7 @@
 #include "cli/used_files.h"
 
 #include <pcl_bsh/certify/certify.h>
+#include <pcl_bsh/filters/text_files/column_names.h>
 
 #include <filesystem>
 #include <optional>
@@ -25,6 +26,7 @@ struct CertifyProgramOptions {
   std::optional<std::filesystem::path> report;
   std::vector<std::pair<std::string, SphereFit>> wanted = fits;
   CertifyOptions certify;
+  io::ColumnChoice columns;
   CommandFiles files;
 };
 

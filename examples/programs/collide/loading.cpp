@@ -4,6 +4,7 @@
 #include "surface_input.h"
 
 #include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <string>
@@ -16,16 +17,15 @@ Scan loadInput(const CollideOptions& options, double& seconds)
   Step step("Loading " + options.input.string());
   Scan scan;
   if (options.surface.vertices_only) {
-    scan.cloud = io::readCloud(options.input, &scan.viewpoint, &scan.las);
+    scan.cloud = io::readCloud(options.input, &scan.facts, options.columns.of(options.input));
   }
   else {
-    io::Mesh mesh = io::readMesh(options.input, &scan.viewpoint, &scan.las);
+    io::Mesh mesh = io::readMesh(options.input, &scan.facts, options.columns.of(options.input));
     scan.cloud = std::move(mesh.vertices);
     scan.triangles = std::move(mesh.triangles);
   }
-  const std::string triangles =
-      scan.triangles.empty() ? "" : ", " + std::to_string(scan.triangles.size()) + " triangles";
-  seconds += step.done(std::to_string(std::size_t{scan.cloud.width} * scan.cloud.height) + " points" + triangles);
+  const std::string triangles = scan.triangles.empty() ? "" : ", " + counted(scan.triangles.size(), "triangle");
+  seconds += step.done(counted(std::size_t{scan.cloud.width} * scan.cloud.height, "point") + triangles);
   return scan;
 }
 
@@ -42,7 +42,7 @@ std::shared_ptr<const SurfaceCover> coverOf(const CollideOptions& options, const
         return true;
       },
       warnings));
-  seconds += step.done(std::to_string(cover->centers.size()) + " balls");
+  seconds += step.done(counted(cover->centers.size(), "ball"));
   return cover;
 }
 
@@ -55,7 +55,7 @@ SphereHierarchy build(const PointsView& points, const std::vector<pcl::PCLPointF
   HierarchyOptions options;
   options.threads = threads;
   SphereHierarchy hierarchy(view, options);
-  seconds += step.done(std::to_string(hierarchy.statistics().voxels) + " voxels");
+  seconds += step.done(counted(hierarchy.statistics().voxels, "voxel"));
   return hierarchy;
 }
 

@@ -15,8 +15,7 @@ namespace pcl_bsh::cli {
 struct Scan {
   pcl::PCLPointCloud2 cloud;
   std::vector<Triangle> triangles; ///< where the input has faces: these are asked about
-  io::Viewpoint viewpoint = io::no_viewpoint;
-  io::LasHeaderPtr las;
+  io::CloudFacts facts;            ///< of the input's file
 };
 
 /// @throws files::FileError

@@ -2,6 +2,7 @@
 #include "options.h"
 
 #include "cli/accuracy.h"
+#include "cli/columns.h"
 #include "cli/command_line.h"
 #include "cli/path.h"
 #include "cli/pose.h"
@@ -144,6 +145,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   UncertaintyOptions uncertainties;
   uncertainties.addTo(app, "INPUT");
   addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
+  ColumnOptions columns;
+  columns.addTo(app);
   addDensityOptions(app, options);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--threads", options.threads, "0: all of the machine's (default); any number gives the same result")
@@ -172,6 +175,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
 
   options.accuracy = parseAccuracy(accuracy);
   uncertainties.read(options.input_uncertainty, options.obstacle_uncertainty);
+  options.columns = columns.read({options.input, options.obstacle});
   path.requireConsistent(!pose.empty());
   if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
   options.trajectory = path.file;

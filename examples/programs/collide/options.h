@@ -48,6 +48,7 @@ struct CollideOptions {
   Accuracy accuracy;
   Uncertainty input_uncertainty, obstacle_uncertainty;
   io::SurfaceSettings surface;
+  io::ColumnChoice columns;
   bool density = false;
   double widest_gap = 0;             ///< 0: as the obstacle's spacing suggests
   std::vector<std::string> warnings; ///< of the options themselves

@@ -48,6 +48,7 @@ struct CollisionReport {
   CloudReport obstacle;                ///< of a surface, its vertices
   std::optional<io::Obstacle> surface; ///< the obstacle, where it is one
   std::optional<double> input_surface; ///< the tolerance, where the input is one: its numbers are those of triangles
+  std::string coordinate_system;       ///< of the input, where its file names one; else empty
   double clearance = 0;
   Accuracy accuracy;
   Uncertainty input_uncertainty, obstacle_uncertainty;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "summary.h"
+
 #include "cli/program.h"
+#include <pcl_bsh/geometry/counted.h>
 
 #include <cmath>
 #include <sstream>
@@ -31,7 +33,7 @@ std::string distanceSummary(const io::DistanceReport& report)
     return text.str();
   };
   const DistanceStatistics& statistics = report.input.statistics;
-  return "; distances of " + std::to_string(statistics.count) + " points: mean " + length(statistics.mean) + ", RMS " +
+  return "; distances of " + counted(statistics.count, "point") + ": mean " + length(statistics.mean) + ", RMS " +
          length(statistics.rms) + ", median " + length(statistics.median) + ", greatest " + length(statistics.maximum) +
          "; Hausdorff distance " + length(report.hausdorff);
 }
@@ -43,8 +45,8 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
 {
   warn(collide_program, report.warnings);
   std::ostream& out = options.files.summary();
-  out << report.colliding << " of " << report.input.points << (report.input_surface ? " triangles" : " points")
-      << " collide";
+  out << report.colliding << " of " << counted(report.input.points, report.input_surface ? "triangle" : "point")
+      << (report.input.points == 1 ? " collides" : " collide");
   if (report.mayLeaveUndecided()) out << ", " << report.undecided << " are undecided";
   if (report.widest_gap > 0) out << ", " << report.sparse << " are not scanned densely enough";
   if (report.closest.pair) {
@@ -53,7 +55,7 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
         << (report.surface ? report.surface->partName() : "point") << ' ' << report.closest.pair->b
         << " of the obstacle";
   }
-  if (report.path) out << "; " << report.path->poses << " poses";
+  if (report.path) out << "; " << counted(report.path->poses, "pose");
   if (report.path && report.path->first_contact) {
     out << "; first contact at pose "
         << static_cast<double>(report.path->first_contact->pose) + report.path->first_contact->fraction;

@@ -5,6 +5,7 @@
 #include "cli/step.h"
 
 #include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <iostream>
 #include <optional>
@@ -18,7 +19,7 @@ void printProgress(const StageProgress& stage)
 {
   if (!stage.done) return;
   std::cerr << "> [" << stage.finished << "/" << stage.stages << "] " << stage.tag << ": " << stage.type << " [done, "
-            << static_cast<long>(stage.seconds * 1000) << " ms : " << stage.points << " points]\n";
+            << static_cast<long>(stage.seconds * 1000) << " ms : " << counted(stage.points, "point") << "]\n";
 }
 
 } // namespace
@@ -38,7 +39,7 @@ void runPipeline(const char* program, Pipeline& pipeline, const PipelineOptions&
   std::optional<Step> step; // with a line per stage, it would be printed twice
   if (!options.progress) step.emplace("Running " + options.name());
   const PipelineResult result = pipeline.run();
-  if (step) step->done(std::to_string(stages) + " stages");
+  if (step) step->done(counted(stages, "stage"));
 
   warn(program, result.warnings);
   if (options.metadata.empty()) return;

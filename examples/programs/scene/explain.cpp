@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "explain.h"
 
+#include <pcl_bsh/geometry/counted.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <ostream>
@@ -58,8 +60,9 @@ std::size_t fixedObjects(const io::SceneFile& file)
 void explain(const io::SceneFile& file, std::ostream& out)
 {
   const Effects& effects = file.options.effects;
-  out << file.path.string() << ": " << file.objects.size() << " objects, " << file.clouds.size() << " clouds, "
-      << file.steps << " steps of " << file.dt << " s\n\nEffects that are on:\n";
+  out << file.path.string() << ": " << counted(file.objects.size(), "object") << ", "
+      << counted(file.clouds.size(), "cloud") << ", " << counted(file.steps, "step") << " of " << file.dt
+      << " s\n\nEffects that are on:\n";
   for (std::size_t e = 0; e < kEffects; ++e) {
     const auto effect = static_cast<Effect>(e);
     if (effects.has(effect)) out << "  " << nameOf(effect) << ": " << explanationOf(effect) << '\n';

@@ -10,6 +10,7 @@
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/site/collide_site.h>
 
@@ -146,7 +147,7 @@ int answer(const SiteOptions& options, bool& keeps)
     report = askOfFile(site, *file, poses, options, output, clashes, run, step, of_question);
   else
     report = askOfSite(site, poses, options, output, clashes, run, step, of_question);
-  if (tells) shown->done(report["tiles"]["read"].dump() + " tiles read");
+  if (tells) shown->done(counted(report["tiles"]["read"].get<std::uint64_t>(), "tile") + " read");
   warn_of(of_question);
   if (clashes.isWanted()) warn_of(clashes.warnings());
   run.seconds = seconds();

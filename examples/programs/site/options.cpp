@@ -2,6 +2,7 @@
 #include "options.h"
 
 #include "cli/accuracy.h"
+#include "cli/columns.h"
 #include "cli/command_line.h"
 #include "cli/pose.h"
 #include "cli/surface_options.h"
@@ -228,6 +229,8 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
   make->add_option("--out", options.site, "folder of the site: a new one, or one that was begun")
       ->type_name("SITE")
       ->required();
+  ColumnOptions columns;
+  columns.addTo(*make);
   addMemory(*make, options);
   make->add_option("--tile-points", options.tile_points, "points of a tile at most, as 500K or 4M (default: 4M)")
       ->type_name("N")
@@ -253,12 +256,17 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
   add_site(collide);
   CollideTexts texts;
   texts.addTo(*collide, options);
+  columns.addTo(*collide);
   addMemory(*collide, options);
 #endif
   if (!understood(app, site_program, argc, argv)) return std::nullopt;
+  if (options.command == SiteCommand::make) options.columns = columns.read(options.clouds);
   if (options.command == SiteCommand::write) requireExport(options);
 #ifdef PCL_BSH_SITE_QUERIES
-  if (options.command == SiteCommand::collide) texts.read(options);
+  if (options.command == SiteCommand::collide) {
+    texts.read(options);
+    options.columns = columns.read({options.obstacle});
+  }
 #endif
   return options;
 }

@@ -5,6 +5,7 @@
 #include "cli/used_files.h"
 
 #include <pcl_bsh/filters/cloud_files/obstacle.h>
+#include <pcl_bsh/filters/text_files/column_names.h>
 #include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/query/accuracy.h>
 
@@ -58,7 +59,8 @@ struct SiteOptions {
   unsigned threads = 1;
   std::vector<unsigned> plan; ///< numbers of ranks whose time is predicted
   std::vector<std::string> warnings;
-  CommandFiles files; ///< that `collide` reads and writes
+  io::ColumnChoice columns; ///< of `make` and `collide`
+  CommandFiles files;       ///< that `collide` reads and writes
 };
 
 /// The options, checked; none when only help was asked for. @throws UsageError

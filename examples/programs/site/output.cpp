@@ -114,10 +114,11 @@ sites::ResultField collisionField()
 ObstacleFile::ObstacleFile(const SiteOptions& options)
 {
   double seconds = 0.0;
+  const io::ColumnNames columns = options.columns.of(options.obstacle);
   if (sites::rankHere() == 0)
-    obstacle = loadObstacle(options.obstacle, options.surface, options.clearance, seconds, &viewpoint, &las);
+    obstacle = loadObstacle(options.obstacle, options.surface, options.clearance, seconds, columns, &facts);
   else
-    obstacle = io::readObstacle(options.obstacle, options.surface, options.clearance, nullptr, &viewpoint, &las);
+    obstacle = io::readObstacle(options.obstacle, options.surface, options.clearance, nullptr, columns, &facts);
   requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
   if (options.obstacle_out.empty()) return;
   if (obstacle.isSurface()) {
@@ -139,9 +140,10 @@ void ObstacleFile::write(const std::vector<std::uint8_t>& flags, const SiteOptio
   if (options.obstacle_out.empty() || sites::rankHere() != 0) return;
   if (obstacle.isSurface())
     io::writeMesh(options.obstacle_out, obstacle.points(), *obstacle.triangles(), {{collision_field_name, &flags}},
-                  viewpoint);
+                  facts.viewpoint);
   else
-    io::writeCloud(options.obstacle_out, withField(obstacle.points(), collision_field_name, flags), viewpoint, las);
+    io::writeCloud(options.obstacle_out, withField(obstacle.points(), collision_field_name, flags), facts.viewpoint,
+                   facts.las);
 }
 
 std::vector<std::string> droppedBy(const sites::ResultSite& out, const std::string& option,

@@ -33,8 +33,7 @@ struct ObstacleFile {
   void write(const std::vector<std::uint8_t>& flags, const SiteOptions& options) const;
 
   io::Obstacle obstacle;
-  io::Viewpoint viewpoint = io::no_viewpoint;
-  io::LasHeaderPtr las;
+  io::CloudFacts facts; ///< of its file
 };
 
 /// Of a run with --out that ends before it has answered.

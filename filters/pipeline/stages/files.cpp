@@ -5,7 +5,10 @@
 #include <pcl_bsh/filters/cloud_files/scan_text.h>
 #include <pcl_bsh/filters/cloud_files/text_clouds.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/filters/text_files/column_names.h>
+#include <pcl_bsh/filters/text_files/format_error.h>
 #include <pcl_bsh/filters/text_files/small_letters.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <algorithm>
@@ -30,7 +33,7 @@ struct FileReader : Stage {
   CloudHeader plan(const std::vector<CloudHeader>&) override
   {
     requireExtension(filename.path, extensions);
-    CloudHeader header = io::readCloudHeader(filename.path);
+    CloudHeader header = io::readCloudHeader(filename.path, names());
     if (const std::string remark = io::remarkOnColours(header); !remark.empty()) warn(filename.path + ": " + remark);
     return header;
   }
@@ -38,11 +41,39 @@ struct FileReader : Stage {
   StageCloudPtr run(StageClouds&&) override
   {
     auto cloud = std::make_shared<StageCloud>();
-    io::Mesh mesh = io::readMesh(filename.path, &cloud->viewpoint, &cloud->las_header);
+    io::CloudFacts facts;
+    io::Mesh mesh = io::readMesh(filename.path, &facts, names());
+    take(facts, *cloud);
     cloud->cloud = std::move(mesh.vertices);
     if (!mesh.triangles.empty())
       cloud->triangles = std::make_shared<const std::vector<Triangle>>(std::move(mesh.triangles));
     return cloud;
+  }
+
+protected:
+  virtual io::ColumnNames names() const { return {}; }
+
+  void take(const io::CloudFacts& facts, StageCloud& cloud)
+  {
+    for (const std::string& remark : facts.remarks) warn(filename.path + ": " + remark);
+    cloud.viewpoint = facts.viewpoint;
+    cloud.las_header = facts.las;
+  }
+};
+
+/// Columns may have other names than the file says.
+struct TextReader : FileReader {
+  std::string columns;
+
+protected:
+  io::ColumnNames names() const override
+  {
+    try {
+      return columns.empty() ? io::ColumnNames() : io::columnNamesOf(columns);
+    }
+    catch (const io::FormatError& error) {
+      throw OptionError("columns", std::string(error.what()) + ": " + error.remedy());
+    }
   }
 };
 
@@ -60,7 +91,9 @@ struct PtxReader : FileReader {
   {
     if (!scan) return FileReader::run(std::move(inputs));
     auto cloud = std::make_shared<StageCloud>();
-    cloud->cloud = io::readPtxScan(filename.path, static_cast<std::size_t>(*scan), &cloud->viewpoint);
+    io::CloudFacts facts;
+    cloud->cloud = io::readPtxScan(filename.path, static_cast<std::size_t>(*scan), &facts);
+    take(facts, *cloud);
     return cloud;
   }
 };
@@ -133,7 +166,9 @@ protected:
       std::size_t left_out = 0;
       for (std::uint32_t i = 0; i < points.count; ++i)
         if (!isFinite(points.point(i))) ++left_out;
-      if (left_out > 0) warn(no_place + "points that are not finite: " + std::to_string(left_out) + " are left out");
+      if (left_out > 0)
+        warn(no_place + "points that are not finite: " + std::to_string(left_out) + nounOf(left_out, " is", " are") +
+             " left out");
     }
     if (held.size() == cloud.cloud.fields.size()) return FileWriter::write(cloud); // no copy of the points
     io::writeCloud(filename.path, written(cloud.cloud), cloud.viewpoint, cloud.las_header);
@@ -158,6 +193,10 @@ StageType ofFiles(const std::string& name, const std::vector<std::string>& exten
   if constexpr (std::is_same_v<S, PtxReader>) {
     description.option(&S::scan, "scan", "only that scan, from 0, as an organised cloud; all when it is not given")
         .atLeast(0);
+  }
+  if constexpr (std::is_same_v<S, TextReader>) {
+    description.option(&S::columns, "columns",
+                       "the columns' names in place of what the file says, as \"x,y,z,_,intensity\"; _ is not read");
   }
   StageType type = description;
   type.make = [extensions] {
@@ -240,10 +279,12 @@ StageType ptxReader()
 
 StageType textReader()
 {
-  return reader(
+  return ofFiles<TextReader>(
       "readers.text", {".txt", ".xyz", ".csv"},
-      "A point per line, as float64: x y z and more columns, named by the first line or column_4, ...; columns "
-      "r g b of whole numbers up to 255 are packed as rgb, nx ny nz become normal_x normal_y normal_z.");
+      "A point per line, as float64: x y z and more columns, named by the first line or column_4, ...; E N H and the "
+      "like are x y z; columns r g b of whole numbers up to 255 are packed as rgb, nx ny nz become normal_x normal_y "
+      "normal_z.",
+      "the file to read");
 }
 
 StageType pcdWriter()

@@ -65,7 +65,7 @@ struct NormalEstimation : Stage {
   }
 
 private:
-  pcl::PointCloud<pcl::Normal> normalsOf(const FloatCloud& points, const std::array<float, 7>& sensor)
+  pcl::PointCloud<pcl::Normal> normalsOf(const FloatCloud& points, const std::array<double, 7>& sensor)
   {
     pcl::PointCloud<pcl::Normal> normals;
     if (points.points->empty()) return normals;

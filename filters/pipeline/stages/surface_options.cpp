@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/pipeline/stages/other_cloud.h>
 #include <pcl_bsh/filters/pipeline/stages/surface_options.h>
 #include <pcl_bsh/filters/text_files/number_text.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -53,8 +54,8 @@ std::shared_ptr<const SurfaceCover> SurfaceOptions::coverOfInput(const StageClou
         [&stage](double) { return !stage.isCancelled(); }, remarks));
     for (const std::string& remark : remarks) told.push_back("input: " + remark);
     const std::string tolerance = io::numberText(cover->tolerance, std::chars_format::general, 6);
-    told.push_back("the input is a surface of " + std::to_string(cover->triangle_count) +
-                   " triangles, to a tolerance of " + tolerance +
+    told.push_back("the input is a surface of " + counted(cover->triangle_count, "triangle") + ", to a tolerance of " +
+                   tolerance +
                    ": a free triangle is farther than the clearance from the obstacle for certain, a colliding one is "
                    "within the clearance + " +
                    tolerance);

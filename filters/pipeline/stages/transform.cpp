@@ -123,14 +123,12 @@ private:
     }
   }
 
-  static void moveViewpoint(std::array<float, 7>& viewpoint, const Eigen::Affine3d& map)
+  static void moveViewpoint(std::array<double, 7>& viewpoint, const Eigen::Affine3d& map)
   {
     const Eigen::Vector3d position = map * Eigen::Vector3d(viewpoint[0], viewpoint[1], viewpoint[2]);
     const Eigen::Quaterniond before(viewpoint[3], viewpoint[4], viewpoint[5], viewpoint[6]);
     const Eigen::Quaterniond after = Eigen::Quaterniond(map.rotation()) * before;
-    const double values[] = {position.x(), position.y(), position.z(), after.w(), after.x(), after.y(), after.z()};
-    std::transform(std::begin(values), std::end(values), viewpoint.begin(),
-                   [](double value) { return static_cast<float>(value); });
+    viewpoint = {position.x(), position.y(), position.z(), after.w(), after.x(), after.y(), after.z()};
   }
 };
 

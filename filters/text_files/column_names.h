@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the columns of a text file are: as users say, as a line of the file says, or as their numbers show.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// The columns' names in their order. Empty: not given.
+using ColumnNames = std::vector<std::string>;
+
+inline constexpr std::string_view skipped_column = "_"; ///< the name of a column that is not read; PCL's of padding
+
+/// Names as users give them: `x,y,z,intensity`, `_` for a column that is not read.
+/// @throws FormatError where one is empty or is given twice
+ColumnNames columnNamesOf(std::string_view text);
+
+/// The same names with x, y and z for what surveyors call them, in any case of letters: E, East, Easting; N, North,
+/// Northing; H, Height, Elevation, Elev, Altitude. An axis that has its own name, or two of these, stays as it is.
+ColumnNames withAxes(ColumnNames names);
+
+/// Whether files of that extension, with its dot and in small letters, are columns of text.
+bool isColumnText(std::string_view extension);
+
+/// The columns of each of several files, as a program is told.
+class ColumnChoice {
+public:
+  /// @param text `x,y,z` for all columns of text, or `FILE=x,y,z` for that file
+  /// @throws FormatError as columnNamesOf() does, and for a file that is given twice
+  void add(const std::string& text);
+
+  /// What a reader of that file is given: the names of the file itself, or of all where it is columns of text or a
+  /// pipe.
+  ColumnNames of(const std::filesystem::path& file) const;
+
+  /// @throws FormatError where there are names of another file, or of all, and none of these is columns of text or a
+  /// pipe
+  void requireUsed(const std::vector<std::filesystem::path>& files) const;
+
+private:
+  std::optional<ColumnNames> all_;
+  std::map<std::filesystem::path, ColumnNames> files_;
+};
+
+} // namespace pcl_bsh::io
