@@ -32,9 +32,9 @@ std::string unknown(const std::string& extension)
   return extension.empty() ? "has no extension" : "unknown extension '" + extension + "'";
 }
 
-constexpr auto readable_list = ".pcd, .ply, .las, .obj, .off, .stl, .pts, .ptx, .csv, .xyz or .txt";
-constexpr std::array readable = {".pcd", ".ply", ".las", ".obj", ".off", ".stl",
-                                 ".pts", ".ptx", ".csv", ".xyz", ".txt"};
+constexpr auto readable_list = ".pcd, .ply, .las, .laz, .obj, .off, .stl, .pts, .ptx, .csv, .xyz or .txt";
+constexpr std::array readable = {".pcd", ".ply", ".las", ".laz", ".obj", ".off",
+                                 ".stl", ".pts", ".ptx", ".csv", ".xyz", ".txt"};
 
 /// What a file holds.
 struct Contents {
@@ -59,10 +59,10 @@ void requireColumnText(const std::string& extension, const ColumnNames& columns)
                     "give names of columns for .xyz, .txt and .csv files alone");
 }
 
-Contents parse(const std::string& extension, std::string_view file, const ColumnNames& columns)
+Contents parse(const std::string& extension, std::string_view file, const ColumnNames& columns, unsigned threads)
 {
   requireColumnText(extension, columns);
-  if (extension == ".las") return readAll(LasReader(std::make_unique<HeldBytes>(file)));
+  if (isLasExtension(extension)) return readAll(LasReader(std::make_unique<HeldBytes>(file), threads));
   Contents contents;
   if (extension == ".pcd") {
     contents.cloud = parsePcd(file, contents.facts.viewpoint);
@@ -171,15 +171,14 @@ std::string readableExtension(const std::filesystem::path& path, std::string_vie
 {
   std::string extension = extensionOf(path);
   if (std::find(readable.begin(), readable.end(), extension) != readable.end()) return extension;
-  if (extension == ".laz") throw files::FileError(path, las_is_compressed, unpack_las);
   if (!isPipe(path)) throw files::FileError(path, unknown(extension), std::string("give a ") + readable_list + " file");
   return extensionByContent(beginning);
 }
 
-/// Whether the file is LAS, which is not held in memory.
+/// Whether the file is LAS or LAZ, which is not held in memory.
 bool isLasFile(const std::filesystem::path& path)
 {
-  return extensionOf(path) == ".las" && !isPipe(path);
+  return isLasExtension(extensionOf(path)) && !isPipe(path);
 }
 
 /// The cloud, once it is known to be usable.
@@ -207,17 +206,18 @@ pcl::PCLPointCloud2 headerOf(const std::filesystem::path& path, const FileBytes&
 
 } // namespace
 
-pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns)
+pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns,
+                              unsigned threads)
 {
   if (isLasFile(path)) {
     return naming(path, [&] {
-      requireColumnText(".las", columns);
-      return checked(readAll(LasReader(openBytes(path))), facts);
+      requireColumnText(extensionOf(path), columns);
+      return checked(readAll(LasReader(openBytes(path), threads)), facts);
     });
   }
   const FileBytes file(path);
   const std::string extension = readableExtension(path, file.view());
-  return naming(path, [&] { return checked(parse(extension, file.view(), columns), facts); });
+  return naming(path, [&] { return checked(parse(extension, file.view(), columns, threads), facts); });
 }
 
 pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts)
@@ -230,11 +230,11 @@ pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t s
   });
 }
 
-Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns)
+Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns, unsigned threads)
 {
   Mesh mesh;
   if (isLasFile(path)) {
-    mesh.vertices = readCloud(path, facts, columns);
+    mesh.vertices = readCloud(path, facts, columns, threads);
     return mesh;
   }
   const FileBytes file(path);
@@ -248,7 +248,7 @@ Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const Column
     else if (extension == ".ply")
       contents.cloud = parsePly(file.view(), contents.facts.viewpoint, &faces);
     else
-      contents = parse(extension, file.view(), columns);
+      contents = parse(extension, file.view(), columns, threads);
     if (extension == ".obj") faces = parseObjFaces(file.view());
     if (extension == ".off") faces = parseOffFaces(file.view());
     mesh.vertices = checked(std::move(contents), facts);

@@ -51,14 +51,16 @@ struct CloudFacts {
 ///             field with a count); of other elements only PCL's `camera`
 /// .obj .off   vertices with their colours and normals; x y z as float64
 /// .stl        the corners of the triangles, binary or ASCII, each place once; x y z as float32
-/// .las        LAS 1.0 to 1.4, point formats 0 to 10, every field (las_fields.h); x y z as float64
+/// .las .laz   LAS 1.0 to 1.4, point formats 0 to 10, every field (las_fields.h); x y z as float64. LAZ by chunks,
+/// .copc.laz
+///             too: points one by one (formats 0 to 5) and in layers (6 to 10), items of versions 1 to 4
 /// .pts .ptx   Leica's scans (scan_text.h): intensity, colours; of PTX, all scans in their common frame, the scanner's
 ///             pose, and NaN where it saw nothing; x y z as float64
 /// .xyz .txt .csv  a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says;
 ///             x y z and then column_4, column_5, ... as float64, unless `columns`, the first line or a comment before
 ///             it names the columns (column_names.h); comments start with # or //
 ///
-/// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY, OFF or LAS file does, and
+/// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY, OFF, LAS or LAZ file does, and
 /// columns otherwise.
 ///
 /// Fields have PCL's names and meaning: normal_x normal_y normal_z, and rgb or rgba packed from a byte per channel;
@@ -67,10 +69,11 @@ struct CloudFacts {
 /// cloud.
 /// @param facts if not null, set to what the file says beside its points
 /// @param columns of .xyz, .txt and .csv; empty: as the file says
+/// @param threads that unpack LAZ; 0: as many as the caller's oneTBB arena has
 /// @throws files::FileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z;
 ///   for columns of another format
 pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts = nullptr,
-                              const ColumnNames& columns = {});
+                              const ColumnNames& columns = {}, unsigned threads = 0);
 
 /// Only one of the scans of a .ptx file, as an organised cloud. Throws as readCloud() does.
 /// @param scan from 0
@@ -94,7 +97,8 @@ struct Mesh {
 
 /// Reads the faces, too, of .obj, .off, .ply and .stl; of others the points alone. Polygons are cut into triangles.
 /// Throws as readCloud() does, and where a face names a vertex that is not there.
-Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts = nullptr, const ColumnNames& columns = {});
+Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts = nullptr, const ColumnNames& columns = {},
+              unsigned threads = 0);
 
 /// The fields of a file's cloud and, where its header says so, the number of its points; the points are not read.
 /// Throws as readCloud() does for what a header can tell, and for a pipe.

@@ -36,6 +36,7 @@ public:
       throw files::FileError(path_, error.what(), error.remedy());
     }
   }
+  void skip(std::uint64_t points) override { reader_.skip(points); }
 
 private:
   fs::path path_;
@@ -146,7 +147,7 @@ void CloudStream::skip(std::uint64_t points)
 std::unique_ptr<CloudStream> openCloud(const fs::path& path, std::uint64_t memory, const ColumnNames& columns)
 {
   const pcl::PCLPointCloud2 header = readCloudHeader(path, columns); // which checks that it can be read
-  if (extensionOf(path) == ".las") return std::make_unique<LasStream>(path);
+  if (isLasExtension(extensionOf(path))) return std::make_unique<LasStream>(path);
   if (std::optional<PcdBody> body = binaryBody(path)) return std::make_unique<PcdStream>(path, std::move(*body));
   if (bytesWhenHeld(path, header) > memory) {
     throw files::FileError(path, "does not fit into the memory given, and its format is not read in pieces",

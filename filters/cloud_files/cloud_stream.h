@@ -40,8 +40,8 @@ public:
   virtual void skip(std::uint64_t points);
 };
 
-/// Opens any file that readCloud() reads. LAS and binary PCD are read batch by batch, the other formats at once, for
-/// which `memory`, in bytes, must hold the file and its cloud together. @param columns as readCloud() has it
+/// Opens any file that readCloud() reads. LAS, LAZ and binary PCD are read batch by batch, the other formats at once,
+/// for which `memory`, in bytes, must hold the file and its cloud together. @param columns as readCloud() has it
 /// @throws files::FileError as readCloud() does; for a pipe; for a file that `memory` cannot hold
 std::unique_ptr<CloudStream> openCloud(const std::filesystem::path& path, std::uint64_t memory,
                                        const ColumnNames& columns = {});

@@ -13,10 +13,6 @@
 
 namespace pcl_bsh::io {
 
-inline constexpr auto las_is_compressed = "is compressed (LAZ)";
-inline constexpr auto unpack_las =
-    "unpack it first: `laszip -i FILE.laz -o FILE.las`, or `pdal translate FILE.laz FILE.las`";
-
 /// Bytes of a point of a format (0 to 10), without extra bytes.
 std::size_t lasRecordBytes(std::uint8_t format);
 

@@ -60,6 +60,7 @@ void requireInside(const LasBlock& block, std::uint64_t file_bytes)
     throw FormatError("its points take " + std::to_string(block.record_length) + " bytes each, fewer than the " +
                       std::to_string(record) + " of point format " + std::to_string(block.format));
   }
+  if (block.compressed) return;
   const std::uint64_t room = (file_bytes - block.points_at) / block.record_length;
   if (block.points > room) {
     throw FormatError("is truncated: its header promises " + counted(block.points, "point") + ", its size allows " +
@@ -108,7 +109,9 @@ LasBlock readLasBlock(ByteSource& file)
   block.variable_records = lasNumber<std::uint32_t>(bytes, las_at::variable_records);
   block.format = lasNumber<std::uint8_t>(bytes, las_at::format);
   block.record_length = lasNumber<std::uint16_t>(bytes, las_at::record_length);
-  if ((block.format & 0xc0) != 0) throw FormatError(las_is_compressed, unpack_las);
+  constexpr std::uint8_t compressed = 0x80;
+  block.compressed = (block.format & compressed) != 0;
+  block.format = static_cast<std::uint8_t>(block.format & ~compressed);
   if (block.format > 10) {
     throw FormatError("its points have the format " + std::to_string(block.format) + ", LAS 1.4 knows 0 to 10");
   }
@@ -126,7 +129,7 @@ LasBlock readLasBlock(ByteSource& file)
   }
   requireInside(block, file.size());
   requireScale(block);
-  requireWaveforms(file, block);
+  if (!block.compressed) requireWaveforms(file, block);
   return block;
 }
 

@@ -23,6 +23,7 @@ struct LasBlock {
   std::uint32_t points_at = 0; ///< the first point's first byte
   std::uint32_t variable_records = 0;
   std::uint8_t format = 0; ///< of the points, 0 to 10
+  bool compressed = false; ///< LAZ: what lies behind the header is where unpacked_laz.h says
   std::uint16_t record_length = 0;
   std::uint64_t points = 0;
   std::array<double, 3> scale{}, offset{};
@@ -62,7 +63,8 @@ void setLasNumber(std::string& bytes, std::size_t at, T value)
 }
 
 /// Reads the public header block and checks all of it that says where something is.
-/// @throws FormatError when the points or the records behind them are not in the file, or scales are no numbers
+/// @throws FormatError when the points or the records behind them are not in the file, or scales are no numbers. Of a
+///   compressed file neither the points nor what is behind them is looked for
 LasBlock readLasBlock(ByteSource& file);
 
 /// A variable length record with its head of 54 bytes.

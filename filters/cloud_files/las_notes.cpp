@@ -138,6 +138,7 @@ std::string coordinateSystemOf(const LasHeader& header)
 
 std::vector<std::string> remarksOn(const LasBlock& block, std::uint64_t file_bytes)
 {
+  if (block.compressed) return {}; // whose points end where its chunks do
   const std::uint64_t points_end = block.endOfPoints();
   std::uint64_t end = file_bytes; // of what can be records
   if (block.extended_records > 0) end = std::min(end, block.extended_at);

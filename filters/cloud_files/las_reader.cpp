@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/cloud_files/las.h>
 #include <pcl_bsh/filters/cloud_files/records.h>
+#include <pcl_bsh/filters/cloud_files/unpacked_laz.h>
 
 #include <algorithm>
 
@@ -9,6 +10,19 @@ namespace pcl_bsh::io {
 namespace {
 
 constexpr std::size_t most_bytes_at_once = std::size_t{1} << 17; // which the caches hold, decoded as well
+
+/// Whether a red, green or blue of some records, which lie `step` apart, is above 255.
+bool hasChannelAboveByte(const char* records, std::size_t red_at, std::size_t points, std::size_t step)
+{
+  for (std::size_t i = 0; i < points; ++i) {
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      std::uint16_t value;
+      std::memcpy(&value, records + i * step + red_at + channel * sizeof value, sizeof value);
+      if (value > 255) return true;
+    }
+  }
+  return false;
+}
 
 } // namespace
 
@@ -19,7 +33,9 @@ std::vector<LasField> lasFieldsOf(const LasBlock& block, std::string_view descri
   return fields;
 }
 
-LasReader::LasReader(std::unique_ptr<ByteSource> file) : file_(std::move(file)), block_(readLasBlock(*file_))
+LasReader::LasReader(std::unique_ptr<ByteSource> file, unsigned threads)
+: file_(unpackedLaz(std::move(file), threads)),
+  block_(readLasBlock(*file_))
 {
   header_.block = block_;
   header_.before_points = file_->text(0, block_.points_at);
@@ -66,11 +82,7 @@ unsigned LasReader::colourShift()
   for (std::uint64_t i = 0; colour != fields_.end() && i < block_.points && *colour_shift_ == 0; i += batch) {
     const std::uint64_t points = std::min(batch, block_.points - i);
     const std::string records = file_->text(block_.points_at + i * block_.record_length, points * block_.record_length);
-    for (std::size_t k = 0; k < points; ++k)
-      for (std::size_t channel = 0; channel < 3; ++channel)
-        if (lasNumber<std::uint16_t>(records, k * block_.record_length + colour->at + 2 * channel) > 255) {
-          colour_shift_ = 8;
-        }
+    if (hasChannelAboveByte(records.data(), colour->at, points, block_.record_length)) colour_shift_ = 8;
   }
   return *colour_shift_;
 }
@@ -105,13 +117,36 @@ std::size_t LasReader::read(pcl::PCLPointCloud2& batch, std::size_t most)
   return points;
 }
 
+pcl::PCLPointCloud2 LasReader::readAll()
+{
+  requirePoints(size());
+  pcl::PCLPointCloud2 cloud = cloud_;
+  cloud.width = static_cast<std::uint32_t>(size());
+  cloud.row_step = cloud.width * cloud.point_step;
+  const std::size_t step = cloud.point_step;
+  cloud.data.reserve(cloud.width * step);
+  colour_shift_ = 0; // no look at all points before: colours are packed anew where that is wrong
+  constexpr std::size_t most = std::size_t{1} << 16; // memory is touched for points that were there to be unpacked
+  for (std::size_t done = 0; done < cloud.width;) {
+    cloud.data.resize(std::min<std::size_t>(done + most, cloud.width) * step);
+    done += read(cloud.data.data() + done * step, most);
+  }
+  const auto colour = std::find_if(fields_.begin(), fields_.end(),
+                                   [](const LasField& field) { return field.kind == LasField::Kind::colour; });
+  if (colour == fields_.end()) return cloud;
+  const auto position = static_cast<std::size_t>(colour - fields_.begin());
+  LasField channels = *colour; // which lie in the cloud as they do in the file
+  channels.at = offsets_[position - 3];
+  const auto* const records = reinterpret_cast<const char*>(cloud.data.data());
+  if (hasChannelAboveByte(records, channels.at, cloud.width, step)) {
+    decodeLas(channels, records, step, cloud.width, cloud.data.data() + offsets_[position], step, 8);
+  }
+  return cloud;
+}
+
 pcl::PCLPointCloud2 readLas(LasReader& reader)
 {
-  requirePoints(reader.size());
-  pcl::PCLPointCloud2 cloud = reader.cloudHeader();
-  allocate(cloud, static_cast<std::uint32_t>(reader.size()));
-  reader.read(cloud.data.data(), cloud.width);
-  return cloud;
+  return reader.readAll();
 }
 
 } // namespace pcl_bsh::io

@@ -551,30 +551,6 @@ TEST(Las, AsManyFieldsAsARecordHasBytes)
   EXPECT_EQ(difference(written(las.cloud, &las.header), sample.text()), "");
 }
 
-TEST(Las, CompressedFilesNameWhatUnpacksThem)
-{
-  const TemporaryFolder folder;
-  LasSample sample(2, 0);
-  sample.addPoints(1);
-  std::string bytes = sample.text();
-  bytes[104] = static_cast<char>(0x80);
-  for (const auto& path : {folder.write("a.laz", "anything"), folder.write("a.las", bytes)}) {
-    try {
-      readCloud(path);
-      ADD_FAILURE();
-    }
-    catch (const files::FileError& error) {
-      const std::string text = error.what();
-      EXPECT_THAT(text, testing::HasSubstr("is compressed"));
-      EXPECT_THAT(text, testing::HasSubstr("laszip"));
-      EXPECT_THAT(text, testing::HasSubstr("pdal"));
-      EXPECT_EQ(text.find('\n'), std::string::npos);
-    }
-    EXPECT_THROW(readCloudHeader(path), files::FileError);
-  }
-  EXPECT_THROW(requireWritableCloud(folder / "b.laz"), files::FileError);
-}
-
 TEST(Las, FilesKeepTheirHeaders)
 {
   const TemporaryFolder folder;

@@ -24,9 +24,9 @@ namespace pcl_bsh::fuzz {
 /// Bytes of points per byte of file at most: what LZF can make of one.
 inline constexpr std::size_t most_growth = 100;
 
-inline void requireSound(pcl::PCLPointCloud2& cloud, std::size_t file_bytes)
+inline void requireSound(pcl::PCLPointCloud2& cloud, std::size_t file_bytes, std::size_t growth = most_growth)
 {
-  require(cloud.data.size() <= most_growth * (file_bytes + 1), "more memory than the file justifies");
+  require(cloud.data.size() <= growth * (file_bytes + 1), "more memory than the file justifies");
   require(std::uint64_t{cloud.width} * cloud.height * cloud.point_step == cloud.data.size(),
           "width x height records do not fill the data");
   for (const pcl::PCLPointField& field : cloud.fields)
@@ -106,15 +106,17 @@ std::optional<std::string> written(const pcl::PCLPointCloud2& cloud, Write write
 /// @param parse from a file's content to a pcl::PCLPointCloud2
 /// @param parse_header the same, without the points
 /// @param write to a stream, or refusing what the format cannot hold
+/// @param growth bytes of points per byte of file at most
 template <class Parse, class ParseHeader, class Write>
-void readAny(const std::uint8_t* data, std::size_t size, Parse parse, ParseHeader parse_header, Write write)
+void readAny(const std::uint8_t* data, std::size_t size, Parse parse, ParseHeader parse_header, Write write,
+             std::size_t growth = most_growth)
 {
   std::optional<std::string> again;
   pcl::PCLPointCloud2 cloud;
   try {
     const std::string_view file(reinterpret_cast<const char*>(data), size);
     cloud = parse(file);
-    requireSound(cloud, size);
+    requireSound(cloud, size, growth);
     requireSameFields(parse_header(file), cloud);
     again = written(cloud, write);
   }

@@ -175,7 +175,7 @@ time.sleep(0.05)
 @pytest.mark.parametrize(
     "query",
     [
-        "pcl_bsh.collision_flags(a, b, 0.001)",
+        "pcl_bsh.collision_flags(a, b, 0.05)",
         "pcl_bsh.point_distances(a, b, threads=2, progress=lambda done: time.sleep(0.001))",
         "pcl_bsh.SphereHierarchy(rng.random((2000, 3))).refit(rng.random((2000, 3)))",
         "pcl_bsh.run_pipeline([{'type': 'readers.pcd', 'filename': 'none.pcd', 'tag': 'scan'}], {'scan': rng.random((9, 3))},"

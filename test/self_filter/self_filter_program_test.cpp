@@ -55,7 +55,7 @@ TEST_F(SelfFilterProgram, RemovesTheRobot)
 {
   const Outcome done = filter("ball.urdf a.csv --out out");
   EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.out, StartsWith("a.csv: 1 of 4 points are the robot, 1 are no return, found in "));
+  EXPECT_THAT(done.out, StartsWith("a.csv: 1 of 4 points are the robot, 1 is no return, found in "));
   EXPECT_EQ(written("out/a.csv"), "x,y,z,time\n5,0,0,8\n");
 }
 

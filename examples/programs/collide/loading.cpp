@@ -17,10 +17,10 @@ Scan loadInput(const CollideOptions& options, double& seconds)
   Step step("Loading " + options.input.string());
   Scan scan;
   if (options.surface.vertices_only) {
-    scan.cloud = io::readCloud(options.input, &scan.facts, options.columns.of(options.input));
+    scan.cloud = io::readCloud(options.input, &scan.facts, options.columns.of(options.input), options.threads);
   }
   else {
-    io::Mesh mesh = io::readMesh(options.input, &scan.facts, options.columns.of(options.input));
+    io::Mesh mesh = io::readMesh(options.input, &scan.facts, options.columns.of(options.input), options.threads);
     scan.cloud = std::move(mesh.vertices);
     scan.triangles = std::move(mesh.triangles);
   }

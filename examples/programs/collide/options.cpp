@@ -21,7 +21,7 @@ An OBSTACLE with faces (.obj .off .ply .stl) is a surface, to a tolerance T: wha
 for certain, what collides is within D + T, and a distance d says that the true one is in [d, d + T]. What a closed
 surface encloses is not part of it. Reports name its triangles, from 0; polygons are cut into triangles.
 An INPUT with faces is a surface, too: its triangles are flagged, and OUTPUT is a .ply with a property of its faces.
-Reads .pcd .ply .las .obj .off .stl .pts .ptx .csv .xyz .txt, writes all of these but .off .stl. Files may be
+Reads .pcd .ply .las .laz .obj .off .stl .pts .ptx .csv .xyz .txt, writes all of these but .laz .off .stl. Files may be
 pipes; - is standard input (PCD, PLY, LAS, OFF or columns), or standard output for OUTPUT (PCD) and --report.
 Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/geometry/coordinate_spacing.h>
 #include <pcl_bsh/question/warnings.h>
+#include <pcl_bsh/site/site_clashes.h>
 
 #include <optional>
 #include <string>

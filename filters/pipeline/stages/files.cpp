@@ -258,9 +258,11 @@ StageType meshReader()
 
 StageType lasReader()
 {
-  return reader("readers.las", {".las"},
-                "LAS 1.0 to 1.4, point formats 0 to 10: x y z as float64, every field and the extra bytes by their "
-                "descriptions. Scale, offset and all records, as of the coordinate system, go on to writers.las.");
+  return reader(
+      "readers.las", {".las", ".laz"},
+      "LAS 1.0 to 1.4, point formats 0 to 10, and LAZ, .copc.laz too: x y z as float64, every field and the "
+      "extra bytes by their descriptions. Scale, offset and all records, as of the coordinate system, go on to "
+      "writers.las.");
 }
 
 StageType ptsReader()
