@@ -6,11 +6,11 @@
 cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
-set(without_pcl "^pcl_bsh/(simd|geometry|hierarchy|query|traversal|collision|distances|neighbors|clusters|trajectory|scene|report|surface|question|certify)$")
-set(never_without_pcl "^(pcl/|pcl_bsh/files/|iostream$|fstream$)")
-set(with_vtk "^(pcl_bsh/vtk|pcl_bsh/vtk_filters|examples/viewer)$")
+set(without_pcl "^pcl_bsh/(base|simd|geometry|hierarchy|query|traversal|flags|pairs|distances|neighbors|clusters|surface|trajectory|roadmap|scene|clashes|question|certify)$")
+set(never_without_pcl "^(pcl/|pcl_bsh/io/|pcl_bsh/collide\\.h$|iostream$|fstream$)")
+set(with_vtk "^(pcl_bsh/vtk|pcl_bsh/vtk_filters|pcl_bsh/tools/viewer)$")
 set(gpl "^(CGAL/|pcl_bsh/certify/)") # only in pcl_bsh/certify, and in its program what that offers
-set(gpl_program "^examples/(programs/pcl_bsh_certify\\.cpp|programs/certify/[a-z]+\\.(h|cpp))$")
+set(gpl_program "^pcl_bsh/tools/(pcl_bsh_certify\\.cpp|certify/[a-z]+\\.(h|cpp))$")
 
 # The table's rows from the bottom room up: | `folder` | target | what | never | includes |
 set(rooms "")
@@ -27,10 +27,9 @@ endforeach()
 # The room of an included path, or empty when it is not one of ours.
 function(room_of path room_variable)
   string(REGEX REPLACE "^pcl_bsh/filters/" "filters/" path "${path}")
-  string(REGEX REPLACE "^(cli|self_filter|tunnel|viewer)/" "examples/\\1/" path "${path}")
   set(found "")
   set(found_length 0)
-  foreach(room IN LISTS rooms) # the longest match wins: filters/json, not filters
+  foreach(room IN LISTS rooms) # the longest match wins: pcl_bsh/tools/cli, not pcl_bsh/tools
     string(LENGTH "${room}" length)
     if(length GREATER found_length AND path MATCHES "^${room}/")
       set(found "${room}")
@@ -48,8 +47,10 @@ foreach(file IN LISTS files)
   math(EXPR file_count "${file_count} + 1")
   room_of("${file}" room)
   list(FIND rooms "${room}" rank)
-  if(rank EQUAL -1 AND NOT file MATCHES "^pcl_bsh/[a-z_]+\\.h$") # of all rooms, such as a version
-    list(APPEND defects "${file}: its folder is not in the table of rooms in ARCHITECTURE.md")
+  if(rank EQUAL -1)
+    if(NOT file MATCHES "^pcl_bsh/[a-z_]+\\.h$") # of all rooms, such as a version, or for users: collide.h
+      list(APPEND defects "${file}: its folder is not in the table of rooms in ARCHITECTURE.md")
+    endif()
     continue()
   endif()
   file(STRINGS "${root}/${file}" includes REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/distance_query.h>
 
+#include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/filters/parted_records.h>
 #include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/geometry/float_environment.h>
 
 #include <algorithm>
 #include <cmath>

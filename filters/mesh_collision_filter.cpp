@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/mesh_collision_filter.h>
 
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/filters/used_vertices.h>
-#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/hierarchy/points_checksum.h>
 
 #include <stdexcept>

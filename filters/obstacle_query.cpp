@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/obstacle_query.h>
 
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/filters/parted_records.h>
 #include <pcl_bsh/filters/surface_distances.h>
-#include <pcl_bsh/geometry/invalid_input.h>
-#include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/surface/triangle_answers.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 

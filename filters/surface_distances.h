@@ -6,9 +6,9 @@
 // negative within a ball, where 0 is as true.
 #pragma once
 
-#include <pcl_bsh/collision/closest_pair.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/surface/surface_cover.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A man walks through a scanned building: what does he touch, how close is the rest, and what does it cost to know?
-#include "cli/program.h"
-#include "cli/step.h"
-#include "cli/used_files.h"
+#include <pcl_bsh/tools/cli/program.h>
+#include <pcl_bsh/tools/cli/step.h>
+#include <pcl_bsh/tools/cli/used_files.h>
 
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <algorithm>

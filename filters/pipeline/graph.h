@@ -3,10 +3,10 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/files/used_files.h>
-#include <pcl_bsh/filters/json/json_document.h>
 #include <pcl_bsh/filters/pipeline/pipeline.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
+#include <pcl_bsh/io/files/used_files.h>
+#include <pcl_bsh/io/json/json_document.h>
 
 #include <atomic>
 #include <filesystem>

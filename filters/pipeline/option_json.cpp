@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/filters/pipeline/option_json.h>
-#include <pcl_bsh/filters/pose_files/pose_text.h>
-#include <pcl_bsh/filters/text_files/format_error.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/poses/pose_text.h>
+#include <pcl_bsh/io/text/format_error.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/filters/json/json_document.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
+#include <pcl_bsh/io/json/json_document.h>
 
 #include <string>
 

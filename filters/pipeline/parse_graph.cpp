@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/json/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
 #include <pcl_bsh/filters/pipeline/option_json.h>
-#include <pcl_bsh/filters/pose_files/pose_text.h>
-#include <pcl_bsh/filters/text_files/format_error.h>
-#include <pcl_bsh/filters/text_files/small_letters.h>
 #include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/json/nearest_name.h>
+#include <pcl_bsh/io/poses/pose_text.h>
+#include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/io/text/small_letters.h>
 
 #include <algorithm>
 #include <cctype>

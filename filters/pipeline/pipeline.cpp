@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/files/one_line.h>
-#include <pcl_bsh/filters/json/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
-#include <pcl_bsh/filters/text_files/file_bytes.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/files/one_line.h>
+#include <pcl_bsh/io/json/nearest_name.h>
+#include <pcl_bsh/io/text/file_bytes.h>
 
 #include <utility>
 

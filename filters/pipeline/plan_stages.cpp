@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/files/used_files.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
+#include <pcl_bsh/io/files/used_files.h>
 
 #include <filesystem>
 #include <string>

@@ -3,7 +3,7 @@
 #include <pcl_bsh/filters/pipeline/option_json.h>
 #include <pcl_bsh/filters/pipeline/process_memory.h>
 
-#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/base/cancelled.h>
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>

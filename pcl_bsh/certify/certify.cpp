@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/certify/certify.h>
 
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/certify/exact_sphere.h>
-#include <pcl_bsh/geometry/float_environment.h>
-#include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 // cluster stands for all of them; a pair of such nodes of the same cluster is done.
 #include <pcl_bsh/clusters/clusters.h>
 
-#include <pcl_bsh/geometry/invalid_input.h>
-#include <pcl_bsh/geometry/plain_text.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/plain_text.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/distances/brute_force_distances.h>
 
+#include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/distances/check_distances.h>
 #include <pcl_bsh/distances/greatest_distance.h>
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/query/brute_force_points.h>
 
 namespace pcl_bsh::brute_force {

@@ -11,11 +11,11 @@
 #define PCL_BSH_DISTANCES_DISTANCE_WALK_INL_H_
 #endif
 
+#include <pcl_bsh/base/kept_scratch.h>
 #include <pcl_bsh/distances/distance_leaf-inl.h>
 #include <pcl_bsh/distances/outdoing.h>
 #include <pcl_bsh/distances/voxel_bounds-inl.h>
-#include <pcl_bsh/hierarchy/crowded_cell.h>
-#include <pcl_bsh/hierarchy/kept_scratch.h>
+#include <pcl_bsh/hierarchy/build/crowded_cell.h>
 #include <pcl_bsh/query/progress.h>
 
 HWY_BEFORE_NAMESPACE();

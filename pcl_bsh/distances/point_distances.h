@@ -12,9 +12,9 @@
 // input gives the same answer, bit for bit, for any number of threads and any processor.
 #pragma once
 
+#include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/query/accuracy.h>
-#include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 

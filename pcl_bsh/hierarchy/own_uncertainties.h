@@ -3,7 +3,7 @@
 // are well known, or none is, one test decides about the node.
 #pragma once
 
-#include <pcl_bsh/hierarchy/made_once.h>
+#include <pcl_bsh/base/made_once.h>
 #include <pcl_bsh/hierarchy/node.h>
 
 #include <memory>

@@ -2,8 +2,8 @@
 // Scans are surfaces: where spheres of two that face each other overlap, planes may still separate them.
 #pragma once
 
+#include <pcl_bsh/base/made_once.h>
 #include <pcl_bsh/hierarchy/build_work.h>
-#include <pcl_bsh/hierarchy/made_once.h>
 #include <pcl_bsh/hierarchy/node.h>
 
 namespace pcl_bsh {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/geometry/coordinate_spacing.h>
-#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
-#include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/view_check.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/geometry/rounding.h>
-#include <pcl_bsh/hierarchy/morton.h>
+#include <pcl_bsh/hierarchy/build/morton.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
 #include <algorithm>

@@ -2,14 +2,14 @@
 // What a SphereHierarchy holds: one buffer of points in voxel order, the voxels, and the tree above them.
 #pragma once
 
+#include <pcl_bsh/base/large_buffer.h>
 #include <pcl_bsh/geometry/given_sphere.h>
 #include <pcl_bsh/geometry/local_frame.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/hierarchy/build/point_runs.h>
 #include <pcl_bsh/hierarchy/build_work.h>
-#include <pcl_bsh/hierarchy/large_buffer.h>
 #include <pcl_bsh/hierarchy/node.h>
 #include <pcl_bsh/hierarchy/own_uncertainties.h>
-#include <pcl_bsh/hierarchy/point_runs.h>
 #include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/uncertainty_range.h>

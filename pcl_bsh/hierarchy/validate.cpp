@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/geometry/float_environment.h>
-#include <pcl_bsh/hierarchy/morton.h>
+#include <pcl_bsh/hierarchy/build/morton.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/storage.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points in an axis-aligned box. Comparing coordinates is exact as it stands; spheres only say which points to compare.
-#include <pcl_bsh/geometry/float_environment.h>
-#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/neighbors/neighbor_scratch.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/neighbors/brute_force_neighbors.h>
 
+#include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/geometry/float_environment.h>
 #include <pcl_bsh/geometry/squared_distance.h>
 
 #include <algorithm>

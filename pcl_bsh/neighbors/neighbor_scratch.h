@@ -2,7 +2,7 @@
 // What queries for neighbours share below their public face: memory kept from query to query, and the last steps.
 #pragma once
 
-#include <pcl_bsh/hierarchy/kept_scratch.h>
+#include <pcl_bsh/base/kept_scratch.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/neighbors/neighbors.h>
 
-#include <pcl_bsh/geometry/float_environment.h>
-#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/hierarchy/view_check.h>
 #include <pcl_bsh/neighbors/neighbor_scratch.h>
 #include <pcl_bsh/neighbors/query_order.h>

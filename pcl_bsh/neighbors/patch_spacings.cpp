@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/neighbors/patch_spacings.h>
 
-#include <pcl_bsh/geometry/float_environment.h>
-#include <pcl_bsh/geometry/invalid_input.h>
-#include <pcl_bsh/geometry/plain_text.h>
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/geometry/rounding.h>
-#include <pcl_bsh/hierarchy/parallel.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/neighbors/spacing.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/neighbors/query_order.h>
 
-#include <pcl_bsh/hierarchy/morton.h>
+#include <pcl_bsh/hierarchy/build/morton.h>
 
 #include <hwy/contrib/sort/vqsort.h>
 

@@ -3,7 +3,7 @@
 // the caches serves the next.
 #pragma once
 
-#include <pcl_bsh/hierarchy/parallel.h>
+#include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
 #include <hwy/cache_control.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/neighbors/spacing.h>
 
-#include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 

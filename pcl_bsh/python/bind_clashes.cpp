@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/python/array_output.h>
+#include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/callback.h>
 #include <pcl_bsh/python/trajectory_run.h>
-#include <pcl_bsh/report/clashes.h>
 
 #include <pybind11/stl.h>
 

@@ -2,7 +2,7 @@
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/neighbors/spacing.h>
-#include <pcl_bsh/python/array_output.h>
+#include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/callback.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/collision/any_collision.h>
-#include <pcl_bsh/collision/closest_pair.h>
-#include <pcl_bsh/collision/colliding_indices.h>
-#include <pcl_bsh/collision/collision_flags.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/flags/colliding_indices.h>
+#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/geometry/invalid_input.h>
-#include <pcl_bsh/python/array_input.h>
-#include <pcl_bsh/python/array_output.h>
+#include <pcl_bsh/pairs/any_collision.h>
+#include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/python/arrays/array_input.h>
+#include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/question_warnings.h>
 #include <pcl_bsh/python/verdict.h>

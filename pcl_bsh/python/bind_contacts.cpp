@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/collision/contacts.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/python/array_input.h>
-#include <pcl_bsh/python/array_output.h>
+#include <pcl_bsh/pairs/contacts.h>
+#include <pcl_bsh/python/arrays/array_input.h>
+#include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/callback.h>
 

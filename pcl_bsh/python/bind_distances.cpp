@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/distances/point_distances.h>
-#include <pcl_bsh/python/array_input.h>
-#include <pcl_bsh/python/array_output.h>
+#include <pcl_bsh/python/arrays/array_input.h>
+#include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/callback.h>
 #include <pcl_bsh/python/question_warnings.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
-#include <pcl_bsh/python/array_input.h>
-#include <pcl_bsh/python/array_output.h>
+#include <pcl_bsh/python/arrays/array_input.h>
+#include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/callback.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/collision/collide_at_poses.h>
-#include <pcl_bsh/python/array_input.h>
-#include <pcl_bsh/python/array_output.h>
+#include <pcl_bsh/python/arrays/array_input.h>
+#include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/callback.h>
-#include <pcl_bsh/trajectory/collide_on_motions.h>
+#include <pcl_bsh/roadmap/collide_at_poses.h>
+#include <pcl_bsh/roadmap/collide_on_motions.h>
 
 #include <algorithm>
 

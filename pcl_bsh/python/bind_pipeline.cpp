@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/pipeline.h>
-#include <pcl_bsh/python/array_input.h>
+#include <pcl_bsh/python/arrays/array_input.h>
+#include <pcl_bsh/python/arrays/record_array.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/callback.h>
-#include <pcl_bsh/python/record_array.h>
 
 #include <pybind11/stl.h>
 

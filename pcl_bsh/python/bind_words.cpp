@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/verdict.h>
 #include <pcl_bsh/query/accuracy.h>
-#include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/query/work.h>
 
 #include <exception>
@@ -44,7 +44,7 @@ py::handle& verdicts()
   return type;
 }
 
-std::string textOf(const Work& work)
+std::string workText(const Work& work)
 {
   return "Work(node_pairs=" + std::to_string(work.node_pairs) + ", leaf_pairs=" + std::to_string(work.leaf_pairs) +
          ", exact_decisions=" + std::to_string(work.exact_decisions) + ", updates=" + std::to_string(work.updates()) +
@@ -109,7 +109,7 @@ void bindWords(py::module_& module)
       .def_readonly("leaf_pairs", &Work::leaf_pairs, "Pairs of leaves whose points were compared.")
       .def_readonly("exact_decisions", &Work::exact_decisions, "Pairs that float arithmetic could not decide.")
       .def_property_readonly("updates", &Work::updates, "All updates of bounding volumes, as the paper counts them.")
-      .def("__repr__", &textOf);
+      .def("__repr__", &workText);
 }
 
 } // namespace pcl_bsh::python

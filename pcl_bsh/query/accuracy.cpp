@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/query/accuracy.h>
 
-#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/base/invalid_input.h>
 
 #include <array>
 #include <charconv>

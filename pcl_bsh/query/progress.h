@@ -2,7 +2,7 @@
 // Tells the caller of a long query how far it is, and learns whether to stop.
 #pragma once
 
-#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/query/stop_rule.h>
 
 #include <algorithm>

@@ -31,4 +31,11 @@ PCL_BSH_EXPORT_INTERNAL bool isRigid(const Eigen::Isometry3d& pose);
 PCL_BSH_EXPORT_INTERNAL void checkPose(const std::string& name, const Eigen::Isometry3d& pose,
                                        const std::optional<std::size_t>& index = std::nullopt);
 
+/// Refuses poses of two clouds, a and b, that are not rigid.
+inline void checkPoses(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b)
+{
+  checkPose("pose of a", a);
+  checkPose("pose of b", b);
+}
+
 } // namespace pcl_bsh

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/question/warnings.h>
 
-#include <pcl_bsh/geometry/plain_text.h>
+#include <pcl_bsh/base/plain_text.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which pairs collide, in the scene and within an object; remembered from step to step.
-#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/query/pair_reach.h>
+#include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/scene/effect.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // The effect of that name: an object's points move, and its spheres with them.
 #include <pcl_bsh/scene/state.h>
 
-#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/base/invalid_input.h>
 
 #include <chrono>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How near pairs are: smallest distances, contacts, first contacts.
-#include <pcl_bsh/collision/uncertain.h>
+#include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/scene/effect.h>
 
 #include <algorithm>

@@ -3,8 +3,10 @@
 // work.
 #pragma once
 
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/hierarchy/parallel.h>
+#include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/pairs/any_collision.h>
+#include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/scene/state.h>
 #include <pcl_bsh/scene/swept_object.h>
 

@@ -2,8 +2,8 @@
 // What a scene may be asked for. An effect that is not listed runs no code, allocates nothing and builds nothing.
 #pragma once
 
-#include <pcl_bsh/collision/contacts.h>
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/scene/motion.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which points collide at the present poses, and during the motion to them.
-#include <pcl_bsh/collision/uncertain.h>
+#include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/scene/effect.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/pair_reach.h>
+#include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/scene/mover.h>
 #include <pcl_bsh/scene/sweep.h>
 

@@ -3,8 +3,8 @@
 #include <pcl_bsh/scene/mover.h>
 #include <pcl_bsh/scene/swept_object.h>
 
-#include <pcl_bsh/geometry/invalid_input.h>
-#include <pcl_bsh/geometry/plain_text.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/plain_text.h>
 
 #include <chrono>
 #include <numbers>

@@ -2,9 +2,9 @@
 // Objects, poses and rules of a scene. What it computes is in scene_query.cpp and response.cpp.
 #include <pcl_bsh/scene/scene.h>
 
-#include <pcl_bsh/geometry/float_environment.h>
-#include <pcl_bsh/geometry/invalid_input.h>
-#include <pcl_bsh/geometry/plain_text.h>
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/scene/check_scene.h>

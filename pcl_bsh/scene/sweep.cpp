@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Both questions in the same way: the pairs of points that can meet at all within an interval are collected, and each
 // is followed by itself. Too many of them: the interval is halved, and they get fewer.
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/pairs/any_at_places.h>
+#include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/scene/sweep.h>
 

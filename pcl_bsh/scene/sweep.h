@@ -2,7 +2,7 @@
 // Two moving parts: when they first collide, and which of their points collide at all.
 #pragma once
 
-#include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/query/reach.h>
 #include <pcl_bsh/scene/conservative_advancement.h>
 #include <pcl_bsh/scene/object_motion.h>

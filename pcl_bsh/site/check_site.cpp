@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/site/check_site.h>
-#include <pcl_bsh/site/records.h>
-#include <pcl_bsh/site/tile_file.h>
+#include <pcl_bsh/site/tiles/records.h>
+#include <pcl_bsh/site/tiles/tile_file.h>
 
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 namespace {
 
@@ -109,4 +109,4 @@ void checkSite(const Site& site, const std::function<bool(std::uint64_t, std::ui
   checker.checkAll();
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -9,7 +9,7 @@
 #include <functional>
 
 PCL_BSH_EXPORT_BEGIN
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 /// Reads all tiles. Holds one of them, and a bit for each point of the site.
 /// @param progress called after each tile with the points done and all points; false: stop. May be null
@@ -18,5 +18,5 @@ namespace pcl_bsh::sites {
 ///   an overview of other fields; Cancelled
 void checkSite(const Site& site, const std::function<bool(std::uint64_t, std::uint64_t)>& progress = nullptr);
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 PCL_BSH_EXPORT_END

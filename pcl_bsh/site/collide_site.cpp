@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/collision/any_collision.h>
-#include <pcl_bsh/collision/closest_pair.h>
 #include <pcl_bsh/filters/surface_distances.h>
-#include <pcl_bsh/site/candidate.h>
+#include <pcl_bsh/pairs/any_collision.h>
+#include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/site/answers/candidate.h>
+#include <pcl_bsh/site/answers/inquiry.h>
+#include <pcl_bsh/site/answers/passage_sum.h>
 #include <pcl_bsh/site/collide_site.h>
-#include <pcl_bsh/site/inquiry.h>
-#include <pcl_bsh/site/needed_tiles.h>
-#include <pcl_bsh/site/passage_sum.h>
+#include <pcl_bsh/site/tiles/needed_tiles.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 namespace {
 
@@ -196,4 +196,4 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const s
   return result;
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

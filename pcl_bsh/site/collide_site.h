@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Questions about a site and a cloud in memory, with the answers of one hierarchy over all points of the site.
 //
-//   sites::Site valley = sites::readSite("valley");
+//   site::Site valley = site::readSite("valley");
 //   SphereHierarchy robot(viewOf(robot_xyz, n));
-//   sites::SiteRequest request;
+//   site::SiteRequest request;
 //   request.clearance = 0.05;
-//   sites::SiteClosest nearest = sites::closestPair(valley, {robot, T_valley_robot}, request);
+//   site::SiteClosest nearest = site::closestPair(valley, {robot, T_valley_robot}, request);
 //
 // Only tiles that can matter are read, one at a time. Which, their boxes tell: compared with boxes about parts of the
 // cloud, along its path if it moves.
@@ -16,10 +16,10 @@
 // cloud holds of the site; those that stop early do so in each tile.
 #pragma once
 
-#include <pcl_bsh/collision/collision_flags.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
@@ -33,7 +33,7 @@
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 /// What a question has found of tiles, by their numbers, so that it can be asked again after it was ended: numbers that
 /// only the query understands.
@@ -190,5 +190,5 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
 SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
                          const SiteRequest& request, const PassageSink& sink = nullptr);
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 PCL_BSH_EXPORT_END

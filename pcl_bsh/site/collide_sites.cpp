@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/collision/any_collision.h>
-#include <pcl_bsh/collision/closest_pair.h>
-#include <pcl_bsh/site/candidate.h>
-#include <pcl_bsh/site/cloud_boxes.h>
+#include <pcl_bsh/pairs/any_collision.h>
+#include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/site/answers/candidate.h>
+#include <pcl_bsh/site/answers/inquiry.h>
 #include <pcl_bsh/site/collide_sites.h>
-#include <pcl_bsh/site/inquiry.h>
-#include <pcl_bsh/site/needed_tiles.h>
-#include <pcl_bsh/site/obstacle_tiles.h>
+#include <pcl_bsh/site/tiles/cloud_boxes.h>
+#include <pcl_bsh/site/tiles/needed_tiles.h>
+#include <pcl_bsh/site/tiles/obstacle_tiles.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 namespace {
 
@@ -301,4 +301,4 @@ SitePairDistances pointDistances(const Site& site, const PlacedSite& placed, dou
   return result;
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

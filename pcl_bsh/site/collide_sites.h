@@ -2,10 +2,10 @@
 // Questions about two sites, neither of which needs to fit into memory, with the answers of one hierarchy over all
 // points of each.
 //
-//   sites::Site now = sites::readSite("now"), before = sites::readSite("before");
-//   sites::SiteRequest request;
+//   site::Site now = site::readSite("now"), before = site::readSite("before");
+//   site::SiteRequest request;
 //   request.clearance = 0.05;
-//   sites::SitePairFlags flags = sites::collisionFlags(now, {before}, request, sink);
+//   site::SitePairFlags flags = site::collisionFlags(now, {before}, request, sink);
 //
 // A tile of the first site is read once. The tiles of the second that come near it are read after one another and cut
 // to what is near, so that memory holds a tile of each; a tile that several of the first come near to is read for each
@@ -21,7 +21,7 @@
 #include <optional>
 
 PCL_BSH_EXPORT_BEGIN
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 /// A site as the second of two.
 struct PlacedSite {
@@ -101,5 +101,5 @@ SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertai
                              const std::vector<Eigen::Isometry3d>& poses, const SiteRequest& request,
                              const PassageSink& sink = nullptr);
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 PCL_BSH_EXPORT_END

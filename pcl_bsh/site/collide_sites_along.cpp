@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/site/candidate.h>
+#include <pcl_bsh/site/answers/candidate.h>
+#include <pcl_bsh/site/answers/inquiry.h>
+#include <pcl_bsh/site/answers/joined_poses.h>
+#include <pcl_bsh/site/answers/passage_sum.h>
 #include <pcl_bsh/site/collide_sites.h>
-#include <pcl_bsh/site/inquiry.h>
-#include <pcl_bsh/site/joined_poses.h>
-#include <pcl_bsh/site/needed_tiles.h>
-#include <pcl_bsh/site/obstacle_tiles.h>
-#include <pcl_bsh/site/passage_sum.h>
+#include <pcl_bsh/site/tiles/needed_tiles.h>
+#include <pcl_bsh/site/tiles/obstacle_tiles.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 namespace {
 
@@ -164,4 +164,4 @@ SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertai
   return result;
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/files/free_space.h>
-#include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/filters/cloud_files/pcd.h>
-#include <pcl_bsh/filters/text_files/format_error.h>
-#include <pcl_bsh/filters/text_files/small_letters.h>
-#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/pcd.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/files/free_space.h>
+#include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/site/export_site.h>
-#include <pcl_bsh/site/records.h>
+#include <pcl_bsh/site/tiles/records.h>
 
 #include <algorithm>
 #include <string>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 namespace fs = std::filesystem;
 
@@ -115,4 +115,4 @@ void exportSource(const Site& site, std::size_t source, const fs::path& file, co
   Exporter(site, source, source + 1, layoutOf(fields).fields, options).write(file);
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

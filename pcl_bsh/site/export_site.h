@@ -10,7 +10,7 @@
 #include <functional>
 
 PCL_BSH_EXPORT_BEGIN
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 /// How much memory an export may take, and whom it tells how far it is.
 struct ExportOptions {
@@ -30,5 +30,5 @@ void exportCloud(const Site& site, const std::filesystem::path& file, const Expo
 void exportSource(const Site& site, std::size_t source, const std::filesystem::path& file,
                   const ExportOptions& options = {});
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 PCL_BSH_EXPORT_END

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // VTK's XML file formats: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/files/new_file.h>
-#include <pcl_bsh/files/output_folder.h>
-#include <pcl_bsh/files/replace_file.h>
-#include <pcl_bsh/filters/cloud_files/field_type.h>
-#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/io/clouds/field_type.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/files/new_file.h>
+#include <pcl_bsh/io/files/output_folder.h>
+#include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/export_vtk.h>
-#include <pcl_bsh/site/records.h>
-#include <pcl_bsh/site/tile_file.h>
+#include <pcl_bsh/site/tiles/records.h>
+#include <pcl_bsh/site/tiles/tile_file.h>
 
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
@@ -21,7 +21,7 @@
 #include <sstream>
 #include <type_traits>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 namespace fs = std::filesystem;
 
@@ -198,4 +198,4 @@ void exportPieces(const Site& site, const fs::path& file,
   });
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

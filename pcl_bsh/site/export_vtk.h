@@ -10,7 +10,7 @@
 #include <functional>
 
 PCL_BSH_EXPORT_BEGIN
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 /// Writes NAME.pvtp, and beside it a folder NAME with a .vtp file for each tile: its finite points as one poly-vertex
 /// cell, and all other fields as point arrays. Holds one tile. NAME.pvtp appears when all pieces are there; when
@@ -21,5 +21,5 @@ namespace pcl_bsh::sites {
 void exportPieces(const Site& site, const std::filesystem::path& file,
                   const std::function<bool(std::uint64_t, std::uint64_t)>& progress = nullptr);
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 PCL_BSH_EXPORT_END

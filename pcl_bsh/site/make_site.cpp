@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/filters/cloud_files/cloud_stream.h>
-#include <pcl_bsh/filters/cloud_files/obstacle.h>
+#include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/base/retained_memory.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/hierarchy/retained_memory.h>
-#include <pcl_bsh/query/cancelled.h>
-#include <pcl_bsh/site/checksum.h>
-#include <pcl_bsh/site/density_tree.h>
+#include <pcl_bsh/io/clouds/cloud_stream.h>
+#include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/site/make_site.h>
-#include <pcl_bsh/site/make_state.h>
-#include <pcl_bsh/site/records.h>
-#include <pcl_bsh/site/tile_file.h>
-#include <pcl_bsh/site/unfinished_site.h>
+#include <pcl_bsh/site/making/density_tree.h>
+#include <pcl_bsh/site/making/make_state.h>
+#include <pcl_bsh/site/making/unfinished_site.h>
+#include <pcl_bsh/site/tiles/checksum.h>
+#include <pcl_bsh/site/tiles/records.h>
+#include <pcl_bsh/site/tiles/tile_file.h>
 
 #include <algorithm>
 #include <limits>
@@ -20,7 +20,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 namespace fs = std::filesystem;
 
@@ -332,4 +332,4 @@ Site makeSite(const std::vector<fs::path>& clouds, const fs::path& folder, const
   return Maker(clouds, folder, options).make();
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -2,9 +2,9 @@
 // Makes a site of clouds of any size, in two passes over their files: one counts where points lie, the other deals them
 // to the tiles.
 //
-//   sites::MakeOptions options;
+//   site::MakeOptions options;
 //   options.memory = std::uint64_t{2} << 30;
-//   sites::Site site = sites::makeSite({"north.las", "south.las"}, "valley", options);
+//   site::Site site = site::makeSite({"north.las", "south.las"}, "valley", options);
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -17,7 +17,7 @@
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 /// Points are counted, dealt to their tiles, and the tiles measured.
 enum class MakeStep : std::uint8_t { count, deal, measure };
@@ -54,5 +54,5 @@ Site makeSite(const std::vector<std::filesystem::path>& clouds, const std::files
 /// Whether makeSite() would go on with what an earlier run has noted in a folder.
 bool isBegun(const std::filesystem::path& folder);
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 PCL_BSH_EXPORT_END

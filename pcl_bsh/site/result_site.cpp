@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/files/unfinished.h>
-#include <pcl_bsh/filters/cloud_files/field_type.h>
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/site/checksum.h>
-#include <pcl_bsh/site/kept_answers.h>
-#include <pcl_bsh/site/records.h>
+#include <pcl_bsh/io/clouds/field_type.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/files/unfinished.h>
+#include <pcl_bsh/site/answers/kept_answers.h>
+#include <pcl_bsh/site/making/unfinished_site.h>
 #include <pcl_bsh/site/result_site.h>
-#include <pcl_bsh/site/tile_file.h>
-#include <pcl_bsh/site/tile_visitor.h>
-#include <pcl_bsh/site/unfinished_site.h>
+#include <pcl_bsh/site/tiles/checksum.h>
+#include <pcl_bsh/site/tiles/records.h>
+#include <pcl_bsh/site/tiles/tile_file.h>
+#include <pcl_bsh/site/tiles/tile_visitor.h>
 
 #include <algorithm>
 #include <array>
@@ -19,7 +19,7 @@
 #include <string>
 #include <utility>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 namespace fs = std::filesystem;
 
@@ -374,4 +374,4 @@ std::uint64_t answersIn(const fs::path& folder)
       begin(tiles), end(tiles), [](const auto& entry) { return entry.path().extension() == answer_extension; }));
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a question has found of each point, as a site of the same tiles with more fields.
 //
-//   sites::ResultSite out(valley, "marked", {{"collision", pcl::PCLPointField::UINT8, 0.0}});
-//   sites::collisionFlags(valley, machine, Side::a, request, [&](const auto& tile, const auto& cloud, const auto&
+//   site::ResultSite out(valley, "marked", {{"collision", pcl::PCLPointField::UINT8, 0.0}});
+//   site::collisionFlags(valley, machine, Side::a, request, [&](const auto& tile, const auto& cloud, const auto&
 //   found) {
 //     out.write(tile, cloud, {found.a.data()});
 //   });
-//   sites::Site marked = out.finish();
+//   site::Site marked = out.finish();
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -20,7 +20,7 @@
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 /// A field of one number, which the points of tiles that no question has read have, too.
 struct ResultField {
@@ -88,5 +88,5 @@ private:
 /// Of how many tiles a folder that is no site yet holds answers of a question that can go on.
 std::uint64_t answersIn(const std::filesystem::path& folder);
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 PCL_BSH_EXPORT_END

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A cloud of any size on disk, cut into tiles: a folder with `site.json` and a binary PCD file for each tile.
 //
-//   sites::Site site = sites::readSite("valley");
-//   for (const sites::Tile& tile : site.tiles) pcl::PCLPointCloud2 points = sites::readTile(site, tile);
+//   site::Site site = site::readSite("valley");
+//   for (const site::Tile& tile : site.tiles) pcl::PCLPointCloud2 points = site::readTile(site, tile);
 //
 // Each point has all fields of its source, and two more: `source` and `record`, UINT32, which say which record of which
 // source it was, both counted from 0. In a tile points are in the order of (source, record).
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/files/file_error.h>
 #include <pcl_bsh/geometry/point3.h>
+#include <pcl_bsh/io/files/file_error.h>
 
 #include <pcl/PCLPointCloud2.h>
 
@@ -22,7 +22,7 @@
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 /// What lies in a site's folder, and the two fields that each of its points has.
 inline constexpr const char* site_file_name = "site.json";
@@ -98,5 +98,5 @@ pcl::PCLPointCloud2 readTile(const Site& site, const Tile& tile, pcl::PCLPointCl
 /// Bytes of a record of the site.
 std::size_t recordBytes(const Site& site);
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 PCL_BSH_EXPORT_END

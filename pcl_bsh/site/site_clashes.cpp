@@ -2,16 +2,16 @@
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/clusters/disjoint_sets.h>
 #include <pcl_bsh/search/cloud_view.h>
-#include <pcl_bsh/site/clash_piece.h>
-#include <pcl_bsh/site/cloud_boxes.h>
-#include <pcl_bsh/site/records.h>
+#include <pcl_bsh/site/answers/clash_piece.h>
 #include <pcl_bsh/site/site_clashes.h>
+#include <pcl_bsh/site/tiles/cloud_boxes.h>
+#include <pcl_bsh/site/tiles/records.h>
 
 #include <algorithm>
 #include <limits>
 #include <utility>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 class ClashFinder::Joining {
 public:
@@ -53,7 +53,7 @@ public:
     return of_tile;
   }
 
-  void add(const double* begin, const double* end) { sites::add(found_, begin, end); }
+  void add(const double* begin, const double* end) { site::add(found_, begin, end); }
 
   SiteClashes finish()
   {
@@ -171,7 +171,7 @@ ClashFinder::~ClashFinder() = default;
 std::vector<double> ClashFinder::numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud,
                                            const TrajectoryResult& found, const std::vector<MetPoint>* met) const
 {
-  return sites::numbersOf(joining_->piecesOf(tile, cloud, found, met));
+  return site::numbersOf(joining_->piecesOf(tile, cloud, found, met));
 }
 
 void ClashFinder::add(const std::vector<double>& numbers, std::size_t begin)
@@ -198,4 +198,4 @@ double spacingOf(const Site& site)
   return 0.0;
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -2,24 +2,24 @@
 // The clashes of a site along a path: those that findClashes() would list of one cloud of all its points, with the same
 // ids, although a clash may lie in many tiles.
 //
-//   sites::ClashFinder finder(valley, 0.25);
+//   site::ClashFinder finder(valley, 0.25);
 //   request.clashes = &finder;
-//   sites::collideAlong(valley, wagon, poses, request);
-//   sites::SiteClashes list = finder.finish();
+//   site::collideAlong(valley, wagon, poses, request);
+//   site::SiteClashes list = finder.finish();
 //
 // Of a tile's clashes that come near other tiles the points near these are kept until all tiles have been visited: a
 // step of the cluster distance from one tile to another joins two clashes.
 #pragma once
 
+#include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/report/clashes.h>
 #include <pcl_bsh/site/collide_site.h>
 
 #include <memory>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 /// What ClashFinder found.
 struct SiteClashes {
@@ -65,5 +65,5 @@ private:
 /// The median of the tiles' spacings, each of which counts as often as it has points; 0 of a site without.
 double spacingOf(const Site& site);
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 PCL_BSH_EXPORT_END

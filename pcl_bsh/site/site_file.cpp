@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/filters/cloud_files/field_type.h>
-#include <pcl_bsh/filters/json/json_schema.h>
-#include <pcl_bsh/filters/text_files/file_bytes.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/site/records.h>
+#include <pcl_bsh/io/clouds/field_type.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/json/json_schema.h>
+#include <pcl_bsh/io/text/file_bytes.h>
+#include <pcl_bsh/site/making/unfinished_site.h>
 #include <pcl_bsh/site/site.h>
-#include <pcl_bsh/site/unfinished_site.h>
+#include <pcl_bsh/site/tiles/records.h>
 
 #include <site.schema.json.h>
 
 #include <array>
 #include <utility>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 namespace fs = std::filesystem;
 using io::Json;
@@ -200,4 +200,4 @@ std::string siteText(const Site& site)
   return io::printed(json);
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/surface/surface_cover.h>
 
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/geometry/coordinate_spacing.h>
-#include <pcl_bsh/geometry/float_environment.h>
-#include <pcl_bsh/geometry/invalid_input.h>
-#include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/surface/charts.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/collision/uncertain.h>
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/geometry/float_environment.h>
-#include <pcl_bsh/geometry/invalid_input.h>
 #include <pcl_bsh/query/brute_force_points.h>
 #include <pcl_bsh/query/pair_reach.h>
+#include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/trajectory/check_trajectory.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 

@@ -2,7 +2,7 @@
 #include <pcl_bsh/trajectory/model_descent.h>
 
 #include <pcl_bsh/geometry/given_sphere.h>
-#include <pcl_bsh/hierarchy/crowded_cell.h>
+#include <pcl_bsh/hierarchy/build/crowded_cell.h>
 
 #include <algorithm>
 #include <array>

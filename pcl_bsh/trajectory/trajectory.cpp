@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A trajectory query as a whole: the path, which voxels of the scan come near when, their walks, and what they add up
 // to.
-#include <pcl_bsh/collision/uncertain.h>
+#include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/geometry/rounding.h>
-#include <pcl_bsh/hierarchy/parallel.h>
+#include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/trajectory/check_trajectory.h>
 #include <pcl_bsh/trajectory/strays.h>
-#include <pcl_bsh/trajectory/trajectory_walk.h>
+#include <pcl_bsh/trajectory/walk.h>
 
 #include <algorithm>
 #include <cmath>

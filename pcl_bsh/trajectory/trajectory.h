@@ -25,9 +25,9 @@
 // float alone, pairs that may count or not may do so for one question and not for another.)
 #pragma once
 
+#include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/query/accuracy.h>
-#include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 

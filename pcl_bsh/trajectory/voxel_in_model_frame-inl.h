@@ -11,7 +11,7 @@
 #include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/query/acceptance.h>
 #include <pcl_bsh/simd/passing_points-inl.h>
-#include <pcl_bsh/trajectory/trajectory_query.h>
+#include <pcl_bsh/trajectory/query.h>
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 
 #include <array>

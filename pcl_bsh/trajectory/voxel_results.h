@@ -2,7 +2,7 @@
 // What is known so far of the points of one of the scan's voxels, and of the poses it was looked at.
 #pragma once
 
-#include <pcl_bsh/trajectory/trajectory_query.h>
+#include <pcl_bsh/trajectory/query.h>
 
 #include <vector>
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <pcl_bsh/geometry/given_sphere.h>
-#include <pcl_bsh/hierarchy/crowded_cell.h>
+#include <pcl_bsh/hierarchy/build/crowded_cell.h>
 #include <pcl_bsh/traversal/space.h>
 
 #include <Eigen/Geometry>

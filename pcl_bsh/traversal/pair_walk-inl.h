@@ -10,7 +10,7 @@
 #define PCL_BSH_TRAVERSAL_PAIR_WALK_INL_H_
 #endif
 
-#include <pcl_bsh/hierarchy/crowded_cell.h>
+#include <pcl_bsh/hierarchy/build/crowded_cell.h>
 #include <pcl_bsh/traversal/far_points-inl.h>
 #include <pcl_bsh/traversal/space.h>
 

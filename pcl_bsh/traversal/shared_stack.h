@@ -2,7 +2,7 @@
 // The stack of a depth-first search that several threads empty together, in the order in which one thread would.
 #pragma once
 
-#include <pcl_bsh/hierarchy/parallel.h>
+#include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/query/result.h>
 
 #include <algorithm>

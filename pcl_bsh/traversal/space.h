@@ -2,9 +2,9 @@
 // A walk moves through spaces: the tree above a cloud's voxels, then the tree in one voxel. Each has its own frame.
 #pragma once
 
-#include <pcl_bsh/geometry/float_environment.h>
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/kept_scratch.h>
 #include <pcl_bsh/geometry/relative_frame.h>
-#include <pcl_bsh/hierarchy/kept_scratch.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>

@@ -2,8 +2,8 @@
 // Voxels that are walked in passes, each farther down, until all is decided or a rule ends it.
 #pragma once
 
-#include <pcl_bsh/hierarchy/kept_scratch.h>
-#include <pcl_bsh/hierarchy/parallel.h>
+#include <pcl_bsh/base/kept_scratch.h>
+#include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/query/stop_rule.h>
 #include <pcl_bsh/query/work.h>
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/files/output_folder.h>
-#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/io/files/output_folder.h>
+#include <pcl_bsh/io/files/replace_file.h>
 
 #include <filesystem>
 #include <optional>

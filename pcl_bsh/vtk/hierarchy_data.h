@@ -5,9 +5,9 @@
 // tree ends before, its leaves stay. A level above 0 builds every voxel.
 #pragma once
 
-#include <pcl_bsh/collision/trace.h>
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/pairs/trace.h>
 
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/vtk/display.h>
 #include <pcl_bsh/vtk/offscreen_window.h>
 

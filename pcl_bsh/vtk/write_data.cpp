@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/files/replace_file.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/vtk/block_files.h>
 #include <pcl_bsh/vtk/write_data.h>
 

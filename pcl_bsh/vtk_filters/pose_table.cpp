@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/vtk_filters/pose_table.h>
 
-#include <pcl_bsh/filters/pose_files/pose_file.h>
-#include <pcl_bsh/filters/pose_files/rigid_pose.h>
-#include <pcl_bsh/filters/text_files/number_text.h>
+#include <pcl_bsh/io/poses/pose_file.h>
+#include <pcl_bsh/io/poses/rigid_pose.h>
+#include <pcl_bsh/io/text/number_text.h>
 
 #include <vtkDataArray.h>
 

@@ -12,7 +12,7 @@
 
 namespace pcl_bsh::vtk {
 
-/// A pose of each row: 12, 16 or 8 columns of numbers, as files of poses have them (filters/pose_files/pose_file.h).
+/// A pose of each row: 12, 16 or 8 columns of numbers, as files of poses have them (io/poses/pose_file.h).
 /// @throws std::invalid_argument naming the row or the column
 std::vector<Eigen::Isometry3d> posesOf(vtkTable& table, std::vector<std::string>& warnings);
 

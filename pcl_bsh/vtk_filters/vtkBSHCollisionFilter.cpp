@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/vtk_filters/vtkBSHCollisionFilter.h>
 
-#include <pcl_bsh/collision/collision_flags.h>
+#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 #include <pcl_bsh/vtk_filters/bsh_question.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/vtk_filters/vtkBSHFilter.h>
 
-#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/question/warnings.h>
 #include <pcl_bsh/vtk_filters/bsh_question.h>
 #include <pcl_bsh/vtk_filters/pose_table.h>

@@ -3,7 +3,7 @@
 // against its bare query, and an update against building anew.
 #include "program.h"
 
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/hierarchy/update.h>
 #include <pcl_bsh/scene/scene.h>
 

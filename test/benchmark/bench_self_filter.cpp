@@ -2,8 +2,8 @@
 // Workload R: a robot of ten links is cut out of what its depth camera sees, frame after frame.
 #include "harness.h"
 #include "program.h"
-#include "self_filter/made_robot.h"
-#include "self_filter/self_filter.h"
+#include <pcl_bsh/tools/self_filter/made_robot.h>
+#include <pcl_bsh/tools/self_filter/self_filter.h>
 
 #include <algorithm>
 #include <filesystem>

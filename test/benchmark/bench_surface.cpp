@@ -4,7 +4,7 @@
 #include "harness.h"
 #include "program.h"
 
-#include <pcl_bsh/collision/collision_flags.h>
+#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/surface/surface_cover.h>
 

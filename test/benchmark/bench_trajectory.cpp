@@ -5,8 +5,8 @@
 #include "workload/nearest.h"
 #include "workload/path_scene.h"
 
-#include <pcl_bsh/collision/any_collision.h>
-#include <pcl_bsh/collision/colliding_indices.h>
+#include <pcl_bsh/flags/colliding_indices.h>
+#include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>

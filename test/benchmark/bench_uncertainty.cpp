@@ -5,8 +5,8 @@
 #include "workload/random.h"
 #include "workload/scenes.h"
 
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/collision/colliding_indices.h>
+#include <pcl_bsh/collide.h>
+#include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 

@@ -4,7 +4,7 @@
 //   valgrind --tool=callgrind --callgrind-out-file=/dev/null count_instructions flags
 //
 // Less those of `build`, which every other kind begins with.
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/trajectory/trajectory.h>

@@ -4,7 +4,7 @@
 #include "harness.h"
 #include "peer/uniform_grid.h"
 
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 
 #include <stdexcept>
 

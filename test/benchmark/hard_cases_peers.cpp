@@ -3,9 +3,9 @@
 // Prints a table in Markdown. Each answer is computed in a process of its own, for some of them crash.
 //
 //   hard_cases_peers
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 
-#include "../query/hard_cases.h"
+#include "support/hard_cases.h"
 
 #include <nanoflann.hpp>
 #include <pcl/kdtree/kdtree_flann.h>

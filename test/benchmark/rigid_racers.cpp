@@ -6,8 +6,8 @@
 #include "peer/fcl_boxes.h"
 #endif
 
-#include <pcl_bsh/collision/collide_at_poses.h>
-#include <pcl_bsh/trajectory/collide_on_motions.h>
+#include <pcl_bsh/roadmap/collide_at_poses.h>
+#include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <optional>

@@ -3,7 +3,7 @@
 
 #include <pcl_bsh/hierarchy/storage.h>
 
-#include "../query/random_clouds.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

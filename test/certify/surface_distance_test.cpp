@@ -2,7 +2,7 @@
 // Verdicts about covered surfaces against CGAL's exact distances from points to triangles.
 #include "../surface/meshes.h"
 
-#include <pcl_bsh/collision/collision_flags.h>
+#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/surface/surface_cover.h>
 
@@ -24,7 +24,7 @@
 #include <vector>
 
 #ifdef PCL_BSH_PROGRAM_DIR
-#include "../files/temporary_folder.h"
+#include "support/temporary_folder.h"
 #endif
 
 namespace pcl_bsh {

@@ -3,8 +3,8 @@
 // between triangles.
 #include "../surface/meshes.h"
 
-#include <pcl_bsh/collision/collision_flags.h>
 #include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/surface/triangle_answers.h>
 #include <pcl_bsh/trajectory/trajectory.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/clusters/clusters.h>
 
-#include "../query/random_clouds.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

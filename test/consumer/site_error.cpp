@@ -7,9 +7,9 @@
 int main()
 {
   try {
-    pcl_bsh::sites::Site site;
+    pcl_bsh::site::Site site;
     site.folder = "nowhere";
-    pcl_bsh::sites::readTile(site, {});
+    pcl_bsh::site::readTile(site, {});
   }
   catch (const pcl_bsh::files::FileError& error) {
     std::printf("refused: %s\n", error.what());

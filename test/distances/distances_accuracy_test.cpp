@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The dial: what less than exact distances promise, held against brute force.
-#include "../query/random_clouds.h"
 #include "expect_distances.h"
+#include "support/random_clouds.h"
 
 namespace pcl_bsh {
 namespace {

@@ -4,9 +4,9 @@
 #include <pcl_bsh/distances/bound_margin.h>
 #include <pcl_bsh/geometry/rounded_length.h>
 
-#include "../geometry/attack.h"
-#include "../geometry/climb.h"
 #include "kernels.h"
+#include "support/attack.h"
+#include "support/climb.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>

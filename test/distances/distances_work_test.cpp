@@ -2,8 +2,8 @@
 // How the work of distances grows with clouds that are hard for bounding volumes.
 #include <pcl_bsh/distances/point_distances.h>
 
-#include "../query/adversarial_clouds.h"
-#include "../query/random_clouds.h"
+#include "support/adversarial_clouds.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The symmetric Hausdorff distance alone against that of all distances by brute force: random clouds, and clouds where
 // leaving points out is easily wrong: ties of the greatest, balls, poses that are not quite rigid, great lengths.
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/distances/reached_distance.h>
-#include <pcl_bsh/geometry/invalid_input.h>
 
-#include "../query/adversarial_clouds.h"
-#include "../query/random_clouds.h"
 #include "expect_distances.h"
+#include "support/adversarial_clouds.h"
+#include "support/random_clouds.h"
 
 #include <Eigen/LU>
 

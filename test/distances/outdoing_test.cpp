@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clouds that are far from each other for the size of b: spheres that are outdone, for answers of brute force.
-#include "../query/random_clouds.h"
 #include "expect_distances.h"
+#include "support/random_clouds.h"
 
 #include <cmath>
 

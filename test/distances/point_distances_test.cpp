@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Distances of points against brute force: random clouds of every shape and layout, poses, radii, limits, threads, both
 // directions.
-#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/base/invalid_input.h>
 
-#include "../query/adversarial_clouds.h"
-#include "../query/random_clouds.h"
-#include "../query/work_counts.h"
 #include "expect_distances.h"
+#include "support/adversarial_clouds.h"
+#include "support/random_clouds.h"
+#include "support/work_counts.h"
 
 namespace pcl_bsh {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // H24: a caller compiled and linked with -ffast-math, which flushes denormals in all of the process and fuses what it
 // likes. The library was not compiled so: its answers stay those of exact arithmetic.
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 
 #include <cstdio>
 #include <string>

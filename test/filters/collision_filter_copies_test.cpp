@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copies of a filter, obstacles that change under it, and queries that are stopped.
+#include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/filters/collision_filter.h>
-#include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "clouds.h"

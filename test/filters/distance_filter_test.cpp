@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/distances/brute_force_distances.h>
 #include <pcl_bsh/filters/distance_filter.h>
-#include <pcl_bsh/query/cancelled.h>
 
 #include "clouds.h"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The queries on real scans, where they are at hand, against an independent kd-tree.
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/filters/collision_filter.h>
 #include <pcl_bsh/search/cloud_view.h>
 
-#include "../query/kd_tree.h"
-#include "../query/question.h"
 #include "shared_scans.h"
+#include "support/kd_tree.h"
+#include "support/question.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 // memory each time, and what they were before is overwritten.
 #pragma once
 
-#include "../geometry/random.h"
 #include "bytes.h"
+#include "support/random.h"
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 

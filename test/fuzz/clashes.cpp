@@ -3,8 +3,8 @@
 // written out again is the same list.
 #include "refusal.h"
 
-#include <pcl_bsh/filters/json/json_reader.h>
-#include <pcl_bsh/filters/reports/clash_report.h>
+#include <pcl_bsh/io/json/json_reader.h>
+#include <pcl_bsh/io/reports/clash_report.h>
 
 namespace {
 

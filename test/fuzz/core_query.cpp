@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Any two clouds, poses and clearance: all queries against brute force, and both hierarchies validated.
-#include "../query/question.h"
 #include "bytes.h"
 #include "scene.h"
+#include "support/question.h"
 #include "target.h"
 
-#include <pcl_bsh/collision/brute_force.h>
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/roadmap/brute_force.h>
 
 #include <cmath>
 #include <optional>

@@ -5,8 +5,8 @@
 
 #include "read.h"
 
-#include <pcl_bsh/filters/cloud_files/las.h>
-#include <pcl_bsh/filters/cloud_files/las_notes.h>
+#include <pcl_bsh/io/clouds/las/las.h>
+#include <pcl_bsh/io/clouds/las/notes.h>
 
 namespace pcl_bsh::fuzz {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "las_file.h"
 
-#include <pcl_bsh/filters/cloud_files/laz/chunk_table.h>
+#include <pcl_bsh/io/clouds/las/laz/chunk_table.h>
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {

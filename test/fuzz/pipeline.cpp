@@ -3,8 +3,8 @@
 // accepted, written out again, is accepted again.
 #include "target.h"
 
-#include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
+#include <pcl_bsh/io/clouds/records.h>
 
 #include <cmath>
 #include <string_view>

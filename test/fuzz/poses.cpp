@@ -2,9 +2,9 @@
 // Any text as a trajectory: refused with a reason, or poses that are rigid and finite.
 #include "target.h"
 
-#include <pcl_bsh/filters/pose_files/pose_file.h>
-#include <pcl_bsh/filters/pose_files/pose_text.h>
-#include <pcl_bsh/filters/text_files/format_error.h>
+#include <pcl_bsh/io/poses/pose_file.h>
+#include <pcl_bsh/io/poses/pose_text.h>
+#include <pcl_bsh/io/text/format_error.h>
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {

@@ -2,12 +2,12 @@
 // Every public query, with all of its options, against brute force.
 #pragma once
 
-#include "../query/question.h"
 #include "changing_cloud.h"
+#include "support/question.h"
 
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/neighbors/neighbors.h>
+#include <pcl_bsh/pairs/contacts.h>
 
 #include <string>
 #include <vector>

@@ -5,9 +5,9 @@
 
 #include "target.h"
 
-#include <pcl_bsh/filters/cloud_files/pcl_names.h>
-#include <pcl_bsh/filters/cloud_files/records.h>
-#include <pcl_bsh/filters/text_files/format_error.h>
+#include <pcl_bsh/io/clouds/pcl_names.h>
+#include <pcl_bsh/io/clouds/records.h>
+#include <pcl_bsh/io/text/format_error.h>
 
 #include <pcl/PCLPointCloud2.h>
 

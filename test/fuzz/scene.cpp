@@ -3,8 +3,8 @@
 
 #include "target.h"
 
+#include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/geometry/float_environment.h>
 
 #include <algorithm>
 #include <cmath>

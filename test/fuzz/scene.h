@@ -4,7 +4,7 @@
 
 #include "bytes.h"
 
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 
 #include <cstdint>
 #include <optional>

@@ -2,9 +2,9 @@
 // Any text as a scene: refused with a reason, or objects of clouds that the scene has, at finite poses.
 #include "refusal.h"
 
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/filters/json/json_reader.h>
-#include <pcl_bsh/filters/scene_files/scene_file.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/json/json_reader.h>
+#include <pcl_bsh/io/scenes/scene_file.h>
 
 #include <string>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sequence.h"
-#include "../query/question.h"
+#include "support/question.h"
 
 #include "changing_cloud.h"
 #include "questions.h"
 #include "target.h"
 
-#include <pcl_bsh/collision/brute_force.h>
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include <algorithm>

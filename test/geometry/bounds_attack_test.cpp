@@ -10,9 +10,9 @@
 #include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
-#include "attack.h"
-#include "climb.h"
 #include "kernels.h"
+#include "support/attack.h"
+#include "support/climb.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
-#include "random.h"
+#include "support/random.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 // which other tools are known to answer wrongly.
 #include <pcl_bsh/geometry/exact_distance.h>
 
-#include "random.h"
+#include "support/random.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/cpp_int.hpp>

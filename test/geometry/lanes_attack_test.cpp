@@ -4,9 +4,9 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/simd/roundings.h>
 
-#include "attack.h"
-#include "climb.h"
 #include "kernels.h"
+#include "support/attack.h"
+#include "support/climb.h"
 
 #include <Eigen/Geometry>
 

@@ -3,7 +3,7 @@
 
 #include <pcl_bsh/geometry/exact_distance.h>
 
-#include "random.h"
+#include "support/random.h"
 
 #include <gtest/gtest.h>
 

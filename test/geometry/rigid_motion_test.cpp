@@ -6,7 +6,7 @@
 #include <pcl_bsh/scene/motion.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "random.h"
+#include "support/random.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/rounding.h>
 
-#include "random.h"
+#include "support/random.h"
 
 #include <gtest/gtest.h>
 

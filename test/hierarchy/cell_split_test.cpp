@@ -2,7 +2,7 @@
 // Hierarchies whose voxels are octrees, as in the paper.
 #include <pcl_bsh/hierarchy/storage.h>
 
-#include "../query/random_clouds.h"
+#include "support/random_clouds.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/hierarchy/large_buffer.h>
+#include <pcl_bsh/base/large_buffer.h>
 
-#include <pcl_bsh/hierarchy/retained_memory.h>
+#include <pcl_bsh/base/retained_memory.h>
 
 #include <gtest/gtest.h>
 

@@ -2,10 +2,10 @@
 // Points that floats of a voxel hardly tell apart have spheres as given, and these have to follow them, too.
 #include <pcl_bsh/hierarchy/storage.h>
 
-#include "../query/random_clouds.h"
+#include "support/random_clouds.h"
 
-#include <pcl_bsh/collision/brute_force.h>
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
+#include <pcl_bsh/roadmap/brute_force.h>
 
 #include <gtest/gtest.h>
 

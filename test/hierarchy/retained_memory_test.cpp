@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/hierarchy/retained_memory.h>
+#include <pcl_bsh/base/retained_memory.h>
 
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/hierarchy/large_buffer.h>
+#include <pcl_bsh/base/large_buffer.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 
-#include "../query/random_clouds.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

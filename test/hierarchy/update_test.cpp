@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/update.h>
 
-#include "../query/random_clouds.h"
+#include "support/random_clouds.h"
 
-#include <pcl_bsh/collision/brute_force.h>
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
+#include <pcl_bsh/roadmap/brute_force.h>
 
 #include <gtest/gtest.h>
 

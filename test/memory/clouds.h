@@ -2,9 +2,9 @@
 // Small clouds with everything that allocates: several voxels, crowded cells, one place many times over, radii.
 #pragma once
 
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 
-#include "../query/random_clouds.h"
+#include "support/random_clouds.h"
 
 #include <memory>
 

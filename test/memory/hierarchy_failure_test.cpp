@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/collision/brute_force.h>
 #include <pcl_bsh/hierarchy/update.h>
+#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "clouds.h"
-#include "every_allocation.h"
+#include "support/every_allocation.h"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 #include <pcl_bsh/neighbors/neighbors.h>
 
 #include "clouds.h"
-#include "every_allocation.h"
+#include "support/every_allocation.h"
 
 #include <limits>
 #include <tuple>

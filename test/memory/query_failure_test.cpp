@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/clusters/clusters.h>
-#include <pcl_bsh/collision/brute_force.h>
-#include <pcl_bsh/collision/collide_at_poses.h>
-#include <pcl_bsh/collision/colliding_indices.h>
-#include <pcl_bsh/collision/contacts.h>
-#include <pcl_bsh/collision/trace.h>
 #include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/neighbors/spacing.h>
-#include <pcl_bsh/report/clashes.h>
+#include <pcl_bsh/pairs/contacts.h>
+#include <pcl_bsh/pairs/trace.h>
+#include <pcl_bsh/roadmap/brute_force.h>
+#include <pcl_bsh/roadmap/collide_at_poses.h>
+#include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/surface/surface_cover.h>
-#include <pcl_bsh/trajectory/collide_on_motions.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "../query/question.h"
 #include "clouds.h"
-#include "every_allocation.h"
+#include "support/every_allocation.h"
+#include "support/question.h"
 
 #include <bit>
 #include <tuple>

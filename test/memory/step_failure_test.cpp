@@ -2,7 +2,7 @@
 #include <pcl_bsh/scene/scene.h>
 
 #include "clouds.h"
-#include "every_allocation.h"
+#include "support/every_allocation.h"
 
 #include <tuple>
 

@@ -5,8 +5,8 @@
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "../filters/clouds.h"
-#include "../memory/every_allocation.h"
 #include "contents.h"
+#include "support/every_allocation.h"
 
 #include <pcl/console/print.h>
 #include <pcl/point_types.h>

@@ -2,8 +2,8 @@
 #include <pcl_bsh/search/bounding_sphere_search.h>
 
 #include "../filters/clouds.h"
-#include "../memory/every_allocation.h"
 #include "contents.h"
+#include "support/every_allocation.h"
 
 #include <pcl/point_types.h>
 

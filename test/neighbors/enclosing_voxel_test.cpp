@@ -7,7 +7,7 @@
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/scene/scene.h>
 
-#include "../query/random_clouds.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <pcl_bsh/neighbors/brute_force_neighbors.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 
-#include "../query/random_clouds.h"
+#include "support/random_clouds.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

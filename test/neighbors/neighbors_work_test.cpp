@@ -2,8 +2,8 @@
 // What searches for neighbours cost on clouds that are hard for them, as the clouds grow.
 #include <pcl_bsh/neighbors/neighbors.h>
 
-#include "../query/adversarial_clouds.h"
-#include "../query/random_clouds.h"
+#include "support/adversarial_clouds.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

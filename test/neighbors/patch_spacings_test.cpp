@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The width of the holes between samples: grids, lines of a scan, random surfaces, what is no surface.
-#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 
-#include "../query/random_clouds.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

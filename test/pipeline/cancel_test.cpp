@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs that end early: on request, and by callbacks that throw.
+#include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
-#include <pcl_bsh/query/cancelled.h>
 
-#include "../cloud_files/samples.h"
 #include "../filters/clouds.h"
+#include "io/clouds/samples.h"
 #include "run_stage.h"
 
-#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/io/poses/pose_file.h>
 
 #include <atomic>
 #include <chrono>

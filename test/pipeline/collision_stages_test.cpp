@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The stages that ask for collisions, along trajectories, and the list of clashes: against the filter called directly.
-#include "../cloud_files/samples.h"
 #include "../filters/clouds.h"
+#include "io/clouds/samples.h"
 #include "run_stage.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/filters/collision_filter.h>
-#include <pcl_bsh/filters/pose_files/pose_file.h>
-#include <pcl_bsh/filters/reports/clash_report.h>
-#include <pcl_bsh/report/clashes.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/poses/pose_file.h>
+#include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/search/find_field.h>
 

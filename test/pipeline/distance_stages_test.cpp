@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The stages that measure distances: against the filter called directly, and brute force.
-#include "../cloud_files/samples.h"
 #include "../filters/clouds.h"
+#include "io/clouds/samples.h"
 #include "run_stage.h"
 
 #include <pcl_bsh/distances/brute_force_distances.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/distance_filter.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
 
 #include <nlohmann/json.hpp>
 

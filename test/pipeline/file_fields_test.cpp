@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files name normals and colours in their own way; between reader and writer they have PCL's names and meaning.
-#include "../cloud_files/las_sample.h"
-#include "../cloud_files/samples.h"
+#include "io/clouds/las_sample.h"
+#include "io/clouds/samples.h"
 #include "run_stage.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
 
 #include <cmath>
 

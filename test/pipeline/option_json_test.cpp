@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/option_json.h>
 
-#include "../cloud_files/samples.h"
+#include "io/clouds/samples.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How stages run: in which order, at the same time, what they hold and what they report.
-#include <pcl_bsh/filters/json/json_document.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
+#include <pcl_bsh/io/json/json_document.h>
 
-#include "../cloud_files/samples.h"
 #include "../filters/clouds.h"
+#include "io/clouds/samples.h"
 #include "run_stage.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
 
 #include <tbb/parallel_for.h>
 

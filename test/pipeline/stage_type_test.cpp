@@ -2,7 +2,7 @@
 // The table of stages, and what is written from it.
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 
-#include "../cloud_files/samples.h"
+#include "io/clouds/samples.h"
 #include "run_stage.h"
 
 #include <set>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where stages go beyond PCL's classes: float64, large scenes, every field, clouds that are empty or not finite.
-#include "../cloud_files/samples.h"
 #include "../filters/clouds.h"
+#include "io/clouds/samples.h"
 #include "run_stage.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/filters/cloud_files/records.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <pcl/point_types.h>

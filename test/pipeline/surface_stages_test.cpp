@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes in pipelines: their faces go from the reader to the stage that has them as an obstacle, or a warning says so.
-#include "../files/temporary_folder.h"
 #include "run_stage.h"
+#include "support/temporary_folder.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
 
 #include <pcl/point_types.h>
 

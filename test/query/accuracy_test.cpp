@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/collision/brute_force.h>
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/roadmap/brute_force.h>
 
-#include "question.h"
-#include "random_clouds.h"
+#include "support/question.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // However the cells of voxels are divided, answers are the same.
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 
-#include "random_clouds.h"
+#include "support/random_clouds.h"
 
 #include <gmock/gmock.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One hash over all answers of a mixed workload: the same for any instruction set, number of threads and order in which
 // voxels come to be built.
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 
-#include "question.h"
-#include "random_clouds.h"
-#include "simd_target.h"
+#include "support/question.h"
+#include "support/random_clouds.h"
+#include "support/simd_target.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where float arithmetic is at its limits: every rounding in the same direction, coordinates of every magnitude.
-#include <pcl_bsh/collision/brute_force.h>
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/neighbors/brute_force_neighbors.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/neighbors/spacing.h>
+#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "question.h"
-#include "random_clouds.h"
+#include "support/question.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

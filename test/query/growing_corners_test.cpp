@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What every query about two clouds costs on pairs of clouds that are hard for bounding volumes, as they grow: all is
 // at nearly the same distance, a few points spoil the bounds of all, or floats hardly tell points apart.
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/collision/collide_at_poses.h>
-#include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/collide.h>
+#include <pcl_bsh/pairs/contacts.h>
+#include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "adversarial_clouds.h"
-#include "random_clouds.h"
+#include "support/adversarial_clouds.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

@@ -2,10 +2,10 @@
 // Clouds that make trees deep, leaves crowded or float coordinates blind, at full size: work counters must stay near
 // those of an ordinary cloud, and a small stack must do. PCL_BSH_LONG_TESTS=1 in the environment: a million points
 // each.
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 
-#include "question.h"
-#include "random_clouds.h"
+#include "support/question.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 #include <pthread.h>

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Programs tell errors apart by their code, whatever their text is.
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/clusters/clusters.h>
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/collision/trace.h>
-#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/neighbors/neighbors.h>
-#include <pcl_bsh/report/clashes.h>
+#include <pcl_bsh/pairs/trace.h>
 #include <pcl_bsh/scene/scene.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "question.h"
+#include "support/question.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many small queries: a thread's scratch memory is used again, so that all but the first allocate nothing.
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/collision/colliding_indices.h>
-#include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/base/retained_memory.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
-#include <pcl_bsh/hierarchy/retained_memory.h>
+#include <pcl_bsh/flags/colliding_indices.h>
+#include <pcl_bsh/pairs/contacts.h>
 
-#include "allocations.h"
-#include "random_clouds.h"
+#include "support/allocations.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Options that are each right by themselves may not be so together: all of them at once, against brute force.
 #include "../fuzz/questions.h"
-#include "question.h"
-#include "random_clouds.h"
+#include "support/question.h"
+#include "support/random_clouds.h"
 
 #include <pcl_bsh/neighbors/brute_force_neighbors.h>
 

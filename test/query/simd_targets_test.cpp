@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The same answers and the same work on every instruction set that this machine has.
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "question.h"
-#include "random_clouds.h"
-#include "simd_target.h"
-#include "work_counts.h"
+#include "support/question.h"
+#include "support/random_clouds.h"
+#include "support/simd_target.h"
+#include "support/work_counts.h"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What queries report of their work: by hand where the trees are small, and consistent elsewhere.
 #include <pcl_bsh/clusters/clusters.h>
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/collision/contacts.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/update.h>
 #include <pcl_bsh/neighbors/neighbors.h>
+#include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "random_clouds.h"
-#include "work_counts.h"
+#include "support/random_clouds.h"
+#include "support/work_counts.h"
 
 #include <gmock/gmock.h>
 

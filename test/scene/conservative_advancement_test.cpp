@@ -4,7 +4,7 @@
 #include <pcl_bsh/scene/conservative_advancement.h>
 #include <pcl_bsh/scene/object_motion.h>
 
-#include "../geometry/random.h"
+#include "support/random.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>

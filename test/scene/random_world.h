@@ -2,13 +2,13 @@
 // Random scenes, and their answers by brute force over all objects.
 #pragma once
 
-#include <pcl_bsh/collision/brute_force.h>
-#include <pcl_bsh/collision/uncertain.h>
 #include <pcl_bsh/query/pair_reach.h>
+#include <pcl_bsh/query/uncertain.h>
+#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/scene/scene.h>
 
-#include "../query/question.h"
 #include "scene_worlds.h"
+#include "support/question.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Objects, pairs and the effects that only look; what moves by itself is in scene_response_test.cpp.
-#include <pcl_bsh/collision/brute_force.h>
+#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/scene/scene.h>
 
-#include "../query/allocations.h"
 #include "random_world.h"
 #include "scene_worlds.h"
+#include "support/allocations.h"
 
 #include <gtest/gtest.h>
 

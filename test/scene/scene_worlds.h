@@ -4,7 +4,7 @@
 
 #include <pcl_bsh/scene/scene.h>
 
-#include "../query/random_clouds.h"
+#include "support/random_clouds.h"
 
 #include <deque>
 #include <memory>

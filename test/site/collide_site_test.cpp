@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Questions about a site have the answers of one hierarchy over all its points, whatever the tiles and the ranks.
-#include "../programs/program_run.h"
 #include "float64_cloud.h"
+#include "tools/programs/program_run.h"
 #include "two_ranks.h"
 
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/collide.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/make_site.h>
 
@@ -19,7 +19,7 @@
 #include <map>
 #include <utility>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 namespace {
 
 namespace fs = std::filesystem;
@@ -432,5 +432,5 @@ TEST_F(CollideSite, OnTwoRanks)
 }
 
 } // namespace
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 #endif

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Questions about two sites have the answers of one hierarchy over all points of each, whatever the tiles and the
 // ranks.
-#include "../programs/program_run.h"
 #include "float64_cloud.h"
+#include "tools/programs/program_run.h"
 #include "two_ranks.h"
 
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/make_site.h>
 
@@ -21,7 +21,7 @@
 #include <random>
 #include <utility>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 namespace {
 
 namespace fs = std::filesystem;
@@ -529,5 +529,5 @@ TEST_F(SitePairProgram, RefusesInOneLine)
 }
 
 } // namespace
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 #endif

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A site in pieces for ParaView, read again by VTK.
-#include "../programs/program_run.h"
+#include "tools/programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_VTK
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/site/export_vtk.h>
 #include <pcl_bsh/site/make_site.h>
 
@@ -21,7 +21,7 @@
 #include <limits>
 #include <set>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,5 +92,5 @@ TEST(SitePieces, ByTheProgram)
 }
 
 } // namespace
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 #endif

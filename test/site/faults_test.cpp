@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sites that are damaged, disks that are full, and programs that are ended: an error that says so, and never a folder
 // that passes for a site.
-#include "../files/in_a_fork.h"
-#include "../programs/process.h"
-#include "../programs/program_run.h"
+#include "support/in_a_fork.h"
+#include "tools/programs/process.h"
+#include "tools/programs/program_run.h"
 
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/make_site.h>
 
@@ -19,7 +19,7 @@
 #include <map>
 #include <thread>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 namespace {
 
 namespace fs = std::filesystem;
@@ -417,4 +417,4 @@ TEST_F(SiteFaults, ProgramsThatAreEnded)
 }
 
 } // namespace
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

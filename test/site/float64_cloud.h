@@ -2,8 +2,8 @@
 // Points as a cloud that can be written to a file.
 #pragma once
 
-#include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/geometry/point3.h>
+#include <pcl_bsh/io/clouds/records.h>
 
 #include <pcl/PCLPointCloud2.h>
 
@@ -11,7 +11,7 @@
 #include <cstring>
 #include <vector>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 inline pcl::PCLPointCloud2 float64Cloud(const std::vector<Point3>& points)
 {
@@ -22,4 +22,4 @@ inline pcl::PCLPointCloud2 float64Cloud(const std::vector<Point3>& points)
   return cloud;
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../cloud_files/samples.h"
-#include "../files/temporary_folder.h"
+#include "io/clouds/samples.h"
+#include "support/temporary_folder.h"
 
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/filters/cloud_files/cloud_stream.h>
-#include <pcl_bsh/filters/cloud_files/pcd.h>
-#include <pcl_bsh/query/cancelled.h>
+#include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/cloud_stream.h>
+#include <pcl_bsh/io/clouds/pcd.h>
+#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/check_site.h>
-#include <pcl_bsh/site/density_tree.h>
 #include <pcl_bsh/site/export_site.h>
 #include <pcl_bsh/site/make_site.h>
+#include <pcl_bsh/site/making/density_tree.h>
 
 #include <gmock/gmock.h>
 
@@ -19,7 +19,7 @@
 #include <limits>
 #include <map>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 namespace {
 
 namespace fs = std::filesystem;
@@ -318,4 +318,4 @@ TEST(DensityTree, TakesAnyPlace)
 }
 
 } // namespace
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sites of results: the same tiles, with what a question has found of each point.
-#include "../cloud_files/samples.h"
-#include "../programs/process.h"
-#include "../programs/program_run.h"
+#include "io/clouds/samples.h"
+#include "tools/programs/process.h"
+#include "tools/programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
 #include "two_ranks.h"
 
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/export_site.h>
@@ -31,7 +31,7 @@
 #include <random>
 #include <thread>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 namespace {
 
 namespace fs = std::filesystem;
@@ -290,5 +290,5 @@ TEST_F(SiteResults, AreWholeOrNotThere)
 }
 
 } // namespace
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 #endif

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A question to a site that was killed goes on with the tiles that it has answered, and says what it would have said.
-#include "../files/in_a_fork.h"
-#include "../programs/process.h"
-#include "../programs/program_run.h"
 #include "float64_cloud.h"
+#include "support/in_a_fork.h"
+#include "tools/programs/process.h"
+#include "tools/programs/program_run.h"
 #include "two_ranks.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/make_site.h>
 
@@ -16,7 +16,7 @@
 #include <pcl_bsh/site/collide_sites.h>
 #include <pcl_bsh/site/result_site.h>
 #include <pcl_bsh/site/site_clashes.h>
-#include <pcl_bsh/site/tile_file.h>
+#include <pcl_bsh/site/tiles/tile_file.h>
 
 #include <gmock/gmock.h>
 
@@ -32,7 +32,7 @@
 #include <random>
 #include <thread>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 namespace {
 
 namespace fs = std::filesystem;
@@ -483,5 +483,5 @@ TEST_F(ResumedSite, IsRefusedWhereNothingCanBeKept)
 }
 
 } // namespace
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 #endif

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What an accuracy promises of one cloud holds of a site, whatever its tiles; and what the program tells and writes.
-#include "../cloud_files/samples.h"
-#include "../programs/program_run.h"
 #include "float64_cloud.h"
+#include "io/clouds/samples.h"
+#include "tools/programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/make_site.h>
@@ -21,7 +21,7 @@
 #include <cstring>
 #include <random>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 namespace {
 
 namespace fs = std::filesystem;
@@ -201,5 +201,5 @@ TEST_F(SiteAccuracy, TellsProgramsWhatASiteHolds)
 }
 
 } // namespace
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 #endif

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The clashes of a site are those of one cloud of all its points, whatever the tiles and the ranks.
-#include "../programs/program_run.h"
 #include "float64_cloud.h"
+#include "tools/programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
 #include "two_ranks.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_sites.h>
 #include <pcl_bsh/site/make_site.h>
@@ -22,7 +22,7 @@
 #include <map>
 #include <random>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 namespace {
 
 namespace fs = std::filesystem;
@@ -430,5 +430,5 @@ TEST_F(SiteClashList, OfThePrograms_AreRefused)
 }
 
 } // namespace
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 #endif

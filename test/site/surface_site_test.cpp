@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Obstacles with faces: a site is asked about their surface, with the answers of pcl_bsh_collide; and no site is made
 // of faces.
-#include "../programs/process.h"
-#include "../programs/program_run.h"
 #include "float64_cloud.h"
+#include "tools/programs/process.h"
+#include "tools/programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
 #include "two_ranks.h"
 
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/filters/cloud_files/obstacle.h>
-#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/site/make_site.h>
 #include <pcl_bsh/site/result_site.h>
 
@@ -25,7 +25,7 @@
 #include <random>
 #include <thread>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 namespace {
 
 namespace fs = std::filesystem;
@@ -322,5 +322,5 @@ TEST_F(SurfaceSite, IsNotMadeOfFaces)
 }
 
 } // namespace
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 #endif

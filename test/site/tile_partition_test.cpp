@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/site/density_tree.h>
+#include <pcl_bsh/site/making/density_tree.h>
+#include <pcl_bsh/site/making/tile_partition.h>
 #include <pcl_bsh/site/site.h>
-#include <pcl_bsh/site/tile_partition.h>
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 namespace {
 
 /// Whatever voxels and voxels above them hold, each tile has room for all points that may be its own.
@@ -76,4 +76,4 @@ TEST(TilePartition, TilesOfACorridorAreCompact)
 }
 
 } // namespace
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -2,9 +2,9 @@
 // pcl_bsh_site as an MPI job of two ranks.
 #pragma once
 
-#include "../programs/program_run.h"
+#include "tools/programs/program_run.h"
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 inline bool hasMpirun()
 {
@@ -25,4 +25,4 @@ inline Outcome runOnTwoRanks(const std::string& arguments, const std::filesystem
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, io::contentOf(out), io::contentOf(err)};
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Verdicts about points whose places are uncertain: those of one hierarchy, whatever the tiles and the ranks.
-#include "../programs/program_run.h"
+#include "tools/programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
 #include "two_ranks.h"
 
-#include <pcl_bsh/collision/collide.h>
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/filters/pose_files/pose_file.h>
+#include <pcl_bsh/collide.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/collide_site.h>
@@ -23,7 +23,7 @@
 #include <limits>
 #include <random>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 namespace {
 
 namespace fs = std::filesystem;
@@ -386,5 +386,5 @@ TEST_F(UncertainSite, OfThePrograms)
 }
 
 } // namespace
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site
 #endif

@@ -2,7 +2,7 @@
 // Made-up meshes.
 #pragma once
 
-#include "../geometry/random.h"
+#include "support/random.h"
 
 #include <pcl_bsh/surface/surface_cover.h>
 

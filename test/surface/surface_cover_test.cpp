@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "meshes.h"
 
-#include <pcl_bsh/collision/collision_flags.h>
-#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
-#include <pcl_bsh/query/cancelled.h>
 #include <pcl_bsh/surface/surface_cover.h>
 
 #include <boost/container_hash/hash.hpp>

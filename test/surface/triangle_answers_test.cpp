@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "meshes.h"
 
-#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/surface/triangle_answers.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Paths over places that floats cannot tell apart: many points of both clouds within a tenth of a micrometre, in a
 // scene of 200 metres.
-#include "journeys.h"
+#include "support/journeys.h"
 
 #include <gtest/gtest.h>
 

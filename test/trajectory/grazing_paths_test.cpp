@@ -3,8 +3,8 @@
 // short cut takes together, against brute force.
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "../query/allocations.h"
-#include "journeys.h"
+#include "support/allocations.h"
+#include "support/journeys.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 #include <pcl_bsh/trajectory/box_tree.h>
 #include <pcl_bsh/trajectory/pose_path.h>
 
-#include "../query/allocations.h"
-#include "journeys.h"
+#include "support/allocations.h"
+#include "support/journeys.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gmock/gmock.h>

@@ -2,8 +2,8 @@
 // A few points far outside of all others: paths leave them to themselves, unless something comes near them.
 #include <pcl_bsh/trajectory/strays.h>
 
-#include "../query/random_clouds.h"
-#include "journeys.h"
+#include "support/journeys.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

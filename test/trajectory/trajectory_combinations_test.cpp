@@ -2,7 +2,7 @@
 // What a trajectory query answers to one question does not depend on what else it is asked.
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "journeys.h"
+#include "support/journeys.h"
 
 #include <gtest/gtest.h>
 

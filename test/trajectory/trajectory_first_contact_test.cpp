@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // None before; at it, within clearance + tolerance: judged in rational numbers.
-#include <pcl_bsh/trajectory/closest_approach.h>
+#include <pcl_bsh/trajectory/leaf/closest_approach.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "journeys.h"
+#include "support/journeys.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gmock/gmock.h>

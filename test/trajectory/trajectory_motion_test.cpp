@@ -2,7 +2,7 @@
 // The motion between poses, watched at many instants: by another implementation of its definition, in long double.
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "journeys.h"
+#include "support/journeys.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

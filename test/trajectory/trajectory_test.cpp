@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "journeys.h"
+#include "support/journeys.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Along a path, points that may be elsewhere than they were measured: against brute force, and at both edges.
-#include <pcl_bsh/geometry/invalid_input.h>
-#include <pcl_bsh/trajectory/collide_on_motions.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "journeys.h"
+#include "support/journeys.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../files/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 #include <pcl_bsh/vtk/chart.h>
 

@@ -2,8 +2,8 @@
 #include <pcl_bsh/vtk/hierarchy_data.h>
 #include <pcl_bsh/vtk/write_data.h>
 
-#include "../cloud_files/samples.h"
-#include "../query/random_clouds.h"
+#include "io/clouds/samples.h"
+#include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
 

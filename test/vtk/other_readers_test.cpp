@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // VTK's readers see the points, colours and normals of the files that are written; what its writers write is read
 // alike.
-#include "../cloud_files/samples.h"
+#include "io/clouds/samples.h"
 
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
 
 #include <gtest/gtest.h>
 

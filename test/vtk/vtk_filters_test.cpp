@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/collision/brute_force.h>
 #include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/surface/surface_cover.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 #include <pcl_bsh/vtk/cloud_data.h>
@@ -8,7 +8,7 @@
 #include <pcl_bsh/vtk_filters/vtkBSHDistanceFilter.h>
 #include <pcl_bsh/vtk_filters/vtkBSHSphereSource.h>
 
-#include "../query/random_clouds.h"
+#include "support/random_clouds.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../files/temporary_folder.h"
+#include "support/temporary_folder.h"
 
-#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/vtk/write_data.h>
 
 #include <gtest/gtest.h>

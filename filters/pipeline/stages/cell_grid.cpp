@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/cell_grid.h>
 
-#include <pcl_bsh/geometry/plain_text.h>
-#include <pcl_bsh/report/extent.h>
+#include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/clashes/extent.h>
 
 #include <boost/sort/spreadsort/integer_sort.hpp>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What collides, place by place, as a list.
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/collision_question.h>
 #include <pcl_bsh/filters/pipeline/stages/other_cloud.h>
-#include <pcl_bsh/filters/reports/clash_report.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/reports/clash_report.h>
 
 namespace pcl_bsh::pipeline {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/files/file_error.h>
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/pipeline/stages/collision_question.h>
 #include <pcl_bsh/filters/pipeline/stages/other_cloud.h>
-#include <pcl_bsh/filters/pose_files/pose_file.h>
-#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/pipeline/stages/distance_question.h>
 #include <pcl_bsh/filters/pipeline/stages/other_cloud.h>
-#include <pcl_bsh/geometry/invalid_input.h>
 
 namespace pcl_bsh::pipeline {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How far two clouds are from each other, in numbers and as a page.
-#include <pcl_bsh/files/file_error.h>
-#include <pcl_bsh/files/replace_file.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/distance_question.h>
-#include <pcl_bsh/filters/reports/distance_report.h>
 #include <pcl_bsh/filters/surface_distances.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/reports/distance_report.h>
 #include <pcl_bsh/question/warnings.h>
 #include <pcl_bsh/search/cloud_view.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Readers and writers of all formats that filters/cloud_files reads and writes.
-#include <pcl_bsh/filters/cloud_files/cloud_file.h>
-#include <pcl_bsh/filters/cloud_files/pcl_names.h>
-#include <pcl_bsh/filters/cloud_files/scan_text.h>
-#include <pcl_bsh/filters/cloud_files/text_clouds.h>
+// Readers and writers of all formats that pcl_bsh/io/clouds reads and writes.
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
-#include <pcl_bsh/filters/text_files/column_names.h>
-#include <pcl_bsh/filters/text_files/format_error.h>
-#include <pcl_bsh/filters/text_files/small_letters.h>
 #include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/pcl_names.h>
+#include <pcl_bsh/io/clouds/scan_text.h>
+#include <pcl_bsh/io/clouds/text_clouds.h>
+#include <pcl_bsh/io/text/column_names.h>
+#include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <algorithm>

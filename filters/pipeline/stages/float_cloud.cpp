@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/clashes/extent.h>
 #include <pcl_bsh/filters/pipeline/stages/float_cloud.h>
-#include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/neighbors/spacing.h>
-#include <pcl_bsh/report/extent.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/cloud_files/field_type.h>
-#include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/io/clouds/field_type.h>
+#include <pcl_bsh/io/clouds/records.h>
 
 #include <algorithm>
 #include <cstring>

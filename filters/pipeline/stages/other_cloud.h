@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/filters/pipeline/option_type.h>
-#include <pcl_bsh/filters/pose_files/rigid_pose.h>
+#include <pcl_bsh/io/poses/rigid_pose.h>
 
 #include <memory>
 #include <optional>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/cloud_files/field_type.h>
-#include <pcl_bsh/filters/json/nearest_name.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/exact_limits.h>
 #include <pcl_bsh/filters/pipeline/stages/selecting_stage.h>
+#include <pcl_bsh/io/clouds/field_type.h>
+#include <pcl_bsh/io/json/nearest_name.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/cloud_files/records.h>
 #include <pcl_bsh/filters/pipeline/stages/record_mean.h>
+#include <pcl_bsh/io/clouds/records.h>
 
 #include <algorithm>
 #include <array>

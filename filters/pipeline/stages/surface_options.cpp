@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/pipeline/stages/other_cloud.h>
 #include <pcl_bsh/filters/pipeline/stages/surface_options.h>
-#include <pcl_bsh/filters/text_files/number_text.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/geometry/invalid_input.h>
+#include <pcl_bsh/io/text/number_text.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 namespace pcl_bsh::pipeline {

@@ -2,8 +2,8 @@
 // The options of stages whose obstacle may be a surface.
 #pragma once
 
-#include <pcl_bsh/filters/cloud_files/obstacle.h>
 #include <pcl_bsh/filters/pipeline/stage_type.h>
+#include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/query/accuracy.h>
 
 #include <optional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
-#include <pcl_bsh/geometry/plain_text.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/search/cloud_view.h>
 

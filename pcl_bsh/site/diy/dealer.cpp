@@ -3,7 +3,7 @@
 
 #include <pcl_bsh/site/collide_site.h>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 Dealer::Dealer() : is_alone_(ranks() == 1)
 {
@@ -35,4 +35,4 @@ std::uint64_t Dealer::taken(std::uint64_t count)
   return before;
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 class Dealer {
 public:
@@ -31,4 +31,4 @@ private:
   std::uint64_t own_counter_ = 0; ///< where there is one rank
 };
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dealer.h"
 
-#include <pcl_bsh/site/tile_visitor.h>
+#include <pcl_bsh/site/tiles/tile_visitor.h>
 
 #include <stdexcept> // which DIY does not include
 #include <vtk_diy2.h>
@@ -17,7 +17,7 @@
 #include <exception>
 #include <utility>
 
-namespace pcl_bsh::sites {
+namespace pcl_bsh::site {
 
 namespace {
 
@@ -189,4 +189,4 @@ void TileVisitor::visitInTurn(const std::vector<std::uint32_t>& tiles, const Use
   }
 }
 
-} // namespace pcl_bsh::sites
+} // namespace pcl_bsh::site

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/large_buffer.h>
+
+#include <algorithm>
+#include <limits>
+#include <new>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace pcl_bsh {
+namespace {
+
+constexpr std::size_t kHugePage = std::size_t{1} << 21;
+constexpr std::size_t kVector = 64;
+constexpr std::size_t kMostBytes = std::numeric_limits<std::ptrdiff_t>::max() - kHugePage;
+
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
+constexpr bool kKeeps = true;
+#else
+constexpr bool kKeeps = false; // without a word to the system, or where use after free is to be found
+#endif
+
+/// Whether a buffer is large enough for huge pages, and to be kept.
+bool isLarge(std::size_t bytes)
+{
+  return bytes >= 2 * kHugePage;
+}
+
+std::align_val_t alignmentOf(std::size_t bytes)
+{
+  return std::align_val_t{isLarge(bytes) ? kHugePage : kVector};
+}
+
+} // namespace
+
+AllocatedBuffer allocateBuffer(std::size_t bytes)
+{
+  if (bytes > kMostBytes) throw std::bad_alloc();
+  const bool large = isLarge(bytes + kVector); // some less than it would be rounded up to a large one
+  const std::size_t alignment = large ? kHugePage : kVector;
+  const std::size_t size = std::max(alignment, (bytes + alignment - 1) / alignment * alignment);
+  if (large && kKeeps)
+    if (const AllocatedBuffer kept = takeKeptBuffer(size); kept.p) return kept;
+  void* const p = ::operator new(size, alignmentOf(size));
+#ifdef __linux__
+  if (large) madvise(p, size, MADV_HUGEPAGE);
+#endif
+  return {p, size};
+}
+
+void freeBuffer(const AllocatedBuffer& buffer) noexcept
+{
+  ::operator delete(buffer.p, buffer.size, alignmentOf(buffer.size));
+}
+
+void FreeBuffer::operator()(void* p) const noexcept
+{
+  if (isLarge(size) && kKeeps)
+    keepBuffer({p, size});
+  else
+    freeBuffer({p, size});
+}
+
+} // namespace pcl_bsh

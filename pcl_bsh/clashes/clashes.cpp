@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/clashes/clashes.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/clashes/near_boxes.h>
+#include <pcl_bsh/clusters/clusters.h>
+#include <pcl_bsh/geometry/counted.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+namespace pcl_bsh {
+namespace {
+
+Point3 middleOf(const Clash& clash)
+{
+  Point3 middle;
+  for (std::size_t k = 0; k < 3; ++k) middle[k] = 0.5 * clash.low[k] + 0.5 * clash.high[k];
+  return middle;
+}
+
+std::string idAt(const Point3& place, double cell)
+{
+  const auto number = [&](std::size_t axis) { return static_cast<long long>(std::floor(place[axis] / cell)); };
+  return plainText("C", number(0), "_", number(1), "_", number(2));
+}
+
+/// Ids that are taken.
+class TakenIds {
+public:
+  void take(const std::string& id) { taken_.insert(id); }
+
+  /// `id`, or with #2, #3, ... behind it, whichever is not taken yet; takes it.
+  std::string free(const std::string& id)
+  {
+    if (taken_.insert(id).second) return id;
+    for (int& n = last_.try_emplace(id, 1).first->second;;) {
+      std::string candidate = id + "#" + std::to_string(++n);
+      if (taken_.insert(candidate).second) return candidate;
+    }
+  }
+
+private:
+  std::set<std::string> taken_;
+  std::map<std::string, int> last_; ///< the last number that was tried behind an id
+};
+
+void giveIds(std::vector<Clash>& clashes, double cluster_distance)
+{
+  const double cell = std::exp2(std::ceil(std::log2(4 * cluster_distance)));
+  std::vector<Clash*> by_place;
+  for (Clash& clash : clashes) by_place.push_back(&clash);
+  std::stable_sort(by_place.begin(), by_place.end(), [](const Clash* a, const Clash* b) {
+    return std::tie(a->low, a->high) < std::tie(b->low, b->high);
+  });
+  TakenIds taken;
+  for (Clash* clash : by_place) clash->id = taken.free(idAt(middleOf(*clash), cell));
+}
+
+void add(Clash& clash, std::uint32_t record, const Point3& point, const TrajectoryResult& found)
+{
+  clash.records.push_back(record);
+  ++clash.points;
+  if (found.flags[record] == 1) ++clash.certain_points;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double coordinate = point[k] + 0.0; // of -0 and 0 the latter, so that boxes tell no order of points
+    clash.low[k] = std::min(clash.low[k], coordinate);
+    clash.high[k] = std::max(clash.high[k], coordinate);
+  }
+  clash.first_pose = std::min(clash.first_pose, found.first_pose[record]);
+  const double distance = static_cast<double>(found.distance[record]);
+  if (!(distance < clash.distance)) return;
+  clash.distance = distance;
+  clash.scan_point = record;
+  clash.place = point;
+  clash.model_point = found.closest_point[record];
+  clash.closest_pose = found.closest_pose[record];
+}
+
+void check(const PointsView& scan, const TrajectoryResult& found, double cluster_distance)
+{
+  if (!(std::isfinite(cluster_distance) && cluster_distance > 0.0)) {
+    throw InvalidInput(Input::cluster_distance, "cluster distance", plainText(cluster_distance),
+                       "give a finite length > 0")
+        .withValue(cluster_distance);
+  }
+  for (const std::size_t size : {found.flags.size(), found.distance.size(), found.first_pose.size(),
+                                 found.closest_pose.size(), found.closest_point.size()}) {
+    if (size == scan.count) continue;
+    throw InvalidInput(Input::result, "result",
+                       "has " + counted(size, "value") + " for " + counted(scan.count, "point"),
+                       "ask for flags, distances, first_poses and closest_poses of this scan");
+  }
+}
+
+double squaredDistance(const Point3& p, const Point3& q)
+{
+  double sum = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) sum += (p[k] - q[k]) * (p[k] - q[k]);
+  return sum;
+}
+
+} // namespace
+
+const char* nameOf(ClashStatus status) noexcept
+{
+  constexpr std::array<const char*, clash_statuses> names = {"new", "persisting", "resolved", "not_visited",
+                                                             "not_scanned"};
+  return names[static_cast<std::size_t>(status)];
+}
+
+std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& found, double cluster_distance)
+{
+  check(scan, found, cluster_distance);
+  std::vector<std::int32_t> colliding;
+  for (std::size_t i = 0; i < scan.count; ++i) {
+    if (found.flags[i] != 0) colliding.push_back(static_cast<std::int32_t>(i));
+  }
+  PointsView subset = scan;
+  subset.indices = colliding.data();
+  subset.index_count = colliding.size();
+  if (colliding.empty()) return {};
+  const Clusters clusters = euclideanClusters(SphereHierarchy(subset), cluster_distance);
+
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Clash none;
+  none.low = {infinity, infinity, infinity};
+  none.high = {-infinity, -infinity, -infinity};
+  none.distance = infinity;
+  none.first_pose = std::numeric_limits<std::int32_t>::max();
+  std::vector<Clash> clashes(clusters.sizes.size(), none);
+  for (const std::int32_t i : colliding) {
+    const auto record = static_cast<std::uint32_t>(i);
+    add(clashes[static_cast<std::size_t>(clusters.of[record])], record, scan.point(record), found);
+  }
+  nameClashes(clashes, cluster_distance);
+  return clashes;
+}
+
+void nameClashes(std::vector<Clash>& clashes, double cluster_distance)
+{
+  giveIds(clashes, cluster_distance);
+  std::sort(clashes.begin(), clashes.end(), [](const Clash& a, const Clash& b) {
+    const bool perhaps_a = !a.isCertain(), perhaps_b = !b.isCertain();
+    return std::tie(perhaps_a, a.distance, b.points, a.id) < std::tie(perhaps_b, b.distance, a.points, b.id);
+  });
+}
+
+std::uint64_t compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness)
+{
+  // Every pair that touches, the nearest first; ids pass on one to one.
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  std::vector<bool> there_still(earlier.size(), false);
+  std::vector<Extent> boxes;
+  for (const Clash& clash : clashes) boxes.push_back({clash.low, clash.high});
+  NearBoxes now(std::move(boxes));
+  for (std::size_t j = 0; j < earlier.size(); ++j) {
+    if (earlier[j].status == ClashStatus::resolved) {
+      there_still[j] = true; // forgotten
+      continue;
+    }
+    now.visitNear({earlier[j].low, earlier[j].high}, nearness, [&](std::size_t i) {
+      pairs.emplace_back(squaredDistance(middleOf(clashes[i]), middleOf(earlier[j])), j, i);
+      clashes[i].status = ClashStatus::persisting;
+      there_still[j] = true;
+      return false;
+    });
+  }
+  std::sort(pairs.begin(), pairs.end());
+
+  TakenIds taken;
+  for (const Clash& clash : earlier) taken.take(clash.id);
+  std::vector<bool> heir(clashes.size(), false), inherited(earlier.size(), false);
+  for (const auto& [distance, j, i] : pairs) {
+    if (heir[i] || inherited[j]) continue;
+    heir[i] = inherited[j] = true;
+    clashes[i].id = earlier[j].id;
+  }
+  for (std::size_t i = 0; i < clashes.size(); ++i) {
+    if (!heir[i]) clashes[i].id = taken.free(clashes[i].id);
+  }
+
+  for (std::size_t j = 0; j < earlier.size(); ++j) {
+    if (there_still[j]) continue;
+    clashes.push_back(earlier[j]);
+    clashes.back().status = ClashStatus::resolved;
+    clashes.back().records.clear(); // of an earlier scan
+  }
+  return now.compared;
+}
+
+} // namespace pcl_bsh

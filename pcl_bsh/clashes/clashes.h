@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What collides along a path, place by place: clusters of colliding points, with names that last from run to run.
+#pragma once
+
+#include <pcl_bsh/clashes/extent.h>
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// Against an earlier list of clashes; without one, all are fresh. Those that were there and are not found again are
+/// resolved if the run looked there. It did not where the path does not come near the place any more (not_visited), or
+/// nothing at all of the scan lies near it (not_scanned): see FormerPlaces.
+enum class ClashStatus : std::uint8_t { fresh, persisting, resolved, not_visited, not_scanned };
+inline constexpr std::size_t clash_statuses = 5; ///< how many there are
+
+/// new, persisting, resolved, not_visited or not_scanned.
+const char* nameOf(ClashStatus status) noexcept;
+
+/// Whether a clash of this status is there now.
+constexpr bool isPresent(ClashStatus status) noexcept
+{
+  return status == ClashStatus::fresh || status == ClashStatus::persisting;
+}
+
+/// Colliding points of a scan that lie together. Coordinates are in the scan's own frame.
+struct Clash {
+  std::string id;
+  ClashStatus status = ClashStatus::fresh;
+  std::vector<std::uint32_t> records; ///< its points, ascending; empty unless it is there now
+  std::size_t points = 0;
+  std::size_t certain_points = 0; ///< of these: that collide wherever the points truly are; the others are undecided
+  Point3 low = {}, high = {};     ///< its bounding box
+  Point3 place = {};              ///< where its point of the closest pair is
+  double distance = 0.0;          ///< the smallest, less radii
+  std::uint32_t scan_point = 0;   ///< the pair that realises it; of several, that of the smallest record of the scan
+  std::uint32_t model_point = 0;  ///< at the closest pose
+  std::int32_t first_pose = 0;
+  std::int32_t closest_pose = 0;
+
+  bool isCertain() const { return certain_points > 0; } ///< else it collides only perhaps
+};
+
+/// Clusters of the points that collide or are undecided (euclideanClusters() with that distance), the most severe
+/// first: those that have a point which collides for certain before those that collide only perhaps, then by smallest
+/// distance, then by most points, then by id.
+///
+/// An id tells the place: `C12_-3_0` has the middle of its box in cell (12, -3, 0) of a grid through the origin, whose
+/// cells are as long as the smallest power of two that is at least four cluster distances. So it is the same in every
+/// run in which the box's middle stays in its cell, whatever the order of points. A second clash of one cell is
+/// `C12_-3_0#2`; the lower corners of their boxes decide which.
+/// @param found of a request with flags, distances, first_poses and closest_poses
+/// @param cluster_distance finite, > 0
+/// @throws std::invalid_argument for another distance, or a result without these vectors or of another scan
+std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& found, double cluster_distance);
+
+/// Gives clashes their ids and puts the most severe first, as findClashes() does: for those that were found in parts.
+/// @param clashes in the order of their smallest records, which decides nothing but which of two with one box is first
+/// @param cluster_distance finite, > 0
+void nameClashes(std::vector<Clash>& clashes, double cluster_distance);
+
+/// Tells which clashes were there before: those whose box comes within `nearness` (per axis) of an earlier one's box
+/// are persisting, and each earlier id passes on to the clash whose middle is nearest to the earlier middle, one to
+/// one, so that a clash that moves or grows across cells keeps its id. Earlier clashes that nothing comes near are
+/// appended as resolved, which FormerPlaces then judges; those that were resolved then already are forgotten.
+/// @return how many boxes were compared
+std::uint64_t compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness);
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/clashes/former_places.h>
+#include <pcl_bsh/clashes/near_boxes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace pcl_bsh {
+namespace {
+
+std::vector<Clash*> resolvedOf(std::vector<Clash>& clashes)
+{
+  std::vector<Clash*> resolved;
+  for (Clash& clash : clashes)
+    if (clash.status == ClashStatus::resolved) resolved.push_back(&clash);
+  return resolved;
+}
+
+std::vector<Extent> boxesOf(const std::vector<Clash*>& clashes)
+{
+  std::vector<Extent> boxes;
+  for (const Clash* clash : clashes) boxes.push_back({clash->low, clash->high});
+  return boxes;
+}
+
+double reachOf(const std::vector<Clash*>& clashes, double clearance, double cluster_distance)
+{
+  double reach = clearance;
+  for (const Clash* clash : clashes) reach = std::max(reach, clash->distance);
+  return reach + cluster_distance;
+}
+
+} // namespace
+
+struct FormerPlaces::Places {
+  Places(std::vector<Clash>& of, double clearance, double cluster_distance)
+  : clashes(resolvedOf(of)),
+    reach(reachOf(clashes, clearance, cluster_distance)),
+    not_scanned(boxesOf(clashes)),
+    is_visited(clashes.size(), false),
+    is_scanned(clashes.size(), false)
+  {
+  }
+
+  template <typename Near>
+  void findNear(const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
+                const TrajectoryRequest& motion, const Near& near) const;
+
+  std::vector<Clash*> clashes;
+  double reach;
+  mutable NearBoxes not_scanned;
+  std::vector<bool> is_visited, is_scanned;
+};
+
+FormerPlaces::FormerPlaces(std::vector<Clash>& clashes, double clearance, double cluster_distance)
+: places_(std::make_unique<Places>(clashes, clearance, cluster_distance))
+{
+}
+
+FormerPlaces::~FormerPlaces() = default;
+
+bool FormerPlaces::empty() const
+{
+  return places_->clashes.empty();
+}
+
+/// Calls near(i) for each place that is not visited yet and that the model comes near to.
+template <typename Near>
+void FormerPlaces::Places::findNear(const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
+                                    const TrajectoryRequest& motion, const Near& near) const
+{
+  std::vector<std::size_t> left;
+  std::vector<Point3> at;
+  for (std::size_t i = 0; i < clashes.size(); ++i) {
+    if (is_visited[i]) continue;
+    left.push_back(i);
+    at.push_back(clashes[i]->place);
+  }
+  if (left.empty()) return;
+  TrajectoryRequest request;
+  request.clearance = reach;
+  request.swept = motion.swept;
+  request.pivot = motion.pivot;
+  request.threads = motion.threads;
+  const SphereHierarchy points(viewOf(at.front().data(), at.size()));
+  const TrajectoryResult found = collideAlong({points}, model, poses, request);
+  for (std::size_t i = 0; i < left.size(); ++i)
+    if (found.flags[i] != 0) near(left[i]);
+}
+
+void FormerPlaces::visit(const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
+                         const TrajectoryRequest& motion)
+{
+  places_->findNear(model, poses, motion, [&](std::size_t i) { places_->is_visited[i] = true; });
+}
+
+bool FormerPlaces::mayVisit(const Extent& box, const std::vector<Eigen::Isometry3d>& poses,
+                            const TrajectoryRequest& motion) const
+{
+  // A ball about the box, for the query has balls and no boxes.
+  Point3 middle;
+  double square = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    middle[k] = 0.5 * box.low[k] + 0.5 * box.high[k];
+    const double half = std::max(box.high[k] - middle[k], middle[k] - box.low[k]);
+    square += half * half;
+  }
+  const float radius = std::nextafter(static_cast<float>(std::sqrt(square) * (1.0 + 1e-6)), HUGE_VALF);
+  PointsView ball = viewOf(middle.data(), 1);
+  ball.radii = &radius;
+  bool may = false;
+  places_->findNear(SphereHierarchy(ball), poses, motion, [&](std::size_t) { may = true; });
+  return may;
+}
+
+void FormerPlaces::scan(const PointsView& points)
+{
+  for (std::size_t i = 0; i < points.size() && places_->not_scanned.left() > 0; ++i) {
+    const Point3 point = points.point(points.record(i));
+    if (!isFinite(point)) continue;
+    places_->not_scanned.visitNear({point, point}, places_->reach, [&](std::size_t place) {
+      places_->is_scanned[place] = true;
+      return true;
+    });
+  }
+}
+
+bool FormerPlaces::mayScan(const Extent& box) const
+{
+  bool near = false;
+  places_->not_scanned.visitNear(box, places_->reach, [&](std::size_t) {
+    near = true;
+    return false;
+  });
+  return near;
+}
+
+void FormerPlaces::judge()
+{
+  for (std::size_t i = 0; i < places_->clashes.size(); ++i) {
+    if (!places_->is_visited[i])
+      places_->clashes[i]->status = ClashStatus::not_visited;
+    else if (!places_->is_scanned[i])
+      places_->clashes[i]->status = ClashStatus::not_scanned;
+  }
+}
+
+} // namespace pcl_bsh

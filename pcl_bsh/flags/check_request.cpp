@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/flags/check_request.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/query/request_check.h>
+
+#include <cmath>
+
+namespace pcl_bsh {
+namespace {
+
+void checkSpacings(const float* spacings, std::size_t count)
+{
+  for (std::size_t i = 0; spacings && i < count; ++i)
+    if (!(std::isfinite(spacings[i]) && spacings[i] >= 0.0f))
+      throw InvalidInput(Input::density, "density guard", plainText("spacing ", spacings[i], " of point ", i),
+                         "give finite lengths >= 0")
+          .withValue(static_cast<double>(spacings[i]))
+          .withIndex(i);
+}
+
+} // namespace
+
+void check(const Placed& a, const Placed& b, const FlagsRequest& request)
+{
+  checkClearance(request.clearance);
+  checkAccuracy(request.accuracy);
+  checkPoses(a.pose, b.pose);
+  checkSpacings(request.spacings_of_b, b.hierarchy().view().count);
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Flags as an array: one per record.
+#include <pcl_bsh/flags/check_request.h>
+#include <pcl_bsh/flags/side.h>
+#include <pcl_bsh/query/uncertain.h>
+
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/flags/collision_flags.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/flags/walk-inl.h>
+
+#ifndef PCL_BSH_COLLISION_COLLISION_FLAGS_ONCE
+#define PCL_BSH_COLLISION_COLLISION_FLAGS_ONCE
+namespace pcl_bsh {
+namespace {
+
+/// Writes verdicts into an array in which all points are free, or all undecided, at first.
+class FlagArray {
+public:
+  FlagArray(const SphereHierarchy::Storage& cloud, std::uint32_t voxel, std::uint8_t* flags, bool marked)
+  : cloud_(cloud),
+    voxel_(voxel),
+    flags_(flags),
+    marked_(marked)
+  {
+  }
+
+  void collide(std::uint32_t record)
+  {
+    colliding += flags_[record] != flagOf(Verdict::colliding);
+    flags_[record] = flagOf(Verdict::colliding);
+  }
+
+  void perhaps(std::uint32_t record)
+  {
+    if (flags_[record] != flagOf(Verdict::colliding)) flags_[record] = flagOf(Verdict::undecided);
+  }
+
+  bool takesFree() const { return marked_; }
+  void free(std::uint32_t record) { flags_[record] = flagOf(Verdict::free); }
+
+  bool takesUndecided() const { return !marked_; }
+  void leave(std::uint32_t record) { flags_[record] = flagOf(Verdict::undecided); }
+  void leaveAll()
+  {
+    if (!marked_) cloud_.forEachRecord(voxel_, [this](std::uint32_t record) { leave(record); });
+  }
+
+  std::size_t colliding = 0; ///< points flagged so that were not before
+
+private:
+  const SphereHierarchy::Storage& cloud_;
+  const std::uint32_t voxel_;
+  std::uint8_t* const flags_;
+  const bool marked_;
+};
+
+} // namespace
+} // namespace pcl_bsh
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+FlaggedVoxel flagVoxelOnTarget(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagArray& flags)
+{
+  return walkVoxel(query, rule, voxel, flags);
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+namespace {
+
+HWY_EXPORT(flagVoxelOnTarget);
+
+/// The array of one cloud.
+class FlagSheet {
+public:
+  explicit FlagSheet(std::vector<std::uint8_t>& flags) : flags_(flags) {}
+
+  void begin(const FlagQuery& query, const std::vector<FlaggedPlace>& places, bool marked)
+  {
+    const SphereHierarchy& cloud = query.a.hierarchy();
+    marked_ = marked;
+    flags_.assign(
+        cloud.view().count,
+        flagOf(marked && cloud.size() == cloud.view().count && !places.empty() ? Verdict::undecided : Verdict::free));
+    if (!marked || cloud.size() == cloud.view().count) return;
+    for (const FlaggedPlace& place : places) // the hierarchy does not hold all records
+      cloud.storage().forEachRecord(place.voxel,
+                                    [this](std::uint32_t record) { flags_[record] = flagOf(Verdict::undecided); });
+  }
+
+  FlaggedVoxel walk(const FlagQuery& query, const StopRule& rule, const FlaggedPlace& place)
+  {
+    FlagArray array(query.a.hierarchy().storage(), place.voxel, flags_.data(), marked_);
+    const FlaggedVoxel found = HWY_DYNAMIC_DISPATCH(flagVoxelOnTarget)(query, rule, place.voxel, array);
+    colliding_.fetch_add(array.colliding, std::memory_order_relaxed);
+    return found;
+  }
+
+  static void end() {}
+
+  std::size_t colliding() const { return colliding_.load(std::memory_order_relaxed); }
+
+  std::size_t undecided() const
+  {
+    return static_cast<std::size_t>(std::count(flags_.begin(), flags_.end(), flagOf(Verdict::undecided)));
+  }
+
+private:
+  std::vector<std::uint8_t>& flags_;
+  std::atomic<std::size_t> colliding_{0};
+  bool marked_ = false;
+};
+
+/// The flags of points that are where `places` says.
+void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, FlagsResult& found)
+{
+  FlagSheet sheet_a(found.a), sheet_b(found.b);
+  found.work += flagSides(a, b, request, places, sheet_a, sheet_b);
+  found.colliding_a = sheet_a.colliding();
+  found.colliding_b = sheet_b.colliding();
+  if (!request.accuracy.stopsEarly() && places != Places::either) return;
+  found.undecided_a = sheet_a.undecided();
+  found.undecided_b = sheet_b.undecided();
+}
+
+/// Free points that may be within the clearance of a patch of b's surface are sparse.
+void guardDensity(const Placed& a, const Placed& b, FlagsRequest request, FlagsResult& found)
+{
+  request.flagged = Side::a;
+  FlagsResult covered;
+  flagPlaces(a, b, request, Places::covered, covered);
+  for (std::size_t i = 0; i < found.a.size(); ++i) {
+    if (found.a[i] != flagOf(Verdict::free) || covered.a[i] == flagOf(Verdict::free)) continue;
+    const bool sparse = covered.a[i] == flagOf(Verdict::colliding);
+    found.a[i] = flagOf(sparse ? Verdict::sparse : Verdict::undecided);
+    ++(sparse ? found.sparse_a : found.undecided_a);
+  }
+  found.work += covered.work;
+}
+
+} // namespace
+
+void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request, FlagsResult& result)
+{
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  FlagsResult found;
+  found.a.swap(result.a);
+  found.b.swap(result.b);
+  result = FlagsResult(); // should something throw, it has neither colliding nor free points
+  found.a.clear();
+  found.b.clear();
+  flagPlaces(a, b, request, areUncertain(a, b) ? Places::either : Places::measured, found);
+  if (request.spacings_of_b && request.flagged != Side::b) guardDensity(a, b, request, found);
+  result = std::move(found);
+}
+
+FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request)
+{
+  FlagsResult result;
+  collisionFlags(a, b, request, result);
+  return result;
+}
+
+} // namespace pcl_bsh
+#endif

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The points of a leaf of a against the leaves of b that it is near to.
+
+#if defined(PCL_BSH_FLAGS_LEAF_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_FLAGS_LEAF_INL_H_
+#undef PCL_BSH_FLAGS_LEAF_INL_H_
+#else
+#define PCL_BSH_FLAGS_LEAF_INL_H_
+#endif
+
+#include <pcl_bsh/flags/query.h>
+#include <pcl_bsh/flags/uncertain-inl.h>
+#include <pcl_bsh/flags/visit-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// Points of a leaf: those that collide for certain, or may turn out to; and those that may collide, likewise.
+struct OpenPoints {
+  std::uint32_t surely = 0, perhaps = 0;
+};
+
+/// Which of the open points collide with a leaf of b. @param recordOf(i) of one of them
+template <class RecordOf>
+inline OpenPoints hitUncertain(const ObstacleVoxel& obstacle, const LeafPoints& points, const RecordOf& recordOf,
+                               const LeafRange& other, const OpenPoints& open, const FlagQuery& query, Work& work)
+{
+  alignas(64) float squared[kLeafPoints][kLeafPoints];
+  std::uint32_t near_surely[kLeafPoints], near[kLeafPoints], any = 0;
+  for (std::uint32_t lanes = open.surely | open.perhaps; lanes != 0; lanes &= lanes - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(lanes));
+    leafSquaredDistances(other.x(), other.y(), other.z(), points.x[i], points.y[i], points.z[i], squared[i]);
+    near_surely[i] = (open.surely >> i & 1) != 0 ? firstBits(other.count) & ~above(squared[i], obstacle.band.miss) : 0;
+    near[i] = (open.perhaps >> i & 1) != 0 ? firstBits(other.count) & ~above(squared[i], obstacle.possible.miss)
+                                           : near_surely[i];
+    if (near[i] != 0) query.pairs.ofPairs().prefetchOfA(recordOf(i));
+    any |= near[i];
+  }
+  for (; any != 0; any &= any - 1)
+    query.pairs.ofPairs().prefetchOfB(other.record(static_cast<std::uint32_t>(std::countr_zero(any))));
+  OpenPoints hit;
+  for (std::uint32_t lanes = open.surely | open.perhaps; lanes != 0; lanes &= lanes - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(lanes));
+    const std::uint32_t bit = 1u << i;
+    for (std::uint32_t others = near[i]; others != 0; others &= others - 1) {
+      const auto j = static_cast<std::uint32_t>(std::countr_zero(others));
+      const PointPair pair{recordOf(i), other.record(j)};
+      if ((near_surely[i] >> j & 1) != 0 && query.certain->collide(obstacle.frame, squared[i][j], pair, work)) {
+        hit.surely |= bit;
+        break;
+      }
+      if ((open.perhaps & ~hit.perhaps & bit) != 0 && query.pairs.collide(obstacle.frame, squared[i][j], pair, work))
+        hit.perhaps |= bit;
+      if (((open.surely | (open.perhaps & ~hit.perhaps)) & bit) == 0) break;
+    }
+  }
+  return hit;
+}
+
+/// The points of a leaf of b that face the child: those of neighbouring leaves that may matter.
+inline std::uint32_t facingPoints(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
+                                  const LeafRange& other)
+{
+  return pointsNear(other.x(), other.y(), other.z(), other.count, visit.x[lane], visit.y[lane], visit.z[lane],
+                    visit.r[lane] + obstacle.prune_reach, kSphereMargin);
+}
+
+/// Where points are uncertain: by the nearest of b, each as far as its own uncertainty makes it, and pair by pair where
+/// that does not decide. @param reach of the obstacle. @param own uncertainties of the leaf's points
+HWY_NOINLINE inline std::uint32_t hitUncertainPoints(const ObstacleVoxel& obstacle, const UncertainReach& reach,
+                                                     FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf,
+                                                     const float* own, const LeafPoints& points, const FlagQuery& query,
+                                                     Work& work)
+{
+  const UncertainPoints limits(reach, own);
+  const std::vector<ObstacleSphere>& candidates = visit.near[lane];
+  const std::uint32_t open = visit.open_points[lane];
+  alignas(64) float longer[kLeafPoints], shorter[kLeafPoints];
+  std::fill(std::begin(longer), std::end(longer), std::numeric_limits<float>::infinity());
+  std::fill(std::begin(shorter), std::end(shorter), std::numeric_limits<float>::infinity());
+  std::uint32_t hit = 0;
+  for (const ObstacleSphere& candidate : candidates) {
+    ++work.leaf_pairs;
+    const LeafRange other = candidate.leaf(*obstacle.voxel);
+    const std::uint32_t facing = facingPoints(obstacle, visit, lane, other);
+    if (facing == 0) continue;
+    nearestWithLengths(points, other.x(), other.y(), other.z(), ownOf(reach.of_b, other), reach.scale_up, facing,
+                       longer, shorter);
+    hit = open & atMostEach(longer, limits.sure);
+    if (hit == open) return hit;
+  }
+  visit.perhaps[lane] |= open & atMostEach(shorter, limits.maybe);
+  OpenPoints left{open & ~hit & ~aboveEach(longer, limits.sure_miss), 0};
+  left.perhaps = open & ~hit & ~visit.perhaps[lane] & ~aboveEach(shorter, limits.miss);
+  for (const ObstacleSphere& candidate : candidates) {
+    if ((left.surely | left.perhaps) == 0) break;
+    const OpenPoints found = hitUncertain(
+        obstacle, points, [&leaf](std::uint32_t i) { return leaf.record(i); }, candidate.leaf(*obstacle.voxel), left,
+        query, work);
+    hit |= found.surely;
+    visit.perhaps[lane] |= found.perhaps;
+    left = {left.surely & ~found.surely, left.perhaps & ~found.surely & ~found.perhaps};
+  }
+  return hit;
+}
+
+/// By float band, and exactly within the band.
+inline std::uint32_t hitPoints(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
+                               const LeafRange& leaf, const LeafPoints& points, const PointPairs& pairs, Work& work)
+{
+  const std::uint32_t open = visit.open_points[lane];
+  alignas(64) float nearest[kLeafPoints];
+  std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
+  std::uint32_t hit = 0;
+  for (const ObstacleSphere& candidate : visit.near[lane]) {
+    ++work.leaf_pairs;
+    const LeafRange other = candidate.leaf(*obstacle.voxel);
+    const std::uint32_t facing = facingPoints(obstacle, visit, lane, other);
+    if (facing == 0) continue;
+    nearestSquared(points, other.x(), other.y(), other.z(), facing, nearest);
+    hit = open & atMost(nearest, obstacle.band.hit);
+    if (hit == open) return hit;
+  }
+  const std::uint32_t undecided = open & ~hit & ~above(nearest, obstacle.band.miss);
+  for (const ObstacleSphere& candidate : visit.near[lane]) {
+    if ((undecided & ~hit) == 0) break;
+    const LeafRange other = candidate.leaf(*obstacle.voxel);
+    eachPairNotBeyond(points, undecided, other, obstacle.band.miss, [&](std::uint32_t i, std::uint32_t j, float s) {
+      if ((hit >> i & 1) == 0 && pairs.collide(obstacle.frame, s, {leaf.record(i), other.record(j)}, work))
+        hit |= 1u << i;
+      return (undecided & ~hit) == 0;
+    });
+  }
+  return hit;
+}
+
+/// The same where points have radii.
+inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
+                              const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query, Work& work)
+{
+  const std::uint32_t open = visit.open_points[lane];
+  std::uint32_t hit = 0;
+  for (const ObstacleSphere& candidate : visit.near[lane]) {
+    if (hit == open) break;
+    ++work.leaf_pairs;
+    const LeafRange other = candidate.leaf(*obstacle.voxel);
+    eachBallPairNear(obstacle.frame, points, open, leaf, other, query.pairs.clearance, query.surePairs().reach.least,
+                     [&](std::uint32_t i, std::uint32_t j, float squared, bool surely) {
+                       if ((hit >> i & 1) != 0) return false;
+                       const PointPair pair{leaf.record(i), other.record(j)};
+                       if (surely || query.surePairs().collide(obstacle.frame, squared, pair, work)) {
+                         hit |= 1u << i;
+                       }
+                       else if (query.certain && (visit.perhaps[lane] >> i & 1) == 0 &&
+                                query.pairs.collide(obstacle.frame, squared, pair, work)) {
+                         visit.perhaps[lane] |= 1u << i;
+                       }
+                       return hit == open;
+                     });
+  }
+  return hit;
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a walk that flags points keeps of one node of a: its children in the frame of a voxel of b, and the spheres of b
+// that each child may collide with.
+
+#if defined(PCL_BSH_FLAGS_VISIT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_FLAGS_VISIT_INL_H_
+#undef PCL_BSH_FLAGS_VISIT_INL_H_
+#else
+#define PCL_BSH_FLAGS_VISIT_INL_H_
+#endif
+
+#include <pcl_bsh/geometry/distance_band.h>
+#include <pcl_bsh/hierarchy/slabs.h>
+#include <pcl_bsh/traversal/obstacle_sphere-inl.h>
+#include <pcl_bsh/traversal/uncertain_reach.h>
+
+#include <deque>
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// A voxel of b, as seen from a voxel of a.
+struct ObstacleVoxel {
+  const Voxel* voxel;
+  RelativeFrame frame;
+  float prune_reach;
+  float sure_reach;   ///< what comes within it collides
+  float accept_reach; ///< what comes within it may count as colliding; no less
+  float blunt_radius;
+  DistanceBand band;            ///< of what collides, where points are uncertain: for certain
+  DistanceBand possible;        ///< of what may collide
+  const Slabs* slabs = nullptr; ///< of its nodes, once asked for
+};
+
+/// One node of a on its way through b, its children tested all at once.
+struct FlagVisit {
+  const Node* node = nullptr;
+  std::uint32_t leaves = 0; ///< bits of the children that are leaves
+  std::uint32_t open = 0;   ///< bits of the children that are not settled yet
+  std::uint32_t obstacle = 0;
+  alignas(32) float x[kLanes], y[kLanes], z[kLanes], r[kLanes]; ///< their spheres in the obstacle voxel's frame
+  float smallest = 0.0f;                                        ///< of r
+  float largest_leaf = 0.0f;                                    ///< of r, of leaves
+  bool has_several = false;                                     ///< candidates, so that slabs are worth fitting
+  bool has_slabs = false;                                       ///< whether the following are set
+  alignas(32) float nx[kLanes], ny[kLanes], nz[kLanes];         ///< normals of the children's slabs, likewise
+  const Slabs* slabs = nullptr;                                 ///< the children's
+  BoundingSphere around;                                        ///< holds them all; in the frame of a's voxel
+  QueryBall ball;                                               ///< likewise, in the obstacle voxel's frame
+  std::vector<ObstacleSphere> near[kLanes]; ///< what each child has to be compared with; of leaves, in this obstacle
+
+  std::uint32_t open_points[kLanes] = {}; ///< of leaves: bits of the points not flagged yet
+  std::uint32_t perhaps[kLanes] = {};     ///< likewise, of the points that may collide, but were not found to
+  std::uint32_t known = 0;  ///< bits of the children all of whose points may collide; what is open is if they do
+  std::uint32_t unsure = 0; ///< bits of leaves that met spheres which were not to be opened
+
+  /// @param may_collide all points below the node
+  void begin(const Node& entered, const BoundingSphere& holding_all, bool may_collide)
+  {
+    known = may_collide ? firstBits(entered.count) : 0;
+    unsure = 0;
+    around = holding_all;
+    node = &entered;
+    open = firstBits(entered.count);
+    leaves = 0;
+    for (std::uint32_t lane = 0; lane < entered.count; ++lane) {
+      near[lane].clear();
+      if (!entered.isLeaf(lane)) continue;
+      leaves |= 1u << lane;
+      open_points[lane] = firstBits(entered.comparedPoints(lane));
+      perhaps[lane] = may_collide ? open_points[lane] : 0;
+    }
+  }
+};
+
+/// The children whose slabs are apart from the candidate's. @param radius the candidate's, stretched
+inline std::uint32_t slabsApartFrom(const FlagVisit& visit, const ObstacleVoxel& obstacle,
+                                    const ObstacleSphere& candidate, float radius)
+{
+  const Node& node = *candidate.node;
+  const std::uint32_t k = candidate.lane;
+  const Slabs& slabs = obstacle.slabs[&node - obstacle.voxel->nodes.data()];
+  const Slab other{{slabs.x[k], slabs.y[k], slabs.z[k]}, slabs.h[k], {node.x[k], node.y[k], node.z[k]}, radius};
+  return slabsApart({visit.x, visit.y, visit.z, visit.r, 1.0f}, {visit.nx, visit.ny, visit.nz, visit.slabs->h}, other,
+                    obstacle.prune_reach);
+}
+
+/// Finds points of b by their distance alone, for hasPointWithin().
+struct MeasuredPoint {
+  float stretch;
+
+  static bool isIn(const LeafRange& leaf, const QueryBall& ball)
+  {
+    return anyPointWithin(leaf.x(), leaf.y(), leaf.z(), leaf.count, ball.x, ball.y, ball.z, ball.near_reach);
+  }
+
+  std::uint32_t spheresIn(const Node& node, const QueryBall& ball, float* gap) const
+  {
+    return spheresNear({node.x, node.y, node.z, node.r, stretch}, ball, gap);
+  }
+};
+
+/// Whether the candidate has a point in the ball; the nearest spheres are asked first.
+/// @param finder `isIn(leaf, ball)`: whether a point of the leaf is. `spheresIn(node, ball, gap)`: which spheres may
+///   have one, and in which order
+template <class Finder>
+inline bool hasPointWithin(const Finder& finder, const ObstacleVoxel& obstacle, const ObstacleSphere& candidate,
+                           const QueryBall& ball, Work& work)
+{
+  if (candidate.isLeaf()) return finder.isIn(candidate.leaf(*obstacle.voxel), ball);
+  const Node& below = obstacle.voxel->nodes[candidate.node->child[candidate.lane]];
+  float gap[kLanes];
+  work.node_pairs += below.count;
+  std::uint32_t near = finder.spheresIn(below, ball, gap) & firstBits(below.count);
+  while (near != 0) {
+    auto nearest = static_cast<std::uint32_t>(std::countr_zero(near));
+    for (std::uint32_t bits = near & (near - 1); bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (gap[lane] < gap[nearest]) nearest = lane;
+    }
+    if (hasPointWithin(finder, obstacle, candidate.below(below, nearest), ball, work)) return true;
+    near &= ~(1u << nearest);
+  }
+  return false;
+}
+
+/// Memory of one walk after another, to be had by a ScratchLease.
+struct FlagScratch {
+  std::deque<FlagVisit> visits; ///< by depth; a deque, for references to shallower visits stay in use
+  std::vector<ObstacleVoxel> obstacles;
+  std::vector<ObstacleSphere> spheres;   ///< of the obstacles' roots
+  std::vector<std::uint32_t> reached;    ///< voxels of b
+  std::vector<UncertainReach> uncertain; ///< of the obstacles, where points are uncertain
+
+  std::size_t bytes() const noexcept
+  {
+    std::size_t sum = visits.size() * sizeof(FlagVisit) + obstacles.capacity() * sizeof(ObstacleVoxel) +
+                      spheres.capacity() * sizeof(ObstacleSphere) + reached.capacity() * sizeof(std::uint32_t) +
+                      uncertain.capacity() * sizeof(UncertainReach);
+    for (const FlagVisit& visit : visits)
+      for (const auto& list : visit.near) sum += list.capacity() * sizeof(ObstacleSphere);
+    return sum;
+  }
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/las/las.h>
+#include <pcl_bsh/io/clouds/las/notes.h>
+#include <pcl_bsh/io/clouds/meshes/mesh_faces.h>
+#include <pcl_bsh/io/clouds/meshes/stl.h>
+#include <pcl_bsh/io/clouds/pcd.h>
+#include <pcl_bsh/io/clouds/ply.h>
+#include <pcl_bsh/io/clouds/records.h>
+#include <pcl_bsh/io/clouds/scan_text.h>
+#include <pcl_bsh/io/clouds/text_clouds.h>
+#include <pcl_bsh/io/files/file_identity.h>
+#include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/text/file_bytes.h>
+#include <pcl_bsh/io/text/small_letters.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace pcl_bsh::io {
+namespace {
+
+/// Standard output gets PCL's own format.
+std::string writtenExtension(const std::filesystem::path& path)
+{
+  return path == files::standard_stream ? ".pcd" : extensionOf(path);
+}
+
+std::string unknown(const std::string& extension)
+{
+  return extension.empty() ? "has no extension" : "unknown extension '" + extension + "'";
+}
+
+constexpr auto readable_list = ".pcd, .ply, .las, .laz, .obj, .off, .stl, .pts, .ptx, .csv, .xyz or .txt";
+constexpr std::array readable = {".pcd", ".ply", ".las", ".laz", ".obj", ".off",
+                                 ".stl", ".pts", ".ptx", ".csv", ".xyz", ".txt"};
+
+/// What a file holds.
+struct Contents {
+  pcl::PCLPointCloud2 cloud;
+  CloudFacts facts = {};
+};
+
+Contents readAll(LasReader reader)
+{
+  Contents contents = {readLas(reader)};
+  const auto header = std::make_shared<const LasHeader>(reader.header());
+  contents.facts.coordinate_system = coordinateSystemOf(*header);
+  contents.facts.remarks = remarksOn(header->block, header->block.endOfPoints() + header->behind_points.size());
+  contents.facts.las = header;
+  return contents;
+}
+
+void requireColumnText(const std::string& extension, const ColumnNames& columns)
+{
+  if (columns.empty() || isColumnText(extension)) return;
+  throw FormatError("is a " + extension + ", which names its fields itself",
+                    "give names of columns for .xyz, .txt and .csv files alone");
+}
+
+Contents parse(const std::string& extension, std::string_view file, const ColumnNames& columns, unsigned threads)
+{
+  requireColumnText(extension, columns);
+  if (isLasExtension(extension)) return readAll(LasReader(std::make_unique<HeldBytes>(file), threads));
+  Contents contents;
+  if (extension == ".pcd") {
+    contents.cloud = parsePcd(file, contents.facts.viewpoint);
+  }
+  else if (extension == ".ply") {
+    contents.cloud = parsePly(file, contents.facts.viewpoint);
+  }
+  else if (extension == ".ptx") {
+    contents.cloud = parsePtx(file, contents.facts.viewpoint);
+  }
+  else if (extension == ".obj") {
+    contents.cloud = parseObj(file);
+  }
+  else if (extension == ".off") {
+    contents.cloud = parseOff(file);
+  }
+  else if (extension == ".stl") {
+    contents.cloud = parseStl(file, nullptr);
+  }
+  else if (extension == ".pts") {
+    contents.cloud = parsePts(file);
+  }
+  else {
+    contents.cloud = parseColumns(file, columns, &contents.facts.remarks);
+  }
+  return contents;
+}
+
+/// The number of points is known, too.
+pcl::PCLPointCloud2 lasHeader(const LasReader& reader)
+{
+  pcl::PCLPointCloud2 header = reader.cloudHeader();
+  requirePoints(reader.size());
+  header.width = static_cast<std::uint32_t>(reader.size());
+  return header;
+}
+
+pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view file, bool whole,
+                                const ColumnNames& columns)
+{
+  requireColumnText(extension, columns);
+  if (extension == ".pcd") return parsePcdHeader(file);
+  if (extension == ".ply") return parsePlyHeader(file);
+  if (extension == ".obj") return parseObjHeader(file);
+  if (extension == ".off") return parseOffHeader(file);
+  if (extension == ".stl") return parseStlHeader(file);
+  if (extension == ".pts") return parsePtsHeader(file);
+  if (extension == ".ptx") return parsePtxHeader(file);
+  return parseColumnNames(file, whole, columns);
+}
+
+void print(const std::string& extension, std::ostream& out, const pcl::PCLPointCloud2& cloud,
+           const Viewpoint& viewpoint, const LasHeader* las)
+{
+  if (extension == ".pcd") return writePcd(out, cloud, viewpoint);
+  if (extension == ".ply") return writePly(out, cloud, viewpoint);
+  if (extension == ".las") return writeLas(out, cloud, las);
+  if (extension == ".obj") return writeObj(out, cloud);
+  if (extension == ".pts") return writePts(out, cloud);
+  if (extension == ".ptx") return writePtx(out, cloud, viewpoint);
+  writeColumns(out, cloud, extension == ".csv" ? ',' : ' ');
+}
+
+/// That the points have usable x y z.
+void requireCoordinates(const pcl::PCLPointCloud2& cloud)
+{
+  for (const char* axis : {"x", "y", "z"}) {
+    const auto is_axis = [&](const pcl::PCLPointField& field) { return field.name == axis; };
+    if (std::count_if(cloud.fields.begin(), cloud.fields.end(), is_axis) > 1) {
+      throw FormatError("has two fields named '" + std::string(axis) + "'", "rename one");
+    }
+  }
+  try {
+    viewOf(cloud);
+  }
+  catch (const std::invalid_argument& error) {
+    throw FormatError(error.what(), "export it with float x y z");
+  }
+}
+
+/// The format of the bytes of a pipe, by their beginning: the name of a pipe says nothing.
+std::string extensionByContent(std::string_view file)
+{
+  const auto begins = [&](std::string_view text) { return file.substr(0, text.size()) == text; };
+  if (begins("ply")) return ".ply";
+  if (begins("# .PCD") || begins("VERSION") || begins("FIELDS")) return ".pcd";
+  if (begins("OFF")) return ".off";
+  if (begins("LASF")) return ".las";
+  return ".txt";
+}
+
+/// What `read` gives; names the file when that throws.
+template <typename Read>
+auto naming(const std::filesystem::path& path, Read&& read)
+{
+  try {
+    return read();
+  }
+  catch (const FormatError& error) {
+    throw files::FileError(path, error.what(), error.remedy());
+  }
+}
+
+/// The file's extension, of those that can be read; of a pipe, that which its name or `beginning` tells.
+std::string readableExtension(const std::filesystem::path& path, std::string_view beginning)
+{
+  std::string extension = extensionOf(path);
+  if (std::find(readable.begin(), readable.end(), extension) != readable.end()) return extension;
+  if (!isPipe(path)) throw files::FileError(path, unknown(extension), std::string("give a ") + readable_list + " file");
+  return extensionByContent(beginning);
+}
+
+/// Whether the file is LAS or LAZ, which is not held in memory.
+bool isLasFile(const std::filesystem::path& path)
+{
+  return isLasExtension(extensionOf(path)) && !isPipe(path);
+}
+
+/// The cloud, once it is known to be usable.
+pcl::PCLPointCloud2 checked(Contents contents, CloudFacts* facts)
+{
+  requireCoordinates(contents.cloud);
+  setDense(contents.cloud);
+  if (facts != nullptr) *facts = std::move(contents.facts);
+  return std::move(contents.cloud);
+}
+
+pcl::PCLPointCloud2 checkedHeader(pcl::PCLPointCloud2 header)
+{
+  pcl::PCLPointCloud2 fields = header;
+  fields.width = fields.height = fields.row_step = 0; // the records are not there
+  requireCoordinates(fields);
+  return header;
+}
+
+pcl::PCLPointCloud2 headerOf(const std::filesystem::path& path, const FileBytes& file, const ColumnNames& columns)
+{
+  const std::string extension = readableExtension(path, file.view());
+  return naming(path, [&] { return checkedHeader(parseHeader(extension, file.view(), file.isWhole(), columns)); });
+}
+
+} // namespace
+
+pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns,
+                              unsigned threads)
+{
+  if (isLasFile(path)) {
+    return naming(path, [&] {
+      requireColumnText(extensionOf(path), columns);
+      return checked(readAll(LasReader(openBytes(path), threads)), facts);
+    });
+  }
+  const FileBytes file(path);
+  const std::string extension = readableExtension(path, file.view());
+  return naming(path, [&] { return checked(parse(extension, file.view(), columns, threads), facts); });
+}
+
+pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts)
+{
+  const FileBytes file(path);
+  return naming(path, [&] {
+    Contents contents;
+    contents.cloud = parsePtx(file.view(), contents.facts.viewpoint, scan);
+    return checked(std::move(contents), facts);
+  });
+}
+
+Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns, unsigned threads)
+{
+  Mesh mesh;
+  if (isLasFile(path)) {
+    mesh.vertices = readCloud(path, facts, columns, threads);
+    return mesh;
+  }
+  const FileBytes file(path);
+  const std::string extension = readableExtension(path, file.view());
+  return naming(path, [&] {
+    Contents contents;
+    Polygons faces;
+    requireColumnText(extension, columns);
+    if (extension == ".stl")
+      contents.cloud = parseStl(file.view(), &mesh.triangles);
+    else if (extension == ".ply")
+      contents.cloud = parsePly(file.view(), contents.facts.viewpoint, &faces);
+    else
+      contents = parse(extension, file.view(), columns, threads);
+    if (extension == ".obj") faces = parseObjFaces(file.view());
+    if (extension == ".off") faces = parseOffFaces(file.view());
+    mesh.vertices = checked(std::move(contents), facts);
+    for (const Triangle& triangle : trianglesOf(faces, viewOf(mesh.vertices), &mesh.face_values))
+      mesh.triangles.push_back(triangle);
+    return std::move(mesh);
+  });
+}
+
+pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan)
+{
+  const FileBytes file(path);
+  return naming(path, [&] { return parsePtxHeader(file.view(), scan); });
+}
+
+pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const ColumnNames& columns)
+{
+  if (isPipe(path)) {
+    throw files::FileError(path, "is a pipe, whose header and points cannot be read one after the other",
+                           "save the cloud to a file first");
+  }
+  if (isLasFile(path)) {
+    return naming(path, [&] {
+      requireColumnText(".las", columns);
+      return checkedHeader(lasHeader(LasReader(openBytes(path))));
+    });
+  }
+  constexpr std::size_t usual = std::size_t{1} << 16;
+  const FileBytes beginning(path, usual);
+  try {
+    return headerOf(path, beginning, columns);
+  }
+  catch (const files::FileError&) {
+    if (beginning.isWhole()) throw;
+  }
+  return headerOf(path, FileBytes(path), columns); // a long header, or one that rows decide
+}
+
+void requireWritableCloud(const std::filesystem::path& path)
+{
+  const std::string extension = writtenExtension(path);
+  constexpr std::array writable = {".pcd", ".ply", ".las", ".obj", ".pts", ".ptx", ".csv", ".xyz", ".txt"};
+  if (extension == ".laz") {
+    throw files::FileError(path, "is the name of a compressed file, which is not written", "write a .las file");
+  }
+  if (std::find(writable.begin(), writable.end(), extension) == writable.end()) {
+    throw files::FileError(path, unknown(extension),
+                           "write a .pcd, .ply, .las, .obj, .pts, .ptx, .csv, .xyz or .txt file");
+  }
+  files::requireWritable(path);
+}
+
+void requireWritableCloud(const std::filesystem::path& path, pcl::PCLPointCloud2 header)
+{
+  requireWritableCloud(path);
+  header.width = 0;
+  header.data.clear();
+  std::ostringstream nowhere;
+  naming(path, [&] { print(writtenExtension(path), nowhere, header, no_viewpoint, nullptr); });
+}
+
+void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint,
+                const LasHeaderPtr& las)
+{
+  requireWritableCloud(path);
+  naming(path, [&] {
+    files::replaceFile(path,
+                       [&](std::ostream& out) { print(writtenExtension(path), out, cloud, viewpoint, las.get()); });
+  });
+}
+
+void requireWritableMesh(const std::filesystem::path& path)
+{
+  if (writtenExtension(path) != ".ply")
+    throw files::FileError(path, "has no place for what is known of triangles", "write a .ply file");
+  files::requireWritable(path);
+}
+
+void writeMesh(const std::filesystem::path& path, const pcl::PCLPointCloud2& vertices,
+               const std::vector<Triangle>& triangles, const std::vector<FaceField>& fields, const Viewpoint& viewpoint)
+{
+  requireWritableMesh(path);
+  naming(path, [&] {
+    files::replaceFile(path, [&](std::ostream& out) { writePlyMesh(out, vertices, triangles, fields, viewpoint); });
+  });
+}
+
+} // namespace pcl_bsh::io

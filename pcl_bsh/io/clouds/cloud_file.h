@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Point clouds on disk: any format in, most out, every field kept in its type.
+//
+//   pcl::PCLPointCloud2 scan = pcl_bsh::io::readCloud("hall.ply");
+//   pcl_bsh::io::writeCloud("hall.pcd", scan);
+//
+// PCL's own readers are not used: they allocate what a header claims, read a malformed number as 0 and a short ascii
+// row as success. Here a damaged, truncated or lying file is an error, and is noticed before its memory is asked for.
+#pragma once
+
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/text/column_names.h>
+#include <pcl_bsh/surface/surface_cover.h>
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// Where the sensor stood, as PCD's VIEWPOINT line has it: tx ty tz qw qx qy qz. Points are not moved by it. All
+/// formats that hold it keep every bit, but the rotation of a PTX file, which is a matrix and comes back to within
+/// rounding and sign.
+using Viewpoint = std::array<double, 7>;
+inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
+
+/// What a LAS file says beside its points: scale and offset, version, records of the coordinate system and others. For
+/// writeCloud(), which keeps it. Null for other formats.
+struct LasHeader;
+using LasHeaderPtr = std::shared_ptr<const LasHeader>;
+
+/// What a file says beside its points.
+struct CloudFacts {
+  Viewpoint viewpoint = no_viewpoint;    ///< of .pcd, .ply, .ptx
+  LasHeaderPtr las = nullptr;            ///< of .las
+  std::string coordinate_system = {};    ///< as a .las names it; empty where it does not
+  std::vector<std::string> remarks = {}; ///< what users should know of how it was read, without the file's name
+};
+
+/// Reads the points of a file; the format is told by its extension, in any case of letters.
+///
+/// .pcd        ascii, binary, binary_compressed; every field in its type, float64 included
+/// .ply        ascii and binary of both byte orders; every vertex property in its type (a list, if of one length, is a
+///             field with a count); of other elements only PCL's `camera`
+/// .obj .off   vertices with their colours and normals; x y z as float64
+/// .stl        the corners of the triangles, binary or ASCII, each place once; x y z as float32
+/// .las .laz   LAS 1.0 to 1.4, point formats 0 to 10, every field (las_fields.h); x y z as float64. LAZ by chunks,
+/// .copc.laz
+///             too: points one by one (formats 0 to 5) and in layers (6 to 10), items of versions 1 to 4
+/// .pts .ptx   Leica's scans (scan_text.h): intensity, colours; of PTX, all scans in their common frame, the scanner's
+///             pose, and NaN where it saw nothing; x y z as float64
+/// .xyz .txt .csv  a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says;
+///             x y z and then column_4, column_5, ... as float64, unless `columns`, the first line or a comment before
+///             it names the columns (column_names.h); comments start with # or //
+///
+/// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY, OFF, LAS or LAZ file does, and
+/// columns otherwise.
+///
+/// Fields have PCL's names and meaning: normal_x normal_y normal_z, and rgb or rgba packed from a byte per channel;
+/// what files call them, and what stays as it is, says layOutForPcl() in pcl_names.h. The cloud has float32 or float64
+/// x y z, at most 2^31 - 1 points, and is_dense as PCL defines it. A file that says it holds no points is an empty
+/// cloud.
+/// @param facts if not null, set to what the file says beside its points
+/// @param columns of .xyz, .txt and .csv; empty: as the file says
+/// @param threads that unpack LAZ; 0: as many as the caller's oneTBB arena has
+/// @throws files::FileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z;
+///   for columns of another format
+pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts = nullptr,
+                              const ColumnNames& columns = {}, unsigned threads = 0);
+
+/// Only one of the scans of a .ptx file, as an organised cloud. Throws as readCloud() does.
+/// @param scan from 0
+pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts = nullptr);
+
+/// The fields that readPtxScan() makes. Throws as readCloud() does.
+pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan);
+
+/// A number of each triangle.
+struct FaceValues {
+  std::string name;
+  std::vector<double> values; ///< NaN where the file gives none
+};
+
+/// A cloud and the triangles between its points.
+struct Mesh {
+  pcl::PCLPointCloud2 vertices;
+  std::vector<Triangle> triangles;          ///< empty where the file has no faces
+  std::vector<FaceValues> face_values = {}; ///< the properties of a .ply's faces that are numbers
+};
+
+/// Reads the faces, too, of .obj, .off, .ply and .stl; of others the points alone. Polygons are cut into triangles.
+/// Throws as readCloud() does, and where a face names a vertex that is not there.
+Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts = nullptr, const ColumnNames& columns = {},
+              unsigned threads = 0);
+
+/// The fields of a file's cloud and, where its header says so, the number of its points; the points are not read.
+/// Throws as readCloud() does for what a header can tell, and for a pipe.
+pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const ColumnNames& columns = {});
+
+/// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .las (las.h), .xyz, .txt and .csv (named columns)
+/// or .obj (vertices), .pts or .ptx (scan_text.h), with the names that readers of the format expect: nx ny nz, and a
+/// number per channel of a colour. rgb has no opacity: its fourth byte is kept by PCD alone. `-` is standard output, as
+/// PCD. The file appears complete or not at all; what `path` held before is replaced only then. PCD, PLY and PTX hold a
+/// viewpoint. PLY holds no 64-bit integers, text no field with a count, OBJ x y z, a packed colour and normals. LAS and
+/// PTS have no place for points without finite coordinates, and leave them out.
+/// @param las what the file of these points said, if it was LAS: kept in a .las
+/// @throws files::FileError when the extension is unknown, a field cannot be held, or the disk says no
+void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
+                const Viewpoint& viewpoint = no_viewpoint, const LasHeaderPtr& las = nullptr);
+
+/// A value per triangle.
+struct FaceField {
+  std::string name;
+  std::variant<const std::vector<std::uint8_t>*, const std::vector<std::int32_t>*, const std::vector<float>*> values;
+};
+
+/// Writes a mesh as .ply (binary): vertices with all their fields, and triangles with properties beside their corners.
+/// Otherwise as writeCloud(). @pre one value per triangle
+/// @throws files::FileError as writeCloud() does, and for a name of another format
+void writeMesh(const std::filesystem::path& path, const pcl::PCLPointCloud2& vertices,
+               const std::vector<Triangle>& triangles, const std::vector<FaceField>& fields = {},
+               const Viewpoint& viewpoint = no_viewpoint);
+
+/// Fails early where writeMesh() would for the path's sake. @throws files::FileError
+void requireWritableMesh(const std::filesystem::path& path);
+
+/// Fails early, before hours of work, where writeCloud() would for the path's sake.
+/// @throws files::FileError
+void requireWritableCloud(const std::filesystem::path& path);
+
+/// The same, and that the format can hold a cloud with these fields.
+void requireWritableCloud(const std::filesystem::path& path, pcl::PCLPointCloud2 header);
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/cloud_stream.h>
+#include <pcl_bsh/io/clouds/las/notes.h>
+#include <pcl_bsh/io/clouds/las/reader.h>
+#include <pcl_bsh/io/clouds/pcd.h>
+#include <pcl_bsh/io/text/byte_source.h>
+#include <pcl_bsh/io/text/file_bytes.h>
+#include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/io/text/small_letters.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LasStream : public CloudStream {
+public:
+  explicit LasStream(const fs::path& path) : path_(path), reader_(openBytes(path)) {}
+
+  const pcl::PCLPointCloud2& header() const override { return reader_.cloudHeader(); }
+  std::uint64_t size() const override { return reader_.size(); }
+  std::vector<std::string> remarks() const override { return remarksOn(reader_.block(), fs::file_size(path_)); }
+  std::size_t read(std::uint8_t* records, std::size_t most) override
+  {
+    try {
+      return reader_.read(records, most);
+    }
+    catch (const FormatError& error) {
+      throw files::FileError(path_, error.what(), error.remedy());
+    }
+  }
+  void skip(std::uint64_t points) override { reader_.skip(points); }
+
+private:
+  fs::path path_;
+  LasReader reader_;
+};
+
+/// The points of a binary PCD file stand there as they do in memory.
+class PcdStream : public CloudStream {
+public:
+  PcdStream(const fs::path& path, PcdBody body) : file_(openBytes(path)), header_(std::move(body.header)), at_(body.at)
+  {
+    size_ = std::uint64_t{header_.width} * header_.height;
+    const std::uint64_t wanted = size_ * header_.point_step, there = file_->size() - std::min(file_->size(), at_);
+    if (wanted > there) {
+      throw files::FileError(path,
+                             "is truncated: its header promises " + counted(size_, "point") + ", " +
+                                 std::to_string(there / header_.point_step) + " are there",
+                             remedy_for_damage);
+    }
+    header_.width = header_.height = 0;
+  }
+
+  const pcl::PCLPointCloud2& header() const override { return header_; }
+  std::uint64_t size() const override { return size_; }
+  std::size_t read(std::uint8_t* records, std::size_t most) override
+  {
+    const auto points = static_cast<std::size_t>(std::min<std::uint64_t>(most, size_ - next_));
+    if (points == 0) return 0;
+    const std::size_t step = header_.point_step;
+    file_->read(at_ + next_ * step, reinterpret_cast<char*>(records), points * step);
+    next_ += points;
+    return points;
+  }
+  void skip(std::uint64_t points) override { next_ += std::min(points, size_ - next_); }
+
+private:
+  std::unique_ptr<ByteSource> file_;
+  pcl::PCLPointCloud2 header_;
+  std::uint64_t at_, size_ = 0, next_ = 0;
+};
+
+class HeldCloud : public CloudStream {
+public:
+  HeldCloud(const fs::path& path, const ColumnNames& columns)
+  : cloud_(readCloud(path, &facts_, columns)),
+    header_(cloud_)
+  {
+    header_.data.clear();
+    header_.width = header_.height = header_.row_step = 0;
+  }
+
+  const pcl::PCLPointCloud2& header() const override { return header_; }
+  std::uint64_t size() const override { return std::uint64_t{cloud_.width} * cloud_.height; }
+  std::size_t read(std::uint8_t* records, std::size_t most) override
+  {
+    const auto points = static_cast<std::size_t>(std::min<std::uint64_t>(most, size() - next_));
+    const std::uint8_t* const first = cloud_.data.data() + next_ * cloud_.point_step;
+    std::copy(first, first + points * cloud_.point_step, records);
+    next_ += points;
+    return points;
+  }
+  std::vector<std::string> remarks() const override { return facts_.remarks; }
+  void skip(std::uint64_t points) override { next_ += std::min(points, size() - next_); }
+
+private:
+  CloudFacts facts_; // which reading cloud_ sets
+  pcl::PCLPointCloud2 cloud_, header_;
+  std::uint64_t next_ = 0;
+};
+
+/// Where the points of a binary PCD file are; none for other files.
+std::optional<PcdBody> binaryBody(const fs::path& path)
+{
+  if (extensionOf(path) != ".pcd") return std::nullopt;
+  constexpr std::size_t usual = std::size_t{1} << 16;
+  const FileBytes beginning(path, usual);
+  try {
+    PcdBody body = findPcdBody(beginning.view());
+    if (body.storage == "binary") return body;
+  }
+  catch (const FormatError&) { // a longer header, or a defect that readCloud() tells
+  }
+  return std::nullopt;
+}
+
+/// What reading a file at once takes at most: the file, and a cloud that may have a double for each two letters of a
+/// text, or 88 bytes for one of a compressed PCD file, whose header tells how many.
+std::uint64_t bytesWhenHeld(const fs::path& path, const pcl::PCLPointCloud2& header)
+{
+  const std::uint64_t file = fs::file_size(path);
+  const std::uint64_t promised = std::uint64_t{header.width} * header.height * header.point_step;
+  return promised > 0 ? file + 2 * promised : 5 * file;
+}
+
+} // namespace
+
+void CloudStream::skip(std::uint64_t points)
+{
+  constexpr std::size_t most = 65536;
+  std::vector<std::uint8_t> dropped(most * header().point_step);
+  while (points > 0) {
+    const std::size_t count = read(dropped.data(), static_cast<std::size_t>(std::min<std::uint64_t>(most, points)));
+    if (count == 0) return;
+    points -= count;
+  }
+}
+
+std::unique_ptr<CloudStream> openCloud(const fs::path& path, std::uint64_t memory, const ColumnNames& columns)
+{
+  const pcl::PCLPointCloud2 header = readCloudHeader(path, columns); // which checks that it can be read
+  if (isLasExtension(extensionOf(path))) return std::make_unique<LasStream>(path);
+  if (std::optional<PcdBody> body = binaryBody(path)) return std::make_unique<PcdStream>(path, std::move(*body));
+  if (bytesWhenHeld(path, header) > memory) {
+    throw files::FileError(path, "does not fit into the memory given, and its format is not read in pieces",
+                           "give more memory, or convert it to .las or binary .pcd");
+  }
+  return std::make_unique<HeldCloud>(path, columns);
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A cloud read from its first point to its last, in batches, so that it need not fit into memory.
+//
+//   auto scan = openCloud("hall.las", std::uint64_t{1} << 30);
+//   std::vector<std::uint8_t> batch(1000 * scan->header().point_step);
+//   while (std::size_t points = scan->read(batch.data(), 1000)) use(batch, points);
+#pragma once
+
+#include <pcl_bsh/io/text/column_names.h>
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+class CloudStream {
+public:
+  virtual ~CloudStream() = default;
+
+  /// The fields of its records, as readCloud() gives them, without points.
+  virtual const pcl::PCLPointCloud2& header() const = 0;
+
+  /// Points in all.
+  virtual std::uint64_t size() const = 0;
+
+  /// Reads the next points, `most` at most, into records for which there is room.
+  /// @return how many; 0 at the end. @throws files::FileError
+  virtual std::size_t read(std::uint8_t* records, std::size_t most) = 0;
+
+  /// What users should know of how the file is read, a line each, without its name.
+  virtual std::vector<std::string> remarks() const { return {}; }
+
+  /// Leaves out the next points. @throws files::FileError
+  virtual void skip(std::uint64_t points);
+};
+
+/// Opens any file that readCloud() reads. LAS, LAZ and binary PCD are read batch by batch, the other formats at once,
+/// for which `memory`, in bytes, must hold the file and its cloud together. @param columns as readCloud() has it
+/// @throws files::FileError as readCloud() does; for a pipe; for a file that `memory` cannot hold
+std::unique_ptr<CloudStream> openCloud(const std::filesystem::path& path, std::uint64_t memory,
+                                       const ColumnNames& columns = {});
+
+} // namespace pcl_bsh::io

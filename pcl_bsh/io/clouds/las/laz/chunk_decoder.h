@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A chunk of a LAZ file made records again. Chunks are independent of each other.
+#pragma once
+
+#include <pcl_bsh/io/clouds/las/laz/item.h>
+#include <pcl_bsh/io/clouds/las/laz/scheme.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io::laz {
+
+class ChunkDecoder {
+public:
+  /// @param scheme which outlives the decoder. @param bytes of the chunk, compressed. @param points which it has, not 0
+  /// @throws FormatError, as read() does, for bytes that are not those of so many points
+  ChunkDecoder(const Scheme& scheme, std::string bytes, std::uint64_t points);
+  ChunkDecoder(const ChunkDecoder&) = delete;
+  ChunkDecoder& operator=(const ChunkDecoder&) = delete;
+
+  /// The next records. @param count no more than are left
+  void read(char* records, std::size_t count);
+
+private:
+  struct Part {
+    std::size_t at; ///< in a record
+    std::unique_ptr<PointwiseItem> pointwise;
+    std::unique_ptr<LayeredItem> layered;
+  };
+
+  void startLayers(std::uint64_t points);
+
+  const std::string bytes_;
+  std::size_t record_length_ = 0;
+  std::vector<Part> parts_;
+  bool at_first_ = true;
+  std::optional<ArithmeticDecoder> in_; ///< of pointwise items
+  std::vector<Layer> layers_;
+  unsigned channel_ = 0;
+};
+
+} // namespace pcl_bsh::io::laz

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/clouds/las/laz/chunk_table.h>
+#include <pcl_bsh/io/clouds/las/laz/integer_decompressor.h>
+#include <pcl_bsh/io/text/format_error.h>
+
+#include <algorithm>
+
+namespace pcl_bsh::io::laz {
+
+namespace {
+
+constexpr std::size_t place_bytes = 8, table_head = 8;
+
+/// Where the table is: told before the chunks, or, by a writer that could not go back there, in the last eight bytes.
+/// @param end of the file, before which those are
+std::uint64_t placeOfTable(ByteSource& file, const LasBlock& block, std::uint64_t& end)
+{
+  const std::uint64_t first_chunk = block.points_at + place_bytes;
+  if (file.size() < first_chunk) throw FormatError("is truncated: it ends before its points");
+  const auto told = [&](std::uint64_t at) { return lasNumber<std::uint64_t>(file.text(at, place_bytes), 0); };
+  const auto inside = [&](std::uint64_t at) { return at >= first_chunk && at <= end && end - at >= table_head; };
+  if (const std::uint64_t at = told(block.points_at); inside(at)) return at;
+  end = file.size() - place_bytes;
+  const std::uint64_t at = told(end);
+  if (!inside(at)) {
+    throw FormatError("is truncated: it has no table of its chunks", "write or copy the file again, to its end");
+  }
+  return at;
+}
+
+std::string nameOf(std::size_t chunk, std::size_t chunks)
+{
+  return "chunk " + std::to_string(chunk + 1) + " of " + std::to_string(chunks);
+}
+
+/// That the points of a chunk can be in its bytes.
+void requireGrowth(const Chunk& chunk, const std::string& name, std::size_t record_length)
+{
+  if (chunk.points <= chunk.bytes * most_laz_growth / record_length) return;
+  throw FormatError("its " + name + " should have " + std::to_string(chunk.points) + " points in " +
+                    std::to_string(chunk.bytes) + " bytes");
+}
+
+/// Compressor 1: one chunk, to the end of the file or to the records behind it.
+ChunkTable oneChunk(ByteSource& file, const LasBlock& block)
+{
+  ChunkTable table{{}, file.size()};
+  if (block.points == 0) return table;
+  std::uint64_t end = file.size();
+  if (block.extended_records > 0 && block.extended_at >= block.points_at) end = std::min(end, block.extended_at);
+  table.chunks.push_back({0, block.points, block.points_at, end - block.points_at});
+  requireGrowth(table.chunks.back(), "only chunk", block.record_length);
+  return table;
+}
+
+} // namespace
+
+ChunkTable readChunkTable(ByteSource& file, const LasBlock& block, const Scheme& scheme)
+{
+  if (!scheme.in_chunks) return oneChunk(file, block);
+  ChunkTable table{{}, file.size()};
+  if (block.points == 0) return table;
+  const std::uint64_t table_at = placeOfTable(file, block, table.end);
+  const std::string head = file.text(table_at, table_head);
+  const auto version = lasNumber<std::uint32_t>(head, 0), count = lasNumber<std::uint32_t>(head, 4);
+  if (version != 0) throw FormatError("has a table of chunks of version " + std::to_string(version));
+  Chunk chunk = {0, 0, block.points_at + place_bytes, 0};
+  const std::uint64_t room = table_at - chunk.at;
+  if (count > room / block.record_length) { // the first record of each is not compressed
+    throw FormatError("its table of chunks has " + std::to_string(count) + " of them, for which " +
+                      std::to_string(room) + " bytes are there");
+  }
+  // No count takes more than 16 bytes.
+  const std::uint64_t most_bytes = std::min(table.end - table_at - table_head, 2 * 16 * std::uint64_t{count} + 16);
+  const std::string bytes = file.text(table_at + table_head, static_cast<std::size_t>(most_bytes));
+  ArithmeticDecoder in(bytes);
+  IntegerDecompressor counts(32, 2);
+  std::int32_t points = 0, size = 0;
+  for (std::uint32_t i = 0; i < count && chunk.first < block.points; ++i) {
+    if (scheme.chunk_points == 0) points = counts.read(in, points, 0);
+    size = counts.read(in, size, 1);
+    chunk.points = scheme.chunk_points != 0 ? scheme.chunk_points : static_cast<std::uint32_t>(points);
+    chunk.points = std::min(chunk.points, block.points - chunk.first);
+    chunk.bytes = static_cast<std::uint32_t>(size);
+    if (chunk.bytes > table_at - chunk.at || (chunk.points > 0 && chunk.bytes < block.record_length)) {
+      throw FormatError("its " + nameOf(i, count) + " should take " + std::to_string(chunk.bytes) +
+                        " bytes from byte " + std::to_string(chunk.at) + " on, where " +
+                        std::to_string(table_at - chunk.at) + " are");
+    }
+    requireGrowth(chunk, nameOf(i, count), block.record_length);
+    if (chunk.points > 0) table.chunks.push_back(chunk);
+    chunk.first += chunk.points;
+    chunk.at += chunk.bytes;
+  }
+  if (chunk.first < block.points) {
+    throw FormatError("is truncated: its header promises " + std::to_string(block.points) +
+                      " points, its chunks have " + std::to_string(chunk.first));
+  }
+  return table;
+}
+
+} // namespace pcl_bsh::io::laz

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/clouds/las/notes.h>
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+namespace pcl_bsh::io {
+
+namespace {
+
+constexpr std::string_view projection = "LASF_Projection";
+constexpr std::uint16_t wkt_id = 2112, keys_id = 34735, texts_id = 34737;
+constexpr std::uint16_t is_wkt = 16; ///< of the global encoding
+
+/// The content of the record of the coordinate system with that number; empty where there is none.
+std::string projectionRecord(const LasHeader& header, std::uint16_t id)
+{
+  for (const LasRecord& record : lasRecordsOf(header.before_points, header.block).records)
+    if (record.user() == projection && record.id() == id) return std::string(record.content());
+  const std::string_view behind = header.behind_points;
+  const std::uint64_t end = header.block.endOfPoints();
+  if (header.block.extended_records == 0 || header.block.extended_at < end) return {};
+  std::uint64_t at = header.block.extended_at - end;
+  for (std::uint32_t i = 0; i < header.block.extended_records; ++i) {
+    if (at > behind.size() || behind.size() - at < las_extended_head) return {};
+    const std::string_view record = behind.substr(static_cast<std::size_t>(at));
+    const auto bytes = lasNumber<std::uint64_t>(record, 20);
+    if (bytes > record.size() - las_extended_head) return {};
+    const std::string_view user(record.data() + 2, strnlen(record.data() + 2, 16));
+    if (user == projection && lasNumber<std::uint16_t>(record, 18) == id)
+      return std::string(record.substr(las_extended_head, static_cast<std::size_t>(bytes)));
+    at += las_extended_head + bytes;
+  }
+  return {};
+}
+
+/// As it may stand in a report: a line of ASCII, not too long.
+std::string plain(std::string_view text)
+{
+  constexpr std::size_t most = 200;
+  std::string line(text.substr(0, most));
+  for (char& c : line) {
+    if (c == '\n' || c == '\r' || c == '\t') c = ' ';
+    if (c < ' ' || c > '~') c = '?';
+  }
+  const std::size_t from = std::min(line.find_first_not_of(' '), line.size());
+  return line.substr(from, line.find_last_not_of(' ') + 1 - from);
+}
+
+/// The first name in quotes, which is that of the whole system.
+std::string nameOfWkt(std::string_view text)
+{
+  const std::size_t from = std::min(text.find('"'), text.size() - 1) + 1;
+  const std::size_t to = text.find('"', from);
+  return to == std::string_view::npos ? std::string() : plain(text.substr(from, to - from));
+}
+
+/// GeoTIFF 1.0: a directory of keys, four numbers each, some of whose values are parts of a text.
+class GeoKeys {
+public:
+  explicit GeoKeys(const LasHeader& header)
+  : keys_(projectionRecord(header, keys_id)),
+    texts_(projectionRecord(header, texts_id))
+  {
+  }
+
+  /// The first of these citations.
+  std::string citation(std::initializer_list<std::uint16_t> keys) const
+  {
+    for (const std::uint16_t key : keys) {
+      const auto entry = find(key, texts_id);
+      if (!entry || entry->value > texts_.size()) continue;
+      std::string_view text = std::string_view(texts_).substr(entry->value, entry->count);
+      text = text.substr(0, std::min(text.find('|'), text.find('\0')));
+      if (std::string name = plain(text); !name.empty()) return name;
+    }
+    return {};
+  }
+
+  /// The code, if it is one of EPSG's.
+  std::optional<unsigned> code(std::uint16_t key) const
+  {
+    constexpr std::uint16_t user_defined = 32767;
+    const auto entry = find(key, 0);
+    return entry && entry->value > 0 && entry->value < user_defined ? std::optional<unsigned>(entry->value)
+                                                                    : std::nullopt;
+  }
+
+private:
+  struct Entry {
+    std::uint16_t key, record, count, value;
+  };
+
+  std::optional<Entry> find(std::uint16_t key, std::uint16_t record) const
+  {
+    constexpr std::size_t bytes = 8;
+    for (std::size_t at = bytes; at + bytes <= keys_.size(); at += bytes) { // the first tells their number
+      const auto number = [&](std::size_t i) { return lasNumber<std::uint16_t>(keys_, at + 2 * i); };
+      if (number(0) == key && number(1) == record) return Entry{number(0), number(1), number(2), number(3)};
+    }
+    return std::nullopt;
+  }
+
+  std::string keys_, texts_;
+};
+
+std::string withCode(const std::string& name, std::optional<unsigned> code)
+{
+  if (!code) return name;
+  const std::string epsg = "EPSG:" + std::to_string(*code);
+  return name.empty() ? epsg : name + " (" + epsg + ")";
+}
+
+std::string nameOfKeys(const GeoKeys& keys)
+{
+  constexpr std::uint16_t model = 1024, citation = 1026, geographic = 2048, geographic_citation = 2049,
+                          projected = 3072, projected_citation = 3073, vertical = 4096, vertical_citation = 4097;
+  constexpr unsigned projected_model = 1;
+  const bool flat = keys.code(projected) || keys.code(model) == projected_model;
+  const std::string name = withCode(keys.citation({projected_citation, citation, geographic_citation}),
+                                    keys.code(flat ? projected : geographic));
+  const std::string height = withCode(keys.citation({vertical_citation}), keys.code(vertical));
+  return name.empty() || height.empty() ? name + height : name + " + " + height;
+}
+
+} // namespace
+
+std::string coordinateSystemOf(const LasHeader& header)
+{
+  const std::string wkt = projectionRecord(header, wkt_id);
+  const std::string by_wkt = wkt.empty() ? std::string() : nameOfWkt(wkt);
+  const std::string by_keys = nameOfKeys(GeoKeys(header));
+  const bool wkt_first = (header.block.global_encoding & is_wkt) != 0 || by_keys.empty();
+  return wkt_first && !by_wkt.empty() ? by_wkt : by_keys;
+}
+
+std::vector<std::string> remarksOn(const LasBlock& block, std::uint64_t file_bytes)
+{
+  if (block.compressed) return {}; // whose points end where its chunks do
+  const std::uint64_t points_end = block.endOfPoints();
+  std::uint64_t end = file_bytes; // of what can be records
+  if (block.extended_records > 0) end = std::min(end, block.extended_at);
+  if (block.waveforms_at >= points_end) end = std::min(end, block.waveforms_at);
+  const std::uint64_t more = (end - points_end) / block.record_length;
+  if (more == 0) return {};
+  return {"its header counts " + std::to_string(block.points) + " of the " + counted(block.points + more, "record") +
+          " there is room for: " + std::to_string(more) + nounOf(more, " is", " are") + " left out"};
+}
+
+} // namespace pcl_bsh::io

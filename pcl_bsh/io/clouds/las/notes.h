@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What users should know of a LAS file beside its points.
+#pragma once
+
+#include <pcl_bsh/io/clouds/las/header.h>
+
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// The name of the coordinate system: that of a WKT record, or the citations and EPSG codes of GeoTIFF's keys, which
+/// the header's global encoding chooses between where both are there. In ASCII, with '?' for other letters. Empty where
+/// there is none, or it is damaged.
+std::string coordinateSystemOf(const LasHeader& header);
+
+/// How many records behind the points the header does not count, if any.
+std::vector<std::string> remarksOn(const LasBlock& block, std::uint64_t file_bytes);
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// LAS files read in batches of points, so that memory does not grow with the file.
+//
+//   LasReader reader(openBytes("site.las"));
+//   for (pcl::PCLPointCloud2 batch; reader.read(batch, 1 << 16) > 0;) use(batch);
+#pragma once
+
+#include <pcl_bsh/io/clouds/las/fields.h>
+#include <pcl_bsh/io/clouds/las/header.h>
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// LAS 1.0 to 1.4, point formats 0 to 10, and LAZ, as the LAS that was compressed (unpacked_laz.h). What the header
+/// says of places and lengths is checked against the file's size before anything is read there. Counts of records that
+/// have no room before the points are taken for what has room, and bounds are not looked at; the points themselves must
+/// all be there.
+class LasReader {
+public:
+  /// @param threads that unpack LAZ; 0: as many as the caller's oneTBB arena has
+  /// @throws FormatError for what a header can tell; what `file` throws
+  explicit LasReader(std::unique_ptr<ByteSource> file, unsigned threads = 0);
+
+  /// Points of the file.
+  std::uint64_t size() const noexcept { return block_.points; }
+
+  const LasBlock& block() const noexcept { return block_; }
+  const std::vector<LasField>& fields() const noexcept { return fields_; }
+
+  /// The fields of the clouds that read() gives (lasFields(), addExtraBytes()), without points.
+  const pcl::PCLPointCloud2& cloudHeader() const noexcept { return cloud_; }
+
+  /// Everything beside the points. Takes as much memory as that does in the file.
+  LasHeader header() const;
+
+  /// Leaves out the next points.
+  void skip(std::uint64_t points) noexcept { next_ += std::min(points, block_.points - next_); }
+
+  /// Reads the next points, `most` at most, into a cloud of one row. Its memory is used again.
+  /// @return how many; 0 at the end
+  std::size_t read(pcl::PCLPointCloud2& batch, std::size_t most);
+
+  /// The same into records of cloudHeader()'s layout, for which there is room.
+  std::size_t read(std::uint8_t* records, std::size_t most);
+
+  /// All points, when none has been read. @throws FormatError beyond max_points
+  pcl::PCLPointCloud2 readAll();
+
+private:
+  void findDescriptors();
+  unsigned colourShift();
+
+  std::unique_ptr<ByteSource> file_;
+  LasBlock block_;
+  LasHeader header_; ///< all but what is behind the points
+  std::vector<LasField> fields_;
+  std::vector<std::uint32_t> offsets_; ///< of fields_, in the cloud's records
+  pcl::PCLPointCloud2 cloud_;
+  std::uint64_t next_ = 0;
+  std::string records_;
+  std::optional<unsigned> colour_shift_;
+};
+
+/// Whether files with this extension are read by LasReader.
+inline bool isLasExtension(std::string_view extension)
+{
+  return extension == ".las" || extension == ".laz";
+}
+
+/// The fields of a file, as LasReader has them. @param descriptors of its extra bytes
+std::vector<LasField> lasFieldsOf(const LasBlock& block, std::string_view descriptors);
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A LAZ file seen as the LAS file that was compressed, which is never there as a whole: for code that reads LAS.
+#pragma once
+
+#include <pcl_bsh/io/clouds/las/header.h>
+#include <pcl_bsh/io/text/byte_source.h>
+
+#include <memory>
+
+namespace pcl_bsh::io {
+
+/// The file itself when its points are not compressed. Otherwise all that is in it, with the places of an uncompressed
+/// file in its header, but for the record of the compression. Points are unpacked where they are read: some chunks at
+/// once, on as many threads, or a piece of a large one. So reading from front to back is fast, and takes memory for a
+/// chunk per thread, compressed, and at most 4 MB of its points.
+/// @param threads 0: as many as the caller's oneTBB arena has
+/// @throws FormatError as readLasBlock(); for a compression that is not read; for a table of chunks that the file has
+/// no
+///   room for. read() does so for chunks that are damaged
+std::unique_ptr<ByteSource> unpackedLaz(std::unique_ptr<ByteSource> file, unsigned threads);
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/clouds/colour_scan.h>
+#include <pcl_bsh/io/clouds/text_clouds.h>
+#include <pcl_bsh/io/clouds/text_rows.h>
+
+#include <array>
+#include <optional>
+
+namespace pcl_bsh::io {
+
+namespace {
+
+/// Vertices of a mesh file, with what the format has beside coordinates.
+class Vertices {
+public:
+  Vertices(bool normals, const ColourScan& colours)
+  : colours_(colours),
+    rows_(valuesOf(normals, colours)),
+    first_channel_(normals ? 6 : 3)
+  {
+  }
+
+  TextRows& rows() { return rows_; }
+
+  /// Adds a vertex; white where others have a colour and it has none.
+  /// @param with_normal whether the line has one
+  /// @param given the number of its values from the coordinates to the colour
+  void add(TextCursor& text, bool with_normal, std::size_t given)
+  {
+    const std::size_t record = rows_.size();
+    rows_.add();
+    const std::size_t before = with_normal ? first_channel_ : 3;
+    rows_.take(text, record, 0, before);
+    const std::size_t left = given > before ? given - before : 0;
+    const std::size_t channels = left == 3 || left == 4 ? left : 0;
+    for (std::size_t i = 0; i < colours_.channels(); ++i) addChannel(text, record, i, i < channels);
+  }
+
+private:
+  static Fields valuesOf(bool normals, const ColourScan& colours)
+  {
+    using Field = pcl::PCLPointField;
+    Fields values = {textValue("x"), textValue("y"), textValue("z")};
+    if (normals)
+      for (const char* name : {"nx", "ny", "nz"}) values.push_back(textValue(name));
+    const std::uint8_t type = colours.kind() == ColourScan::Kind::as_given ? Field::FLOAT64 : Field::UINT8;
+    for (std::size_t i = 0; i < colours.channels(); ++i) values.push_back(textValue(ply_channels[i], type));
+    return values;
+  }
+
+  void addChannel(TextCursor& text, std::size_t record, std::size_t channel, bool given)
+  {
+    const std::size_t i = first_channel_ + channel;
+    if (given && colours_.kind() != ColourScan::Kind::shares) return rows_.take(text, record, i, i + 1);
+    const double share = given ? text.number<double>() : 1.0;
+    if (colours_.kind() == ColourScan::Kind::as_given) {
+      std::memcpy(rows_.at(record, i), &share, sizeof share);
+    }
+    else {
+      *rows_.at(record, i) = static_cast<std::uint8_t>(std::lround(share * 255));
+    }
+  }
+
+  ColourScan colours_;
+  TextRows rows_;
+  std::size_t first_channel_;
+};
+
+std::size_t countWords(TextCursor line)
+{
+  std::size_t count = 0;
+  for (; !line.line().empty(); ++count) line.word();
+  return count;
+}
+
+/// Shows a vertex line to `colours`: what stands behind its first `before` words, less the last `behind`.
+void seeColour(TextCursor line, std::size_t before, std::size_t behind, ColourScan& colours)
+{
+  std::array<std::string_view, 16> words;
+  std::size_t count = 0;
+  while (count < words.size() && !line.line().empty()) words[count++] = line.word();
+  if (count < before + behind) return;
+  colours.see(std::span(words).subspan(before, count - before - behind));
+}
+
+/// What an .obj holds.
+struct ObjScan {
+  std::size_t vertices = 0;
+  std::size_t normals = 0;
+  std::optional<std::uint64_t> promised; ///< vertices, by a comment
+  bool normals_follow_vertices = true;   ///< no face gives a vertex another one's normal
+  ColourScan colours;
+
+  bool hasNormals() const { return normals > 0 && normals == vertices && normals_follow_vertices; }
+};
+
+/// `v`, `v/t` or `v//n`, or `v/t/n` with n = v.
+bool namesItsOwnNormal(std::string_view corner)
+{
+  const std::size_t last = corner.rfind('/');
+  if (last == std::string_view::npos || corner.find('/') == last) return true;
+  return corner.substr(last + 1) == corner.substr(0, corner.find('/'));
+}
+
+/// How many vertices a comment like MeshLab's `# Vertices: 8` promises.
+std::optional<std::uint64_t> promiseOf(TextCursor comment)
+{
+  if (comment.word() != "#") return std::nullopt;
+  const std::string_view what = comment.word();
+  if (what != "Vertices:" && what != "vertices:") return std::nullopt;
+  const std::string_view number = comment.word();
+  std::uint64_t count = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), count);
+  const bool whole = error == std::errc() && end == number.data() + number.size() && comment.line().empty();
+  return whole ? std::optional(count) : std::nullopt;
+}
+
+ObjScan scanObj(std::string_view file)
+{
+  ObjScan scan;
+  TextCursor comments(file);
+  while (comments.nextLine() && comments.line().starts_with('#')) {
+    if (const auto promised = promiseOf(comments)) scan.promised = promised;
+  }
+  TextCursor text(file, '#');
+  while (text.nextLine()) {
+    const std::string_view kind = text.word();
+    if (kind == "v") {
+      ++scan.vertices;
+      seeColour(text, 3, 0, scan.colours);
+    }
+    else if (kind == "vn") {
+      ++scan.normals;
+    }
+    else if (kind == "f" || kind == "p" || kind == "l") {
+      while (!text.line().empty()) {
+        if (!namesItsOwnNormal(text.word())) scan.normals_follow_vertices = false;
+      }
+    }
+  }
+  return scan;
+}
+
+/// What an .off says before its vertices; the text is then at the last line of that.
+struct OffHeader {
+  bool normals = false, colours = false, texture = false;
+  std::uint64_t vertices = 0, faces = 0;
+
+  explicit OffHeader(TextCursor& text)
+  {
+    std::string_view kind = text.nextLine() ? text.word() : std::string_view();
+    const auto takeOff = [&](std::string_view prefix) {
+      const bool there = kind.starts_with(prefix);
+      if (there) kind.remove_prefix(prefix.size());
+      return there;
+    };
+    texture = takeOff("ST");
+    colours = takeOff("C");
+    normals = takeOff("N");
+    if (kind != "OFF") throw FormatError("is not an OFF file: it does not start with 'OFF'", "save it as text OFF");
+    if (text.line().starts_with("BINARY")) throw FormatError("is a binary OFF file", "save it as text OFF");
+    if (text.line().empty() && !text.nextLine()) throw FormatError("is truncated: it has no counts");
+    vertices = text.number<std::uint64_t>();
+    faces = text.number<std::uint64_t>();
+    constexpr std::uint64_t least_bytes = 6; // three digits and their separators
+    requireBytes(vertices, least_bytes, text.rest().size() + 1);
+  }
+};
+
+Vertices verticesOf(const OffHeader& header, TextCursor text)
+{
+  ColourScan colours;
+  for (std::uint64_t i = 0; header.colours && i < header.vertices && text.nextLine(); ++i) {
+    seeColour(text, header.normals ? 6 : 3, header.texture ? 2 : 0, colours);
+  }
+  return {header.normals, colours};
+}
+
+} // namespace
+
+pcl::PCLPointCloud2 parseObjHeader(std::string_view file)
+{
+  const ObjScan scan = scanObj(file);
+  return std::move(Vertices(scan.hasNormals(), scan.colours).rows()).finished();
+}
+
+pcl::PCLPointCloud2 parseObj(std::string_view file)
+{
+  const ObjScan scan = scanObj(file);
+  if (scan.vertices == 0 && scan.promised != 0) throw FormatError("has no vertices", "give it lines 'v x y z'");
+  if (scan.vertices < scan.promised.value_or(0)) {
+    throw FormatError("is truncated: it has " + std::to_string(scan.vertices) + " of the " +
+                      counted(*scan.promised, "vertex", "vertices") + " that a comment promises");
+  }
+  Vertices vertices(scan.hasNormals(), scan.colours);
+  TextRows& rows = vertices.rows();
+  rows.reserve(scan.vertices);
+  for (TextCursor text(file, '#'); text.nextLine();) {
+    if (text.word() == "v") vertices.add(text, false, countWords(text));
+  }
+  std::size_t next = 0;
+  for (TextCursor text(file, '#'); scan.hasNormals() && text.nextLine();) {
+    if (text.word() == "vn") rows.take(text, next++, 3, 6);
+  }
+  return std::move(rows).finished();
+}
+
+pcl::PCLPointCloud2 parseOffHeader(std::string_view file)
+{
+  TextCursor text(file, '#');
+  const OffHeader header(text);
+  return std::move(verticesOf(header, text).rows()).finished();
+}
+
+pcl::PCLPointCloud2 parseOff(std::string_view file)
+{
+  TextCursor text(file, '#');
+  const OffHeader header(text);
+  Vertices vertices = verticesOf(header, text);
+  vertices.rows().reserve(header.vertices);
+  for (std::uint64_t i = 0; i < header.vertices; ++i) {
+    if (!text.nextLine()) throw FormatError("is truncated: it ends before the last of its vertices");
+    const std::size_t words = countWords(text), texture = header.texture ? 2 : 0;
+    vertices.add(text, header.normals, words > texture ? words - texture : 0);
+  }
+  // Faces do not matter, but a file cut off among them is damaged.
+  for (std::uint64_t i = 0; i < header.faces; ++i) {
+    if (!text.nextLine()) throw FormatError("is truncated: it ends before the last of its faces");
+  }
+  return std::move(vertices.rows()).finished();
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/io/clouds/meshes/polygons.h>
+#include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/surface/polygon_triangles.h>
+
+#include <limits>
+#include <string>
+
+namespace pcl_bsh::io {
+
+std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& vertices, std::vector<FaceValues>* values)
+{
+  if (values)
+    for (const FaceValues& known : polygons.values()) values->push_back({known.name, {}});
+  std::vector<Triangle> triangles;
+  triangles.reserve(polygons.size());
+  std::vector<std::uint32_t> corners;
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    corners.clear();
+    for (const std::uint64_t vertex : polygons[i]) {
+      if (vertex >= vertices.count) {
+        throw FormatError("face " + std::to_string(i) + " names vertex " + std::to_string(vertex) + " (from 0), of " +
+                          std::to_string(vertices.count));
+      }
+      corners.push_back(static_cast<std::uint32_t>(vertex));
+    }
+    try {
+      addTriangles(vertices, corners.data(), corners.size(), triangles);
+    }
+    catch (const InvalidInput& error) {
+      throw FormatError(error.wrong(), error.remedy());
+    }
+    for (std::size_t k = 0; values && k < values->size(); ++k) {
+      const std::vector<double>& known = polygons.values()[k].values;
+      (*values)[k].values.resize(triangles.size(),
+                                 i < known.size() ? known[i] : std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return triangles;
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/clouds/records.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/json/json_reader.h>
+#include <pcl_bsh/io/reports/clash_list.h>
+#include <pcl_bsh/io/text/file_bytes.h>
+#include <pcl_bsh/io/text/number_text.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <set>
+
+namespace pcl_bsh::io {
+namespace {
+
+constexpr double largest = std::numeric_limits<double>::max();
+
+Point3 pointFrom(const JsonReader& reader)
+{
+  Point3 point{};
+  const std::vector<JsonReader> numbers = reader.elements();
+  if (numbers.size() != point.size()) reader.fail("has not three numbers", "give x, y and z");
+  for (std::size_t k = 0; k < point.size(); ++k) point[k] = numbers[k].number(-largest, largest);
+  return point;
+}
+
+Extent boxFrom(const JsonReader& box)
+{
+  const Extent extent{pointFrom(box.at("min")), pointFrom(box.at("max"))};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!(extent.low[k] <= extent.high[k])) box.fail("has a min above its max", "exchange them");
+  return extent;
+}
+
+std::optional<Extent> boxOrNone(const JsonReader& box)
+{
+  return box.json().is_null() ? std::nullopt : std::optional(boxFrom(box));
+}
+
+/// The point of the closest pair; lists of earlier versions have it of clashes that were there, else the box's middle.
+Point3 placeFrom(const JsonReader& entry, const Clash& clash)
+{
+  if (entry.has("place")) return pointFrom(entry.at("place"));
+  if (entry.has("closest_pair")) return pointFrom(entry.at("closest_pair").at("input").at("at"));
+  Point3 middle;
+  for (std::size_t k = 0; k < 3; ++k) middle[k] = 0.5 * clash.low[k] + 0.5 * clash.high[k];
+  return middle;
+}
+
+ClashStatus statusFrom(const JsonReader& status)
+{
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < clash_statuses; ++i) names.emplace_back(nameOf(static_cast<ClashStatus>(i)));
+  const std::string name = status.oneOf(names);
+  return static_cast<ClashStatus>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+/// A clash as clashJson() writes it. Corners and distances may be any finite numbers; all else is within its range.
+Clash clashFrom(const JsonReader& entry)
+{
+  constexpr std::uint64_t last_pose = std::numeric_limits<std::int32_t>::max();
+  Clash clash;
+  clash.id = entry.at("id").text();
+  clash.status = statusFrom(entry.at("status"));
+  clash.points = static_cast<std::size_t>(entry.at("points").whole(1, max_points));
+  clash.certain_points = clash.points;
+  if (entry.has("certain_points"))
+    clash.certain_points = static_cast<std::size_t>(entry.at("certain_points").whole(0, clash.points));
+  const Extent box = boxFrom(entry.at("box"));
+  clash.low = box.low;
+  clash.high = box.high;
+  clash.place = placeFrom(entry, clash);
+  clash.distance = entry.at("distance").number(-largest, largest);
+  clash.first_pose = static_cast<std::int32_t>(entry.at("first_pose").whole(0, last_pose));
+  clash.closest_pose = static_cast<std::int32_t>(entry.at("closest_pose").whole(0, last_pose));
+  return clash;
+}
+
+Uncertainty uncertaintyFrom(const JsonReader& reader)
+{
+  if (!reader.json().is_object()) return reader.number(0, largest);
+  return {reader.at("field").text(), reader.at("sigmas").number(0, largest)};
+}
+
+Accuracy accuracyFrom(const JsonReader& reader)
+{
+  try {
+    return Accuracy::parse(reader.text());
+  }
+  catch (const std::invalid_argument&) {
+    reader.fail("is no accuracy", "give what --accuracy takes");
+  }
+}
+
+ClashQuestion questionFrom(const JsonReader& reader)
+{
+  ClashQuestion question;
+  const auto name_of = [&](const char* key) { // which may be empty
+    const JsonReader cloud = reader.at(key);
+    return cloud.json().is_string() ? cloud.json().get<std::string>() : cloud.text();
+  };
+  question.input = name_of("input");
+  question.obstacle = name_of("obstacle");
+  question.clearance = reader.at("clearance").number(0, largest);
+  if (!reader.at("swept").json().is_null()) question.swept = reader.at("swept").number(0, largest);
+  if (reader.has("accuracy")) question.accuracy = accuracyFrom(reader.at("accuracy"));
+  if (reader.has("uncertainty")) {
+    question.input_uncertainty = uncertaintyFrom(reader.at("uncertainty").at("input"));
+    question.obstacle_uncertainty = uncertaintyFrom(reader.at("uncertainty").at("obstacle"));
+  }
+  return question;
+}
+
+std::optional<Survey> surveyFrom(const JsonReader& reader)
+{
+  if (!reader.has("path") || !reader.has("scan")) return std::nullopt;
+  const JsonReader path = reader.at("path");
+  Survey survey;
+  survey.poses = static_cast<std::size_t>(path.at("poses").whole(0, std::numeric_limits<std::int32_t>::max()));
+  survey.path_checksum = path.at("checksum").text();
+  survey.path = boxOrNone(path.at("box"));
+  survey.scan = boxOrNone(reader.at("scan").at("box"));
+  return survey;
+}
+
+bool isSame(const Uncertainty& a, const Uncertainty& b)
+{
+  if (a.field != b.field) return false;
+  return a.field.empty() ? a.length == b.length : a.sigmas == b.sigmas;
+}
+
+std::string boxText(const std::optional<Extent>& box)
+{
+  if (!box) return "nowhere";
+  std::string text;
+  for (const Point3& corner : {box->low, box->high}) {
+    text += text.empty() ? "from (" : " to (";
+    for (std::size_t k = 0; k < 3; ++k)
+      text += (k > 0 ? ", " : "") + numberText(corner[k], std::chars_format::general, 8);
+    text += ')';
+  }
+  return text;
+}
+
+bool isSame(const std::optional<Extent>& a, const std::optional<Extent>& b, double nearness)
+{
+  if (!a || !b) return !a && !b;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (std::abs(a->low[k] - b->low[k]) > nearness || std::abs(a->high[k] - b->high[k]) > nearness) return false;
+  return true;
+}
+
+/// FNV-1a of the bits of all numbers.
+std::string checksumOf(const std::vector<Eigen::Isometry3d>& poses)
+{
+  std::uint64_t sum = 0xcbf29ce484222325ULL;
+  for (const Eigen::Isometry3d& pose : poses) {
+    for (Eigen::Index i = 0; i < 12; ++i) {
+      const double number = pose.matrix()(i / 4, i % 4) + 0.0; // of -0 and 0 the latter
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &number, sizeof bits);
+      for (int byte = 0; byte < 8; ++byte, bits >>= 8) sum = (sum ^ (bits & 0xff)) * 0x100000001b3ULL;
+    }
+  }
+  constexpr const char* digits = "0123456789abcdef";
+  std::string text;
+  for (int shift = 60; shift >= 0; shift -= 4) text += digits[sum >> shift & 0xf];
+  return text;
+}
+
+} // namespace
+
+std::string uncertaintyText(const Uncertainty& uncertainty)
+{
+  if (uncertainty.field.empty()) return numberText(uncertainty.length);
+  return numberText(uncertainty.sigmas) + " x field " + uncertainty.field;
+}
+
+Json uncertaintyJson(const Uncertainty& uncertainty)
+{
+  if (uncertainty.field.empty()) return uncertainty.length;
+  return {{"field", uncertainty.field}, {"sigmas", uncertainty.sigmas}};
+}
+
+Survey::Survey(const std::vector<Eigen::Isometry3d>& all_poses, const std::optional<Extent>& of_scan)
+: poses(all_poses.size()),
+  path_checksum(checksumOf(all_poses)),
+  scan(of_scan)
+{
+  for (const Eigen::Isometry3d& pose : all_poses) {
+    const Point3 at = {pose.translation().x(), pose.translation().y(), pose.translation().z()};
+    if (!path) path = Extent{at, at};
+    path->add({at, at});
+  }
+}
+
+ClashList readClashes(const std::filesystem::path& path)
+{
+  const FileBytes file(path);
+  return parseClashes(file.view(), path.string());
+}
+
+ClashList parseClashes(std::string_view text, const std::string& name)
+{
+  const std::string beginning = name + ": is no list of clashes"; // which JsonReader refers to
+  const Json json = parseJson(text, beginning);
+  const JsonReader reader(json, beginning);
+  ClashList list;
+  list.question = questionFrom(reader);
+  list.states_uncertainty = reader.has("uncertainty") && reader.has("accuracy");
+  list.survey = surveyFrom(reader);
+  std::set<std::string> ids;
+  for (const JsonReader& entry : reader.at("clashes").elements()) {
+    list.clashes.push_back(clashFrom(entry));
+    if (!ids.insert(list.clashes.back().id).second)
+      entry.at("id").fail("is the id of another clash, too", "remove one");
+  }
+  return list;
+}
+
+std::vector<std::string> requireComparable(const std::filesystem::path& path, const ClashList& earlier,
+                                           const ClashQuestion& now)
+{
+  const ClashQuestion& before = earlier.question;
+  const auto require = [&](bool same, const std::string& what, const std::string& was, const std::string& is) {
+    if (same) return;
+    throw files::FileError(path, "lists clashes of " + what + " of " + was + ", not of " + is + " as asked now",
+                           "ask for the same " + what.substr(what.find(' ') + 1) + ", or compare with another list");
+  };
+  require(before.clearance == now.clearance, "a clearance", numberText(before.clearance), numberText(now.clearance));
+  if (earlier.states_uncertainty) {
+    const auto require_same = [&](const char* what, const Uncertainty& was, const Uncertainty& is) {
+      require(isSame(was, is), what, uncertaintyText(was), uncertaintyText(is));
+    };
+    require_same("an uncertainty of the input", before.input_uncertainty, now.input_uncertainty);
+    require_same("an uncertainty of the obstacle", before.obstacle_uncertainty, now.obstacle_uncertainty);
+    require(before.accuracy.text() == now.accuracy.text(), "an accuracy", before.accuracy.text(), now.accuracy.text());
+  }
+  std::vector<std::string> warnings;
+  const auto warn = [&](const std::string& wrong) { warnings.push_back(path.string() + ": " + wrong); };
+  const auto fileName = [](const std::string& name) { return std::filesystem::path(name).filename().string(); };
+  const auto compare = [&](const char* what, const std::string& was, const std::string& is) {
+    if (fileName(was) == fileName(is)) return;
+    warn(std::string("lists clashes of the ") + what + " '" + fileName(was) + "', now it is '" + fileName(is) +
+         "': unless both show one place, what is called new or resolved means nothing");
+  };
+  compare("input", before.input, now.input);
+  compare("obstacle", before.obstacle, now.obstacle);
+  if (before.swept.has_value() != now.swept.has_value()) {
+    warn(std::string("lists clashes ") +
+         (before.swept ? "of swept motion, now poses alone are asked" : "at poses alone, now swept motion is asked") +
+         ": clashes between poses seem " + (before.swept ? "resolved" : "new"));
+  }
+  if (!earlier.states_uncertainty || !earlier.survey)
+    warn("is of an earlier version, which did not tell uncertainties, path and extent of the scan: unless these are "
+         "those of now, what is called new or resolved means nothing");
+  return warnings;
+}
+
+std::vector<std::string> surveyWarnings(const std::filesystem::path& path, const ClashList& earlier, const Survey& now,
+                                        double nearness)
+{
+  std::vector<std::string> warnings;
+  if (!earlier.survey) return warnings;
+  const Survey& before = *earlier.survey;
+  if (before.poses != now.poses || before.path_checksum != now.path_checksum) {
+    warnings.push_back(path.string() + ": lists clashes of another path (" + std::to_string(before.poses) + " poses " +
+                       boxText(before.path) + ", now " + std::to_string(now.poses) + ' ' + boxText(now.path) +
+                       "): what was where the path does not come any more is called not_visited, and not resolved");
+  }
+  if (!isSame(before.scan, now.scan, nearness)) {
+    warnings.push_back(path.string() + ": lists clashes of a scan " + boxText(before.scan) + ", now it is " +
+                       boxText(now.scan) +
+                       ": what was where nothing is scanned any more is called not_scanned, and not resolved");
+  }
+  return warnings;
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a list of clashes was asked, and where its run looked: for lists of two runs, which are compared.
+#pragma once
+
+#include <pcl_bsh/clashes/clashes.h>
+#include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/io/json/json_document.h>
+
+#include <Eigen/Geometry>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// What is asked. Two lists can be compared where clearance, uncertainties and accuracy are the same.
+struct ClashQuestion {
+  std::string input, obstacle; ///< file names
+  double clearance = 0;
+  std::optional<double> swept;
+  Accuracy accuracy;
+  Uncertainty input_uncertainty, obstacle_uncertainty;
+
+  /// Whether clashes may be uncertain.
+  bool isUncertain() const { return !input_uncertainty.isZero() || !obstacle_uncertainty.isZero(); }
+};
+
+/// A length, or `K x field NAME`.
+std::string uncertaintyText(const Uncertainty& uncertainty);
+
+/// A length, or a field and how many of its sigmas count.
+Json uncertaintyJson(const Uncertainty& uncertainty);
+
+/// Where a run looked.
+struct Survey {
+  std::size_t poses = 0;
+  std::string path_checksum;  ///< of all numbers of the poses, in order
+  std::optional<Extent> path; ///< of the obstacle's origin on it
+  std::optional<Extent> scan; ///< of the input's finite points
+
+  Survey() = default;
+  Survey(const std::vector<Eigen::Isometry3d>& poses, const std::optional<Extent>& scan);
+};
+
+/// What a run asked, and the clashes that it listed, without points and pairs.
+struct ClashList {
+  ClashQuestion question;
+  bool states_uncertainty = true; ///< false of lists of earlier versions: whether points were uncertain is not known
+  std::optional<Survey> survey;   ///< none of lists of earlier versions
+  std::vector<Clash> clashes;
+};
+
+/// What an earlier run listed, for compareWithEarlier().
+/// @throws files::FileError when the file cannot be read, JsonError naming the place in it that no run would have
+/// written
+ClashList readClashes(const std::filesystem::path& path);
+
+/// The same, of a text. @throws JsonError whose message begins with `name`
+ClashList parseClashes(std::string_view text, const std::string& name);
+
+/// Whether the earlier list, read from `path`, can tell what is new now.
+/// @return warnings, a line each: names of other clouds, motion between poses tested in one run only, a list of an
+///   earlier version
+/// @throws files::FileError when clearances, uncertainties or accuracies differ, so that clashes between the two would
+///   seem new or resolved
+std::vector<std::string> requireComparable(const std::filesystem::path& path, const ClashList& earlier,
+                                           const ClashQuestion& now);
+
+/// Whether the two runs looked at the same places.
+/// @param nearness boxes of scans whose sides differ by no more are the same
+/// @return warnings, a line each: another path, a scan of another extent
+std::vector<std::string> surveyWarnings(const std::filesystem::path& path, const ClashList& earlier, const Survey& now,
+                                        double nearness);
+
+} // namespace pcl_bsh::io

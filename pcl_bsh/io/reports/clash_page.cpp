@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The numbers of the page; clash_page.html has the page itself.
+#include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/io/reports/page_text.h>
+#include <pcl_bsh/io/reports/report_origin.h>
+
+#include "clash_page.html.h"
+#include "page_style.css.h"
+
+#include <kainjow/mustache.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace pcl_bsh::io {
+namespace {
+
+using kainjow::mustache::mustache;
+using Data = kainjow::mustache::data;
+using List = kainjow::mustache::list;
+using Object = kainjow::mustache::object;
+
+constexpr std::size_t most_pictures = 200; ///< beyond so many clashes there is only the table
+constexpr std::size_t most_dots = 500;     ///< of a clash in a picture
+
+/// The inside of a drawing, as clash_page.html frames it.
+struct Area {
+  double left, top, width, height;
+};
+constexpr Area path_area{54, 12, 1010, 130}, top_view_area{6, 6, 508, 268}, approach_area{54, 10, 456, 236};
+
+/// The longest side of its box.
+double longestSide(const Clash& clash)
+{
+  double size = 0;
+  for (std::size_t k = 0; k < 3; ++k) size = std::max(size, clash.high[k] - clash.low[k]);
+  return size;
+}
+
+class ClashPage {
+public:
+  explicit ClashPage(const ClashReport& report)
+  : report_(report),
+    closest_(closestOf(report)),
+    lowest_(std::isfinite(closest_) ? std::min(0.0, closest_) : 0.0),
+    range_(report.question.clearance - lowest_)
+  {
+  }
+
+  std::string html() const
+  {
+    mustache page(std::string{clash_page_html});
+    if (!page.is_valid()) throw std::logic_error("clash_page.html: " + page.error_message());
+    return page.render(contents());
+  }
+
+private:
+  /// The smallest distance of all that are there now, infinity where there is none.
+  static double closestOf(const ClashReport& report)
+  {
+    double closest = std::numeric_limits<double>::infinity();
+    for (const Clash& clash : report.clashes)
+      if (isPresent(clash.status)) closest = std::min(closest, clash.distance);
+    return closest;
+  }
+
+  static Data textOrNone(const std::string& text) { return text.empty() ? Data(false) : Data(plain(text)); }
+
+  static std::string many(std::size_t count) { return std::to_string(count) + (count == 1 ? " clash" : " clashes"); }
+
+  /// Certain ones first.
+  std::string headline() const
+  {
+    const std::size_t present = report_.present(), perhaps = report_.perhaps();
+    if (!report_.question.isUncertain()) return many(present);
+    return many(present - perhaps) + ", " + std::to_string(perhaps) + " perhaps";
+  }
+
+  /// What is uncertain, where anything is.
+  Data uncertainty() const
+  {
+    const ClashQuestion& question = report_.question;
+    if (!question.isUncertain()) return false;
+    return Object{{"input_uncertainty", plain(uncertaintyText(question.input_uncertainty))},
+                  {"obstacle_uncertainty", plain(uncertaintyText(question.obstacle_uncertainty))},
+                  {"undecided", std::to_string(report_.found.undecided)}};
+  }
+
+  Data contents() const
+  {
+    const ClashQuestion& question = report_.question;
+    Object page = {{"style", std::string(page_style_css)},
+                   {"input", plain(question.input)},
+                   {"obstacle", plain(question.obstacle)},
+                   {"headline", headline()},
+                   {"program", reportProgram()},
+                   {"date", reportDate()},
+                   {"unit", textOrNone(report_.unit)},
+                   {"in", report_.unit.empty() ? std::string() : " [" + plain(report_.unit) + "]"},
+                   {"coordinate_system", textOrNone(report_.coordinate_system)},
+                   {"uncertainty", uncertainty()},
+                   {"accuracy", question.accuracy.text()},
+                   {"poses", std::to_string(report_.poses.size()) + (report_.poses.size() == 1 ? " pose" : " poses")},
+                   {"clearance", number(question.clearance)},
+                   {"colliding", std::to_string(report_.found.colliding)},
+                   {"closest", false},
+                   {"swept", false},
+                   {"cluster_distance", number(report_.cluster_distance)},
+                   {"compared", false},
+                   {"previous", false},
+                   {"promise", report_.surface != nullptr
+                                   ? Data(promiseOf(*report_.surface, question.swept ? "swept motion" : ""))
+                                   : Data(false)},
+                   {"path", path()},
+                   {"nothing", report_.clashes.empty()},
+                   {"tables", tables()},
+                   {"one_by_one", cards()}};
+    if (std::isfinite(closest_)) page["closest"] = number(closest_);
+    if (question.swept) page["swept"] = number(*question.swept);
+    if (report_.previous) {
+      page["previous"] = plain(*report_.previous);
+      List compared;
+      for (std::size_t i = 0; i < clash_statuses; ++i) {
+        const auto status = static_cast<ClashStatus>(i);
+        if (report_.count(status) == 0 && i > static_cast<std::size_t>(ClashStatus::resolved)) continue; // rare ones
+        compared.push_back(Object{{"count", std::to_string(report_.count(status))}, {"status", inWords(status)}});
+      }
+      page["compared"] = compared;
+    }
+    return page;
+  }
+
+  static std::string inWords(ClashStatus status)
+  {
+    std::string name = nameOf(status);
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
+  }
+
+  /// From deep red where clouds touch to pale yellow at the clearance.
+  std::string colorOf(double distance) const
+  {
+    const double clearance = report_.question.clearance;
+    const double share = clearance > 0 ? std::clamp(distance / clearance, 0.0, 1.0) : 0.0;
+    const auto mix = [&](int from, int to) { return std::to_string(static_cast<int>(from + share * (to - from))); };
+    return "rgb(" + mix(150, 245) + ',' + mix(10, 190) + ',' + mix(40, 66) + ')';
+  }
+
+  /// A scale from the clearance (1) down to the lowest distance (0), which is negative where radii overlap.
+  double shareOf(double distance) const
+  {
+    return range_ > 0 ? std::clamp((distance - lowest_) / range_, 0.0, 1.0) : 0.0;
+  }
+
+  /// The smallest distance at each pose, infinity where nothing collides. Swept, it is known of each point's closest
+  /// pose only.
+  std::vector<double> nearestAtPoses() const
+  {
+    std::vector<double> nearest(report_.poses.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t k = 0; k < report_.found.poses.size(); ++k) nearest[k] = report_.found.poses[k].distance;
+    for (const Clash& clash : report_.clashes) {
+      for (const std::uint32_t record : clash.records) {
+        double& at_pose = nearest[static_cast<std::size_t>(report_.found.closest_pose[record])];
+        at_pose = std::min(at_pose, static_cast<double>(report_.found.distance[record]));
+      }
+    }
+    return nearest;
+  }
+
+  /// A bar for each pose where something collides, or for a few poses that cannot be told apart.
+  Data path() const
+  {
+    const std::vector<double> poses = nearestAtPoses();
+    if (poses.size() < 2) return false;
+    const std::size_t columns = std::min<std::size_t>(poses.size(), 1000);
+    const double width = path_area.width / static_cast<double>(columns);
+    List bars;
+    for (std::size_t c = 0; c < columns; ++c) {
+      const auto first = poses.begin() + static_cast<std::ptrdiff_t>(c * poses.size() / columns);
+      const auto last = poses.begin() + static_cast<std::ptrdiff_t>((c + 1) * poses.size() / columns);
+      const double nearest = *std::min_element(first, last);
+      if (!std::isfinite(nearest)) continue;
+      bars.push_back(Object{{"x", coordinate(path_area.left + static_cast<double>(c) * width)},
+                            {"width", coordinate(std::max(width, 1.0))},
+                            {"height", coordinate(std::max(2.0, path_area.height * (1 - shareOf(nearest))))},
+                            {"color", colorOf(nearest)}});
+    }
+    return Object{{"bars", bars},
+                  {"limit", number(report_.question.clearance, 3)},
+                  {"lowest", number(lowest_, 3)},
+                  {"last", std::to_string(poses.size() - 1)}};
+  }
+
+  static Object factsOf(const Clash& clash)
+  {
+    return {{"id", plain(clash.id)},
+            {"class", nameOf(clash.status)},
+            {"status", inWords(clash.status)},
+            {"perhaps", !clash.isCertain()},
+            {"distance", number(clash.distance)},
+            {"points", std::to_string(clash.points)},
+            {"first_pose", std::to_string(clash.first_pose)},
+            {"closest_pose", std::to_string(clash.closest_pose)}};
+  }
+
+  /// Those that collide only perhaps have a table of their own.
+  Data rowsOf(bool perhaps) const
+  {
+    List rows;
+    std::size_t cards = 0;
+    for (const Clash& clash : report_.clashes) {
+      const bool has_card = isPresent(clash.status) && cards++ < most_pictures;
+      if (clash.isCertain() == perhaps) continue;
+      Object row = factsOf(clash);
+      row["size"] = number(longestSide(clash), 3);
+      row["linked"] = has_card;
+      rows.push_back(std::move(row));
+    }
+    return rows.empty() ? Data(false) : Data(rows);
+  }
+
+  List tables() const
+  {
+    List tables;
+    for (const bool perhaps : {false, true}) {
+      Data rows = rowsOf(perhaps);
+      if (rows.is_false()) continue;
+      tables.push_back(
+          Object{{"title", perhaps ? "Perhaps" : "By severity"}, {"perhaps_only", perhaps}, {"rows", rows}});
+    }
+    return tables;
+  }
+
+  Data cards() const
+  {
+    List cards;
+    bool all = true;
+    for (const Clash& clash : report_.clashes) {
+      if (!isPresent(clash.status)) continue;
+      all = cards.size() < most_pictures;
+      if (!all) break;
+      cards.push_back(card(clash));
+    }
+    if (cards.empty()) return false;
+    return Object{{"cards", cards}, {"most_pictures", all ? Data(false) : Data(std::to_string(most_pictures))}};
+  }
+
+  static std::string nameOfPart(const std::function<SourcePoint(std::uint32_t)>& source_of, std::uint32_t number,
+                                std::uint32_t part)
+  {
+    if (!source_of) return std::to_string(part);
+    const SourcePoint point = source_of(number);
+    return std::to_string(point.record) + " of " + plain(point.file);
+  }
+
+  Data card(const Clash& clash) const
+  {
+    const Eigen::Vector3d p = report_.scanPoint(clash);
+    Object card = factsOf(clash);
+    card["scan_point"] = nameOfPart(report_.source_of, clash.scan_point, clash.scan_point);
+    card["scan_place"] = coordinate(p.x()) + ", " + coordinate(p.y()) + ", " + coordinate(p.z());
+    card["model_part"] =
+        report_.partName() + (' ' + nameOfPart(report_.model_source_of, clash.model_point, report_.modelPart(clash)));
+    card["top_view"] = topView(clash);
+    card["approach"] = approach(clash);
+    return card;
+  }
+
+  /// Some of its points, evenly picked, as circles. These are too many to be data of the template.
+  /// @param x, y where a record lies in the drawing
+  template <typename X, typename Y>
+  std::string dotsOf(const Clash& clash, const X& x, const Y& y) const
+  {
+    std::string dots;
+    const std::size_t count = std::min(clash.records.size(), most_dots);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t record = clash.records[i * clash.records.size() / count];
+      const auto distance = static_cast<double>(report_.found.distance[record]);
+      dots += "<circle cx=\"" + coordinate(x(record)) + "\" cy=\"" + coordinate(y(record)) + "\" r=\"2\" fill=\"" +
+              colorOf(distance) + "\"/>";
+    }
+    return dots;
+  }
+
+  Data topView(const Clash& clash) const
+  {
+    constexpr const Area& area = top_view_area;
+    const Eigen::Vector3d scan = report_.scanPoint(clash), model = report_.modelPoint(clash);
+    Eigen::AlignedBox2d box(Eigen::Vector2d(clash.low[0], clash.low[1]), Eigen::Vector2d(clash.high[0], clash.high[1]));
+    box.extend(model.head<2>());
+    const double least = std::max({box.sizes().maxCoeff() * 0.1, report_.cluster_distance, 1e-9});
+    const Eigen::Vector2d middle = box.center(), size = box.sizes().array() + least;
+    const double scale = std::min(area.width / size.x(), area.height / size.y());
+    const auto x = [&](double value) { return area.left + area.width / 2 + scale * (value - middle.x()); };
+    const auto y = [&](double value) { return area.top + area.height / 2 - scale * (value - middle.y()); };
+    // The scale bar is a round length, a fifth of the drawing or so.
+    const double length = roundLength(area.width / scale / 5);
+    return Object{{"dots", dotsOf(
+                               clash, [&](std::uint32_t record) { return x(report_.scan.point(record)[0]); },
+                               [&](std::uint32_t record) { return y(report_.scan.point(record)[1]); })},
+                  {"scan_x", coordinate(x(scan.x()))},
+                  {"scan_y", coordinate(y(scan.y()))},
+                  {"model_x", coordinate(x(model.x()))},
+                  {"model_y", coordinate(y(model.y()))},
+                  {"scale_width", coordinate(length * scale)},
+                  {"scale_end", number(area.left + 10 + length * scale + 6, 6)},
+                  {"scale_length", number(length)}};
+  }
+
+  /// Poses across, distances up.
+  Data approach(const Clash& clash) const
+  {
+    constexpr const Area& area = approach_area;
+    std::int32_t first = clash.closest_pose, last = clash.closest_pose;
+    for (const std::uint32_t record : clash.records) {
+      first = std::min(first, report_.found.closest_pose[record]);
+      last = std::max(last, report_.found.closest_pose[record]);
+    }
+    const auto x = [&](std::int32_t pose) {
+      if (first == last) return area.left + area.width / 2;
+      return area.left + 6 + (area.width - 12) * static_cast<double>(pose - first) / (last - first);
+    };
+    const auto y = [&](double distance) { return area.top + area.height - 4 - (area.height - 12) * shareOf(distance); };
+    const auto distanceOf = [&](std::uint32_t record) { return static_cast<double>(report_.found.distance[record]); };
+    const double limit_y = y(report_.question.clearance);
+    return Object{{"dots", dotsOf(
+                               clash, [&](std::uint32_t record) { return x(report_.found.closest_pose[record]); },
+                               [&](std::uint32_t record) { return y(distanceOf(record)); })},
+                  {"limit", number(report_.question.clearance, 3)},
+                  {"limit_y", number(limit_y, 6)},
+                  {"limit_text_y", number(limit_y + 4, 6)},
+                  {"lowest", number(lowest_, 3)},
+                  {"lowest_text_y", number(y(lowest_) + 2, 6)},
+                  {"closest_x", coordinate(x(clash.closest_pose))},
+                  {"closest_y", coordinate(y(clash.distance))},
+                  {"only", first == last ? Data(std::to_string(first)) : Data(false)},
+                  {"first", std::to_string(first)},
+                  {"last", std::to_string(last)}};
+  }
+
+  const ClashReport& report_;
+  const double closest_;
+  const double lowest_; ///< where the scale of distances ends
+  const double range_;  ///< from there to the clearance
+};
+
+} // namespace
+
+std::string clashPage(const ClashReport& report)
+{
+  return ClashPage(report).html();
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clashes as lists for programs (.json, .csv), compared with those of an earlier run, and as a page for people (.html).
+#pragma once
+
+#include <pcl_bsh/clashes/clashes.h>
+#include <pcl_bsh/clashes/former_places.h>
+#include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/io/json/json_document.h>
+#include <pcl_bsh/io/reports/clash_list.h>
+#include <pcl_bsh/neighbors/spacing.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// Where a point of an input stood that is made of several files.
+struct SourcePoint {
+  std::string file;
+  std::uint32_t record = 0;
+};
+
+/// All that a list of clashes tells, in the frame of the input. Clouds and result are borrowed.
+struct ClashReport {
+  ClashQuestion question;
+  double cluster_distance = 0;
+  std::vector<Clash> clashes;
+  const PointsView& scan;
+  const PointsView& model;
+  const std::vector<Eigen::Isometry3d>& poses;
+  const TrajectoryResult& found;
+  Survey survey;
+  std::string unit = {};                    ///< of the clouds' lengths; empty: not known
+  std::string coordinate_system = {};       ///< of the input, where its file names one; else empty
+  std::optional<std::string> previous = {}; ///< file name
+  const Obstacle* surface = nullptr;        ///< the obstacle, where it is one; `model` are its balls
+  /// Of a point of `scan`, where the input is several files.
+  std::function<SourcePoint(std::uint32_t)> source_of = nullptr;
+  /// The same of a point of `model`.
+  std::function<SourcePoint(std::uint32_t)> model_source_of = nullptr;
+
+  /// Of the obstacle: a point, or a triangle.
+  std::uint32_t modelPart(const Clash& clash) const
+  {
+    return surface != nullptr ? surface->partOf(clash.model_point) : clash.model_point;
+  }
+  const char* partName() const { return surface != nullptr ? surface->partName() : "point"; }
+
+  std::size_t count(ClashStatus status) const
+  {
+    return countIf([&](const Clash& clash) { return clash.status == status; });
+  }
+
+  /// Clashes that are there now.
+  std::size_t present() const
+  {
+    return countIf([](const Clash& clash) { return isPresent(clash.status); });
+  }
+
+  /// Of these, those that collide only perhaps.
+  std::size_t perhaps() const
+  {
+    return countIf([](const Clash& clash) { return isPresent(clash.status) && !clash.isCertain(); });
+  }
+
+  Eigen::Vector3d scanPoint(const Clash& clash) const { return vectorOf(scan.point(clash.scan_point)); }
+
+  /// Where the obstacle's point of the closest pair is at the closest pose (swept: when the motion from there begins).
+  /// Of a surface, the middle of the ball that is closest.
+  Eigen::Vector3d modelPoint(const Clash& clash) const
+  {
+    return poses[static_cast<std::size_t>(clash.closest_pose)] * vectorOf(model.point(clash.model_point));
+  }
+
+  static Eigen::Vector3d vectorOf(const Point3& p) { return {p[0], p[1], p[2]}; }
+
+private:
+  template <typename Condition>
+  std::size_t countIf(const Condition& condition) const
+  {
+    return static_cast<std::size_t>(std::count_if(clashes.begin(), clashes.end(), condition));
+  }
+};
+
+/// What an obstacle is compared as: null where that is its points.
+/// @param beside as promiseOf() takes it
+Json surfaceJson(const Obstacle* surface, const std::string& beside = "");
+
+/// One object per clash, with its closest pair if it is there now.
+std::string clashJson(const ClashReport& report);
+
+/// One clash a line, lengths in the clouds' unit, each with the digits that read back to the same bits. One that is not
+/// there now has no pair. What was asked is repeated in each line.
+std::string clashCsv(const ClashReport& report);
+
+/// A page that opens alone in a browser: a chart of the path, a table, and two pictures of each clash.
+std::string clashPage(const ClashReport& report);
+
+/// Writes what the extension says: .json, .csv or .html. The file appears complete or not at all.
+/// @throws files::FileError
+void writeClashes(const std::filesystem::path& path, const ClashReport& report);
+
+/// @throws files::FileError when writeClashes() knows no such extension. As reportDate()
+void requireClashFormat(const std::filesystem::path& path);
+
+/// How many there are, as programs tell it in a line: "3 clashes, 140 perhaps, 2 resolved".
+std::string clashCounts(const ClashReport& report);
+
+/// Tells which of the report's clashes were in the earlier list, and appends those that are not found again: resolved,
+/// or not visited or scanned.
+/// @param file that the earlier list was read from
+/// @param look tells FormerPlaces the model and the scan of this run; not called where nothing is resolved
+/// @return warnings of surveyWarnings()
+std::vector<std::string> compareWithList(ClashReport& report, const std::filesystem::path& file,
+                                         const ClashList& earlier, const std::function<void(FormerPlaces&)>& look);
+
+/// The distance within which colliding points are one clash where the user says none: a power of two of at least the
+/// clearance and four times the scan's spacing, so that it stays the same from run to run.
+double clusterDistanceFor(double clearance, const Spacing& scan);
+
+} // namespace pcl_bsh::io

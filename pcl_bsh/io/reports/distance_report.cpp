@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/reports/distance_report.h>
+
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/io/reports/report_origin.h>
+
+#include <cmath>
+
+namespace pcl_bsh::io {
+namespace {
+
+/// A finite number, or null.
+Json lengthJson(double length)
+{
+  return std::isfinite(length) ? Json(length) : Json();
+}
+
+/// A point of the input, and a point or a triangle of the obstacle.
+Json pairJson(const DistanceQuestion& question, const std::optional<PointPair>& pair)
+{
+  return pair ? Json{pair->a, question.partOf(pair->b)} : Json();
+}
+
+DistanceSide sideOf(const std::string& name, const Placed& cloud, const PointDistances& found,
+                    const std::optional<double>& beyond)
+{
+  DistanceSide side{name, cloud.hierarchy().view(), cloud.pose, found, cloud.hierarchy().size(), {}, 0.0, {}};
+  side.statistics = statisticsOf(found.distance);
+  side.beyond = beyond.value_or(side.statistics.percentiles[3]);
+  const double far = std::isnan(side.beyond) ? 0.0 : side.beyond; // then every point is farther than all that was asked
+  side.places = findFarPlaces(side.cloud, found, far, clusterDistanceFor(0.0, spacingOf(cloud.hierarchy())));
+  return side;
+}
+
+Json toJson(const DistanceQuestion& question, const DistanceSide& side, bool is_input)
+{
+  const DistanceStatistics& statistics = side.statistics;
+  Json percentiles;
+  for (std::size_t i = 0; i < statistics.percents.size(); ++i)
+    percentiles[std::to_string(statistics.percents[i])] = lengthJson(statistics.percentiles[i]);
+  std::optional<PointPair> farthest = side.found.greatest_pair;
+  if (farthest && !is_input) farthest = PointPair{farthest->b, farthest->a};
+  Json json = {{"points", side.points},
+               {"count", statistics.count},
+               {"farther", side.farther()},
+               {"mean", lengthJson(statistics.mean)},
+               {"rms", lengthJson(statistics.rms)},
+               {"median", lengthJson(statistics.median)},
+               {"percentiles", percentiles},
+               {"maximum", lengthJson(statistics.maximum)},
+               {"farthest_pair", pairJson(question, farthest)},
+               {"places_beyond", lengthJson(side.beyond)},
+               {"places", Json::array()}};
+  const auto part = [&](std::uint32_t record, bool of_input) { return of_input ? record : question.partOf(record); };
+  for (std::size_t i = 0; i < std::min(side.places.size(), most_far_places); ++i) {
+    const FarPlace& place = side.places[i];
+    const Eigen::Vector3d at = side.placeOf(place.point);
+    const bool known = place.nearest != PointDistances::kNoPoint;
+    json["places"].push_back({{"points", place.records.size()},
+                              {"distance", lengthJson(place.distance)},
+                              {is_input ? "point" : question.partName(), part(place.point, is_input)},
+                              {"nearest", known ? Json(part(place.nearest, !is_input)) : Json()},
+                              {"at", {lengthJson(at.x()), lengthJson(at.y()), lengthJson(at.z())}}});
+  }
+  return json;
+}
+
+using DistanceFormat = std::string (*)(const DistanceReport&);
+
+DistanceFormat distanceFormatOf(const std::filesystem::path& path)
+{
+  const std::string extension = path.extension().string();
+  if (extension == ".json") return [](const DistanceReport& report) { return printed(distanceJson(report)); };
+  if (extension == ".html") return distancePage;
+  throw files::FileError(path, "unknown extension '" + extension + "'", "give a .json or .html file");
+}
+
+} // namespace
+
+Json DistanceQuestion::surfaceToTell() const
+{
+  Json json = surfaceJson(surface, request.accuracy.isExact() ? "" : "the accuracy");
+  if (surface != nullptr) {
+    json["promise"] = json["promise"].get<std::string>() +
+                      "; distances from its balls, and so the Hausdorff distance, by " + "at most twice as much";
+  }
+  return json;
+}
+
+DistanceReport reportOf(const DistanceQuestion& question, const Placed& input, const Placed& obstacle,
+                        const SymmetricDistances& found)
+{
+  return {question, sideOf(question.input, input, found.a, question.beyond),
+          sideOf(question.obstacle, obstacle, found.b, question.beyond), found.hausdorff, found.hausdorff_pair};
+}
+
+Json distanceJson(const DistanceReport& report)
+{
+  const DistanceQuestion& question = report.question;
+  return {{"program", reportProgram()},
+          {"date", reportDate()},
+          {"input", question.input},
+          {"obstacle", question.obstacle},
+          {"coordinate_system", question.coordinate_system.empty() ? Json() : Json(question.coordinate_system)},
+          {"surface", question.surfaceToTell()},
+          {"unit", question.unit.empty() ? Json() : Json(question.unit)},
+          {"max_distance", lengthJson(question.request.max_distance)},
+          {"accuracy", question.request.accuracy.text()},
+          {"input_to_obstacle", toJson(question, report.input, true)},
+          {"obstacle_to_input", toJson(question, report.obstacle, false)},
+          {"hausdorff", lengthJson(report.hausdorff)},
+          {"hausdorff_pair", pairJson(question, report.hausdorff_pair)}};
+}
+
+void writeDistances(const std::filesystem::path& path, const DistanceReport& report)
+{
+  const std::string text = distanceFormatOf(path)(report);
+  files::replaceFile(path, [&](std::ostream& out) { out << text; });
+}
+
+void requireDistanceFormat(const std::filesystem::path& path)
+{
+  distanceFormatOf(path);
+  reportDate(); // refuses one that is none before anything is done
+}
+
+} // namespace pcl_bsh::io

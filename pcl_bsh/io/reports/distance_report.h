@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far two clouds are from each other: numbers for programs (.json), and a page for people (.html).
+#pragma once
+
+#include <pcl_bsh/clashes/far_places.h>
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/distances/statistics.h>
+#include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/io/json/json_document.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// What is asked, and how the answer is called.
+struct DistanceQuestion {
+  std::string input, obstacle; ///< file names
+  std::string unit;            ///< of the clouds' lengths; empty: not known
+  PointDistancesRequest request;
+  std::optional<double> beyond;       ///< places have points farther than this; none: than 95 of 100 points
+  const Obstacle* surface = nullptr;  ///< the obstacle, where it is one; its balls stand for it
+  std::string coordinate_system = {}; ///< of the input, where its file names one; else empty
+
+  /// Of the obstacle: a point, or a triangle.
+  std::uint32_t partOf(std::uint32_t record) const { return surface != nullptr ? surface->partOf(record) : record; }
+  /// What the numbers mean where the obstacle is a surface: null unless it is one. A ball reaches as far on its far
+  /// side.
+  Json surfaceToTell() const;
+  const char* partName() const { return surface != nullptr ? surface->partName() : "point"; }
+};
+
+/// From each point of one cloud to the nearest of the other. Cloud and distances are borrowed.
+struct DistanceSide {
+  std::string name; ///< file name of the cloud
+  const PointsView& cloud;
+  Eigen::Isometry3d pose; ///< of the cloud in the input's frame
+  const PointDistances& found;
+  std::size_t points = 0; ///< finite ones
+  DistanceStatistics statistics;
+  double beyond = 0.0;          ///< which distance places are far; NaN when there is no distance at all
+  std::vector<FarPlace> places; ///< in the cloud's own frame
+
+  std::size_t farther() const { return points - statistics.count; } ///< than the greatest distance asked for
+
+  /// Of a record, in the input's frame.
+  Eigen::Vector3d placeOf(std::uint32_t record) const
+  {
+    const Point3 p = cloud.point(record);
+    return pose * Eigen::Vector3d(p[0], p[1], p[2]);
+  }
+};
+
+struct DistanceReport {
+  DistanceQuestion question;
+  DistanceSide input, obstacle;
+  double hausdorff; ///< the greatest of both sides, NaN where a point has no distance
+  std::optional<PointPair> hausdorff_pair;
+};
+
+/// The report of what symmetricDistances() found between the two, which are borrowed.
+/// @throws std::invalid_argument when `beyond` is negative or NaN
+DistanceReport reportOf(const DistanceQuestion& question, const Placed& input, const Placed& obstacle,
+                        const SymmetricDistances& found);
+
+/// Lengths as numbers, null where there is none. At most as many places of each cloud as the page lists.
+Json distanceJson(const DistanceReport& report);
+
+/// A page that opens alone in a browser: statistics, histograms, and the farthest places in pictures and tables.
+std::string distancePage(const DistanceReport& report);
+
+/// Places of one cloud that are told one by one.
+inline constexpr std::size_t most_far_places = 20;
+
+/// Writes what the extension says: .json or .html. The file appears complete or not at all. @throws files::FileError
+void writeDistances(const std::filesystem::path& path, const DistanceReport& report);
+
+/// @throws files::FileError when writeDistances() knows no such extension. As reportDate()
+void requireDistanceFormat(const std::filesystem::path& path);
+
+} // namespace pcl_bsh::io

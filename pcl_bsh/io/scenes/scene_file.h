@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scenes as JSON files: clouds, objects, motions, pairs, effects. examples/scenes/scene.schema.json describes them.
+//
+//   SceneFile file = readSceneFile("walk.json");
+//   SceneWorld world(file);                        // reads the clouds
+//   for (std::size_t i = 0; i < file.steps; ++i) report(world.scene().step(file.dt));
+#pragma once
+
+#include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/scene/scene.h>
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// A cloud of the scene: a file, or points made on the surface of a shape.
+struct CloudSource {
+  std::string name;
+  std::filesystem::path file;        ///< empty for a shape
+  std::string shape;                 ///< "sphere", "box" or "cylinder"
+  Eigen::Vector3d size = {1, 1, 1};  ///< as shapePoints() takes it
+  double spacing = 0.1;              ///< of a shape's points, about
+  double scale = 1.0;                ///< of a file's coordinates, about the origin
+  Eigen::Vector3d shift = {0, 0, 0}; ///< afterwards
+  Uncertainty uncertainty;           ///< of its points; sigmas of a field are scaled with the cloud
+  SurfaceSettings surface;           ///< of a file with faces
+  ColumnNames columns;               ///< of a file of columns; empty: as it says
+  std::string place;                 ///< in the document
+};
+
+/// A wave that runs through an object's points along x: amplitude * sin(2 pi (x / length - time / period)).
+struct Wave {
+  Eigen::Vector3d amplitude = {0, 0, 0};
+  double length = 1.0;
+  double period = 1.0;
+};
+
+struct PartEntry {
+  std::string name;
+  std::string cloud;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+};
+
+struct ObjectEntry {
+  std::string name, group;
+  std::vector<PartEntry> parts;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  bool fixed = false;
+  Motion motion;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> adjacent;
+  std::optional<Wave> wave; ///< with the effect deform
+};
+
+struct RuleEntry {
+  bool of_groups = false;
+  std::string a, b;
+  PairRule rule;
+};
+
+/// Which clouds are written, with a field 'collision' of the effect `flags` (or `swept` where that is not listed).
+enum class CloudOutput { none, last, every };
+
+struct SceneFile {
+  std::filesystem::path path;
+  SceneOptions options;
+  std::size_t steps = 1;
+  double dt = 0.1; ///< seconds
+  std::vector<CloudSource> clouds;
+  std::vector<std::filesystem::path> trajectories; ///< the files of poses that motions were read from
+  std::vector<ObjectEntry> objects;
+  std::vector<RuleEntry> rules;
+  CloudOutput cloud_output = CloudOutput::none;
+  std::vector<std::string> warnings; ///< what its reader should tell the user, a line each
+};
+
+/// Reads and checks a scene, but none of its clouds: those must only be there.
+/// @throws JsonError for what the document has wrong, files::FileError for a file that cannot be read
+SceneFile readSceneFile(const std::filesystem::path& path);
+
+/// The same, of a text; relative file names are looked for beside `path`.
+SceneFile parseScene(const std::string& text, const std::filesystem::path& path);
+
+/// Gives a scene the file's rules about pairs; the objects are there already.
+void setRules(Scene& scene, const std::vector<RuleEntry>& rules);
+
+/// The scene itself, and what it looks at.
+class SceneWorld {
+public:
+  /// @param reading called with the name of each cloud before it is read, if not null
+  /// @throws files::FileError, JsonError naming the place in the document
+  explicit SceneWorld(const SceneFile& file, const std::function<void(const CloudSource&)>& reading = nullptr);
+
+  Scene& scene() { return *scene_; }
+
+  /// A cloud's points as they were read, scaled and shifted; of a shape, x y z. float32 coordinates have become float64
+  /// where float32 cannot hold what scale and shift make of them. Of a surface, the balls that cover it: x y z, radius,
+  /// and the number of the triangle.
+  const pcl::PCLPointCloud2& cloud(const std::string& name) const { return clouds_.at(name).points; }
+  /// What a cloud with faces is; null where it is points.
+  const Obstacle* surface(const std::string& name) const
+  {
+    const std::optional<Obstacle>& found = clouds_.at(name).surface;
+    return found ? &*found : nullptr;
+  }
+  std::size_t points() const;                                            ///< of all clouds; of surfaces, balls
+  const std::vector<std::string>& warnings() const { return warnings_; } ///< of clouds, a line each
+
+  /// Puts the points of waving objects where they are at this time; at first they are where they are at 0.
+  void deform(double time);
+
+private:
+  struct Loaded {
+    pcl::PCLPointCloud2 points;
+    std::optional<Obstacle> surface;
+    std::shared_ptr<SphereHierarchy> hierarchy;
+  };
+  struct Waving {
+    ObjectId object;
+    std::uint32_t part;
+    Wave wave;
+    std::vector<double> rest, now;
+  };
+
+  void load(const CloudSource& source, const SceneFile& file, Loaded& loaded);
+
+  std::map<std::string, Loaded> clouds_;
+  std::vector<std::string> warnings_;
+  std::vector<std::unique_ptr<Waving>> waving_;
+  std::unique_ptr<Scene> scene_;
+};
+
+} // namespace pcl_bsh::io

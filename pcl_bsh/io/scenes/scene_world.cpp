@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a scene file to the scene: clouds are read, hierarchies made, objects placed.
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/records.h>
+#include <pcl_bsh/io/json/json_reader.h>
+#include <pcl_bsh/io/scenes/scene_file.h>
+#include <pcl_bsh/io/scenes/scene_warnings.h>
+#include <pcl_bsh/io/scenes/shape_points.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+namespace pcl_bsh::io {
+namespace {
+
+pcl::PCLPointCloud2 cloudOf(const std::vector<float>& xyz)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* name : {"x", "y", "z"}) addField(cloud, name, pcl::PCLPointField::FLOAT32);
+  allocate(cloud, static_cast<std::uint32_t>(xyz.size() / 3));
+  std::memcpy(cloud.data.data(), xyz.data(), xyz.size() * sizeof(float));
+  cloud.is_dense = true;
+  return cloud;
+}
+
+Point3 placed(const Point3& p, const CloudSource& source)
+{
+  Point3 at;
+  for (std::size_t k = 0; k < 3; ++k) at[k] = source.scale * p[k] + source.shift[static_cast<Eigen::Index>(k)];
+  return at;
+}
+
+bool fitsFloat(const Point3& p)
+{
+  const auto fits = [](double x) { return std::isnan(x) || static_cast<double>(roundToFloat(x)) == x; };
+  return fits(p[0]) && fits(p[1]) && fits(p[2]);
+}
+
+/// The same cloud with x, y and z as float64, whatever lies between its fields left out.
+pcl::PCLPointCloud2 withWideCoordinates(const pcl::PCLPointCloud2& cloud)
+{
+  pcl::PCLPointCloud2 wide;
+  wide.header = cloud.header;
+  wide.is_dense = cloud.is_dense;
+  std::vector<pcl::PCLPointField> fields = cloud.fields;
+  fields.erase(std::remove_if(fields.begin(), fields.end(), [](const auto& field) { return field.name == "_"; }),
+               fields.end());
+  const auto is_coordinate = [](const pcl::PCLPointField& field) {
+    return field.name == "x" || field.name == "y" || field.name == "z";
+  };
+  for (const pcl::PCLPointField& field : fields) {
+    addField(wide, field.name, is_coordinate(field) ? std::uint8_t{pcl::PCLPointField::FLOAT64} : field.datatype,
+             field.count == 0 ? 1 : field.count);
+  }
+  allocate(wide, cloud.width, cloud.height);
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const std::uint8_t* from = cloud.data.data() + fields[f].offset;
+    std::uint8_t* to = wide.data.data() + wide.fields[f].offset;
+    const std::size_t bytes = sizeOf(fields[f]);
+    for (std::size_t i = 0; i < std::size_t{cloud.width} * cloud.height; ++i) {
+      float narrow;
+      if (is_coordinate(fields[f])) {
+        std::memcpy(&narrow, from, sizeof narrow);
+        const double coordinate = narrow;
+        std::memcpy(to, &coordinate, sizeof coordinate);
+      }
+      else {
+        std::memcpy(to, from, bytes);
+      }
+      from += cloud.point_step;
+      to += wide.point_step;
+    }
+  }
+  return wide;
+}
+
+void write(pcl::PCLPointCloud2& cloud, const PointsView& view, std::size_t i, const Point3& p)
+{
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::uint8_t* const at = cloud.data.data() + i * view.stride + view.offset[k];
+    const float narrow = roundToFloat(p[k]);
+    if (view.scalar == Scalar::float32)
+      std::memcpy(at, &narrow, sizeof narrow);
+    else
+      std::memcpy(at, &p[k], sizeof(double));
+  }
+}
+
+/// Nothing is rounded to float32: the cloud gets float64 coordinates where they are needed.
+void scaleAndShift(pcl::PCLPointCloud2& cloud, const CloudSource& source, const std::string& file)
+{
+  if (source.scale == 1.0 && source.shift.isZero(0.0)) return;
+  PointsView view = viewOf(cloud);
+  bool fits = true;
+  for (std::uint32_t i = 0; i < view.count; ++i) {
+    const Point3 p = view.point(i);
+    if (!isFinite(p)) continue;
+    const Point3 at = placed(p, source);
+    if (!isFinite(at))
+      throw JsonError(file, source.place, "scale and shift take point " + std::to_string(i) + " beyond all numbers",
+                      "give smaller ones");
+    fits = fits && fitsFloat(at);
+  }
+  if (view.scalar == Scalar::float32 && !fits) {
+    cloud = withWideCoordinates(cloud);
+    view = viewOf(cloud);
+  }
+  for (std::uint32_t i = 0; i < view.count; ++i) write(cloud, view, i, placed(view.point(i), source));
+}
+
+PointsView uncertainView(const PointsView& view, const std::vector<pcl::PCLPointField>& fields,
+                         const CloudSource& source, const std::string& file)
+{
+  try {
+    return withUncertainty(view, fields, "cloud '" + source.name + "'", source.uncertainty);
+  }
+  catch (const InvalidInput& error) {
+    if (error.input() != Input::uncertainty) throw;
+    throw JsonError(file, source.place + ".uncertainty", error.wrong(), error.remedy());
+  }
+}
+
+/// Points of a cloud that have moved, as uncertain as they were.
+PointsView movedView(const std::vector<double>& now, const PointsView& measured)
+{
+  PointsView view = viewOf(now.data(), now.size() / 3);
+  view.uncertainty = measured.uncertainty;
+  view.uncertainties = measured.uncertainties;
+  view.owner = measured.owner;
+  return view;
+}
+
+std::vector<double> coordinatesOf(const PointsView& view)
+{
+  std::vector<double> xyz;
+  xyz.reserve(3 * view.count);
+  for (std::uint32_t i = 0; i < view.count; ++i)
+    for (const double x : view.point(i)) xyz.push_back(x);
+  return xyz;
+}
+
+Obstacle surfaceOf(Mesh mesh, const CloudSource& source, const SceneFile& file)
+{
+  const auto vertices = std::make_shared<const pcl::PCLPointCloud2>(std::move(mesh.vertices));
+  const auto triangles = std::make_shared<const std::vector<Triangle>>(std::move(mesh.triangles));
+  try {
+    return Obstacle(vertices, triangles, source.surface, file.options.clearance);
+  }
+  catch (const InvalidInput& error) {
+    throw JsonError(file.path.string(), source.place, error.wrong(), error.remedy());
+  }
+}
+
+/// x y z, radius, triangle.
+pcl::PCLPointCloud2 ballsOf(const SurfaceCover& cover)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* axis : {"x", "y", "z"}) addField(cloud, axis, pcl::PCLPointField::FLOAT64);
+  addField(cloud, "radius", pcl::PCLPointField::FLOAT32);
+  addField(cloud, "triangle", pcl::PCLPointField::UINT32);
+  allocate(cloud, static_cast<std::uint32_t>(cover.centers.size()));
+  for (std::size_t i = 0; i < cover.centers.size(); ++i) {
+    std::uint8_t* const record = cloud.data.data() + i * cloud.point_step;
+    std::memcpy(record, cover.centers[i].data(), sizeof(Point3));
+    std::memcpy(record + cloud.fields[3].offset, &cover.radii[i], sizeof(float));
+    std::memcpy(record + cloud.fields[4].offset, &cover.triangles[i], sizeof(std::uint32_t));
+  }
+  cloud.is_dense = 1;
+  return cloud;
+}
+
+/// By a hierarchy of its own: that of the scene is built only where effects go.
+NamedCloud measured(const CloudSource& source, const PointsView& view, const Obstacle* surface)
+{
+  const std::string name = source.file.empty() ? "cloud '" + source.name + "'" : source.file.string();
+  return measuredCloud(name, SphereHierarchy(view), surface ? surface->cover().get() : nullptr);
+}
+
+const std::string& placeOf(const std::string& cloud, const SceneFile& file)
+{
+  return std::find_if(file.clouds.begin(), file.clouds.end(), [&](const auto& source) { return source.name == cloud; })
+      ->place;
+}
+
+} // namespace
+
+void setRules(Scene& scene, const std::vector<RuleEntry>& rules)
+{
+  for (const RuleEntry& rule : rules) {
+    if (rule.of_groups)
+      scene.setGroupRule(rule.a, rule.b, rule.rule);
+    else
+      scene.setRule(*scene.find(rule.a), *scene.find(rule.b), rule.rule);
+  }
+}
+
+SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const CloudSource&)>& reading)
+{
+  std::set<std::string> used;
+  for (const ObjectEntry& object : file.objects)
+    for (const PartEntry& part : object.parts) used.insert(part.cloud);
+  std::map<std::string, NamedCloud> named;
+  for (const CloudSource& source : file.clouds) {
+    if (used.count(source.name) == 0) continue;
+    if (reading) reading(source);
+    load(source, file, clouds_[source.name]);
+    named.emplace(source.name, measured(source, clouds_[source.name].hierarchy->view(), surface(source.name)));
+  }
+  for (std::string& line : warningsOf(file, named)) warnings_.push_back(std::move(line));
+
+  scene_ = std::make_unique<Scene>(file.options);
+  for (const ObjectEntry& entry : file.objects) {
+    SceneObject object;
+    object.name = entry.name;
+    object.group = entry.group;
+    object.pose = entry.pose;
+    object.fixed = entry.fixed;
+    object.motion = entry.motion;
+    object.adjacent = entry.adjacent;
+    const auto id = static_cast<ObjectId>(scene_->size());
+    for (const PartEntry& part : entry.parts) {
+      std::shared_ptr<SphereHierarchy> hierarchy = clouds_.at(part.cloud).hierarchy;
+      if (entry.wave && clouds_.at(part.cloud).surface) {
+        throw JsonError(file.path.string(), placeOf(part.cloud, file),
+                        "is a surface, and the wave of '" + entry.name + "' moves points",
+                        "give 'vertices_only': true");
+      }
+      if (entry.wave) {
+        auto waving = std::make_unique<Waving>();
+        waving->object = id;
+        waving->part = static_cast<std::uint32_t>(object.parts.size());
+        waving->wave = *entry.wave;
+        waving->rest = waving->now = coordinatesOf(hierarchy->view());
+        hierarchy = std::make_shared<SphereHierarchy>(movedView(waving->now, hierarchy->view()));
+        waving_.push_back(std::move(waving));
+      }
+      object.parts.push_back({part.name, std::move(hierarchy), part.pose});
+    }
+    scene_->add(std::move(object));
+  }
+  setRules(*scene_, file.rules);
+  deform(0.0);
+}
+
+void SceneWorld::load(const CloudSource& source, const SceneFile& file, Loaded& loaded)
+{
+  Mesh mesh;
+  CloudFacts facts;
+  if (!source.shape.empty())
+    mesh.vertices = cloudOf(shapePoints(source.shape, source.size, source.spacing));
+  else if (source.surface.vertices_only)
+    mesh.vertices = readCloud(source.file, &facts, source.columns);
+  else
+    mesh = readMesh(source.file, &facts, source.columns);
+  for (const std::string& remark : facts.remarks) warnings_.push_back(source.file.string() + ": " + remark);
+  scaleAndShift(mesh.vertices, source, file.path.string());
+  HierarchyOptions options;
+  options.threads = file.options.threads;
+  if (mesh.triangles.empty()) {
+    loaded.points = std::move(mesh.vertices);
+    const PointsView view = uncertainView(viewOf(loaded.points), loaded.points.fields, source, file.path.string());
+    loaded.hierarchy = std::make_shared<SphereHierarchy>(view, options);
+    return;
+  }
+  loaded.surface = surfaceOf(std::move(mesh), source, file);
+  for (const std::string& remark : loaded.surface->remarks()) warnings_.push_back(source.file.string() + ": " + remark);
+  loaded.points = ballsOf(*loaded.surface->cover());
+  const PointsView view = uncertainView(loaded.surface->view(), {}, source, file.path.string()); // no field: balls
+  loaded.hierarchy = std::make_shared<SphereHierarchy>(view, options);
+}
+
+std::size_t SceneWorld::points() const
+{
+  std::size_t count = 0;
+  for (const auto& entry : clouds_) count += entry.second.hierarchy->size();
+  return count;
+}
+
+void SceneWorld::deform(double time)
+{
+  constexpr double two_pi = 6.28318530717958647692;
+  for (const auto& waving : waving_) {
+    const Wave& wave = waving->wave;
+    for (std::size_t i = 0; i < waving->rest.size(); i += 3) {
+      const double height = std::sin(two_pi * (waving->rest[i] / wave.length - time / wave.period));
+      for (std::size_t k = 0; k < 3; ++k)
+        waving->now[i + k] = waving->rest[i + k] + height * wave.amplitude[static_cast<Eigen::Index>(k)];
+    }
+    const PointsView& before = (*scene_)[waving->object].parts[waving->part].hierarchy->view();
+    scene_->deform(waving->object, waving->part, movedView(waving->now, before));
+  }
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/scenes/shape_points.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_bsh::io {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+void add(std::vector<float>& xyz, double x, double y, double z)
+{
+  for (const double coordinate : {x, y, z}) xyz.push_back(static_cast<float>(coordinate));
+}
+
+/// Fibonacci's spiral: evenly spread.
+void addSphere(std::vector<float>& xyz, double radius, double spacing)
+{
+  const double steps = radius / spacing;
+  const auto count = static_cast<std::size_t>(std::ceil(4.0 * kPi * steps * steps)) + 2;
+  const double golden = kPi * (3.0 - std::sqrt(5.0));
+  for (std::size_t i = 0; i < count; ++i) {
+    const double z = 1.0 - 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    const double r = std::sqrt(1.0 - z * z), angle = golden * static_cast<double>(i);
+    add(xyz, radius * r * std::cos(angle), radius * r * std::sin(angle), radius * z);
+  }
+}
+
+void addBox(std::vector<float>& xyz, const Eigen::Vector3d& size, double spacing)
+{
+  int cells[3];
+  for (int k = 0; k < 3; ++k) cells[k] = std::max(1, static_cast<int>(std::ceil(size[k] / spacing)));
+  for (int i = 0; i <= cells[0]; ++i)
+    for (int j = 0; j <= cells[1]; ++j)
+      for (int k = 0; k <= cells[2]; ++k) {
+        if (i != 0 && i != cells[0] && j != 0 && j != cells[1] && k != 0 && k != cells[2]) {
+          k = cells[2] - 1; // inside: on to the next that is not
+          continue;
+        }
+        add(xyz, size[0] * (double(i) / cells[0] - 0.5), size[1] * (double(j) / cells[1] - 0.5),
+            size[2] * (double(k) / cells[2] - 0.5));
+      }
+}
+
+/// The mantle, and both lids unless it is open.
+void addCylinder(std::vector<float>& xyz, double radius, double height, bool open, double spacing)
+{
+  const auto ring = [&](double r, double z) {
+    const int count = std::max(1, static_cast<int>(std::ceil(2.0 * kPi * r / spacing)));
+    for (int i = 0; i < count; ++i)
+      add(xyz, r * std::cos(2.0 * kPi * i / count), r * std::sin(2.0 * kPi * i / count), z);
+  };
+  const int rows = std::max(1, static_cast<int>(std::ceil(height / spacing)));
+  for (int k = 0; k <= rows; ++k) ring(radius, height * (double(k) / rows - 0.5));
+  if (open) return;
+  const int rings = static_cast<int>(std::ceil(radius / spacing));
+  for (int k = 0; k < rings; ++k)
+    for (const double z : {-0.5 * height, 0.5 * height}) ring(radius * k / rings, z);
+}
+
+} // namespace
+
+std::vector<float> shapePoints(const std::string& shape, const Eigen::Vector3d& size, double spacing)
+{
+  std::vector<float> xyz;
+  if (shape == "sphere") addSphere(xyz, size[0], spacing);
+  if (shape == "box") addBox(xyz, size, spacing);
+  if (shape == "cylinder") addCylinder(xyz, size[0], size[1], size[2] > 0.0, spacing);
+  return xyz;
+}
+
+double shapePointCount(const std::string& shape, const Eigen::Vector3d& size, double spacing)
+{
+  const Eigen::Array3d n = size.array() / spacing + 2.0;
+  if (shape == "sphere") return 4.0 * kPi * n[0] * n[0];
+  if (shape == "box") return 2.0 * (n[0] * n[1] + n[1] * n[2] + n[0] * n[2]);
+  return 2.0 * kPi * n[0] * (n[1] + n[0]);
+}
+
+} // namespace pcl_bsh::io

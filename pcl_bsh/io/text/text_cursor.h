@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Walks a text line by line, and a line word by word.
+#pragma once
+
+#include <pcl_bsh/io/text/number_line.h>
+#include <pcl_bsh/io/text/parse_number.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace pcl_bsh::io {
+
+/// What separates the values of a line: a semicolon, else a comma, else a tab, where it has one; else blanks (' ').
+/// Tabs beside blanks are blanks.
+inline char separatorOf(std::string_view line)
+{
+  for (const char separator : {';', ','})
+    if (line.find(separator) != std::string_view::npos) return separator;
+  const bool blank = line.substr(0, line.find_last_not_of(" \t") + 1).find(' ') != std::string_view::npos;
+  return !blank && line.find('\t') != std::string_view::npos ? '\t' : ' ';
+}
+
+inline constexpr std::string_view utf8_mark = "\xef\xbb\xbf";
+
+/// Whether a text begins with the mark of UTF-16, in either byte order.
+inline bool isUtf16(std::string_view text)
+{
+  return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
+}
+
+/// Lines end with \n, \r\n or \r. Words are separated by blanks and tabs, unless separateBy() says otherwise. A mark of
+/// UTF-8 at the beginning is skipped.
+class TextCursor {
+public:
+  /// @param comment the rest of a line from this character on is ignored; 0: none
+  /// @throws FormatError when the text is marked as UTF-16
+  explicit TextCursor(std::string_view text, char comment = 0) : text_(text), comment_(comment)
+  {
+    if (text.starts_with(utf8_mark)) text_.remove_prefix(utf8_mark.size());
+    if (isUtf16(text)) throw FormatError("is UTF-16 text", "save it as UTF-8");
+  }
+
+  /// From now on exactly one such character separates words, and blanks around a word do not count; two in a row have
+  /// an empty word between them, one at the end of a line has none behind it. Quotes around a word do not count: "x".
+  /// ' ': any number of blanks and tabs.
+  void separateBy(char separator) noexcept { separator_ = separator; }
+
+  /// Goes to the next line that has a word. False when there is none.
+  bool nextLine()
+  {
+    do {
+      if (end_ == text_.size()) return false;
+      readLine();
+    } while (line_.empty());
+    return true;
+  }
+
+  /// Takes the next line as a whole, if it is that many numbers and nothing else. Otherwise nothing has happened, and
+  /// nextLine() and its words tell what is there.
+  bool nextNumbers(std::span<double> values)
+  {
+    const std::size_t bytes = readNumberLine(text_.substr(end_), separator_, values);
+    if (bytes == 0) return false;
+    end_ += bytes;
+    ++line_number_;
+    line_ = {};
+    ends_with_separator_ = false;
+    return true;
+  }
+
+  /// What is left of the line, from its next word to its last.
+  std::string_view line() const noexcept { return line_; }
+
+  /// Takes the next word off the line; empty when none is left.
+  std::string_view word() noexcept
+  {
+    if (separator_ != ' ') return wordBeforeSeparator();
+    std::size_t length = 0;
+    while (length < line_.size() && !isBlank(line_[length])) ++length;
+    const std::string_view taken = line_.substr(0, length);
+    line_.remove_prefix(length);
+    skipBlanks();
+    return taken;
+  }
+
+  /// Takes the next word if a separator stands where it would be, or the line's last separator is before it.
+  /// @return whether it did
+  bool takeEmptyWord() noexcept
+  {
+    if (line_.empty()) return std::exchange(ends_with_separator_, false);
+    TextCursor behind = *this;
+    if (separator_ == ' ' || !behind.word().empty()) return false;
+    *this = behind;
+    return true;
+  }
+
+  /// What `parse` gives for the next word, which is taken off the line.
+  /// @throws FormatError naming the line when there is none, or when `parse` throws one
+  template <typename Parse>
+  std::invoke_result_t<Parse, std::string_view> parseWord(Parse&& parse)
+  {
+    const std::string_view taken = requireWord();
+    return naming([&] { return parse(taken); });
+  }
+
+  /// Takes the next word as a number; throws FormatError naming the line.
+  template <typename T>
+  T number()
+  {
+    return parseWord([](std::string_view word) { return parseNumber<T>(word); });
+  }
+
+  /// @throws FormatError when words are left on the line
+  void requireEndOfLine() const
+  {
+    if (!line_.empty()) fail("has more values than it should, from '" + std::string(line_.substr(0, 40)) + "' on");
+  }
+
+  /// Bytes behind this line.
+  std::string_view rest() const noexcept { return text_.substr(end_); }
+
+  [[noreturn]] void fail(const std::string& wrong) const { throw FormatError(named(wrong)); }
+  [[noreturn]] void fail(const std::string& wrong, const std::string& remedy) const
+  {
+    throw FormatError(named(wrong), remedy);
+  }
+
+  /// What `parse` gives; a FormatError of it is said to be of this line.
+  template <typename Parse>
+  std::invoke_result_t<Parse> naming(Parse&& parse) const
+  {
+    try {
+      return parse();
+    }
+    catch (const FormatError& error) {
+      fail(std::string("is damaged: ") + error.what(), error.remedy());
+    }
+  }
+
+private:
+  static constexpr bool isBlank(char c) noexcept { return c == ' ' || c == '\t'; }
+
+  std::string named(const std::string& wrong) const { return "line " + std::to_string(line_number_) + " " + wrong; }
+
+  /// A tab that separates is no blank.
+  void skipBlanks() noexcept
+  {
+    while (!line_.empty() && isBlank(line_.front()) && (line_.front() != separator_ || separator_ == ' ')) {
+      line_.remove_prefix(1);
+    }
+  }
+
+  std::string_view wordBeforeSeparator() noexcept
+  {
+    const std::size_t length = std::min(line_.find(separator_), line_.size());
+    const std::string_view taken = line_.substr(0, length);
+    ends_with_separator_ = length + 1 == line_.size();
+    line_.remove_prefix(std::min(length + 1, line_.size()));
+    skipBlanks();
+    return withoutQuotes(taken.substr(0, taken.find_last_not_of(" \t") + 1));
+  }
+
+  static std::string_view withoutQuotes(std::string_view word) noexcept
+  {
+    const bool quoted = word.size() >= 2 && word.front() == '"' && word.back() == '"';
+    return quoted ? word.substr(1, word.size() - 2) : word;
+  }
+
+  void readLine() noexcept
+  {
+    const std::size_t begin = end_;
+    ends_with_separator_ = false;
+    while (end_ < text_.size() && text_[end_] != '\n' && text_[end_] != '\r') ++end_;
+    line_ = text_.substr(begin, end_ - begin);
+    if (end_ < text_.size()) end_ += text_.substr(end_).starts_with("\r\n") ? 2 : 1;
+    ++line_number_;
+    if (comment_ != 0) line_ = line_.substr(0, line_.find(comment_));
+    line_ = line_.substr(0, line_.find_last_not_of(" \t") + 1); // nothing at all where there are but blanks
+    skipBlanks();
+  }
+
+  std::string_view requireWord()
+  {
+    const bool ended = line_.empty();
+    const std::string_view taken = word();
+    if (taken.empty()) fail(ended ? "has fewer values than it should" : "has an empty value");
+    return taken;
+  }
+
+  std::string_view text_;
+  char comment_;
+  char separator_ = ' ';
+  std::string_view line_;
+  bool ends_with_separator_ = false; ///< the word taken last is followed by nothing but a separator
+  std::size_t end_ = 0;              ///< where the next line begins
+  std::size_t line_number_ = 0;
+};
+
+} // namespace pcl_bsh::io

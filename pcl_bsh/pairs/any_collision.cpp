@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Any pair: done at the first witness.
+#include <pcl_bsh/pairs/any_at_places.h>
+#include <pcl_bsh/pairs/any_collision.h>
+#include <pcl_bsh/pairs/check_request.h>
+#include <pcl_bsh/pairs/interval_search.h>
+#include <pcl_bsh/pairs/shared_search.h>
+#include <pcl_bsh/query/stop_rule.h>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/pairs/any_collision.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/pairs/any_search-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+namespace {
+
+/// Stops the search where the rule's time is over, or is too short for a voxel that would have to be built.
+class Hurried : public NoObserver {
+public:
+  explicit Hurried(const StopRule& rule) : rule_(rule) {}
+
+  bool stops(const PairWalk& walk, const LanePair& pair, Opened opened)
+  {
+    if (asked_++ % 16 == 0 && rule_.isOver()) return true; // a clock costs as much as a step
+    if (opened == Opened::neither) return false;
+    const Spaces& side = opened == Opened::a ? walk.a : walk.b;
+    const Lane& lane = opened == Opened::a ? pair.a : pair.b;
+    const Node& node = walk.nodeOf(side, lane);
+    return lane.space == kAboveVoxels && node.isLeaf(lane.lane) &&
+           !rule_.leavesTimeToBuild(side.storage.pointsToBuild(node.begin[lane.lane]));
+  }
+
+private:
+  const StopRule& rule_;
+  std::uint64_t asked_ = 0;
+};
+
+} // namespace
+
+AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
+{
+  return AnySearch(a, b, request, NoObserver{}, places).run();
+}
+
+AnyResult anyCollisionInTimeOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, const StopRule& rule)
+{
+  return AnySearch(a, b, request, Hurried(rule)).run();
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(anyCollisionOnTarget);
+HWY_EXPORT(anyCollisionInTimeOnTarget);
+
+namespace {
+
+/// Of a time budget, what the search for a witness gets. It decides earlier than the search for the distance, which has
+/// the rest for the interval that an undecided answer carries.
+constexpr double kWitnessShare = 15.0 / 16;
+
+AnyResult searchAsFarAsAllowed(const Placed& a, const Placed& b, const AnyRequest& request)
+{
+  const StopRule rule(request.accuracy);
+  Work work;
+  if (rule.isTimed()) {
+    AnyResult decided = HWY_DYNAMIC_DISPATCH(anyCollisionInTimeOnTarget)(a, b, request, rule.part(kWitnessShare));
+    if (decided.verdict != Verdict::undecided) return decided;
+    work = decided.work;
+  }
+  IntervalFinding found = searchInterval(a, b, rule, request.clearance);
+  const bool colliding = found.verdict == Verdict::colliding;
+  return {found.verdict, colliding ? found.pair : std::nullopt, found.distance, found.work += work};
+}
+
+/// Of points that may be elsewhere than they were measured.
+AnyResult searchUncertain(const Placed& a, const Placed& b, const AnyRequest& request)
+{
+  if (request.accuracy.stopsEarly()) {
+    IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt);
+    const bool certain = found.distance.upper <= reachBetween(a, b, request.clearance, Places::certain).least;
+    const bool possible = !(found.distance.lower > reachBetween(a, b, request.clearance, Places::possible).most);
+    const Verdict verdict = certain ? Verdict::colliding : possible ? Verdict::undecided : Verdict::free;
+    return {verdict, certain ? found.pair : std::nullopt, found.distance, found.work};
+  }
+  return anyOfUncertain([&](Places places) { return anyCollisionAt(a, b, request, places); });
+}
+
+} // namespace
+
+AnyResult anyCollisionAt(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
+{
+  const unsigned threads = threadCount(request.threads);
+  if (threads > 1) return anyCollisionShared(a, b, request, places, threads);
+  return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request, places);
+}
+
+AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request)
+{
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  if (areUncertain(a, b)) return searchUncertain(a, b, request);
+  return request.accuracy.stopsEarly() ? searchAsFarAsAllowed(a, b, request)
+                                       : anyCollisionAt(a, b, request, Places::measured);
+}
+
+} // namespace pcl_bsh
+#endif

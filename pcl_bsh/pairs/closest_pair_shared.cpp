@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The closest pair, by several threads.
+#include <pcl_bsh/pairs/shared_search.h>
+
+#include <atomic>
+#include <mutex>
+#include <optional>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/pairs/closest_pair_shared.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/pairs/closest_search-inl.h>
+
+#ifndef PCL_BSH_COLLISION_CLOSEST_PAIR_SHARED_ONCE
+#define PCL_BSH_COLLISION_CLOSEST_PAIR_SHARED_ONCE
+namespace pcl_bsh {
+namespace {
+
+/// Of several threads, the nearest pair that any has found.
+class SharedNearest {
+public:
+  /// Makes both the nearer one of the two; of equals, the smaller (a, b).
+  void merge(Nearest& own, const PointPairs& pairs)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (nearest_.pair) {
+      const int sign = pairs.distance.compareGaps(pairs.posed(*own.pair), pairs.posed(*nearest_.pair));
+      if (sign > 0 || (sign == 0 && !(*own.pair < *nearest_.pair))) {
+        own = nearest_;
+        return;
+      }
+    }
+    nearest_ = own;
+    version_.fetch_add(1, std::memory_order_relaxed);
+  }
+
+  /// Of which the next get() is at least as new.
+  std::uint64_t version() const { return version_.load(std::memory_order_relaxed); }
+
+  Nearest get() const
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return nearest_;
+  }
+
+private:
+  mutable std::mutex mutex_;
+  Nearest nearest_;
+  std::atomic<std::uint64_t> version_{0};
+};
+
+/// One of several searches that share what they find, and pause after some steps.
+class Sharing {
+public:
+  explicit Sharing(SharedNearest& shared) : shared_(shared) {}
+
+  void allow(std::uint32_t steps, const std::atomic<bool>* dropped)
+  {
+    steps_ = steps;
+    dropped_ = dropped;
+  }
+
+  bool stops()
+  {
+    if (steps_ == 0 || (dropped_ && dropped_->load(std::memory_order_relaxed))) return true;
+    --steps_;
+    return false;
+  }
+
+  void hear(Nearest& own)
+  {
+    const std::uint64_t version = shared_.version();
+    if (version == heard_) return;
+    heard_ = version;
+    own = shared_.get();
+  }
+
+  void tell(Nearest& own, const PointPairs& pairs) { shared_.merge(own, pairs); }
+
+private:
+  SharedNearest& shared_;
+  std::uint32_t steps_ = kStepsAlone;
+  const std::atomic<bool>* dropped_ = nullptr;
+  std::uint64_t heard_ = 0;
+};
+
+} // namespace
+} // namespace pcl_bsh
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+DistanceResult closestPairSharedOnTarget(const Placed& a, const Placed& b, const Accuracy& accuracy, unsigned threads)
+{
+  SharedNearest nearest;
+  std::optional<SharedStack<LanePair>> shared;
+  Work work;
+  {
+    ClosestSearch alone(a, b, accuracy, Sharing(nearest));
+    const DistanceResult result = alone.run();
+    if (alone.left().empty()) return result;
+    work = result.work;
+    shared.emplace(alone.left());
+  } // what it used is there for this thread's share
+  shared->visit(threads, [&] { return ClosestSearch(a, b, accuracy, Sharing(nearest)); });
+  return ClosestSearch(a, b, accuracy, Sharing(nearest)).result(work += shared->work());
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(closestPairSharedOnTarget);
+
+DistanceResult closestPairShared(const Placed& a, const Placed& b, const DistanceRequest& request, unsigned threads)
+{
+  return HWY_DYNAMIC_DISPATCH(closestPairSharedOnTarget)(a, b, request.accuracy, threads);
+}
+
+} // namespace pcl_bsh
+#endif

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/python/arrays/array_input.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/geometry/counted.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+
+namespace pcl_bsh::python {
+namespace {
+
+std::string shapeOf(const py::array& array)
+{
+  return py::str(array.attr("shape"));
+}
+
+std::string nameOfType(const py::dtype& type)
+{
+  return py::str(py::handle(type));
+}
+
+/// As numpy.asarray(): an array stays what it is.
+py::array arrayOf(const std::string& name, const py::object& object, Input input = Input::points)
+{
+  if (py::isinstance<py::array>(object)) {
+    static const py::handle masked = py::object(py::module_::import("numpy").attr("ma").attr("MaskedArray")).release();
+    if (py::isinstance(object, masked))
+      throw InvalidInput(input, name, "are masked", "say what masked points are, e.g. none by .filled(numpy.nan)");
+    return py::reinterpret_borrow<py::array>(object);
+  }
+  py::array array = py::array::ensure(object);
+  if (!array) throw InvalidInput(input, name, "is no array", "give a NumPy array");
+  return array;
+}
+
+std::optional<Scalar> scalarOf(const py::dtype& type)
+{
+  if (type.kind() != 'f' || (type.byteorder() != '=' && type.byteorder() != '|')) return std::nullopt;
+  if (type.itemsize() == sizeof(float)) return Scalar::float32;
+  if (type.itemsize() == sizeof(double)) return Scalar::float64;
+  return std::nullopt;
+}
+
+InvalidInput wrongType(const std::string& name, const py::dtype& type)
+{
+  return InvalidInput(Input::points, name,
+                      "are " + nameOfType(type) + ", not float32 or float64 in this machine's order",
+                      "convert them, e.g. by numpy.asarray(..., numpy.float64)");
+}
+
+/// Where coordinates lie in memory, as NumPy says it.
+struct Layout {
+  Scalar scalar = Scalar::float32;
+  py::ssize_t count = 0;
+  py::ssize_t stride = 0;
+  std::array<py::ssize_t, 3> offset = {};
+};
+
+py::ssize_t widthOf(Scalar scalar)
+{
+  return scalar == Scalar::float32 ? sizeof(float) : sizeof(double);
+}
+
+/// Whether a PointsView can say this: rows forwards, no two coordinates over each other.
+bool isDescribable(const Layout& layout)
+{
+  const py::ssize_t width = widthOf(layout.scalar);
+  if (layout.count == 0) return false;
+  if (layout.count > 1 && layout.stride < width) return false;
+  std::array<py::ssize_t, 3> at = layout.offset;
+  std::sort(at.begin(), at.end());
+  if (at[1] - at[0] < width || at[2] - at[1] < width) return false;
+  const py::ssize_t step = layout.count > 1 ? layout.stride : 0;
+  const bool by_rows = layout.count == 1 || step >= at[2] - at[0] + width;
+  const py::ssize_t column = (layout.count - 1) * step + width;
+  return by_rows || (at[1] - at[0] >= column && at[2] - at[1] >= column);
+}
+
+/// The step from each record to the next, in the order of their indices; 0 where they have no common one.
+py::ssize_t strideOf(const py::array& array)
+{
+  py::ssize_t count = 1, stride = array.itemsize();
+  for (py::ssize_t k = array.ndim() - 1; k >= 0; --k) {
+    if (array.shape(k) == 1) continue;
+    if (count == 1) stride = array.strides(k);
+    if (array.strides(k) != stride * count) return 0;
+    count *= array.shape(k);
+  }
+  return stride;
+}
+
+/// Records with fields x, y, z of one type; of any shape, taken in order.
+Layout layoutOfRecords(const std::string& name, const py::array& array)
+{
+  const py::object fields = array.dtype().attr("fields");
+  Layout layout;
+  std::optional<Scalar> scalar;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const py::str axis(std::string(1, "xyz"[k]));
+    if (!fields.contains(axis))
+      throw InvalidInput(Input::points, name, "are records without field " + std::string(axis),
+                         "give fields x, y, z, or an array of shape (n, 3)");
+    const py::tuple field = fields[axis];
+    const auto type = py::reinterpret_borrow<py::dtype>(field[0]);
+    const std::optional<Scalar> own = scalarOf(type);
+    if (!own) throw wrongType(name, type);
+    if (scalar && *own != *scalar) throw wrongType(name, array.dtype());
+    scalar = own;
+    layout.offset[k] = field[1].cast<py::ssize_t>();
+  }
+  layout.scalar = *scalar;
+  layout.count = array.size();
+  layout.stride = strideOf(array);
+  return layout;
+}
+
+Layout layoutOfRows(const std::string& name, const py::array& array)
+{
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    throw InvalidInput(Input::points, name, "have shape " + shapeOf(array), "give an array of shape (n, 3)");
+  const std::optional<Scalar> scalar = scalarOf(array.dtype());
+  if (!scalar) throw wrongType(name, array.dtype());
+  Layout layout{*scalar, array.shape(0), array.strides(0), {}};
+  for (std::size_t k = 0; k < 3; ++k) layout.offset[k] = static_cast<py::ssize_t>(k) * array.strides(1);
+  return layout;
+}
+
+Layout layoutOf(const std::string& name, const py::array& array)
+{
+  return array.dtype().has_fields() ? layoutOfRecords(name, array) : layoutOfRows(name, array);
+}
+
+/// The coordinates alone, row after row.
+py::array copyOf(const py::array& array, Scalar scalar)
+{
+  const py::module_ numpy = py::module_::import("numpy");
+  const py::dtype type = scalar == Scalar::float32 ? py::dtype::of<float>() : py::dtype::of<double>();
+  const bool records = array.dtype().has_fields();
+  py::array copy(type, std::vector<py::ssize_t>{records ? array.size() : array.shape(0), 3});
+  for (py::ssize_t k = 0; k < 3; ++k) {
+    const py::object column = records ? array[py::str(std::string(1, "xyz"[k]))].attr("reshape")(-1)
+                                      : py::object(array[py::make_tuple(py::ellipsis(), k)]);
+    copy[py::make_tuple(py::ellipsis(), k)] = column;
+  }
+  return copy;
+}
+
+/// @param array becomes the copy, where one is needed or wanted
+PointsView viewOfArray(const std::string& name, py::array& array, bool copy, bool& in_place)
+{
+  Layout layout = layoutOf(name, array);
+  in_place = !copy && isDescribable(layout);
+  if (!in_place) {
+    array = copyOf(array, layout.scalar);
+    layout = layoutOf(name, array);
+  }
+  const py::ssize_t first = *std::min_element(layout.offset.begin(), layout.offset.end()); // columns may run backwards
+  PointsView view;
+  view.data = static_cast<const char*>(array.data()) + first;
+  view.count = static_cast<std::size_t>(layout.count);
+  view.stride = static_cast<std::size_t>(std::max(layout.stride, widthOf(layout.scalar)));
+  for (std::size_t k = 0; k < 3; ++k) view.offset[k] = static_cast<std::size_t>(layout.offset[k] - first);
+  view.scalar = layout.scalar;
+  return view;
+}
+
+py::array doublesOf(const std::string& name, const py::object& object, Input input)
+{
+  using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+  Doubles array = Doubles::ensure(object);
+  if (!array) throw InvalidInput(input, name, "are no numbers", "give an array of float64");
+  return array;
+}
+
+Eigen::Isometry3d poseFromRows(const std::string& name, const double* rows, py::ssize_t row_count)
+{
+  using Rows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.affine() = Eigen::Map<const Rows>(rows);
+  if (row_count == 4 && !(rows[12] == 0.0 && rows[13] == 0.0 && rows[14] == 0.0 && rows[15] == 1.0))
+    throw InvalidInput(Input::pose, name, "has a last row other than 0 0 0 1",
+                       "give a rigid transform, (4, 4) or (3, 4)");
+  return pose;
+}
+
+bool isPoseShape(const py::array& array, py::ssize_t first)
+{
+  return (array.shape(first) == 3 || array.shape(first) == 4) && array.shape(first + 1) == 4;
+}
+
+} // namespace
+
+const void* KeptArrays::keep(const py::array& array)
+{
+  locks_.push_back(std::make_unique<ArrayLock>(array));
+  return array.data();
+}
+
+int KeptArrays::traverse(visitproc visit, void* arg) const
+{
+  std::vector<PyObject*> references;
+  if (points) references.push_back(points.ptr());
+  for (const auto& lock : locks_) lock->addReferences(references);
+  // Arrays do not tell the collector of their bases. The reference of one that nobody else has is as good as ours.
+  const bool tell_themselves = PyType_HasFeature(py::detail::npy_api::get().PyArray_Type_, Py_TPFLAGS_HAVE_GC);
+  for (std::size_t i = 0; i < references.size() && !tell_themselves; ++i) {
+    PyObject* const array = references[i];
+    const auto here = references.begin() + static_cast<std::ptrdiff_t>(i);
+    if (!py::isinstance<py::array>(array) || std::find(references.begin(), here, array) != here) continue;
+    if (Py_REFCNT(array) != std::count(here, references.end(), array)) continue;
+    if (PyObject* const base = py::detail::array_proxy(array)->base) references.push_back(base);
+  }
+  for (PyObject* const reference : references) Py_VISIT(reference);
+  return 0;
+}
+
+PointsView viewOfPoints(const std::string& name, const PointsInput& input)
+{
+  auto kept = makeOwner<KeptArrays>();
+  kept->points = arrayOf(name, input.xyz);
+  const bool converted = !kept->points.is(input.xyz) && kept->points.owndata();
+  PointsView view = viewOfArray(name, kept->points, input.copy, kept->in_place);
+  if (converted) kept->in_place = false;
+  kept->keep(kept->points);
+  const auto floats = [&](const char* what, const py::object& values) -> const float* {
+    if (values.is_none()) return nullptr;
+    py::array array = floatsOf(what, values, view.count);
+    if (input.copy) array = array.attr("copy")();
+    return static_cast<const float*>(kept->keep(array));
+  };
+  view.radii = floats("radii", input.radii);
+  view.uncertainty = input.uncertainty;
+  view.uncertainties = floats("uncertainties", input.uncertainties);
+  if (!input.indices.is_none()) {
+    const std::vector<std::uint32_t> records = recordsOf("indices", input.indices, 1);
+    py::array_t<std::int32_t> own(static_cast<py::ssize_t>(records.size()));
+    std::transform(records.begin(), records.end(), own.mutable_data(), [](std::uint32_t record) {
+      return static_cast<std::int32_t>(std::min<std::uint32_t>(record, std::numeric_limits<std::int32_t>::max()));
+    });
+    view.indices = static_cast<const std::int32_t*>(kept->keep(own));
+    view.index_count = records.size();
+  }
+  view.owner = std::shared_ptr<const void>(kept, static_cast<const Owner*>(kept.get()));
+  return view;
+}
+
+MovedView movedView(const PointsView& before, PointsInput input)
+{
+  // The arrays of before end with its hierarchy's view.
+  const auto stays = [&](py::object& given, const float* values) {
+    if (given.is_none() && values) given = py::array_t<float>(static_cast<py::ssize_t>(before.count), values);
+  };
+  stays(input.radii, before.radii);
+  stays(input.uncertainties, before.uncertainties);
+  if (before.indices)
+    input.indices = py::array_t<std::int32_t>(static_cast<py::ssize_t>(before.index_count), before.indices);
+  input.uncertainty = before.uncertainty;
+  return {before, viewOfPoints("points", input)};
+}
+
+PointsView viewForCall(const std::string& name, const py::object& xyz, py::array& kept)
+{
+  kept = arrayOf(name, xyz);
+  bool in_place = false;
+  return viewOfArray(name, kept, false, in_place);
+}
+
+Eigen::Isometry3d poseOf(const std::string& name, const py::object& pose)
+{
+  if (pose.is_none()) return Eigen::Isometry3d::Identity();
+  const py::array array = doublesOf(name, pose, Input::pose);
+  if (array.ndim() != 2 || !isPoseShape(array, 0))
+    throw InvalidInput(Input::pose, name, "has shape " + shapeOf(array), "give a rigid transform, (4, 4) or (3, 4)");
+  return poseFromRows(name, static_cast<const double*>(array.data()), array.shape(0));
+}
+
+std::vector<Eigen::Isometry3d> posesOf(const std::string& name, const py::object& poses)
+{
+  const py::array array = doublesOf(name, poses, Input::pose);
+  if (array.ndim() != 3 || !isPoseShape(array, 1))
+    throw InvalidInput(Input::pose, name, "have shape " + shapeOf(array),
+                       "give rigid transforms, (m, 4, 4) or (m, 3, 4)");
+  std::vector<Eigen::Isometry3d> list;
+  list.reserve(static_cast<std::size_t>(array.shape(0)));
+  const auto* rows = static_cast<const double*>(array.data());
+  for (py::ssize_t i = 0; i < array.shape(0); ++i, rows += 4 * array.shape(1))
+    list.push_back(poseFromRows(name + "[" + std::to_string(i) + "]", rows, array.shape(1)));
+  return list;
+}
+
+Point3 point3Of(const std::string& name, const py::object& point)
+{
+  const py::array array = doublesOf(name, point, Input::points);
+  if (array.ndim() != 1 || array.shape(0) != 3)
+    throw InvalidInput(Input::points, name, "has shape " + shapeOf(array), "give three coordinates");
+  const auto* p = static_cast<const double*>(array.data());
+  return {p[0], p[1], p[2]};
+}
+
+Eigen::Vector3d vectorOf(const std::string& name, const py::object& vector)
+{
+  const Point3 p = point3Of(name, vector);
+  return {p[0], p[1], p[2]};
+}
+
+Accuracy accuracyOf(const py::object& accuracy)
+{
+  if (accuracy.is_none()) return Accuracy::exact();
+  if (py::isinstance<py::str>(accuracy)) return Accuracy::parse(accuracy.cast<std::string>());
+  if (!py::isinstance<Accuracy>(accuracy)) throw py::type_error("accuracy: give a text or an Accuracy");
+  return accuracy.cast<Accuracy>();
+}
+
+py::array_t<float> floatsOf(const std::string& name, const py::object& values, std::size_t count)
+{
+  const py::array array = arrayOf(name, values);
+  if (scalarOf(array.dtype()) != Scalar::float32)
+    throw InvalidInput(Input::points, name, "are " + nameOfType(array.dtype()) + ", not float32",
+                       "convert them, and mind which way that rounds: numpy.asarray(..., numpy.float32)");
+  if (array.ndim() != 1 || static_cast<std::size_t>(array.shape(0)) != count)
+    throw InvalidInput(Input::points, name, "have shape " + shapeOf(array),
+                       "give one for each of the " + counted(count, "point"));
+  if (count > 1 && array.strides(0) != sizeof(float)) return py::array_t<float, py::array::c_style>::ensure(array);
+  return py::reinterpret_borrow<py::array_t<float>>(array); // not a view of it: what is given is to be locked
+}
+
+std::vector<std::uint32_t> recordsOf(const std::string& name, const py::object& values, py::ssize_t columns)
+{
+  const py::array given = arrayOf(name, values);
+  const bool empty = given.size() == 0;
+  if (!empty && given.dtype().kind() != 'i' && given.dtype().kind() != 'u')
+    throw InvalidInput(Input::index, name, "are " + nameOfType(given.dtype()), "give whole numbers");
+  const bool fits = columns == 1 ? given.ndim() == 1 : given.ndim() == 2 && given.shape(1) == columns;
+  if (!fits && !empty)
+    throw InvalidInput(Input::index, name, "have shape " + shapeOf(given),
+                       columns == 1 ? "give (n,)" : "give (n, " + std::to_string(columns) + ")");
+  const auto numbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(given);
+  std::vector<std::uint32_t> records(static_cast<std::size_t>(numbers.size()));
+  const std::int64_t* number = numbers.data();
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (number[i] < 0 || number[i] > std::int64_t{std::numeric_limits<std::uint32_t>::max()})
+      throw InvalidInput(Input::index, name, std::to_string(number[i]) + " is no record", "count from 0");
+    records[i] = static_cast<std::uint32_t>(number[i]);
+  }
+  return records;
+}
+
+} // namespace pcl_bsh::python

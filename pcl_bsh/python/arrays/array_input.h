@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What queries read, from NumPy arrays. All of it needs the interpreter's lock, and throws std::invalid_argument, which
+// Python knows as ValueError.
+#pragma once
+
+#include <pcl_bsh/geometry/point3.h>
+#include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/python/arrays/array_lock.h>
+#include <pcl_bsh/python/interpreter_lock.h>
+#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/placed.h>
+
+#include <pybind11/numpy.h>
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh::python {
+
+namespace py = pybind11;
+
+/// Points, and what may stand beside them, as Python hands them over.
+struct PointsInput {
+  py::object xyz;                        ///< (n, 3), or any shape of a dtype with fields x, y, z
+  py::object radii = py::none();         ///< (n,) float32
+  py::object indices = py::none();       ///< (k,) whole numbers
+  double uncertainty = 0.0;              ///< of every point
+  py::object uncertainties = py::none(); ///< (n,) float32
+  bool copy = false;
+};
+
+/// What a hierarchy of Python's lives on. Released by whichever thread lets go of it last.
+class Owner {
+public:
+  virtual ~Owner() = default;
+};
+
+/// Arrays that are read where they are, and so are locked.
+class KeptArrays : public Owner {
+public:
+  py::array points;
+  bool in_place = false; ///< `points` is the caller's own memory
+  const void* keep(const py::array& array);
+
+  /// As PyTypeObject::tp_traverse, for whoever alone has this object.
+  int traverse(visitproc visit, void* arg) const;
+
+private:
+  std::vector<std::unique_ptr<ArrayLock>> locks_;
+};
+
+/// An owner whose destructor runs with the interpreter's lock.
+template <class Kept>
+std::shared_ptr<Kept> makeOwner()
+{
+  return std::shared_ptr<Kept>(new Kept, [](Kept* kept) {
+    if (!Py_IsInitialized()) return; // the arrays went with the interpreter
+    const Locked lock;
+    delete kept;
+  });
+}
+
+/// The view of a hierarchy; its owner keeps the arrays. Memory that a view cannot describe (rows backwards, rows over
+/// each other, records of two dimensions without one step from each to the next) is copied.
+/// @param name how errors call the points
+PointsView viewOfPoints(const std::string& name, const PointsInput& input);
+
+/// Points that have moved, and where they were: what is last to hold these needs the interpreter's lock.
+struct MovedView {
+  PointsView before, now;
+};
+
+/// `input` has no subset and no common uncertainty, those of the points before stay, as do radii and uncertainties that
+/// it does not have.
+MovedView movedView(const PointsView& before, PointsInput input);
+
+/// The same for the time of a call: nothing is locked. `kept` has what must live as long as the view.
+PointsView viewForCall(const std::string& name, const py::object& xyz, py::array& kept);
+
+/// (4, 4) or (3, 4), anything that NumPy makes an array of; None: the identity.
+Eigen::Isometry3d poseOf(const std::string& name, const py::object& pose);
+
+/// (m, 4, 4) or (m, 3, 4).
+std::vector<Eigen::Isometry3d> posesOf(const std::string& name, const py::object& poses);
+
+Point3 point3Of(const std::string& name, const py::object& point);
+Eigen::Vector3d vectorOf(const std::string& name, const py::object& vector);
+
+/// A text for Accuracy::parse(), or an Accuracy; None: exact.
+Accuracy accuracyOf(const py::object& accuracy);
+
+/// (n,) float32, not locked.
+py::array_t<float> floatsOf(const std::string& name, const py::object& values, std::size_t count);
+
+/// Rows of `columns` record numbers, each in [0, 2^32).
+std::vector<std::uint32_t> recordsOf(const std::string& name, const py::object& values, py::ssize_t columns);
+
+} // namespace pcl_bsh::python

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Points that may be elsewhere than they were measured: one search for what may collide, one for what does for certain.
+#pragma once
+
+#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/query/reach.h>
+#include <pcl_bsh/query/result.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace pcl_bsh {
+
+inline bool areUncertain(const Placed& a, const Placed& b)
+{
+  return a.hierarchy().view().isUncertain() || b.hierarchy().view().isUncertain();
+}
+
+/// Where the points of two clouds are that collide for certain, and of those that may.
+inline Places certainPlaces(const Placed& a, const Placed& b)
+{
+  return areUncertain(a, b) ? Places::certain : Places::measured;
+}
+inline Places possiblePlaces(const Placed& a, const Placed& b)
+{
+  return areUncertain(a, b) ? Places::possible : Places::measured;
+}
+
+/// What each of the two searches may spend.
+inline Accuracy halfOf(Accuracy accuracy)
+{
+  if (accuracy.mode == Accuracy::Mode::node_pairs || accuracy.mode == Accuracy::Mode::time) accuracy.value /= 2;
+  return accuracy;
+}
+
+inline std::size_t countOf(const std::vector<std::uint8_t>& verdicts, Verdict verdict)
+{
+  return static_cast<std::size_t>(std::count(verdicts.begin(), verdicts.end(), flagOf(verdict)));
+}
+
+/// Points that may collide are undecided, unless they do for certain.
+/// @param flags of what may collide, then the verdicts. @param certain of what does
+inline void withhold(std::vector<std::uint8_t>& flags, const std::vector<std::uint8_t>& certain, std::size_t& colliding,
+                     std::size_t& undecided)
+{
+  colliding = undecided = 0;
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    if (flags[i] == flagOf(Verdict::free)) continue;
+    const bool collides = certain[i] == flagOf(Verdict::colliding);
+    flags[i] = flagOf(collides ? Verdict::colliding : Verdict::undecided);
+    ++(collides ? colliding : undecided);
+  }
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/roadmap/brute_force.h>
+
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/flags/check_request.h>
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/pairs/check_request.h>
+#include <pcl_bsh/query/brute_force_points.h>
+#include <pcl_bsh/query/pair_reach.h>
+#include <pcl_bsh/query/uncertain.h>
+#include <pcl_bsh/roadmap/collide_at_poses.h>
+
+#include <algorithm>
+
+namespace pcl_bsh::brute_force {
+namespace {
+
+/// Calls visit(p, q, verdict) for every pair, in ascending order, until it answers false. A pair is undecided if it may
+/// collide, but does not wherever its points truly are.
+template <class Visit>
+void forEachPair(const Placed& a, const Placed& b, double clearance, const Visit& visit)
+{
+  const ExactDistance distance(a.pose, b.pose);
+  const double of_a = a.hierarchy().view().uncertainty, of_b = b.hierarchy().view().uncertainty;
+  const bool uncertain = areUncertain(a, b);
+  const std::vector<FinitePoint> obstacles = finitePoints(b.hierarchy().view());
+  for (const FinitePoint& p : finitePoints(a.hierarchy().view())) {
+    for (const FinitePoint& q : obstacles) {
+      const auto collide = [&](double sign) {
+        return distance.compare(p.point, q.point,
+                                {clearance, p.radius, q.radius, sign * of_a, sign * of_b, sign * p.uncertainty,
+                                 sign * q.uncertainty}) <= 0;
+      };
+      Verdict verdict = Verdict::free;
+      if (uncertain)
+        verdict = collide(-1.0) ? Verdict::colliding : collide(1.0) ? Verdict::undecided : Verdict::free;
+      else if (distance.compare(p.point, q.point, clearance, p.radius, q.radius) <= 0)
+        verdict = Verdict::colliding;
+      if (!visit(p, q, verdict)) return;
+    }
+  }
+}
+
+/// Raises what is known of a point by what is known of a pair.
+void raise(std::uint8_t& flag, Verdict verdict)
+{
+  if (verdict == Verdict::colliding || flag == flagOf(Verdict::free)) flag = flagOf(verdict);
+}
+
+} // namespace
+
+AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request)
+{
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  AnyResult result;
+  forEachPair(a, b, request.clearance, [&](const FinitePoint& p, const FinitePoint& q, Verdict verdict) {
+    ++result.work.exact_decisions;
+    if (verdict != Verdict::free) result.verdict = verdict;
+    if (verdict != Verdict::colliding) return true;
+    result.witness = PointPair{p.record, q.record};
+    return false;
+  });
+  return result;
+}
+
+/// Free points of a that may be within the clearance of a patch of b's surface.
+void guardDensity(const Placed& a, const Placed& b, const FlagsRequest& request, std::vector<std::uint8_t>& flags)
+{
+  const ExactDistance distance(a.pose, b.pose);
+  const PointsView &of_a = a.hierarchy().view(), &of_b = b.hierarchy().view();
+  const PairReach reach(of_a, of_b, request.clearance, Places::covered, {request.spacings_of_b, of_b.count});
+  for (const FinitePoint& p : finitePoints(of_a))
+    for (const FinitePoint& q : finitePoints(of_b))
+      if (flags[p.record] == flagOf(Verdict::free) &&
+          distance.compare(p.point, q.point, reach.of({p.record, q.record})) <= 0)
+        flags[p.record] = flagOf(Verdict::sparse);
+}
+
+FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request)
+{
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  FlagsResult result;
+  std::vector<std::uint8_t> flags_a(a.hierarchy().view().count);
+  std::vector<std::uint8_t> flags_b(b.hierarchy().view().count);
+  forEachPair(a, b, request.clearance, [&](const FinitePoint& p, const FinitePoint& q, Verdict verdict) {
+    ++result.work.exact_decisions;
+    raise(flags_a[p.record], verdict);
+    raise(flags_b[q.record], verdict);
+    return true;
+  });
+  const auto asked = [&](Side side) {
+    return (static_cast<unsigned>(request.flagged) & static_cast<unsigned>(side)) != 0;
+  };
+  const auto count = [](const std::vector<std::uint8_t>& flags, Verdict verdict) {
+    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flagOf(verdict)));
+  };
+  if (asked(Side::a)) {
+    if (request.spacings_of_b) guardDensity(a, b, request, flags_a);
+    result.sparse_a = count(flags_a, Verdict::sparse);
+    result.colliding_a = count(flags_a, Verdict::colliding);
+    result.undecided_a = count(flags_a, Verdict::undecided);
+    result.a = std::move(flags_a);
+  }
+  if (asked(Side::b)) {
+    result.colliding_b = count(flags_b, Verdict::colliding);
+    result.undecided_b = count(flags_b, Verdict::undecided);
+    result.b = std::move(flags_b);
+  }
+  return result;
+}
+
+DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceRequest& request)
+{
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  const ExactDistance distance(a.pose, b.pose);
+  const std::vector<FinitePoint> obstacles = finitePoints(b.hierarchy().view());
+  DistanceResult result;
+  ExactDistance::Pair closest;
+  for (const FinitePoint& p : finitePoints(a.hierarchy().view())) {
+    for (const FinitePoint& q : obstacles) {
+      ++result.work.exact_decisions;
+      const ExactDistance::Pair pair{p.point, q.point, p.radius, q.radius};
+      if (result.pair && distance.compareGaps(pair, closest) >= 0) continue;
+      closest = pair;
+      result.pair = PointPair{p.record, q.record};
+    }
+  }
+  if (result.pair) result.distance = distance.gap(closest);
+  return result;
+}
+
+AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                               const AnyRequest& request)
+{
+  AnyAtPoses result;
+  for (std::size_t i = 0; i < T_world_b.size(); ++i) {
+    const AnyResult found = brute_force::anyCollision(a, {b, T_world_b[i]}, request);
+    result.verdicts.push_back(flagOf(found.verdict));
+    result.colliding += found.verdict == Verdict::colliding;
+    result.undecided += found.verdict == Verdict::undecided;
+    result.work += found.work;
+  }
+  return result;
+}
+
+DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                                    const DistanceRequest& request)
+{
+  DistancesAtPoses result;
+  for (std::size_t i = 0; i < T_world_b.size(); ++i) {
+    const DistanceResult found = brute_force::closestPair(a, {b, T_world_b[i]}, request);
+    result.distances.push_back(found.distance);
+    if (found.pair) result.pairs.push_back(*found.pair);
+    result.work += found.work;
+  }
+  return result;
+}
+
+void collisionFlagsAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                           const FlagsRequest& request,
+                           const std::function<void(std::size_t pose, const FlagsResult& flags)>& found)
+{
+  for (std::size_t i = 0; i < T_world_b.size(); ++i)
+    found(i, brute_force::collisionFlags(a, {b, T_world_b[i]}, request));
+}
+
+} // namespace pcl_bsh::brute_force

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/roadmap/check_motions.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/query/request_check.h>
+#include <pcl_bsh/roadmap/pose_tasks.h>
+#include <pcl_bsh/traversal/point_pairs.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr std::size_t kMotionBlock = 1024; // motions of one task
+
+std::string nameOf(const std::vector<PoseMotion>& motions, std::size_t m)
+{
+  return plainText("motion ", m, ", from pose ", motions[m].from, " to pose ", motions[m].to);
+}
+
+/// Whether neither the turn nor the way of a motion can be one that is refused: most are settled here, without the
+/// axis and the angle of their turn.
+bool isPlain(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, const PosePath::Sweep& sweep)
+{
+  const double turned = from.linear().cwiseProduct(to.linear()).sum(); // 1 + 2 cos of the angle; -1 for half a turn
+  if (!(turned > -0.99)) return false;
+  const Eigen::Vector3d pivot(sweep.pivot[0], sweep.pivot[1], sweep.pivot[2]);
+  const double way = 2.0 * (to * pivot - from * pivot).norm() + sweep.rounding;
+  const double reach = sweep.radius + sweep.reach + way;
+  const Bow most = bowSeenByBody(std::numbers::pi, way);
+  const double parts = 2.0 + std::sqrt((most.turn * reach + most.drift) / sweep.stray);
+  return parts < PosePath::kMostPoses && 0x1p-51 * parts * (way + std::numbers::pi * reach) < sweep.rounding;
+}
+
+/// Whether a swept path refuses the motion.
+bool isRefused(const MotionsQuery& query, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
+               const PosePath::Sweep& sweep)
+{
+  if (isPlain(from, to, sweep)) return false;
+  const RigidMotion motion = motionBetween(from, to, query.request.pivot);
+  const std::function<bool(double)> silent;
+  Progress progress(silent);
+  try {
+    PosePath::check({motion.from(), motion.to()}, sweep, progress);
+  }
+  catch (const InvalidInput&) {
+    return true;
+  }
+  return false;
+}
+
+/// The first of these that is wrong; `count` where none is.
+template <class IsWrong>
+std::size_t firstWrong(std::size_t count, unsigned threads, const IsWrong& isWrong)
+{
+  std::atomic<std::size_t> first{count};
+  parallelFor((count + kMotionBlock - 1) / kMotionBlock, threadCount(threads), [&](std::size_t block) {
+    const std::size_t end = std::min(count, (block + 1) * kMotionBlock);
+    for (std::size_t i = block * kMotionBlock; i < end; ++i) {
+      std::size_t known = first.load(std::memory_order_relaxed);
+      if (i >= known) return;
+      if (!isWrong(i)) continue;
+      while (i < known && !first.compare_exchange_weak(known, i, std::memory_order_relaxed)) {
+      }
+      return;
+    }
+  });
+  return first;
+}
+
+} // namespace
+
+void check(const Placed& scan, const PoseList& poses, const std::vector<PoseMotion>& motions,
+           const MotionsRequest& request)
+{
+  checkClearance(request.clearance);
+  if (!(std::isfinite(request.tolerance) && request.tolerance > 0.0))
+    throw InvalidInput(Input::swept, "tolerance of the motions", plainText(request.tolerance),
+                       "give a finite length > 0")
+        .withValue(request.tolerance);
+  for (const double coordinate : request.pivot)
+    if (!std::isfinite(coordinate))
+      throw InvalidInput(Input::pivot, "pivot", plainText(coordinate), "give three finite coordinates")
+          .withValue(coordinate);
+  checkPose("pose of the scan", scan.pose);
+  checkPoses(poses, "the model", request.threads);
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+  if (motions.size() > most)
+    throw InvalidInput(Input::motion, "motions",
+                       plainText(motions.size(), " are more than an index can name (", most, ")"),
+                       "ask for fewer at a time");
+  for (std::size_t m = 0; m < motions.size(); ++m)
+    if (motions[m].from >= poses.size() || motions[m].to >= poses.size())
+      throw InvalidInput(Input::motion, nameOf(motions, m), "the list has " + counted(poses.size(), "pose"),
+                         "name poses by their indices in the list, from 0")
+          .withIndex(m);
+}
+
+void checkSwept(const MotionsQuery& query, const PoseList& poses, const std::vector<std::uint32_t>& used,
+                const std::vector<PoseMotion>& motions)
+{
+  const double reach = reachOf(query.scan, query.model, query.swept,
+                               reachBetween(query.scan, {query.model}, query.request.clearance, query.places));
+  double far = 0.0;
+  for (const std::uint32_t k : used) far = std::max(far, farthestPlace(poses[k], query.boxes, query.request.pivot));
+  checkTolerance(query.scan, query.swept, query.boxes, reach, far);
+
+  const PosePath::Sweep sweep = sweepOf(query.swept, query.boxes, reach);
+  const std::size_t wrong = firstWrong(motions.size(), query.request.threads, [&](std::size_t m) {
+    return isRefused(query, poses[motions[m].from], poses[motions[m].to], sweep);
+  });
+  if (wrong == motions.size()) return;
+  if (isHalfTurn(shorterTurn(poses[motions[wrong].from].linear(), poses[motions[wrong].to].linear())))
+    throw InvalidInput(Input::motion, nameOf(motions, wrong), "half a turn, both directions are as short",
+                       "give a pose between them")
+        .withIndex(wrong);
+  throw InvalidInput(Input::swept, "tolerance of the motions",
+                     plainText(query.request.tolerance, ": too small for ", nameOf(motions, wrong)),
+                     "give a larger tolerance, or poses that are nearer to each other")
+      .withIndex(wrong)
+      .withValue(query.request.tolerance);
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One cloud at each of many poses against another: what planners and samplers ask by the million.
+//
+//   std::vector<Eigen::Isometry3d> samples = ...;                      // T_world_robot
+//   AnyRequest request;
+//   request.clearance = 0.05;
+//   request.threads = 0;                                               // all of the machine's
+//   AnyAtPoses found = anyCollisionAtPoses({hall}, robot, samples, request);
+//
+// Every answer is the one of the single query at that pose, for any order of the list and any number of threads.
+#pragma once
+
+#include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/pairs/any_collision.h>
+#include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/query/pose_list.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// What anyCollisionAtPoses() found.
+struct AnyAtPoses {
+  /// One per pose, a Verdict as a number: 0 free, 1 colliding, 2 undecided; the latter only where points have
+  /// uncertainties: some pair may be within the clearance, but none is wherever its points truly are.
+  std::vector<std::uint8_t> verdicts;
+  std::size_t colliding = 0; ///< poses that are
+  std::size_t undecided = 0;
+  Work work;
+};
+
+/// What closestPairAtPoses() found.
+struct DistancesAtPoses {
+  /// One per pose: what closestPair() answers there.
+  std::vector<double> distances;
+  std::vector<PointPair> pairs; ///< likewise; empty when a cloud has no finite point
+  Work work;
+};
+
+/// Is called now and then, by the thread that calls the query, with the fraction done in [0, 1], which never falls, and
+/// at least once where there is anything to do. False: stop, the query throws Cancelled. What it throws itself comes
+/// out of the query.
+using PosesProgress = std::function<bool(double)>;
+
+/// Does any pair of points collide, b at each of the poses T_world_b (rigid within 1e-6)? Verdicts alone: witnesses
+/// would depend on what neighbouring poses have in common, which is used again; anyCollision() gives that of a pose.
+/// @throws std::invalid_argument naming the value: a clearance or a pose that is not what its declaration asks for (a
+///   pose by its index), an accuracy that stops early. Cancelled.
+AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                               const AnyRequest& request = {}, const PosesProgress& progress = {});
+
+/// The smallest distance and the pair that realises it, b at each of the poses.
+/// @throws as anyCollisionAtPoses()
+DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                                    const DistanceRequest& request = {}, const PosesProgress& progress = {});
+
+/// Which points collide, b at each of the poses: calls found(pose, flags) once for each, in any order, from several
+/// threads at once for different poses where the request has more than one. What it throws comes out of this call, and
+/// no further poses are begun. The flags' memory is used again for the next pose.
+/// @param found is given the pose's index in the list
+/// @throws as anyCollisionAtPoses()
+void collisionFlagsAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                           const FlagsRequest& request,
+                           const std::function<void(std::size_t pose, const FlagsResult& flags)>& found);
+
+namespace brute_force {
+
+/// The oracle, pose by pose and pair by pair in exact arithmetic.
+AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                               const AnyRequest& request = {});
+DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                                    const DistanceRequest& request = {});
+void collisionFlagsAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                           const FlagsRequest& request,
+                           const std::function<void(std::size_t pose, const FlagsResult& flags)>& found);
+
+} // namespace brute_force
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

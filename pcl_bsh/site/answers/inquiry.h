@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One question about tiles of a site.
+#pragma once
+
+#include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/tiles/tile_visitor.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace pcl_bsh::site {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Of what two tiles say of one point: one that collides with a tile collides, and is free only if it is of all.
+inline std::uint8_t surer(std::uint8_t a, std::uint8_t b)
+{
+  const auto collides = flagOf(Verdict::colliding);
+  return a == collides || b == collides ? collides : std::max(a, b);
+}
+
+/// Of all tiles. @param collides the same on all ranks. @param is_undecided whether a tile of this rank is
+inline Verdict verdictOfAllRanks(bool collides, bool is_undecided)
+{
+  const bool none_is_sure = sumOfAllRanks(is_undecided ? 1 : 0) > 0;
+  if (collides) return Verdict::colliding;
+  return none_is_sure ? Verdict::undecided : Verdict::free;
+}
+
+class Inquiry {
+public:
+  Inquiry(const Site& site, const SiteRequest& request) : site_(site), request_(request), visitor_(site, request.memory)
+  {
+  }
+
+  /// Calls ask(tile, cloud, its hierarchy) for the first of these tiles, on one of the ranks each.
+  /// @param go_on as that of TileVisitor::visitInTurn()
+  template <typename Ask>
+  TilesRead visit(const std::vector<std::uint32_t>& tiles, const Ask& ask,
+                  const std::function<bool(std::size_t)>& go_on)
+  {
+    visitor_.visitInTurn(tiles, use(ask, tiles.size()), go_on);
+    return readOf(tiles.size());
+  }
+
+  /// The same for all of them where what is found of a tile is added to the rest by numbers, which may be known from an
+  /// earlier run.
+  /// @param find (tile, cloud, its hierarchy): its numbers, after the sink. @param add (numbers)
+  /// @param runs whether tiles that follow each other are better asked about on one rank
+  template <typename Find, typename Add>
+  TilesRead visitAndAdd(const std::vector<std::uint32_t>& tiles, const Find& find, const Add& add, bool runs = false)
+  {
+    std::vector<std::uint32_t> left;
+    for (const std::uint32_t tile : tiles) {
+      const std::vector<double>* const known = request_.answers ? request_.answers->known(tile) : nullptr;
+      if (known == nullptr)
+        left.push_back(tile);
+      else if (rankHere() == 0)
+        add(*known);
+    }
+    const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+      const std::vector<double> numbers = find(tile, cloud, hierarchy);
+      add(numbers);
+      if (request_.answers) request_.answers->keep(static_cast<std::size_t>(&tile - site_.tiles.data()), numbers);
+    };
+    constexpr std::size_t runs_of_rank = 4; // so many that the last ones make up for those that took long
+    const std::size_t run = left.size() / (runs_of_rank * static_cast<std::size_t>(ranks()));
+    visitor_.visitAll(left, use(ask, left.size()), runs ? std::max<std::size_t>(run, 1) : 1);
+    return readOf(tiles.size());
+  }
+
+  std::uint64_t bytesForLargest() const noexcept { return visitor_.bytesForLargest(); }
+
+  /// How hierarchies of tiles are built.
+  HierarchyOptions building() const
+  {
+    HierarchyOptions options;
+    options.threads = request_.threads;
+    return options;
+  }
+
+  /// The points of a tile, or of a part of it, with their uncertainties.
+  static PointsView pointsOf(const pcl::PCLPointCloud2& cloud, const Site& site, const Tile& tile,
+                             const Uncertainty& uncertainty)
+  {
+    return withUncertainty(viewOf(cloud), cloud.fields, (site.folder / tile.file).string(), uncertainty);
+  }
+
+private:
+  template <typename Ask>
+  TileVisitor::Use use(const Ask& ask, std::size_t tiles)
+  {
+    return [this, &ask, tiles](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
+      ask(tile, cloud, SphereHierarchy(pointsOf(cloud, site_, tile, request_.uncertainty), building()));
+      if (request_.progress && !request_.progress(visitor_.place() + 1, tiles)) throw Cancelled();
+    };
+  }
+
+  TilesRead readOf(std::size_t needed) const;
+  std::vector<TileCost> costsOfAllRanks() const;
+
+  const Site& site_;
+  const SiteRequest& request_;
+  TileVisitor visitor_;
+};
+
+} // namespace pcl_bsh::site

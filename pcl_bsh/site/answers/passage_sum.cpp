@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/site/answers/inquiry.h>
+#include <pcl_bsh/site/answers/passage_sum.h>
+#include <pcl_bsh/site/site_clashes.h>
+#include <pcl_bsh/trajectory/add_summary.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace pcl_bsh::site {
+
+namespace {
+
+/// Its number, as those of poses, is exact as a double.
+constexpr FirstContact no_contact = {std::size_t{1} << 53, 1.0};
+
+/// @pre one of them is a contact
+FirstContact earliestOfAllRanks(const FirstContact& own)
+{
+  const double pose = leastOfAllRanks(static_cast<double>(own.pose));
+  const bool mine = static_cast<double>(own.pose) == pose;
+  return {static_cast<std::size_t>(pose), leastOfAllRanks(mine ? own.fraction : 1.0)};
+}
+
+/// What `more` says of other points of the site, too.
+void addPoses(std::vector<PoseSummary>& poses, const std::vector<PoseSummary>& more)
+{
+  poses.resize(std::max(poses.size(), more.size()));
+  for (std::size_t k = 0; k < more.size(); ++k) addSummary(poses[k], more[k]);
+}
+
+void append(std::vector<double>& numbers, const std::vector<PoseSummary>& poses)
+{
+  for (const PoseSummary& pose : poses) {
+    numbers.insert(numbers.end(), {pose.colliding ? 1.0 : 0.0, static_cast<double>(pose.colliding_points),
+                                   static_cast<double>(pose.undecided_points), pose.distance});
+  }
+}
+
+std::vector<PoseSummary> posesOf(const std::vector<double>& numbers, std::size_t begin, std::size_t end)
+{
+  std::vector<PoseSummary> poses;
+  for (std::size_t i = begin; i < end; i += 4) {
+    poses.push_back({numbers[i] != 0.0, static_cast<std::size_t>(numbers[i + 1]),
+                     static_cast<std::size_t>(numbers[i + 2]), numbers[i + 3]});
+  }
+  return poses;
+}
+
+std::vector<PoseSummary> summedOverAllRanks(const std::vector<PoseSummary>& own)
+{
+  std::vector<double> numbers;
+  append(numbers, own);
+  const std::vector<double> all = gatheredFromAllRanks(numbers);
+  std::vector<PoseSummary> sum;
+  for (std::size_t begin = 0; begin < all.size(); begin += numbers.size())
+    addPoses(sum, posesOf(all, begin, begin + numbers.size()));
+  return sum;
+}
+
+} // namespace
+
+std::vector<Point3> cornersOf(const Site& site)
+{
+  if (!site.bounds) return {};
+  return {site.bounds->low, site.bounds->high};
+}
+
+TrajectoryRequest alongPath(const SiteRequest& request)
+{
+  TrajectoryRequest wanted;
+  wanted.clearance = request.clearance;
+  wanted.accuracy = request.accuracy;
+  wanted.threads = request.threads;
+  wanted.distances = wanted.first_poses = wanted.closest_poses = !request.accuracy.stopsEarly();
+  wanted.swept = request.swept;
+  wanted.pivot = request.pivot;
+  wanted.pose_summaries = request.pose_summaries;
+  return wanted;
+}
+
+PathReach pathReach(const SiteRequest& request)
+{
+  PathReach reach;
+  reach.distance = request.clearance + request.swept.value_or(0.0); // colliding is what comes within both
+  reach.moves = request.swept.has_value();
+  reach.pivot = request.pivot;
+  return reach;
+}
+
+void refusePassage(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
+                   const TrajectoryRequest& request)
+{
+  const std::vector<Point3> corners = cornersOf(site);
+  const SphereHierarchy scan(viewOf(corners.empty() ? nullptr : corners.front().data(), corners.size()));
+  pcl_bsh::collideAlong({scan}, model, poses, request);
+}
+
+FirstContact earlier(const FirstContact& a, const FirstContact& b)
+{
+  return std::pair(b.pose, b.fraction) < std::pair(a.pose, a.fraction) ? b : a;
+}
+
+PassageSum::PassageSum(const SiteRequest& request, std::size_t poses)
+: measures_(!request.accuracy.stopsEarly()),
+  moves_(request.swept.has_value()),
+  clashes_(request.clashes),
+  least_(infinity),
+  first_(infinity),
+  contact_(no_contact),
+  certain_(no_contact)
+{
+  if (clashes_ != nullptr && !measures_)
+    throw std::invalid_argument("accuracy " + request.accuracy.text() +
+                                ": clashes need distances: give exact, float or a tolerance");
+  if (request.pose_summaries) sum_.poses.resize(poses);
+}
+
+std::vector<double> PassageSum::numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud,
+                                          const TrajectoryResult& found, const std::vector<MetPoint>* met) const
+{
+  double nearest = infinity, earliest = infinity;
+  for (std::size_t i = 0; i < found.distance.size(); ++i) {
+    if (found.flags[i] == 0) continue;
+    nearest = std::min(nearest, double{found.distance[i]});
+    earliest = std::min(earliest, static_cast<double>(found.first_pose[i]));
+  }
+  std::vector<double> numbers = {static_cast<double>(found.colliding), static_cast<double>(found.undecided), nearest,
+                                 earliest};
+  for (const auto& contact : {found.first_contact, found.certain_contact})
+    numbers.insert(numbers.end(),
+                   {static_cast<double>(contact.value_or(no_contact).pose), contact.value_or(no_contact).fraction});
+  append(numbers, found.poses);
+  if (clashes_ == nullptr) return numbers;
+  const std::vector<double> of_clashes = clashes_->numbersOf(tile, cloud, found, met);
+  numbers.insert(numbers.end(), of_clashes.begin(), of_clashes.end());
+  return numbers;
+}
+
+void PassageSum::add(const std::vector<double>& numbers)
+{
+  sum_.colliding += static_cast<std::uint64_t>(numbers[0]);
+  sum_.undecided += static_cast<std::uint64_t>(numbers[1]);
+  least_ = std::min(least_, numbers[2]);
+  first_ = std::min(first_, numbers[3]);
+  contact_ = earlier(contact_, {static_cast<std::size_t>(numbers[4]), numbers[5]});
+  certain_ = earlier(certain_, {static_cast<std::size_t>(numbers[6]), numbers[7]});
+  const std::size_t end = 8 + 4 * sum_.poses.size();
+  addPoses(sum_.poses, posesOf(numbers, 8, end));
+  if (clashes_ != nullptr) clashes_->add(numbers, end);
+}
+
+SitePassage PassageSum::ofAllRanks()
+{
+  sum_.colliding = sumOfAllRanks(sum_.colliding);
+  sum_.undecided = sumOfAllRanks(sum_.undecided);
+  if (!sum_.poses.empty()) sum_.poses = summedOverAllRanks(sum_.poses);
+  least_ = leastOfAllRanks(least_);
+  first_ = leastOfAllRanks(first_);
+  if (measures_ && sum_.colliding + sum_.undecided > 0) {
+    sum_.distance = static_cast<float>(least_);
+    sum_.first_pose = static_cast<std::int32_t>(first_);
+    if (moves_) sum_.first_contact = earliestOfAllRanks(contact_);
+  }
+  if (sumOfAllRanks(certain_.pose == no_contact.pose ? 0 : 1) > 0) sum_.certain_contact = earliestOfAllRanks(certain_);
+  return sum_;
+}
+
+} // namespace pcl_bsh::site

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What tiles of a site meet along a path: what each is asked, and how the answers are added up.
+#pragma once
+
+#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/tiles/path_boxes.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcl_bsh::site {
+
+/// What is asked of each tile: flags, and of points that collide distances and poses, unless that stops early.
+TrajectoryRequest alongPath(const SiteRequest& request);
+
+/// What comes so near may collide.
+PathReach pathReach(const SiteRequest& request);
+
+/// Of the box about its points; none of a site without.
+std::vector<Point3> cornersOf(const Site& site);
+
+/// Refuses what the query would refuse of the whole site, although no tile may be asked: the site's corners are.
+/// @throws std::invalid_argument as collideAlong() does
+void refusePassage(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
+                   const TrajectoryRequest& request);
+
+/// The earlier one of two.
+FirstContact earlier(const FirstContact& a, const FirstContact& b);
+
+class PassageSum {
+public:
+  /// @param poses how many there are. @throws std::invalid_argument for clashes without distances
+  PassageSum(const SiteRequest& request, std::size_t poses);
+
+  /// What is known of a tile, as numbers. @param met what closest_point are numbers of, where the model is a site
+  std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
+                                const std::vector<MetPoint>* met = nullptr) const;
+
+  void add(const std::vector<double>& numbers);
+
+  /// Of all tiles of all ranks, on each of them. To be called once.
+  SitePassage ofAllRanks();
+
+private:
+  bool measures_, moves_;
+  ClashFinder* clashes_; ///< null: none are wanted
+  SitePassage sum_;
+  double least_, first_;
+  FirstContact contact_, certain_;
+};
+
+} // namespace pcl_bsh::site

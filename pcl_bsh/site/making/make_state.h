@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What of a site is done already, noted on the disk, so that a run that was ended can be continued.
+#pragma once
+
+#include <pcl_bsh/io/json/json_document.h>
+#include <pcl_bsh/site/site.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::site {
+
+/// All points are counted, and the tiles are planned (the plan is beside it); those up to `source` and `record` are
+/// dealt to files; some files are measured.
+struct MakeState {
+  std::optional<Bounds> bounds;
+  std::uint32_t plan_crc32 = 0;
+  std::uint32_t source = 0, record = 0;         ///< the next point to deal
+  std::uint64_t dealt = 0, overview = 0;        ///< points in tiles; points in the overview
+  std::vector<std::uint64_t> files;             ///< points of each
+  std::vector<std::optional<std::size_t>> open; ///< of each planned tile, the file that takes its points
+  std::vector<Tile> measured;                   ///< the first files
+};
+
+/// The state as a document. @param question what the site is made of
+std::string stateText(const MakeState& state, const io::Json& question);
+
+/// The state in a file. @param question that it must be the state of
+/// @throws files::FileError where it is of another question, or damaged
+MakeState readState(const std::filesystem::path& path, const io::Json& question);
+
+/// A plan as the bytes of a file, and again. @throws files::FileError when it has another checksum
+std::string planBytes(const std::vector<std::uint32_t>& numbers);
+std::vector<std::uint32_t> readPlan(const std::filesystem::path& path, std::uint32_t crc32);
+
+} // namespace pcl_bsh::site

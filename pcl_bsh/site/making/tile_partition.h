@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which voxels become one tile.
+#pragma once
+
+#include <pcl_bsh/geometry/point3.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace pcl_bsh::site {
+
+/// A voxel in which points were counted, or none.
+struct CountedVoxel {
+  Point3 middle = {};           ///< of its points, or of itself
+  std::uint64_t points = 0;     ///< counted in it
+  std::uint32_t above = 0;      ///< the smallest one that holds it: its number among those above
+  std::uint64_t most_above = 0; ///< points counted in all that hold it, before they were divided
+};
+
+/// A voxel that was divided.
+struct DividedVoxel {
+  static constexpr std::uint32_t none = 0xffffffffu;
+  std::uint64_t points = 0;   ///< counted in it before: in which of its parts they lie is not known
+  std::uint32_t above = none; ///< the smallest one that holds it
+};
+
+/// Halves the voxels along the longest side of the box about them until each part has at most tile_points, wherever the
+/// points of those above lie, or is one voxel: so tiles are compact, and nearly full.
+/// @return of each voxel its tile, counted from 0; neighbours have neighbouring numbers
+std::vector<std::uint32_t> tilesOf(const std::vector<CountedVoxel>& voxels, const std::vector<DividedVoxel>& above,
+                                   std::uint64_t tile_points);
+
+} // namespace pcl_bsh::site

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A site that is being made: its folder holds no site.json until all else is on the disk.
+#pragma once
+
+#include <pcl_bsh/io/files/new_file.h>
+#include <pcl_bsh/io/files/output_folder.h>
+#include <pcl_bsh/site/site.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::site {
+
+/// Whether a folder holds what a program has left that was killed while it made a site.
+bool isUnfinished(const std::filesystem::path& folder);
+
+/// What of so many bytes of a site its folder's disk must have free: not what an earlier run has left there, which is
+/// taken over or removed first.
+std::uint64_t spaceWanted(const std::filesystem::path& folder, std::uint64_t bytes);
+
+/// Makes the folder, if need be, and the files in it, which are removed again unless finish() or save() is called. What
+/// an earlier run has left that was killed is removed first, which is told by its mark; nothing else ever is.
+class UnfinishedSite {
+public:
+  enum class Use {
+    alone,       ///< nothing is left of it where finish() is not reached
+    shared,      ///< other processes write into the folder, too: its mark stays until finish()
+    continuable, ///< goes on with what was saved
+    resumed,     ///< as `shared`, and tiles of an earlier run stay until discardTiles()
+  };
+
+  /// @param bytes that the site will take on the disk; what an earlier run has left there is of it, or makes room
+  /// @throws files::FileError when there is a site already or anything else, when another program makes a site there,
+  ///   when something was saved and the use is another one, when the folder cannot be made, or the disk has no room
+  UnfinishedSite(const std::filesystem::path& folder, Use use, std::uint64_t bytes);
+  ~UnfinishedSite();
+  UnfinishedSite(const UnfinishedSite&) = delete;
+  UnfinishedSite& operator=(const UnfinishedSite&) = delete;
+
+  const std::filesystem::path& folder() const noexcept { return folder_.path(); }
+
+  /// Makes a file. @param name relative to the folder
+  files::NewFile& add(const std::filesystem::path& name);
+
+  /// Whether an earlier run has saved something, and where that stands.
+  bool wasSaved() const noexcept { return was_saved_; }
+  std::filesystem::path stateFile() const;
+  std::filesystem::path planFile() const;
+
+  /// Removes all that was begun after save(): of the tiles' files the first `tiles` stay.
+  void discardTilesFrom(std::size_t tiles);
+
+  /// Removes the files of tiles whose numbers are not among these.
+  void discardTiles(const std::set<std::size_t>& stay);
+
+  /// Leaves nothing where finish() is not reached, although the folder is shared.
+  void forget();
+
+  /// Removes a file that was begun, if there is one. @param name relative to the folder
+  void discard(const std::filesystem::path& name);
+
+  /// A file that was there when save() was called, with so many bytes. @param name relative to the folder
+  files::NewFile& goOn(const std::filesystem::path& name, std::uint64_t bytes);
+
+  /// From now on, what is there stays where finish() is not reached.
+  void savePlan(const std::string& bytes);
+  void save(const std::string& state);
+
+  /// Brings all files to the disk, then site.json, and keeps them.
+  void finish(const Site& site);
+
+private:
+  void mark();
+  void clear();
+  void keepMark();
+
+  files::OutputFolder folder_;
+  int mark_ = -1; ///< open and locked while the site is made
+  bool stays_ = false, was_saved_ = false, finished_ = false;
+  std::unique_ptr<files::NewFile> mark_file_;
+  std::unique_ptr<files::OutputFolder> tiles_;
+  std::vector<std::unique_ptr<files::NewFile>> files_;
+};
+
+} // namespace pcl_bsh::site

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Boxes about a cloud's points, wherever the cloud stands: what of a site may be near it is told by them in no time.
+#pragma once
+
+#include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/site/site.h>
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace pcl_bsh::site {
+
+/// The box about a box that is moved, and larger by `reach` on all sides. Its rounding is paid for. All of space where
+/// numbers overflow.
+Bounds moved(const Bounds& box, const Eigen::Isometry3d& pose, double reach);
+
+/// Whether they have a point in common.
+bool overlap(const Bounds& a, const Bounds& b);
+
+/// At most the distance of any points of both; 0 where the boxes overlap.
+double leastDistance(const Bounds& a, const Bounds& b);
+
+/// The smallest box about both.
+Bounds joined(const Bounds& a, const Bounds& b);
+
+/// Whether a point, moved by a pose, may be within a distance of a box: asked of many points, which lie in a box.
+class PointsNear {
+public:
+  PointsNear(const Bounds& box, double distance, const Bounds& points, const Eigen::Isometry3d& pose);
+
+  /// False: it is farther away, or not finite.
+  bool operator()(const Point3& p) const
+  {
+    bool is_near = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double place = rows_[k][0] * p[0] + rows_[k][1] * p[1] + rows_[k][2] * p[2] + rows_[k][3];
+      is_near = is_near && place >= grown_.low[k] && place <= grown_.high[k];
+    }
+    return is_near;
+  }
+
+private:
+  Bounds grown_; ///< by the distance, and what the places' rounding may be
+  std::array<std::array<double, 4>, 3> rows_;
+};
+
+/// Boxes, in the cloud's frame, about its finite points with their radii and uncertainties: about all of them, and
+/// about those of each cell of a coarse grid.
+class CloudBoxes {
+public:
+  explicit CloudBoxes(const PointsView& points);
+
+  /// The box about points that are not at hand.
+  explicit CloudBoxes(const Bounds& box) : whole_(box), parts_{box} {}
+
+  bool empty() const noexcept { return parts_.empty(); }
+  const Bounds& whole() const { return *whole_; } ///< @pre not empty
+  const std::vector<Bounds>& parts() const noexcept { return parts_; }
+  double largestRadius() const noexcept { return largest_radius_; } ///< of a point
+
+private:
+  std::optional<Bounds> whole_;
+  std::vector<Bounds> parts_;
+  double largest_radius_ = 0.0;
+};
+
+} // namespace pcl_bsh::site

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a model may be on its way: a tree of boxes over the path, which tiles are compared with.
+#pragma once
+
+#include <pcl_bsh/site/tiles/cloud_boxes.h>
+
+#include <Eigen/Geometry>
+
+#include <vector>
+
+namespace pcl_bsh::site {
+
+/// What is added to where a model is.
+struct PathReach {
+  double distance = 0.0;    ///< how near counts
+  bool moves = false;       ///< the motion between poses counts, too
+  Point3 pivot = {0, 0, 0}; ///< of that motion, in the model's frame
+};
+
+/// Boxes about a model with its reach at each pose, or on its way from each pose to the next, and about those of pairs,
+/// and so on up to the whole path. The model and the poses are borrowed.
+class PathBoxes {
+public:
+  PathBoxes(const CloudBoxes& model, const std::vector<Eigen::Isometry3d>& poses, const PathReach& reach);
+
+  /// Whether anything within a box may be within reach. Never false where a point of it is.
+  bool mayReach(const Bounds& box) const;
+
+private:
+  Bounds boxOf(const Bounds& part, std::size_t step) const;
+  double strayOf(std::size_t step) const;
+  bool mayReach(const Bounds& box, std::size_t level, std::size_t index) const;
+
+  const CloudBoxes& model_;
+  const std::vector<Eigen::Isometry3d>& poses_;
+  PathReach reach_;
+  double arm_ = 0.0;                        ///< no part of the model is farther from the pivot
+  std::vector<std::vector<Bounds>> levels_; ///< steps of the path, then pairs of what is below; empty: nothing to reach
+};
+
+} // namespace pcl_bsh::site

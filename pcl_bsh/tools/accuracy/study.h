@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What accuracy costs in time, measured on a caller's own clouds.
+#pragma once
+
+#include <pcl_bsh/collide.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::accuracy {
+
+/// Two clouds, and where the second stands in the frame of the first.
+struct Subject {
+  PointsView a, b;
+  double clearance = 0.0;
+  std::vector<Eigen::Isometry3d> poses; ///< T_a_b
+  double diameter = 0.0;                ///< of a's bounding box
+  std::string unit;                     ///< of lengths, for titles; empty: not known
+};
+
+struct Spread {
+  double low = 0.0, median = 0.0, high = 0.0; ///< tenth, half and nine tenths of the repetitions
+};
+
+/// One setting of one query, over all poses.
+struct Measurement {
+  std::string query; ///< any, flags or distance
+  std::string knob;  ///< which of the dials, or which peer
+  std::string setting;
+  bool peer = false; ///< not ours
+  Spread seconds;    ///< of one query: of each pose over the repetitions, averaged over the poses
+  Work work;         ///< of all poses together
+  bool certified = true;
+  double certified_error = 0.0; ///< distance: widest interval of all poses; flags, any: share left undecided
+  double actual_error = 0.0;    ///< distance: farthest from exact at any pose; flags, any: share of wrong answers
+  std::size_t wrong = 0;        ///< flags, any: answers that differ from exact
+  std::size_t poses = 0;
+};
+
+/// One way to choose centres of spheres.
+struct FitMeasurement {
+  std::string fit;
+  Spread build;                ///< seconds, both clouds, everything built
+  double mean_leaf_radius = 0; ///< of a
+  Spread flags, distance;      ///< seconds of an exact query, averaged over the poses
+};
+
+struct Study {
+  std::size_t colliding = 0; ///< points of a, counted at every pose
+  std::vector<Measurement> measurements;
+  std::vector<FitMeasurement> fits;
+};
+
+/// Called with what is being measured and the share done.
+using Progress = std::function<void(const std::string&, double)>;
+
+/// Runs the dial over its range; repetitions are interleaved, so that a machine's moods meet all settings alike.
+Study runStudy(const Subject& subject, unsigned repetitions, unsigned threads, const Progress& progress);
+
+Spread spreadOf(std::vector<double> values);
+
+/// The mean of the poses' spreads: an interruption at one pose in one repetition moves no median.
+/// @param samples of each pose, one a repetition
+Spread meanSpreadOf(const std::vector<std::vector<double>>& samples);
+
+/// The nearest of 1, 3 and 10 times a power of ten. @param length > 0
+double roundLength(double length);
+
+} // namespace pcl_bsh::accuracy

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "columns.h"
+
+#include "program.h"
+
+#include <pcl_bsh/io/text/format_error.h>
+
+namespace pcl_bsh::cli {
+
+void ColumnOptions::addTo(CLI::App& app)
+{
+  app.add_option("--columns", given_,
+                 "names of the columns of .xyz, .txt and .csv, as x,y,z,_,intensity (_ is\n"
+                 "not read), in place of what they say; FILE=NAMES: of that file alone;\n"
+                 "may be given more than once")
+      ->type_name("NAMES")
+      ->allow_extra_args(false);
+}
+
+io::ColumnChoice ColumnOptions::read(const std::vector<std::filesystem::path>& files) const
+{
+  io::ColumnChoice choice;
+  std::string text;
+  try {
+    for (const std::string& given : given_) choice.add(text = given);
+    choice.requireUsed(files);
+  }
+  catch (const io::FormatError& error) {
+    throw UsageError("--columns: " + text + ": " + error.what() + ": " + error.remedy());
+  }
+  return choice;
+}
+
+} // namespace pcl_bsh::cli

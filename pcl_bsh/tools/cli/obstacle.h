@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The obstacle of a command line: a cloud or, where its file has faces, a surface.
+#pragma once
+
+#include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/query/accuracy.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+/// Reads it, as a step of the program.
+/// @param clearance of the query. @param seconds that it took are added
+/// @throws as io::readObstacle() does, whose last arguments these are
+io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double clearance,
+                          double& seconds, const io::ColumnNames& columns = {}, io::CloudFacts* facts = nullptr);
+
+/// What users should know of the obstacle, a line each, with the file's name.
+std::vector<std::string> warningsOf(const io::Obstacle& obstacle, const std::filesystem::path& path);
+
+/// A field of sigmas is one of points. @throws std::invalid_argument for one of a surface
+void requireLength(const io::Obstacle& obstacle, const std::filesystem::path& path, const Uncertainty& uncertainty);
+
+/// Whose tolerance comes on top of a surface's, as io::promiseOf() takes it; empty: none.
+std::string besideSurface(const Accuracy& accuracy, bool swept);
+
+} // namespace pcl_bsh::cli

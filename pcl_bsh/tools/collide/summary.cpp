@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "summary.h"
+
+#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/tools/cli/program.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+
+namespace pcl_bsh::cli {
+namespace {
+
+/// As sure as it is.
+std::string distanceText(const CollisionReport& report)
+{
+  std::ostringstream text;
+  text << report.closest.distance;
+  if (!report.accuracy.isProven()) return text.str() + " without proof";
+  if (report.accuracy.isExact()) return text.str();
+  if (report.path) return text.str() + " within the tolerance";
+  text << " or less, certainly in [" << report.closest.interval.lower << ", " << report.closest.interval.upper << "]";
+  return text.str();
+}
+
+/// With the unit, where it is known.
+std::string distanceSummary(const io::DistanceReport& report)
+{
+  const auto length = [&](double value) {
+    std::ostringstream text;
+    if (std::isnan(value)) return std::string("unknown");
+    text << value << (report.question.unit.empty() ? "" : " ") << report.question.unit;
+    return text.str();
+  };
+  const DistanceStatistics& statistics = report.input.statistics;
+  return "; distances of " + counted(statistics.count, "point") + ": mean " + length(statistics.mean) + ", RMS " +
+         length(statistics.rms) + ", median " + length(statistics.median) + ", greatest " + length(statistics.maximum) +
+         "; Hausdorff distance " + length(report.hausdorff);
+}
+
+} // namespace
+
+void summarise(const CollideOptions& options, const CollisionReport& report, const std::string& clashes,
+               const std::optional<io::DistanceReport>& distances)
+{
+  warn(collide_program, report.warnings);
+  std::ostream& out = options.files.summary();
+  out << report.colliding << " of " << counted(report.input.points, report.input_surface ? "triangle" : "point")
+      << (report.input.points == 1 ? " collides" : " collide");
+  if (report.mayLeaveUndecided()) out << ", " << report.undecided << " are undecided";
+  if (report.widest_gap > 0) out << ", " << report.sparse << " are not scanned densely enough";
+  if (report.closest.pair) {
+    out << "; smallest distance " << distanceText(report) << ", between "
+        << (report.input_surface ? "triangle " : "point ") << report.closest.pair->a << " of the input and "
+        << (report.surface ? report.surface->partName() : "point") << ' ' << report.closest.pair->b
+        << " of the obstacle";
+  }
+  if (report.path) out << "; " << counted(report.path->poses, "pose");
+  if (report.path && report.path->first_contact) {
+    out << "; first contact at pose "
+        << static_cast<double>(report.path->first_contact->pose) + report.path->first_contact->fraction;
+  }
+  if (!clashes.empty()) out << "; " << clashes;
+  if (distances) out << distanceSummary(*distances);
+  if (report.surface) out << "; " << io::promiseOf(*report.surface, report.besideSurface());
+  out << "; wrote " << options.output.string() << '\n';
+}
+
+} // namespace pcl_bsh::cli

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What does accuracy cost in time, on these two clouds? A table, a plot, and which setting to choose.
+#include <pcl_bsh/tools/accuracy/peers.h>
+#include <pcl_bsh/tools/accuracy/report.h>
+#include <pcl_bsh/tools/cli/columns.h>
+#include <pcl_bsh/tools/cli/command_line.h>
+#include <pcl_bsh/tools/cli/obstacle.h>
+#include <pcl_bsh/tools/cli/pose.h>
+#include <pcl_bsh/tools/cli/surface_options.h>
+#include <pcl_bsh/tools/cli/used_files.h>
+#include <pcl_bsh/tools/collide/options.h>
+
+#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/files/output_folder.h>
+#include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/poses/pose_file.h>
+#include <pcl_bsh/question/warnings.h>
+
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <random>
+
+namespace {
+
+using namespace pcl_bsh;
+
+constexpr auto program = "pcl_bsh_accuracy";
+constexpr auto footer =
+    R"(Queries whether the clouds collide, where, and their distance, at every setting: exact, float only, tolerance, level of
+detail, budgets. Writes accuracy.csv, accuracy.json, accuracy.md and accuracy.png. A or B may be a pipe, or - for standard input.
+Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
+
+Example: a robot in a hall, at ten poses about (1.5, 2, 0)
+  pcl_bsh_accuracy hall.ply robot.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.57 --poses 10 --out study
+Example: a wagon on its way
+  pcl_bsh_accuracy tunnel.ply wagon.ply --clearance 0.05 --trajectory poses.txt --out study)";
+
+constexpr std::size_t most_poses = 20; // of a trajectory's; every setting is measured at each, several times
+
+constexpr std::array results = {"accuracy.csv", "accuracy.json", "accuracy.md", "accuracy.png"};
+
+struct Options {
+  std::filesystem::path a, b, out, trajectory;
+  double clearance = 0.0;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  unsigned poses = 1, repetitions = 5, threads = 1;
+  std::string unit;
+  bool peers = false;
+  io::SurfaceSettings surface;
+  io::ColumnChoice columns;
+  cli::CommandFiles files;
+};
+
+std::optional<Options> parse(int argc, char** argv)
+{
+  std::string pose;
+  std::optional<unsigned> poses;
+  Options options;
+  CLI::App app("Measures what accuracy costs in time, on two clouds.", program);
+  app.footer(footer);
+  app.add_option("A", options.a, "the cloud whose points are tested, or a mesh")->type_name("")->required();
+  app.add_option("B", options.b, "cloud or mesh to collide with")->type_name("")->required();
+  app.add_option("--clearance", options.clearance, "greatest distance that counts as collision, in the clouds' unit")
+      ->type_name("D")
+      ->transform(cli::number<double>(cli::give_length))
+      ->required();
+  app.add_option("--out", options.out, "folder for the results; made if it is not there")->type_name("DIR")->required();
+  app.add_option("--pose", pose, "of B in A's frame, as for pcl_bsh_collide (default: no motion)")->type_name("POSE");
+  const auto at_least_one = [](unsigned n) { return n >= 1; };
+  app.add_option("--poses", poses,
+                 "that pose, and N - 1 about it: up to 5 % of A's diameter and 10 degrees off (default: 1)")
+      ->type_name("N")
+      ->transform(cli::number<unsigned>("give a number of poses, 1 or more", at_least_one));
+  app.add_option("--trajectory", options.trajectory,
+                 "instead: a file of B's poses, as for pcl_bsh_collide; of more than 20,\n"
+                 "20 in even steps")
+      ->type_name("FILE");
+  app.add_option("--repeat", options.repetitions, "repetitions of every measurement (default: 5)")
+      ->type_name("N")
+      ->transform(cli::number<unsigned>("give a number, 1 or more", at_least_one));
+  app.add_option("--threads", options.threads, "0: all of the machine's (default: 1)")
+      ->type_name("N")
+      ->transform(cli::number<unsigned>(cli::give_threads));
+  cli::ColumnOptions columns;
+  columns.addTo(app);
+  app.add_option("--unit", options.unit, "name of the clouds' unit, for the picture")->type_name("NAME");
+  cli::addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
+  app.add_flag("--peers", options.peers,
+               "measure PCL's kd-tree, octree and VoxelGrid on the same clouds, too, which\n"
+               "must be points");
+  if (!cli::understood(app, program, argc, argv)) return std::nullopt;
+  if (!options.trajectory.empty() && (!pose.empty() || poses))
+    throw cli::UsageError(std::string(pose.empty() ? "--poses" : "--pose") + ": --trajectory is given too: give one");
+  options.poses = poses.value_or(1);
+  if (!pose.empty()) {
+    std::vector<std::string> warnings;
+    options.pose = cli::parsePose("--pose", pose, warnings);
+    cli::warn(program, warnings);
+  }
+  options.columns = columns.read({options.a, options.b});
+  options.files.reads("A", options.a).reads("B", options.b).reads("--trajectory", options.trajectory);
+  options.files.readsPose("--pose", pose);
+  for (const char* name : results) options.files.writes("--out", options.out / name);
+  return options;
+}
+
+io::Obstacle load(const Options& options, const std::filesystem::path& path, io::SurfaceSettings settings)
+{
+  double seconds = 0.0;
+  io::Obstacle loaded = cli::loadObstacle(path, settings, options.clearance, seconds, options.columns.of(path));
+  cli::warn(program, cli::warningsOf(loaded, path));
+  if (options.peers && loaded.isSurface())
+    throw std::runtime_error("--peers: are measured on points, and " + path.string() +
+                             " has faces: leave it out, or give --vertices-only");
+  return loaded;
+}
+
+/// What was compared.
+std::string describe(const io::Obstacle& compared, const std::filesystem::path& path)
+{
+  const std::size_t records = compared.view().count;
+  const std::string what = compared.isSurface()
+                               ? counted(compared.triangles()->size(), "triangle") + " in " + counted(records, "ball")
+                               : counted(records, "point");
+  return "`" + path.filename().string() + "` (" + what + ")";
+}
+
+struct Box {
+  Eigen::AlignedBox3d box;
+  explicit Box(const PointsView& view)
+  {
+    for (std::size_t i = 0; i < view.count; ++i) {
+      const Point3 p = view.point(static_cast<std::uint32_t>(i));
+      const Eigen::Vector3d v(p[0], p[1], p[2]);
+      if (v.allFinite()) box.extend(v);
+    }
+  }
+};
+
+/// The pose, then others about it: turned about the middle of B, so that far coordinates do not swing away.
+std::vector<Eigen::Isometry3d> posesAbout(const Options& options, double diameter, const Eigen::Vector3d& middle)
+{
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<Eigen::Isometry3d> poses = {options.pose};
+  while (poses.size() < options.poses) {
+    const Eigen::Vector3d axis = Eigen::Vector3d(unit(random), unit(random), unit(random)).normalized();
+    const Eigen::Vector3d shift = 0.05 * diameter * Eigen::Vector3d(unit(random), unit(random), unit(random));
+    const double angle = unit(random) * 10.0 * 3.14159265358979323846 / 180.0;
+    poses.push_back(Eigen::Translation3d(shift) * options.pose * Eigen::Translation3d(middle) *
+                    Eigen::AngleAxisd(angle, axis) * Eigen::Translation3d(-middle));
+  }
+  return poses;
+}
+
+/// The file's poses, or some of them.
+std::vector<Eigen::Isometry3d> posesOfFile(const std::filesystem::path& file)
+{
+  std::vector<std::string> warnings;
+  const std::vector<Eigen::Isometry3d> all = io::readPoses(file, &warnings);
+  cli::warn(program, warnings);
+  if (all.size() <= most_poses) return all;
+  std::vector<Eigen::Isometry3d> some;
+  for (std::size_t i = 0; i < most_poses; ++i) some.push_back(all[i * (all.size() - 1) / (most_poses - 1)]);
+  return some;
+}
+
+int study(const Options& options)
+{
+  options.files.requireApart();
+  const std::vector<Eigen::Isometry3d> given =
+      options.trajectory.empty() ? std::vector<Eigen::Isometry3d>() : posesOfFile(options.trajectory);
+  const files::OutputFolder folder(options.out);
+  for (const char* name : results) files::requireWritable(options.out / name);
+  io::SurfaceSettings asked_about = options.surface; // as pcl_bsh_collide takes an input
+  asked_about.triangles_apart = true;
+  const io::Obstacle given_a = load(options, options.a, asked_about),
+                     given_b = load(options, options.b, options.surface);
+  accuracy::Subject subject{given_a.view(), given_b.view(), options.clearance, {}, 0.0, options.unit};
+  const Box a(subject.a), b(subject.b);
+  if (a.box.isEmpty() || b.box.isEmpty())
+    throw std::runtime_error((a.box.isEmpty() ? options.a : options.b).string() +
+                             ": has no finite point: there is nothing to measure: give another cloud");
+  subject.diameter = a.box.diagonal().norm();
+  subject.poses = given.empty() ? posesAbout(options, subject.diameter, b.box.center()) : given;
+  std::vector<std::string> told;
+  addTexts(warningsOf({measuredCloud(options.a.string(), SphereHierarchy(subject.a), given_a.cover().get()),
+                       measuredCloud(options.b.string(), SphereHierarchy(subject.b), given_b.cover().get()),
+                       subject.poses, options.clearance}),
+           told);
+  cli::warn(program, told);
+
+  const auto progress = [](const std::string& what, double done) {
+    std::cerr << "> " << static_cast<int>(100 * done) << " %: " << what << '\n';
+  };
+  accuracy::Study result = accuracy::runStudy(subject, options.repetitions, options.threads, progress);
+  if (options.peers) {
+    for (accuracy::Measurement& m : accuracy::measurePeers(subject, std::min(options.repetitions, 3u), progress))
+      result.measurements.push_back(std::move(m));
+  }
+
+  std::string heading = describe(given_a, options.a) + " against " + describe(given_b, options.b) + ".";
+  if (given_b.isSurface()) heading += " Here " + io::promiseOf(given_b, "a setting") + ".";
+  accuracy::writeReports(options.out, heading, subject, result);
+  std::cout << accuracy::advice(subject, result) << "\nWrote " << (options.out / "accuracy.md").string()
+            << ", accuracy.csv and accuracy.png beside it.\n";
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(program, [&] {
+    const std::optional<Options> options = parse(argc, argv);
+    return options ? study(*options) : 0;
+  });
+}

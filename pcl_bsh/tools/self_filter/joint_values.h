@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Values of joints as users write them.
+#pragma once
+
+#include "robot.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::self_filter {
+
+/// `name=value,...`; may be empty.
+/// @throws io::FormatError naming the word that is none of that
+JointValues parseJointValues(const std::string& text);
+
+/// A table: the names of joints in its first line, then a line for each frame; separated by semicolons, commas, tabs or
+/// blanks; comments begin with #.
+/// @throws files::FileError naming the line
+std::vector<JointValues> readJointStates(const std::filesystem::path& path);
+
+} // namespace pcl_bsh::self_filter

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "link_body.h"
+
+#include "shape_surface.h"
+
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/surface/surface_cover.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+#include <variant>
+
+namespace pcl_bsh::self_filter {
+
+namespace {
+
+/// The least float that is not smaller.
+float roundedUp(double length)
+{
+  const auto nearest = static_cast<float>(length);
+  return nearest < length ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
+}
+
+void addSolid(LinkBody& body, const Solid& solid, const Eigen::Isometry3d& T_link_solid, double tolerance)
+{
+  requireSize(solid);
+  body.solids.push_back({solid, T_link_solid.inverse()});
+  // Balls along a rod, about as long as they are wide: one ball about all of a slender solid would hold much else.
+  constexpr double most = 64;
+  const Rod rod = rodAround(solid);
+  const double count = std::clamp(std::ceil(rod.half_length / rod.radius), 1.0, most);
+  const double radius = std::hypot(rod.radius, rod.half_length / count) + tolerance;
+  for (double i = 0; i < count; ++i) {
+    const Eigen::Vector3d center =
+        T_link_solid * (((2 * i + 1) / count - 1) * rod.half_length * Eigen::Vector3d::Unit(rod.axis));
+    body.enclosing.centers.push_back({center.x(), center.y(), center.z()});
+    body.enclosing.radii.push_back(roundedUp(radius));
+  }
+}
+
+void addMesh(LinkBody& body, const Shape& shape, double tolerance)
+{
+  const Surface surface = surfaceOf(shape, tolerance);
+  SurfaceRequest request;
+  request.tolerance = tolerance;
+  const SurfaceCover cover =
+      coverSurface(viewOf(surface.vertices[0].data(), surface.vertices.size()), surface.triangles, request);
+  body.surfaces.centers.insert(body.surfaces.centers.end(), cover.centers.begin(), cover.centers.end());
+  body.surfaces.radii.insert(body.surfaces.radii.end(), cover.radii.begin(), cover.radii.end());
+}
+
+void addShape(LinkBody& body, const Shape& shape, double tolerance)
+{
+  std::visit(
+      [&](const auto& form) {
+        if constexpr (std::is_constructible_v<Solid, decltype(form)>)
+          addSolid(body, form, shape.pose, tolerance);
+        else
+          addMesh(body, shape, tolerance);
+      },
+      shape.form);
+}
+
+} // namespace
+
+PointsView Balls::view() const
+{
+  PointsView view = viewOf(centers.empty() ? nullptr : centers[0].data(), centers.size());
+  view.radii = radii.data();
+  return view;
+}
+
+bool LinkBody::hasWithin(double padding, const Eigen::Vector3d& point) const
+{
+  return std::any_of(solids.begin(), solids.end(), [&](const PlacedSolid& placed) {
+    constexpr double roundings = 0x1p-48; // of the numbers that a distance is made of
+    const double size = point.lpNorm<1>() + placed.T_solid_link.translation().lpNorm<1>() + padding;
+    return distanceTo(placed.solid, placed.T_solid_link * point) <= padding + roundings * size;
+  });
+}
+
+LinkBody bodyOf(const Link& link, double tolerance)
+{
+  LinkBody body;
+  for (const Shape& shape : link.shapes) {
+    try {
+      addShape(body, shape, tolerance);
+    }
+    catch (const files::FileError&) {
+      throw;
+    }
+    catch (const std::exception& error) {
+      throw std::runtime_error("link '" + link.name + "': " + error.what());
+    }
+  }
+  return body;
+}
+
+} // namespace pcl_bsh::self_filter

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts the robot that scans out of its scans: links from a URDF, where the joints' values put them.
+#include "joint_values.h"
+#include "self_filter.h"
+#include <pcl_bsh/tools/cli/columns.h>
+#include <pcl_bsh/tools/cli/command_line.h>
+#include <pcl_bsh/tools/cli/json_output.h>
+#include <pcl_bsh/tools/cli/step.h>
+#include <pcl_bsh/tools/cli/used_files.h>
+
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/geometry/point3.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/files/output_folder.h>
+#include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pcl_bsh;
+using Json = nlohmann::ordered_json;
+using self_filter::JointValues;
+
+constexpr auto program = "pcl_bsh_self_filter";
+constexpr auto footer =
+    R"(Each output has the name of its cloud, in the folder of --out, and all fields. A point that is kept, or has coordinates and
+the flag 0, is farther than the padding from every link, for certain; one that is removed, or has the flag 1, is within
+padding + tolerance of a link, has no coordinates, or is no return: exactly 0 0 0, where the sensor itself is. Boxes,
+cylinders and spheres are solid, meshes are surfaces. Of a link the bodies for collisions count; where it has none, those
+to look at. Joints are fixed, revolute, continuous or prismatic; limits are not looked at. Meshes are .stl, .obj, .ply or
+.off in metres, or, where assimp was there when this was built, .dae: its <unit> counts, its <up_axis> does not, as in RViz.
+Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
+
+Example: cut the made robot out of what its camera sees
+  pcl_bsh_made_robot robot --frames 3
+  pcl_bsh_self_filter robot/robot.urdf robot/frame_*.pcd --states robot/states.csv --frame camera --out robot/free)";
+
+struct Options {
+  fs::path urdf;
+  std::vector<std::string> clouds;
+  fs::path out;
+  std::string joints;
+  fs::path states;
+  std::string frame;
+  std::vector<std::string> packages;
+  self_filter::Settings settings;
+  std::optional<double> tolerance;
+  bool flag = false;
+  std::optional<fs::path> report;
+  io::ColumnChoice columns;
+  cli::CommandFiles files;
+};
+
+std::map<std::string, fs::path> packagesOf(const Options& options)
+{
+  std::map<std::string, fs::path> packages;
+  for (const std::string& package : options.packages) {
+    const std::size_t equals = package.find('=');
+    if (equals == 0 || equals == std::string::npos)
+      throw cli::UsageError("--package: '" + package + "' is no package with a folder: give NAME=FOLDER");
+    packages[package.substr(0, equals)] = package.substr(equals + 1);
+  }
+  return packages;
+}
+
+/// One for each cloud.
+std::vector<JointValues> statesOf(const Options& options)
+{
+  std::vector<JointValues> states;
+  try {
+    states = options.states.empty() ? std::vector{self_filter::parseJointValues(options.joints)}
+                                    : self_filter::readJointStates(options.states);
+  }
+  catch (const io::FormatError& error) {
+    throw cli::UsageError(std::string("--joints: ") + error.what() + ": " + error.remedy());
+  }
+  if (states.size() == 1) states.resize(options.clouds.size(), states[0]);
+  if (states.size() != options.clouds.size())
+    throw cli::UsageError("--states: " + options.states.string() + " has " + counted(states.size(), "line") +
+                          " of values for " + counted(options.clouds.size(), "cloud") +
+                          ": give one line for each cloud, or one for all");
+  return states;
+}
+
+fs::path outputOf(const Options& options, const std::string& cloud)
+{
+  return options.out / fs::path(cloud).filename();
+}
+
+void check(Options& options)
+{
+  cli::CommandFiles& files = options.files;
+  files.reads("ROBOT.urdf", options.urdf).reads("--states", options.states);
+  for (const std::string& cloud : options.clouds) files.reads("CLOUD", cloud);
+  for (const std::string& cloud : options.clouds) files.writesFile("--out", outputOf(options, cloud));
+  files.writes("--report", options.report.value_or(""));
+  files.requireApart();
+  if (options.report) files::requireWritable(*options.report);
+}
+
+/// The cloud without the points that are flagged, and without those that have no coordinates.
+pcl::PCLPointCloud2 withoutFlagged(const pcl::PCLPointCloud2& cloud, const PointsView& view,
+                                   const std::vector<std::uint8_t>& flags)
+{
+  pcl::Indices kept;
+  for (std::uint32_t i = 0; i < view.count; ++i)
+    if (flags[i] == 0 && isFinite(view.point(i))) kept.push_back(static_cast<pcl::index_t>(i));
+  return selectedRecords(cloud, kept);
+}
+
+Json filterCloud(const Options& options, const std::string& name, const JointValues& values, std::size_t frame,
+                 self_filter::SelfFilter& filter)
+{
+  io::CloudFacts facts;
+  const pcl::PCLPointCloud2 cloud = io::readCloud(name, &facts, options.columns.of(name));
+  cli::warnOfFile(program, name, facts.remarks);
+  const PointsView view = viewOf(cloud);
+  const Eigen::Isometry3d T_scan_root = filter.robot().poses(values)[frame].inverse();
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<std::uint8_t> flags = filter.flags(view, T_scan_root, values);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  std::size_t robot = 0, no_returns = 0;
+  for (std::uint32_t i = 0; i < view.count; ++i) {
+    const bool is_return = !self_filter::isNoReturn(view.point(i));
+    robot += is_return ? flags[i] : 0;
+    no_returns += is_return ? 0 : 1;
+    if (!is_return) flags[i] = 1;
+  }
+  io::writeCloud(outputOf(options, name),
+                 options.flag ? withField(cloud, collision_field_name, flags) : withoutFlagged(cloud, view, flags),
+                 facts.viewpoint, facts.las);
+  return {{"cloud", name},
+          {"points", flags.size()},
+          {"robot", robot},
+          {"no_returns", no_returns},
+          {"seconds", taken.count()}};
+}
+
+/// The meshes that a robot names are read as its URDF is.
+void requireMeshesApart(cli::CommandFiles files, const self_filter::Robot& robot)
+{
+  for (const self_filter::Link& link : robot.links)
+    for (const self_filter::Shape& shape : link.shapes)
+      if (const auto* const mesh = std::get_if<self_filter::MeshFile>(&shape.form))
+        files.reads("mesh of link '" + link.name + "'", mesh->path);
+  files.requireApart();
+}
+
+int run(const Options& options)
+{
+  const std::vector<JointValues> states = statesOf(options);
+  const self_filter::Robot robot = self_filter::readRobot(options.urdf, packagesOf(options));
+  requireMeshesApart(options.files, robot);
+  for (const JointValues& values : states) robot.requireValues(values);
+  const std::size_t frame = options.frame.empty() ? 0 : robot.linkNamed(options.frame);
+
+  cli::Step covering("Covering the links");
+  self_filter::SelfFilter filter(robot, options.settings);
+  covering.done(counted(filter.balls(), "ball") + ", " + counted(filter.solids(), "solid"));
+
+  const files::OutputFolder folder(options.out);
+  Json report = {
+      {"robot", robot.name},       {"links", robot.links.size()},         {"balls", filter.balls()},
+      {"solids", filter.solids()}, {"padding", options.settings.padding}, {"tolerance", options.settings.tolerance},
+      {"clouds", Json::array()}};
+  for (std::size_t i = 0; i < options.clouds.size(); ++i) {
+    report["clouds"].push_back(filterCloud(options, options.clouds[i], states[i], frame, filter));
+    const Json& told = report["clouds"].back();
+    options.files.summary() << options.clouds[i] << ": " << told["robot"] << " of "
+                            << counted(told["points"].get<std::uint64_t>(), "point is", "points are") << " the robot, "
+                            << counted(told["no_returns"].get<std::uint64_t>(), "is", "are") << " no return, found in "
+                            << 1000 * told["seconds"].get<double>() << " ms\n";
+  }
+  if (options.report) cli::writeJson(*options.report, report);
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(program, [&] {
+    Options options;
+    CLI::App app("Cuts a robot out of what its own sensors see.", program);
+    app.footer(footer);
+    app.add_option("ROBOT.urdf", options.urdf, "the robot")->type_name("")->required();
+    app.add_option("CLOUD", options.clouds, "what its sensor saw: a cloud for each frame")->type_name("")->required();
+    app.add_option("--out", options.out, "folder for the results; made if it is not there")
+        ->type_name("DIR")
+        ->required();
+    auto* joints = app.add_option("--joints", options.joints, "values of joints, in radians or metres; others are at 0")
+                       ->type_name("NAME=VALUE,...");
+    app.add_option("--states", options.states,
+                   "file of such values: names in its first line, then a line for each cloud")
+        ->type_name("FILE")
+        ->excludes(joints);
+    app.add_option("--frame", options.frame, "link in whose frame the clouds are (default: the root)")
+        ->type_name("LINK");
+    app.add_option("--padding", options.settings.padding, "points this near to the robot are cut out, too, in metres")
+        ->type_name("M")
+        ->transform(
+            cli::number<double>("give a length in metres", [](double m) { return std::isfinite(m) && m >= 0.0; }))
+        ->capture_default_str();
+    app.add_option("--tolerance", options.tolerance,
+                   "by how much the covers of meshes may stick out, in metres (default: a\nquarter of the padding, at "
+                   "least 0.001)")
+        ->type_name("M")
+        ->transform(cli::number<double>("give a length in metres above 0",
+                                        [](double m) { return std::isfinite(m) && m > 0.0; }));
+    app.add_flag("--flag", options.flag,
+                 "keep all points, with a field 'collision' that is 1 where the robot or no return is");
+    app.add_option("--package", options.packages, "folder that package://NAME/ stands for; may be given several times")
+        ->type_name("NAME=DIR")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--threads", options.settings.threads, "0: all of the machine's; any number gives the same result")
+        ->type_name("N")
+        ->transform(cli::number<unsigned>(cli::give_threads))
+        ->capture_default_str();
+    app.add_option("--report", options.report, "JSON file for the results and what they cost;\n- is standard output")
+        ->type_name("FILE");
+    cli::ColumnOptions columns;
+    columns.addTo(app);
+    if (!cli::understood(app, program, argc, argv)) return 0;
+    options.columns = columns.read({options.clouds.begin(), options.clouds.end()});
+    options.settings.tolerance = options.tolerance.value_or(std::max(0.001, options.settings.padding / 4));
+    check(options);
+    return run(options);
+  });
+}

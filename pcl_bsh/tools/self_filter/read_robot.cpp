@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// URDF by urdfdom. What that lets pass and forward kinematics cannot bear is refused here.
+#include "robot.h"
+
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/text/file_bytes.h>
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <cmath>
+#include <functional>
+#include <set>
+
+namespace pcl_bsh::self_filter {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Packages = std::map<std::string, fs::path>;
+
+/// What urdfdom would print; while it lives.
+class FirstComplaint : public console_bridge::OutputHandler {
+public:
+  FirstComplaint() { console_bridge::useOutputHandler(this); }
+  ~FirstComplaint() override { console_bridge::restorePreviousOutputHandler(); }
+  FirstComplaint(const FirstComplaint&) = delete;
+  FirstComplaint& operator=(const FirstComplaint&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override
+  {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && text_.empty()) text_ = text;
+  }
+
+  const std::string& text() const { return text_; }
+
+private:
+  std::string text_;
+};
+
+Eigen::Vector3d vectorOf(const urdf::Vector3& v)
+{
+  return {v.x, v.y, v.z};
+}
+
+Eigen::Isometry3d poseOf(const urdf::Pose& pose)
+{
+  const urdf::Rotation& q = pose.rotation;
+  return Eigen::Translation3d(vectorOf(pose.position)) * Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+}
+
+class Reader {
+public:
+  Reader(const fs::path& path, const Packages& packages) : path_(path), packages_(packages) {}
+
+  Robot read()
+  {
+    const io::FileBytes bytes(path_);
+    FirstComplaint complaint;
+    model_ = urdf::parseURDF(std::string(bytes.view()));
+    // urdfdom leaves out a body that it cannot read, and goes on: the robot would not be where that is
+    if (!complaint.text().empty()) fail("is refused by urdfdom: " + complaint.text(), "mend the URDF");
+    if (!model_) fail("is no URDF", "mend the URDF");
+    requireTree();
+    robot_.name = model_->getName();
+    add(*model_->getRoot(), 0);
+    if (robot_.links.size() != model_->links_.size()) fail(unreached(), "let one joint lead to each link but the root");
+    requireMimics();
+    return std::move(robot_);
+  }
+
+private:
+  [[noreturn]] void fail(const std::string& wrong, const std::string& remedy) const
+  {
+    throw files::FileError(path_, wrong, remedy);
+  }
+
+  void requireTree() const
+  {
+    std::map<std::string, std::string> parents;
+    for (const auto& [name, joint] : model_->joints_) {
+      const auto [first, alone] = parents.emplace(joint->child_link_name, name);
+      if (!alone)
+        fail("link '" + first->first + "' hangs on two joints, '" + first->second + "' and '" + name + "'",
+             "let one joint lead to each link but the root");
+    }
+  }
+
+  /// With the links below it.
+  void add(const urdf::Link& from, std::size_t parent)
+  {
+    Link link;
+    link.name = from.name;
+    if (from.parent_joint) link.joint = jointOf(*from.parent_joint, parent);
+    for (const auto& body : from.collision_array) addShape(link, body->geometry.get(), body->origin);
+    if (link.shapes.empty())
+      for (const auto& body : from.visual_array) addShape(link, body->geometry.get(), body->origin);
+    const std::size_t here = robot_.links.size();
+    robot_.links.push_back(std::move(link));
+    for (const auto& child : from.child_links) add(*child, here);
+  }
+
+  Joint jointOf(const urdf::Joint& from, std::size_t parent) const
+  {
+    Joint joint;
+    joint.name = from.name;
+    joint.parent = parent;
+    joint.origin = poseOf(from.parent_to_joint_origin_transform);
+    switch (from.type) {
+    case urdf::Joint::FIXED:
+      return joint;
+    case urdf::Joint::REVOLUTE:
+    case urdf::Joint::CONTINUOUS:
+      joint.kind = Joint::Kind::turning;
+      break;
+    case urdf::Joint::PRISMATIC:
+      joint.kind = Joint::Kind::sliding;
+      break;
+    default:
+      fail("joint '" + from.name + "' is neither fixed, revolute, continuous nor prismatic",
+           "write it as several of these");
+    }
+    joint.axis = vectorOf(from.axis);
+    if (!(joint.axis.norm() > 0.0)) fail("joint '" + from.name + "' has the axis 0 0 0", "give it a direction");
+    joint.axis.normalize();
+    if (from.mimic) joint.mimic = Mimic{from.mimic->joint_name, from.mimic->multiplier, from.mimic->offset};
+    return joint;
+  }
+
+  void addShape(Link& link, const urdf::Geometry* geometry, const urdf::Pose& origin) const
+  {
+    if (!geometry) fail("link '" + link.name + "' has a body without a geometry", "mend the URDF");
+    Shape shape;
+    shape.pose = poseOf(origin);
+    if (const auto* box = dynamic_cast<const urdf::Box*>(geometry)) shape.form = Box{vectorOf(box->dim)};
+    if (const auto* tube = dynamic_cast<const urdf::Cylinder*>(geometry))
+      shape.form = Cylinder{tube->radius, tube->length};
+    if (const auto* ball = dynamic_cast<const urdf::Sphere*>(geometry)) shape.form = Sphere{ball->radius};
+    if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(geometry)) {
+      const fs::path file = fileOf(mesh->filename, link.name);
+      if (!fs::exists(file))
+        fail("link '" + link.name + "' has the mesh " + file.string() + ", which is not there", "check the name");
+      shape.form = MeshFile{file, vectorOf(mesh->scale)};
+    }
+    link.shapes.push_back(std::move(shape));
+  }
+
+  /// `package://NAME/...`, `file://...`, or a path that begins where the URDF is.
+  fs::path fileOf(const std::string& name, const std::string& link) const
+  {
+    constexpr std::string_view package = "package://", file = "file://";
+    if (name.starts_with(package)) {
+      const std::string rest = name.substr(package.size());
+      const std::size_t slash = std::min(rest.find('/'), rest.size());
+      const auto found = packages_.find(rest.substr(0, slash));
+      if (found == packages_.end())
+        fail("link '" + link + "' has a mesh " + name,
+             "say where that package is: --package " + rest.substr(0, slash) + "=FOLDER");
+      return found->second / fs::path(rest.substr(std::min(slash + 1, rest.size())));
+    }
+    if (name.starts_with(file)) return name.substr(file.size());
+    return path_.parent_path() / name;
+  }
+
+  void requireMimics() const
+  {
+    std::map<std::string, const Joint*> joints;
+    for (const Link& link : robot_.links)
+      if (link.joint) joints[link.joint->name] = &*link.joint;
+    for (const auto& [name, joint] : joints) {
+      std::set<std::string> seen = {name};
+      for (const Joint* at = joint; at->mimic;) {
+        const auto next = joints.find(at->mimic->joint);
+        if (next == joints.end())
+          fail("joint '" + at->name + "' mimics '" + at->mimic->joint + "', which is not there", "mend the name");
+        if (!seen.insert(next->first).second)
+          fail("joint '" + name + "' mimics itself, by way of '" + at->name + "'",
+               "let one of them have its own value");
+        at = next->second;
+      }
+    }
+  }
+
+  std::string unreached() const
+  {
+    std::set<std::string> reached;
+    for (const Link& link : robot_.links) reached.insert(link.name);
+    for (const auto& [name, link] : model_->links_)
+      if (!reached.contains(name)) return "link '" + name + "' hangs on itself: its joints are a cycle";
+    return {};
+  }
+
+  fs::path path_;
+  const Packages& packages_;
+  urdf::ModelInterfaceSharedPtr model_;
+  Robot robot_;
+};
+
+} // namespace
+
+Robot readRobot(const fs::path& urdf, const Packages& packages)
+{
+  return Reader(urdf, packages).read();
+}
+
+} // namespace pcl_bsh::self_filter

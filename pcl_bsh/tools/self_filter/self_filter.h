@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which points of a scan are the robot that scans?
+//
+//   SelfFilter filter(readRobot("arm.urdf"), {});
+//   const std::vector<std::uint8_t>& mine = filter.flags(viewOf(cloud), T_cloud_root, {{"elbow", 0.7}});
+//
+// A point that is not flagged is farther than the padding from the robot, for certain; one that is flagged is within
+// padding + tolerance. Boxes, cylinders and spheres are solid: what lies in them is flagged. Meshes are surfaces.
+#pragma once
+
+#include "link_body.h"
+#include "robot.h"
+
+#include <pcl_bsh/flags/colliding_indices.h>
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace pcl_bsh::self_filter {
+
+struct Settings {
+  double padding = 0.02;    ///< m, finite and >= 0
+  double tolerance = 0.005; ///< of the covers of meshes, m, finite and > 0
+  unsigned threads = 1;     ///< 0: all of the machine's
+};
+
+/// Covers all links once; a new frame builds the scan's hierarchy, and of that only what is near the robot.
+class SelfFilter {
+public:
+  /// @throws as bodyOf() does; std::runtime_error for a robot without a body
+  SelfFilter(Robot robot, const Settings& settings);
+
+  const Robot& robot() const { return robot_; }
+  std::size_t balls() const;  ///< that cover meshes, of all links
+  std::size_t solids() const; ///< of all links
+
+  /// One per record of the scan: 1 where it is the robot. Valid until the next call.
+  /// @param T_scan_root where the robot's root is in the scan's frame
+  /// @throws std::runtime_error as Robot::requireValues() does; std::invalid_argument as SphereHierarchy does
+  const std::vector<std::uint8_t>& flags(const PointsView& scan, const Eigen::Isometry3d& T_scan_root,
+                                         const JointValues& values);
+
+private:
+  /// A body, and hierarchies of its balls.
+  struct Part {
+    explicit Part(LinkBody link_body, unsigned threads);
+
+    LinkBody body;
+    SphereHierarchy enclosing, surfaces;
+  };
+
+  void flagSolids(const SphereHierarchy& points, const Part& part, const Eigen::Isometry3d& T_scan_link);
+
+  Robot robot_;
+  FlagsRequest request_;
+  std::vector<std::unique_ptr<const Part>> parts_; ///< for each link
+  CollidingIndices hit_;
+  std::vector<std::uint8_t> flags_;
+};
+
+/// Whether a sensor says by this point, in its own frame, that nothing came back: it is exactly 0 0 0.
+inline bool isNoReturn(const Point3& point)
+{
+  return point == Point3{0.0, 0.0, 0.0};
+}
+
+} // namespace pcl_bsh::self_filter

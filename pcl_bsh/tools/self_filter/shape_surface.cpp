@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shape_surface.h"
+
+#include "read_surface.h"
+
+#include <pcl_bsh/io/files/file_error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <variant>
+
+namespace pcl_bsh::self_filter {
+
+namespace {
+
+/// In how many sides a circle falls.
+std::uint32_t sidesOf(double radius, double sagitta)
+{
+  constexpr double most = 100'000;
+  const double sides = std::ceil(std::numbers::pi / std::acos(std::max(0.5, 1.0 - sagitta / radius)));
+  if (!(sides <= most))
+    throw std::runtime_error("a circle of radius " + std::to_string(radius) +
+                             " has too many sides at this tolerance: give a coarser one");
+  return static_cast<std::uint32_t>(sides);
+}
+
+Surface triangulated(const Box& box, double)
+{
+  Surface surface;
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto at = [&](int axis) { return ((corner >> axis & 1) - 0.5) * box.size[axis]; };
+    surface.vertices.push_back({at(0), at(1), at(2)});
+  }
+  surface.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 7, 5}, {4, 6, 7}, {0, 5, 1}, {0, 4, 5},
+                       {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
+  return surface;
+}
+
+Surface triangulated(const Cylinder& tube, double sagitta)
+{
+  const std::uint32_t sides = sidesOf(tube.radius, sagitta);
+  Surface surface;
+  surface.vertices = {{0, 0, -tube.length / 2}, {0, 0, tube.length / 2}};
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / sides;
+    for (const double z : {-tube.length / 2, tube.length / 2})
+      surface.vertices.push_back({tube.radius * std::cos(angle), tube.radius * std::sin(angle), z});
+    const std::uint32_t low = 2 + 2 * i, next = 2 + 2 * ((i + 1) % sides);
+    surface.triangles.insert(surface.triangles.end(),
+                             {{0, next, low}, {1, low + 1, next + 1}, {low, next, next + 1}, {low, next + 1, low + 1}});
+  }
+  return surface;
+}
+
+Surface triangulated(const Sphere& ball, double sagitta)
+{
+  const std::uint32_t sides = sidesOf(ball.radius, sagitta / 2), rows = (sides + 1) / 2; // two circles' sagittas
+  Surface surface;
+  for (std::uint32_t row = 0; row <= rows; ++row)
+    for (std::uint32_t side = 0; side < sides; ++side) {
+      const double tilt = std::numbers::pi * row / rows, turn = 2 * std::numbers::pi * side / sides;
+      surface.vertices.push_back({ball.radius * std::sin(tilt) * std::cos(turn),
+                                  ball.radius * std::sin(tilt) * std::sin(turn), ball.radius * std::cos(tilt)});
+    }
+  for (std::uint32_t row = 0; row < rows; ++row)
+    for (std::uint32_t side = 0; side < sides; ++side) {
+      const std::uint32_t a = row * sides + side, b = row * sides + (side + 1) % sides;
+      surface.triangles.push_back({a, a + sides, b + sides});
+      surface.triangles.push_back({a, b + sides, b});
+    }
+  return surface;
+}
+
+Surface triangulated(const MeshFile& mesh, double)
+{
+  Surface surface = readSurface(mesh.path);
+  if (surface.triangles.empty()) throw files::FileError(mesh.path, "has no faces", "give a mesh");
+  for (Point3& p : surface.vertices)
+    for (std::size_t k = 0; k < 3; ++k) p[k] *= mesh.scale[static_cast<Eigen::Index>(k)];
+  return surface;
+}
+
+} // namespace
+
+Surface surfaceOf(const Shape& shape, double sagitta)
+{
+  Surface surface = std::visit([&](const auto& form) { return triangulated(form, sagitta); }, shape.form);
+  for (Point3& p : surface.vertices) {
+    const Eigen::Vector3d moved = shape.pose * Eigen::Vector3d(p[0], p[1], p[2]);
+    p = {moved.x(), moved.y(), moved.z()};
+  }
+  return surface;
+}
+
+} // namespace pcl_bsh::self_filter

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifdef PCL_BSH_SITE_QUERIES
+#include "clashes.h"
+
+#include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <utility>
+
+namespace pcl_bsh::cli {
+namespace {
+
+io::ClashQuestion questionOf(const SiteOptions& options)
+{
+  return {options.site.string(), options.obstacle.string(), options.clearance,           options.swept,
+          options.accuracy,      options.uncertainty,       options.obstacle_uncertainty};
+}
+
+std::optional<Extent> extentOf(const std::optional<site::Bounds>& bounds)
+{
+  return bounds ? std::optional(Extent{bounds->low, bounds->high}) : std::nullopt;
+}
+
+} // namespace
+
+SiteClashList::SiteClashList(const site::Site& site, const SiteOptions& options) : site_(site), options_(options)
+{
+  if (options.clashes.empty()) return;
+  for (const std::filesystem::path& list : options.clashes) {
+    io::requireClashFormat(list);
+    files::requireWritable(list);
+  }
+  Spacing spacing;
+  spacing.median = site::spacingOf(site);
+  distance_ =
+      options.cluster_distance > 0 ? options.cluster_distance : io::clusterDistanceFor(options.clearance, spacing);
+  finder_.emplace(site, distance_);
+  if (!options.previous) return;
+  earlier_ = io::readClashes(*options.previous);
+  warnings_ = io::requireComparable(*options.previous, earlier_, questionOf(options));
+}
+
+void SiteClashList::addTo(site::SiteRequest& request)
+{
+  if (!isWanted()) return;
+  request.clashes = &*finder_;
+  request.pose_summaries = !options_.swept;
+}
+
+void SiteClashList::finish(const SphereHierarchy& obstacle, const io::Obstacle* surface,
+                           const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found, Json& report)
+{
+  write(
+      finder_->finish(), obstacle.view(), surface, poses, found, nullptr,
+      [&](FormerPlaces& former, const TrajectoryRequest& motion) { former.visit(obstacle, poses, motion); }, report);
+}
+
+void SiteClashList::finish(const site::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses,
+                           const site::SitePassage& found, Json& report)
+{
+  site::SiteClashes clashes = finder_->finish();
+  const std::vector<site::MetPoint> met = clashes.met;
+  std::vector<Point3> places;
+  for (const site::MetPoint& point : met) places.push_back(point.place);
+  write(
+      std::move(clashes), viewOf(places.empty() ? nullptr : places.front().data(), places.size()), nullptr, poses,
+      found,
+      [&](std::uint32_t i) {
+        return io::SourcePoint{obstacle.sources.at(met[i].point.source).file, met[i].point.record};
+      },
+      [&](FormerPlaces& former, const TrajectoryRequest& motion) {
+        for (const site::Tile& tile : obstacle.tiles) {
+          if (!tile.bounds || !former.mayVisit({tile.bounds->low, tile.bounds->high}, poses, motion)) continue;
+          const pcl::PCLPointCloud2 cloud = site::readTile(obstacle, tile);
+          former.visit(SphereHierarchy(viewOf(cloud)), poses, motion);
+        }
+      },
+      report);
+}
+
+void SiteClashList::write(site::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
+                          const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found,
+                          std::function<io::SourcePoint(std::uint32_t)> model_source_of, const Visit& visit,
+                          Json& report)
+{
+  const PointsView places =
+      viewOf(clashes.places.empty() ? nullptr : clashes.places.front().data(), clashes.places.size());
+  TrajectoryResult of_places;
+  of_places.colliding = found.colliding;
+  of_places.undecided = found.undecided;
+  of_places.poses = found.poses;
+  of_places.distance = std::move(clashes.distance);
+  of_places.closest_pose = std::move(clashes.closest_pose);
+  io::ClashReport list{.question = questionOf(options_),
+                       .cluster_distance = distance_,
+                       .clashes = std::move(clashes.clashes),
+                       .scan = places,
+                       .model = model,
+                       .poses = poses,
+                       .found = of_places,
+                       .survey = {poses, extentOf(site_.bounds)},
+                       .unit = options_.unit,
+                       .surface = surface,
+                       .source_of =
+                           [&](std::uint32_t i) {
+                             const site::SitePoint& point = clashes.points[i];
+                             return io::SourcePoint{site_.sources.at(point.source).file, point.record};
+                           },
+                       .model_source_of = std::move(model_source_of)};
+  warnings_.clear();
+  report["clashes"] = list.present() - list.perhaps();
+  report["clashes_perhaps"] = list.perhaps();
+  if (site::rankHere() != 0) return;
+  if (options_.previous) compare(list, visit);
+  for (const std::filesystem::path& file : options_.clashes) io::writeClashes(file, list);
+  counts_ = io::clashCounts(list);
+}
+
+void SiteClashList::compare(io::ClashReport& list, const Visit& visit)
+{
+  TrajectoryRequest motion;
+  motion.swept = options_.swept;
+  motion.threads = options_.threads;
+  warnings_ = io::compareWithList(list, *options_.previous, earlier_, [&](FormerPlaces& former) {
+    visit(former, motion);
+    for (const site::Tile& tile : site_.tiles)
+      if (tile.bounds && former.mayScan({tile.bounds->low, tile.bounds->high}))
+        former.scan(viewOf(site::readTile(site_, tile)));
+  });
+}
+
+} // namespace pcl_bsh::cli
+#endif

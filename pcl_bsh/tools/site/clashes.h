@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// pcl_bsh_site collide --clashes: the places of a site that collide, as pcl_bsh_collide lists them.
+#pragma once
+
+#include "options.h"
+#include "report.h"
+
+#include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/site/site_clashes.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+/// The lists of clashes, where any is asked for; else it does nothing.
+class SiteClashList {
+public:
+  /// Reads the earlier list. To be called by all ranks.
+  /// @throws files::FileError for a list that cannot be written or compared with
+  SiteClashList(const site::Site& site, const SiteOptions& options);
+
+  bool isWanted() const noexcept { return finder_.has_value(); }
+
+  /// Of the earlier list, a line each; see finish().
+  const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+  /// Adds to a question along a path what the lists need; nothing where none is wanted.
+  void addTo(site::SiteRequest& request);
+
+  /// Points of a clash are so near to each other; 0 where no list is wanted.
+  double clusterDistance() const noexcept { return distance_; }
+
+  /// After the question. To be called by all ranks; the first writes the lists, and warnings() are then of what they
+  /// were compared with. @param surface the obstacle, where it is one; else null. @param report gets the numbers of
+  /// clashes that there are now: certain ones, and those perhaps
+  void finish(const SphereHierarchy& obstacle, const io::Obstacle* surface, const std::vector<Eigen::Isometry3d>& poses,
+              const site::SitePassage& found, Json& report);
+
+  /// The same of an obstacle that is a site.
+  void finish(const site::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found,
+              Json& report);
+
+  /// After finish(): as io::clashCounts() tells it.
+  const std::string& counts() const noexcept { return counts_; }
+
+private:
+  using Visit = std::function<void(FormerPlaces&, const TrajectoryRequest& motion)>;
+
+  void write(site::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
+             const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found,
+             std::function<io::SourcePoint(std::uint32_t)> model_source_of, const Visit& visit, Json& report);
+  void compare(io::ClashReport& list, const Visit& visit);
+
+  const site::Site& site_;
+  const SiteOptions& options_;
+  double distance_ = 0.0;
+  io::ClashList earlier_;
+  std::string counts_;
+  std::vector<std::string> warnings_;
+  std::optional<site::ClashFinder> finder_;
+};
+
+} // namespace pcl_bsh::cli

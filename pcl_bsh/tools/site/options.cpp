@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "options.h"
+
+#include <pcl_bsh/tools/cli/accuracy.h>
+#include <pcl_bsh/tools/cli/columns.h>
+#include <pcl_bsh/tools/cli/command_line.h>
+#include <pcl_bsh/tools/cli/pose.h>
+#include <pcl_bsh/tools/cli/surface_options.h>
+#include <pcl_bsh/tools/cli/uncertainty.h>
+
+#include <pcl_bsh/io/text/small_letters.h>
+#include <pcl_bsh/site/site.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace pcl_bsh::cli {
+namespace {
+
+constexpr auto site_footer =
+    R"(A site is a folder of tiles, each a binary PCD file with all fields of the points and two more, source and record:
+which record of which cloud a point was. Reads .pcd .ply .las .laz .obj .off .stl .pts .ptx .csv .xyz .txt; .las, .laz and
+binary .pcd of any size, the others where they fit into half of the memory given.
+Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
+
+Example: two scans become one site, and a file with the points of both
+  pcl_bsh_site make north.las south.las --out valley --memory 2G
+  pcl_bsh_site validate valley
+  pcl_bsh_site export valley all.pcd
+A site holds points: `make` takes files with faces by --vertices-only alone, and `collide` takes OBSTACLE's faces as a
+surface, as pcl_bsh_collide does.
+With --out: the fields of `collide` are collision (1 collides, 0 free), with --trajectory also distance (NaN: free),
+first_pose and closest_pose (-1: none), with --distances distance alone.
+Example: where does a machine come within 5 cm of it on its way? On one process, or on four:
+  pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
+  mpirun -n 4 pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
+Example: the same as a page, place by place
+  pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html
+Example: what of two epochs has no point of the other within 10 cm
+  pcl_bsh_site collide now before --clearance 0.1 --out now_marked --obstacle-out before_marked)";
+
+void addMemory(CLI::App& app, SiteOptions& options)
+{
+  app.add_option("--memory", options.memory, "memory to work in, as 512M or 2G (default: 2G)")
+      ->type_name("BYTES")
+      ->transform(amount(1024, std::uint64_t{64} << 20, "give 64M or more"));
+}
+
+/// Whatever lies in the site's folder is its own: no file of an answer may take a tile's place.
+void requireOutside(const std::filesystem::path& site, const std::string& name, const std::string& option,
+                    const std::filesystem::path& file)
+{
+  namespace fs = std::filesystem;
+  if (file.empty()) return;
+  std::error_code error;
+  const fs::path home = fs::weakly_canonical(site, error), target = fs::weakly_canonical(fs::absolute(file), error);
+  const auto [home_end, unused] = std::mismatch(home.begin(), home.end(), target.begin(), target.end());
+  if (!error && home_end == home.end())
+    throw UsageError(option + ": " + file.string() + ": lies in the folder of " + name + ": choose another place");
+}
+
+void requireExport(const SiteOptions& options)
+{
+  requireOutside(options.site, "SITE", "OUT", options.out);
+  const std::string extension = io::inSmallLetters(options.out.extension().string());
+  for (const char* other : {".ply", ".las", ".laz", ".obj", ".off", ".stl", ".pts", ".ptx", ".csv", ".xyz", ".txt"})
+    if (extension == other)
+      throw UsageError("OUT: " + options.out.string() + ": sites are not written as " + other +
+                       ": name a .pcd file, a .pvtp, or a folder");
+}
+
+#ifdef PCL_BSH_SITE_QUERIES
+/// The options of `collide` as they are written.
+struct CollideTexts {
+  bool any = false, closest = false, distances = false;
+  std::string pose, accuracy = "exact";
+  UncertaintyOptions uncertainties;
+  CLI::Option *clearance = nullptr, *max_distance = nullptr;
+
+  void addTo(CLI::App& app, SiteOptions& options)
+  {
+    app.add_option("OBSTACLE", options.obstacle,
+                   "cloud or mesh to collide with, which must fit into memory; or another site of any size")
+        ->type_name("")
+        ->required();
+    app.add_option("--report", options.report, "JSON file for the answer; -: standard output")->type_name("FILE");
+    app.add_option("--out", options.out, "new site with what was found of each point, as fields more of the same tiles")
+        ->type_name("SITE");
+    clearance = app.add_option("--clearance", options.clearance,
+                               "greatest distance that counts as collision, in the clouds' unit")
+                    ->type_name("D")
+                    ->transform(number<double>(give_length));
+    app.add_option("--pose", pose, "of OBSTACLE in SITE's frame: x,y,z,roll,pitch,yaw or a file")->type_name("POSE");
+    app.add_option("--trajectory", options.trajectory, "poses of OBSTACLE, one a line, instead of --pose")
+        ->type_name("FILE");
+    app.add_option("--swept", options.swept, "of --trajectory: the motion between poses counts, to this tolerance")
+        ->type_name("TOL")
+        ->transform(number<double>("give a length > 0", [](double d) { return d > 0; }));
+    app.add_option("--clashes", options.clashes,
+                   "list of the places that collide, to .json, .csv or .html; may be given more than once")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
+    app.add_option("--cluster-distance", options.cluster_distance,
+                   "colliding points no farther apart belong to one clash (default: the greater of D and four spacings "
+                   "of SITE's tiles, rounded up to a power of two)")
+        ->type_name("L")
+        ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
+    app.add_option(
+           "--previous", options.previous,
+           "earlier .json list, of the same clearance, uncertainties and accuracy: clashes are new, persisting, "
+           "resolved, or not visited by the path or not scanned any more")
+        ->type_name("FILE");
+    app.add_option("--unit", options.unit, "name of the clouds' unit, for --clashes")->type_name("NAME");
+    app.add_flag("--any", any, "only whether any point collides");
+    app.add_flag("--closest", closest, "the smallest distance, and the points that have it");
+    app.add_flag("--distances", distances, "how many points have a distance, and the greatest");
+    max_distance = app.add_option("--max-distance", options.max_distance, "of --distances: greater ones do not count")
+                       ->type_name("M")
+                       ->transform(number<double>("give a length >= 0", [](double d) { return d >= 0; }));
+    app.add_option(
+           "--obstacle-out", options.obstacle_out,
+           "OBSTACLE's points with all their fields, and which of them collide with SITE in a field 'collision'; "
+           "of a mesh its triangles, as .ply; a new site where OBSTACLE is one; not with --trajectory or --clashes")
+        ->type_name("FILE");
+    app.add_flag("--resume", options.resume, "goes on with what the same command has left in --out when it was killed");
+    app.add_option(
+           "--accuracy", accuracy,
+           "what may be given up for time: exact (default); float: without proof; tolerance=LENGTH: pairs up to "
+           "that much beyond D may count; level=N: spheres are opened down to this level; pairs=N or "
+           "time=SECONDS: the query of each tile stops there. Points that are undecided then get 2 in the field "
+           "'collision'")
+        ->type_name("HOW");
+    uncertainties.addTo(app, "SITE");
+    addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
+    app.add_option("--plan", options.plan,
+                   "numbers of ranks, as 64,1024: by what the tiles have cost, the report says how long the same "
+                   "question takes on so many, and what limits it")
+        ->type_name("N,...")
+        ->delimiter(',')
+        ->check(CLI::Range(1u, 1000000u));
+    app.add_option("--threads", options.threads, "of each process (default: 1); 0: all of the machine's")
+        ->type_name("N")
+        ->transform(number<unsigned>(give_threads));
+  }
+
+  /// @throws UsageError where they do not fit each other
+  void read(SiteOptions& options) const
+  {
+    const bool moves = !options.trajectory.empty();
+    if (any + closest + distances + moves > 1)
+      throw UsageError("--any, --closest, --distances, --trajectory: more than one is given: give one");
+    const bool lists = !options.clashes.empty();
+    options.question = any              ? SiteQuestion::any
+                       : closest        ? SiteQuestion::closest
+                       : distances      ? SiteQuestion::distances
+                       : moves || lists ? SiteQuestion::path
+                                        : SiteQuestion::flags;
+    const bool needs_clearance = !closest && !distances;
+    options.accuracy = parseAccuracy(accuracy);
+    requireAnswers(options.accuracy, {lists, options.swept.has_value(), distances});
+    if (!options.obstacle_out.empty() && (moves || lists || any || closest || distances))
+      throw UsageError("--obstacle-out: are flags at one pose: leave out what else is asked");
+    uncertainties.read(options.uncertainty, options.obstacle_uncertainty);
+    if (uncertainties.isGiven() && !needs_clearance)
+      throw UsageError("--uncertainty: distances are those of the measured places: leave it out");
+    if (needs_clearance && clearance->count() == 0) throw UsageError("--clearance: is missing: give a length");
+    if (options.report.empty() && options.out.empty() && options.obstacle_out.empty() && !lists)
+      throw UsageError("--report, --out, --obstacle-out, --clashes: none is given: give one or more of them");
+    if (lists && (any || closest || distances))
+      throw UsageError("--clashes: are of flags or a path: leave out --any, --closest and --distances");
+    if (!lists && (options.cluster_distance > 0 || options.previous)) {
+      throw UsageError(std::string(options.previous ? "--previous" : "--cluster-distance") +
+                       ": no clash report is written: give --clashes FILE");
+    }
+    if (!lists && !options.unit.empty()) throw UsageError("--unit: no clash report tells it: give --clashes FILE");
+    if (!options.plan.empty() && options.report.empty())
+      throw UsageError("--plan: is told in the report: add --report");
+    if (!options.out.empty() && (any || closest))
+      throw UsageError("--out: --any and --closest find nothing of each point: leave it away");
+    if (options.resume && options.out.empty()) throw UsageError("--resume: there is nothing to go on with: add --out");
+    if (max_distance->count() > 0 && !distances) throw UsageError("--max-distance: goes with --distances: add it");
+    if (options.swept && !moves) throw UsageError("--swept: goes with --trajectory: add it");
+    if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
+    if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
+    options.surface.triangles_apart = !options.obstacle_out.empty(); // each has a flag of its own
+    const bool two_sites = options.obstacleIsSite();
+    const auto require_outside_sites = [&](const char* option, const std::filesystem::path& file) {
+      requireOutside(options.site, "SITE", option, file);
+      if (two_sites) requireOutside(options.obstacle, "OBSTACLE", option, file);
+    };
+    require_outside_sites("--out", options.out);
+    if (!options.out.empty()) requireOutside(options.out, "--out", "--obstacle-out", options.obstacle_out);
+    if (two_sites && !options.obstacle_out.empty())
+      requireOutside(options.obstacle_out, "--obstacle-out", "--out", options.out);
+    require_outside_sites("--report", options.report);
+    require_outside_sites("--obstacle-out", options.obstacle_out);
+    for (const std::filesystem::path& list : options.clashes) require_outside_sites("--clashes", list);
+    CommandFiles& files = options.files;
+    files.reads("SITE", options.site / site::site_file_name);
+    files.reads("OBSTACLE", two_sites ? options.obstacle / site::site_file_name : options.obstacle);
+    files.readsPose("--pose", pose).reads("--trajectory", options.trajectory);
+    files.reads("--previous", options.previous.value_or("")).writes("--report", options.report);
+    files.writesFile("--obstacle-out", options.obstacle_out);
+    for (const std::filesystem::path& list : options.clashes) files.writes("--clashes", list, "--previous"); // updated
+  }
+};
+#endif
+
+} // namespace
+
+std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
+{
+  SiteOptions options;
+  CLI::App app("Clouds of any size on disk, cut into tiles.", site_program);
+  app.footer(site_footer);
+  app.require_subcommand(1);
+  const auto command = [&](const char* name, const char* what, SiteCommand number) {
+    CLI::App* const sub = app.add_subcommand(name, what);
+    sub->callback([&options, number] { options.command = number; });
+    return sub;
+  };
+  const auto add_site = [&](CLI::App* sub) {
+    sub->add_option("SITE", options.site, "folder of the site")->type_name("")->required();
+  };
+
+  CLI::App* const make = command("make", "make a site of clouds", SiteCommand::make);
+  make->add_option("IN", options.clouds, "clouds")->type_name("")->required();
+  make->add_option("--out", options.site, "folder of the site: a new one, or one that was begun")
+      ->type_name("SITE")
+      ->required();
+  ColumnOptions columns;
+  columns.addTo(*make);
+  addMemory(*make, options);
+  make->add_option("--tile-points", options.tile_points, "points of a tile at most, as 500K or 4M (default: 4M)")
+      ->type_name("N")
+      ->transform(amount(1000, 1, "give 1 or more"));
+  make->add_flag("--vertices-only", options.surface.vertices_only, "clouds with faces are their vertices alone");
+  for (CLI::App* const told :
+       {command("info", "print what a site holds", SiteCommand::info),
+        command("validate", "read all tiles and check that each point is there once, and where it should be",
+                SiteCommand::validate)}) {
+    add_site(told);
+    told->add_flag("--json", options.json, "as JSON, for programs");
+  }
+  CLI::App* const write = command(
+      "export", "write the points in their first order, as one cloud or one for each source", SiteCommand::write);
+  add_site(write);
+  write->add_option("OUT", options.out, "a .pcd file for all points, a .pvtp for ParaView, or a folder for the sources")
+      ->type_name("")
+      ->required();
+  addMemory(*write, options);
+#ifdef PCL_BSH_SITE_QUERIES
+  CLI::App* const collide =
+      command("collide", "ask where an obstacle comes near the points of a site", SiteCommand::collide);
+  add_site(collide);
+  CollideTexts texts;
+  texts.addTo(*collide, options);
+  columns.addTo(*collide);
+  addMemory(*collide, options);
+#endif
+  if (!understood(app, site_program, argc, argv)) return std::nullopt;
+  if (options.command == SiteCommand::make) options.columns = columns.read(options.clouds);
+  if (options.command == SiteCommand::write) requireExport(options);
+#ifdef PCL_BSH_SITE_QUERIES
+  if (options.command == SiteCommand::collide) {
+    texts.read(options);
+    options.columns = columns.read({options.obstacle});
+  }
+#endif
+  return options;
+}
+
+} // namespace pcl_bsh::cli

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifdef PCL_BSH_SITE_QUERIES
+#include "output.h"
+
+#include <pcl_bsh/tools/cli/interruption.h>
+#include <pcl_bsh/tools/cli/obstacle.h>
+
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/surface/triangle_answers.h>
+
+#include <boost/crc.hpp>
+#include <nlohmann/json.hpp>
+
+#include <limits>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+namespace {
+
+using Type = pcl::PCLPointField;
+
+/// As pcl_bsh_collide: distances and poses are of paths, where nothing stops early.
+bool tellsPoses(const SiteOptions& options)
+{
+  return !options.trajectory.empty() && !options.accuracy.stopsEarly();
+}
+
+/// The fields that each question answers with, as those of pcl_bsh_collide.
+std::vector<site::ResultField> resultFields(const SiteOptions& options)
+{
+  const site::ResultField collision = collisionField(),
+                          distance = {distance_field_name, Type::FLOAT32, std::numeric_limits<double>::quiet_NaN()},
+                          first = {first_pose_field_name, Type::INT32, -1.0},
+                          closest = {closest_pose_field_name, Type::INT32, -1.0};
+  switch (options.question) {
+  case SiteQuestion::flags:
+    return {collision};
+  case SiteQuestion::distances:
+    return {distance};
+  case SiteQuestion::path:
+    if (!tellsPoses(options)) return {collision};
+    return {collision, distance, first, closest};
+  default:
+    return {};
+  }
+}
+
+template <typename Value>
+std::uint32_t checksumOf(const std::vector<Value>& values)
+{
+  boost::crc_32_type checksum;
+  checksum.process_bytes(values.data(), values.size() * sizeof(Value));
+  return checksum.checksum();
+}
+
+/// What tells one obstacle from another: the points of a cloud, and how faces are covered; of a site, which is too
+/// large for that, how it is made and when its tiles were written.
+nlohmann::json obstacleText(const ObstacleFile* given, const SiteOptions& options)
+{
+  nlohmann::json text = nlohmann::json::array();
+  if (given != nullptr) {
+    const io::Obstacle& obstacle = given->obstacle;
+    text.push_back(checksumOf(obstacle.points().data));
+    for (const pcl::PCLPointField& field : obstacle.points().fields)
+      text.push_back({field.name, field.offset, field.datatype, field.count});
+    if (obstacle.isSurface())
+      text.push_back({checksumOf(*obstacle.triangles()), obstacle.tolerance(), obstacle.cover()->triangles_apart});
+    return text;
+  }
+  const site::Site other = site::readSite(options.obstacle);
+  text.push_back(site::siteText(other));
+  for (const site::Tile& tile : other.tiles) {
+    const std::filesystem::path file = other.folder / tile.file;
+    text.push_back(
+        {std::filesystem::file_size(file), std::filesystem::last_write_time(file).time_since_epoch().count()});
+  }
+  return text;
+}
+
+/// All that the answer depends on, as a text.
+std::string questionOf(const site::Site& site, const ObstacleFile* obstacle, const Poses& poses,
+                       double cluster_distance, const SiteOptions& options)
+{
+  nlohmann::json question = {{"site", site::siteText(site)},         {"question", options.question},
+                             {"clearance", options.clearance},       {"accuracy", options.accuracy.text()},
+                             {"max_distance", options.max_distance}, {"swept", options.swept.value_or(-1.0)},
+                             {"clusters", cluster_distance},         {"obstacle", obstacleText(obstacle, options)},
+                             {"poses", nlohmann::json::array()}};
+  question["numbers"] = 2; // what a tile's clashes are kept as: certain points are among it
+  for (const Uncertainty* of : {&options.uncertainty, &options.obstacle_uncertainty})
+    question["uncertainty"].push_back({of->field, of->length, of->sigmas});
+  for (const Eigen::Isometry3d& pose : poses)
+    question["poses"].push_back(std::vector<double>(pose.data(), pose.data() + 16));
+  const auto bytes = nlohmann::json::to_cbor(question);
+  return {bytes.begin(), bytes.end()};
+}
+
+std::vector<float> inFloats(const std::vector<double>& numbers)
+{
+  std::vector<float> floats;
+  for (const double number : numbers) floats.push_back(static_cast<float>(number));
+  return floats;
+}
+
+} // namespace
+
+site::ResultField collisionField()
+{
+  return {collision_field_name, Type::UINT8, 0.0};
+}
+
+ObstacleFile::ObstacleFile(const SiteOptions& options)
+{
+  double seconds = 0.0;
+  const io::ColumnNames columns = options.columns.of(options.obstacle);
+  if (site::rankHere() == 0)
+    obstacle = loadObstacle(options.obstacle, options.surface, options.clearance, seconds, columns, &facts);
+  else
+    obstacle = io::readObstacle(options.obstacle, options.surface, options.clearance, nullptr, columns, &facts);
+  requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
+  if (options.obstacle_out.empty()) return;
+  if (obstacle.isSurface()) {
+    io::requireWritableMesh(options.obstacle_out);
+  }
+  else {
+    io::requireWritableCloud(options.obstacle_out);
+    withField(withoutRecords(obstacle.points()), collision_field_name, {}); // fails now
+  }
+}
+
+std::vector<std::uint8_t> ObstacleFile::flagsOfParts(const std::vector<std::uint8_t>& flags) const
+{
+  return obstacle.isSurface() ? triangleVerdicts(*obstacle.cover(), flags) : flags;
+}
+
+void ObstacleFile::write(const std::vector<std::uint8_t>& flags, const SiteOptions& options) const
+{
+  if (options.obstacle_out.empty() || site::rankHere() != 0) return;
+  if (obstacle.isSurface())
+    io::writeMesh(options.obstacle_out, obstacle.points(), *obstacle.triangles(), {{collision_field_name, &flags}},
+                  facts.viewpoint);
+  else
+    io::writeCloud(options.obstacle_out, withField(obstacle.points(), collision_field_name, flags), facts.viewpoint,
+                   facts.las);
+}
+
+std::vector<std::string> droppedBy(const site::ResultSite& out, const std::string& option,
+                                   const std::filesystem::path& folder, const site::Site& site,
+                                   const std::vector<site::ResultField>& fields)
+{
+  std::vector<std::string> lines;
+  if (out.thrownAway() > 0) {
+    lines.push_back(
+        option + ": " + folder.string() + ": what an earlier run had found of " + std::to_string(out.thrownAway()) +
+        " of " + std::to_string(site.tiles.size()) +
+        " tiles is thrown away, for --resume is not given: it goes on with what the same question has found");
+  }
+  std::string names;
+  for (const std::string& name : site::staleFields(site, fields)) names += (names.empty() ? "" : ", ") + name;
+  if (!names.empty()) {
+    lines.push_back(option + ": " + folder.string() + ": leaves out fields of " + site.folder.string() +
+                    " that answer an earlier question: " + names);
+  }
+  return lines;
+}
+
+SiteOutput::SiteOutput(const site::Site& site, const ObstacleFile* obstacle, const Poses& poses,
+                       double cluster_distance, const SiteOptions& options)
+: options_(options)
+{
+  if (options.out.empty()) return;
+  setWhatStays(what_stays);
+  const std::vector<site::ResultField> fields = resultFields(options);
+  out_.emplace(site, options.out, fields,
+               site::Continuation{questionOf(site, obstacle, poses, cluster_distance, options), options.resume});
+  warnings_ = droppedBy(*out_, "--out", options.out, site, fields);
+}
+
+site::FlagsSink SiteOutput::flags()
+{
+  if (!out_) return nullptr;
+  return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const FlagsResult& found) {
+    out_->write(tile, cloud, {found.a.data()});
+  };
+}
+
+site::DistancesSink SiteOutput::distances()
+{
+  if (!out_) return nullptr;
+  return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const PointDistances& found) {
+    out_->write(tile, cloud, {inFloats(found.distance).data()});
+  };
+}
+
+site::PairDistancesSink SiteOutput::distancesOfSites()
+{
+  if (!out_) return nullptr;
+  return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const std::vector<double>& distance) {
+    out_->write(tile, cloud, {inFloats(distance).data()});
+  };
+}
+
+site::PassageSink SiteOutput::passage()
+{
+  if (!out_) return nullptr;
+  return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found) {
+    std::vector<const void*> columns = {found.flags.data()};
+    if (tellsPoses(options_))
+      columns.insert(columns.end(), {found.distance.data(), found.first_pose.data(), found.closest_pose.data()});
+    out_->write(tile, cloud, columns);
+  };
+}
+
+void SiteOutput::finish()
+{
+  if (out_) out_->finish();
+}
+
+} // namespace pcl_bsh::cli
+#endif

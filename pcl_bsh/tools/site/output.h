@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// pcl_bsh_site collide --out: what was found of each point, as a site.
+#pragma once
+
+#include "options.h"
+
+#include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/site/collide_sites.h>
+#include <pcl_bsh/site/result_site.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+/// What a site is compared with, and how its file says more than points.
+struct ObstacleFile {
+  /// @throws files::FileError, also where its points shall be written and cannot; std::invalid_argument for an
+  ///   uncertainty that it cannot have
+  explicit ObstacleFile(const SiteOptions& options);
+
+  /// Null where it is points.
+  const io::Obstacle* surface() const { return obstacle.isSurface() ? &obstacle : nullptr; }
+
+  /// From flags of the records of its view to those of its points or triangles.
+  /// @pre of a surface, its triangles are apart
+  std::vector<std::uint8_t> flagsOfParts(const std::vector<std::uint8_t>& flags) const;
+
+  /// Writes its points or triangles with these flags, where they are asked for: on the first rank.
+  void write(const std::vector<std::uint8_t>& flags, const SiteOptions& options) const;
+
+  io::Obstacle obstacle;
+  io::CloudFacts facts; ///< of its file
+};
+
+/// Of a run with --out that ends before it has answered.
+inline constexpr auto what_stays = "what was found stays, and the same command with --resume goes on";
+
+/// Where the obstacle is asked about.
+using Poses = std::vector<Eigen::Isometry3d>;
+
+/// The field of flags at one pose.
+site::ResultField collisionField();
+
+/// What a site of results drops without being asked, a line each: answers of a run that was ended, and fields of
+/// earlier questions. The same on all ranks, or none.
+/// @param option that names its folder
+std::vector<std::string> droppedBy(const site::ResultSite& out, const std::string& option,
+                                   const std::filesystem::path& folder, const site::Site& site,
+                                   const std::vector<site::ResultField>& fields);
+
+/// The site of results, where it is asked for; else its sinks are null.
+class SiteOutput {
+public:
+  /// @param obstacle null where that is a site, too
+  /// @param cluster_distance of the lists of clashes; 0 where none is wanted
+  /// @throws files::FileError for a folder that cannot be one
+  SiteOutput(const site::Site& site, const ObstacleFile* obstacle, const Poses& poses, double cluster_distance,
+             const SiteOptions& options);
+
+  /// What users should know before the question is answered, a line each.
+  const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+  /// What an earlier run has found, and where this one keeps what it finds; null: nothing is kept.
+  site::TileAnswers* answers() { return out_ ? out_->answers() : nullptr; }
+
+  site::FlagsSink flags();
+  site::DistancesSink distances();
+  site::PairDistancesSink distancesOfSites();
+  site::PassageSink passage();
+
+  /// After the question. To be called by all ranks.
+  void finish();
+
+private:
+  const SiteOptions& options_;
+  std::optional<site::ResultSite> out_;
+  std::vector<std::string> warnings_;
+};
+
+} // namespace pcl_bsh::cli

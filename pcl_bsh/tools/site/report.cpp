@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifdef PCL_BSH_SITE_QUERIES
+#include "report.h"
+
+#include <cmath>
+
+namespace pcl_bsh::cli {
+
+site::SiteRequest requestOf(const SiteOptions& options, Step* step)
+{
+  site::SiteRequest request;
+  request.clearance = options.clearance;
+  request.threads = options.threads;
+  request.memory = options.memory;
+  request.accuracy = options.accuracy;
+  request.uncertainty = options.uncertainty;
+  request.swept = options.swept;
+  if (step != nullptr) {
+    request.progress = [step](std::uint64_t done, std::uint64_t all) {
+      step->share(static_cast<double>(done) / static_cast<double>(all));
+      return true;
+    };
+  }
+  return request;
+}
+
+Json beginReport(const site::Site& site, const SiteOptions& options)
+{
+  Json report = {{"site", options.site.string()}, {"obstacle", options.obstacle.string()}, {"points", site.points}};
+  const bool has_clearance = options.question != SiteQuestion::closest && options.question != SiteQuestion::distances;
+  if (has_clearance) report["clearance"] = options.clearance;
+  report["accuracy"] = options.accuracy.text();
+  return report;
+}
+
+Json orNull(double number)
+{
+  return std::isfinite(number) ? Json(number) : Json(nullptr);
+}
+
+void putTiles(Json& report, const char* key, const site::TilesRead& tiles)
+{
+  report[key] = {{"all", tiles.tiles}, {"needed", tiles.needed}, {"read", tiles.read}};
+}
+
+void putPassage(Json& report, const site::SitePassage& found, std::size_t poses, const SiteOptions& options)
+{
+  report["poses"] = poses;
+  report["colliding"] = found.colliding;
+  report["undecided"] = found.undecided;
+  report["distance"] = orNull(double{found.distance});
+  report["first_pose"] = found.first_pose < 0 ? Json(nullptr) : Json(found.first_pose);
+  if (options.swept) report["swept"] = *options.swept;
+  const auto put_contact = [&](const char* key, const std::optional<FirstContact>& contact) {
+    if (contact) report[key] = {{"pose", contact->pose}, {"fraction", contact->fraction}};
+  };
+  put_contact("first_contact", found.first_contact);
+  put_contact("certain_contact", found.certain_contact);
+}
+
+Json named(const site::Site& site, const site::SitePoint& point)
+{
+  return {{"source", site.sources.at(point.source).file}, {"record", point.record}};
+}
+
+void put(Json& report, const site::TilesRead& tiles, MeasuredRun& run)
+{
+  run.tiles = tiles.costs;
+  putTiles(report, "tiles", tiles);
+}
+
+void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun& run)
+{
+  Json& costs = report["costs"] = {
+      {"ranks", run.ranks}, {"seconds", run.seconds}, {"copying", run.copying}, {"tiles", Json::array()}};
+  for (const site::TileCost& cost : run.tiles)
+    costs["tiles"].push_back({{"tile", cost.tile}, {"reading", cost.reading}, {"asking", cost.asking}});
+  for (const unsigned n : ranks) {
+    const RunPlan plan = planRun(run, n);
+    report["plan"].push_back({{"ranks", plan.ranks},
+                              {"seconds", plan.seconds},
+                              {"limit", plan.limit},
+                              {"on_all", plan.on_all},
+                              {"copying", plan.copying},
+                              {"busiest", plan.busiest},
+                              {"even", plan.even},
+                              {"reading", plan.reading}});
+  }
+}
+
+} // namespace pcl_bsh::cli
+#endif

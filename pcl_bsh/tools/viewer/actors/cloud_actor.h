@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "palette.h"
+#include <pcl_bsh/tools/viewer/content/view_content.h>
+#include <pcl_bsh/tools/viewer/content/viewed_cloud.h>
+#include <pcl_bsh/tools/viewer/options.h>
+
+#include <pcl_bsh/hierarchy/points_view.h>
+
+#include <Eigen/Geometry>
+#include <vtkPicker.h>
+#include <vtkPolyData.h>
+#include <vtkRenderer.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace pcl_bsh::viewer {
+
+/// A cloud as it is drawn: what it is asked about, its parts, are points or triangles, which have colours and marks.
+class CloudActor {
+public:
+  virtual ~CloudActor() = default;
+  CloudActor(const CloudActor&) = delete;
+  CloudActor& operator=(const CloudActor&) = delete;
+
+  /// Takes the points as they are now; paint and mark them anew. For points that move in their own frame.
+  virtual void setPoints(const PointsView& points) = 0;
+
+  /// @param colors one per part
+  virtual void paint(const std::vector<Color>& colors) = 0;
+
+  /// One colour; of points darker for lower ones: a cloud all of one would look flat.
+  /// @param heights of the lowest and the highest; null: the cloud's own
+  virtual void paint(const Color& color, const ColorRange* heights = nullptr) = 0;
+
+  /// Makes parts with flags[part] != 0 stand out: in the mark's colour, or in `colors` where that is not empty.
+  /// @param flags empty: none
+  virtual void mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors = {}) = 0;
+
+  virtual void place(const Eigen::Isometry3d& pose) = 0;
+  virtual void setMoving(bool moving) = 0;
+  virtual void setVisible(bool visible) = 0;
+  virtual void remove(vtkRenderer& renderer) = 0; ///< for good
+  virtual void cut(const Cut& plane) = 0;         ///< in the world frame; nothing is drawn on the side of its normal
+
+  virtual vtkPolyData& data() const = 0;   ///< what is drawn
+  virtual vtkPolyData& all() const = 0;    ///< with what withoutFarPoints() leaves out
+  virtual vtkPolyData& marked() const = 0; ///< what stands out
+  vtkIdType leftOut() const { return all().GetNumberOfPoints() - data().GetNumberOfPoints(); }
+
+  /// Lets the pickers find the parts.
+  virtual void offerTo(vtkPicker& points, vtkPicker& triangles) const = 0;
+
+  /// The part that a picked prop and the id of a point, or of a triangle's cell, are; none when they are not of this
+  /// cloud.
+  virtual std::optional<std::uint32_t> partOf(const vtkProp* prop, vtkIdType id) const = 0;
+
+protected:
+  CloudActor() = default;
+};
+
+/// Clouds of a picture, in the order of its content's.
+using CloudActors = std::span<const std::unique_ptr<CloudActor>>;
+
+/// Adds a cloud to what is drawn.
+/// @param marked the colour of marks
+std::unique_ptr<CloudActor> makeCloudActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
+                                           const Color& marked);
+
+} // namespace pcl_bsh::viewer

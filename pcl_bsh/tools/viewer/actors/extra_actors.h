@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "actors.h"
+#include <pcl_bsh/tools/viewer/content/view_content.h>
+
+#include <optional>
+
+namespace pcl_bsh::viewer {
+
+/// Which extras are on.
+struct Extras {
+  std::optional<unsigned> level; ///< of the spheres
+  bool voxels = false, cells = false, trace = false;
+};
+
+/// Adds what shows the algorithm at work: spheres of a level, voxels and octree cells as wire boxes, and what a query
+/// tested and pruned.
+void addExtras(PropGroup& group, const ViewContent& content, const Extras& extras, std::size_t step);
+
+} // namespace pcl_bsh::viewer

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Colours that readers with any colour vision tell apart (Okabe, Ito: Color Universal Design, 2008), on a dark ground.
+#pragma once
+
+#include <vtkLookupTable.h>
+#include <vtkNew.h>
+#include <vtkSmartPointer.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace pcl_bsh::viewer {
+
+using Color = std::array<unsigned char, 3>;
+
+inline constexpr Color ground = {24, 30, 38};
+inline constexpr Color text_color = {235, 238, 242};
+inline constexpr Color scan_color = {126, 140, 154};
+inline constexpr Color obstacle_color = {86, 180, 233};
+inline constexpr Color compared_color = {84, 92, 102};  ///< of clouds that distances lead to: colours are for these
+inline constexpr Color colliding_color = {255, 106, 0}; ///< vermillion, brighter than in print
+inline constexpr Color undecided_color = {204, 121, 167};
+inline constexpr Color sparse_color = {0, 158, 115};
+inline constexpr Color obstacle_colliding_color = {240, 228, 66};
+inline constexpr Color sphere_color = {86, 180, 233};
+inline constexpr Color voxel_color = {0, 158, 115};
+inline constexpr Color cell_color = {204, 121, 167};
+inline constexpr Color segment_color = {240, 228, 66};
+inline constexpr Color path_color = {204, 121, 167};
+
+/// By SphereFate.
+inline constexpr std::array<Color, 4> fate_colors = {{{120, 128, 138}, {86, 180, 233}, {0, 158, 115}, {255, 106, 0}}};
+
+inline std::array<double, 3> fractions(const Color& color)
+{
+  return {color[0] / 255.0, color[1] / 255.0, color[2] / 255.0};
+}
+
+/// Dark to bright through violet, teal and yellow; `reversed`: bright to dark.
+inline vtkSmartPointer<vtkLookupTable> colorTable(double low, double high, bool reversed)
+{
+  constexpr std::array<std::array<double, 3>, 6> stops = {
+      {{122, 88, 196}, {72, 116, 186}, {38, 148, 150}, {60, 185, 115}, {160, 218, 57}, {253, 231, 37}}};
+  constexpr int count = 256;
+  auto table = vtkSmartPointer<vtkLookupTable>::New();
+  table->SetNumberOfTableValues(count);
+  for (int i = 0; i < count; ++i) {
+    const double at = (reversed ? count - 1 - i : i) / (count - 1.0) * (stops.size() - 1.0);
+    const auto from = std::min(static_cast<std::size_t>(at), stops.size() - 2);
+    const double share = at - static_cast<double>(from);
+    std::array<double, 3> c;
+    for (std::size_t k = 0; k < 3; ++k) c[k] = std::lerp(stops[from][k], stops[from + 1][k], share) / 255.0;
+    table->SetTableValue(i, c[0], c[1], c[2]);
+  }
+  table->SetTableRange(low, high > low ? high : low + 1.0);
+  table->Build();
+  return table;
+}
+
+} // namespace pcl_bsh::viewer

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vtkChartXY.h>
+#include <vtkContextActor.h>
+#include <vtkLookupTable.h>
+#include <vtkNew.h>
+#include <vtkRenderer.h>
+
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::viewer {
+
+/// How many points or triangles have which distance, in the colours of the ValueBar above it, at the lower right.
+class ValueHistogram {
+public:
+  ValueHistogram(vtkRenderer& renderer, int width, int height); ///< of the picture, in pixels
+
+  /// @param distances one per part, NaN where there is none
+  /// @param colors whose range ends where the axis does
+  /// @param parts what is counted
+  void show(const std::vector<double>& distances, vtkLookupTable& colors, const std::string& axis_title,
+            const std::string& unit, const std::string& parts);
+  void hide() { actor_->VisibilityOff(); }
+  bool isShown() const { return actor_->GetVisibility() != 0; }
+
+private:
+  vtkNew<vtkContextActor> actor_;
+  vtkNew<vtkChartXY> chart_;
+};
+
+} // namespace pcl_bsh::viewer

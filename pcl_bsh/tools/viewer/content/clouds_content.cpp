@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "clouds_content.h"
+
+#include <pcl_bsh/tools/cli/program.h>
+#include <pcl_bsh/tools/cli/step.h>
+#include <pcl_bsh/tools/viewer/actors/text.h>
+
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/surface_distances.h>
+#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/poses/pose_file.h>
+#include <pcl_bsh/question/warnings.h>
+#include <pcl_bsh/surface/triangle_answers.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcl_bsh::viewer {
+namespace {
+
+/// A cloud with faces is a surface; of the scan's, each triangle is asked about.
+ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, const Options& options)
+{
+  ViewedCloud viewed;
+  viewed.name = viewed.legend = file.filename().string();
+  viewed.role = role;
+  viewed.file = file;
+  cli::Step step("Loading " + file.string());
+  io::SurfaceSettings settings = options.surface;
+  settings.triangles_apart = role == ViewedCloud::Role::scan;
+  io::CloudFacts facts;
+  const io::ColumnNames columns = options.columns.of(file);
+  io::Mesh mesh =
+      settings.vertices_only ? io::Mesh{io::readCloud(file, &facts, columns), {}} : io::readMesh(file, &facts, columns);
+  viewed.face_values = std::move(mesh.face_values);
+  const io::Obstacle read = io::obstacleOf(file, std::move(mesh), settings, options.clearance.value_or(0.0));
+  HierarchyOptions how;
+  how.threads = options.threads;
+  viewed.hierarchy = std::make_shared<SphereHierarchy>(read.view(), how);
+  viewed.cloud = read.cloud();
+  if (read.isSurface()) viewed.surface = read;
+  step.done(read.isSurface() ? counted(read.triangles()->size(), "triangle") : counted(viewed.points().count, "point"));
+  cli::warnOfFile(program, file, facts.remarks);
+  const bool asks = options.clouds.size() > 1 || options.model; // else nothing depends on the balls
+  if (asks) cli::warnOfFile(program, file, read.remarks());
+  return viewed;
+}
+
+} // namespace
+
+CloudsContent::CloudsContent(const Options& options) : FieldContent(options), poses_{options.pose}
+{
+  if (options.trajectory) {
+    std::vector<std::string> warnings;
+    poses_ = io::readPoses(*options.trajectory, &warnings);
+    cli::warn(program, warnings);
+  }
+  if (options.step >= poses_.size())
+    throw cli::UsageError("--step: " + std::to_string(options.step) + ": the trajectory has " +
+                          counted(poses_.size(), "pose") + ", counted from 0");
+  for (const std::filesystem::path& file : options.clouds)
+    viewed_clouds_.push_back(
+        load(file, viewed_clouds_.empty() ? ViewedCloud::Role::scan : ViewedCloud::Role::obstacle, options));
+  if (options.model) {
+    model_ = viewed_clouds_.size();
+    viewed_clouds_.push_back(load(*options.model, ViewedCloud::Role::obstacle, options));
+  }
+  if (scan().hierarchy->empty()) throw std::invalid_argument(scan().file.string() + ": has no finite point to show");
+  warnOfQuestions();
+}
+
+void CloudsContent::warnOfQuestions() const
+{
+  const auto measured = [](const ViewedCloud& cloud) {
+    return measuredCloud(cloud.file.string(), *cloud.hierarchy, cloud.surface ? cloud.surface->cover().get() : nullptr);
+  };
+  std::vector<std::string> told;
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
+    addTexts(warningsOf({measured(scan()), measured(viewed_clouds_[other]),
+                         other == model_ ? poses_ : std::vector{poseOf(other, 0)}, options_.clearance}),
+             told);
+  cli::warn(program, told);
+}
+
+Eigen::Isometry3d CloudsContent::poseOf(std::size_t cloud, std::size_t step) const
+{
+  return cloud == model_ ? poses_[step] : Eigen::Isometry3d::Identity();
+}
+
+std::vector<std::uint8_t> CloudsContent::ofScan(std::vector<std::uint8_t>&& flags) const
+{
+  return scan().hasTriangles() ? triangleVerdicts(*scan().surface->cover(), flags) : std::move(flags);
+}
+
+TrajectoryResult CloudsContent::ofScan(TrajectoryResult&& found) const
+{
+  if (scan().hasTriangles()) return ofTriangles(*scan().surface->cover(), std::move(found));
+  tellOfSurface(found);
+  return std::move(found);
+}
+
+std::vector<double> CloudsContent::ofScan(PointDistances&& found) const
+{
+  tellOfSurface(0.0, found);
+  if (!scan().hasTriangles()) return std::move(found.distance);
+  const std::vector<std::uint32_t> nearest = nearestBalls(*scan().surface->cover(), found.distance);
+  return ofBalls(nearest, found.distance, std::numeric_limits<double>::quiet_NaN());
+}
+
+FlagsRequest CloudsContent::flagsRequest() const
+{
+  FlagsRequest request;
+  request.clearance = options_.clearance.value_or(0.0);
+  request.threads = options_.threads;
+  request.flagged = Side::both;
+  return request;
+}
+
+TrajectoryRequest CloudsContent::along() const
+{
+  TrajectoryRequest request;
+  request.clearance = options_.clearance.value_or(0.0);
+  request.threads = options_.threads;
+  request.flags = false;
+  return request;
+}
+
+StepCollisions CloudsContent::collisions(std::size_t step) const
+{
+  StepCollisions found = options_.clearance ? StepCollisions() : FieldContent::collisions(step);
+  if (options_.clearance) {
+    found.known = true;
+    found.flags.resize(viewed_clouds_.size());
+    found.flags[0].assign(scan().parts(), 0);
+    for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
+      FlagsResult flags = collisionFlags(placed(0, step), placed(other, step), flagsRequest());
+      const std::vector<std::uint8_t> of_scan = ofScan(std::move(flags.a));
+      for (std::size_t i = 0; i < of_scan.size(); ++i) found.flags[0][i] |= of_scan[i];
+      found.flags[other] = std::move(flags.b);
+    }
+    countVerdicts(found);
+  }
+  if (options_.closest) found.closest = closest(step);
+  return found;
+}
+
+std::optional<ClosestPair> CloudsContent::closest(std::size_t step) const
+{
+  std::optional<ClosestPair> nearest;
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
+    DistanceResult found = closestPair(placed(0, step), placed(other, step));
+    tellOfSurface(0.0, found);
+    if (!found.pair || (nearest && nearest->distance <= found.distance)) continue;
+    const Point3 a = scan().points().point(found.pair->a), b = viewed_clouds_[other].points().point(found.pair->b);
+    nearest = {Eigen::Vector3d(a[0], a[1], a[2]), poseOf(other, step) * Eigen::Vector3d(b[0], b[1], b[2]),
+               found.distance};
+  }
+  return nearest;
+}
+
+std::string CloudsContent::heading(const StepCollisions& collisions, std::size_t step) const
+{
+  std::ostringstream text;
+  text << scan().name << ": " << grouped(scan().hasTriangles() ? scan().parts() : scan().hierarchy->size())
+       << (scan().hasTriangles() ? " triangles" : " points");
+  if (collisions.known) {
+    text << ", " << grouped(collisions.colliding) << " collide";
+    if (collisions.undecided > 0) text << ", " << grouped(collisions.undecided) << " are undecided";
+    if (collisions.sparse > 0) text << ", " << grouped(collisions.sparse) << " not scanned densely enough";
+    if (options_.clearance) text << "  (clearance " << lengthOf(*options_.clearance, options_.unit) << ')';
+  }
+  if (steps() > 1) text << "\npose " << step << " of 0.." << steps() - 1;
+  return text.str();
+}
+
+MotionPaths CloudsContent::paths(std::size_t /*step*/) const
+{
+  if (steps() == 1) return {};
+  return {"path of the model", {poses_}};
+}
+
+std::optional<double> CloudsContent::distanceOf(std::uint32_t part, std::size_t step) const
+{
+  if (viewed_clouds_.size() == 1) return std::nullopt;
+  std::vector<std::int32_t> records; // the point, or the triangle's balls
+  if (!scan().hasTriangles()) records.push_back(static_cast<std::int32_t>(part));
+  for (std::uint32_t ball = 0; scan().hasTriangles() && ball < scan().points().count; ++ball)
+    if (scan().surface->partOf(ball) == part) records.push_back(static_cast<std::int32_t>(ball));
+  PointsView view = scan().points();
+  view.indices = records.data();
+  view.index_count = records.size();
+  const SphereHierarchy alone(view);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
+    nearest = std::min(nearest, closestPair({alone}, placed(other, step)).distance);
+  return std::max(nearest, 0.0);
+}
+
+std::vector<float> CloudsContent::distances(std::size_t step) const
+{
+  if (!options_.clearance) return FieldContent::distances(step);
+  std::vector<float> distances(scan().parts(), std::numeric_limits<float>::quiet_NaN());
+  TrajectoryRequest asked = along();
+  asked.distances = true;
+  asked.clearance = options_.range.value_or(*options_.clearance);
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
+    const TrajectoryResult found =
+        ofScan(collideAlong(placed(0, step), *viewed_clouds_[other].hierarchy, {poseOf(other, step)}, asked));
+    for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = std::fmin(distances[i], found.distance[i]);
+  }
+  return distances;
+}
+
+std::vector<double> CloudsContent::allDistances(std::size_t step) const
+{
+  if (options_.clearance) return {};
+  if (viewed_clouds_.size() == 1) return FieldContent::allDistances(step);
+  PointDistancesRequest request;
+  request.threads = options_.threads;
+  std::vector<double> nearest;
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
+    const std::vector<double> found = ofScan(pointDistances(placed(0, step), placed(other, step), request));
+    if (nearest.empty()) nearest.assign(found.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < found.size(); ++i) nearest[i] = std::fmin(nearest[i], found[i]);
+  }
+  return nearest;
+}
+
+std::vector<std::int32_t> CloudsContent::firstPoses() const
+{
+  if (first_poses_) return *first_poses_;
+  std::vector<std::int32_t> first =
+      options_.clearance ? std::vector<std::int32_t>(scan().parts(), -1) : FieldContent::firstPoses();
+  if (options_.clearance) {
+    cli::Step step("Following " + counted(steps(), "pose"));
+    TrajectoryRequest asked = along();
+    asked.first_poses = true;
+    for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
+      const std::vector<Eigen::Isometry3d> still = {poseOf(other, 0)};
+      const TrajectoryResult found =
+          ofScan(collideAlong(placed(0, 0), *viewed_clouds_[other].hierarchy, other == model_ ? poses_ : still, asked));
+      for (std::size_t i = 0; i < first.size(); ++i) {
+        const std::int32_t pose = found.first_pose[i];
+        if (pose >= 0 && (first[i] < 0 || pose < first[i])) first[i] = pose;
+      }
+    }
+    step.done(counted(steps(), "pose"));
+  }
+  return *(first_poses_ = std::move(first));
+}
+
+std::string CloudsContent::details(std::size_t cloud, std::uint32_t part, std::size_t step) const
+{
+  if (cloud > 0) return {};
+  std::string text;
+  if (const auto distance = distanceOf(part, step)) text += "; distance " + lengthOf(*distance, options_.unit);
+  if (first_poses_ || steps() > 1) {
+    const std::vector<std::int32_t> first = firstPoses();
+    text += "; first pose " + (first[part] < 0 ? "none" : std::to_string(first[part]));
+  }
+  return text;
+}
+
+std::vector<Trace> CloudsContent::traces(std::size_t step) const
+{
+  std::vector<Trace> traces;
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
+    traces.push_back(
+        {0, other, traceCollision(placed(0, step), placed(other, step), {options_.clearance.value_or(0.0), {}})});
+  return traces;
+}
+
+} // namespace pcl_bsh::viewer

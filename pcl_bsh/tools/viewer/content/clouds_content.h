@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A scan, obstacles that do not move, and a model that takes poses.
+#pragma once
+
+#include "field_content.h"
+
+#include <pcl_bsh/collide.h>
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+namespace pcl_bsh::viewer {
+
+class CloudsContent final : public FieldContent {
+public:
+  /// @throws files::FileError, std::invalid_argument naming the file
+  explicit CloudsContent(const Options& options);
+
+  std::size_t steps() const override { return poses_.size(); }
+  Eigen::Isometry3d poseOf(std::size_t cloud, std::size_t step) const override;
+  bool moves(std::size_t cloud) const override { return cloud == model_; }
+
+  /// Asked of the queries; without a clearance, read from the scan's field `collision`, if any.
+  StepCollisions collisions(std::size_t step) const override;
+  std::string heading(const StepCollisions& collisions, std::size_t step) const override;
+  MotionPaths paths(std::size_t step) const override;
+
+  /// Or the scan's field `distance`.
+  std::vector<float> distances(std::size_t step) const override;
+
+  /// Without a clearance: to the nearest point of any obstacle. Without obstacles the scan's field `distance`, where it
+  /// holds those of free points.
+  std::vector<double> allDistances(std::size_t step) const override;
+
+  /// Or the scan's field `first_pose`. Asked once, then kept.
+  std::vector<std::int32_t> firstPoses() const override;
+
+  /// Of the scan's parts: the distance to the nearest point of any obstacle, and the first pose.
+  std::string details(std::size_t cloud, std::uint32_t part, std::size_t step) const override;
+  std::vector<Trace> traces(std::size_t step) const override;
+
+private:
+  Placed placed(std::size_t cloud, std::size_t step) const
+  {
+    return {*viewed_clouds_[cloud].hierarchy, poseOf(cloud, step)};
+  }
+  void warnOfQuestions() const; ///< of the scan and each other cloud
+  FlagsRequest flagsRequest() const;
+  TrajectoryRequest along() const;
+  std::optional<ClosestPair> closest(std::size_t step) const;
+  std::optional<double> distanceOf(std::uint32_t part, std::size_t step) const;
+
+  // From what a query found of the records of the scan's view to what is told of its parts.
+  std::vector<std::uint8_t> ofScan(std::vector<std::uint8_t>&& flags) const;
+  TrajectoryResult ofScan(TrajectoryResult&& found) const;
+  std::vector<double> ofScan(PointDistances&& found) const;
+
+  std::optional<std::size_t> model_;
+  std::vector<Eigen::Isometry3d> poses_;
+  mutable std::optional<std::vector<std::int32_t>> first_poses_;
+};
+
+} // namespace pcl_bsh::viewer

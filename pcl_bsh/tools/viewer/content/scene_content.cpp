@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_content.h"
+
+#include <pcl_bsh/tools/cli/program.h>
+#include <pcl_bsh/tools/cli/step.h>
+#include <pcl_bsh/tools/viewer/actors/text.h>
+
+#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/scenes/scene_file.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace pcl_bsh::viewer {
+namespace {
+
+constexpr std::size_t most_paths = 50;
+constexpr std::size_t most_contacts = 3;
+
+/// The effects without those that only report.
+Effects movingOnly(const Effects& effects)
+{
+  Effects moving;
+  moving.response = effects.response;
+  moving.gravity = effects.gravity;
+  moving.deform = effects.deform;
+  return moving;
+}
+
+io::SceneFile readScene(const Options& options)
+{
+  io::SceneFile file = io::readSceneFile(*options.scene);
+  if (options.step > file.steps)
+    throw cli::UsageError("--step: " + std::to_string(options.step) + ": the scene has steps 0 to " +
+                          std::to_string(file.steps));
+  file.options.effects = movingOnly(file.options.effects);
+  file.options.threads = options.threads;
+  return file;
+}
+
+/// Step 0 is the start, step n the scene after n of its steps, responses included. Steps are run when they are first
+/// shown, and their poses are kept; the query for what collides runs again each time a step is shown.
+class SceneContent final : public ViewContent {
+public:
+  explicit SceneContent(const Options& options);
+
+  std::string name() const override { return file_.path.filename().string(); }
+  std::size_t steps() const override { return file_.steps + 1; }
+  const char* stepName() const override { return "step"; }
+  Eigen::Isometry3d poseOf(std::size_t cloud, std::size_t step) const override;
+  bool moves(std::size_t cloud) const override { return viewed_clouds_[cloud].role == ViewedCloud::Role::obstacle; }
+  bool deforms(std::size_t cloud) const override { return file_.objects[places_[cloud].object].wave.has_value(); }
+
+  /// By the clearance of the options, else by the scene's. Of all clouds.
+  StepCollisions collisions(std::size_t step) const override;
+  std::string heading(const StepCollisions& collisions, std::size_t step) const override;
+
+  /// Of moving objects until this step, where they are not too many.
+  MotionPaths paths(std::size_t step) const override;
+
+private:
+  /// Which part of the scene a viewed cloud is.
+  struct Place {
+    ObjectId object = 0;
+    std::uint32_t part = 0;
+  };
+
+  struct StepState {
+    std::vector<Eigen::Isometry3d> poses; ///< of each object
+    std::vector<std::string> contacts;    ///< lines about objects that touched another
+  };
+
+  void addClouds();
+  void makeQueryScene();
+  const StepState& at(std::size_t step) const;
+  StepState stateAfter(const SceneResult& result) const;
+  std::size_t cloudOf(ObjectId object, std::uint32_t part) const { return first_cloud_[object] + part; }
+  double clearance() const { return options_.clearance.value_or(file_.options.clearance); }
+
+  io::SceneFile file_;
+  std::unique_ptr<io::SceneWorld> running_scene_; ///< moves the objects from step to step, and reports nothing else
+  std::unique_ptr<Scene>
+      query_scene_; ///< the same objects without motions: placed as at the step shown, and asked what collides
+  std::vector<Place> places_;             ///< of each viewed cloud
+  std::vector<std::size_t> first_cloud_;  ///< of each object
+  std::size_t points_ = 0;                ///< finite, of all clouds
+  mutable std::vector<StepState> states_; ///< of the steps run so far
+};
+
+SceneContent::SceneContent(const Options& options) : ViewContent(options), file_(readScene(options))
+{
+  cli::warn(program, file_.warnings);
+  cli::Step step("Loading the clouds of " + name());
+  running_scene_ = std::make_unique<io::SceneWorld>(file_);
+  step.done(counted(running_scene_->points(), "point"));
+  cli::warn(program, running_scene_->warnings());
+  addClouds();
+  if (points_ == 0) throw std::invalid_argument(file_.path.string() + ": has no finite point to show");
+  makeQueryScene();
+  states_.push_back(stateAfter({}));
+}
+
+void SceneContent::addClouds()
+{
+  const Scene& scene = running_scene_->scene();
+  for (ObjectId object = 0; object < scene.size(); ++object) {
+    const SceneObject& has = scene[object];
+    first_cloud_.push_back(viewed_clouds_.size());
+    for (std::uint32_t part = 0; part < has.parts.size(); ++part) {
+      ViewedCloud viewed;
+      viewed.name = has.name + (has.parts.size() > 1 ? "/" + has.parts[part].name : "");
+      viewed.legend = has.fixed ? "fixed objects" : "moving objects";
+      viewed.role = has.fixed ? ViewedCloud::Role::scan : ViewedCloud::Role::obstacle;
+      viewed.hierarchy = has.parts[part].hierarchy;
+      if (const io::Obstacle* const surface = running_scene_->surface(file_.objects[object].parts[part].cloud))
+        viewed.surface = *surface;
+      points_ += viewed.hierarchy->size();
+      viewed_clouds_.push_back(std::move(viewed));
+      places_.push_back({object, part});
+    }
+  }
+}
+
+void SceneContent::makeQueryScene()
+{
+  SceneOptions asked = file_.options;
+  asked.effects = {};
+  asked.effects.flags = true;
+  if (options_.closest) asked.effects.distance = std::numeric_limits<double>::infinity();
+  asked.clearance = clearance();
+  query_scene_ = std::make_unique<Scene>(asked);
+  for (ObjectId object = 0; object < running_scene_->scene().size(); ++object) {
+    SceneObject still = running_scene_->scene()[object];
+    still.motion = NoMotion();
+    query_scene_->add(std::move(still));
+  }
+  std::vector<io::RuleEntry> rules = file_.rules;
+  if (options_.clearance)
+    for (io::RuleEntry& entry : rules) entry.rule.clearance.reset();
+  io::setRules(*query_scene_, rules);
+}
+
+SceneContent::StepState SceneContent::stateAfter(const SceneResult& result) const
+{
+  const Scene& scene = running_scene_->scene();
+  StepState state;
+  for (ObjectId object = 0; object < scene.size(); ++object) state.poses.push_back(scene[object].pose);
+  for (const Outcome& outcome : result.outcomes)
+    if (outcome.touched || outcome.stuck)
+      state.contacts.push_back(scene[outcome.object].name + (outcome.stuck ? " is stuck in " : " meets ") +
+                               scene[outcome.against].name);
+  return state;
+}
+
+const SceneContent::StepState& SceneContent::at(std::size_t step) const
+{
+  if (step < states_.size()) return states_[step];
+  cli::Step running("Running the scene to step " + std::to_string(step));
+  const std::size_t from = states_.size();
+  while (states_.size() <= step) {
+    running.share(static_cast<double>(states_.size() - from) / static_cast<double>(step + 1 - from));
+    running_scene_->deform(running_scene_->scene().time() + file_.dt);
+    states_.push_back(stateAfter(running_scene_->scene().step(file_.dt)));
+  }
+  running.done(counted(step + 1 - from, "step"));
+  return states_[step];
+}
+
+Eigen::Isometry3d SceneContent::poseOf(std::size_t cloud, std::size_t step) const
+{
+  const Place& place = places_[cloud];
+  return at(step).poses[place.object] * running_scene_->scene()[place.object].parts[place.part].pose;
+}
+
+StepCollisions SceneContent::collisions(std::size_t step) const
+{
+  const StepState& state = at(step);
+  running_scene_->deform(static_cast<double>(step) * file_.dt);
+  for (ObjectId object = 0; object < query_scene_->size(); ++object) {
+    const Eigen::Isometry3d& pose = state.poses[object];
+    if (pose.matrix() != (*query_scene_)[object].pose.matrix()) query_scene_->setPose(object, pose);
+    if (deforms(first_cloud_[object])) query_scene_->pointsChanged(object);
+  }
+  const SceneResult result = query_scene_->query();
+  StepCollisions found;
+  found.known = true;
+  found.flags.resize(viewed_clouds_.size());
+  for (const FlaggedPart& part : result.flags) {
+    found.flags[cloudOf(part.object, part.part)] = part.flags;
+    found.colliding += part.colliding;
+  }
+  for (const DistantPair& pair : result.distance) {
+    if (found.closest && found.closest->distance <= pair.distance) continue;
+    const auto point = [&](ObjectId object, std::uint32_t part, std::uint32_t record) {
+      const std::size_t cloud = cloudOf(object, part);
+      const Point3 p = viewed_clouds_[cloud].points().point(record);
+      return Eigen::Vector3d(poseOf(cloud, step) * Eigen::Vector3d(p[0], p[1], p[2]));
+    };
+    found.closest = {point(pair.a, pair.part_a, pair.pair.a), point(pair.b, pair.part_b, pair.pair.b), pair.distance};
+  }
+  return found;
+}
+
+std::string SceneContent::heading(const StepCollisions& collisions, std::size_t step) const
+{
+  std::ostringstream text;
+  text << name() << ": " << groupedCount(file_.objects.size(), "object") << ", " << groupedCount(points_, "point")
+       << ", " << grouped(collisions.colliding) << " collide  (clearance " << lengthOf(clearance(), options_.unit)
+       << ")\nstep " << step << " of 0.." << file_.steps << ", " << shortest(static_cast<double>(step) * file_.dt)
+       << " s";
+  const std::vector<std::string>& contacts = at(step).contacts;
+  for (std::size_t i = 0; i < std::min(contacts.size(), most_contacts); ++i) text << '\n' << contacts[i];
+  if (contacts.size() > most_contacts) text << "\n... " << contacts.size() - most_contacts << " more meet something";
+  return text.str();
+}
+
+MotionPaths SceneContent::paths(std::size_t step) const
+{
+  MotionPaths paths;
+  paths.name = "path so far";
+  at(step);
+  for (ObjectId object = 0; object < first_cloud_.size(); ++object) {
+    if (!moves(first_cloud_[object])) continue;
+    if (paths.poses.size() == most_paths) return {};
+    paths.poses.emplace_back();
+    for (std::size_t k = 0; k <= step; ++k) paths.poses.back().push_back(states_[k].poses[object]);
+  }
+  return paths;
+}
+
+} // namespace
+
+std::unique_ptr<ViewContent> makeSceneContent(const Options& options)
+{
+  return std::make_unique<SceneContent>(options);
+}
+
+} // namespace pcl_bsh::viewer

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the viewer shows, without how it is drawn: clouds, their hierarchies and poses, and what collides at each step.
+#pragma once
+
+#include "viewed_cloud.h"
+#include <pcl_bsh/tools/viewer/options.h>
+
+#include <pcl_bsh/pairs/trace.h>
+
+#include <Eigen/Geometry>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::viewer {
+
+/// The closest pair, in the world frame.
+struct ClosestPair {
+  Eigen::Vector3d a, b;
+  double distance = 0.0;
+};
+
+/// What collides at one step.
+struct StepCollisions {
+  bool known = false;                           ///< whether a query ran or a field says it
+  std::vector<std::vector<std::uint8_t>> flags; ///< of each viewed cloud, 1 = collides, per part; empty: none do
+  std::size_t colliding = 0;                    ///< parts of the scan, or points of all clouds of a scene
+  std::size_t undecided = 0;                    ///< likewise
+  std::size_t sparse = 0;                       ///< likewise, not scanned densely enough
+  std::optional<ClosestPair> closest;
+};
+
+/// The poses that clouds take one after another, each path drawn as a line.
+struct MotionPaths {
+  std::string name;
+  std::vector<std::vector<Eigen::Isometry3d>> poses;
+};
+
+/// How the query for any collision between two clouds went.
+struct Trace {
+  std::size_t a = 0, b = 0; ///< numbers of clouds
+  CollisionTrace trace;
+};
+
+/// What the two ends of a range of colours stand for.
+struct ColorRange {
+  double low = 0.0, high = 1.0;
+};
+
+/// How clouds are coloured that are parts of a whole: alike.
+struct SharedColors {
+  ColorRange heights;               ///< which plain colours are shaded by
+  std::optional<ColorRange> values; ///< none where no value is known yet
+  bool all_distances = false;       ///< free points have some, too
+};
+
+class SiteContent;
+
+/// Clouds and their poses at a number of steps; the first cloud is the one asked about: its points, or its triangles.
+class ViewContent {
+public:
+  virtual ~ViewContent() = default;
+  ViewContent(const ViewContent&) = delete;
+  ViewContent& operator=(const ViewContent&) = delete;
+
+  const Options& options() const { return options_; }
+  const std::vector<ViewedCloud>& viewedClouds() const { return viewed_clouds_; }
+  const ViewedCloud& scan() const { return viewed_clouds_.front(); } ///< the one that fields and values are shown of
+
+  virtual std::string name() const = 0;     ///< of the window
+  virtual std::size_t steps() const = 0;    ///< at least one
+  virtual const char* stepName() const = 0; ///< what steps are
+  virtual Eigen::Isometry3d poseOf(std::size_t cloud, std::size_t step) const = 0;
+  virtual bool moves(std::size_t cloud) const = 0;
+
+  /// Points that move in their own frame stand where they are at this step, once its collisions() were asked for.
+  virtual bool deforms(std::size_t /*cloud*/) const { return false; }
+  virtual StepCollisions collisions(std::size_t step) const = 0;
+
+  /// Lines of text above the picture.
+  virtual std::string heading(const StepCollisions& collisions, std::size_t step) const = 0;
+  virtual MotionPaths paths(std::size_t step) const = 0;
+
+  // Of the scan, per part; empty where that is not known.
+  virtual std::vector<float> distances(std::size_t /*step*/) const { return {}; }     ///< NaN where free
+  virtual std::vector<double> allDistances(std::size_t /*step*/) const { return {}; } ///< of free points, too
+  virtual std::vector<std::int32_t> firstPoses() const { return {}; }                 ///< -1 where always free
+
+  /// More text about a picked part, put behind its name and coordinates; or empty.
+  virtual std::string details(std::size_t /*cloud*/, std::uint32_t /*part*/, std::size_t /*step*/) const { return {}; }
+  virtual std::vector<Trace> traces(std::size_t /*step*/) const { return {}; }
+
+  virtual std::string partsName() const { return std::string(scan().partName()) + "s"; } ///< of what values are of
+  virtual const SharedColors* sharedColors() const { return nullptr; } ///< where this is a part of a whole
+  virtual const SiteContent* site() const { return nullptr; }          ///< where there are tiles to draw, too
+
+protected:
+  explicit ViewContent(Options options) : options_(std::move(options)) {}
+
+  Options options_;
+  std::vector<ViewedCloud> viewed_clouds_;
+};
+
+/// What the options name, loaded and indexed. @throws files::FileError, io::JsonError, std::invalid_argument naming
+/// the file
+std::unique_ptr<ViewContent> makeViewContent(const Options& options);
+
+} // namespace pcl_bsh::viewer

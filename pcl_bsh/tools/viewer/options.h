@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line of pcl_bsh_view.
+#pragma once
+
+#include <pcl_bsh/tools/cli/used_files.h>
+
+#include <pcl_bsh/io/clouds/meshes/obstacle.h>
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::viewer {
+
+inline constexpr auto program = "pcl_bsh_view";
+
+enum class Coloring { collision, distance, first_pose, height, rgb, intensity };
+
+/// Where one looks from.
+struct Camera {
+  enum class Kind { slanted, top, front, side, colliding, given };
+
+  Kind kind = Kind::slanted;
+  std::array<double, 3> eye = {}, focus = {}, up = {0, 0, 1}; ///< of a given one
+};
+
+/// A plane; what lies on the side that its normal points to is not drawn.
+struct Cut {
+  std::array<double, 3> point = {}, normal = {};
+};
+
+struct Options {
+  std::vector<std::filesystem::path> clouds;  ///< the first is the one asked about, the others are obstacles
+  std::optional<std::filesystem::path> scene; ///< in place of clouds
+  std::optional<std::filesystem::path> site;  ///< likewise
+  std::uint64_t budget = 10'000'000;          ///< points of a site that are drawn at once
+  std::optional<std::filesystem::path> model;
+  std::optional<std::filesystem::path> trajectory;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< of the model, without a trajectory
+  std::optional<double> clearance;
+  io::SurfaceSettings surface; ///< of clouds with faces
+  std::optional<Coloring> color;
+  std::optional<double> range; ///< distances up to here have colours; what collides, the colour of collisions
+  std::optional<Cut> cut;      ///< of the first cloud
+  std::optional<unsigned> level;
+  unsigned step = 0; ///< of the trajectory or the scene
+  bool voxels = false, cells = false, trace = false, closest = false;
+  std::string unit; ///< of lengths, for titles
+  std::optional<std::filesystem::path> screenshot;
+  int width = 1280, height = 960;
+  Camera camera;
+  std::optional<std::filesystem::path> export_to;
+  unsigned threads = 0;
+  io::ColumnChoice columns;
+  cli::CommandFiles files; ///< but for a scene's clouds
+};
+
+/// The options, checked one by one; none when only help was asked for. @throws cli::UsageError
+std::optional<Options> parseOptions(int argc, char** argv);
+
+} // namespace pcl_bsh::viewer

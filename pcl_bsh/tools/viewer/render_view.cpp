@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render_view.h"
+
+#include "export.h"
+#include <pcl_bsh/tools/viewer/actors/camera.h>
+#include <pcl_bsh/tools/viewer/actors/closest_pair_actor.h>
+#include <pcl_bsh/tools/viewer/actors/coloring.h>
+#include <pcl_bsh/tools/viewer/actors/text.h>
+
+#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/vtk/cloud_data.h>
+#include <pcl_bsh/vtk/path_data.h>
+
+#include <vtkBoundingBox.h>
+#include <vtkCamera.h>
+#include <vtkCellPicker.h>
+#include <vtkMath.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPointPicker.h>
+#include <vtkProperty.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcl_bsh::viewer {
+
+RenderView::RenderView(const ViewContent& content, vtkRenderer& renderer)
+: content_(content),
+  renderer_(renderer),
+  extra_props_(renderer),
+  closest_props_(renderer),
+  path_props_(renderer),
+  caption_(renderer, content.options().width, content.options().height),
+  bar_(renderer, content.options().width),
+  histogram_(renderer, content.options().width, content.options().height)
+{
+  const Options& options = content.options();
+  const std::array<double, 3> c = fractions(ground);
+  renderer.SetBackground(c[0], c[1], c[2]);
+  for (const ViewedCloud& viewed : content.viewedClouds())
+    clouds_.push_back(
+        makeCloudActor(viewed, renderer, viewed.role == ViewedCloud::Role::scan ? scan_color : obstacle_color,
+                       viewed.role == ViewedCloud::Role::scan ? colliding_color : obstacle_colliding_color));
+  if (options.cut) clouds_[0]->cut(*options.cut);
+  extras_ = {options.level, options.voxels, options.cells, options.trace};
+  collisions_ = content.collisions(options.step);
+  coloring_ = coloringOf(content, collisions_);
+  step_ = options.step;
+  paint(clouds_, bar_, content, coloring_);
+  show(options.step);
+  look(options.camera);
+  if (!content.site()) return;
+  tiles_.emplace(*content.site(), renderer, *clouds_[0], bar_, histogram_, coloring_);
+  writeTexts();
+}
+
+bool RenderView::loadTile()
+{
+  if (!tiles_ || !tiles_->step()) return false;
+  writeTexts();
+  return true;
+}
+
+void RenderView::show(std::size_t step)
+{
+  if (step != step_) collisions_ = content_.collisions(step);
+  step_ = step;
+  drawClouds();
+  drawPaths();
+  drawClosestPair();
+  drawExtras();
+  writeTexts();
+}
+
+void RenderView::setExtras(const Extras& extras)
+{
+  extras_ = extras;
+  drawExtras();
+  writeTexts();
+}
+
+void RenderView::drawClouds()
+{
+  bool deformed = false;
+  for (std::size_t i = 0; i < clouds_.size(); ++i) {
+    clouds_[i]->place(content_.poseOf(i, step_));
+    if (!content_.deforms(i)) continue;
+    clouds_[i]->setPoints(content_.viewedClouds()[i].points());
+    deformed = true;
+  }
+  if (deformed) paint(clouds_, bar_, content_, coloring_);
+  if (!paintDistances(clouds_, bar_, histogram_, content_, coloring_, step_))
+    mark(clouds_, bar_, content_, collisions_, coloring_, step_);
+}
+
+void RenderView::drawExtras()
+{
+  extra_props_.clear();
+  addExtras(extra_props_, content_, extras_, step_);
+}
+
+void RenderView::drawClosestPair()
+{
+  closest_props_.clear();
+  if (collisions_.closest) addClosestPair(closest_props_, *collisions_.closest, content_.options().unit);
+}
+
+void RenderView::drawPaths()
+{
+  path_props_.clear();
+  for (const std::vector<Eigen::Isometry3d>& motion : content_.paths(step_).poses) {
+    const auto path = vtk::pathData(motion);
+    path->GetPointData()->SetActiveScalars(nullptr);
+    const auto line = actorOf(path);
+    setColor(*line, path_color);
+    line->GetProperty()->SetLineWidth(2.0f);
+    path_props_.add(line);
+  }
+}
+
+void RenderView::writeTexts()
+{
+  std::string title = content_.heading(collisions_, step_);
+  if (collisions_.closest)
+    title += "\nsmallest distance " + lengthOf(collisions_.closest->distance, content_.options().unit);
+  if (tiles_) title += "\n" + tiles_->text();
+  if (extras_.level) title += "\nspheres of level " + std::to_string(*extras_.level);
+  vtkIdType left_out = 0;
+  for (const auto& cloud : clouds_) left_out += cloud->leftOut();
+  if (left_out > 0) title += "\nfar off and not drawn: " + counted(left_out, "point");
+  caption_.setTitle(title);
+  caption_.setLegend(legend());
+}
+
+std::vector<LegendEntry> RenderView::legend() const
+{
+  std::vector<LegendEntry> entries;
+  const auto add = [&](const std::string& text, const Color& color) {
+    const auto same = [&](const LegendEntry& entry) { return entry.text == text; };
+    if (std::none_of(entries.begin(), entries.end(), same)) entries.push_back({text, color});
+  };
+  for (std::size_t i = 0; i < content_.viewedClouds().size(); ++i) {
+    const ViewedCloud& viewed = content_.viewedClouds()[i];
+    if (viewed.role == ViewedCloud::Role::obstacle) {
+      add(viewed.legend, histogram_.isShown() ? compared_color : obstacle_color);
+      if (!collisions_.flags[i].empty()) add(viewed.legend + ", colliding", obstacle_colliding_color);
+      continue;
+    }
+    const bool by_value = coloring_ == Coloring::distance || coloring_ == Coloring::first_pose;
+    if (histogram_.isShown()) continue; // which says it all
+    if (by_value || coloring_ == Coloring::collision)
+      add(viewed.legend + (collisions_.known ? ", free" : ""), scan_color);
+    if (collisions_.known && (!by_value || content_.options().range))
+      add(viewed.legend + ", colliding", colliding_color);
+    if (collisions_.undecided > 0 && (!by_value || content_.options().range))
+      add(viewed.legend + ", undecided", undecided_color);
+    if (collisions_.sparse > 0 && (!by_value || content_.options().range))
+      add(viewed.legend + ", not scanned densely enough", sparse_color);
+  }
+  if (const MotionPaths paths = content_.paths(step_); !paths.poses.empty()) add(paths.name, path_color);
+  if (collisions_.closest) add("closest pair", segment_color);
+  if (extras_.level) add("spheres", sphere_color);
+  if (extras_.voxels) add("voxels", voxel_color);
+  if (extras_.cells) add("octree cells", cell_color);
+  if (extras_.trace) {
+    add("query: pruned", fate_colors[0]);
+    add("query: near, not needed", fate_colors[1]);
+    add("query: points compared", fate_colors[3]);
+  }
+  return entries;
+}
+
+/// Of a rotated cloud the bounds of its rotated box, which may be larger.
+vtkBoundingBox RenderView::boundsOf(std::size_t cloud) const
+{
+  vtkBoundingBox bounds;
+  vtkPolyData& data = clouds_[cloud]->data();
+  if (data.GetNumberOfPoints() == 0) return bounds;
+  double drawn[6];
+  data.GetCellsBounds(drawn); // a mesh may have vertices of no triangle
+  const vtkBoundingBox own(drawn);
+  const Eigen::Isometry3d pose = content_.poseOf(cloud, step_);
+  for (int corner = 0; corner < 8; ++corner) {
+    Eigen::Vector3d at;
+    own.GetCorner(corner, at.data());
+    at = pose * at;
+    bounds.AddPoint(at.data());
+  }
+  return bounds;
+}
+
+/// Around all points that collide, and what moves.
+vtkBoundingBox RenderView::collidingBounds() const
+{
+  vtkBoundingBox bounds;
+  for (std::size_t i = 0; i < clouds_.size(); ++i) {
+    if (content_.moves(i)) bounds.AddBox(boundsOf(i));
+    const auto marked = posed(&clouds_[i]->marked(), content_.poseOf(i, step_));
+    if (collisions_.known && marked->GetNumberOfPoints() > 0) bounds.AddBounds(marked->GetBounds());
+  }
+  return bounds;
+}
+
+void RenderView::look(const Camera& camera)
+{
+  vtkBoundingBox seen;
+  for (std::size_t i = 0; i < clouds_.size(); ++i) seen.AddBox(boundsOf(i));
+  if (camera.kind == Camera::Kind::colliding) {
+    vtkBoundingBox near = collidingBounds();
+    if (near.IsValid()) {
+      near.Inflate(std::max(0.01 * seen.GetDiagonalLength(), 0.25 * near.GetDiagonalLength()));
+      seen = near;
+    }
+  }
+  const Options& options = content_.options();
+  viewer::look(renderer_, camera, seen, static_cast<double>(options.width) / options.height, bar_.freeWidth());
+}
+
+void RenderView::setMoving(bool moving)
+{
+  for (const auto& cloud : clouds_) cloud->setMoving(moving);
+  if (tiles_) tiles_->setMoving(moving);
+}
+
+std::string RenderView::pick(int x, int y) const
+{
+  vtkNew<vtkPointPicker> points;
+  vtkNew<vtkCellPicker> triangles;
+  points->SetTolerance(0.005);
+  triangles->SetTolerance(0.0);
+  points->PickFromListOn();
+  triangles->PickFromListOn();
+  for (const auto& cloud : clouds_) cloud->offerTo(*points, *triangles);
+  if (tiles_) tiles_->offerTo(*points, *triangles);
+  const auto distance = [&](vtkPicker& picker) {
+    if (picker.Pick(x, y, 0.0, &renderer_) == 0) return std::numeric_limits<double>::infinity();
+    return std::sqrt(
+        vtkMath::Distance2BetweenPoints(picker.GetPickPosition(), renderer_.GetActiveCamera()->GetPosition()));
+  };
+  const double to_point = distance(*points), to_triangle = distance(*triangles);
+  if (to_triangle < to_point) return describe(triangles->GetViewProp(), triangles->GetCellId());
+  return std::isfinite(to_point) ? describe(points->GetViewProp(), points->GetPointId()) : std::string();
+}
+
+std::string RenderView::describe(const vtkProp* prop, vtkIdType id) const
+{
+  for (std::size_t i = 0; i < clouds_.size(); ++i) {
+    if (const auto part = clouds_[i]->partOf(prop, id)) return describePart(content_, i, collisions_, *part);
+  }
+  const auto part = tiles_ ? tiles_->partOf(prop, id) : std::nullopt;
+  return part ? describePart(*part->content, 0, part->content->collisions(0), part->record) : std::string();
+}
+
+std::string RenderView::describePart(const ViewContent& content, std::size_t cloud, const StepCollisions& collisions,
+                                     std::uint32_t part) const
+{
+  const ViewedCloud& viewed = content.viewedClouds()[cloud];
+  const Point3 p = viewed.placeOf(part);
+  std::ostringstream text;
+  text << viewed.partName() << ' ' << part << " of " << viewed.name << std::setprecision(9) << ": " << p[0] << ", "
+       << p[1] << ", " << p[2];
+  const std::vector<std::uint8_t>& flags = collisions.flags[cloud];
+  const std::uint8_t flag = flags.empty() ? flagOf(Verdict::free) : flags[part];
+  if (collisions.known)
+    text << (flag == flagOf(Verdict::free)        ? "; free"
+             : flag == flagOf(Verdict::undecided) ? "; undecided"
+             : flag == flagOf(Verdict::sparse)    ? "; not scanned densely enough"
+                                                  : "; collides");
+  return text.str() + content.details(cloud, part, step_);
+}
+
+void RenderView::exportTo(const std::filesystem::path& path)
+{
+  viewer::exportTo(path, content_, clouds_, collisions_, step_, extras_.level.value_or(0));
+}
+
+} // namespace pcl_bsh::viewer

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The picture: clouds, marks, spheres and boxes of a ViewContent as actors of one renderer.
+#pragma once
+
+#include <pcl_bsh/tools/viewer/actors/actors.h>
+#include <pcl_bsh/tools/viewer/actors/caption.h>
+#include <pcl_bsh/tools/viewer/actors/cloud_actor.h>
+#include <pcl_bsh/tools/viewer/actors/extra_actors.h>
+#include <pcl_bsh/tools/viewer/actors/tile_actors.h>
+#include <pcl_bsh/tools/viewer/actors/value_bar.h>
+#include <pcl_bsh/tools/viewer/actors/value_histogram.h>
+#include <pcl_bsh/tools/viewer/content/view_content.h>
+
+#include <vtkBoundingBox.h>
+#include <vtkRenderer.h>
+
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::viewer {
+
+class RenderView {
+public:
+  RenderView(const ViewContent& content, vtkRenderer& renderer);
+
+  /// Places all clouds as at this step, and draws what collides there, the paths and the texts anew.
+  void show(std::size_t step);
+  std::size_t step() const { return step_; }
+
+  void setExtras(const Extras& extras);
+  const Extras& extras() const { return extras_; }
+
+  void look(const Camera& camera);
+  void setMoving(bool moving);
+  void setNote(const std::string& text) { caption_.setNote(text); } ///< as for a picked point; empty: none
+
+  /// Of a site: draws the tiles that the camera sees nearest, one more with each call. @return whether anything changed
+  /// @throws files::FileError for a tile that cannot be read: it is left out from then on
+  bool loadTile();
+  std::string tilesText() const { return tiles_ ? tiles_->text() : std::string(); }
+
+  /// What the point or triangle says that is seen at a pixel; empty when there is none.
+  std::string pick(int x, int y) const;
+
+  /// What a picked prop and the id of a point, or of a triangle's cell, say; empty when that is of no cloud.
+  std::string describe(const vtkProp* prop, vtkIdType id) const;
+
+  /// @throws std::runtime_error naming the file
+  void exportTo(const std::filesystem::path& path);
+
+  const StepCollisions& collisions() const { return collisions_; }
+
+private:
+  std::string describePart(const ViewContent& content, std::size_t cloud, const StepCollisions& collisions,
+                           std::uint32_t part) const;
+  void drawClouds();
+  void drawExtras();
+  void drawClosestPair();
+  void drawPaths();
+  void writeTexts();
+  std::vector<LegendEntry> legend() const;
+  vtkBoundingBox boundsOf(std::size_t cloud) const;
+  vtkBoundingBox collidingBounds() const;
+
+  const ViewContent& content_;
+  vtkRenderer& renderer_;
+  std::vector<std::unique_ptr<CloudActor>> clouds_;
+  PropGroup extra_props_, closest_props_, path_props_;
+  Caption caption_;
+  ValueBar bar_;
+  ValueHistogram histogram_;
+  Coloring coloring_;
+  std::optional<TileActors> tiles_; ///< of a site
+  Extras extras_;
+  StepCollisions collisions_;
+  std::size_t step_ = 0;
+};
+
+} // namespace pcl_bsh::viewer

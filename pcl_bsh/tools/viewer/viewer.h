@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The window: mouse, keys, a slider along the steps, picking.
+#pragma once
+
+#include "render_view.h"
+
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkSliderWidget.h>
+#include <vtkSmartPointer.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace pcl_bsh::viewer {
+
+inline constexpr auto keys = R"(+ -    spheres one level finer, coarser (none)
+v  o    voxels, octree cells
+t       what the query tested and pruned
+left right   step before, after
+click   point or triangle: number, place, distance, first pose
+r  s    reset the camera, save a picture
+h  q    hide this, quit)";
+
+class Viewer {
+public:
+  /// @throws std::runtime_error when there is no display
+  explicit Viewer(const ViewContent& content);
+  ~Viewer();
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+
+  /// Shows the window until the user leaves.
+  void run();
+
+  vtkRenderWindow& window() { return *window_; }
+  vtkRenderWindowInteractor& interactor() { return *interactor_; }
+  vtkSliderWidget* slider() { return slider_; } ///< null where there is one pose
+  RenderView& renderView() { return *render_view_; }
+
+  // Called by events.
+  bool press(const std::string& key); ///< @return false for a key that means nothing here
+  void pick(int x, int y);
+  void showStep(std::size_t step);
+  void setMoving(bool moving);
+  void loadTile(); ///< one more of a site, while nothing moves
+  const std::string& picked() const { return picked_; }
+  const std::filesystem::path& saved() const { return saved_; } ///< the last picture that was saved
+
+private:
+  void addSlider();
+  void save();
+
+  const ViewContent& content_;
+  vtkSmartPointer<vtkRenderWindow> window_;
+  vtkSmartPointer<vtkRenderer> renderer_;
+  vtkSmartPointer<vtkRenderWindowInteractor> interactor_;
+  vtkSmartPointer<vtkSliderWidget> slider_;
+  std::unique_ptr<RenderView> render_view_;
+  std::string picked_;
+  std::filesystem::path saved_;
+  bool help_ = false;
+  bool is_moving_ = false;
+};
+
+} // namespace pcl_bsh::viewer

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A leaf of the scan on its arcs against leaves of the model, where each pose counts.
+
+#if defined(PCL_BSH_TRAJECTORY_LEAF_ARCS_AT_POSES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAJECTORY_LEAF_ARCS_AT_POSES_INL_H_
+#undef PCL_BSH_TRAJECTORY_LEAF_ARCS_AT_POSES_INL_H_
+#else
+#define PCL_BSH_TRAJECTORY_LEAF_ARCS_AT_POSES_INL_H_
+#endif
+
+#include <pcl_bsh/trajectory/leaf/leaf_at_pose-inl.h>
+#include <pcl_bsh/trajectory/leaf/pose_ranges-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// With summaries of poses a point matters at each pose at which it collides, and most do so near several points of the
+/// model. How far it is from its arc at most is known: so its distances there, of many poses at once, say for certain
+/// that it collides, or that it passes. What they do not decide is compared at the pose itself once all boxes were
+/// seen: by then another point of the model has decided most of it, or is nearer. Where very many pairs are at just the
+/// clearance, or equally near, those seen so far are compared earlier, so that few are kept.
+class ArcsAtPoses {
+public:
+  ArcsAtPoses(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results,
+              LeafAtPose& at_pose)
+  : query_(query),
+    tree_(query.boxes),
+    results_(results),
+    at_pose_(at_pose),
+    summing_(query.request.pose_summaries && query.nearestDecides() && voxel_frame.frame.unit == 1.0),
+    surely_(std::sqrt(voxel_frame.band.hit) * (1.0f - kRadiusMargin))
+  {
+  }
+
+  /// Whether distances on arcs say something: not where points have reaches of their own, where floats do not hold
+  /// the squares, nor of more poses than floats count.
+  bool areFor(const VoxelMotion& motion) const { return summing_ && motion.squares && motion.steps <= kMostSteps; }
+
+  /// Of a model's leaf whose frame has the clouds' unit. @param ranges the poses at which points may be near it
+  void compare(LeafVisit& leaf, const PoseRanges& ranges, const ModelBox& box, const VoxelMotion& motion)
+  {
+    if (ranges.lanes == 0) return;
+    if (!is_begun_) begin(motion);
+    const BoxLeaf other = box.points(tree_);
+    const std::array<float, 3> shift = tree_.shift(box.voxel);
+    const BoxEnds ends(box);
+    const LaneTag d;
+    const auto at_once = static_cast<std::uint32_t>(hn::Lanes(d));
+    for (std::uint32_t bits = ranges.lanes; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const std::uint32_t end = ranges.last[i] - motion.interval->first + 1;
+      for (std::uint32_t k = ranges.first[i] - motion.interval->first; k < end; k += at_once) {
+        const PlacesOnArc at(leaf.segments, i, k, motion.steps);
+        const LaneVector limits = limitsAt(leaf, i, k);
+        const auto asked = hn::And(hn::FirstN(d, end - k), hn::Le(at.squaredDistance(ends.low, ends.high), limits));
+        if (hn::AllFalse(d, asked)) continue;
+        const LaneVector nearest = at.nearestSquared(other.x(), other.y(), other.z(), other.count, shift.data());
+        std::uint32_t near = bitsOf(d, hn::And(asked, hn::Le(nearest, limits)));
+        if (near == 0) continue;
+        hn::Store(nearest, d, nearest_);
+        for (; near != 0; near &= near - 1) {
+          const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+          note(leaf, i, k + lane, nearest_[lane], box, motion);
+        }
+      }
+    }
+  }
+
+  /// After the last box: compares what is left at the poses.
+  void finish(LeafVisit& leaf, const VoxelMotion& motion)
+  {
+    is_begun_ = false;
+    compareCandidates(leaf, motion);
+  }
+
+private:
+  static constexpr float kMostSteps = 0x1p22f;
+  static constexpr std::size_t kMostCandidates = std::size_t{1} << 14;
+
+  /// A point and a leaf of the model at a step after the motion's first pose, and their squared distance on the arc.
+  struct Candidate {
+    ModelBox box;
+    std::uint32_t point, step;
+    float squared;
+  };
+
+  void begin(const VoxelMotion& motion)
+  {
+    is_begun_ = true;
+    astray_ = motion.reach + motion.rounding - static_cast<float>(query_.reach);
+    miss_ = squareOver(motion.reach + motion.rounding);
+    const float sure = surely_ - static_cast<float>(motion.stray) - 2 * motion.rounding;
+    sure_ = sure > 0.0f ? sure * sure * (1.0f - kRadiusMargin) : -1.0f;
+    const std::uint32_t poses = motion.interval->last - motion.interval->first + 1;
+    limits_.resize(poses + kLanes);
+    for (std::uint32_t k = 0; k < poses; ++k) limits_[k] = limitOf(results_.poseReach(motion.interval->first + k));
+  }
+
+  HWY_NOINLINE void compareCandidates(LeafVisit& leaf, const VoxelMotion& motion)
+  {
+    // The nearest first: what they bound is not compared.
+    std::sort(candidates_.begin(), candidates_.end(),
+              [](const Candidate& a, const Candidate& b) { return a.squared < b.squared; });
+    for (const Candidate& candidate : candidates_) {
+      const std::uint32_t i = candidate.point, k = candidate.step;
+      if (isHit(i, k) && candidate.squared > std::max(limits_[k], bestLimit(leaf, i))) continue;
+      const std::uint32_t pose = motion.interval->first + k;
+      at_pose_.compare(leaf, 1u << i, candidate.box, pose, motion);
+      limits_[k] = std::min(limits_[k], limitOf(results_.poseReach(pose)));
+    }
+    candidates_.clear();
+  }
+
+  bool isHit(std::uint32_t i, std::uint32_t k) const { return (at_pose_.hits()[k] >> i & 1) != 0; }
+
+  static float squareOver(float length) { return length * length * (1.0f + kRadiusMargin); }
+
+  /// A larger squared distance on the arc is farther than `reach`.
+  float limitOf(float reach) const { return std::min(squareOver(reach + astray_), miss_); }
+
+  /// The same, of the nearest that is known of a point.
+  float bestLimit(const LeafVisit& leaf, std::uint32_t i) const
+  {
+    return query_.closest ? limitOf(results_.best[leaf.points.begin + i].reach) : 0.0f;
+  }
+
+  /// From step k on: larger squared distances change nothing. Of a point that is known to collide at a pose only a
+  /// pair that is as near as its nearest so far, or the pose's, matters.
+  LaneVector limitsAt(const LeafVisit& leaf, std::uint32_t i, std::uint32_t k) const
+  {
+    const LaneTag d;
+    const hn::RebindToUnsigned<LaneTag> counts;
+    const hn::Rebind<std::uint16_t, LaneTag> halves;
+    const auto hits = hn::PromoteTo(counts, hn::LoadU(halves, at_pose_.hits() + k));
+    const auto is_hit = hn::RebindMask(d, hn::TestBit(hits, hn::Set(counts, 1u << i)));
+    const LaneVector nearer = hn::Max(hn::LoadU(d, limits_.data() + k), hn::Set(d, bestLimit(leaf, i)));
+    return hn::IfThenElse(is_hit, nearer, hn::Set(d, miss_));
+  }
+
+  /// What follows from a squared distance on point i's arc at a step, and what has to be compared there.
+  void note(LeafVisit& leaf, std::uint32_t i, std::uint32_t k, float squared, const ModelBox& box,
+            const VoxelMotion& motion)
+  {
+    const std::uint32_t pose = motion.interval->first + k;
+    if (!isHit(i, k) && squared <= sure_) {
+      at_pose_.hits()[k] = static_cast<std::uint16_t>(at_pose_.hits()[k] | 1u << i);
+      results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | 1u << i);
+      if (query_.first) {
+        double& first = results_.first[leaf.points.begin + i];
+        first = std::min(first, static_cast<double>(pose));
+      }
+    }
+    const bool hit = isHit(i, k);
+    if (hit && squared > std::max(limits_[k], bestLimit(leaf, i))) return;
+    if (candidates_.size() == kMostCandidates) compareCandidates(leaf, motion);
+    candidates_.push_back({box, i, k, squared});
+    if (!hit) return;
+    const float high =
+        roundUp((std::sqrt(static_cast<double>(squared)) * (1.0 + kRadiusMargin) + astray_) * (1.0 + query_.path.skew));
+    results_.lowerPoseLimit(pose, std::numeric_limits<float>::infinity(), high);
+    limits_[k] = std::min(limits_[k], limitOf(high));
+    if (query_.closest) {
+      float& reach = results_.best[leaf.points.begin + i].reach;
+      reach = std::min(reach, high);
+    }
+  }
+
+  const TrajectoryQuery& query_;
+  const BoxTree& tree_;
+  VoxelResults& results_;
+  LeafAtPose& at_pose_;
+  const bool summing_;
+  const float surely_; // pairs nearer than this, in floats at a pose, collide
+  bool is_begun_ = false;
+  float astray_ = 0.0f;       // how much farther two points may be from each other on the arc than at the pose
+  float miss_ = 0.0f;         // a larger squared distance on the arc: they do not collide
+  float sure_ = 0.0f;         // no larger: they do
+  std::vector<float> limits_; // per step: limitOf() the pose
+  std::vector<Candidate> candidates_;
+  alignas(64) float nearest_[kLanes];
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

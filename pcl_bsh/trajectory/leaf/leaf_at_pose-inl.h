@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A leaf of the scan against leaves of the model at single poses: by float bands, and exactly within the bands.
+
+#if defined(PCL_BSH_TRAJECTORY_LEAF_LEAF_AT_POSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAJECTORY_LEAF_LEAF_AT_POSE_INL_H_
+#undef PCL_BSH_TRAJECTORY_LEAF_LEAF_AT_POSE_INL_H_
+#else
+#define PCL_BSH_TRAJECTORY_LEAF_LEAF_AT_POSE_INL_H_
+#endif
+
+#include <pcl_bsh/trajectory/leaf/leaf_visit-inl.h>
+#include <pcl_bsh/trajectory/model_boxes-inl.h>
+#include <pcl_bsh/trajectory/model_descent.h>
+#include <pcl_bsh/trajectory/voxel_results.h>
+#include <pcl_bsh/traversal/uncertain_points-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+class LeafAtPose {
+public:
+  LeafAtPose(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results)
+  : query_(query),
+    path_(query.path),
+    tree_(query.boxes),
+    voxel_frame_(voxel_frame),
+    results_(results),
+    reach_(voxel_frame.error, query.path.skew, 1.0, query.of_pairs.leastInCommon(), query.of_pairs.mostInCommon(),
+           query.model.storage().uncertainty.most, 0.0f)
+  {
+  }
+
+  /// Before a leaf is compared during a motion.
+  void beginVisit(const VoxelMotion& motion)
+  {
+    places_.beginVisit();
+    met_.clear();
+    if (query_.request.pose_summaries)
+      pose_hits_.assign(motion.interval->last - motion.interval->first + 1 + kLanes, 0);
+  }
+
+  /// The leaf's points at pose k. @return valid until the next call
+  const LeafPoints& placesAt(const LeafVisit& leaf, const VoxelMotion& motion, std::uint32_t k)
+  {
+    return places_.at(voxel_frame_, leaf.points, motion, k);
+  }
+
+  /// Where summaries are asked for, per pose of the motion: the points that are known to collide. Readable for whole
+  /// vectors.
+  std::uint16_t* hits() { return pose_hits_.data(); }
+
+  /// Of pairs of points with uncertainties of their own.
+  const UncertainReach& reach() const { return reach_; }
+
+  /// Two leaves at pose k: by float bands, and exactly within the bands.
+  void compare(LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, std::uint32_t k, const VoxelMotion& motion)
+  {
+    if (!met_.empty() && (lanes &= ~metBefore(box.voxel, k, motion)) == 0) return;
+    const LeafPoints& at = placesAt(leaf, motion, k);
+    const BoxEnds ends(box);
+    alignas(64) float near_squared[kLeafPoints];
+    std::copy(leaf.near_squared, leaf.near_squared + kLeafPoints, near_squared);
+    if (query_.request.pose_summaries) boundAtPose(leaf, lanes, k, motion, near_squared);
+    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, near_squared);
+    if (lanes == 0) return;
+    ++results_.work.leaf_pairs;
+    const BoxLeaf other = box.points(tree_);
+    const double unit = tree_.unit(box.voxel);
+    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], tree_.offset(box.voxel), unit);
+    bool certain = (query_.everything() ? query_.nearestDecides() : query_.radii == 0.0) && unit == 1.0 &&
+                   voxel_frame_.frame.unit == 1.0;
+    for (const float g : map.g) certain = certain && std::abs(g) <= voxel_frame_.far;
+    LeafPoints points;
+    carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, points.x, points.y,
+          points.z);
+    alignas(64) float nearest[kLeafPoints];
+    std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
+    std::uint32_t hit = 0;
+    if (certain) {
+      std::uint32_t undecided = 0;
+      if (query_.of_pairs.isOne()) {
+        nearestSquared(points, other.x(), other.y(), other.z(), firstBits(other.count), nearest);
+        hit = lanes & atMost(nearest, voxel_frame_.band.hit);
+        undecided = lanes & ~hit & ~above(nearest, voxel_frame_.band.miss);
+      }
+      else {
+        compareUncertain(leaf, lanes, points, other, hit, undecided);
+      }
+      if (undecided != 0)
+        eachPairNotBeyond(points, undecided, other, voxel_frame_.band.miss,
+                          [&](std::uint32_t i, std::uint32_t j, float) {
+                            if ((hit >> i & 1) == 0 && results_.collide({leaf.points.record(i), other.record(j)}, k))
+                              hit |= 1u << i;
+                            return (undecided & ~hit) == 0;
+                          });
+    }
+    else {
+      for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+        for (std::uint32_t j = 0; j < other.count && (hit >> i & 1) == 0; ++j)
+          if (results_.collide({leaf.points.record(i), other.record(j)}, k)) hit |= 1u << i;
+      }
+    }
+    if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, motion);
+  }
+
+  /// Points of the leaf at pose k against a box that is not a leaf, each by itself, in double: against all points of
+  /// the model's voxel, where the box is within one.
+  HWY_NOINLINE void meetInDoubles(LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, std::uint32_t k,
+                                  const VoxelMotion& motion)
+  {
+    const bool in_voxel = box.voxel != kAboveVoxels;
+    if (in_voxel) {
+      if (met_.empty()) met_.resize(motion.interval->last - motion.interval->first + 1);
+      const std::uint32_t before = metBefore(box.voxel, k, motion);
+      met_[k - motion.interval->first] = {box.voxel, before | lanes};
+      lanes &= ~before;
+    }
+    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      NearestPoint* const best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
+      PointMet met;
+      const PointAtPose point{leaf.points.record(i), k, best, query_.request.pose_summaries};
+      if (in_voxel)
+        met = meetVoxel(query_, results_, point, box.voxel);
+      else
+        met = meetBelow(query_, results_, point, box.node, box.lane);
+      if (!met.collides) continue;
+      noteHits(leaf, 1u << i, k, motion);
+      if (!query_.everything() || !query_.nearestDecides()) continue;
+      const float reach = roundUp(std::nextafter(met.gap, std::numeric_limits<double>::infinity()));
+      if (motion.at_rest) leaf.lowerReach(voxel_frame_, i, reach, motion);
+      if (point.for_pose) results_.lowerPoseLimit(k, std::numeric_limits<float>::infinity(), reach);
+      if (!best) continue;
+      best->reach = std::min(best->reach, reach);
+      if (results_.bestBounds(leaf.points.begin + i, motion.interval->first))
+        leaf.lowerReach(voxel_frame_, i, best->reach, motion);
+    }
+  }
+
+  /// Adds the points that were found to collide to the poses' numbers. @param points that the leaf holds, of which
+  /// those that coincide are compared as one
+  void countPoses(const LeafVisit& leaf, const VoxelMotion& motion, std::size_t points)
+  {
+    for (std::size_t i = 0; i < pose_hits_.size(); ++i) {
+      const auto hits = static_cast<std::size_t>(std::popcount(pose_hits_[i]));
+      if (hits != 0)
+        results_.countPose(motion.interval->first + static_cast<std::uint32_t>(i),
+                           points > leaf.points.count ? points : hits);
+    }
+  }
+
+private:
+  /// Points with uncertainties of their own, as the query asks about them. @param hit, undecided become those in
+  /// `lanes` that collide for certain, and those of which single pairs have to be asked
+  HWY_NOINLINE void compareUncertain(const LeafVisit& leaf, std::uint32_t lanes, const LeafPoints& points,
+                                     const BoxLeaf& other, std::uint32_t& hit, std::uint32_t& undecided) const
+  {
+    static constexpr float kNone[kLeafPoints] = {};
+    const SphereHierarchy::Storage& scan = query_.scan.hierarchy().storage();
+    const auto voxel = static_cast<std::size_t>(&voxel_frame_.voxel - scan.voxels.get());
+    const UncertainPoints limits(reach_, ownOf(ownUncertainties(scan, voxel), leaf.points));
+    alignas(64) float longer[kLeafPoints], shorter[kLeafPoints];
+    std::fill(std::begin(longer), std::end(longer), std::numeric_limits<float>::infinity());
+    std::fill(std::begin(shorter), std::end(shorter), std::numeric_limits<float>::infinity());
+    nearestWithLengths(points, other.x(), other.y(), other.z(), other.lengths ? other.lengths : kNone, reach_.scale_up,
+                       firstBits(other.count), longer, shorter);
+    hit = lanes & (query_.certain ? atMostEach(longer, limits.sure) : atMostEach(shorter, limits.maybe));
+    undecided =
+        lanes & ~hit & ~(query_.certain ? aboveEach(longer, limits.sure_miss) : aboveEach(shorter, limits.miss));
+  }
+
+  /// A point that is known to collide at pose k matters again only where it may be nearer than the nearest so far, of
+  /// itself or of the pose. Nothing is bounded where the nearest pair does not decide: no reach is known there.
+  void boundAtPose(LeafVisit& leaf, std::uint32_t lanes, std::uint32_t k, const VoxelMotion& motion,
+                   float* near_squared) const
+  {
+    for (std::uint32_t bits = lanes & pose_hits_[k - motion.interval->first]; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      float best = results_.poseReach(k);
+      if (query_.closest) best = std::max(best, results_.best[leaf.points.begin + i].reach);
+      if (motion.at_rest) leaf.lowerReach(voxel_frame_, i, best, motion);
+      near_squared[i] = std::min(near_squared[i], voxel_frame_.nearSquared(motion, best));
+    }
+  }
+
+  /// The points in `hit` collide at pose k.
+  void noteHits(LeafVisit& leaf, std::uint32_t hit, std::uint32_t k, const VoxelMotion& motion)
+  {
+    results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | hit);
+    if (!query_.everything() && (!query_.first || k == motion.interval->first)) leaf.open &= ~hit;
+    if (query_.request.pose_summaries) {
+      std::uint16_t& at = pose_hits_[k - motion.interval->first];
+      at = static_cast<std::uint16_t>(at | hit);
+    }
+    for (std::uint32_t bits = query_.first ? hit : 0; bits != 0; bits &= bits - 1) {
+      double& first = results_.first[leaf.points.begin + static_cast<std::uint32_t>(std::countr_zero(bits))];
+      first = std::min(first, static_cast<double>(k));
+    }
+  }
+
+  /// Which of the points met all of a voxel of the model at pose k before, as far as is remembered: its boxes hold
+  /// nothing new for them.
+  std::uint32_t metBefore(std::uint32_t voxel, std::uint32_t k, const VoxelMotion& motion) const
+  {
+    const VoxelMet& met = met_[k - motion.interval->first];
+    return met.voxel == voxel ? met.points : 0;
+  }
+
+  /// What follows from the points in `hit`, which collide at pose k.
+  void note(LeafVisit& leaf, std::uint32_t hit, const LeafPoints& points, const float* nearest, bool certain,
+            const BoxLeaf& other, std::uint32_t k, const VoxelMotion& motion)
+  {
+    noteHits(leaf, hit, k, motion);
+    if (!query_.everything()) return;
+    for (std::uint32_t bits = hit; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      // It collides at this pose: what is farther at this pose changes nothing.
+      if (motion.at_rest && certain) leaf.lowerReach(voxel_frame_, i, roundUp(voxel_frame_.highOf(nearest[i])), motion);
+      // Only what may be as near as the nearest in floats is worth an exact look.
+      const float within = certain ? voxel_frame_.notBeyond(nearest[i]) : std::numeric_limits<float>::infinity();
+      NearestPoint* best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
+      const bool for_point = best && !(certain && nearest[i] > best->limit);
+      const bool for_pose = query_.request.pose_summaries && !(certain && nearest[i] > results_.poseLimit(k));
+      if (!for_point && !for_pose) continue;
+      for (std::uint32_t j = 0; j < other.count; ++j) {
+        const float dx = points.x[i] - other.x()[j], dy = points.y[i] - other.y()[j], dz = points.z[i] - other.z()[j];
+        const float squared = (dx * dx + dy * dy) + dz * dz;
+        if (certain && squared > within) continue;
+        const PointPair pair{leaf.points.record(i), other.record(j)};
+        if (!query_.of_pairs.isOne() && !results_.collide(pair, k)) continue;
+        if (for_point) results_.consider(*best, pair, k);
+        if (for_pose) results_.considerPose(pair, k);
+      }
+      if (for_point && certain) {
+        const double high = voxel_frame_.highOf(nearest[i]);
+        best->limit = std::min(best->limit, voxel_frame_.notBeyond(nearest[i]));
+        best->reach = std::min(best->reach, roundUp(high));
+        if (results_.bestBounds(leaf.points.begin + i, motion.interval->first))
+          leaf.lowerReach(voxel_frame_, i, best->reach, motion);
+      }
+      if (for_pose && certain)
+        results_.lowerPoseLimit(k, voxel_frame_.notBeyond(nearest[i]), roundUp(voxel_frame_.highOf(nearest[i])));
+    }
+  }
+
+  const TrajectoryQuery& query_;
+  const PosePath& path_;
+  const BoxTree& tree_;
+  const VoxelInModelFrame& voxel_frame_;
+  VoxelResults& results_;
+  const UncertainReach reach_;
+  PlacesAtPoses places_;
+  std::vector<std::uint16_t> pose_hits_; // per pose of a motion: points of a leaf
+
+  /// The voxel of the model that points of the leaf met last in doubles.
+  struct VoxelMet {
+    std::uint32_t voxel = kNoVoxel;
+    std::uint32_t points = 0;
+  };
+  std::vector<VoxelMet> met_; // per pose of a motion; empty until the first
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

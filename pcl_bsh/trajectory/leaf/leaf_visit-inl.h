@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A leaf of the scan during an interval, as the model sees it.
+
+#if defined(PCL_BSH_TRAJECTORY_LEAF_LEAF_VISIT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAJECTORY_LEAF_LEAF_VISIT_INL_H_
+#undef PCL_BSH_TRAJECTORY_LEAF_LEAF_VISIT_INL_H_
+#else
+#define PCL_BSH_TRAJECTORY_LEAF_LEAF_VISIT_INL_H_
+#endif
+
+#include <pcl_bsh/trajectory/voxel_in_model_frame-inl.h>
+
+#include <algorithm>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// A leaf of the scan, its points on their arcs.
+struct LeafVisit {
+  LeafRange points;
+  std::size_t slot;   ///< of its flags
+  std::uint32_t open; ///< bits of the points that are not settled
+  Segments<kLeafPoints> segments;
+  Segment around;
+  alignas(64) float near_squared[kLeafPoints]; ///< farther from a box, squared, nothing in it matters, at one pose
+
+  /// Sets the arcs of its points, and what is around them. @param bound as LeafWalk::compare() has it
+  void begin(const VoxelInModelFrame& voxel_frame, const VoxelMotion& motion, float bound)
+  {
+    alignas(64) float from[3][kLeafPoints], to[3][kLeafPoints], bow[3][kLeafPoints];
+    see(motion.from, from);
+    see(motion.to, to);
+    see(motion.bow, bow);
+    segments.set(from, to, bow, motion.smallest);
+    std::fill(segments.reach[0], segments.reach[0] + kLeafPoints, motion.reach);
+    std::fill(near_squared, near_squared + kLeafPoints, voxel_frame.nearSquared(motion, bound));
+    alignas(64) const float no_extent[3][kLeafPoints] = {};
+    around = voxel_frame.aroundSegments(motion, from, to, bow, no_extent, points.count);
+  }
+
+  /// From now on, what is farther from a point than the best does not matter, during the motion.
+  void lowerReach(const VoxelInModelFrame& voxel_frame, std::uint32_t i, float best, const VoxelMotion& motion)
+  {
+    segments.reach[0][i] = std::min(segments.reach[0][i], voxel_frame.reachOf(motion, best));
+    if (motion.at_rest) near_squared[i] = std::min(near_squared[i], voxel_frame.nearSquared(motion, best));
+  }
+
+private:
+  void see(const AffineMap& map, float (&at)[3][kLeafPoints]) const
+  {
+    carry(map.m, map.g, points.x(), points.y(), points.z(), points.count, at[0], at[1], at[2]);
+    for (float* along : at) std::fill(along + points.count, along + kLeafPoints, 0.0f);
+  }
+};
+
+/// The points of a leaf as seen at single poses; kept, for many boxes ask at the same few.
+class PlacesAtPoses {
+public:
+  /// Forgets what is kept.
+  void beginVisit() { ++visit_; }
+
+  /// @param k a pose of the motion. @return valid until the next call
+  const LeafPoints& at(const VoxelInModelFrame& voxel_frame, const LeafRange& points, const VoxelMotion& motion,
+                       std::uint32_t k)
+  {
+    Places& places = places_[(k - motion.interval->first) % kKept];
+    if (places.visit == visit_ && places.pose == k) return places.points;
+    places.visit = visit_;
+    places.pose = k;
+    const AffineMap map = voxel_frame.mapAt(voxel_frame.path.poses[k], {0, 0, 0}, 1.0);
+    carry(map.m, map.g, points.x(), points.y(), points.z(), points.count, places.points.x, places.points.y,
+          places.points.z);
+    return places.points;
+  }
+
+private:
+  static constexpr std::uint32_t kKept = 16;
+
+  struct Places {
+    std::uint64_t visit = 0;
+    std::uint32_t pose = 0;
+    LeafPoints points{};
+  };
+
+  std::uint64_t visit_ = 0; // how many there were
+  Places places_[kKept];
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Along a trajectory: every node of the scan carries the list of what can still matter of the model, for an interval of
+// poses at once. Seen by the model, the scan's points move nearly on parabolas: a node is a thick arc, the model a tree
+// of boxes. How thick follows from the node's sphere and from how far the interval strays from a parabola; whichever is
+// larger is divided.
+#include <pcl_bsh/trajectory/walk.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/trajectory/walk.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/trajectory/leaf/leaf-inl.h>
+#include <pcl_bsh/trajectory/leaf/point_probing-inl.h>
+#include <pcl_bsh/trajectory/oriented_boxes-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace {
+
+constexpr double kNodeStray = 0.03; // of a node's radius: an interval that strays farther is divided
+constexpr float kSeedSize = 0.5f;   // of the voxel's radius: larger boxes of the model are opened before its descent
+constexpr float kBoxSize = 2.0f;    // of a node's radius: a larger box of the model is opened
+
+/// A node of the scan that is tested against the model, all of its children at once.
+struct NodeVisit {
+  Segments<kLanes, 3> children;
+  Segment around;
+  float radius[kLanes];
+  std::vector<Siblings> candidates; ///< what all of them together may meet
+  std::vector<Siblings> near[kLanes];
+  // Set at one pose only: the children's boxes, and no less than the smallest distance of any of their points.
+  alignas(64) float low[3][kLanes], high[3][kLanes], near_squared[kLanes], bound[kLanes];
+};
+
+/// Takes one voxel of the scan along the trajectory.
+class TrajectoryWalk {
+public:
+  TrajectoryWalk(const TrajectoryQuery& query, const StopRule& rule, std::uint32_t voxel, Progress& progress,
+                 std::deque<NodeVisit>& visits)
+  : query_(query),
+    rule_(rule),
+    index_(voxel),
+    voxel_frame_(query, voxel),
+    oriented_boxes_(voxel_frame_),
+    results_(query),
+    progress_(progress),
+    stop_check_(rule, results_.work.node_pairs),
+    model_(query.boxes, rule, results_.work),
+    leaves_(query, voxel_frame_, model_, stop_check_, results_),
+    probing_(query, voxel_frame_, model_, results_.work),
+    settled_reach_(settledReach()),
+    settling_(!query.everything() && !query.first && query.radii == 0.0 && voxel_frame_.frame.unit == 1.0 &&
+              settled_reach_ > 0.0f),
+    visits_(visits)
+  {
+  }
+
+  /// @param intervals of the path, at least one, in their order.
+  VoxelResult run(const std::vector<std::uint32_t>& intervals)
+  {
+    if (query_.request.pose_summaries)
+      results_.beginPoses(query_.path.intervals[intervals.front()].first, query_.path.intervals[intervals.back()].last);
+    std::vector<Siblings> candidates;
+    for (const std::uint32_t interval : intervals) {
+      if (stop_check_.isOver() || isDone()) return leave(true);
+      const VoxelMotion motion = voxel_frame_.motionOf(interval);
+      candidates.clear();
+      ++results_.work.volumes_carried;
+      model_.collect(voxel_frame_.aroundVoxel(motion), motion, kSeedSize * static_cast<float>(voxel_frame_.radius),
+                     model_.root(), candidates);
+      if (candidates.empty()) continue;
+      if (!voxel_ && !mayEnter()) return leave(true);
+      if (!voxel_) enter(motion);
+      if (open_lanes_[0] == 0) break;
+      descend(0, motion, candidates, 0);
+    }
+    return leave(stop_check_.isOver());
+  }
+
+private:
+  bool mayEnter() const
+  {
+    return !rule_.mayStop() ||
+           (rule_.deepest > 0 && rule_.leavesTimeToBuild(query_.scan.hierarchy().storage().pointsToBuild(index_)));
+  }
+
+  /// @param unsure not all was looked at.
+  VoxelResult leave(bool unsure)
+  {
+    VoxelResult answer;
+    if (voxel_ && !rule_.mayStop() && !query_.witness) answer = results_.finish(*voxel_);
+    answer.witness = results_.witness;
+    if (rule_.mayStop()) answer.undecided = voxel_ ? results_.decide(*voxel_, unsure) : unsure;
+    if (rule_.mayStop() && !voxel_ && !unsure)
+      query_.scan.hierarchy().storage().forEachRecord(
+          index_, [this](std::uint32_t i) { query_.result.flags[i] = flagOf(Verdict::free); });
+    answer.work = results_.work;
+    return answer;
+  }
+
+  void enter(const VoxelMotion& motion)
+  {
+    voxel_ = &query_.scan.hierarchy().storage().built(index_, results_.work);
+    for (const Node& node : voxel_->nodes) open_lanes_.push_back(static_cast<std::uint8_t>(firstBits(node.count)));
+    results_.begin(*voxel_);
+    own_ = ownUncertainties(query_.scan.hierarchy().storage(), index_);
+    if (query_.witness) return;
+    oriented_boxes_.fit(*voxel_, motion.from);
+    results_.work.volumes_built += countChildren(voxel_->nodes);
+  }
+
+  float settledReach() const
+  {
+    const UncertainReach& reach = leaves_.reach();
+    if (!query_.of_pairs.isOne()) return query_.certain ? reach.sure : reach.maybe;
+    return voxel_frame_.band.hit > 0.0f ? std::sqrt(voxel_frame_.band.hit) * (1.0f - kRadiusMargin) : 0.0f;
+  }
+
+  /// The probe of a child that settles it: by the most of its points' lengths for certain, by the least for what may
+  /// be.
+  ProbeSphere probeOf(std::uint32_t index, std::uint32_t lane, float radius) const
+  {
+    const Node& node = voxel_->nodes[index];
+    ProbeSphere probe{
+        {node.x[lane], node.y[lane], node.z[lane]}, settled_reach_ - radius * (1.0f + 4 * kRadiusMargin), 0};
+    if (query_.of_pairs.isOne()) return probe;
+    const UncertainReach& reach = leaves_.reach();
+    const float least = own_ ? own_->nodes[index].least[lane] * reach.scale_down : 0.0f;
+    const float most = own_ ? own_->nodes[index].most[lane] * reach.scale_up : 0.0f;
+    probe.reach += (query_.certain ? -most : least) - (radius + most + reach.magnitude) * 2 * kSumMargin;
+    probe.scale = query_.certain ? -reach.scale_up * (1.0f + kReachMargin) : reach.scale_down * (1.0f - kReachMargin);
+    probe.farther = query_.certain ? 0.0f : reach.most_of_b;
+    return probe;
+  }
+
+  /// Reports progress to the caller from time to time, and whether it asked to stop.
+  bool isStopped()
+  {
+    constexpr std::uint32_t often = 256;
+    if (++descents_ % often == 0) stopped_ = progress_.pulse();
+    return isDone();
+  }
+
+  bool isDone() const { return stopped_ || results_.witness; }
+
+  /// Takes a node, all its children at once, through its candidates; then each child through its own.
+  void descend(std::uint32_t index, const VoxelMotion& motion, const std::vector<Siblings>& candidates,
+               std::size_t depth)
+  {
+    if (stop_check_.isOver() || isStopped()) return;
+    const Node& node = voxel_->nodes[index];
+    float largest = 0.0f;
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) largest = std::max(largest, node.r[lane]);
+    if (motion.divides(kNodeStray * largest * voxel_frame_.frame.unit)) {
+      for (const std::uint32_t half : {motion.interval->left, motion.interval->right}) {
+        if (open_lanes_[index] == 0) return;
+        descend(index, voxel_frame_.motionOf(half), candidates, depth);
+      }
+      return;
+    }
+    if (isWorthEachPose(motion, largest)) {
+      for (std::uint32_t k = motion.interval->first; k <= motion.interval->last && open_lanes_[index] != 0; ++k) {
+        PathInterval one;
+        descend(index, voxel_frame_.motionAt(k, one), candidates, depth);
+      }
+      return;
+    }
+    if (visits_.size() <= depth) visits_.resize(depth + 1);
+    NodeVisit& visit = visits_[depth];
+    begin(visit, index, motion);
+    model_.near(visit.around, candidates, motion.steps, visit.candidates);
+    if (motion.at_rest) boundDistances(visit, index, motion);
+    if (settling_) settleByPoints(visit, index, motion);
+    for (const Siblings& candidate : visit.candidates) take(visit, candidate, motion, open_lanes_[index]);
+    for (std::uint32_t bits = open_lanes_[index]; bits != 0 && !isDone(); bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (visit.near[lane].empty()) continue;
+      bool open = true;
+      if (node.isLeaf(lane)) {
+        const LeafRange points{voxel_, node.begin[lane], node.comparedPoints(lane)};
+        open = leaves_.compare(index * kLanes + lane, points, node, lane, motion, visit.near[lane],
+                               motion.at_rest ? visit.bound[lane] : std::numeric_limits<float>::infinity());
+      }
+      else if (depth + 1 >= rule_.deepest) {
+        results_.undecided[index * kLanes + lane] = 0xffff;
+      }
+      else {
+        descend(node.child[lane], motion, visit.near[lane], depth + 1);
+        open = open_lanes_[node.child[lane]] != 0;
+      }
+      if (!open) open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
+    }
+  }
+
+  /// Whether poses are taken one by one: few of them, and a reach in which a node's points differ by little. A pose by
+  /// itself has distances, which bound those of a whole node.
+  bool isWorthEachPose(const VoxelMotion& motion, float largest) const
+  {
+    const std::uint32_t steps = motion.interval->last - motion.interval->first;
+    return !query_.path.is_swept && steps > 0 && static_cast<float>(steps) <= kFewPoses &&
+           query_.reach > 2 * static_cast<double>(voxel_frame_.seenRadius(largest));
+  }
+
+  void begin(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
+  {
+    const Node& node = voxel_->nodes[index];
+    alignas(64) float from[3][kLanes], to[3][kLanes], bow[3][kLanes];
+    carry(motion.from.m, motion.from.g, node.x, node.y, node.z, kLanes, from[0], from[1], from[2]);
+    carry(motion.to.m, motion.to.g, node.x, node.y, node.z, kLanes, to[0], to[1], to[2]);
+    carry(motion.bow.m, motion.bow.g, node.x, node.y, node.z, kLanes, bow[0], bow[1], bow[2]);
+    visit.children.set(from, to, bow, motion.smallest);
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      visit.near[lane].clear();
+      visit.radius[lane] = voxel_frame_.seenRadius(node.r[lane]);
+    }
+    alignas(64) float extent[3][kLanes];
+    oriented_boxes_.see(index, motion, visit.radius, extent);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane)
+        visit.children.reach[axis][lane] = (motion.reach + extent[axis][lane]) * (1.0f + kReachMargin);
+    visit.children.ball = motion.reach * (1.0f + kReachMargin);
+    visit.around = voxel_frame_.aroundSegments(motion, from, to, bow, extent, node.count);
+    results_.work.volumes_carried += node.count + std::uint64_t{1}; // the children and what is around them
+    if (!motion.at_rest) return;
+    constexpr float unbounded = std::numeric_limits<float>::infinity();
+    std::fill(visit.bound, visit.bound + kLanes, unbounded);
+    std::fill(visit.near_squared, visit.near_squared + kLanes, voxel_frame_.nearSquared(motion, unbounded));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        visit.low[axis][lane] = from[axis][lane] - extent[axis][lane] * (1.0f + kReachMargin);
+        visit.high[axis][lane] = from[axis][lane] + extent[axis][lane] * (1.0f + kReachMargin);
+      }
+  }
+
+  /// At one pose: every box holds a point of the model, so that no point of a child is farther from the model than from
+  /// the farthest corner of any box. What is farther than that is none's nearest.
+  void boundDistances(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
+  {
+    const std::uint32_t count = voxel_->nodes[index].count;
+    if (!query_.nearestDecides() || !(motion.near > *std::min_element(visit.radius, visit.radius + count))) return;
+    alignas(64) float corner[kLanes];
+    std::fill(corner, corner + kLanes, std::numeric_limits<float>::infinity());
+    for (const Siblings& candidate : visit.candidates)
+      for (std::uint32_t bits = candidate.lanes; bits != 0; bits &= bits - 1) {
+        const BoxEnds box(candidate[static_cast<std::uint32_t>(std::countr_zero(bits))]);
+        lowerToFarthestCorner(visit.children.start, box.low, box.high, corner);
+        results_.work.node_pairs += count;
+      }
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      visit.bound[lane] = voxel_frame_.highOfBox(motion, corner[lane], visit.radius[lane]);
+      visit.near_squared[lane] = voxel_frame_.nearSquared(motion, visit.bound[lane]);
+    }
+  }
+
+  /// Settles children that a single point of the model is near enough to, at one pose, for all that they hold.
+  void settleByPoints(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
+  {
+    const Node& node = voxel_->nodes[index];
+    float smallest = std::numeric_limits<float>::infinity();
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) smallest = std::min(smallest, visit.radius[lane]);
+    if (!(settled_reach_ > smallest) && query_.of_pairs.isOne()) return;
+    for (const Siblings& candidate : visit.candidates)
+      for (std::uint32_t bits = candidate.lanes; bits != 0; bits &= bits - 1) {
+        settleBy(candidate[static_cast<std::uint32_t>(std::countr_zero(bits))], visit, index, motion);
+        if (open_lanes_[index] == 0) return;
+      }
+  }
+
+  /// Settles those that points in a box are near enough to.
+  void settleBy(const ModelBox& candidate, const NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
+  {
+    ClippedSegments<kLanes> clipped;
+    const BoxEnds box(candidate);
+    results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(open_lanes_[index]));
+    std::uint32_t near = open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, motion.steps, &clipped);
+    for (; near != 0; near &= near - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      ProbeSphere probe = probeOf(index, lane, visit.radius[lane]);
+      if (!(probe.reach > 0.0f)) continue;
+      const double middle = 0.5 * (std::max(clipped.from[lane], 0.0f) + std::min(clipped.to[lane], 1.0f));
+      const double steps = motion.interval->last - motion.interval->first; // beyond 2^24, motion.steps may be more
+      probe.pose = motion.interval->first + static_cast<std::uint32_t>(std::lround(middle * steps));
+      const float reach = probe.reach + probe.farther;
+      const AffineMap map = voxel_frame_.mapAt(query_.path.poses[probe.pose], {0, 0, 0}, 1.0);
+      const Point center = carryPoint(map.m, map.g, probe.center);
+      ++results_.work.volumes_carried;
+      if (box.squaredDistance(center) > reach * reach || !probing_.hasPoint(candidate, probe, center, motion)) continue;
+      settle(index, lane);
+      open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
+    }
+  }
+
+  /// All points of a child collide.
+  void settle(std::uint32_t index, std::uint32_t lane)
+  {
+    const Node& node = voxel_->nodes[index];
+    if (node.isLeaf(lane)) {
+      const auto all = static_cast<std::uint16_t>(firstBits(node.comparedPoints(lane)));
+      results_.hit[index * kLanes + lane] = results_.settled[index * kLanes + lane] = all;
+      return;
+    }
+    const std::uint32_t below = node.child[lane];
+    for (std::uint32_t i = 0; i < voxel_->nodes[below].count; ++i) settle(below, i);
+  }
+
+  /// Compares boxes of the model with those children of the visit that are in `lanes`: drops them, keeps them for their
+  /// own descent, or opens them.
+  void take(NodeVisit& visit, const Siblings& candidate, const VoxelMotion& motion, std::uint32_t lanes)
+  {
+    std::uint32_t kept[kLanes] = {};
+    for (std::uint32_t boxes = candidate.lanes; boxes != 0; boxes &= boxes - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(boxes));
+      const ModelBox box = candidate[k];
+      const BoxEnds ends(box);
+      results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
+      const std::uint32_t near_lanes =
+          lanes & (motion.at_rest ? boxesNearBox(visit.low, visit.high, ends.low, ends.high, visit.near_squared)
+                                  : segmentsInBox(visit.children, ends.low, ends.high, motion.steps,
+                                                  static_cast<ClippedSegments<kLanes>*>(nullptr)));
+      if (near_lanes == 0) continue;
+      const bool opens = !box.isLeaf() && model_.mayOpen(box) && !model_.isBlunt(box, motion);
+      const float size = box.size(query_.boxes.stretch);
+      std::uint32_t opening = 0;
+      for (std::uint32_t bits = near_lanes; bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+        if (opens && size > kBoxSize * visit.radius[lane])
+          opening |= 1u << lane;
+        else
+          kept[lane] |= 1u << k;
+      }
+      if (opening != 0) take(visit, model_.near(visit.around, model_.below(box), motion.steps), motion, opening);
+    }
+    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (kept[lane] != 0) visit.near[lane].push_back(candidate.only(kept[lane]));
+    }
+  }
+
+  const TrajectoryQuery& query_;
+  const StopRule& rule_;
+  const std::uint32_t index_;
+  const VoxelInModelFrame voxel_frame_;
+  OrientedBoxes oriented_boxes_;
+  VoxelResults results_;
+  Progress& progress_;
+  StopCheck stop_check_;
+  std::uint32_t descents_ = 0;
+  bool stopped_ = false; // by the caller
+  ModelBoxes model_;
+  LeafWalk leaves_;
+  PointProbing probing_;
+  const float settled_reach_;             // a pair nearer than this, in floats, collides; but for lengths of its own
+  const bool settling_;                   // whether one pose and one point of the model answer the request
+  const Voxel* voxel_ = nullptr;          // once it was entered
+  const OwnUncertainties* own_ = nullptr; // of its points, likewise
+  std::vector<std::uint8_t> open_lanes_;  // per node: children that are not settled
+  std::deque<NodeVisit>& visits_;         // by depth; a deque, for references to shallower visits stay in use
+};
+
+} // namespace
+
+VoxelResult walkVoxelOnTarget(const TrajectoryQuery& query, const StopRule& rule, std::uint32_t voxel,
+                              const std::vector<std::uint32_t>& intervals, Progress& progress)
+{
+  thread_local std::deque<NodeVisit> visits; // kept from voxel to voxel for their storage only
+  return TrajectoryWalk(query, rule, voxel, progress, visits).run(intervals);
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(walkVoxelOnTarget);
+
+VoxelResult walkVoxel(const TrajectoryQuery& query, const StopRule& rule, std::uint32_t voxel,
+                      const std::vector<std::uint32_t>& intervals, Progress& progress)
+{
+  return HWY_DYNAMIC_DISPATCH(walkVoxelOnTarget)(query, rule, voxel, intervals, progress);
+}
+
+} // namespace pcl_bsh
+#endif

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/clashes/clashes.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_bsh {
+namespace {
+
+/// A scan of given colliding points: each with a distance, a first and a closest pose.
+struct Scan {
+  struct Point {
+    float x, y, z;
+    float distance; ///< NaN: free
+    std::int32_t first = 0, closest = 0;
+  };
+
+  explicit Scan(const std::vector<Point>& given) : points(given)
+  {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const bool collides = !std::isnan(points[i].distance);
+      found.flags.push_back(collides);
+      found.distance.push_back(points[i].distance);
+      found.first_pose.push_back(collides ? points[i].first : -1);
+      found.closest_pose.push_back(collides ? points[i].closest : -1);
+      found.closest_point.push_back(collides ? static_cast<std::uint32_t>(100 + i) : TrajectoryResult::kNoPoint);
+    }
+  }
+
+  PointsView view() const { return viewOf(points.empty() ? nullptr : &points[0].x, points.size(), sizeof(Point)); }
+  std::vector<Clash> clashes(double distance = 1.0) const { return findClashes(view(), found, distance); }
+
+  std::vector<Point> points;
+  TrajectoryResult found;
+};
+
+const float free_point = std::nanf("");
+
+TEST(Clashes, GroupsAndSortsBySeverity)
+{
+  const Scan scan({{0, 0, 0, 0.04f, 5, 6},
+                   {0.5f, 0, 0, 0.02f, 4, 7},
+                   {1.5f, 0.25f, 0, 0.03f, 9, 9}, // one apart, and a little: by the chain
+                   {0.75f, 0, 0, free_point},
+                   {9, 9, 9, 0.01f, 2, 3},
+                   {-9, 0, 0, 0.02f, 1, 1}});
+  const std::vector<Clash> clashes = scan.clashes(1.25);
+  ASSERT_EQ(clashes.size(), 3u);
+  EXPECT_EQ(clashes[0].scan_point, 4u);
+  EXPECT_EQ(clashes[1].points, 3u) << "of the same distance, more points first";
+  EXPECT_EQ(clashes[2].scan_point, 5u);
+  const Clash& three = clashes[1];
+  EXPECT_EQ(three.records, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(three.low, (Point3{0, 0, 0}));
+  EXPECT_EQ(three.high, (Point3{1.5, 0.25, 0}));
+  EXPECT_EQ(three.distance, static_cast<double>(0.02f));
+  EXPECT_EQ(three.scan_point, 1u);
+  EXPECT_EQ(three.model_point, 101u);
+  EXPECT_EQ(three.first_pose, 4);
+  EXPECT_EQ(three.closest_pose, 7);
+}
+
+/// Of -0 and 0 a box has the latter, whichever comes first.
+TEST(Clashes, BoxesAreTheSameWhateverTheOrder)
+{
+  std::vector<Scan::Point> points = {{-0.0f, 0.0f, 1, 0.1f}, {0.0f, -0.0f, 1, 0.1f}};
+  for (int order = 0; order < 2; ++order) {
+    const std::vector<Clash> clashes = Scan(points).clashes(1.0);
+    ASSERT_EQ(clashes.size(), 1u);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_FALSE(std::signbit(clashes[0].low[k]));
+      EXPECT_FALSE(std::signbit(clashes[0].high[k]));
+    }
+    std::swap(points[0], points[1]);
+  }
+}
+
+TEST(Clashes, IdsTellThePlaceWhateverTheOrder)
+{
+  std::vector<Scan::Point> points = {{1, 1, 1, 0.1f}, {-1, 1, 1, 0.2f}, {100, 0, 50, 0.3f}, {101, 2, 50, 0.4f}};
+  const auto idsOf = [](const std::vector<Scan::Point>& given) {
+    std::vector<std::string> ids;
+    for (const Clash& clash : Scan(given).clashes(1.0)) ids.push_back(clash.id);
+    return ids;
+  };
+  const std::vector<std::string> ids = idsOf(points);
+  EXPECT_EQ(ids, (std::vector<std::string>{"C0_0_0", "C-1_0_0", "C25_0_12", "C25_0_12#2"}));
+  std::reverse(points.begin(), points.end());
+  EXPECT_EQ(idsOf(points), ids);
+  points[3].x += 0.5f;
+  points[3].distance = 0.05f;
+  EXPECT_EQ(idsOf(points), ids) << "small changes";
+}
+
+TEST(Clashes, NothingCollidesNothingClashes)
+{
+  EXPECT_TRUE(Scan({{0, 0, 0, free_point}}).clashes().empty());
+  EXPECT_TRUE(Scan({}).clashes().empty());
+}
+
+TEST(Clashes, AgainstEarlierOnes)
+{
+  std::vector<Clash> earlier = Scan({{0, 0, 0, 0.1f}, {50, 0, 0, 0.2f}, {90, 0, 0, 0.3f}}).clashes();
+  const std::string first = earlier[0].id, gone = earlier[1].id;
+  // The first has moved into the next cell, the second is gone, the third has a neighbour now, one more is new.
+  std::vector<Clash> clashes =
+      Scan({{-0.5f, 0, 0, 0.1f}, {90, 0, 0, 0.3f}, {90, 1.5f, 0, 0.4f}, {20, 0, 0, 0.5f}}).clashes();
+  EXPECT_NE(clashes[0].id, first);
+  compareWithEarlier(clashes, earlier, 1.0);
+  ASSERT_EQ(clashes.size(), 5u);
+  EXPECT_EQ(clashes[0].id, first);
+  EXPECT_EQ(clashes[0].status, ClashStatus::persisting);
+  EXPECT_EQ(clashes[1].id, earlier[2].id);
+  EXPECT_EQ(clashes[1].status, ClashStatus::persisting);
+  EXPECT_EQ(clashes[2].status, ClashStatus::fresh);
+  EXPECT_NE(clashes[2].id, clashes[1].id);
+  EXPECT_EQ(clashes[3].status, ClashStatus::fresh);
+  EXPECT_EQ(clashes[4].status, ClashStatus::resolved);
+  EXPECT_EQ(clashes[4].id, gone);
+  EXPECT_TRUE(clashes[4].records.empty()) << "they were of the earlier scan";
+
+  std::vector<Clash> later = Scan({{50, 0, 0, 0.1f}}).clashes();
+  compareWithEarlier(later, clashes, 1.0);
+  EXPECT_EQ(later[0].status, ClashStatus::fresh) << "what was resolved and is back is new";
+  EXPECT_EQ(std::count_if(later.begin(), later.end(),
+                          [](const Clash& clash) { return clash.status == ClashStatus::resolved; }),
+            4);
+}
+
+TEST(Clashes, ThoseThatWereNotLookedAtAreStillThere)
+{
+  std::vector<Clash> earlier = Scan({{0, 0, 0, 0.1f}, {50, 0, 0, 0.2f}}).clashes();
+  earlier[0].status = ClashStatus::not_visited;
+  earlier[1].status = ClashStatus::not_scanned;
+  std::vector<Clash> now = Scan({{50, 0, 0, 0.2f}}).clashes();
+  compareWithEarlier(now, earlier, 1.0);
+  ASSERT_EQ(now.size(), 2u) << "not forgotten, as resolved ones are";
+  EXPECT_EQ(now[0].status, ClashStatus::persisting);
+  EXPECT_EQ(now[1].status, ClashStatus::resolved) << "to be judged by FormerPlaces";
+}
+
+/// Places in a grid, of which half are there again, a little moved.
+TEST(Clashes, ComparingCostsWhatIsNear)
+{
+  const auto boxesCompared = [](int side) {
+    std::vector<Clash> earlier, now;
+    for (int i = 0; i < side * side; ++i) {
+      Clash clash;
+      const double x = 10.0 * (i % side), y = 10.0 * (i / side);
+      clash.id = std::to_string(i);
+      clash.points = 1;
+      clash.low = {x, y, 0};
+      clash.high = {x + 1, y + 1, 1};
+      earlier.push_back(clash);
+      clash.id = "now " + clash.id;
+      clash.low[0] += 0.5;
+      clash.high[0] += 0.5;
+      if (i % 2 == 0) now.push_back(clash);
+    }
+    const std::uint64_t compared = compareWithEarlier(now, earlier, 1.0);
+    EXPECT_EQ(now.size(), earlier.size());
+    EXPECT_EQ(now[0].id, "0");
+    return static_cast<double>(compared);
+  };
+  const double small = boxesCompared(40), large = boxesCompared(160);
+  EXPECT_LT(large, 50 * 160 * 160) << "all pairs are 12,800 a clash";
+  EXPECT_LT(large, 16 * 1.5 * small);
+}
+
+/// A cell full of clashes: each gets a number of its own.
+TEST(Clashes, ManyOfOneCellAreNumbered)
+{
+  std::vector<Clash> clashes(20000);
+  for (std::size_t i = 0; i < clashes.size(); ++i) clashes[i].distance = static_cast<double>(i);
+  nameClashes(clashes, 1.0);
+  EXPECT_EQ(clashes[0].id, "C0_0_0");
+  EXPECT_EQ(clashes[1].id, "C0_0_0#2");
+  EXPECT_EQ(clashes.back().id, "C0_0_0#20000");
+}
+
+/// Flags of 2: whether they collide depends on where the points truly are.
+TEST(Clashes, CertainOnesComeBeforeThoseThatCollidePerhaps)
+{
+  Scan scan({{0, 0, 0, 0.1f}, {50, 0, 0, 0.3f}, {50, 0.5f, 0, 0.2f}, {90, 0, 0, 0.25f}});
+  scan.found.flags = {2, 1, 2, 2};
+  const std::vector<Clash> clashes = scan.clashes();
+  ASSERT_EQ(clashes.size(), 3u);
+  EXPECT_EQ(clashes[0].low, (Point3{50, 0, 0}));
+  EXPECT_TRUE(clashes[0].isCertain());
+  EXPECT_EQ(clashes[0].points, 2u);
+  EXPECT_EQ(clashes[0].certain_points, 1u);
+  EXPECT_EQ(clashes[0].place, (Point3{50, 0.5, 0}));
+  EXPECT_EQ(clashes[1].low, (Point3{0, 0, 0})) << "then by distance";
+  EXPECT_FALSE(clashes[1].isCertain());
+  EXPECT_FALSE(clashes[2].isCertain());
+}
+
+TEST(Clashes, TwoThatBecameOnePersist)
+{
+  const std::vector<Clash> earlier = Scan({{0, 0, 0, 0.1f}, {3, 0, 0, 0.2f}}).clashes();
+  std::vector<Clash> clashes = Scan({{0, 0, 0, 0.1f}, {1, 0, 0, 0.1f}, {2, 0, 0, 0.1f}, {3, 0, 0, 0.2f}}).clashes();
+  compareWithEarlier(clashes, earlier, 1.0);
+  ASSERT_EQ(clashes.size(), 1u) << "neither is resolved";
+  EXPECT_EQ(clashes[0].status, ClashStatus::persisting);
+}
+
+TEST(Clashes, RefusesWhatMakesNoSense)
+{
+  Scan scan({{0, 0, 0, 0.1f}});
+  for (const double distance : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+    EXPECT_THROW(scan.clashes(distance), std::invalid_argument);
+  }
+  scan.found.first_pose.clear();
+  EXPECT_THROW(scan.clashes(), std::invalid_argument);
+}
+
+} // namespace
+} // namespace pcl_bsh

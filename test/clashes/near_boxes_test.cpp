@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/clashes/near_boxes.h>
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+namespace pcl_bsh {
+namespace {
+
+std::vector<Extent> randomBoxes(std::size_t count, double longest, std::mt19937& random)
+{
+  std::uniform_real_distribution<double> place(-10, 10), length(0, longest);
+  std::vector<Extent> boxes(count);
+  for (Extent& box : boxes) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.low[k] = place(random);
+      box.high[k] = box.low[k] + length(random);
+    }
+  }
+  return boxes;
+}
+
+TEST(NearBoxes, AreThoseOfComparingAll)
+{
+  std::mt19937 random(5);
+  for (const std::size_t count : {0U, 1U, 4U, 5U, 100U, 777U}) {
+    for (const double longest : {0.0, 1.0, 15.0}) {
+      const std::vector<Extent> boxes = randomBoxes(count, longest, random);
+      NearBoxes tree(boxes);
+      for (const Extent& asked : randomBoxes(20, longest, random)) {
+        std::set<std::size_t> near, expected;
+        tree.visitNear(asked, 0.5, [&](std::size_t i) {
+          EXPECT_TRUE(near.insert(i).second) << "visited twice";
+          return false;
+        });
+        for (std::size_t i = 0; i < count; ++i)
+          if (asked.isNear(boxes[i], 0.5)) expected.insert(i);
+        EXPECT_EQ(near, expected);
+      }
+      EXPECT_EQ(tree.left(), count);
+    }
+  }
+}
+
+TEST(NearBoxes, ThatAreDoneAreNotVisitedAgain)
+{
+  std::mt19937 random(6);
+  const std::vector<Extent> boxes = randomBoxes(300, 5, random);
+  NearBoxes tree(boxes);
+  std::set<std::size_t> done;
+  for (const Extent& asked : randomBoxes(2000, 3, random)) {
+    tree.visitNear(asked, 0.0, [&](std::size_t i) {
+      EXPECT_TRUE(done.insert(i).second);
+      return true;
+    });
+    EXPECT_EQ(tree.left(), boxes.size() - done.size());
+  }
+  EXPECT_GT(done.size(), 250U);
+}
+
+} // namespace
+} // namespace pcl_bsh

@@ -1,0 +1,606 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "las_sample.h"
+#include "samples.h"
+
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/las/las.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+namespace pcl_bsh::io {
+
+namespace {
+
+struct Las {
+  pcl::PCLPointCloud2 cloud;
+  LasHeader header;
+};
+
+Las readText(std::string_view file)
+{
+  LasReader reader(std::make_unique<HeldBytes>(file));
+  Las las;
+  las.cloud = readLas(reader);
+  las.header = reader.header();
+  return las;
+}
+
+std::string written(const pcl::PCLPointCloud2& cloud, const LasHeader* header)
+{
+  std::ostringstream out;
+  writeLas(out, cloud, header);
+  return out.str();
+}
+
+std::string rewritten(const std::string& file)
+{
+  const Las las = readText(file);
+  return written(las.cloud, &las.header);
+}
+
+/// Where two texts differ first; none where they are the same.
+std::string difference(const std::string& a, const std::string& b)
+{
+  if (a.size() != b.size()) return std::to_string(a.size()) + " bytes against " + std::to_string(b.size());
+  const auto at = std::mismatch(a.begin(), a.end(), b.begin()).first - a.begin();
+  return at == static_cast<std::ptrdiff_t>(a.size()) ? std::string() : "byte " + std::to_string(at);
+}
+
+LasSample fullSample()
+{
+  LasSample sample(4, 10, 4 + 2 + 3 + 6 + 8 + 1);
+  sample.user_bytes = "user data behind the header";
+  const std::string descriptors =
+      LasSample::descriptor(9, "amplitude") + LasSample::descriptor(3, "echo width", 8, 0.1) +
+      LasSample::descriptor(0, "opaque", 3) + LasSample::descriptor(23, "colour", 16, 0, 5) +
+      LasSample::descriptor(7, "serial") + LasSample::descriptor(1, "quality", 1, 0, 0, 255);
+  sample.records = {LasSample::record("LASF_Projection", 2112, "PROJCS[...]"),
+                    LasSample::record("LASF_Spec", 4, descriptors), LasSample::record("nobody", 7, "")};
+  sample.padding = "padding";
+  sample.extended = {LasSample::extendedRecord("LASF_Spec", 65535, std::string(100, 'w')),
+                     LasSample::extendedRecord("somebody", 9, "more")};
+  sample.global_encoding = 2 | 16;
+  sample.addPoints(50);
+  return sample;
+}
+
+} // namespace
+
+TEST(Las, EveryVersionAndFormatIsTheSameByteForByte)
+{
+  for (std::uint8_t minor = 0; minor <= 4; ++minor) {
+    for (std::uint8_t format = 0; format <= 10; ++format) {
+      LasSample sample(minor, format);
+      if (minor == 0) sample.padding = "\xcc\xdd";
+      sample.records = {LasSample::record("LASF_Projection", 34735, std::string(64, '\1'))};
+      sample.addPoints(100, 10U * minor + format);
+      EXPECT_EQ(difference(rewritten(sample.text()), sample.text()), "") << int{minor} << ' ' << int{format};
+    }
+  }
+}
+
+TEST(Las, CoordinatesAreScaledAndMovedInDouble)
+{
+  LasSample sample(2, 0);
+  sample.scale = {0.01, 1e-7, 0.25};
+  sample.offset = {637012.24, -9.5, 0};
+  sample.addPoints(200);
+  const Las las = readText(sample.text());
+  ASSERT_EQ(las.cloud.width, 200U);
+  for (std::size_t i = 0; i < 200; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double wanted = get<std::int32_t>(sample.points[i], 4 * k) * sample.scale[k] + sample.offset[k];
+      EXPECT_EQ(valueOf(las.cloud, i, std::string(1, "xyz"[k])), wanted);
+    }
+  }
+}
+
+/// An offset that absorbs all stored values absorbs the one for no data, too, which must not be written for another.
+TEST(Las, NoDataIsNoNeighbourOfAValue)
+{
+  LasSample sample(4, 6, 2 + 4);
+  const std::string descriptors =
+      LasSample::descriptor(3, "far", 1 | 16, 0, 1e300, 0) + LasSample::descriptor(9, "off", 1 | 16, 0, -1e300, 0);
+  sample.records = {LasSample::record("LASF_Spec", 4, descriptors)};
+  sample.addPoints(2);
+  put(sample.points[0], 30, std::uint16_t{0});
+  put(sample.points[0], 32, 0.0F);
+  put(sample.points[1], 30, std::uint16_t{5});
+  put(sample.points[1], 32, 7.0F);
+  const Las las = readText(sample.text());
+  const Las again = readText(written(las.cloud, &las.header));
+  EXPECT_EQ(namesOf(again.cloud), namesOf(las.cloud));
+  EXPECT_EQ(again.header.descriptors, descriptors);
+  EXPECT_TRUE(std::isnan(valueOf(again.cloud, 0, "far")) && std::isnan(valueOf(again.cloud, 0, "off")));
+  EXPECT_EQ(valueOf(again.cloud, 1, "far"), 1e300);
+  EXPECT_EQ(valueOf(again.cloud, 1, "off"), -1e300);
+}
+
+/// Extra bytes may have the name and the type of PCL's packed colours.
+TEST(Las, ExtraBytesAreNoColours)
+{
+  LasSample sample(4, 6, 4 + 4);
+  sample.records = {
+      LasSample::record("LASF_Spec", 4, LasSample::descriptor(6, "rgba") + LasSample::descriptor(9, "rgb"))};
+  sample.addPoints(3);
+  const std::string file = sample.text();
+  const Las las = readText(file);
+  EXPECT_EQ(difference(written(las.cloud, &las.header), file), "");
+}
+
+/// Where doubles do not tell multiples of the scale apart, integers may change, coordinates must not.
+TEST(Las, CoordinatesStayWhereDoublesAreCoarse)
+{
+  for (const double scale : {1e-10, 0.3e-10, 1e-17, 1e-310}) {
+    LasSample sample(4, 6, 12);
+    sample.scale = {scale, -scale, scale};
+    sample.offset = {1e6, 1.1e6, -3e9};
+    const std::string descriptors =
+        LasSample::descriptor(9, "a", 24, 0.1, 1e5) + LasSample::descriptor(10, "b", 24, 0.3, -7);
+    sample.records = {LasSample::record("LASF_Spec", 4, descriptors)};
+    sample.addPoints(500);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> usual(-100, 100);
+    for (std::string& point : sample.points) {
+      put(point, 30, static_cast<float>(usual(random)));
+      put(point, 34, usual(random));
+    }
+    const Las las = readText(sample.text());
+    const Las again = readText(written(las.cloud, &las.header));
+    EXPECT_EQ(namesOf(again.cloud), namesOf(las.cloud));
+    EXPECT_TRUE(again.header.descriptors == descriptors) << scale;
+    for (std::size_t i = 0; i < 500; ++i) {
+      for (const char* name : {"x", "y", "z", "a", "b"}) {
+        const double before = valueOf(las.cloud, i, name), after = valueOf(again.cloud, i, name);
+        EXPECT_TRUE(before == after || (before != before && after != after)) << name << ' ' << scale;
+      }
+    }
+  }
+}
+
+TEST(Las, FieldsOfOldFormats)
+{
+  LasSample sample(3, 5);
+  std::string point(63, '\0');
+  put(point, 12, std::uint16_t{40000});
+  point[14] = static_cast<char>(3 | 5 << 3 | 1 << 6);  // return 3 of 5, direction
+  point[15] = static_cast<char>(17 | 1 << 5 | 1 << 7); // class 17, synthetic, withheld
+  point[16] = static_cast<char>(-90);
+  point[17] = 9;
+  put(point, 18, std::uint16_t{65535});
+  put(point, 20, 123456.789);
+  put(point, 28, std::uint16_t{0xffff});
+  put(point, 30, std::uint16_t{0x8000});
+  put(point, 32, std::uint16_t{0x0100});
+  point[34] = 2;
+  put(point, 35, std::uint64_t{1} << 40);
+  put(point, 43, std::uint32_t{256});
+  put(point, 47, 1.5F);
+  put(point, 51, 0.1F);
+  put(point, 55, 0.2F);
+  put(point, 59, 0.3F);
+  sample.points = {point};
+  const pcl::PCLPointCloud2 cloud = readText(sample.text()).cloud;
+  EXPECT_EQ(namesOf(cloud),
+            "x y z intensity return_number number_of_returns scan_direction edge_of_flight_line classification "
+            "synthetic key_point withheld scan_angle user_data point_source_id gps_time red green blue rgb "
+            "wave_descriptor wave_offset wave_size wave_location wave_dx wave_dy wave_dz");
+  const std::vector<std::pair<const char*, double>> wanted = {{"intensity", 40000},
+                                                              {"return_number", 3},
+                                                              {"number_of_returns", 5},
+                                                              {"scan_direction", 1},
+                                                              {"edge_of_flight_line", 0},
+                                                              {"classification", 17},
+                                                              {"synthetic", 1},
+                                                              {"key_point", 0},
+                                                              {"withheld", 1},
+                                                              {"scan_angle", -90},
+                                                              {"user_data", 9},
+                                                              {"point_source_id", 65535},
+                                                              {"gps_time", 123456.789},
+                                                              {"red", 0xffff},
+                                                              {"green", 0x8000},
+                                                              {"blue", 0x0100},
+                                                              {"wave_descriptor", 2},
+                                                              {"wave_offset", 0x1p40},
+                                                              {"wave_size", 256},
+                                                              {"wave_location", 1.5},
+                                                              {"wave_dx", 0.1F},
+                                                              {"wave_dy", 0.2F},
+                                                              {"wave_dz", 0.3F}};
+  for (const auto& [name, value] : wanted) EXPECT_EQ(valueOf(cloud, 0, name), value) << name;
+  EXPECT_EQ(colourOf(cloud, 0), 0xff8001U);
+}
+
+TEST(Las, FieldsOfNewFormats)
+{
+  LasSample sample(4, 8);
+  std::string point(38, '\0');
+  point[14] = static_cast<char>(9 | 15 << 4);
+  point[15] = static_cast<char>(1 << 1 | 1 << 3 | 2 << 4 | 1 << 7); // key point, overlap, channel 2, edge
+  point[16] = static_cast<char>(200);
+  put(point, 18, std::int16_t{-30000});
+  put(point, 36, std::uint16_t{777});
+  put(point, 30, std::uint16_t{200}); // colours of bytes, as many writers have them
+  sample.points = {point};
+  const pcl::PCLPointCloud2 cloud = readText(sample.text()).cloud;
+  const std::vector<std::pair<const char*, double>> wanted = {{"return_number", 9},
+                                                              {"number_of_returns", 15},
+                                                              {"synthetic", 0},
+                                                              {"key_point", 1},
+                                                              {"withheld", 0},
+                                                              {"overlap", 1},
+                                                              {"scanner_channel", 2},
+                                                              {"scan_direction", 0},
+                                                              {"edge_of_flight_line", 1},
+                                                              {"classification", 200},
+                                                              {"scan_angle", -180.0F},
+                                                              {"nir", 777},
+                                                              {"red", 200}};
+  for (const auto& [name, value] : wanted) EXPECT_EQ(valueOf(cloud, 0, name), value) << name;
+  EXPECT_EQ(colourOf(cloud, 0), 0xc80000U);
+}
+
+TEST(Las, ExtraBytesByTheirDescriptions)
+{
+  const LasSample sample = fullSample();
+  const Las las = readText(sample.text());
+  for (std::size_t i = 0; i < sample.points.size(); ++i) {
+    const std::string extra = sample.points[i].substr(67);
+    EXPECT_EQ(valueOf(las.cloud, i, "echo_width"), get<std::uint16_t>(extra, 4) * 0.1);
+    EXPECT_EQ(valueOf(las.cloud, i, "colour"), get<std::uint16_t>(extra, 9) + 5.0);
+    const std::uint8_t quality = get<std::uint8_t>(extra, 23);
+    const double read = valueOf(las.cloud, i, "quality");
+    EXPECT_TRUE(quality == 255 ? std::isnan(read) : read == quality);
+  }
+  EXPECT_EQ(difference(rewritten(sample.text()), sample.text()), "");
+}
+
+TEST(Las, EveryTypeOfExtraBytesIsKept)
+{
+  for (const std::uint8_t options : std::initializer_list<std::uint8_t>{0, 1, 8, 16, 25}) {
+    std::string descriptors;
+    std::size_t bytes = 0;
+    constexpr std::array<std::size_t, 10> sizes = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+    for (std::uint8_t type = 1; type <= 30; ++type) {
+      const unsigned kind = (type - 1U) % 10;
+      const bool is_float = kind >= 8, wide = kind == 6 || kind == 7;
+      if (options > 1 && (is_float || wide)) continue; // scaled, they have more digits than a double
+      descriptors += LasSample::descriptor(type, "e" + std::to_string(type), options, 0.01, 1000, 3);
+      bytes += sizes[(type - 1U) % 10] * ((type - 1U) / 10 + 1);
+    }
+    LasSample sample(4, 6, bytes);
+    sample.records = {LasSample::record("LASF_Spec", 4, descriptors)};
+    sample.addPoints(40);
+    if (options != 0) // floats that are numbers
+      for (std::string& point : sample.points)
+        for (std::size_t at = 30; at < point.size(); ++at) point[at] = static_cast<char>(point[at] & 0x3f);
+    EXPECT_EQ(difference(rewritten(sample.text()), sample.text()), "") << int{options};
+  }
+}
+
+TEST(Las, ExtraBytesWithoutSoundDescriptions)
+{
+  LasSample sample(2, 1, 5);
+  sample.addPoints(3);
+  EXPECT_EQ(readText(sample.text()).cloud.fields.back().name, "extra_bytes");
+  EXPECT_EQ(readText(sample.text()).cloud.fields.back().count, 5U);
+  EXPECT_EQ(difference(rewritten(sample.text()), sample.text()), "");
+  // Descriptions of more than there is count for nothing; behind an unknown type no place is known.
+  sample.records = {LasSample::record("LASF_Spec", 4, LasSample::descriptor(10, "a"))};
+  EXPECT_EQ(readText(sample.text()).cloud.fields.back().name, "extra_bytes");
+  sample.records = {LasSample::record("LASF_Spec", 4, LasSample::descriptor(3, "a") + LasSample::descriptor(99, "b"))};
+  const pcl::PCLPointCloud2 cloud = readText(sample.text()).cloud;
+  EXPECT_EQ(cloud.fields[cloud.fields.size() - 2].name, "a");
+  EXPECT_EQ(cloud.fields.back().count, 3U);
+  EXPECT_EQ(difference(rewritten(sample.text()), sample.text()), "");
+  // Names that are taken, or none.
+  sample.records = {
+      LasSample::record("LASF_Spec", 4, LasSample::descriptor(3, "intensity") + LasSample::descriptor(3, ""))};
+  const std::string names = namesOf(readText(sample.text()).cloud);
+  EXPECT_NE(names.find("extra_intensity extra_bytes extra_extra_bytes"), std::string::npos) << names;
+  EXPECT_EQ(difference(rewritten(sample.text()), sample.text()), "");
+}
+
+TEST(Las, ExtraBytesDescribedBehindThePoints)
+{
+  LasSample sample(4, 6, 2);
+  sample.extended = {LasSample::extendedRecord("LASF_Spec", 4, LasSample::descriptor(3, "late"))};
+  sample.addPoints(3);
+  const Las las = readText(sample.text());
+  EXPECT_EQ(las.cloud.fields.back().name, "late");
+  EXPECT_EQ(difference(rewritten(sample.text()), sample.text()), "");
+  const Las more = readText(written(withField(las.cloud, "collision", {1, 0, 1}), &las.header));
+  EXPECT_EQ(namesOf(more.cloud), namesOf(las.cloud) + " collision");
+  EXPECT_EQ(valueOf(more.cloud, 2, "late"), valueOf(las.cloud, 2, "late"));
+}
+
+TEST(Las, ResultsAreExtraBytesWithDescriptions)
+{
+  for (const bool described : {false, true}) {
+    LasSample sample(2, 3, 3);
+    if (described) sample.records = {LasSample::record("LASF_Spec", 4, LasSample::descriptor(3, "first"))};
+    sample.records.push_back(LasSample::record("LASF_Projection", 34735, "geo"));
+    sample.addPoints(20);
+    const Las las = readText(sample.text());
+    std::vector<std::uint8_t> flags(20);
+    std::vector<float> distances(20, std::nanf(""));
+    for (std::size_t i = 0; i < 20; i += 3) flags[i] = 1, distances[i] = 0.1F * static_cast<float>(i);
+    const pcl::PCLPointCloud2 cloud = withFields(las.cloud, {{"collision", &flags}, {"distance", &distances}});
+    const std::string file = written(cloud, &las.header);
+    EXPECT_NE(file.find("1 collides, 2 undecided, 0 free"), std::string::npos);
+    EXPECT_NE(file.find("geo"), std::string::npos);
+    const Las again = readText(file);
+    EXPECT_EQ(namesOf(again.cloud), namesOf(cloud));
+    for (std::size_t i = 0; i < 20; ++i) {
+      EXPECT_EQ(valueOf(again.cloud, i, "collision"), flags[i]);
+      const double distance = valueOf(again.cloud, i, "distance");
+      EXPECT_TRUE(flags[i] != 0 ? distance == static_cast<double>(distances[i]) : std::isnan(distance));
+      EXPECT_EQ(file.substr(again.header.block.points_at + i * again.header.block.record_length, 34),
+                sample.points[i].substr(0, 34))
+          << "the point itself is as it was";
+    }
+    EXPECT_EQ(difference(rewritten(file), file), "");
+    // Taken away again, the file is as before, but for a description of what had none.
+    if (described) continue;
+    const Las less = readText(written(las.cloud, &again.header));
+    EXPECT_EQ(less.header.block.record_length, 37);
+  }
+}
+
+TEST(Las, FewerPointsKeepEverythingElse)
+{
+  const LasSample sample = fullSample();
+  const Las las = readText(sample.text());
+  const std::string file = written(selectedRecords(las.cloud, {7, 3, 40}), &las.header);
+  LasSample fewer = sample;
+  fewer.points = {sample.points[7], sample.points[3], sample.points[40]};
+  EXPECT_EQ(difference(file, fewer.text()), "") << "counts, bounds and places are those of the points left";
+  fewer.points.clear();
+  const std::string none = written(selectedRecords(las.cloud, {}), &las.header);
+  EXPECT_EQ(difference(none, fewer.text()), "");
+}
+
+TEST(Las, MovedPointsGetAPlace)
+{
+  LasSample sample(2, 0);
+  sample.addPoints(10);
+  const Las las = readText(sample.text());
+  for (const double by : {0.004, 1e9, 1e15}) {
+    pcl::PCLPointCloud2 moved = las.cloud;
+    for (std::size_t i = 0; i < 10; ++i) {
+      const double x = valueOf(las.cloud, i, "x") + by;
+      std::memcpy(&moved.data[i * moved.point_step], &x, sizeof x);
+    }
+    const Las again = readText(written(moved, &las.header));
+    for (std::size_t i = 0; i < 10; ++i) {
+      const double near = std::max(0.00501, 1e-15 * by);
+      EXPECT_NEAR(valueOf(again.cloud, i, "x"), valueOf(moved, i, "x"), near) << by;
+      if (by < 1e15) {
+        EXPECT_EQ(valueOf(again.cloud, i, "y"), valueOf(moved, i, "y"));
+      }
+    }
+  }
+}
+
+TEST(Las, CloudsOfOtherFormats)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* axis : {"x", "y", "z"}) addField(cloud, axis, Field::FLOAT32);
+  addField(cloud, "intensity", Field::FLOAT32);
+  addField(cloud, "rgb", Field::FLOAT32);
+  addField(cloud, "normal_x", Field::FLOAT32);
+  addField(cloud, "histogram", Field::UINT16, 2);
+  allocate(cloud, 3, 1);
+  std::mt19937 random(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::array<float, 4> values = {float(i) * 17.25F, -3.5F, 1000, i == 1 ? -12.5F : 7.0F};
+    std::memcpy(&cloud.data[i * cloud.point_step], values.data(), sizeof values);
+    const std::uint32_t colour = 0x123456 * static_cast<std::uint32_t>(i);
+    std::memcpy(&cloud.data[i * cloud.point_step + 16], &colour, sizeof colour);
+    cloud.data[i * cloud.point_step + 24] = static_cast<std::uint8_t>(i);
+  }
+  const std::string file = written(cloud, nullptr);
+  const Las las = readText(file);
+  EXPECT_EQ(las.header.block.minor, 4);
+  EXPECT_EQ(las.header.block.format, 7);
+  EXPECT_EQ(get<std::uint32_t>(file, 107), 0U) << "formats 6 to 10 have no old counts";
+  EXPECT_EQ(get<std::uint64_t>(file, 247), 3U);
+  EXPECT_EQ(get<std::uint64_t>(file, 255), 3U) << "one return each";
+  EXPECT_EQ(get<double>(file, 179), 34.5);
+  EXPECT_EQ(get<double>(file, 187), 0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(valueOf(las.cloud, i, "x"), valueOf(cloud, i, "x"));
+    EXPECT_EQ(valueOf(las.cloud, i, "extra_intensity"), valueOf(cloud, i, "intensity")) << "it has no place in 16 bits";
+    EXPECT_EQ(colourOf(las.cloud, i), 0x123456 * i);
+    EXPECT_EQ(valueOf(las.cloud, i, "histogram[0]"), static_cast<double>(i));
+    EXPECT_EQ(valueOf(las.cloud, i, "number_of_returns"), 1);
+  }
+}
+
+TEST(Las, PointsWithoutCoordinatesAreLeftOut)
+{
+  pcl::PCLPointCloud2 cloud = randomCloud<double>(5000, 2, {Field::UINT8});
+  for (const std::size_t i : {0U, 4095U, 9999U}) {
+    const double nan = std::nan("");
+    std::memcpy(&cloud.data[i * cloud.point_step + 8], &nan, sizeof nan);
+  }
+  const Las las = readText(written(cloud, nullptr));
+  EXPECT_EQ(las.cloud.width, 9997U);
+  EXPECT_EQ(valueOf(las.cloud, 0, "field_2"), valueOf(cloud, 1, "field_2"));
+  EXPECT_NEAR(valueOf(las.cloud, 0, "x"), valueOf(cloud, 1, "x"), 2e6 / 0x1p30);
+}
+
+TEST(Las, StreamsInBatches)
+{
+  LasSample sample(4, 3);
+  sample.addPoints(1000);
+  const std::string file = sample.text();
+  const pcl::PCLPointCloud2 whole = readText(file).cloud;
+  LasReader reader(std::make_unique<HeldBytes>(file));
+  EXPECT_EQ(reader.size(), 1000U);
+  std::vector<std::uint8_t> data;
+  std::size_t batches = 0;
+  for (pcl::PCLPointCloud2 batch; reader.read(batch, 300) > 0; ++batches) {
+    EXPECT_EQ(batch.width, batches < 3 ? 300U : 100U);
+    data.insert(data.end(), batch.data.begin(), batch.data.end());
+  }
+  EXPECT_EQ(batches, 4U);
+  EXPECT_TRUE(data == whole.data);
+}
+
+TEST(Las, HeadersThatLie)
+{
+  LasSample sample(4, 6);
+  sample.records = {LasSample::record("a", 1, "content")};
+  sample.extended = {LasSample::extendedRecord("b", 2, "more")};
+  sample.addPoints(4);
+  const std::string sound = sample.text();
+  const auto broken = [&](std::size_t at, auto value) {
+    std::string file = sound;
+    put(file, at, value);
+    return defectOf([&] { readText(file); });
+  };
+  EXPECT_THAT(broken(0, 'X'), testing::HasSubstr("LASF"));
+  EXPECT_THAT(broken(25, char{5}), testing::HasSubstr("1.5"));
+  EXPECT_THAT(broken(94, std::uint16_t{200}), testing::HasSubstr("200"));
+  EXPECT_THAT(broken(96, std::uint32_t{0xffffffff}), testing::HasSubstr("4294967295"));
+  EXPECT_THAT(broken(96, std::uint32_t{3}), testing::HasSubstr("byte 3"));
+  EXPECT_THAT(broken(104, char{11}), testing::HasSubstr("11"));
+  EXPECT_THAT(broken(104, static_cast<char>(0x86)), testing::HasSubstr("compressed"));
+  EXPECT_THAT(broken(105, std::uint16_t{29}), testing::HasSubstr("29"));
+  EXPECT_THAT(broken(105, std::uint16_t{0}), testing::HasSubstr("0 bytes"));
+  EXPECT_THAT(broken(105, std::uint16_t{65535}), testing::HasSubstr("truncated"));
+  EXPECT_THAT(broken(247, ~std::uint64_t{0}), testing::HasSubstr("18446744073709551615"));
+  EXPECT_THAT(broken(247, std::uint64_t{1} << 61), testing::HasSubstr("truncated"));
+  EXPECT_THAT(broken(107, std::uint32_t{3}), testing::HasSubstr("disagree"));
+  for (const double bad : {0.0, -0.0, std::nan(""), HUGE_VAL, 1e308}) {
+    EXPECT_THAT(broken(139, bad), testing::HasSubstr("y"));
+  }
+  EXPECT_THAT(broken(163, std::nan("")), testing::HasSubstr("y"));
+  EXPECT_THAT(broken(235, std::uint64_t{10}), testing::HasSubstr("byte 10"));
+  EXPECT_THAT(broken(235, ~std::uint64_t{0}), testing::HasSubstr("truncated"));
+  EXPECT_THAT(broken(243, std::uint32_t{0xffffffff}), testing::HasSubstr("truncated"));
+  EXPECT_THAT(broken(sound.size() - 44, ~std::uint64_t{0}), testing::HasSubstr("truncated")) << "its length";
+
+  // What is between the header and the points may lie: the points are where they are.
+  std::string file = sound;
+  put(file, 100, std::uint32_t{0xffffffff});
+  EXPECT_EQ(readText(file).cloud.width, 4U);
+  EXPECT_EQ(difference(rewritten(file), sound), "") << "with the count that is right";
+  put(file, 375 + 20, std::uint16_t{65535});
+  EXPECT_EQ(readText(file).cloud.width, 4U);
+}
+
+TEST(Las, CutAnywhere)
+{
+  const std::string sound = fullSample().text();
+  for (std::size_t size = 0; size < sound.size(); ++size) {
+    const std::string file = sound.substr(0, size);
+    EXPECT_NE(defectOf([&] { readText(file); }), "") << size;
+  }
+  LasSample without(3, 4);
+  without.addPoints(2);
+  without.global_encoding = 2;
+  without.extended = {LasSample::extendedRecord("LASF_Spec", 65535, "waves")};
+  const std::string waves = without.text();
+  EXPECT_EQ(difference(rewritten(waves), waves), "");
+  for (std::size_t size = 0; size < waves.size(); ++size) {
+    EXPECT_NE(defectOf([&] { readText(waves.substr(0, size)); }), "") << size;
+  }
+}
+
+TEST(Las, WaveformBitWithoutWaveforms)
+{
+  for (const std::uint8_t format : std::initializer_list<std::uint8_t>{1, 4, 6}) {
+    LasSample sample(format == 6 ? 4 : 3, format);
+    sample.addPoints(2);
+    std::string file = sample.text();
+    put(file, 6, std::uint16_t{2}); // inside this file, at byte 0
+    EXPECT_EQ(difference(rewritten(file), file), "");
+    if (format == 4) continue;
+    put(file, 227, std::uint64_t{1} << 50); // no point asks for them
+    EXPECT_EQ(readText(file).cloud.width, 2U);
+  }
+}
+
+TEST(Las, NoScaleForExtraBytes)
+{
+  for (const double bad : {0.0, std::nan(""), HUGE_VAL}) {
+    LasSample sample(4, 6, 2);
+    sample.records = {LasSample::record("LASF_Spec", 4, LasSample::descriptor(3, "width", 8, bad))};
+    sample.addPoints(1);
+    EXPECT_THAT(defectOf([&] { readText(sample.text()); }), testing::HasSubstr("width"));
+  }
+}
+
+TEST(Las, AsManyFieldsAsARecordHasBytes)
+{
+  constexpr std::size_t many = 65535 - 30;
+  LasSample sample(4, 6, many);
+  std::string descriptors;
+  for (std::size_t i = 0; i < many; ++i) descriptors += LasSample::descriptor(1, "same");
+  sample.extended = {LasSample::extendedRecord("LASF_Spec", 4, descriptors)};
+  sample.addPoints(1);
+  const Las las = readText(sample.text());
+  EXPECT_EQ(las.cloud.fields.back().name, "extra_same_65504");
+  EXPECT_EQ(difference(written(las.cloud, &las.header), sample.text()), "");
+}
+
+TEST(Las, FilesKeepTheirHeaders)
+{
+  const TemporaryFolder folder;
+  const std::string sound = fullSample().text();
+  CloudFacts facts;
+  const pcl::PCLPointCloud2 cloud = readCloud(folder.write("a.las", sound), &facts);
+  writeCloud(folder / "b.las", cloud, no_viewpoint, facts.las);
+  EXPECT_EQ(difference(contentOf(folder / "b.las"), sound), "");
+  EXPECT_EQ(readCloudHeader(folder / "a.las").width, 50U);
+  readCloud(folder.write("a.xyz", "1 2 3\n"), &facts);
+  EXPECT_EQ(facts.las, nullptr);
+}
+
+/// Real files of many programs.
+TEST(Las, RealFiles)
+{
+  namespace fs = std::filesystem;
+  const fs::path samples = fs::path(PCL_BSH_SHARED_DIR) / "data/formats";
+  if (!fs::exists(samples)) GTEST_SKIP() << "no " << samples;
+  const std::vector<std::pair<const char*, std::size_t>> points = {{"1.0_0.las", 1},
+                                                                   {"1.0_1.las", 1},
+                                                                   {"1.1_1.las", 1},
+                                                                   {"1.2-with-color.las", 1065},
+                                                                   {"1.2_2.las", 1},
+                                                                   {"1.2_3.las", 1},
+                                                                   {"autzen_trim_7.las", 110000},
+                                                                   {"extrabytes.las", 1065},
+                                                                   {"interesting.las", 1065},
+                                                                   {"no-points.las", 0},
+                                                                   {"prec3.las", 110},
+                                                                   {"simple.las", 1065},
+                                                                   {"spec_3.las", 10},
+                                                                   {"test1_4.las", 1000},
+                                                                   {"utm15.las", 1}};
+  for (const auto& [name, count] : points) {
+    const std::string file = contentOf(samples / name);
+    const Las las = readText(file);
+    EXPECT_EQ(las.cloud.width, count) << name;
+    const std::string again = written(las.cloud, &las.header);
+    EXPECT_EQ(difference(again.substr(las.header.block.points_at), file.substr(las.header.block.points_at)), "")
+        << name;
+    EXPECT_EQ(difference(again, file), "") << name;
+    if (count == 1) {
+      EXPECT_DOUBLE_EQ(valueOf(las.cloud, 0, "x"), 470692.44) << name;
+    }
+  }
+  EXPECT_THAT(defectOf([&] { readText(contentOf(samples / "garbage_nVariableLength.las")); }),
+              testing::HasSubstr("truncated"));
+  EXPECT_EQ(readText(contentOf(samples / "gps-time-nan.las")).cloud.width, 1U);
+  EXPECT_EQ(readText(contentOf(samples / "bad_vlr_count.las")).cloud.width, 10U);
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// LAZ as files of clouds: all that holds for LAS.
+#include "laz_encoder.h"
+#include "laz_sample.h"
+#include "samples.h"
+
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/cloud_stream.h>
+#include <pcl_bsh/io/clouds/las/las.h>
+#include <pcl_bsh/io/files/file_error.h>
+
+#include <gmock/gmock.h>
+
+namespace pcl_bsh::io {
+
+namespace {
+
+/// With records of all kinds, and extra bytes that are described.
+LasSample describedScan(std::uint8_t format)
+{
+  LasSample sample(4, format, 4 + 2);
+  sample.records = {
+      LasSample::record("LASF_Projection", 2112, "PROJCS[...]"),
+      LasSample::record("LASF_Spec", 4,
+                        LasSample::descriptor(9, "amplitude") + LasSample::descriptor(3, "echo width", 8, 0.1))};
+  sample.extended = {LasSample::extendedRecord("somebody", 9, "more")};
+  sample.global_encoding = 16;
+  addScan(sample, 1000, 4, 3);
+  return sample;
+}
+
+std::string refusalOf(const std::filesystem::path& file)
+{
+  try {
+    readCloud(file);
+  }
+  catch (const files::FileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+} // namespace
+
+TEST(Laz, FilesGiveWhatTheirLasGives)
+{
+  const TemporaryFolder folder;
+  for (const std::uint8_t format : std::initializer_list<std::uint8_t>{3, 8}) {
+    const std::string las = describedScan(format).text(), laz = laz_test::compressed(las);
+    const pcl::PCLPointCloud2 expected = readCloud(folder.write("a.las", las));
+    ASSERT_EQ(expected.width, 1000U);
+    for (const char* name : {"a.laz", "A.LAZ", "a.copc.laz", "compressed.las"}) { // the content tells
+      const auto file = folder.write(name, laz);
+      for (const unsigned threads : {0U, 1U, 2U}) expectSame(readCloud(file, nullptr, {}, threads), expected);
+      expectSame(readMesh(file).vertices, expected);
+      EXPECT_EQ(readCloudHeader(file).width, 1000U);
+      EXPECT_EQ(readCloudHeader(file).fields.size(), expected.fields.size());
+    }
+    expectSame(readCloud(folder.write("uncompressed.laz", las)), expected);
+  }
+}
+
+TEST(Laz, WrittenAsLasIsTheFileThatWasCompressed)
+{
+  const TemporaryFolder folder;
+  for (std::uint8_t format = 0; format <= 10; ++format) {
+    const std::string las = describedScan(format).text();
+    CloudFacts facts;
+    const auto cloud = readCloud(folder.write("a.laz", laz_test::compressed(las)), &facts);
+    ASSERT_NE(facts.las, nullptr);
+    writeCloud(folder / "b.las", cloud, no_viewpoint, facts.las);
+    EXPECT_EQ(contentOf(folder / "b.las"), las) << unsigned{format};
+  }
+}
+
+TEST(Laz, StreamsInBatchesOfAnySize)
+{
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.laz", laz_test::compressed(describedScan(7).text()));
+  const pcl::PCLPointCloud2 expected = readCloud(file);
+  const auto stream = openCloud(file, 0);
+  EXPECT_EQ(stream->size(), 1000U);
+  pcl::PCLPointCloud2 read = stream->header();
+  allocate(read, 1000);
+  const std::size_t step = read.point_step;
+  std::size_t done = 0;
+  for (const std::size_t most : {1, 99, 250, 33}) done += stream->read(&read.data[done * step], most);
+  stream->skip(400);
+  std::copy_n(&expected.data[done * step], 400 * step, &read.data[done * step]);
+  done += 400;
+  done += stream->read(&read.data[done * step], 1000);
+  EXPECT_EQ(done, 1000U);
+  EXPECT_EQ(stream->read(read.data.data(), 10), 0U);
+  EXPECT_EQ(read.data, expected.data);
+}
+
+TEST(Laz, RefusalsNameTheFileAndTheChunkInOneLine)
+{
+  using testing::HasSubstr;
+  const TemporaryFolder folder;
+  const LasSample sample = describedScan(6);
+  const std::string laz = laz_test::compressed(sample.text());
+  std::string damaged = laz;
+  const std::size_t first_chunk = get<std::uint32_t>(laz, 96) + 8;
+  put(damaged, first_chunk + sample.length() + 4, 0xffffffffU);
+  const auto file = folder.write("damaged.laz", damaged);
+  const std::string text = refusalOf(file);
+  EXPECT_THAT(text, HasSubstr("damaged.laz"));
+  EXPECT_THAT(text, HasSubstr("chunk 1 of 10"));
+  EXPECT_EQ(text.find('\n'), std::string::npos);
+  EXPECT_EQ(readCloudHeader(file).width, 1000U);
+  const auto stream = openCloud(file, 0);
+  std::vector<std::uint8_t> records(stream->header().point_step * std::size_t{1000});
+  try {
+    stream->read(records.data(), 1000);
+    ADD_FAILURE();
+  }
+  catch (const files::FileError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("damaged.laz"));
+    EXPECT_THAT(error.what(), HasSubstr("chunk 1 of 10"));
+  }
+  EXPECT_THAT(refusalOf(folder.write("no.laz", "anything")), HasSubstr("LASF"));
+}
+
+TEST(Laz, IsNotWritten)
+{
+  const TemporaryFolder folder;
+  const pcl::PCLPointCloud2 cloud = randomCloud<double>(3, 1, {});
+  try {
+    writeCloud(folder / "b.laz", cloud);
+    ADD_FAILURE();
+  }
+  catch (const files::FileError& error) {
+    const std::string text = error.what();
+    EXPECT_THAT(text, testing::HasSubstr(".las"));
+    EXPECT_EQ(text.find('\n'), std::string::npos);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "b.laz"));
+}
+
+} // namespace pcl_bsh::io

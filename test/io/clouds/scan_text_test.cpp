@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "samples.h"
+
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/scan_text.h>
+#include <pcl_bsh/io/clouds/text_clouds.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace pcl_bsh::io {
+
+namespace {
+
+const std::string identity = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+
+pcl::PCLPointCloud2 readPtx(const std::string& file, std::optional<std::size_t> scan = {})
+{
+  Viewpoint viewpoint;
+  return parsePtx(file, viewpoint, scan);
+}
+
+std::array<double, 3> placeOf(const pcl::PCLPointCloud2& cloud, std::size_t i)
+{
+  return {valueOf(cloud, i, "x"), valueOf(cloud, i, "y"), valueOf(cloud, i, "z")};
+}
+
+using Place = std::array<double, 3>;
+
+} // namespace
+
+TEST(Pts, ColumnsFollowFromTheirNumber)
+{
+  EXPECT_EQ(namesOf(parsePts("1\n1 2 3\n")), "x y z");
+  EXPECT_EQ(namesOf(parsePts("1\n1 2 3 4\n")), "x y z intensity");
+  EXPECT_EQ(namesOf(parsePts("1\n1 2 3 4 5 6\n")), "x y z rgb");
+  EXPECT_EQ(namesOf(parsePts("1\n1 2 3 -4 5 6 7\n")), "x y z intensity rgb");
+  EXPECT_EQ(namesOf(parsePts("1\n1 2 3 -4 5 6 7 0 0 1\n")), "x y z intensity rgb column_8 column_9 column_10");
+  EXPECT_EQ(namesOf(parsePts("0\n")), "x y z");
+  const pcl::PCLPointCloud2 cloud = parsePts("  2 \r\n1.5 2 3e2 -1613 5 6 7\r\n\r\n+4 5 6 2047 255 0 1");
+  ASSERT_EQ(cloud.width, 2U);
+  EXPECT_EQ(placeOf(cloud, 0), (Place{1.5, 2, 300}));
+  EXPECT_EQ(placeOf(cloud, 1), (Place{4, 5, 6}));
+  EXPECT_EQ(valueOf(cloud, 0, "intensity"), -1613);
+  EXPECT_EQ(colourOf(cloud, 0), 0x050607U);
+  EXPECT_EQ(colourOf(cloud, 1), 0xff0001U);
+}
+
+TEST(Pts, BlocksFollowEachOther)
+{
+  const pcl::PCLPointCloud2 cloud = parsePts("1\n1 2 3\n2\n4 5 6\n7 8 9\n0\n");
+  ASSERT_EQ(cloud.width, 3U);
+  EXPECT_EQ(placeOf(cloud, 2), (Place{7, 8, 9}));
+  EXPECT_EQ(parsePts("1\n1 2 3\n4 5 6\n").width, 2U) << "more than its count says";
+  EXPECT_EQ(parsePts("1 2 3\n4 5 6\n").width, 2U) << "no count";
+}
+
+TEST(Pts, Damage)
+{
+  EXPECT_THAT(defectOf([] { parsePts("3\n1 2 3\n4 5 6\n"); }), testing::HasSubstr("truncated"));
+  EXPECT_THAT(defectOf([] { parsePts("2\n1 2 3\n1\n4 5 6\n"); }), testing::HasSubstr("1 of 2"));
+  EXPECT_THAT(defectOf([] { parsePts("18446744073709551615\n1 2 3\n"); }), testing::HasSubstr("18446744073709551615"));
+  EXPECT_THAT(defectOf([] { parsePts("1000000000\n1 2 3\n"); }), testing::HasSubstr("truncated"));
+  EXPECT_THAT(defectOf([] { parsePts("1\n1.25 2.25\n"); }), testing::HasSubstr("line 2"));
+  EXPECT_THAT(defectOf([] { parsePts("2\n1 2 3\n4.25 5.25\n"); }), testing::HasSubstr("line 3"));
+  EXPECT_THAT(defectOf([] { parsePts("2\n1 2 3\n4 5 6 7\n"); }), testing::HasSubstr("line 3"));
+  EXPECT_THAT(defectOf([] { parsePts("2\n1 2 3 1 2 3\n4 5 6 1 2 256\n"); }), testing::HasSubstr("line 3"));
+  EXPECT_THAT(defectOf([] { parsePts("1\n1 2 z\n"); }), testing::HasSubstr("line 2"));
+  EXPECT_THAT(defectOf([] { parsePts("1\n1 2 1e999\n"); }), testing::HasSubstr("line 2"));
+}
+
+TEST(Ptx, OneScanIsOrganised)
+{
+  const std::string file = "2\n3\n" + identity +
+                           "1 1 0 0.1\n1 2 0 0.2\n0 0 0 0.5\n"
+                           "2 1 0 0.3\n0 0 0 0\n0 0 0 0.25\n";
+  const pcl::PCLPointCloud2 cloud = readPtx(file);
+  EXPECT_EQ(cloud.width, 2U);
+  EXPECT_EQ(cloud.height, 3U);
+  EXPECT_EQ(namesOf(cloud), "x y z intensity");
+  EXPECT_EQ(placeOf(cloud, 0), (Place{1, 1, 0}));
+  EXPECT_EQ(placeOf(cloud, 1), (Place{2, 1, 0})) << "the next column";
+  EXPECT_EQ(placeOf(cloud, 2), (Place{1, 2, 0})) << "the next row";
+  for (const std::size_t none : {3U, 4U}) EXPECT_TRUE(std::isnan(valueOf(cloud, none, "x"))) << none;
+  EXPECT_EQ(placeOf(cloud, 5), (Place{0, 0, 0})) << "with an intensity, it was seen";
+  EXPECT_EQ(valueOf(cloud, 4, "intensity"), 0.5);
+  EXPECT_EQ(valueOf(cloud, 1, "intensity"), 0.3F);
+}
+
+TEST(Ptx, TransformsAndPoses)
+{
+  const std::string turned = "9 9 9\n1 0 0\n0 1 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n10 20 30 1\n";
+  Viewpoint viewpoint;
+  const pcl::PCLPointCloud2 cloud = parsePtx("1\n1\n" + turned + "1 2 3 0.5 255 0 1\n", viewpoint);
+  EXPECT_EQ(placeOf(cloud, 0), (Place{8, 21, 33}));
+  EXPECT_EQ(colourOf(cloud, 0), 0xff0001U);
+  const float half = std::sqrt(0.5F);
+  const Viewpoint wanted = {10, 20, 30, half, 0, 0, half};
+  for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(viewpoint[k], wanted[k], 1e-6) << k;
+}
+
+TEST(Ptx, SeveralScans)
+{
+  const std::string moved = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 7 1\n";
+  const std::string file = "2\n1\n" + identity + "1 1 1 0.1\n2 2 2 0.2\n" + "1\n2\n" + moved + "3 3 3 0.3\n0 0 0 0.5\n";
+  const pcl::PCLPointCloud2 all = readPtx(file);
+  EXPECT_EQ(namesOf(all), "x y z intensity scan");
+  ASSERT_EQ(all.width, 4U);
+  EXPECT_EQ(all.height, 1U);
+  EXPECT_EQ(placeOf(all, 2), (Place{3, 3, 10}));
+  EXPECT_TRUE(std::isnan(valueOf(all, 3, "z")));
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(valueOf(all, i, "scan"), static_cast<double>(i / 2));
+
+  Viewpoint viewpoint;
+  const pcl::PCLPointCloud2 second = parsePtx(file, viewpoint, 1);
+  EXPECT_EQ(namesOf(second), "x y z intensity");
+  EXPECT_EQ(second.width, 1U);
+  EXPECT_EQ(second.height, 2U);
+  EXPECT_EQ(viewpoint[2], 7);
+  EXPECT_EQ(namesOf(parsePtxHeader(file, 1)), "x y z intensity");
+  EXPECT_EQ(namesOf(parsePtxHeader(file)), namesOf(all));
+  EXPECT_THAT(defectOf([&] { readPtx(file, 2); }), testing::HasSubstr("2 scans"));
+}
+
+TEST(Ptx, CutAnywhere)
+{
+  const std::string file = "2\n1\n" + identity + "1 1 1 0.125\n2 2 2 0.25\n";
+  for (std::size_t size = 1; size < file.size() - 4; ++size) {
+    EXPECT_NE(defectOf([&] { readPtx(file.substr(0, size)); }), "") << size;
+  }
+}
+
+TEST(Ptx, Damage)
+{
+  EXPECT_THAT(defectOf([] { readPtx("4294967295\n4294967295\n" + identity + "1 2 3 4\n"); }),
+              testing::HasSubstr("points"));
+  EXPECT_THAT(
+      defectOf([] { readPtx("1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\nnan 0 0 1\n1 2 3\n"); }),
+      testing::HasSubstr("line 10"));
+  EXPECT_THAT(
+      defectOf([] { readPtx("1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n1 2 3\n"); }),
+      testing::HasSubstr("line 10"));
+  EXPECT_THAT(defectOf([] { readPtx("1\n2\n" + identity + "1 2 3 4\n5 6 7\n"); }), testing::HasSubstr("line 12"));
+}
+
+std::string printedPts(const pcl::PCLPointCloud2& cloud)
+{
+  std::ostringstream out;
+  writePts(out, cloud);
+  return out.str();
+}
+
+std::string printedPtx(const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint = no_viewpoint)
+{
+  std::ostringstream out;
+  writePtx(out, cloud, viewpoint);
+  return out.str();
+}
+
+TEST(Pts, WrittenAsItWasRead)
+{
+  for (const std::string points : {"0.1 2 3\n-4.25 5e+22 6\n", "0.1 2 3 -17\n4 5 6 0.5\n", "0.1 2 3 10 20 255\n",
+                                   "1 2 3 0.5 10 20 30\n", "1 2 3 0.5 10 20 30 40 50.5\n", "1 2 3 0.5 7\n"}) {
+    const std::string file = std::to_string(std::count(points.begin(), points.end(), '\n')) + '\n' + points;
+    EXPECT_EQ(printedPts(parsePts(file)), file);
+  }
+  EXPECT_EQ(printedPts(parsePts("0\n")), "0\n");
+  const pcl::PCLPointCloud2 holes = readPtx("3\n1\n" + identity + "1 1 1 0.25\n0 0 0 0\n2 2 2 0.125\n");
+  EXPECT_EQ(printedPts(holes), "2\n1 1 1 0.25\n2 2 2 0.125\n") << "without points that nobody saw";
+}
+
+TEST(Pts, RefusesWhatReadersWouldTakeForSomethingElse)
+{
+  // Seven values are an intensity and colours; a field of another name has no place.
+  for (const std::string header : {"x,y,z,rings", "x,y,z,intensity,column_5,column_6", "x,y,z,column_4"}) {
+    const pcl::PCLPointCloud2 cloud = parseColumns(header + "\n1,2,3,4" + (header.size() > 15 ? ",5,6\n" : "\n"));
+    EXPECT_THAT(defectOf([&] { printedPts(cloud); }), testing::HasSubstr("has no place in a .pts")) << header;
+  }
+}
+
+TEST(Ptx, WrittenAsItWasRead)
+{
+  for (const std::string& body :
+       std::vector<std::string>{"2\n3\n" + identity + "1 1 0 0.1\n1 2 0 0.2\n0 0 0 0\n2 1 0 0.3\n0 0 0 0\n0 0 0 0.25\n",
+                                "1\n2\n" + identity + "0.1 2 3 0.5 255 0 1\n0 0 0 0 0 0 0\n",
+                                "2\n1\n" + identity + "1 1 1 0.1\n2 2 2 0.2\n" + "1\n1\n" + identity + "3 3 3 0.3\n"}) {
+    EXPECT_EQ(printedPtx(readPtx(body)), body);
+  }
+}
+
+TEST(Ptx, KeepsTheScannersPose)
+{
+  const std::string turned =
+      "9 9 9\n1 0 0\n0 1 0\n0 0 1\n0.8 0.6 0 0\n-0.6 0.8 0 0\n0 0 1 0\n500000.123456789 5400000.1 30 1\n";
+  Viewpoint viewpoint, again;
+  const auto cloud = parsePtx("1\n2\n" + turned + "1 2 3 0.25\n0 0 0 0.5\n", viewpoint);
+  const auto same = parsePtx(printedPtx(cloud, viewpoint), again);
+  for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(again[k], viewpoint[k], k < 3 ? 0 : 1e-15) << k;
+  EXPECT_EQ(viewpoint[0], 500000.123456789);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(placeOf(same, 0)[k], placeOf(cloud, 0)[k], 2e-9) << k;
+  EXPECT_TRUE(std::isnan(valueOf(same, 1, "x")));
+  EXPECT_EQ(same.height, 2U);
+}
+
+TEST(Ptx, RefusesAPointThatReadersWouldNotSee)
+{
+  EXPECT_THAT(defectOf([] { printedPtx(parsePts("1 2 3\n0 0 0\n")); }),
+              testing::HasSubstr("point 1 is at the scanner"));
+  EXPECT_THAT(printedPtx(parsePts("1 2 3 0.1\n0 0 0 0.1\n")), testing::HasSubstr("\n0 0 0 0.1\n"));
+}
+
+TEST(Csv, NamesDecideTheColumns)
+{
+  const TemporaryFolder folder;
+  const auto path = folder.write("a.csv", "id,Z,X,Y,Intensity,R,G,B\n1,30,10,20,0.5,255,0,1\n2,31,11,21,0.25,0,0,0\n");
+  const pcl::PCLPointCloud2 cloud = readCloud(path);
+  EXPECT_EQ(namesOf(cloud), "id z x y intensity rgb");
+  EXPECT_EQ(placeOf(cloud, 1), (Place{11, 21, 31}));
+  EXPECT_EQ(colourOf(cloud, 0), 0xff0001U);
+  writeCloud(folder / "b.csv", cloud);
+  EXPECT_EQ(contentOf(folder / "b.csv"), "id,z,x,y,intensity,r,g,b\n1,30,10,20,0.5,255,0,1\n2,31,11,21,0.25,0,0,0\n");
+}
+
+TEST(Csv, QuotesAroundWordsDoNotCount)
+{
+  const pcl::PCLPointCloud2 cloud = parseColumns("\"x\",\"y\",\"z\",\"my value\"\n1,2,3,4\n\"5\",\"6\",\"7\",\"8\"\n");
+  EXPECT_EQ(namesOf(cloud), "x y z my_value");
+  ASSERT_EQ(cloud.width, 2U);
+  EXPECT_EQ(placeOf(cloud, 1), (Place{5, 6, 7}));
+}
+
+TEST(ScanText, RealFiles)
+{
+  namespace fs = std::filesystem;
+  const fs::path samples = fs::path(PCL_BSH_SHARED_DIR) / "data/formats";
+  if (!fs::exists(samples)) GTEST_SKIP() << "no " << samples;
+  EXPECT_EQ(readCloud(samples / "autzen.pts").width, 10U);
+  EXPECT_EQ(valueOf(readCloud(samples / "autzen.pts"), 0, "intensity"), -1613);
+  EXPECT_EQ(readCloud(samples / "bunny_8.pts").width, 9U) << "one more than its count says";
+  EXPECT_EQ(readCloud(samples / "site_56_8.pts").width, 8U);
+
+  CloudFacts facts;
+  const Viewpoint& viewpoint = facts.viewpoint;
+  const pcl::PCLPointCloud2 one = readCloud(samples / "complex-transform.ptx", &facts);
+  EXPECT_EQ(one.width, 2U);
+  EXPECT_EQ(one.height, 6U);
+  EXPECT_FALSE(one.is_dense);
+  EXPECT_NEAR(viewpoint[0], -3.028748, 1e-6);
+  EXPECT_NEAR(viewpoint[3], 1, 1e-4);
+
+  const pcl::PCLPointCloud2 two = readCloud(samples / "multiple-and-transform.ptx", &facts);
+  ASSERT_EQ(two.width, 8U);
+  for (std::size_t i = 0; i < 4; ++i) // the same points in both, if the transform is applied
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(placeOf(two, i)[k], placeOf(two, i + 4)[k], 1e-6);
+  EXPECT_EQ(viewpoint[0], 600000);
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/text/defect.h"
+
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/poses/pose_file.h>
+#include <pcl_bsh/io/poses/pose_text.h>
+#include <pcl_bsh/io/text/format_error.h>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace pcl_bsh::io {
+
+using Poses = std::vector<Eigen::Isometry3d>;
+using testing::HasSubstr;
+
+class PoseFile : public testing::Test {
+protected:
+  Poses read(const std::string& text) const { return readPoses(folder.write("poses.txt", text)); }
+
+  void expectRefused(const std::string& text, const std::string& message) const
+  {
+    try {
+      read(text);
+      ADD_FAILURE() << text;
+    }
+    catch (const files::FileError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("poses.txt: " + message)) << text;
+      EXPECT_THAT(error.what(), HasSubstr(": give 12 or 16 numbers")) << text;
+    }
+  }
+
+  TemporaryFolder folder;
+  Poses quarter_turn = [] {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.matrix() << 0, -1, 0, 1, 1, 0, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1;
+    return Poses{Eigen::Isometry3d::Identity(), pose};
+  }();
+
+  void expectQuarterTurn(const Poses& poses) const
+  {
+    ASSERT_EQ(poses.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(poses[i].isApprox(quarter_turn[i], 1e-15)) << i;
+  }
+};
+
+TEST_F(PoseFile, ToldApartByTheirColumns)
+{
+  expectQuarterTurn(read("1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 1 1 0 0 2 0 0 1 3\n"));
+  expectQuarterTurn(read("# 4 x 4\n\n1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 # start\r\n"
+                         "0,-1,0,1;1,0,0,2;0,0,1,3;0,0,0,1"));
+  expectQuarterTurn(read("0.0 0 0 0 0 0 0 1\n1e9 1 2 3 0 0 0.70710678118654752 0.70710678118654752\n"));
+}
+
+TEST_F(PoseFile, NamesOfColumnsDecide)
+{
+  const std::string half = "0.70710678118654752";
+  // EuRoC: w first, and more columns behind, of which v_RS_R_x and b_w_RS_S_x are no position.
+  expectQuarterTurn(read("#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+                         "q_RS_z [], v_RS_R_x [m s^-1], b_w_RS_S_x [rad s^-1]\n"
+                         "1403636580838555648,0,0,0,1,0,0,0,9,9\n1403636580843555648,1,2,3," +
+                         half + ",0,0," + half + ",9,9\n"));
+  expectQuarterTurn(read("timestamp tx ty tz qx qy qz qw\n0 0 0 0 0 0 0 1\n1 1 2 3 0 0 " + half + " " + half + "\n"));
+  expectQuarterTurn(
+      read("# by someone\n# time qw qx qy qz tx ty tz\n0 1 0 0 0 0 0 0\n1 " + half + " 0 0 " + half + " 1 2 3\n"));
+  expectQuarterTurn(
+      read("%time,field.header.frame_id,field.pose.position.x,field.pose.position.y,field.pose.position.z,"
+           "field.pose.orientation.x,field.pose.orientation.y,field.pose.orientation.z,field.pose.orientation.w\n"
+           "0,/world,0,0,0,0,0,0,1\n1,/world,1,2,3,0,0," +
+           half + "," + half + "\n"));
+  expectQuarterTurn(read("X;Y;Z;QW;QX;QY;QZ\n0;0;0;1;0;0;0\n1;2;3;" + half + ";0;0;" + half + "\n"));
+  // Of another number of columns than the poses: a comment like any other.
+  expectQuarterTurn(read("# made of tx ty tz qx qy qz qw\n1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 1 1 0 0 2 0 0 1 3\n"));
+  expectRefused("timestamp x y z\n0 1 2 3\n", "line 1 names columns, and not one each of tx ty tz qx qy qz qw");
+  expectRefused("tx ty tz qx qy qz qw tx\n", "line 1 names columns, and not one each");
+  expectRefused("tx ty tz qx qy qz qw\n0 0 0 0 0 1\n", "line 2 has 6 values, and 7 columns are named");
+  expectRefused("tx ty tz qx qy qz qw\n0 0 zero 0 0 0 1\n", "line 2 is damaged: 'zero' is not a number");
+  expectRefused("tx ty tz qx qy qz qw\n0 0 0 0 0 0 2\n", "line 2 has a quaternion of length 2");
+  expectRefused("tx ty tz qx qy qz qw\n", "holds no pose");
+}
+
+TEST_F(PoseFile, NumbersAreSeparatedAlike)
+{
+  const std::string row = "line 1 separates numbers by several characters, or has decimal commas";
+  expectQuarterTurn(read("\xef\xbb\xbf"
+                         "1;0;0;0;0;1;0;0;0;0;1;0\n0\t-1\t0\t1\t1\t0\t0\t2\t0\t0\t1\t3\n"));
+  expectQuarterTurn(read("1 0 0 0; 0 1 0 0; 0 0 1 0\n0, -1, 0, 1; 1, 0, 0, 2; 0, 0, 1, 3;\n"));
+  for (const std::string text : {"0,5;1,5;2,5;3,5;0,0;0,0;0,0;1,0\n", "1,0,0,0;0,1,0;0,0,0,1\n", "1;0,0,0,0\n"}) {
+    try {
+      read(text);
+      ADD_FAILURE() << text;
+    }
+    catch (const files::FileError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(row)) << text;
+    }
+  }
+  expectRefused("0,5 1,5 2,5 3,5 0,0 0,0 0,0 1,0\n", "line 1 is damaged: '5 1' is not a number");
+  expectRefused("1,0,0,0,0,1,0,0,,0,1,0\n", "line 1 has an empty value");
+  EXPECT_EQ(numbersOf("1,2,3,0,0,0").size(), 6U);
+  EXPECT_THROW(numbersOf("1,5 2,5 3,5"), FormatError) << "x y z, not x y z roll pitch yaw";
+  EXPECT_THROW(numbersOf("1,5;2,5;3,5"), FormatError);
+}
+
+TEST_F(PoseFile, QuaternionsOfFewDigitsAreNormalised)
+{
+  const Poses poses = read("0 1 2 3 0 0 0.7071 0.7071\n");
+  EXPECT_LT((poses[0].linear().transpose() * poses[0].linear() - Eigen::Matrix3d::Identity()).norm(), 1e-15);
+}
+
+/// Rotations all over, as printed with so many digits.
+std::string printed(int count, int digits)
+{
+  std::ostringstream text;
+  text << std::setprecision(digits);
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Matrix3d r =
+        Eigen::AngleAxisd(0.37 * i, Eigen::Vector3d(std::sin(i), std::cos(3 * i), std::sin(2 * i + 1)).normalized())
+            .toRotationMatrix();
+    for (int row = 0; row < 3; ++row) text << r(row, 0) << ' ' << r(row, 1) << ' ' << r(row, 2) << ' ' << row << ' ';
+    text << '\n';
+  }
+  return text.str();
+}
+
+TEST_F(PoseFile, PrintedMatricesStandForTheirNearestRotations)
+{
+  for (const int digits : {6, 5}) {
+    std::vector<std::string> warnings;
+    const Poses poses = readPoses(folder.write("poses.txt", printed(200, digits)), &warnings);
+    ASSERT_EQ(poses.size(), 200U);
+    const Poses exact = read(printed(200, 17));
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const Eigen::Matrix3d r = poses[i].linear();
+      EXPECT_LE((r.transpose() * r - Eigen::Matrix3d::Identity()).norm(), 1e-6) << i;
+      EXPECT_LE((r - exact[i].linear()).norm(), 2 * std::pow(10.0, -digits)) << i;
+      EXPECT_EQ(poses[i].translation(), Eigen::Vector3d(0, 1, 2));
+    }
+    ASSERT_EQ(warnings.size(), 1U) << digits;
+    EXPECT_THAT(warnings[0], HasSubstr("poses.txt: "));
+    EXPECT_THAT(warnings[0], HasSubstr(" of 200 poses: the worst |R'R - I| is "));
+  }
+  std::vector<std::string> warnings;
+  readPoses(folder.write("poses.txt", printed(50, 9)), &warnings);
+  EXPECT_THAT(warnings, testing::IsEmpty()) << "rigid as they are";
+  EXPECT_THROW(read(printed(50, 3)), files::FileError);
+}
+
+TEST_F(PoseFile, MayBeginWithTheMarkOfUtf8)
+{
+  expectQuarterTurn(read("\xef\xbb\xbf"
+                         "1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 1 1 0 0 2 0 0 1 3\n"));
+}
+
+TEST_F(PoseFile, RefusesLinesByNumber)
+{
+  const std::string good = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  const std::string quaternion = "0 0 0 0 0 0 0 1\n";
+  expectRefused("1 2 3\n", "line 1 has 3 numbers, not 8, 12 or 16");
+  expectRefused("# all of one line\n" + good + "1 0 0 0 0 1 0 0 0 0 1\n", "line 3 has 11 numbers, not 8, 12 or 16");
+  expectRefused(good + quaternion, "line 2 has 8 numbers, the lines before have 12");
+  expectRefused(good + "\n1 0 0 0 0 1 0 0 0 0 1 0 0\n", "line 3 has 13 numbers");
+  expectRefused(good + "1 0 0 0 0 1 0 0 0 0 1 zero\n", "line 2 is damaged: 'zero' is not a number");
+  expectRefused(good + "1 0 0 0 0 1 0 0 0 0 1 0x\n", "line 2 is damaged: '0x' is not a number");
+  expectRefused(good + "2 0 0 0 0 2 0 0 0 0 2 0\n", "line 2 holds no pose, not rigid, |R'R - I| is ");
+  expectRefused("-1 0 0 0 0 1 0 0 0 0 1 0\n", "line 1 holds no pose, a mirror");
+  expectRefused("1 0 0 nan 0 1 0 0 0 0 1 0\n", "line 1 holds no pose, not finite");
+  expectRefused("1 0 0 inf 0 1 0 0 0 0 1 0\n", "line 1 holds no pose, not finite");
+  expectRefused("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2\n", "line 1 holds no pose, last row is 0 0 0 2");
+  expectRefused(quaternion + "1 0 0 0 0 0 0 0\n", "line 2 has a quaternion of length 0");
+  expectRefused(quaternion + "1 0 0 0 0 0 0 nan\n", "line 2 has a quaternion of length nan");
+  expectRefused(quaternion + "1 0 0 0 0 0 0 1.01\n", "line 2 has a quaternion of length 1.01");
+  expectRefused(quaternion + "1 inf 0 0 0 0 0 1\n", "line 2 holds no pose, not finite");
+  expectRefused("# nothing\n", "holds no pose");
+}
+
+TEST_F(PoseFile, RefusesFiles)
+{
+  EXPECT_THROW(readPoses(folder / "none.txt"), files::FileError);
+  EXPECT_THROW(readPoses(folder / ""), files::FileError);
+  EXPECT_THROW(read(""), files::FileError);
+}
+
+TEST_F(PoseFile, WhatIsWrittenReadsBackToTheSameBits)
+{
+  Poses poses;
+  for (int i = 0; i < 20; ++i) {
+    Eigen::Isometry3d pose(Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d(1, 2, -3).normalized()));
+    pose.translation() = Eigen::Vector3d(1e6 / 3 * i, -1e-9 * i, 0.1);
+    poses.push_back(pose);
+  }
+  writePoses(folder / "poses.txt", poses);
+  const Poses again = readPoses(folder / "poses.txt");
+  ASSERT_EQ(again.size(), poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_TRUE(again[i].matrix() == poses[i].matrix()) << i;
+  EXPECT_EQ(folder.files(), 1U);
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/json/json_reader.h>
+#include <pcl_bsh/io/reports/clash_list.h>
+
+#include <gmock/gmock.h>
+
+#include <functional>
+
+namespace pcl_bsh::io {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+namespace {
+
+std::vector<Eigen::Isometry3d> posesAt(const std::vector<double>& stations)
+{
+  std::vector<Eigen::Isometry3d> poses(stations.size(), Eigen::Isometry3d::Identity());
+  for (std::size_t i = 0; i < stations.size(); ++i) poses[i].translation().x() = stations[i];
+  return poses;
+}
+
+const std::string old_list = R"({"input": "a", "obstacle": "b", "clearance": 1, "swept": null, "clashes": [
+  {"id": "A", "status": "new", "points": 3, "box": {"min": [0, 0, 0], "max": [2, 2, 2]}, "distance": 0.5,
+   "first_pose": 0, "closest_pose": 0, "closest_pair": {"input": {"point": 7, "at": [0, 1, 2]}}},
+  {"id": "B", "status": "resolved", "points": 3, "box": {"min": [4, 0, 0], "max": [6, 2, 2]}, "distance": 0.5,
+   "first_pose": 0, "closest_pose": 0}]})";
+
+std::string oldListWith(const std::string& members)
+{
+  return "{" + members + "," + old_list.substr(1);
+}
+
+std::string refusal(const std::string& list)
+{
+  try {
+    parseClashes(list, "old.json");
+  }
+  catch (const JsonError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << list << " was read";
+  return {};
+}
+
+} // namespace
+
+TEST(ClashLists, ListsOfOtherQuestionsAreNotCompared)
+{
+  ClashList earlier;
+  earlier.question.input = "scans/monday.ply";
+  earlier.question.obstacle = "wagon.ply";
+  earlier.question.clearance = 0.3;
+  earlier.survey.emplace();
+  ClashQuestion now = earlier.question;
+  now.input = "/elsewhere/monday.ply";
+  EXPECT_THAT(requireComparable("old.json", earlier, now), testing::IsEmpty()) << "the same name in another folder";
+  now.input = "tuesday.ply";
+  now.obstacle = "lorry.ply";
+  now.swept = 0.01;
+  const std::vector<std::string> warnings = requireComparable("old.json", earlier, now);
+  ASSERT_EQ(warnings.size(), 3U);
+  EXPECT_THAT(warnings[0], HasSubstr("old.json: lists clashes of the input 'monday.ply', now it is 'tuesday.ply': "));
+  EXPECT_THAT(warnings[1], HasSubstr("of the obstacle 'wagon.ply', now it is 'lorry.ply': "));
+  EXPECT_THAT(warnings[2], HasSubstr("at poses alone, now swept motion is asked"));
+  now.clearance = 0.25;
+  try {
+    requireComparable("old.json", earlier, now);
+    ADD_FAILURE() << "was compared";
+  }
+  catch (const files::FileError& error) {
+    EXPECT_STREQ(error.what(), "old.json: lists clashes of a clearance of 0.3, not of 0.25 as asked now: ask for the "
+                               "same clearance, or compare with another list");
+  }
+}
+
+/// As another clearance: what lies between the two would seem new or resolved.
+TEST(ClashLists, OfOtherUncertaintiesOrAccuraciesAreNotCompared)
+{
+  ClashList earlier;
+  earlier.question.clearance = 0.3;
+  earlier.question.input_uncertainty = Uncertainty("sigma", 2);
+  earlier.survey.emplace();
+  const auto refused = [&](const std::function<void(ClashQuestion&)>& change) -> std::string {
+    ClashQuestion now = earlier.question;
+    change(now);
+    try {
+      requireComparable("old.json", earlier, now);
+    }
+    catch (const files::FileError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refused([](ClashQuestion&) {}), "");
+  EXPECT_EQ(
+      refused([](ClashQuestion& now) { now.input_uncertainty = 0.01; }),
+      "old.json: lists clashes of an uncertainty of the input of 2 x field sigma, not of 0.01 as asked now: ask for "
+      "the same uncertainty of the input, or compare with another list");
+  EXPECT_THAT(refused([](ClashQuestion& now) { now.input_uncertainty.sigmas = 3; }),
+              HasSubstr("not of 3 x field sigma"));
+  EXPECT_THAT(refused([](ClashQuestion& now) { now.obstacle_uncertainty = 0.01; }),
+              HasSubstr("of an uncertainty of the obstacle of 0, not of 0.01"));
+  EXPECT_THAT(refused([](ClashQuestion& now) { now.accuracy = Accuracy::tolerance(0.01); }),
+              HasSubstr("of an accuracy of exact, not of tolerance=0.01"));
+}
+
+TEST(ClashLists, OfEarlierVersionsAreReadWithAWarning)
+{
+  const ClashList list = parseClashes(old_list, "old.json");
+  EXPECT_FALSE(list.states_uncertainty);
+  EXPECT_FALSE(list.survey);
+  ASSERT_EQ(list.clashes.size(), 2U);
+  EXPECT_EQ(list.clashes[0].certain_points, 3U);
+  EXPECT_EQ(list.clashes[0].place, (Point3{0, 1, 2})) << "of its pair";
+  EXPECT_EQ(list.clashes[1].place, (Point3{5, 1, 1})) << "the middle of its box";
+  ClashQuestion now = list.question;
+  now.input_uncertainty = 0.01;
+  EXPECT_THAT(requireComparable("old.json", list, now), ElementsAre(HasSubstr("old.json: is of an earlier version")));
+  EXPECT_TRUE(surveyWarnings("old.json", list, Survey(posesAt({0}), std::nullopt), 1).empty());
+}
+
+TEST(ClashLists, RefuseQuestionsAndSurveysThatNoRunWrites)
+{
+  const std::string survey = R"("path": {"poses": 2, "checksum": "ab", "box": null}, "scan": {"box": null})";
+  EXPECT_TRUE(parseClashes(oldListWith(survey), "old.json").survey);
+  const std::string begin = "old.json: is no list of clashes: ";
+  EXPECT_THAT(refusal(oldListWith(R"("accuracy": "good")")), HasSubstr(begin + "accuracy: is no accuracy"));
+  EXPECT_THAT(refusal(oldListWith(R"("uncertainty": {"input": -1, "obstacle": 0})")),
+              HasSubstr(begin + "uncertainty.input: -1 is too small"));
+  EXPECT_THAT(refusal(oldListWith(R"("uncertainty": {"input": {"field": "s"}, "obstacle": 0})")),
+              HasSubstr("'sigmas' is missing"));
+  EXPECT_THAT(refusal(oldListWith(R"("path": {"poses": -2, "checksum": "ab", "box": null}, "scan": {"box": null})")),
+              HasSubstr(begin + "path.poses: -2 is too small"));
+  EXPECT_THAT(
+      refusal(oldListWith(
+          R"("path": {"poses": 2, "checksum": "ab", "box": null}, "scan": {"box": {"min": [0, 0], "max": []}})")),
+      HasSubstr(begin + "scan.box.min: has not three numbers"));
+}
+
+TEST(ClashLists, WarnOfAnotherPathAndAnotherExtent)
+{
+  const Extent box{{0, 0, 0}, {100, 5, 5}};
+  ClashList earlier;
+  earlier.survey = Survey(posesAt({0, 50, 100}), box);
+  const auto warnings = [&](const std::vector<double>& stations, const Extent& extent) {
+    return surveyWarnings("old.json", earlier, Survey(posesAt(stations), extent), 0.5);
+  };
+  EXPECT_TRUE(warnings({0, 50, 100}, box).empty());
+  EXPECT_TRUE(warnings({-0.0, 50, 100}, {{0.4, 0, 0}, {100, 5, 4.6}}).empty()) << "points differ from scan to scan";
+  EXPECT_THAT(
+      warnings({0, 50}, box),
+      ElementsAre("old.json: lists clashes of another path (3 poses from (0, 0, 0) to (100, 0, 0), now 2 from (0, "
+                  "0, 0) to (50, 0, 0)): what was where the path does not come any more is called not_visited, "
+                  "and not resolved"));
+  EXPECT_EQ(warnings({0, 50.001, 100}, box).size(), 1U);
+  EXPECT_EQ(warnings({0, 100, 50}, box).size(), 1U);
+  EXPECT_THAT(
+      warnings({0, 50, 100}, {{0, 0, 0}, {60, 5, 5}}),
+      ElementsAre(HasSubstr("old.json: lists clashes of a scan from (0, 0, 0) to (100, 5, 5), now it is from (0, "
+                            "0, 0) to (60, 5, 5): ")));
+  EXPECT_EQ(surveyWarnings("old.json", earlier, Survey(posesAt({0, 50, 100}), std::nullopt), 0.5).size(), 1U);
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/clouds/samples.h"
+
+#include <pcl_bsh/io/json/json_reader.h>
+#include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/io/text/number_text.h>
+#include <pcl_bsh/io/text/parse_number.h>
+#include <pcl_bsh/version.h>
+
+#include <gmock/gmock.h>
+
+#include <charconv>
+#include <cstdlib>
+#include <locale>
+
+namespace pcl_bsh::io {
+
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+
+/// Tags that do not close, or are not named in the order they were opened; text outside of tags that has a '<' or '>'.
+std::string faultOfMarkup(const std::string& page)
+{
+  std::vector<std::string> open;
+  for (std::size_t at = page.find('<'); at != std::string::npos; at = page.find('<', at + 1)) {
+    const std::size_t end = page.find('>', at);
+    if (end == std::string::npos) return "a tag without an end at byte " + std::to_string(at);
+    const std::string tag = page.substr(at + 1, end - at - 1);
+    if (tag.find('<') != std::string::npos) return "a tag within <" + tag;
+    if (std::count(tag.begin(), tag.end(), '"') % 2 != 0) return "a quotation mark too many in <" + tag;
+    const std::string name = tag.substr(0, tag.find_first_of(" \n"));
+    if (name == "!DOCTYPE" || name == "meta" || tag.ends_with('/')) continue;
+    if (name.starts_with('/')) {
+      if (open.empty() || open.back() != name.substr(1)) return "<" + name + "> closes nothing";
+      open.pop_back();
+    }
+    else {
+      open.push_back(name);
+    }
+  }
+  return open.empty() ? "" : "<" + open.back() + "> is not closed";
+}
+
+std::size_t occurrences(const std::string& text, const std::string& part)
+{
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++count;
+  return count;
+}
+
+/// Rows of cells; no cell of these lists has a comma in quotes but where the test says.
+std::vector<std::vector<std::string>> cellsOf(const std::string& csv)
+{
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line + ',');
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  return rows;
+}
+
+bool has(const std::string& page, const std::string& part)
+{
+  return page.find(part) != std::string::npos;
+}
+
+double numberIn(const std::string& text)
+{
+  return parseNumber<double>(text);
+}
+
+/// 1.234.567,5 as some languages write it.
+struct CommaAndGroups : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+class ForeignLocale {
+public:
+  ForeignLocale() : before_(std::locale::global(std::locale(std::locale::classic(), new CommaAndGroups))) {}
+  ~ForeignLocale() { std::locale::global(before_); }
+
+private:
+  std::locale before_;
+};
+
+/// A probe that comes near to a row of points at some of its poses.
+class ClashReports : public testing::Test {
+protected:
+  /// @param gap between neighbours of the row
+  /// @param stops where along the row the probe is at each pose, and how far off
+  void follow(std::size_t count, double gap, const std::vector<std::array<double, 2>>& stops)
+  {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const double coordinate : {gap * static_cast<double>(i), 0.0, 1234567.25}) row.push_back(coordinate);
+    }
+    for (const auto& [x, y] : stops) {
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      pose.translation() = Eigen::Vector3d(x, y, 1234567.25);
+      poses.push_back(pose);
+    }
+    TrajectoryRequest request;
+    request.clearance = 0.3;
+    request.distances = request.first_poses = request.closest_poses = request.pose_summaries = true;
+    found = collideAlong({SphereHierarchy(scan())}, SphereHierarchy(model()), poses, request);
+  }
+
+  PointsView scan() const { return viewOf(row.data(), row.size() / 3); }
+  PointsView model() const { return viewOf(probe.data(), 1); }
+
+  ClashReport report(const std::string& input = "hall.ply", const std::string& obstacle = "wagon.ply") const
+  {
+    return {.question = {input, obstacle, 0.3, {}, {}, {}, {}},
+            .cluster_distance = 0.5,
+            .clashes = findClashes(scan(), found, 0.5),
+            .scan = scan_,
+            .model = model_,
+            .poses = poses,
+            .found = found,
+            .survey = {poses, extentOf(scan())}};
+  }
+
+  ClashReport twoClashes()
+  {
+    follow(41, 0.25, {{2, 0.2}, {4, 5}, {6, 5}, {8, 0.1}});
+    scan_ = scan();
+    model_ = model();
+    return report();
+  }
+
+  std::string refusal(const std::string& list) const
+  {
+    try {
+      parseClashes(list, "old.json");
+    }
+    catch (const JsonError& error) {
+      return error.what();
+    }
+    ADD_FAILURE() << list << " was read";
+    return {};
+  }
+
+  std::vector<double> row;
+  std::array<double, 3> probe = {0, 0, 0};
+  PointsView scan_, model_;
+  std::vector<Eigen::Isometry3d> poses;
+  TrajectoryResult found;
+};
+
+const std::string entry = R"({"id": "A", "status": "new", "points": 1, "box": {"min": [0, 0, 0], "max": [1, 1, 1]},
+    "distance": 0.5, "first_pose": 0, "closest_pose": 0})";
+
+std::string listOf(const std::string& entries)
+{
+  return R"({"input": "a", "obstacle": "b", "clearance": 1, "swept": null, "clashes": [)" + entries + "]}";
+}
+
+/// The list of one entry, with a change.
+std::string listWith(const std::string& what, const std::string& instead)
+{
+  std::string changed = entry;
+  const std::size_t at = changed.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return listOf(changed.replace(at, what.size(), instead));
+}
+
+} // namespace
+
+TEST_F(ClashReports, AListIsReadAsItWasWritten)
+{
+  const ClashReport written = twoClashes();
+  ASSERT_EQ(written.clashes.size(), 2U);
+  const ClashList list = parseClashes("\xef\xbb\xbf" + clashJson(written), "list.json");
+  EXPECT_EQ(list.question.input, "hall.ply");
+  EXPECT_EQ(list.question.obstacle, "wagon.ply");
+  EXPECT_EQ(list.question.clearance, 0.3);
+  EXPECT_EQ(list.question.swept, std::nullopt);
+  ASSERT_EQ(list.clashes.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Clash &before = written.clashes[i], &after = list.clashes[i];
+    EXPECT_EQ(after.id, before.id);
+    EXPECT_EQ(after.points, before.points);
+    EXPECT_EQ(after.certain_points, before.points);
+    EXPECT_EQ(after.place, before.place);
+    EXPECT_EQ(after.low, before.low);
+    EXPECT_EQ(after.high, before.high);
+    EXPECT_EQ(after.distance, before.distance);
+    EXPECT_EQ(after.first_pose, before.first_pose);
+    EXPECT_EQ(after.closest_pose, before.closest_pose);
+  }
+}
+
+TEST_F(ClashReports, TheTableListsEveryClashWithItsNumbers)
+{
+  ClashReport list = twoClashes();
+  Clash gone;
+  gone.id = "C9_0_0";
+  gone.status = ClashStatus::resolved;
+  gone.points = gone.certain_points = 7;
+  gone.distance = 0.25;
+  gone.closest_pose = 2;
+  list.clashes.push_back(gone);
+  list.previous = "monday.json";
+  const std::string page = clashPage(list);
+  EXPECT_EQ(faultOfMarkup(page), "");
+  EXPECT_TRUE(has(page, "<h1>2 clashes</h1>"));
+  EXPECT_EQ(occurrences(page, "<tr>"), 4U);
+  const auto badge = [](const std::string& status) {
+    return "<span class=\"badge " + status + "\">" + status + "</span>";
+  };
+  EXPECT_TRUE(has(page, "<tr><td><a href=\"#C4_0_617283\">C4_0_617283</a></td><td>" + badge("new") +
+                            "</td><td>0.1</td><td>3</td><td>3</td><td>3</td><td>0.5</td></tr>"));
+  EXPECT_TRUE(has(page, "<tr><td><a href=\"#C1_0_617283\">C1_0_617283</a></td><td>" + badge("new") +
+                            "</td><td>0.2</td><td>1</td><td>0</td><td>0</td><td>0</td></tr>"));
+  EXPECT_TRUE(has(page, "<tr><td>C9_0_0</td><td>" + badge("resolved") +
+                            "</td><td>0.25</td><td>7</td><td>0</td><td>2</td><td>0</td></tr>"));
+  EXPECT_EQ(occurrences(page, "<section class=\"card\""), 2U) << "a resolved one has no pictures";
+  EXPECT_EQ(occurrences(page, "<svg"), 5U) << "of the path, and two of each clash";
+  EXPECT_TRUE(has(page, "between point 32 of the input at (8.000, 0.000, 1234567.250) and point 0 of the obstacle; "
+                        "<b>3</b> points; first at pose <b>3</b>"));
+  EXPECT_FALSE(has(page, "Perhaps")) << "no point is uncertain";
+  for (const char* tile : {"<b>0.3</b><span>clearance", "<b>4</b><span>colliding points", "<b>0.1</b><span>smallest",
+                           "<b>2</b><span>new", "<b>0</b><span>persisting", "<b>1</b><span>resolved"})
+    EXPECT_TRUE(has(page, tile));
+  // Every link leads somewhere.
+  for (const Clash& clash : list.clashes)
+    EXPECT_EQ(occurrences(page, "#" + clash.id + "\""), occurrences(page, "id=\"" + clash.id + "\"")) << clash.id;
+}
+
+TEST_F(ClashReports, ManyClashesAreAllInTheTable)
+{
+  std::vector<std::array<double, 2>> stops;
+  for (int i = 0; i < 250; ++i) stops.push_back({2.0 * i, 0.001 * i});
+  follow(250, 2, stops);
+  scan_ = scan();
+  model_ = model();
+  const ClashReport list = report();
+  ASSERT_EQ(list.clashes.size(), 250U);
+  const std::string page = clashPage(list);
+  EXPECT_EQ(faultOfMarkup(page), "");
+  EXPECT_EQ(occurrences(page, "<tr>"), 251U);
+  EXPECT_EQ(occurrences(page, "<section class=\"card\""), 200U);
+  EXPECT_TRUE(has(page, "The 200 most severe have pictures"));
+  for (const Clash& clash : list.clashes) EXPECT_TRUE(has(page, ">" + clash.id + "<"));
+}
+
+TEST_F(ClashReports, NamesDoNoHarm)
+{
+  twoClashes();
+  const std::string odd = "<script>&\"'\x01\xff\xc3(.ply";
+  ClashReport list = report(odd, odd);
+  list.previous = odd;
+  list.clashes[1].id = "a\",b\n<i>";
+  const std::string page = clashPage(list);
+  EXPECT_EQ(faultOfMarkup(page), "");
+  EXPECT_EQ(occurrences(page, "<script"), 0U);
+  EXPECT_EQ(occurrences(page, "&lt;script&gt;&amp;&quot;&apos;\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd(.ply"), 4U);
+  EXPECT_EQ(validUtf8(page), page);
+  const std::string csv = clashCsv(list);
+  EXPECT_THAT(csv, HasSubstr("\n\"a\"\",b\n<i>\",new,1,"));
+  const std::string json = clashJson(list);
+  EXPECT_EQ(validUtf8(json), json);
+  EXPECT_EQ(parseClashes(json, "list.json").clashes[1].id, list.clashes[1].id);
+  EXPECT_EQ(parseClashes(json, "list.json").question.input, validUtf8(odd));
+}
+
+TEST_F(ClashReports, EveryPlaceOfTheTemplateIsFilled)
+{
+  ClashReport list = twoClashes();
+  list.previous = "{{clearance}}";
+  list.question.swept = 0.01;
+  const std::string page = clashPage(list);
+  EXPECT_TRUE(has(page, "compared with {{clearance}}</p>")) << "names are no templates";
+  EXPECT_EQ(occurrences(page, "{{"), 1U);
+  for (const char* empty :
+       {"=\"\"", "<b></b>", "<td></td>", "<text></text>", "\"middle\"></text>", "\"end\"></text>", "()"})
+    EXPECT_FALSE(has(page, empty)) << empty;
+}
+
+TEST_F(ClashReports, CsvReadsBackToTheSameBits)
+{
+  ClashReport list = twoClashes();
+  list.clashes[1].status = ClashStatus::resolved;
+  const auto rows = cellsOf(clashCsv(list));
+  ASSERT_EQ(rows.size(), 3U);
+  ASSERT_EQ(rows[0].size(), 29U);
+  ASSERT_EQ(rows[1].size(), 29U);
+  EXPECT_EQ(rows[1][0], "C4_0_617283");
+  EXPECT_EQ(numberIn(rows[1][3]), list.clashes[0].distance);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(numberIn(rows[1][6 + k]), list.clashes[0].low[k]);
+    EXPECT_EQ(numberIn(rows[1][9 + k]), list.clashes[0].high[k]);
+    const auto axis = static_cast<Eigen::Index>(k);
+    EXPECT_EQ(numberIn(rows[1][13 + k]), list.scanPoint(list.clashes[0])[axis]);
+    EXPECT_EQ(numberIn(rows[1][17 + k]), list.modelPoint(list.clashes[0])[axis]);
+  }
+  EXPECT_EQ(rows[1][12], "32");
+  ASSERT_EQ(rows[2].size(), 29U);
+  for (std::size_t k = 12; k < 20; ++k) EXPECT_EQ(rows[2][k], "") << "a resolved one has no pair";
+  for (std::size_t i = 1; i < 3; ++i) {
+    EXPECT_EQ(rows[i][20], "certain");
+    EXPECT_EQ(rows[i][21], rows[i][2]);
+    EXPECT_EQ(rows[i][22], "0.3");
+    EXPECT_EQ(rows[i][26], "exact");
+  }
+}
+
+TEST_F(ClashReports, TheHostsLanguageDoesNotMatter)
+{
+  std::vector<std::array<double, 2>> stops;
+  for (int i = 0; i < 1500; ++i) stops.push_back({0.1 * i, 0.1});
+  follow(1500, 0.1, stops); // thousands, to be grouped
+  scan_ = scan();
+  model_ = model();
+  const ClashReport list = report();
+  const std::string csv = clashCsv(list), json = clashJson(list), page = clashPage(list);
+  const ForeignLocale foreign;
+  std::ostringstream control;
+  control << 1234.5;
+  ASSERT_EQ(control.str(), "1.234,5");
+  EXPECT_EQ(clashCsv(list), csv);
+  EXPECT_EQ(clashJson(list), json);
+  EXPECT_EQ(clashPage(list), page);
+  EXPECT_EQ(parseClashes(json, "list.json").question.clearance, 0.3);
+}
+
+TEST_F(ClashReports, RefusesListsThatNoRunWrites)
+{
+  EXPECT_EQ(parseClashes(listOf(entry), "old.json").clashes.size(), 1U);
+  const std::string begin = "old.json: is no list of clashes: ";
+  EXPECT_THAT(refusal("[1"), HasSubstr(begin + "is no JSON: "));
+  EXPECT_THAT(refusal("[]"), HasSubstr(begin + "'input' is missing"));
+  EXPECT_THAT(refusal(R"({"input": 1, "obstacle": "", "clearance": 1, "swept": null, "clashes": []})"),
+              HasSubstr(begin + "input: 1 is no text"));
+  EXPECT_THAT(refusal(R"({"input": "", "obstacle": "", "clearance": -1, "swept": null, "clashes": []})"),
+              HasSubstr(begin + "clearance: -1 is too small"));
+  EXPECT_THAT(refusal(R"({"input": "", "obstacle": "", "clearance": 1, "swept": null, "clashes": {}})"),
+              HasSubstr(begin + "clashes: {} is no list"));
+  const std::string place = begin + "clashes[0].";
+  EXPECT_THAT(refusal(listWith(R"("points": 1)", R"("points": -1)")), HasSubstr(place + "points: -1 is too small"));
+  EXPECT_THAT(refusal(listWith(R"("points": 1)", R"("points": 0)")), HasSubstr(place + "points: 0 is too small"));
+  EXPECT_THAT(refusal(listWith(R"("points": 1)", R"("points": 1.5)")), HasSubstr(place + "points: 1.5 is no whole"));
+  EXPECT_THAT(refusal(listWith(R"("points": 1)", R"("points": 1e300)")),
+              HasSubstr(place + "points: 1e+300 is too large"));
+  EXPECT_THAT(refusal(listWith(R"("points": 1)", R"("points": "1")")), HasSubstr(place + "points: \"1\" is no number"));
+  EXPECT_THAT(refusal(listWith("0.5", "null")), HasSubstr(place + "distance: null is no number"));
+  EXPECT_THAT(refusal(listWith("0.5", "1e999")), HasSubstr("is no JSON"));
+  EXPECT_THAT(refusal(listWith(R"("first_pose": 0)", R"("first_pose": -1)")),
+              HasSubstr(place + "first_pose: -1 is too"));
+  EXPECT_THAT(refusal(listWith(R"("closest_pose": 0)", R"("closest_pose": 4294967296)")),
+              HasSubstr(place + "closest_pose: 4294967296 is too large"));
+  EXPECT_THAT(refusal(listWith("\"A\"", "7")), HasSubstr(place + "id: 7 is no text"));
+  EXPECT_THAT(refusal(listWith("\"new\"", "\"newish\"")), HasSubstr(place + "status: 'newish' is unknown"));
+  EXPECT_THAT(refusal(listWith("[0, 0, 0]", "[0, 0]")), HasSubstr(place + "box.min: has not three numbers"));
+  EXPECT_THAT(refusal(listWith("[0, 0, 0]", "[0, 2, 0]")), HasSubstr(place + "box: has a min above its max"));
+  EXPECT_THAT(refusal(listWith("[0, 0, 0]", "[0, 0, \"0\"]")), HasSubstr(place + "box.min[2]: \"0\" is no number"));
+  EXPECT_THAT(refusal(listWith("\"box\"", "\"bax\"")), HasSubstr("clashes[0]: 'box' is missing"));
+  EXPECT_THAT(refusal(listOf(entry + "," + entry)), HasSubstr("clashes[1].id: is the id of another clash, too"));
+}
+
+/// Two clashes, of which the nearer one collides only perhaps.
+TEST_F(ClashReports, CertainAndPerhapsAreToldApart)
+{
+  twoClashes();
+  for (const std::size_t i : {31U, 32U, 33U}) found.flags[i] = 2;
+  found.colliding = 1;
+  found.undecided = 3;
+  ClashReport list = report();
+  list.question.input_uncertainty = Uncertainty("sigma", 3);
+  list.question.obstacle_uncertainty = 0.04;
+  ASSERT_EQ(list.clashes.size(), 2U);
+  EXPECT_TRUE(list.clashes[0].isCertain()) << "before those that are nearer, perhaps";
+  EXPECT_FALSE(list.clashes[1].isCertain());
+  EXPECT_EQ(clashCounts(list), "1 clash, 1 perhaps");
+
+  const std::string page = clashPage(list);
+  EXPECT_EQ(faultOfMarkup(page), "");
+  for (const char* told :
+       {"<h1>1 clash, 1 perhaps</h1>", "<b>1</b><span>colliding points",
+        "<b>3</b><span>points of the input collide perhaps", "<b>3 x field sigma</b><span>uncertainty of the input",
+        "<b>0.04</b><span>uncertainty of the obstacle", "<b>exact</b><span>accuracy", "<h2>By severity</h2>",
+        "<h2>Perhaps</h2>", "<b>0.1</b><span>smallest"})
+    EXPECT_TRUE(has(page, told)) << told;
+  EXPECT_LT(page.find(">C1_0_617283</a>"), page.find("<h2>Perhaps</h2>"));
+  EXPECT_GT(page.find(">C4_0_617283</a>"), page.find("<h2>Perhaps</h2>"));
+
+  const Json json = Json::parse(clashJson(list));
+  EXPECT_EQ(json["uncertainty"].dump(), R"({"input":{"field":"sigma","sigmas":3.0},"obstacle":0.04})");
+  EXPECT_EQ(json["accuracy"], "exact");
+  EXPECT_EQ(json["clashes"][0]["certainty"], "certain");
+  EXPECT_EQ(json["clashes"][1]["certainty"], "perhaps");
+  EXPECT_EQ(json["clashes"][1]["certain_points"], 0);
+  const ClashList read = parseClashes(clashJson(list), "list.json");
+  EXPECT_EQ(read.clashes[1].certain_points, 0U);
+  EXPECT_EQ(read.question.input_uncertainty.field, "sigma");
+  EXPECT_EQ(read.question.input_uncertainty.sigmas, 3);
+  EXPECT_EQ(read.question.obstacle_uncertainty.length, 0.04);
+
+  const auto rows = cellsOf(clashCsv(list));
+  EXPECT_EQ(rows[1][20], "certain");
+  EXPECT_EQ(std::vector<std::string>(rows[2].begin() + 20, rows[2].end()),
+            (std::vector<std::string>{"perhaps", "0", "0.3", "sigma", "0.04", "3", "exact", "", ""}));
+}
+
+TEST_F(ClashReports, TellUnitDateVersionAndCoordinateSystem)
+{
+  setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
+  ClashReport list = twoClashes();
+  list.unit = "m";
+  list.coordinate_system = "ETRS89 / UTM 32N";
+  const std::string page = clashPage(list);
+  for (const char* told : {"Lengths in m.", "Coordinate system: ETRS89 / UTM 32N.", " on 2023-11-14.",
+                           "Made by pcl_bsh " PCL_BSH_VERSION_TEXT, "clearance [m]<", "smallest distance [m]<"})
+    EXPECT_TRUE(has(page, told)) << told;
+  const Json json = Json::parse(clashJson(list));
+  EXPECT_EQ(json["date"], "2023-11-14");
+  EXPECT_EQ(json["program"], "pcl_bsh " PCL_BSH_VERSION_TEXT);
+  EXPECT_EQ(json["unit"], "m");
+  EXPECT_EQ(json["coordinate_system"], "ETRS89 / UTM 32N");
+  EXPECT_THAT(clashCsv(list), HasSubstr(",exact,m,ETRS89 / UTM 32N\n"));
+  for (const char* wrong : {"yesterday", "", "-1", "1e99", "999999999999"}) {
+    setenv("SOURCE_DATE_EPOCH", wrong, 1);
+    EXPECT_THROW(clashPage(list), std::runtime_error) << wrong;
+  }
+  unsetenv("SOURCE_DATE_EPOCH");
+}
+
+} // namespace pcl_bsh::io

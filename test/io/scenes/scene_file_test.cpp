@@ -1,0 +1,452 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/field_type.h>
+#include <pcl_bsh/io/json/json_reader.h>
+#include <pcl_bsh/io/scenes/scene_file.h>
+#include <pcl_bsh/io/scenes/shape_points.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include "io/clouds/samples.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+namespace pcl_bsh::io {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr auto whole = R"({
+  // a scene with everything
+  "clouds": {
+    "ball": { "sphere": { "radius": 0.5 }, "spacing": 0.2 },
+    "crate": { "box": { "size": [1, 2, 3] }, "spacing": 0.5, /* moved */ "shift": [1, 0, 0] },
+    "pipe": { "cylinder": { "radius": 1, "height": 2, "open": true }, "spacing": 0.5 }
+  },
+  "objects": [
+    { "name": "floor", "cloud": "crate", "fixed": true, "group": "walls", "pose": [0, 0, -5] },
+    { "name": "pipe", "cloud": "pipe", "fixed": true, "group": "walls",
+      "pose": [0, 0, 1, 5, 0, 1, 0, 6, -1, 0, 0, 7] },
+    { "name": "robot", "parts": [ { "name": "base", "cloud": "ball" }, { "name": "arm", "cloud": "ball", "pose": [0, 0, 1] },
+                                  { "name": "hand", "cloud": "ball", "pose": [0, 0, 1.4] } ],
+      "adjacent": [ ["base", "arm"], ["arm", "hand"] ],
+      "motion": { "velocity": { "linear": [1, 0, 0], "angular": [0, 0, 0.5] } } },
+    { "name": "moon", "cloud": "ball", "pose": [3, 0, 0, 0, 0, 1.5],
+      "motion": { "circular": { "center": [0, 0, 0], "speed": 2, "turning": false } } },
+    { "name": "lift", "cloud": "crate", "wave": { "amplitude": [0, 0, 0.1], "length": 2, "period": 1 },
+      "motion": { "waypoints": [ { "time": 0, "pose": [9, 0, 0] }, { "time": 2, "pose": [9, 0, 4] } ] } }
+  ],
+  "scatter": [ { "name": "dust", "cloud": "ball", "count": 4, "low": [20, 20, 20], "high": [25, 25, 25], "speed": 2 } ],
+  "pairs": { "default": "tested", "rules": [ { "groups": ["walls", "walls"], "tested": true, "clearance": 0.2 },
+                                             { "objects": ["moon", "lift"], "tested": false } ] },
+  "effects": { "any": true, "flags": true, "distance": "all", "contacts": 3, "first_contact": true, "swept": true,
+               "self": true, "response": "slide", "gravity": { "step_height": 0.2 }, "deform": 1.5 },
+  "clearance": 0.1, "tolerance": 0.001, "accuracy": "level=3", "threads": 1, "steps": 20, "dt": 0.5,
+  "outputs": { "clouds": "last" }
+})";
+
+TEST(SceneFile, ReadsEverything)
+{
+  const SceneFile file = parseScene(whole, "scene.json");
+  EXPECT_EQ(file.clouds.size(), 3u);
+  ASSERT_EQ(file.objects.size(), 9u);
+  EXPECT_EQ(file.steps, 20u);
+  EXPECT_EQ(file.dt, 0.5);
+  EXPECT_EQ(file.options.clearance, 0.1);
+  EXPECT_EQ(file.options.accuracy.text(), "level=3");
+  EXPECT_TRUE(std::isinf(*file.options.effects.distance));
+  for (std::size_t e = 0; e < kEffects; ++e)
+    EXPECT_EQ(file.options.effects.has(static_cast<Effect>(e)), static_cast<Effect>(e) != Effect::stop);
+  EXPECT_EQ(file.objects[1].pose * Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(5, 6, 6));
+  EXPECT_EQ(file.objects[2].adjacent.size(), 2u);
+  EXPECT_TRUE(std::holds_alternative<CircularMotion>(file.objects[3].motion));
+  EXPECT_EQ(std::get<WaypointMotion>(file.objects[4].motion).times, (std::vector<double>{0, 2}));
+  EXPECT_EQ(file.rules.size(), 2u);
+  EXPECT_EQ(file.cloud_output, CloudOutput::last);
+}
+
+TEST(SceneFile, BecomesAScene)
+{
+  const SceneFile file = parseScene(whole, "scene.json");
+  SceneWorld world(file);
+  EXPECT_EQ(world.scene().size(), 9u);
+  EXPECT_EQ(world.scene()[2].parts.size(), 3u);
+  SceneResult result = world.scene().query();
+  EXPECT_TRUE(result.self.empty()); // of arm and hand, which are adjacent, nothing is said
+  for (int step = 0; step < 5; ++step) {
+    world.deform(world.scene().time() + file.dt);
+    result = world.scene().step(file.dt);
+    EXPECT_GT(result.cost(Effect::deform).pairs, 0u);
+  }
+  const Eigen::Vector3d moon = world.scene()[3].pose.translation();
+  EXPECT_NEAR(moon.head<2>().norm(), 3, 0.5); // it falls, for there is no ground
+  for (ObjectId i = 5; i < 9; ++i) {
+    const Eigen::Array2d at = world.scene()[i].pose.translation().head<2>().array();
+    EXPECT_TRUE((at >= 20).all() && (at <= 25).all()) << i;
+  }
+}
+
+std::string errorOf(const std::string& text)
+{
+  try {
+    parseScene(text, "scene.json");
+  }
+  catch (const JsonError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+/// The scene with one part of its text replaced.
+std::string with(const std::string& from, const std::string& to)
+{
+  std::string text = whole;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(SceneFile, NamesThePlaceOfWhatIsWrong)
+{
+  const auto expect = [](const std::string& from, const std::string& to, const std::string& message) {
+    EXPECT_EQ(errorOf(with(from, to)), "scene.json: " + message) << to;
+  };
+  expect("\"steps\"", "\"stepps\"", "key 'stepps' is unknown: did you mean 'steps'?");
+  expect("\"fixed\": true, \"group\"", "\"fixd\": true, \"group\"",
+         "objects[0]: key 'fixd' is unknown: did you mean 'fixed'?");
+  expect("\"cloud\": \"pipe\"", "\"cloud\": \"pip\"",
+         "objects[1].cloud: no cloud is called 'pip': did you mean 'pipe'?");
+  expect("\"slide\"", "\"slyde\"", "effects.response: 'slyde' is unknown: did you mean 'slide'?");
+  expect("\"clearance\": 0.1", "\"clearance\": -1", "clearance: -1 is too small: give at least 0");
+  expect("\"clearance\": 0.1", "\"clearance\": \"x\"", "clearance: \"x\" is no number: give one");
+  expect("\"speed\": 2, \"turning\"", "\"speed\": null, \"turning\"",
+         "objects[3].motion.circular.speed: null is no number: give one");
+  expect("[1, 2, 3]", "[1, 2]", "clouds.crate.box.size: [1,2] is no list of 3 numbers: give [x, y, z]");
+  expect("\"radius\": 0.5 }", "\"radius\": 0 }", "clouds.ball.sphere.radius: 0 is too small: give more than 0");
+  expect("\"spacing\": 0.2 }", "\"spacing\": 1e-310 }",
+         "clouds.ball.spacing: 1e-310 is too small: give at least 1e-30");
+  expect("\"threads\": 1", "\"threads\": 1025", "threads: 1025 is too large: give at most 1024");
+  expect("\"any\": true", "\"any\": 1", "effects.any: 1 is no boolean: give true or false");
+  expect("\"distance\": \"all\"", "\"distance\": \"al\"", "effects.distance: 'al' is unknown: did you mean 'all'?");
+  expect("\"distance\": \"all\"", "\"distance\": null",
+         "effects.distance: null is no distance: give \"all\", or a length: pairs farther apart are left out");
+  expect("[1, 0, 0], \"angular\"", "[1, 0, \"0\"], \"angular\"",
+         "objects[2].motion.velocity.linear[2]: \"0\" is no number: give one");
+  expect("{ \"velocity\": {", "{ \"velocty\": {",
+         "objects[2].motion: key 'velocty' is unknown: did you mean 'velocity'?");
+  expect("{ \"velocity\": { \"linear\": [1, 0, 0], \"angular\": [0, 0, 0.5] } }", "{}",
+         "objects[2].motion: {} is no motion: give one of { \"velocity\": ... }, { \"circular\": ... }, "
+         "{ \"waypoints\": ... } and { \"trajectory\": ... }");
+  expect("\"name\": \"moon\", \"cloud\": \"ball\"", "\"name\": \"moon\"",
+         "objects[3]: has none or several of 'cloud', 'parts': give one");
+  expect("[ [\"base\", \"arm\"]", "[ [\"base\"]", "objects[2].adjacent[0]: [\"base\"] is no pair: give two names");
+  expect("\"center\": [0, 0, 0], ", "", "objects[3].motion.circular: 'center' is missing: add it");
+  expect("[3, 0, 0, 0, 0, 1.5]", "[3, 0]",
+         "objects[3].pose: [3,0] is no pose: give [x, y, z], [x, y, z, roll, pitch, yaw] with radians, or the 12 or 16 "
+         "numbers of a matrix, row by row");
+  expect("[0, 0, 1, 5, 0, 1, 0", "[0, 0, 2, 5, 0, 1, 0",
+         "objects[1].pose: is no rigid transform: give a rotation without scale or mirror, and 0 0 0 1 as last row");
+  expect("\"time\": 2", "\"time\": 0",
+         "objects[4].motion.waypoints[1].time: is not later than the one before: let times ascend");
+  expect("\"name\": \"moon\"", "\"name\": \"floor\"",
+         "objects[3].name: 'floor' is taken: give every object a name of its own");
+  expect("[\"moon\", \"lift\"]", "[\"moon\", \"lyft\"]",
+         "pairs.rules[1].objects[1]: 'lyft' is unknown: did you mean 'lift'?");
+  expect("[\"arm\", \"hand\"]", "[\"arm\", \"hadn\"]",
+         "objects[2].adjacent[1][1]: 'hadn' is unknown: did you mean 'hand'?");
+  expect("\"count\": 4", "\"count\": 4.5", "scatter[0].count: 4.5 is no whole number: give one");
+  expect("\"radius\": 0.5 }, \"spacing\": 0.2", "\"radius\": 0.5 }, \"spacing\": 1e-9",
+         "clouds.ball: would have more than 1e8 points: give a larger 'spacing'");
+  expect(", \"deform\": 1.5", "", "objects[4].wave: needs the effect 'deform': add \"deform\": 1.5 to 'effects'");
+  expect("\"steps\": 20, ", "\"steps\": 20, \"steps\": 21, ", "says the key \"steps\" twice in one object: remove one");
+  expect("{ \"sphere\": { \"radius\": 0.5 }, \"spacing\": 0.2 }", "\"nowhere.ply\"",
+         "clouds.ball: no such file: nowhere.ply: check the name");
+  expect("\"spacing\": 0.2 }", "\"spacing\": 0.2, \"uncertainty\": -1 }",
+         "clouds.ball.uncertainty: -1 is too small: give at least 0");
+  expect("\"spacing\": 0.2 }", "\"spacing\": 0.2, \"uncertainty\": \"sigma\" }",
+         "clouds.ball.uncertainty: names a field, which a sphere does not have: give a length");
+  expect("\"spacing\": 0.2 }", "\"spacing\": 0.2, \"uncertainty\": 0.1, \"sigmas\": 3 }",
+         "clouds.ball.sigmas: is given, but the uncertainty is no field: give the length itself");
+  expect("\"dt\": 0.5", "\"dt\" 0.5",
+         "is no JSON: line 26, column 98: syntax error while parsing object separator - unexpected number literal; "
+         "expected ':': mend what stands there or just before");
+}
+
+TEST(SceneFile, RefusesWhatIsNoScene)
+{
+  EXPECT_THAT(errorOf(""), HasSubstr("is no JSON"));
+  EXPECT_THAT(errorOf("[]"), HasSubstr("is no object"));
+  EXPECT_THAT(errorOf("{}"), HasSubstr("'clouds' is missing"));
+  EXPECT_THAT(errorOf(R"({"clouds": {}, "objects": []})"), HasSubstr("objects: the scene has no objects"));
+  EXPECT_THAT(errorOf(std::string(200, '[') + std::string(200, ']')),
+              HasSubstr("nests deeper than 100 levels: flatten it"));
+}
+
+TEST(SceneFile, FindsCloudsBesideItself)
+{
+  const TemporaryFolder folder;
+  folder.write("two.xyz", "0 0 0\n1 2 3\n");
+  const auto scene =
+      folder.write("scene.json", R"({"clouds": {"two": {"file": "two.xyz", "scale": 2, "shift": [1, 0, 0]}},
+                                                    "objects": [{"name": "a", "cloud": "two"}]})");
+  const SceneFile file = readSceneFile(scene);
+  SceneWorld world(file);
+  EXPECT_EQ(world.points(), 2u);
+  EXPECT_EQ(world.scene()[0].parts[0].hierarchy->view().point(1), (Point3{3, 4, 6}));
+}
+
+/// A point that may be off by 0.25, and another 1 away that is uncertain as the scene says.
+std::string verdictOf(const TemporaryFolder& folder, const std::string& uncertainty, const std::string& more = "")
+{
+  const auto scene = folder.write("scene.json", R"({"clouds": {
+      "rough": {"file": "rough.csv", "uncertainty": 0.25}, "unsure": {"file": "unsure.csv", )" +
+                                                    uncertainty + R"(}},
+    "objects": [{"name": "a", "cloud": "rough"}, {"name": "b", "cloud": "unsure")" +
+                                                    more + R"(}],
+    "effects": {"any": true, "flags": true, "deform": 2}, "clearance": 0.5, "threads": 1})");
+  try {
+    SceneWorld world(readSceneFile(scene));
+    const SceneResult result = world.scene().query();
+    EXPECT_EQ(result.flags.size(), 2 * (result.any.size() + result.undecided.size()));
+    return !result.any.empty() ? "colliding" : !result.undecided.empty() ? "undecided" : "free";
+  }
+  catch (const JsonError& error) {
+    return error.what();
+  }
+}
+
+TEST(SceneFile, CloudsMayBeUncertain)
+{
+  const TemporaryFolder folder;
+  folder.write("rough.csv", "x,y,z\n0,0,0\n");
+  folder.write("unsure.csv", "x,y,z,sigma\n1,0,0,0.125\n");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.25)"), "undecided");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.2499)"), "free");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": "sigma", "sigmas": 2)"), "undecided");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": "sigma")"), "free");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": "sigma", "scale": 0.125)"), "colliding"); // 0.5 - 0.25 - 0.125 / 8
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.125, "scale": 0.125)"), "colliding");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.126, "scale": 0.125)"), "undecided");
+  const std::string wave = R"(, "wave": {"amplitude": [0, 0, 0], "length": 1, "period": 1})";
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": "sigma", "sigmas": 2)", wave), "undecided");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.25)", wave), "undecided");
+  EXPECT_THAT(verdictOf(folder, R"("uncertainty": "sigm")"),
+              HasSubstr("scene.json: clouds.unsure.uncertainty: field 'sigm' of its points' sigmas is missing"));
+  EXPECT_THAT(verdictOf(folder, R"("uncertainty": "y", "shift": [0, -1, 0])"),
+              HasSubstr("clouds.unsure.uncertainty: field 'y' of point 0 is -1"));
+}
+
+/// The view of a cloud of one file, scaled and shifted.
+PointsView placed(const TemporaryFolder& folder, const std::string& file, const std::string& where,
+                  std::unique_ptr<SceneWorld>& world)
+{
+  const auto scene = folder.write("scene.json", R"({"clouds": {"a": {"file": ")" + file + R"(", )" + where +
+                                                    R"(}}, "objects": [{"name": "a", "cloud": "a"}]})");
+  world = std::make_unique<SceneWorld>(readSceneFile(scene));
+  return world->scene()[0].parts[0].hierarchy->view();
+}
+
+TEST(SceneFile, ShiftsLoseNothing)
+{
+  const TemporaryFolder folder;
+  pcl::PCLPointCloud2 cloud = randomCloud<float>(50, 1, {});
+  writeCloud(folder / "local.pcd", cloud);
+  std::unique_ptr<SceneWorld> world;
+  // In UTM coordinates, float32 counts in steps of a half.
+  const PointsView far = placed(folder, "local.pcd", R"("shift": [500000, 5400000, 100])", world);
+  EXPECT_EQ(far.scalar, Scalar::float64);
+  const PointsView local = viewOf(cloud);
+  const pcl::PCLPointCloud2& moved = world->cloud("a");
+  ASSERT_EQ(moved.fields.size(), cloud.fields.size());
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    const Point3 p = local.point(i);
+    EXPECT_EQ(far.point(i), (Point3{p[0] + 500000, p[1] + 5400000, p[2] + 100})) << i;
+    for (std::size_t f = 0; f < cloud.fields.size(); ++f) {
+      const pcl::PCLPointField &was = cloud.fields[f], &is = moved.fields[f];
+      ASSERT_EQ(is.name, was.name);
+      if (was.name.size() == 1 && was.name >= "x" && was.name <= "z") continue;
+      ASSERT_EQ(is.datatype, was.datatype);
+      EXPECT_EQ(std::memcmp(&moved.data[i * moved.point_step + is.offset],
+                            &cloud.data[i * cloud.point_step + was.offset], sizeOf(was)),
+                0)
+          << is.name;
+    }
+  }
+  // What float32 can hold stays float32.
+  EXPECT_EQ(placed(folder, "local.pcd", R"("scale": 2)", world).scalar, Scalar::float32);
+  EXPECT_EQ(placed(folder, "local.pcd", R"("scale": 1)", world).scalar, Scalar::float32);
+  EXPECT_EQ(placed(folder, "local.pcd", R"("shift": [1e39, 0, 0])", world).point(0)[0], 1e39)
+      << "not infinite, so free";
+}
+
+TEST(SceneFile, RefusesShiftsBeyondAllNumbers)
+{
+  const TemporaryFolder folder;
+  folder.write("far.xyz", "1e300 0 0\n");
+  std::unique_ptr<SceneWorld> world;
+  EXPECT_THAT(
+      [&] { placed(folder, "far.xyz", R"("scale": 1e10)", world); },
+      testing::ThrowsMessage<JsonError>(HasSubstr("clouds.a: scale and shift take point 0 beyond all numbers")));
+}
+
+TEST(SceneFile, TellsOfACloudWithoutAPoint)
+{
+  const TemporaryFolder folder;
+  folder.write("some.xyz", "nan 0 0\n1 2 3\n");
+  folder.write("none.xyz", "nan 0 0\n");
+  std::unique_ptr<SceneWorld> world;
+  placed(folder, "some.xyz", R"("scale": 1)", world);
+  EXPECT_THAT(world->warnings(), testing::ElementsAre(HasSubstr("some.xyz: 1 of 2 points is not finite")));
+  placed(folder, "none.xyz", R"("scale": 1)", world);
+  EXPECT_THAT(world->warnings(),
+              testing::ElementsAre(HasSubstr("none.xyz: has no finite point: nothing collides with it")));
+}
+
+/// Its points would be infinite, and so free, or one.
+TEST(SceneFile, RefusesShapesThatFloatsCannotHold)
+{
+  for (const char* shape :
+       {R"("sphere": {"radius": 1e39}, "spacing": 1e39)", R"("sphere": {"radius": 1e-300}, "spacing": 1e-300)",
+        R"("box": {"size": [1, 1e39, 1]}, "spacing": 1e38)", R"("box": {"size": [1, -1, 1]})",
+        R"("cylinder": {"radius": 1, "height": 1e39}, "spacing": 1e38)"}) {
+    SCOPED_TRACE(shape);
+    const std::string text = R"({"clouds": {"a": {)" + std::string(shape) +
+                             R"(}}, "objects": [{"name": "A", "cloud": "a"}], "effects": {"any": true}})";
+    EXPECT_THAT([&] { parseScene(text, "scene.json"); }, testing::ThrowsMessage<JsonError>(HasSubstr("clouds.a")));
+  }
+}
+
+constexpr auto square = "OFF\n4 1 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n4 0 1 2 3\n";
+
+/// A point that stands over the middle of a square at a height.
+std::string pointOver(const TemporaryFolder& folder, const std::string& height, const std::string& square_options,
+                      const std::string& of_object = "")
+{
+  folder.write("square.off", square);
+  folder.write("point.xyz", "1 1 " + height + "\n");
+  return R"({"clouds": {"square": {"file": ")" + (folder / "square.off").string() + '"' + square_options +
+         R"(}, "point": ")" + (folder / "point.xyz").string() +
+         R"("}, "objects": [{"name": "square", "cloud": "square")" + of_object +
+         R"(}, {"name": "point", "cloud": "point"}], "clearance": 0.1,
+             "effects": {"any": true, "flags": true, "distance": "all", "deform": 1}})";
+}
+
+TEST(SceneFile, FilesWithFacesAreSurfaces)
+{
+  const TemporaryFolder folder;
+  const auto collides = [&](const std::string& height, const std::string& square_options) {
+    SceneWorld world(parseScene(pointOver(folder, height, square_options), "scene.json"));
+    const SceneResult result = world.scene().query();
+    return !result.flags.empty();
+  };
+  EXPECT_TRUE(collides("0.1", ""));
+  EXPECT_FALSE(collides("0.1101", "")) << "beyond clearance and a tenth of it";
+  EXPECT_TRUE(collides("0.1", R"(, "surface_tolerance": 0.001)"));
+  EXPECT_FALSE(collides("0.1011", R"(, "surface_tolerance": 0.001)"));
+  EXPECT_FALSE(collides("0", R"(, "vertices_only": true)"));
+  EXPECT_TRUE(collides("3.1", R"(, "shift": [0, 0, 3])")) << "shifted as the vertices are";
+
+  const SceneWorld world(parseScene(pointOver(folder, "0", ""), "scene.json"));
+  const Obstacle* const surface = world.surface("square");
+  ASSERT_NE(surface, nullptr);
+  EXPECT_EQ(world.surface("point"), nullptr);
+  const pcl::PCLPointCloud2& balls = world.cloud("square");
+  ASSERT_EQ(balls.width, surface->cover()->centers.size());
+  EXPECT_EQ(viewOf(balls).point(5), surface->cover()->centers[5]);
+  EXPECT_EQ(valueOf(balls, 5, "radius"), double{surface->cover()->radii[5]});
+  EXPECT_EQ(valueOf(balls, 5, "triangle"), surface->cover()->triangles[5]);
+}
+
+TEST(SceneFile, RefusesWhatSurfacesCannotDo)
+{
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::string& square_options, const std::string& of_object, const char* words) {
+    EXPECT_THAT([&] { SceneWorld(parseScene(pointOver(folder, "0", square_options, of_object), "scene.json")); },
+                testing::ThrowsMessage<JsonError>(HasSubstr(words)));
+  };
+  const std::string wave = R"(, "wave": {"amplitude": [0, 0, 0.1], "length": 2, "period": 1})";
+  expect("", wave, "clouds.square: is a surface, and the wave of 'square' moves points: give 'vertices_only': true");
+  expect(R"(, "surface_tolerance": 1e-14)", "", "too small for coordinates");
+  expect(R"(, "surface_tolerance": 0.1, "vertices_only": true)", "", "give one of the two");
+  SceneWorld(parseScene(pointOver(folder, "0", R"(, "vertices_only": true)", wave), "scene.json"));
+  std::string ball = whole;
+  ball.replace(ball.find("\"spacing\": 0.2"), 0, "\"vertices_only\": true, ");
+  EXPECT_THAT([&] { parseScene(ball, "scene.json"); },
+              testing::ThrowsMessage<JsonError>(HasSubstr("is about faces, and a sphere is points")));
+  std::string named = whole;
+  named.replace(named.find("\"spacing\": 0.2"), 0, "\"columns\": \"x,y,z\", ");
+  EXPECT_THAT([&] { parseScene(named, "scene.json"); },
+              testing::ThrowsMessage<JsonError>(HasSubstr("is about files, and a sphere is points")));
+}
+
+TEST(SceneFile, WhatTheCallbackThrowsComesOutUnchanged)
+{
+  const SceneFile file = parseScene(whole, "scene.json");
+  for (const std::string at : {"ball", "pipe"})
+    EXPECT_THROW(SceneWorld(file,
+                            [&](const CloudSource& cloud) {
+                              if (cloud.name == at) throw 3;
+                            }),
+                 int)
+        << at;
+  std::size_t clouds = 0;
+  EXPECT_EQ(SceneWorld(file, [&](const CloudSource&) { ++clouds; }).scene().size(), 9u);
+  EXPECT_EQ(clouds, 3u);
+}
+
+TEST(SceneFile, BoundsHowOftenScatteredObjectsBounce)
+{
+  const auto scene = [](const std::string& steps, const std::string& count) {
+    return R"({"clouds": {"ball": {"sphere": {"radius": 1}}}, "steps": )" + steps + R"(, "dt": 1, "objects": [],
+      "scatter": [{"name": "dust", "cloud": "ball", "count": )" +
+           count + R"(, "low": [0, 0, 0], "high": [1, 1, 1], "speed": 1}]})";
+  };
+  EXPECT_EQ(errorOf(scene("1000", "10")), "none");
+  for (const auto& [steps, count] : {std::pair("100000000", "1"), std::pair("10000", "1000000")})
+    EXPECT_EQ(
+        errorOf(scene(steps, count)),
+        "scene.json: scatter[0]: bounces more than a million times until the scene ends: give a smaller 'speed' or "
+        "'count', fewer 'steps', a smaller 'dt' or a larger box");
+}
+
+TEST(SceneFile, PrintedMatricesStandForTheirRotations)
+{
+  const SceneFile file = parseScene(with("[0, 0, 1, 5, 0, 1, 0, 6, -1, 0, 0, 7]",
+                                         "[0.877583, -0.479426, 0, 5, 0.479426, 0.877583, 0, 6, 0, 0, 1, 7]"),
+                                    "scene.json");
+  ASSERT_EQ(file.warnings.size(), 1U);
+  EXPECT_THAT(file.warnings[0], HasSubstr("objects[1].pose: |R'R - I| is "));
+  EXPECT_LE(
+      (file.objects[1].pose.linear().transpose() * file.objects[1].pose.linear() - Eigen::Matrix3d::Identity()).norm(),
+      1e-14);
+  EXPECT_THAT(parseScene(whole, "scene.json").warnings, testing::IsEmpty());
+}
+
+TEST(ShapePoints, LieOnTheirSurfaces)
+{
+  const auto each = [](const std::vector<float>& xyz, const auto& check) {
+    ASSERT_GT(xyz.size(), 30u);
+    for (std::size_t i = 0; i < xyz.size(); i += 3) check(Eigen::Vector3d(xyz[i], xyz[i + 1], xyz[i + 2]));
+  };
+  each(shapePoints("sphere", {2, 2, 2}, 0.3), [](const Eigen::Vector3d& p) { EXPECT_NEAR(p.norm(), 2, 1e-5); });
+  each(shapePoints("box", {1, 2, 3}, 0.3), [](const Eigen::Vector3d& p) {
+    const Eigen::Array3d inside = Eigen::Array3d(0.5, 1, 1.5) - p.array().abs();
+    EXPECT_NEAR(inside.minCoeff(), 0, 1e-5);
+  });
+  each(shapePoints("cylinder", {1, 2, 0}, 0.3),
+       [](const Eigen::Vector3d& p) { EXPECT_NEAR(std::min(1 - p.head<2>().norm(), 1 - std::abs(p.z())), 0, 1e-5); });
+  each(shapePoints("sphere", {1e30, 0, 0}, 5e29), [](const Eigen::Vector3d& p) { EXPECT_NEAR(p.norm(), 1e30, 1e24); });
+  each(shapePoints("sphere", {1e-30, 0, 0}, 5e-31),
+       [](const Eigen::Vector3d& p) { EXPECT_NEAR(p.norm(), 1e-30, 1e-36); });
+  for (const char* shape : {"sphere", "box", "cylinder"}) {
+    const auto count = static_cast<double>(shapePoints(shape, {1, 2, 3}, 0.1).size() / 3);
+    EXPECT_LE(count, 2 * shapePointCount(shape, {1, 2, 3}, 0.1));
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh::io

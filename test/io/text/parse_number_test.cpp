@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "defect.h"
+
+#include <pcl_bsh/io/text/parse_number.h>
+
+#include <clocale>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+namespace pcl_bsh::io {
+
+TEST(ParseNumber, NumbersRoundOnce)
+{
+  EXPECT_EQ(parseNumber<double>("596648.1234567891"), 596648.1234567891);
+  EXPECT_EQ(parseNumber<double>("+1.5e3"), 1500);
+  // Just above the middle of two floats: by way of a double it would round down.
+  EXPECT_EQ(parseNumber<float>("1.00000005960464478"), std::nextafter(1.0F, 2.0F));
+  EXPECT_EQ(parseNumber<float>("1e-46"), 0.0F);
+  EXPECT_EQ(parseNumber<float>("1.4e-45"), std::numeric_limits<float>::denorm_min());
+  EXPECT_TRUE(std::isnan(parseNumber<float>("nan")));
+  EXPECT_TRUE(std::isnan(parseNumber<double>("-NaN")));
+  EXPECT_EQ(parseNumber<float>("-inf"), -std::numeric_limits<float>::infinity());
+  EXPECT_EQ(parseNumber<std::uint64_t>("18446744073709551615"), std::numeric_limits<std::uint64_t>::max());
+}
+
+TEST(ParseNumber, TellsTooSmallFromTooLarge)
+{
+  for (const char* tiny : {"1e-400", "-1e-99999999999999999999", "0.5e-400", "123456e-5000", "0e99999999999999999999"})
+    EXPECT_EQ(parseNumber<double>(tiny), 0) << tiny;
+  EXPECT_EQ(parseNumber<double>("0." + std::string(5000, '0') + "1"), 0);
+  EXPECT_EQ(parseNumber<double>("0." + std::string(5000, '0') + "1e5001"), 1);
+  for (const std::string huge : {"1e400", "-1e99999999999999999999", "0.001e5000"})
+    EXPECT_THROW(parseNumber<double>(huge), FormatError) << huge;
+  EXPECT_THROW(parseNumber<double>(std::string(5000, '9')), FormatError);
+  EXPECT_THROW(parseNumber<double>("1e-400x"), FormatError);
+}
+
+TEST(ParseNumber, TheHostsLanguageDoesNotMatter)
+{
+  // A language with decimal commas: of the system, or compiled for this test.
+  const TemporaryFolder folder;
+  const char* name = setlocale(LC_ALL, "de_DE.UTF-8");
+  if (name == nullptr) {
+    const std::string compile = "localedef -i de_DE -f UTF-8 '" + (folder / "de_DE.UTF-8").string() + "' 2>/dev/null";
+    if (std::system(compile.c_str()) != 0) GTEST_SKIP() << "no language with decimal commas";
+    setenv("LOCPATH", folder.path().c_str(), 1);
+    name = setlocale(LC_ALL, "de_DE.UTF-8");
+    unsetenv("LOCPATH");
+  }
+  if (name == nullptr) GTEST_SKIP() << "no language with decimal commas";
+  const bool commas = *localeconv()->decimal_point == ',';
+  const double read = parseNumber<double>("1.5"), tiny = parseNumber<double>("1.5e-400");
+  const float small = parseNumber<float>("1.5e-60");
+  setlocale(LC_ALL, "C");
+  EXPECT_TRUE(commas);
+  EXPECT_EQ(read, 1.5);
+  EXPECT_EQ(tiny, 0);
+  EXPECT_EQ(small, 0);
+}
+
+TEST(ParseNumber, TellsWhatIsMeantForANumber)
+{
+  for (const char* word : {"1", "-1.5", "1,5", "+.5x", "nan", "inf", "2nd", "--1"})
+    EXPECT_TRUE(looksLikeNumber(word)) << word;
+  for (const char* word : {"", "x", "column_4", "-", "a1"}) EXPECT_FALSE(looksLikeNumber(word)) << word;
+}
+
+TEST(ParseNumber, RefusesWhatIsNoNumberOfTheType)
+{
+  for (const char* word : {"", "+", "abc", "1.5x", "1,5", "--1", "0x10", "1e400"}) {
+    EXPECT_THROW(parseNumber<double>(word), FormatError) << word;
+  }
+  for (const char* word : {"256", "-1", "1.0", "1e2"}) {
+    EXPECT_THROW(parseNumber<std::uint8_t>(word), FormatError) << word;
+  }
+  EXPECT_THROW(parseNumber<float>("1e39"), FormatError);
+  EXPECT_EQ(defectOf([] { parseNumber<double>("abc"); }), "'abc' is not a number");
+}
+
+} // namespace pcl_bsh::io

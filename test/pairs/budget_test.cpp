@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Budgets: spent once, however many questions share them, and spent on what decides.
+#include <pcl_bsh/collide.h>
+#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/roadmap/brute_force.h>
+
+#include "support/journeys.h"
+#include "support/question.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using test::Cloud;
+using test::flagsOnly;
+using test::identity;
+using test::Poses;
+using test::Random;
+using test::Scene;
+using test::Shape;
+
+constexpr std::uint8_t kUndecided = 2;
+
+test::Question asking(const Accuracy& accuracy, double clearance, Side flagged = Side::both)
+{
+  test::Question request;
+  request.accuracy = accuracy;
+  request.clearance = clearance;
+  request.flagged = flagged;
+  return request;
+}
+
+/// With time to spare, it is the search of exact, step by step: what that decides in a time, this does.
+TEST(Budget, TimedAnySearchesAsExactDoes)
+{
+  for (std::uint64_t seed = 4000; seed < 4100; ++seed) {
+    const Scene scene = test::anyScene(seed, 500);
+    SCOPED_TRACE(scene.name);
+    const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+    const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
+    anyCollision(placed_a, placed_b, asking(Accuracy::exact(), scene.clearance)); // builds
+    const AnyResult exact = anyCollision(placed_a, placed_b, asking(Accuracy::exact(), scene.clearance));
+    const AnyResult timed = anyCollision(placed_a, placed_b, asking(Accuracy::time(3600), scene.clearance));
+    EXPECT_EQ(timed.verdict, exact.verdict);
+    EXPECT_EQ(timed.witness, exact.witness);
+    EXPECT_EQ(timed.work.node_pairs, exact.work.node_pairs);
+    EXPECT_EQ(timed.work.leaf_pairs, exact.work.leaf_pairs);
+    const double truth = brute_force::closestPair(placed_a, placed_b).distance;
+    for (const double seconds : {0.0, 1e-6, 1e-5, 1e-4}) {
+      const AnyResult hurried = anyCollision(placed_a, placed_b, asking(Accuracy::time(seconds), scene.clearance));
+      if (hurried.verdict != Verdict::undecided) {
+        EXPECT_EQ(hurried.verdict, exact.verdict);
+      }
+      EXPECT_LE(hurried.distance.lower, truth);
+      EXPECT_GE(hurried.distance.upper, truth);
+    }
+  }
+}
+
+struct TwoSurfaces {
+  Random random = Random(77);
+  Cloud a_points{test::makePoints(Shape::sphere, 20000, 1, random)};
+  Cloud b_points{test::makePoints(Shape::sphere, 20000, 1, random)};
+  Eigen::Isometry3d pose = Eigen::Isometry3d(Eigen::Translation3d(1.5, 0, 0));
+};
+
+TEST(Budget, BothSidesShareIt)
+{
+  const TwoSurfaces scene;
+  const SphereHierarchy a(scene.a_points.view()), b(scene.b_points.view());
+  const auto flagsAt = [&](const Accuracy& accuracy, Side flagged) {
+    return collisionFlags({a}, {b, scene.pose}, asking(accuracy, 0.1, flagged));
+  };
+  const FlagsResult exact = flagsAt(Accuracy::exact(), Side::both);
+  const std::uint64_t all = exact.work.node_pairs;
+  for (const std::uint64_t budget : {all / 100, all / 10, all / 2}) {
+    EXPECT_LE(flagsAt(Accuracy::nodePairs(budget), Side::both).work.node_pairs, budget + 4000) << budget;
+    EXPECT_LE(flagsAt(Accuracy::nodePairs(budget), Side::a).work.node_pairs, budget + 4000) << budget;
+  }
+  // What one side does not need is the other's.
+  const FlagsResult enough = flagsAt(Accuracy::nodePairs(4 * all), Side::both);
+  EXPECT_EQ(enough.a, exact.a);
+  EXPECT_EQ(enough.b, exact.b);
+  const FlagsResult timed = flagsAt(Accuracy::time(3600), Side::both);
+  EXPECT_EQ(timed.a, exact.a);
+  EXPECT_EQ(timed.b, exact.b);
+  EXPECT_EQ(timed.colliding_b, exact.colliding_b);
+}
+
+TEST(Budget, LargerOnesKeepWhatSmallerOnesDecide)
+{
+  for (std::uint64_t seed = 4200; seed < 4230; ++seed) {
+    const Scene scene = test::anyScene(seed, 600);
+    SCOPED_TRACE(scene.name);
+    const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+    const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
+    const FlagsResult truth = collisionFlags(placed_a, placed_b, asking(Accuracy::exact(), scene.clearance));
+    FlagsResult before;
+    before.a.assign(truth.a.size(), kUndecided);
+    before.b.assign(truth.b.size(), kUndecided);
+    for (std::uint64_t budget = 1; budget < (std::uint64_t{1} << 32);
+         budget = budget < 20000 ? budget * 5 / 4 + 1 : budget * 2) {
+      const FlagsResult found =
+          collisionFlags(placed_a, placed_b, asking(Accuracy::nodePairs(budget), scene.clearance));
+      const auto expectKept = [&](const std::vector<std::uint8_t>& now, const std::vector<std::uint8_t>& then,
+                                  const std::vector<std::uint8_t>& right) {
+        for (std::size_t i = 0; i < now.size(); ++i) {
+          ASSERT_TRUE(now[i] == right[i] || now[i] == kUndecided) << "point " << i << ", budget " << budget;
+          ASSERT_TRUE(then[i] == kUndecided || now[i] == then[i]) << "point " << i << ", budget " << budget;
+        }
+      };
+      expectKept(found.a, before.a, truth.a);
+      expectKept(found.b, before.b, truth.b);
+      before = found;
+    }
+    EXPECT_EQ(before.a, truth.a);
+    EXPECT_EQ(before.b, truth.b);
+  }
+}
+
+/// The poses of a long path, far from a scan of one voxel.
+struct FarPath {
+  explicit FarPath(std::size_t count)
+  {
+    for (std::size_t k = 0; k < count; ++k) {
+      poses.push_back(identity);
+      poses.back().translation() =
+          Eigen::Vector3d(1000 + 0.001 * static_cast<double>(k), std::sin(0.01 * static_cast<double>(k)), 0);
+    }
+  }
+
+  Cloud points{std::vector<Point3>{{0, 0, 0}, {1, 0, 0}}};
+  SphereHierarchy scan{points.view()}, model{points.view()};
+  Poses poses;
+};
+
+TEST(Budget, APathThatCannotBeMadeInTimeLeavesAllUndecided)
+{
+  const FarPath far(20000);
+  TrajectoryRequest request = flagsOnly(0.1);
+  request.accuracy = Accuracy::time(0.0);
+  const TrajectoryResult nothing = collideAlong({far.scan}, far.model, far.poses, request);
+  EXPECT_EQ(nothing.flags, std::vector<std::uint8_t>(2, kUndecided));
+  EXPECT_EQ(nothing.undecided, 2u);
+  request.accuracy = Accuracy::time(3600);
+  EXPECT_EQ(collideAlong({far.scan}, far.model, far.poses, request).flags, std::vector<std::uint8_t>(2, 0));
+}
+
+TEST(TrajectoryProgress, IsReportedWhileNothingIsNear)
+{
+  for (const std::size_t count : {1u, 100u, 50000u})
+    for (const bool swept : {false, true}) {
+      const FarPath far(count);
+      TrajectoryRequest request = flagsOnly(0.1);
+      if (swept) request.swept = 0.01;
+      std::vector<double> fractions;
+      request.progress = [&](double fraction) {
+        fractions.push_back(fraction);
+        return true;
+      };
+      EXPECT_EQ(collideAlong({far.scan}, far.model, far.poses, request).colliding, 0u);
+      ASSERT_GE(fractions.size(), count > 1000 ? 10u : 1u);
+      EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+      EXPECT_GE(fractions.front(), 0.0);
+      EXPECT_LE(fractions.back(), 1.0);
+      for (const std::size_t last : {std::size_t{1}, fractions.size() / 2 + 1, fractions.size()}) {
+        std::size_t calls = 0;
+        request.progress = [&](double) { return ++calls < last; };
+        EXPECT_THROW(collideAlong({far.scan}, far.model, far.poses, request), Cancelled);
+        EXPECT_EQ(calls, last);
+      }
+    }
+}
+
+TEST(TrajectoryProgress, IsReportedDuringALongWalk)
+{
+  Random random(5);
+  const Cloud scan_points(test::makePoints(Shape::uniform, 3000, 1, random)),
+      model_points(test::makePoints(Shape::uniform, 200, 1, random));
+  HierarchyOptions options;
+  options.voxel_edge = 64.0; // eight voxels at most
+  const SphereHierarchy scan(scan_points.view(), options), model(model_points.view(), options);
+  Poses poses;
+  for (int k = 0; k < 300; ++k) poses.push_back(random.pose(0.5));
+  TrajectoryRequest request = flagsOnly(0.01);
+  request.distances = true;
+  for (const unsigned threads : {1u, 2u}) {
+    request.threads = threads;
+    std::vector<double> fractions;
+    request.progress = [&](double fraction) {
+      fractions.push_back(fraction);
+      return true;
+    };
+    collideAlong({scan}, model, poses, request);
+    EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+    if (threads == 1) {
+      EXPECT_GT(fractions.size(), 2 * 8u);
+    }
+    int calls = 0;
+    request.progress = [&](double) { return ++calls < 4; };
+    EXPECT_THROW(collideAlong({scan}, model, poses, request), Cancelled);
+    EXPECT_EQ(calls, 4);
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/collide.h>
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/pairs/contacts.h>
+
+#include "support/random_clouds.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace pcl_bsh {
+namespace {
+
+using test::Cloud;
+using test::Random;
+using test::Scene;
+
+const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
+
+ContactsRequest within(double clearance, std::size_t most)
+{
+  return {clearance, most};
+}
+
+std::vector<std::uint32_t> finiteRecords(const PointsView& view)
+{
+  std::vector<std::uint32_t> records;
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const Point3 p = view.point(view.record(i));
+    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) records.push_back(view.record(i));
+  }
+  return records;
+}
+
+/// All colliding pairs, nearest first, by comparing all.
+std::vector<PointPair> oracle(const Scene& scene)
+{
+  const PointsView a = scene.a.view(), b = scene.b.view();
+  const ExactDistance distance(scene.pose_a, scene.pose_b);
+  std::vector<PointPair> pairs;
+  for (const std::uint32_t i : finiteRecords(a))
+    for (const std::uint32_t j : finiteRecords(b))
+      if (distance.compare(a.point(i), b.point(j), scene.clearance, a.radius(i), b.radius(j)) <= 0)
+        pairs.push_back({i, j});
+  const auto posed = [&](PointPair pair) {
+    return ExactDistance::Pair{a.point(pair.a), b.point(pair.b), a.radius(pair.a), b.radius(pair.b)};
+  };
+  std::sort(pairs.begin(), pairs.end(), [&](PointPair l, PointPair r) {
+    const int sign = distance.compareGaps(posed(l), posed(r));
+    return sign != 0 ? sign < 0 : l < r;
+  });
+  return pairs;
+}
+
+void expectSameAsOracle(const Scene& scene)
+{
+  SCOPED_TRACE(scene.name);
+  const std::vector<PointPair> expected = oracle(scene);
+  const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+  const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
+  const ExactDistance distance(scene.pose_a, scene.pose_b);
+  for (const std::size_t most : {std::size_t{0}, std::size_t{1}, std::size_t{7}, expected.size(), ~std::size_t{0}}) {
+    const ContactsResult result = nearestContacts(placed_a, placed_b, within(scene.clearance, most));
+    ASSERT_EQ(result.contacts.size(), std::min(most, expected.size()));
+    ASSERT_EQ(result.complete, expected.size() <= most);
+    for (std::size_t i = 0; i < result.contacts.size(); ++i) {
+      const Contact& contact = result.contacts[i];
+      ASSERT_EQ(contact.pair, expected[i]) << i << " of " << most;
+      const Point3 p = a.view().point(contact.pair.a), q = b.view().point(contact.pair.b);
+      ASSERT_EQ(contact.distance,
+                distance.gap({p, q, a.view().radius(contact.pair.a), b.view().radius(contact.pair.b)}));
+      const double norm = contact.normal.norm();
+      ASSERT_TRUE(norm == 0.0 || std::abs(norm - 1.0) < 1e-9) << norm;
+    }
+  }
+  PairsWithin all = pairsWithin(placed_a, placed_b, within(scene.clearance, ~std::size_t{0}));
+  std::sort(all.pairs.begin(), all.pairs.end());
+  std::vector<PointPair> sorted = expected;
+  std::sort(sorted.begin(), sorted.end());
+  ASSERT_TRUE(all.complete);
+  ASSERT_EQ(all.pairs, sorted);
+  if (expected.empty()) return;
+  const PairsWithin some = pairsWithin(placed_a, placed_b, within(scene.clearance, expected.size() - 1));
+  ASSERT_FALSE(some.complete);
+  ASSERT_TRUE(pairsWithin(placed_a, placed_b, within(scene.clearance, expected.size())).complete);
+}
+
+TEST(Contacts, SameAsComparingAllPairs)
+{
+  for (std::uint64_t seed = 0; seed < 300; ++seed) expectSameAsOracle(test::anyScene(seed, 60));
+  for (std::uint64_t seed = 1000; seed < 1010; ++seed) expectSameAsOracle(test::anyScene(seed, 300));
+}
+
+TEST(Contacts, CrowdedPlacesCountEveryPoint)
+{
+  const Cloud crowd(std::vector<Point3>(40, Point3{1, 2, 3})), other(std::vector<Point3>(30, Point3{1, 2, 3.5}));
+  expectSameAsOracle({crowd, other, identity, identity, 0.5, "two crowded places"});
+}
+
+TEST(Contacts, NormalsPointFromTheOtherToTheFirst)
+{
+  const Cloud low({{0, 0, 0}}), high({{0, 0, 0.5}});
+  const SphereHierarchy a(high.view()), b(low.view());
+  const ContactsResult result = nearestContacts({a}, {b}, within(0.5, 3));
+  ASSERT_EQ(result.contacts.size(), 1u);
+  EXPECT_EQ(result.contacts[0].distance, 0.5);
+  EXPECT_EQ(result.contacts[0].normal, Eigen::Vector3d(0, 0, 1));
+}
+
+/// Where points have radii, too, float arithmetic decides all but those at the very reach.
+TEST(Contacts, BallsNeedHardlyAnExactDecision)
+{
+  Random random(7);
+  const auto sheet = [&](double height) {
+    std::vector<Point3> points;
+    std::vector<float> radii;
+    for (int i = 0; i < 40; ++i)
+      for (int j = 0; j < 40; ++j) {
+        points.push_back({0.1 * i + random.uniform(0, 0.05), 0.1 * j + random.uniform(0, 0.05), height});
+        radii.push_back(static_cast<float>(random.uniform(0.001, 0.05)));
+      }
+    Cloud cloud(points);
+    cloud.setRadii(radii);
+    return cloud;
+  };
+  const Cloud low = sheet(0), high = sheet(0.31);
+  const SphereHierarchy a(low.view()), b(high.view());
+  const PairsWithin all = pairsWithin({a}, {b}, within(0.4, ~std::size_t{0}));
+  EXPECT_GT(all.pairs.size(), 20000u);
+  EXPECT_LT(all.work.exact_decisions, 10u);
+  EXPECT_LT(anyCollision({a}, {b}, {0.4, {}}).work.exact_decisions, 10u);
+  FlagsRequest request;
+  request.clearance = 0.4;
+  request.flagged = Side::both;
+  EXPECT_LT(collisionFlags({a}, {b}, request).work.exact_decisions, 10u);
+  expectSameAsOracle({low, high, identity, identity, 0.27, "sheets of balls"});
+}
+
+/// The least double clearance that joins two balls, and the next below it: at places that floats hardly hold, turned.
+TEST(Contacts, BallsAtTheirVeryReach)
+{
+  Random random(8);
+  for (int i = 0; i < 300; ++i) {
+    const double far = random.chance(0.5) ? 4e5 : 0.0;
+    const auto any_place = [&] {
+      return Point3{far + random.uniform(-1, 1), 10 * far + random.uniform(-1, 1), random.uniform(-1, 1)};
+    };
+    Cloud one({any_place(), any_place()}), other({any_place()});
+    one.setRadii({static_cast<float>(random.uniform(0, 0.2)), 0.0f});
+    other.setRadii({static_cast<float>(random.uniform(0, 0.2))});
+    Eigen::Isometry3d pose = identity;
+    pose.linear() = Eigen::AngleAxisd(random.uniform(0, 0.1) / (1 + far), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const ExactDistance distance(pose, identity);
+    const double gap =
+        distance.gap({one.view().point(0), other.view().point(0), one.view().radius(0), other.view().radius(0)});
+    if (!(gap > 0.0)) continue;
+    for (const double clearance : {std::nextafter(gap, 0.0), gap, std::nextafter(gap, 9.0)})
+      expectSameAsOracle({one, other, pose, identity, clearance, "two balls"});
+  }
+}
+
+TEST(Contacts, RefusesWhatTheOthersRefuse)
+{
+  const Cloud point({{0, 0, 0}});
+  const SphereHierarchy a(point.view());
+  EXPECT_THROW(nearestContacts({a}, {a}, within(-1, 1)), std::invalid_argument);
+  EXPECT_THROW(pairsWithin({a}, {a}, within(-1, 1)), std::invalid_argument);
+}
+
+} // namespace
+} // namespace pcl_bsh

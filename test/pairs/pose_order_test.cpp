@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lists of poses of bodies whose lengths are so small that squares of them vanish.
+#include <pcl_bsh/roadmap/brute_force.h>
+#include <pcl_bsh/roadmap/collide_at_poses.h>
+#include <pcl_bsh/roadmap/pose_order.h>
+
+#include "support/random_clouds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using test::Cloud;
+using test::Random;
+
+TEST(PoseOrder, MotionBoundOfTheSmallestLengths)
+{
+  for (const double scale : {1.0, 1e-100, 1e-160, 1e-165, 1e-200, 1e-310}) {
+    SCOPED_TRACE(scale);
+    const Cloud cloud({{scale, 0, 0}, {0, 2 * scale, 0}}, {Scalar::float64, 0, 0});
+    HierarchyOptions one_voxel;
+    one_voxel.voxel_edge = 8.0;
+    const SphereHierarchy hierarchy(cloud.view(), one_voxel);
+    const BodyBall body(hierarchy);
+    Eigen::Isometry3d from = Eigen::Isometry3d::Identity(), to = from;
+    to.translation() = Eigen::Vector3d(0, 3 * scale, 4 * scale);
+    EXPECT_GE(motionBound(body, from, to), 5 * scale);
+    EXPECT_LT(motionBound(body, from, to), 5.001 * scale + 0x1p-1050);
+    EXPECT_EQ(motionBound(body, from, from), 0.0);
+  }
+}
+
+/// At clearances at the distance, and on either side of it.
+TEST(CollideAtPoses, OfTheSmallestLengths)
+{
+  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+    Random random(seed);
+    const double scale = std::pow(10.0, random.uniform(-323, -140));
+    SCOPED_TRACE(std::to_string(seed) + ", scale 1e" + std::to_string(std::log10(scale)));
+    const auto points = [&] { return test::makePoints(random.pick(test::all_shapes), 40, scale, random); };
+    const Cloud scan(points(), {Scalar::float64, 0, 0}), body(points(), {Scalar::float64, 0, 0});
+    const SphereHierarchy a(scan.view()), b(body.view());
+    std::vector<Eigen::Isometry3d> poses(12, Eigen::Isometry3d::Identity());
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      if (seed % 2 == 0) poses[k].rotate(random.rotation());
+      const double reach = random.uniform(0, 4) * scale;
+      const Point3 at = random.point([&] { return reach * random.uniform(-1, 1); });
+      poses[k].translation() = Eigen::Vector3d(at[0], at[1], at[2]);
+    }
+    const DistancesAtPoses truth = brute_force::closestPairAtPoses(a, b, poses);
+    EXPECT_EQ(closestPairAtPoses(a, b, poses).distances, truth.distances);
+    for (const double clearance : {truth.distances[0], std::nextafter(truth.distances[1], 0.0), scale}) {
+      AnyRequest request;
+      request.clearance = clearance;
+      EXPECT_EQ(anyCollisionAtPoses(a, b, poses, request).verdicts,
+                brute_force::anyCollisionAtPoses(a, b, poses, request).verdicts);
+    }
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The oracle itself, against answers known beforehand.
+#include <pcl_bsh/roadmap/brute_force.h>
+
+#include "support/question.h"
+#include "support/random_clouds.h"
+
+#include <gtest/gtest.h>
+
+#include <cfenv>
+#include <cmath>
+#include <limits>
+
+namespace pcl_bsh {
+namespace {
+
+using Flags = std::vector<std::uint8_t>;
+using test::Cloud;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+test::Question within(double clearance, Side flagged = Side::a)
+{
+  test::Question request;
+  request.clearance = clearance;
+  request.flagged = flagged;
+  return request;
+}
+
+class BruteForce : public testing::Test {
+protected:
+  const Cloud a_{std::vector<Point3>{{10, 0, 0}, {nan, 0, 0}, {0, 0, 0}, {0, 0, 0}, {3, 4, 0}}};
+  const Cloud b_{std::vector<Point3>{{0, 0, -5}, {3, 4, 0}, {0, infinity, 0}, {0, 5, 0}}};
+  const SphereHierarchy hierarchy_a_{a_.view()}, hierarchy_b_{b_.view()};
+  const Placed pa_{hierarchy_a_}, pb_{hierarchy_b_};
+};
+
+TEST_F(BruteForce, FlagsTheSideAskedFor)
+{
+  const FlagsResult of_a = brute_force::collisionFlags(pa_, pb_, within(5));
+  EXPECT_EQ(of_a.a, (Flags{0, 0, 1, 1, 1}));
+  EXPECT_TRUE(of_a.b.empty());
+  EXPECT_EQ(of_a.colliding_a, 3u);
+  EXPECT_EQ(of_a.colliding_b, 0u);
+  const FlagsResult of_b = brute_force::collisionFlags(pa_, pb_, within(0, Side::b));
+  EXPECT_TRUE(of_b.a.empty());
+  EXPECT_EQ(of_b.b, (Flags{0, 1, 0, 0}));
+  EXPECT_EQ(of_b.colliding_b, 1u);
+  const FlagsResult of_both = brute_force::collisionFlags(pa_, pb_, within(5, Side::both));
+  EXPECT_EQ(of_both.a, of_a.a);
+  EXPECT_EQ(of_both.b, (Flags{1, 1, 0, 1}));
+  EXPECT_EQ(of_both.work.exact_decisions, 12u);
+}
+
+TEST_F(BruteForce, FindsTheSmallestWitness)
+{
+  EXPECT_EQ(brute_force::anyCollision(pa_, pb_, within(5)).witness, (PointPair{2, 0}));
+  EXPECT_EQ(brute_force::anyCollision(pa_, pb_, within(0)).witness, (PointPair{4, 1}));
+  EXPECT_EQ(brute_force::anyCollision({hierarchy_b_}, {hierarchy_b_}, within(0)).witness, (PointPair{0, 0}));
+  const Cloud far({{100, 0, 0}});
+  const SphereHierarchy away(far.view());
+  const AnyResult none = brute_force::anyCollision(pa_, {away}, within(89.999));
+  EXPECT_EQ(none.verdict, Verdict::free);
+  EXPECT_FALSE(none.witness);
+}
+
+TEST_F(BruteForce, ClosestPairIsTheSmallestOfEquals)
+{
+  Cloud points({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  points.restrictTo({3, 2, 1}); // the order of a subset does not matter
+  const Cloud origin({{7, 7, 7}, {0, 0, 0}, {0, 0, 0}});
+  const SphereHierarchy hierarchy(points.view()), target(origin.view());
+  const DistanceResult result = brute_force::closestPair({hierarchy}, {target});
+  EXPECT_EQ(result.distance, 1.0);
+  EXPECT_EQ(result.pair, (PointPair{1, 1}));
+}
+
+TEST_F(BruteForce, RadiiAddToTheClearanceAndShortenTheDistance)
+{
+  Cloud a({{0, 0, 0}, {0, 3, 4}});
+  a.setRadii({0.0f, 1.5f});
+  Cloud b({{0, 0, 0}});
+  b.setRadii({0.5f});
+  const SphereHierarchy ha(a.view()), hb(b.view());
+  EXPECT_EQ(brute_force::collisionFlags({ha}, {hb}, within(3)).a, (Flags{1, 1}));
+  EXPECT_EQ(brute_force::collisionFlags({ha}, {hb}, within(std::nextafter(3.0, 0.0))).a, (Flags{1, 0}));
+  const DistanceResult result = brute_force::closestPair({ha}, {hb});
+  EXPECT_EQ(result.distance, -0.5);
+  EXPECT_EQ(result.pair, (PointPair{0, 0}));
+}
+
+TEST_F(BruteForce, NothingIsInfinitelyFar)
+{
+  const Cloud bad({{nan, 0, 0}, {0, 0, -infinity}});
+  const SphereHierarchy nothing(bad.view());
+  for (const DistanceResult& result :
+       {brute_force::closestPair({nothing}, pb_), brute_force::closestPair(pb_, {nothing})}) {
+    EXPECT_EQ(result.distance, infinity);
+    EXPECT_FALSE(result.pair);
+  }
+  EXPECT_EQ(brute_force::anyCollision({nothing}, pb_, within(1e300)).verdict, Verdict::free);
+  EXPECT_EQ(brute_force::collisionFlags({nothing}, pb_, within(1e300)).a, (Flags{0, 0}));
+}
+
+TEST_F(BruteForce, AnswersAlikeWhateverTheRoundingMode)
+{
+  test::Random random(25);
+  for (int i = 0; i < 200; ++i) {
+    const auto coordinate = [&] { return random.uniform(-1, 1) * 1.3; };
+    const Cloud p({random.point(coordinate)}, {Scalar::float64}), q({random.point(coordinate)}, {Scalar::float64});
+    const SphereHierarchy hp(p.view()), hq(q.view());
+    const double distance = brute_force::closestPair({hp}, {hq}).distance;
+    const bool expected = brute_force::anyCollision({hp}, {hq}, within(distance)).witness.has_value();
+    for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+      std::fesetround(mode);
+      const DistanceResult again = brute_force::closestPair({hp}, {hq});
+      const AnyResult any = brute_force::anyCollision({hp}, {hq}, within(distance));
+      std::fesetround(FE_TONEAREST);
+      EXPECT_EQ(again.distance, distance);
+      EXPECT_EQ(any.witness.has_value(), expected);
+    }
+  }
+}
+
+TEST_F(BruteForce, ChecksTheRequest)
+{
+  EXPECT_THROW(brute_force::anyCollision(pa_, pb_, within(-1)), std::invalid_argument);
+  EXPECT_THROW(brute_force::collisionFlags(pa_, pb_, within(nan)), std::invalid_argument);
+  EXPECT_THROW(brute_force::closestPair(pa_, pb_, {Accuracy::tolerance(-1)}), std::invalid_argument);
+}
+
+} // namespace
+} // namespace pcl_bsh

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl_bsh/collide.h>
+
+namespace pcl_bsh::test {
+
+/// What a test asks several queries alike: the request of each.
+struct Question {
+  double clearance = 0.0;
+  Side flagged = Side::a;
+  unsigned threads = 1;
+  Accuracy accuracy;
+
+  operator AnyRequest() const { return {clearance, accuracy, threads}; }
+  operator FlagsRequest() const { return {clearance, flagged, threads, accuracy}; }
+  operator DistanceRequest() const { return {accuracy, threads}; }
+};
+
+} // namespace pcl_bsh::test

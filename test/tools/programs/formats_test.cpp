@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every program takes every format, wherever it takes a cloud.
+#include "program_run.h"
+
+#include <pcl_bsh/io/clouds/cloud_file.h>
+
+#include <pcl/conversions.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::HasSubstr;
+
+class EveryFormat : public testing::Test {
+protected:
+  /// Thirty corners of ten triangles, near the origin, once in each format: a mesh where it has faces.
+  EveryFormat()
+  {
+    pcl::PointCloud<pcl::PointXYZ> corners;
+    std::ostringstream off, obj, stl, faces;
+    off << "OFF\n30 10 0\n";
+    stl << "solid c\n";
+    for (int i = 0; i < 30; ++i) {
+      corners.emplace_back(0.1f * static_cast<float>(i * 7 % 10), 0.1f * static_cast<float>(i * 3 % 10),
+                           0.03f * static_cast<float>(i + 1));
+      const pcl::PointXYZ& p = corners.back();
+      std::ostringstream place;
+      place << p.x << ' ' << p.y << ' ' << p.z << '\n';
+      off << place.str();
+      obj << "v " << place.str();
+      if (i % 3 == 0) stl << "facet normal 0 0 1\nouter loop\n";
+      stl << "vertex " << place.str();
+      if (i % 3 == 2) {
+        stl << "endloop\nendfacet\n";
+        faces << "3 " << i - 2 << ' ' << i - 1 << ' ' << i << '\n';
+        obj << "f " << i - 1 << ' ' << i << ' ' << i + 1 << '\n';
+      }
+    }
+    folder.write("c.off", off.str() + faces.str());
+    folder.write("c.obj", obj.str());
+    folder.write("c.stl", stl.str() + "endsolid c\n");
+    pcl::PCLPointCloud2 cloud;
+    pcl::toPCLPointCloud2(corners, cloud);
+    io::writeMesh(folder / "mesh.ply", cloud, io::readMesh(folder / "c.off").triangles);
+    for (const char* name : {"c.pcd", "c.ply", "c.las", "c.pts", "c.ptx", "c.csv", "c.xyz", "c.txt"})
+      io::writeCloud(folder / name, cloud);
+  }
+
+  /// In the folder of the clouds. @return what it said
+  std::string expectDone(const std::string& program, const std::string& arguments) const
+  {
+    const Outcome done = run(program, arguments, folder.path());
+    EXPECT_EQ(done.exit_code, 0) << program << ' ' << arguments << '\n' << done.err;
+    return done.out + done.err;
+  }
+
+  /// Each format once in the first place and once in the second.
+  template <typename Use>
+  static void forEachPair(const Use& use)
+  {
+    for (std::size_t i = 0; i < names.size(); ++i) use(names[i], names[(i + 1) % names.size()]);
+  }
+
+  static const std::vector<std::string> names;
+  io::TemporaryFolder folder;
+};
+
+const std::vector<std::string> EveryFormat::names = {"c.pcd", "c.ply", "mesh.ply", "c.las", "c.pts", "c.ptx",
+                                                     "c.csv", "c.xyz", "c.txt",    "c.off", "c.obj", "c.stl"};
+
+TEST_F(EveryFormat, IsTakenByCollide)
+{
+  forEachPair([&](const std::string& input, const std::string& obstacle) {
+    EXPECT_THAT(expectDone("pcl_bsh_collide", input + " " + obstacle + " out.ply --clearance 0.05"),
+                HasSubstr(" collide"));
+  });
+}
+
+TEST_F(EveryFormat, IsTakenByAccuracy)
+{
+  forEachPair([&](const std::string& a, const std::string& b) {
+    expectDone("pcl_bsh_accuracy", a + " " + b + " --clearance 0.05 --repeat 1 --out study");
+  });
+}
+
+TEST_F(EveryFormat, IsTakenByCertify)
+{
+  if (!std::filesystem::exists(PCL_BSH_PROGRAM_DIR "/pcl_bsh_certify")) GTEST_SKIP() << "built without CGAL";
+  for (const std::string& name : names) expectDone("pcl_bsh_certify", name + " --sample 1 --fit box");
+}
+
+TEST_F(EveryFormat, IsTakenByView)
+{
+  if (!std::filesystem::exists(PCL_BSH_PROGRAM_DIR "/pcl_bsh_view")) GTEST_SKIP() << "built without VTK";
+  forEachPair([&](const std::string& input, const std::string& obstacle) {
+    expectDone("pcl_bsh_view", input + " " + obstacle + " --model " + obstacle +
+                                   " --clearance 0.05 --size 160x120 --screenshot out.png");
+  });
+}
+
+TEST_F(EveryFormat, IsTakenBySite)
+{
+  std::string all;
+  for (const std::string& name : names) all += " " + name;
+  expectDone("pcl_bsh_site", "make" + all + " --vertices-only --out site");
+  EXPECT_THAT(expectDone("pcl_bsh_site", "validate site"), HasSubstr("360"));
+  for (const std::string& name : names)
+    expectDone("pcl_bsh_site", "collide site " + name + " --clearance 0.05 --report report.json");
+}
+
+TEST_F(EveryFormat, IsTakenByScene)
+{
+  std::string clouds, objects;
+  for (const std::string& name : names) {
+    const std::string between = clouds.empty() ? "" : ", ";
+    clouds += between + "\"" + name + "\": \"" + name + '"';
+    objects += between + R"({"name": ")" + name + R"(", "cloud": ")" + name + "\"}";
+  }
+  folder.write("scene.json", "{\"clouds\": {" + clouds + "}, \"objects\": [" + objects +
+                                 R"(], "clearance": 0.05, "tolerance": 0.01, "steps": 1, "dt": 0.1,
+                                 "effects": {"any": true}})");
+  EXPECT_THAT(expectDone("pcl_bsh_scene", "scene.json"), HasSubstr("12 objects"));
+}
+
+/// Written, too, where the format can be.
+TEST_F(EveryFormat, IsTakenByPipeline)
+{
+  const auto output = [](const std::string& input) {
+    return "out_" + input + (input.ends_with(".off") || input.ends_with(".stl") ? ".pcd" : "");
+  };
+  const auto writer = [](const std::string& file) {
+    const std::string extension = file.substr(file.rfind('.') + 1);
+    const bool columns = extension == "csv" || extension == "xyz" || extension == "txt";
+    return "{\"type\": \"writers." + (columns ? "text" : extension) + "\", \"filename\": \"" + file + "\"}";
+  };
+  std::string stages;
+  forEachPair([&](const std::string& input, const std::string& obstacle) {
+    stages += (stages.empty() ? "\"" : ",\n\"") + input +
+              R"(", {"type": "filters.bsh_flag", "clearance": 0.05, "obstacle": ")" + obstacle + "\"}, " +
+              writer(output(input));
+  });
+  folder.write("pipeline.json", "[" + stages + "]");
+  expectDone("pcl_bsh_pipeline", "pipeline.json");
+  for (const std::string& name : names) EXPECT_EQ(io::readCloud(folder / output(name)).width, 30u) << name;
+}
+
+} // namespace
+} // namespace pcl_bsh

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs a program of the project and keeps all that it says.
+#pragma once
+
+#include "io/clouds/samples.h"
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+
+struct ProgramOutcome {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+using Outcome = ProgramOutcome; // a scene's move has an Outcome, too
+
+/// In the shell, so quote what it would change. @param place the folder to run in; empty: this one
+inline Outcome run(const std::string& program, const std::string& arguments, const std::filesystem::path& place = {})
+{
+  const io::TemporaryFolder folder;
+  const std::string out = (folder / "out").string();
+  const std::string err = (folder / "err").string();
+  const std::string command = (place.empty() ? "" : "cd " + place.string() + " && ") + "{ " + PCL_BSH_PROGRAM_DIR +
+                              "/" + program + " " + arguments + "\n} >" + out + " 2>" + err;
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, io::contentOf(out), io::contentOf(err)};
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What users copy from runs as it stands: the README's commands, in their order, and each sample scene and pipeline.
+#include "support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <sstream>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path source = PCL_BSH_SOURCE_DIR;
+
+/// A clone after the README's first command: its samples, the programs, and the scans of the demonstration.
+class Samples : public testing::Test {
+protected:
+  Samples()
+  {
+    fs::create_directory(clone / "build");
+    fs::create_directory_symlink(source / "examples", clone / "examples");
+    fs::create_directory(clone / "build/release");
+    fs::create_directory_symlink(PCL_BSH_PROGRAM_DIR, clone / "build/release/bin");
+    if (haveScans()) fs::create_directory_symlink(source / "build/demo", clone / "build/demo");
+  }
+
+  static bool haveScans()
+  {
+    return fs::exists(source / "build/demo/building.ply") && fs::exists(source / "build/demo/man.off");
+  }
+
+  /// In the clone's folder, by bash, up to the first command that fails.
+  void expectDone(const std::string& script) const
+  {
+    clone.write("script.sh", "set -euo pipefail\n" + script);
+    const std::string said = (clone / "said").string();
+    const int status =
+        std::system(("cd " + clone.path().string() + " && bash script.sh >" + said + " 2>&1 </dev/null").c_str());
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << script << '\n' << files::contentOf(said);
+  }
+
+  const files::TemporaryFolder clone;
+};
+
+constexpr auto no_scans = "the demonstration's scans are not there: run bash examples/demo/fetch_scans.sh build/demo";
+
+/// The blocks of commands, without those whose first line says that they need more than a clone and its programs.
+std::vector<std::string> blocksOf(const fs::path& document)
+{
+  std::istringstream lines(files::contentOf(document));
+  std::vector<std::string> blocks;
+  for (std::string line; std::getline(lines, line);) {
+    if (line != "```bash") continue;
+    std::string block;
+    while (std::getline(lines, line) && line != "```") block += line + '\n';
+    const auto begins = [&](const char* text) { return block.rfind(text, 0) == 0; };
+    if (!begins("# needs root") && !begins("# opens windows") && !begins("# builds")) blocks.push_back(block);
+  }
+  return blocks;
+}
+
+/// The commands of a document, in their order, in a clone of its own.
+class Documents : public Samples, public testing::WithParamInterface<const char*> {};
+
+TEST_P(Documents, CommandsRunInTheirOrder)
+{
+  if (!haveScans()) GTEST_SKIP() << no_scans;
+  if (!fs::exists(clone / "build/release/bin/pcl_bsh_view"))
+    GTEST_SKIP() << "pcl_bsh_view is not built: install libvtk9-dev, libegl-dev and libx11-dev";
+  std::string all = "export PATH=\"$PWD/build/release/bin:$PATH\"\n";
+  const std::vector<std::string> blocks = blocksOf(source / GetParam());
+  EXPECT_FALSE(blocks.empty());
+  for (const std::string& block : blocks) all += block;
+  expectDone(all);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, Documents,
+                         testing::Values("README.md", "filters/pipeline/PIPELINES.md", "pcl_bsh/io/FORMATS.md",
+                                         "pcl_bsh/query/ACCURACY.md", "pcl_bsh/scene/SCENES.md",
+                                         "pcl_bsh/site/SITES.md", "pcl_bsh/tools/viewer/VIEWER.md",
+                                         "pcl_bsh/trajectory/PATHS.md"));
+
+/// What one document points at is there.
+TEST_F(Samples, LinksOfDocumentsLead)
+{
+  const auto skipped = [](const fs::path& path) {
+    const std::string name = path.filename().string();
+    return name == "build" || name == ".git" || name == "corpus";
+  };
+  std::size_t links = 0;
+  for (auto file = fs::recursive_directory_iterator(source); file != fs::recursive_directory_iterator(); ++file) {
+    if (skipped(file->path())) file.disable_recursion_pending();
+    if (file->path().extension() != ".md") continue;
+    const std::string text = files::contentOf(file->path());
+    for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
+      std::string link = text.substr(at + 2, text.find(')', at) - at - 2);
+      link = link.substr(0, link.find('#'));
+      if (link.empty() || link.rfind("http", 0) == 0 || link.find(' ') != std::string::npos) continue;
+      EXPECT_TRUE(fs::exists(file->path().parent_path() / link)) << file->path() << " points at " << link;
+      ++links;
+    }
+  }
+  EXPECT_GT(links, 50U);
+}
+
+TEST_F(Samples, EachPipelineRunsOnTheCloudsMadeForIt)
+{
+  expectDone("bash examples/pipelines/make_clouds.sh build/samples");
+  std::size_t run = 0;
+  for (const auto& entry : fs::directory_iterator(source / "examples/pipelines")) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() != ".json" || name.find(".schema.") != std::string::npos) continue;
+    expectDone("cd build/samples; ../release/bin/pcl_bsh_pipeline ../../examples/pipelines/" + name);
+    ++run;
+  }
+  EXPECT_GE(run, 7U);
+  // The machine's side passes the column by 5 cm: its corners do not come near, its faces do.
+  const std::string clashes = files::contentOf(clone / "build/samples/machine_clashes.json");
+  EXPECT_NE(clashes.find("\"closest_pose\""), std::string::npos);
+  EXPECT_EQ(clashes.find("\"closest_pose\""), clashes.rfind("\"closest_pose\"")) << "one clash";
+  EXPECT_NE(clashes.find("\"triangle\""), std::string::npos);
+  EXPECT_GT(fs::file_size(clone / "build/samples/road.las"), 10000U);
+}
+
+/// Two epochs: what came, what went, a page, and a picture.
+TEST_F(Samples, WhatChangedIsShown)
+{
+  expectDone("bash examples/pipelines/make_clouds.sh build/samples; cd build/samples\n"
+             "../release/bin/pcl_bsh_pipeline ../../examples/pipelines/what_changed.json");
+  const fs::path made = clone / "build/samples";
+  EXPECT_NE(files::contentOf(made / "changes.html").find("Hausdorff distance [m]"), std::string::npos);
+  if (!fs::exists(clone / "build/release/bin/pcl_bsh_view"))
+    GTEST_SKIP() << "pcl_bsh_view is not built: install libvtk9-dev, libegl-dev and libx11-dev";
+  expectDone("cd build/samples; ../release/bin/pcl_bsh_view changes.pcd --color distance --range 0.5 --unit m "
+             "--screenshot changes.png");
+  EXPECT_GT(fs::file_size(made / "changes.png"), 10000U);
+}
+
+TEST_F(Samples, EachSceneRuns)
+{
+  std::size_t run = 0;
+  for (const auto& entry : fs::directory_iterator(source / "examples/scenes")) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() != ".json" || name.find(".schema.") != std::string::npos) continue;
+    // Links would lead back to the source's folder, where the scans may not be.
+    fs::create_directories(clone / "own/scenes");
+    const std::string scene = files::contentOf(entry.path());
+    const bool scans = scene.find("build/demo/") != std::string::npos;
+    if (scans && !haveScans()) continue;
+    clone.write("own/scenes/" + name, scene);
+    expectDone("build/release/bin/pcl_bsh_scene own/scenes/" + name + " --out run_" + name);
+    ++run;
+  }
+  EXPECT_GE(run, 3U);
+  if (!haveScans()) GTEST_SKIP() << "all but walk.json ran: " << no_scans;
+}
+
+} // namespace
+} // namespace pcl_bsh

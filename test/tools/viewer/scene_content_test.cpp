@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scenes: where objects are at each step, what collides there, and that the picture says so.
+#include "pixels.h"
+
+#include <pcl_bsh/tools/viewer/content/scene_content.h>
+#include <pcl_bsh/tools/viewer/viewer.h>
+
+#include <pcl_bsh/collide.h>
+
+#include <gmock/gmock.h>
+
+#include <vtkCommand.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkNew.h>
+#include <vtkSliderRepresentation2D.h>
+#include <vtkXMLMultiBlockDataReader.h>
+
+namespace pcl_bsh::viewer {
+namespace {
+
+using testing::HasSubstr;
+
+/// A ball that flies into another, or beside it: centres 2 apart at step 0, one in the other at step 4.
+class SceneRunTest : public ViewTest {
+protected:
+  SceneRunTest() { unsetenv("DISPLAY"); }
+
+  Options options(const std::string& effects = R"("any": true)", const std::string& more = "") const
+  {
+    Options made;
+    made.scene = folder.write("crash.json", R"({
+      "clouds": { "ball": { "sphere": { "radius": 0.5 }, "spacing": 0.05 } },
+      "objects": [ { "name": "still", "cloud": "ball", "fixed": true },
+                   { "name": "flying", "cloud": "ball", "pose": [-2, 0, 0], "motion": { "velocity": [1, 0, 0] })" +
+                                                more + R"(} ],
+      "clearance": 0.05, "tolerance": 0.001, "steps": 4, "dt": 0.5, "effects": { )" +
+                                                effects + " } }");
+    made.width = 400;
+    made.height = 300;
+    made.camera.kind = Camera::Kind::front;
+    made.threads = 1;
+    return made;
+  }
+
+  /// What collides at a step, by the query for two clouds.
+  static std::size_t collidingAt(const ViewContent& content, std::size_t step, double clearance)
+  {
+    FlagsRequest request;
+    request.clearance = clearance;
+    request.flagged = Side::both;
+    const FlagsResult flags = collisionFlags({*content.viewedClouds()[0].hierarchy, content.poseOf(0, step)},
+                                             {*content.viewedClouds()[1].hierarchy, content.poseOf(1, step)}, request);
+    return static_cast<std::size_t>(std::count(flags.a.begin(), flags.a.end(), 1) +
+                                    std::count(flags.b.begin(), flags.b.end(), 1));
+  }
+};
+
+TEST_F(SceneRunTest, CollidingPointsStandOutAtTheStepsWhereThereAreAny)
+{
+  OffscreenView set(options());
+  const double contact[3] = {-0.25, 0.0, 0.0};
+  for (const std::size_t step : {0u, 3u, 1u}) {
+    set.view->show(step);
+    const Pixels pixels = set.draw();
+    const auto [x, y] = set.seen(contact);
+    const std::size_t marked = pixels.countNear(colliding_color, x, y, 60);
+    const std::size_t marked_flying = pixels.countNear(obstacle_colliding_color, x, y, 60);
+    if (step == 3) {
+      EXPECT_GT(marked, 50u);
+      EXPECT_GT(marked_flying, 50u);
+    }
+    else {
+      EXPECT_EQ(marked + marked_flying, 0u) << "step " << step;
+    }
+    EXPECT_GT(pixels.count(scan_color, 60), 500u) << "the still ball";
+    EXPECT_GT(pixels.count(obstacle_color, 60), 500u) << "the flying ball";
+  }
+}
+
+TEST_F(SceneRunTest, FlagsAreThoseOfTheTwoCloudsInAnyOrderOfSteps)
+{
+  const std::unique_ptr<ViewContent> scene = makeSceneContent(options());
+  ASSERT_EQ(scene->steps(), 5u);
+  for (const std::size_t step : {4u, 1u, 3u, 0u, 2u}) {
+    EXPECT_EQ(scene->poseOf(1, step).translation(), Eigen::Vector3d(-2 + 0.5 * static_cast<double>(step), 0, 0));
+    EXPECT_EQ(scene->collisions(step).colliding, collidingAt(*scene, step, 0.05)) << step;
+  }
+  EXPECT_EQ(scene->collisions(1).colliding, 0u);
+  EXPECT_GT(scene->collisions(3).colliding, 0u);
+  EXPECT_THAT(scene->heading(scene->collisions(3), 3), HasSubstr("step 3 of 0..4, 1.5 s"));
+  EXPECT_EQ(scene->paths(3).poses.at(0).size(), 4u);
+}
+
+TEST_F(SceneRunTest, ObjectsHaltAsTheSceneSaysAndAClearanceShowsWhatIsNear)
+{
+  Options near = options(R"("response": "stop")");
+  const std::unique_ptr<ViewContent> scene = makeSceneContent(near);
+  EXPECT_EQ(scene->collisions(4).colliding, 0u);
+  EXPECT_NEAR(scene->poseOf(1, 4).translation().x(), -1.05, 0.02) << "before the other";
+  EXPECT_THAT(scene->heading(scene->collisions(4), 4), HasSubstr("flying meets still"));
+  near.clearance = 0.2;
+  near.closest = true;
+  const std::unique_ptr<ViewContent> wide = makeSceneContent(near);
+  EXPECT_EQ(wide->poseOf(1, 4).matrix(), scene->poseOf(1, 4).matrix()) << "the path is the scene's";
+  EXPECT_EQ(wide->collisions(4).colliding, collidingAt(*wide, 4, 0.2));
+  EXPECT_GT(wide->collisions(4).colliding, 0u);
+  EXPECT_NEAR(wide->collisions(4).closest->distance, 0.05, 0.001);
+}
+
+TEST_F(SceneRunTest, WavesRunForwardAndBack)
+{
+  const Options waving =
+      options(R"("deform": 1.5)", R"(, "wave": { "amplitude": [0, 0, 0.3], "length": 1.3, "period": 1.7 })");
+  const std::unique_ptr<ViewContent> scene = makeSceneContent(waving);
+  EXPECT_TRUE(scene->deforms(1));
+  const auto topAt = [&](std::size_t step) {
+    scene->collisions(step);
+    return scene->viewedClouds()[1].points().point(0)[2];
+  };
+  const double early = topAt(1);
+  EXPECT_NE(topAt(3), early);
+  EXPECT_EQ(topAt(1), early);
+  for (const std::size_t step : {3u, 2u}) {
+    const StepCollisions found = scene->collisions(step); // puts the points where they are then
+    EXPECT_EQ(found.colliding, collidingAt(*scene, step, 0.05)) << step;
+  }
+
+  OffscreenView set(waving);
+  set.view->show(3);
+  const Pixels before = set.draw();
+  set.view->show(0);
+  EXPECT_GT(set.draw().differing(before), 500u);
+  set.view->show(3);
+  EXPECT_EQ(set.draw().bytes, before.bytes);
+}
+
+TEST_F(SceneRunTest, TheSliderMovesObjectsAndFlagsFollow)
+{
+  const Xvfb display;
+  const std::unique_ptr<ViewContent> scene = makeSceneContent(options());
+  Viewer viewer(*scene);
+  ASSERT_NE(viewer.slider(), nullptr);
+  const Pixels before = pixelsOf(viewer.window());
+  vtkSliderRepresentation2D::SafeDownCast(viewer.slider()->GetRepresentation())->SetValue(3.0);
+  viewer.slider()->InvokeEvent(vtkCommand::InteractionEvent);
+  EXPECT_EQ(viewer.renderView().step(), 3u);
+  EXPECT_EQ(viewer.renderView().collisions().flags, scene->collisions(3).flags);
+  EXPECT_GT(pixelsOf(viewer.window()).count(colliding_color), before.count(colliding_color) + 50);
+}
+
+TEST_F(SceneRunTest, TheProgramDrawsAndExportsAStep)
+{
+  const std::string scene = options().scene->string();
+  const auto drawn = [&](const std::string& step) {
+    const Outcome done = run("pcl_bsh_view", "--scene " + scene + " --camera front --size 400x300 --step " + step +
+                                                 " --screenshot " + (folder / "p.png").string());
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    return readPng(folder / "p.png");
+  };
+  EXPECT_GT(drawn("3").countNear(obstacle_colliding_color, 200, 150, 80), 50u);
+  EXPECT_EQ(drawn("1").countNear(obstacle_colliding_color, 200, 150, 80), 0u);
+  ASSERT_EQ(run("pcl_bsh_view", "--scene " + scene + " --step 3 --export " + (folder / "f.vtm").string()).exit_code, 0);
+  vtkNew<vtkXMLMultiBlockDataReader> blocks;
+  blocks->SetFileName((folder / "f.vtm").c_str());
+  blocks->Update();
+  EXPECT_EQ(vtkMultiBlockDataSet::SafeDownCast(blocks->GetOutput())->GetNumberOfBlocks(), 11u)
+      << "two balls; spheres, glyphs, voxels, cells of both; the path";
+}
+
+TEST_F(SceneRunTest, RefusesWhatIsNoSceneOrNoStepOfIt)
+{
+  const auto fails = [&](const std::string& arguments, int code, const std::string& message) {
+    const Outcome failed = run("pcl_bsh_view", arguments + " --screenshot " + (folder / "p.png").string());
+    EXPECT_EQ(failed.exit_code, code) << arguments;
+    EXPECT_THAT(failed.err, HasSubstr(message)) << arguments;
+    EXPECT_EQ(std::count(failed.err.begin(), failed.err.end(), '\n'), 1) << failed.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "p.png")) << arguments;
+  };
+  const std::string scene = "--scene " + options().scene->string();
+  fails("--scene " + (folder / "none.json").string(), 1, "none.json");
+  fails("--scene " + folder.write("bad.json", R"({ "steps": 1, "colour": 2 })").string(), 1, "'colour'");
+  fails(scene + " --step 5", 2, "--step: 5: the scene has steps 0 to 4");
+  fails(scene + " --step=-1", 2, "--step");
+  fails(scene + ' ' + floor.string(), 2, "CLOUD");
+  fails(scene + " --model " + ball.string(), 2, "--model");
+  fails(scene + " --pose 1,0,0,0,0,0", 2, "--pose");
+  fails(scene + " --trajectory " + path.string(), 2, "--trajectory");
+  fails(scene + " --trace", 2, "--trace");
+  fails(scene + " --color height", 2, "--color");
+  fails(scene + " --clearance -1", 1, "clearance");
+  fails(scene + " --export " + (folder / "p.vtp").string(), 2, ".vtm");
+}
+
+} // namespace
+} // namespace pcl_bsh::viewer
