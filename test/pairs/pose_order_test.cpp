@@ -64,5 +64,24 @@ TEST(CollideAtPoses, OfTheSmallestLengths)
   }
 }
 
+/// Squares that are the smallest doubles, a few of them, err by as much as they are.
+TEST(CollideAtPoses, OfLengthsWhoseSquaresAreTheSmallestDoubles)
+{
+  HierarchyOptions one_voxel; // whose sphere is small beside its distance
+  one_voxel.voxel_edge = 8.0;
+  for (double x = 1.5e-162; x < 1e-161; x *= 1.04) {
+    SCOPED_TRACE(x);
+    const Cloud one({{0, 0, 0}, {1e-175, 0, 0}}, {Scalar::float64, 0, 0});
+    const Cloud other({{x, x, x}, {x, x, x + 1e-175}}, {Scalar::float64, 0, 0});
+    const SphereHierarchy a(one.view(), one_voxel), b(other.view(), one_voxel);
+    const std::vector<Eigen::Isometry3d> poses(3, Eigen::Isometry3d::Identity());
+    for (const double share : {0.99, 1.01}) {
+      AnyRequest request;
+      request.clearance = share * std::sqrt(3.0) * x;
+      EXPECT_EQ(anyCollisionAtPoses(a, b, poses, request).colliding, share < 1.0 ? 0u : 3u);
+    }
+  }
+}
+
 } // namespace
 } // namespace pcl_bsh
