@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How work and time grow where nearly all pairs of points are alike: by which power of the number of points.
-#include "../query/adversarial_clouds.h"
+#include "../support/adversarial_clouds.h"
 #include "program.h"
 
-#include <pcl_bsh/collision/collide.h>
+#include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
