@@ -14,8 +14,7 @@ namespace {
 class Descent {
 public:
   Descent(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point)
-  : query_(query),
-    results_(results),
+  : results_(results),
     point_(point),
     model_(query.model.storage()),
     distance_(query.scan.pose, query.given[query.path.poses[point.pose].given]),
@@ -86,7 +85,6 @@ private:
     }
   }
 
-  const TrajectoryQuery& query_;
   VoxelResults& results_;
   const PointAtPose point_;
   const SphereHierarchy::Storage& model_;
