@@ -47,7 +47,8 @@ struct Point14 {
     store(item + 8, z);
     store(item + 12, intensity);
     store(item + 14, static_cast<std::uint8_t>(number | returns << 4U));
-    store(item + 15, static_cast<std::uint8_t>((flags & 15U) | channel << 4U | (flags & 0x30U) << 2U));
+    const unsigned held = flags, of_channel = channel;
+    store(item + 15, static_cast<std::uint8_t>((held & 15U) | of_channel << 4U | (held & 0x30U) << 2U));
     store(item + 16, classification);
     store(item + 17, user_data);
     store(item + 18, angle);
