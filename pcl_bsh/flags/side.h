@@ -10,10 +10,9 @@ namespace pcl_bsh {
 
 /// The flags of one cloud.
 /// @tparam Sheet where they go. `begin(query, places, marked)`: before the first walk, with the voxels to be walked;
-/// all
-///   of the cloud's, with undecided points, where `marked`, else those that come near to the other cloud. `FlaggedVoxel
-///   walk(query, rule, place)`: from several threads at once, for different voxels; of a voxel again where points were
-///   left undecided. `end()`: after the last walk.
+///   all of the cloud's, with undecided points, where `marked`, else those that come near to the other cloud.
+///   `FlaggedVoxel walk(query, rule, place)`: from several threads at once, for different voxels; of a voxel again
+///   where points were left undecided. `end()`: after the last walk.
 template <class Sheet>
 class FlagSide {
 public:

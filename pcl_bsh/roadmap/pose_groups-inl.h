@@ -148,8 +148,7 @@ inline constexpr double kWidestMotion = 0.5;
 /// Divides the poses of a batch into smaller and smaller groups, and hands on from each to its parts the pairs of nodes
 /// that may still meet.
 /// @tparam Decide decide(i, pairs, from) is called for the poses at which pairs are left, those from `from` on; at
-/// other
-///   poses nothing collides
+///   other poses nothing collides
 template <class Decide>
 class PoseGroups {
 public:

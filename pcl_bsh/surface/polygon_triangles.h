@@ -18,8 +18,7 @@ namespace pcl_bsh {
 /// covers all of it, and more. One or two corners have no surface, and give nothing.
 /// @param polygon `count` records of the view
 /// @throws std::invalid_argument (Input::surface) when a corner is not in the view, or when there are more than 4096
-/// and
-///   the polygon is not convex
+///   and the polygon is not convex
 void addTriangles(const PointsView& vertices, const std::uint32_t* polygon, std::size_t count,
                   std::vector<Triangle>& triangles);
 

@@ -13,8 +13,7 @@ namespace pcl_bsh::io {
 /// The vertices, with PCL's names and packed colours (pcl_names.h).
 /// @param viewpoint set to what an element `camera` says, as PCL's writer has it, or to no_viewpoint
 /// @param faces if not null, gets the polygons of elements `face` and the numbers beside their corners, and the
-/// triangles of
-///   `tristrips`
+///   triangles of `tristrips`
 /// @throws FormatError
 pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint, Polygons* faces = nullptr);
 

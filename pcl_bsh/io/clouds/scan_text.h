@@ -32,8 +32,7 @@ pcl::PCLPointCloud2 parsePtsHeader(std::string_view file);
 /// order, with a field `scan` (uint16, from 0). x y z are float64, intensity float32, colours are packed as rgb.
 /// @param scan only that one, from 0
 /// @param viewpoint the scanner's pose in the common frame: the transform's position, and the rotation that is nearest
-/// to
-///   it; of several scans, the first one's
+///   to it; of several scans, the first one's
 /// @throws FormatError
 pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::optional<std::size_t> scan = {});
 

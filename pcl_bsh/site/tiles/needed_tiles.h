@@ -15,8 +15,7 @@ namespace pcl_bsh::site {
 
 /// Refuses an uncertainty that the points of the site cannot have, although no tile may be read.
 /// @throws std::invalid_argument as withUncertainty() does. @throws files::FileError for a field of which site.json
-/// does
-///   not say how large its values are
+///   does not say how large its values are
 void requireUncertainty(const Site& site, const Uncertainty& uncertainty);
 
 /// The box about wherever the points of a tile may truly be. @pre it has one

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/las/fields.h>
 #include <pcl_bsh/io/clouds/las/header.h>
+#include <pcl_bsh/io/clouds/las/stored_number.h>
 #include <pcl_bsh/io/clouds/records.h>
 
 #include <algorithm>
@@ -185,20 +186,6 @@ bool unscaled(double value, const LasScaling& scaling, const Read& read, T& stor
   exact = read(valueOf(other, scaling)) == read(value);
   if (exact) stored = other;
   return true;
-}
-
-template <typename T>
-T loaded(const void* at)
-{
-  T value;
-  std::memcpy(&value, at, sizeof value);
-  return value;
-}
-
-template <typename T>
-void store(void* at, T value)
-{
-  std::memcpy(at, &value, sizeof value);
 }
 
 /// The packed colour 0x00rrggbb.

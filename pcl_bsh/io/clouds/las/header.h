@@ -2,6 +2,7 @@
 // What a LAS file says beside its points: LAS specification 1.4 R15 (ASPRS), and 1.0 to 1.3 before it.
 #pragma once
 
+#include <pcl_bsh/io/clouds/las/stored_number.h>
 #include <pcl_bsh/io/text/byte_source.h>
 
 #include <array>
@@ -51,15 +52,13 @@ inline constexpr std::size_t las_record_head = 54, las_extended_head = 60;
 template <typename T>
 T lasNumber(std::string_view bytes, std::size_t at)
 {
-  T value;
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
+  return loaded<T>(bytes.data() + at);
 }
 
 template <typename T>
 void setLasNumber(std::string& bytes, std::size_t at, T value)
 {
-  std::memcpy(bytes.data() + at, &value, sizeof value);
+  store(bytes.data() + at, value);
 }
 
 /// Reads the public header block and checks all of it that says where something is.

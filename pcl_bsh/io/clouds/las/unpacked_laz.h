@@ -15,8 +15,7 @@ namespace pcl_bsh::io {
 /// chunk per thread, compressed, and at most 4 MB of its points.
 /// @param threads 0: as many as the caller's oneTBB arena has
 /// @throws FormatError as readLasBlock(); for a compression that is not read; for a table of chunks that the file has
-/// no
-///   room for. read() does so for chunks that are damaged
+///   no room for. read() does so for chunks that are damaged
 std::unique_ptr<ByteSource> unpackedLaz(std::unique_ptr<ByteSource> file, unsigned threads);
 
 } // namespace pcl_bsh::io

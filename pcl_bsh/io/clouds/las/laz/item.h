@@ -4,6 +4,7 @@
 #pragma once
 
 #include <pcl_bsh/io/clouds/las/laz/arithmetic_decoder.h>
+#include <pcl_bsh/io/clouds/las/stored_number.h>
 
 #include <array>
 #include <cstdint>
@@ -16,20 +17,6 @@
 #include <vector>
 
 namespace pcl_bsh::io::laz {
-
-template <typename T>
-T loaded(const char* at)
-{
-  T value;
-  std::memcpy(&value, at, sizeof value);
-  return value;
-}
-
-template <typename T>
-void store(char* at, T value)
-{
-  std::memcpy(at, &value, sizeof value);
-}
 
 /// Items of all points in one stream, point by point: formats 0 to 5.
 class PointwiseItem {
