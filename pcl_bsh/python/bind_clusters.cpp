@@ -4,7 +4,7 @@
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/threads/callback.h>
 
 #include <pybind11/stl.h>
 
@@ -14,10 +14,8 @@
 namespace pcl_bsh::python {
 namespace {
 
-constexpr auto kClusters = R"(euclidean_clusters(cloud, distance)
---
-
-Which points belong together: those that a chain of points joins in steps of `distance` at most.
+constexpr auto kClusters =
+    R"(Which points belong together: those that a chain of points joins in steps of `distance` at most.
 
 Parameters
 ----------
@@ -40,10 +38,8 @@ Examples
 (array([0, 1, 0], dtype=int32), array([2, 1], dtype=uint64))
 )";
 
-constexpr auto kSpacing = R"(spacing_of(cloud)
---
-
-How far points are from the nearest other place that has one, of a sample of at most 1,024 points.
+constexpr auto kSpacing =
+    R"(How far points are from the nearest other place that has one, of a sample of at most 1,024 points.
 
 Returns
 -------
@@ -57,10 +53,8 @@ Examples
 {'samples': 2, 'median': 2.0, 'wide': 2.0}
 )";
 
-constexpr auto kPatches = R"(patch_spacings(cloud, widest_gap=None, *, threads=1)
---
-
-How wide the hole beside each sample of a surface is: what `collision_flags` takes as `spacings_of_b`.
+constexpr auto kPatches =
+    R"(How wide the hole beside each sample of a surface is: what `collision_flags` takes as `spacings_of_b`.
 
 Parameters
 ----------
@@ -80,10 +74,8 @@ ndarray of float32, (records,)
 void bindClusters(py::module_& module)
 {
   py::class_<Clusters>(module, "Clusters", "The answer of `euclidean_clusters`.")
-      .def_property_readonly("of",
-                             [](const py::object& self) { return arrayIn(self, self.cast<const Clusters&>().of); })
-      .def_property_readonly("sizes",
-                             [](const py::object& self) { return arrayIn(self, self.cast<const Clusters&>().sizes); })
+      .def_property_readonly("of", column(&Clusters::of))
+      .def_property_readonly("sizes", column(&Clusters::sizes))
       .def_readonly("work", &Clusters::work)
       .def("__len__", [](const Clusters& found) { return found.sizes.size(); })
       .def("__repr__", [](const Clusters& found) { return "Clusters(" + std::to_string(found.sizes.size()) + ")"; });
@@ -92,25 +84,21 @@ void bindClusters(py::module_& module)
       [](const SphereHierarchy& cloud, double distance) {
         return unlocked([&] { return euclideanClusters(cloud, distance); });
       },
-      kClusters, py::arg("cloud"), py::arg("distance"));
+      kClusters, "cloud"_a, "distance"_a);
   module.def(
       "spacing_of",
       [](const SphereHierarchy& cloud) {
         const Spacing spacing = unlocked([&] { return spacingOf(cloud); });
-        py::dict named;
-        named["samples"] = spacing.samples;
-        named["median"] = spacing.median;
-        named["wide"] = spacing.wide;
-        return named;
+        return py::dict("samples"_a = spacing.samples, "median"_a = spacing.median, "wide"_a = spacing.wide);
       },
-      kSpacing, py::arg("cloud"));
+      kSpacing, "cloud"_a);
   module.def(
       "patch_spacings",
       [](const SphereHierarchy& cloud, std::optional<double> widest_gap, unsigned threads) {
         return arrayFrom(
             unlocked([&] { return patchSpacings(cloud, widest_gap ? *widest_gap : usualGap(cloud), threads); }));
       },
-      kPatches, py::arg("cloud"), py::arg("widest_gap") = py::none(), py::kw_only(), py::arg("threads") = 1);
+      kPatches, "cloud"_a, "widest_gap"_a = py::none(), py::kw_only(), "threads"_a = 1);
 }
 
 } // namespace pcl_bsh::python

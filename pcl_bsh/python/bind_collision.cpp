@@ -9,18 +9,17 @@
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/question_warnings.h>
-#include <pcl_bsh/python/verdict.h>
+#include <pcl_bsh/python/typed.h>
 
 #include <string>
+#include <type_traits>
+#include <utility>
 
 namespace pcl_bsh::python {
 namespace {
 
 constexpr auto kCollisionFlags =
-    R"(collision_flags(a, b, clearance=0.0, *, pose_a=None, pose_b=None, side="a", accuracy=None, threads=1, spacings_of_b=None)
---
-
-Which points collide with something of the other cloud?
+    R"(Which points collide with something of the other cloud?
 
 Parameters
 ----------
@@ -69,10 +68,7 @@ array([0, 1], dtype=uint8)
 )";
 
 constexpr auto kCollidingIndices =
-    R"(colliding_indices(a, b, clearance=0.0, *, pose_a=None, pose_b=None, side="a", accuracy=None, threads=1)
---
-
-The rows that collide, ascending: for large clouds of which few points do.
+    R"(The rows that collide, ascending: for large clouds of which few points do.
 
 Parameters are those of `collision_flags`.
 
@@ -96,10 +92,7 @@ array([1], dtype=int32)
 )";
 
 constexpr auto kAnyCollision =
-    R"(any_collision(a, b, clearance=0.0, *, pose_a=None, pose_b=None, accuracy=None, threads=1)
---
-
-Does any pair of points collide? Ends at the first one.
+    R"(Does any pair of points collide? Ends at the first one.
 
 Parameters are those of `collision_flags`.
 
@@ -119,10 +112,7 @@ Examples
 (0, 0)
 )";
 
-constexpr auto kClosestPair = R"(closest_pair(a, b, *, pose_a=None, pose_b=None, accuracy=None, threads=1)
---
-
-The smallest distance of two clouds, and the pair of points that realises it.
+constexpr auto kClosestPair = R"(The smallest distance of two clouds, and the pair of points that realises it.
 
 Parameters are those of `collision_flags`.
 
@@ -142,6 +132,17 @@ Examples
 (5.0, 0, 1)
 )";
 
+bool isNotBoth(py::handle side)
+{
+  return py::isinstance<py::str>(side) && side.cast<std::string>() != "both";
+}
+
+using OneSide = As<"Literal['a', 'b']", isNotBoth>;
+using BothSides = As<"Literal['both']">;
+
+template <class Value>
+using Two = std::pair<py::array_t<Value>, py::array_t<Value>>;
+
 Side sideOf(const std::string& text)
 {
   if (text == "a") return Side::a;
@@ -150,62 +151,66 @@ Side sideOf(const std::string& text)
   throw InvalidInput(Input::result, "side", "`" + text + "` is none", "give \"a\", \"b\" or \"both\"");
 }
 
-FlagsRequest flagsRequest(double clearance, const std::string& side, const py::object& accuracy, unsigned threads)
+/// Of one side, or of both.
+template <class Sides, class Value>
+auto arraysOf(std::vector<Value>&& a, std::vector<Value>&& b, Side side)
+{
+  if constexpr (std::is_same_v<Sides, BothSides>)
+    return Two<Value>(arrayFrom(std::move(a)), arrayFrom(std::move(b)));
+  else
+    return arrayFrom(std::move(side == Side::a ? a : b));
+}
+
+FlagsRequest flagsRequest(double clearance, const py::object& side, const py::object& accuracy, unsigned threads)
 {
   FlagsRequest request;
   request.clearance = clearance;
-  request.flagged = sideOf(side);
+  request.flagged = sideOf(side.cast<std::string>());
   request.threads = threads;
   request.accuracy = accuracyOf(accuracy);
   return request;
 }
 
-py::object collisionFlagsOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance,
-                            const py::object& pose_a, const py::object& pose_b, const std::string& side,
-                            const py::object& accuracy, unsigned threads, const py::object& spacings_of_b)
+template <class Sides>
+auto collisionFlagsOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance, const PoseLike& pose_a,
+                      const PoseLike& pose_b, const Sides& side, const AccuracyLike& accuracy, unsigned threads,
+                      const As<"Optional[npt.NDArray[np.float32]]">& spacings_of_b)
 {
-  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  const TwoPlaced pair(a, pose_a, b, pose_b);
   FlagsRequest request = flagsRequest(clearance, side, accuracy, threads);
   py::array_t<float> spacings;
   if (!spacings_of_b.is_none()) {
     spacings = floatsOf("spacings_of_b", spacings_of_b, viewNow(b).count);
     request.spacings_of_b = spacings.data();
   }
-  FlagsResult found = answered({"a", placed_a, "b", b, {placed_b.pose}, clearance, true},
-                               [&] { return collisionFlags(placed_a, placed_b, request); });
-  if (request.flagged == Side::a) return arrayFrom(std::move(found.a));
-  if (request.flagged == Side::b) return arrayFrom(std::move(found.b));
-  return py::make_tuple(arrayFrom(std::move(found.a)), arrayFrom(std::move(found.b)));
+  FlagsResult found = answered(pair.asked(clearance, true), [&] { return collisionFlags(pair.a, pair.b, request); });
+  return arraysOf<Sides>(std::move(found.a), std::move(found.b), request.flagged);
 }
 
-py::object collidingIndicesOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance,
-                              const py::object& pose_a, const py::object& pose_b, const std::string& side,
-                              const py::object& accuracy, unsigned threads)
+template <class Sides>
+auto collidingIndicesOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance, const PoseLike& pose_a,
+                        const PoseLike& pose_b, const Sides& side, const AccuracyLike& accuracy, unsigned threads)
 {
-  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  const TwoPlaced pair(a, pose_a, b, pose_b);
   const FlagsRequest request = flagsRequest(clearance, side, accuracy, threads);
-  CollidingIndices found = answered({"a", placed_a, "b", b, {placed_b.pose}, clearance},
-                                    [&] { return collidingIndices(placed_a, placed_b, request); });
+  CollidingIndices found = answered(pair.asked(clearance), [&] { return collidingIndices(pair.a, pair.b, request); });
   const std::size_t undecided = found.undecided_a.size() + found.undecided_b.size();
   if (undecided > 0)
     throw InvalidInput(Input::accuracy, "colliding_indices",
                        counted(undecided, "point is", "points are") + " undecided",
                        "ask collision_flags(), whose answer says which");
-  if (request.flagged == Side::a) return arrayFrom(std::move(found.a));
-  if (request.flagged == Side::b) return arrayFrom(std::move(found.b));
-  return py::make_tuple(arrayFrom(std::move(found.a)), arrayFrom(std::move(found.b)));
+  return arraysOf<Sides>(std::move(found.a), std::move(found.b), request.flagged);
 }
 
-AnyResult anyCollisionOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance, const py::object& pose_a,
-                         const py::object& pose_b, const py::object& accuracy, unsigned threads)
+AnyResult anyCollisionOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance, const PoseLike& pose_a,
+                         const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads)
 {
-  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  const TwoPlaced pair(a, pose_a, b, pose_b);
   AnyRequest request;
   request.clearance = clearance;
   request.accuracy = accuracyOf(accuracy);
   request.threads = threads;
-  return answered({"a", placed_a, "b", b, {placed_b.pose}, clearance},
-                  [&] { return anyCollision(placed_a, placed_b, request); });
+  return answered(pair.asked(clearance), [&] { return anyCollision(pair.a, pair.b, request); });
 }
 
 bool isColliding(const AnyResult& result)
@@ -216,29 +221,34 @@ bool isColliding(const AnyResult& result)
   return result.verdict == Verdict::colliding;
 }
 
-DistanceResult closestPairOf(const SphereHierarchy& a, const SphereHierarchy& b, const py::object& pose_a,
-                             const py::object& pose_b, const py::object& accuracy, unsigned threads)
+DistanceResult closestPairOf(const SphereHierarchy& a, const SphereHierarchy& b, const PoseLike& pose_a,
+                             const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads)
 {
-  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  const TwoPlaced pair(a, pose_a, b, pose_b);
   DistanceRequest request;
   request.accuracy = accuracyOf(accuracy);
   request.threads = threads;
-  return answered({"a", placed_a, "b", b, {placed_b.pose}, std::nullopt},
-                  [&] { return closestPair(placed_a, placed_b, request); });
+  return answered(pair.asked(std::nullopt), [&] { return closestPair(pair.a, pair.b, request); });
+}
+
+/// A property for one of the pair's rows.
+auto row(std::uint32_t PointPair::*of)
+{
+  return [of](const DistanceResult& result) { return result.pair ? std::optional((*result.pair).*of) : std::nullopt; };
 }
 
 std::string textOf(const AnyResult& result)
 {
   const char* const names[] = {"FREE", "COLLIDING", "UNDECIDED", "SPARSE"};
   std::string text = std::string("AnyCollision(") + names[flagOf(result.verdict)];
-  if (result.witness) text += ", witness " + std::string(py::str(tupleOf(result.witness)));
+  if (result.witness) text += ", witness " + std::string(py::str(py::cast(tupleOf(*result.witness))));
   return text + ")";
 }
 
 std::string textOf(const DistanceResult& result)
 {
-  std::string text = "ClosestPair(" + std::string(py::str(py::float_(result.distance)));
-  if (result.pair) text += ", rows " + std::string(py::str(tupleOf(result.pair)));
+  std::string text = "ClosestPair(" + numberText(result.distance);
+  if (result.pair) text += ", rows " + std::string(py::str(py::cast(tupleOf(*result.pair))));
   return text + ")";
 }
 
@@ -260,34 +270,26 @@ void bindCollision(py::module_& module)
       .def("__repr__", [](const AnyResult& result) { return textOf(result); });
   py::class_<DistanceResult>(module, "ClosestPair", "The answer of `closest_pair`.")
       .def_readonly("distance", &DistanceResult::distance)
-      .def_property_readonly("a",
-                             [](const DistanceResult& result) -> py::object {
-                               if (!result.pair) return py::none();
-                               return py::int_(result.pair->a);
-                             })
-      .def_property_readonly("b",
-                             [](const DistanceResult& result) -> py::object {
-                               if (!result.pair) return py::none();
-                               return py::int_(result.pair->b);
-                             })
+      .def_property_readonly("a", row(&PointPair::a))
+      .def_property_readonly("b", row(&PointPair::b))
       .def_property_readonly(
           "interval", [](const DistanceResult& result) { return tupleOf(result.interval); },
           "(lower, upper): holds the distance for certain.")
       .def_readonly("work", &DistanceResult::work)
       .def("__repr__", [](const DistanceResult& result) { return textOf(result); });
 
-  module.def("collision_flags", &collisionFlagsOf, kCollisionFlags, py::arg("a"), py::arg("b"),
-             py::arg("clearance") = 0.0, py::kw_only(), py::arg("pose_a") = none, py::arg("pose_b") = none,
-             py::arg("side") = "a", py::arg("accuracy") = none, py::arg("threads") = 1,
-             py::arg("spacings_of_b") = none);
-  module.def("colliding_indices", &collidingIndicesOf, kCollidingIndices, py::arg("a"), py::arg("b"),
-             py::arg("clearance") = 0.0, py::kw_only(), py::arg("pose_a") = none, py::arg("pose_b") = none,
-             py::arg("side") = "a", py::arg("accuracy") = none, py::arg("threads") = 1);
-  module.def("any_collision", &anyCollisionOf, kAnyCollision, py::arg("a"), py::arg("b"), py::arg("clearance") = 0.0,
-             py::kw_only(), py::arg("pose_a") = none, py::arg("pose_b") = none, py::arg("accuracy") = none,
-             py::arg("threads") = 1);
-  module.def("closest_pair", &closestPairOf, kClosestPair, py::arg("a"), py::arg("b"), py::kw_only(),
-             py::arg("pose_a") = none, py::arg("pose_b") = none, py::arg("accuracy") = none, py::arg("threads") = 1);
+  const auto define = [&](const char* name, auto function, const char* text, const auto& side, auto... more) {
+    module.def(name, function, text, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(), "pose_a"_a = none,
+               "pose_b"_a = none, side, "accuracy"_a = none, "threads"_a = 1, more...);
+  };
+  define("collision_flags", &collisionFlagsOf<OneSide>, kCollisionFlags, "side"_a = "a", "spacings_of_b"_a = none);
+  define("collision_flags", &collisionFlagsOf<BothSides>, "", "side"_a, "spacings_of_b"_a = none);
+  define("colliding_indices", &collidingIndicesOf<OneSide>, kCollidingIndices, "side"_a = "a");
+  define("colliding_indices", &collidingIndicesOf<BothSides>, "", "side"_a);
+  module.def("any_collision", &anyCollisionOf, kAnyCollision, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(),
+             "pose_a"_a = none, "pose_b"_a = none, "accuracy"_a = none, "threads"_a = 1);
+  module.def("closest_pair", &closestPairOf, kClosestPair, "a"_a, "b"_a, py::kw_only(), "pose_a"_a = none,
+             "pose_b"_a = none, "accuracy"_a = none, "threads"_a = 1);
 }
 
 } // namespace pcl_bsh::python

@@ -4,7 +4,7 @@
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/question_warnings.h>
 
 #include <pybind11/stl.h>
 
@@ -15,10 +15,7 @@
 namespace pcl_bsh::python {
 namespace {
 
-constexpr auto kContacts = R"(contacts(a, b, clearance=0.0, *, most=None, pose_a=None, pose_b=None)
---
-
-The pairs of points that collide, nearest first, with their distances and normals.
+constexpr auto kContacts = R"(The pairs of points that collide, nearest first, with their distances and normals.
 
 Parameters
 ----------
@@ -48,10 +45,7 @@ Examples
 array([0., 0., 1.])
 )";
 
-constexpr auto kPairsWithin = R"(pairs_within(a, b, clearance=0.0, *, most=None, pose_a=None, pose_b=None)
---
-
-The pairs of points that collide, in no particular order.
+constexpr auto kPairsWithin = R"(The pairs of points that collide, in no particular order.
 
 Parameters are those of `contacts`.
 
@@ -83,12 +77,12 @@ ContactsRequest requestOf(double clearance, const std::optional<std::size_t>& mo
 }
 
 Contacts contactsOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance,
-                    std::optional<std::size_t> most, const py::object& pose_a, const py::object& pose_b)
+                    std::optional<std::size_t> most, const PoseLike& pose_a, const PoseLike& pose_b)
 {
-  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  const TwoPlaced pair(a, pose_a, b, pose_b);
   const ContactsRequest request = requestOf(clearance, most);
-  return unlocked([&] {
-    const ContactsResult found = nearestContacts(placed_a, placed_b, request);
+  return answered(pair.asked(clearance), [&] {
+    const ContactsResult found = nearestContacts(pair.a, pair.b, request);
     Contacts columns;
     columns.complete = found.complete;
     columns.work = found.work;
@@ -102,22 +96,17 @@ Contacts contactsOf(const SphereHierarchy& a, const SphereHierarchy& b, double c
   });
 }
 
-py::object pairsWithinOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance,
-                         std::optional<std::size_t> most, const py::object& pose_a, const py::object& pose_b)
+py::array_t<std::uint32_t> pairsWithinOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance,
+                                         std::optional<std::size_t> most, const PoseLike& pose_a,
+                                         const PoseLike& pose_b)
 {
-  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  const TwoPlaced pair(a, pose_a, b, pose_b);
   const ContactsRequest request = requestOf(clearance, most);
-  const PairsWithin found = unlocked([&] { return pairsWithin(placed_a, placed_b, request); });
+  const PairsWithin found = answered(pair.asked(clearance), [&] { return pairsWithin(pair.a, pair.b, request); });
   if (!found.complete)
     throw py::value_error("pairs_within: there are more than " + counted(request.most, "pair") +
                           ": ask contacts() for the nearest, or for more");
-  py::array_t<std::uint32_t> pairs({static_cast<py::ssize_t>(found.pairs.size()), py::ssize_t{2}});
-  std::uint32_t* record = pairs.mutable_data();
-  for (const PointPair& pair : found.pairs) {
-    *record++ = pair.a;
-    *record++ = pair.b;
-  }
-  return pairs;
+  return arrayFrom(found.pairs);
 }
 
 } // namespace
@@ -125,10 +114,9 @@ py::object pairsWithinOf(const SphereHierarchy& a, const SphereHierarchy& b, dou
 void bindContacts(py::module_& module)
 {
   py::class_<Contacts>(module, "Contacts", "The answer of `contacts`.")
-      .def_property_readonly("a", [](const py::object& self) { return arrayIn(self, self.cast<const Contacts&>().a); })
-      .def_property_readonly("b", [](const py::object& self) { return arrayIn(self, self.cast<const Contacts&>().b); })
-      .def_property_readonly(
-          "distance", [](const py::object& self) { return arrayIn(self, self.cast<const Contacts&>().distance); })
+      .def_property_readonly("a", column(&Contacts::a))
+      .def_property_readonly("b", column(&Contacts::b))
+      .def_property_readonly("distance", column(&Contacts::distance))
       .def_property_readonly("normal",
                              [](const py::object& self) {
                                const auto& found = self.cast<const Contacts&>();
@@ -140,11 +128,10 @@ void bindContacts(py::module_& module)
       .def("__repr__", [](const Contacts& found) {
         return "Contacts(" + std::to_string(found.a.size()) + (found.complete ? ")" : ", the nearest)");
       });
-  module.def("contacts", &contactsOf, kContacts, py::arg("a"), py::arg("b"), py::arg("clearance") = 0.0, py::kw_only(),
-             py::arg("most") = py::none(), py::arg("pose_a") = py::none(), py::arg("pose_b") = py::none());
-  module.def("pairs_within", &pairsWithinOf, kPairsWithin, py::arg("a"), py::arg("b"), py::arg("clearance") = 0.0,
-             py::kw_only(), py::arg("most") = py::none(), py::arg("pose_a") = py::none(),
-             py::arg("pose_b") = py::none());
+  module.def("contacts", &contactsOf, kContacts, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(),
+             "most"_a = py::none(), "pose_a"_a = py::none(), "pose_b"_a = py::none());
+  module.def("pairs_within", &pairsWithinOf, kPairsWithin, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(),
+             "most"_a = py::none(), "pose_a"_a = py::none(), "pose_b"_a = py::none());
 }
 
 } // namespace pcl_bsh::python

@@ -3,8 +3,8 @@
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/callback.h>
 #include <pcl_bsh/python/question_warnings.h>
+#include <pcl_bsh/python/threads/callback.h>
 
 #include <pybind11/stl.h>
 
@@ -15,10 +15,7 @@ namespace pcl_bsh::python {
 namespace {
 
 constexpr auto kPointDistances =
-    R"(point_distances(a, b, max_distance=None, *, pose_a=None, pose_b=None, accuracy=None, threads=1, progress=None)
---
-
-How far each point of a is from b, and from which of its points.
+    R"(How far each point of a is from b, and from which of its points.
 
 Parameters
 ----------
@@ -53,10 +50,7 @@ array([False,  True])
 )";
 
 constexpr auto kSymmetricDistances =
-    R"(symmetric_distances(a, b, max_distance=None, *, pose_a=None, pose_b=None, accuracy=None, threads=1, progress=None)
---
-
-Distances in both directions, and the Hausdorff distance.
+    R"(Distances in both directions, and the Hausdorff distance.
 
 Parameters are those of `point_distances`.
 
@@ -76,10 +70,7 @@ Examples
 )";
 
 constexpr auto kHausdorffDistance =
-    R"(hausdorff_distance(a, b, *, pose_a=None, pose_b=None, threads=1, progress=None)
---
-
-The symmetric Hausdorff distance, without measuring every point: that of `symmetric_distances`, bit for bit, for less.
+    R"(The symmetric Hausdorff distance, without measuring every point: that of `symmetric_distances`, bit for bit, for less.
 
 Parameters are those of `point_distances`.
 
@@ -99,8 +90,8 @@ Examples
 (2.0, (0, 1))
 )";
 
-PointDistancesRequest requestOf(std::optional<double> max_distance, const py::object& accuracy, unsigned threads,
-                                const py::object& progress)
+PointDistancesRequest requestOf(std::optional<double> max_distance, const AccuracyLike& accuracy, unsigned threads,
+                                const ProgressLike& progress)
 {
   PointDistancesRequest request;
   if (max_distance) request.max_distance = *max_distance;
@@ -111,50 +102,37 @@ PointDistancesRequest requestOf(std::optional<double> max_distance, const py::ob
 }
 
 PointDistances pointDistancesOf(const SphereHierarchy& a, const SphereHierarchy& b, std::optional<double> max_distance,
-                                const py::object& pose_a, const py::object& pose_b, const py::object& accuracy,
-                                unsigned threads, const py::object& progress)
+                                const PoseLike& pose_a, const PoseLike& pose_b, const AccuracyLike& accuracy,
+                                unsigned threads, const ProgressLike& progress)
 {
-  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  const TwoPlaced pair(a, pose_a, b, pose_b);
   const PointDistancesRequest request = requestOf(max_distance, accuracy, threads, progress);
-  return answered({"a", placed_a, "b", b, {placed_b.pose}, std::nullopt},
-                  [&] { return pointDistances(placed_a, placed_b, request); });
+  return answered(pair.asked(std::nullopt), [&] { return pointDistances(pair.a, pair.b, request); });
 }
 
 SymmetricDistances symmetricDistancesOf(const SphereHierarchy& a, const SphereHierarchy& b,
-                                        std::optional<double> max_distance, const py::object& pose_a,
-                                        const py::object& pose_b, const py::object& accuracy, unsigned threads,
-                                        const py::object& progress)
+                                        std::optional<double> max_distance, const PoseLike& pose_a,
+                                        const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads,
+                                        const ProgressLike& progress)
 {
-  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  const TwoPlaced pair(a, pose_a, b, pose_b);
   const PointDistancesRequest request = requestOf(max_distance, accuracy, threads, progress);
-  return answered({"a", placed_a, "b", b, {placed_b.pose}, std::nullopt},
-                  [&] { return symmetricDistances(placed_a, placed_b, request); });
+  return answered(pair.asked(std::nullopt), [&] { return symmetricDistances(pair.a, pair.b, request); });
 }
 
-HausdorffDistance hausdorffDistanceOf(const SphereHierarchy& a, const SphereHierarchy& b, const py::object& pose_a,
-                                      const py::object& pose_b, unsigned threads, const py::object& progress)
+HausdorffDistance hausdorffDistanceOf(const SphereHierarchy& a, const SphereHierarchy& b, const PoseLike& pose_a,
+                                      const PoseLike& pose_b, unsigned threads, const ProgressLike& progress)
 {
-  const Placed placed_a(a, poseOf("pose_a", pose_a)), placed_b(b, poseOf("pose_b", pose_b));
+  const TwoPlaced pair(a, pose_a, b, pose_b);
   const HausdorffRequest request{threads, progressOf(progress)};
-  return answered({"a", placed_a, "b", b, {placed_b.pose}, std::nullopt},
-                  [&] { return hausdorffDistance(placed_a, placed_b, request); });
+  return answered(pair.asked(std::nullopt), [&] { return hausdorffDistance(pair.a, pair.b, request); });
 }
 
-py::object distanceArray(const py::object& self)
-{
-  return arrayIn(self, self.cast<const PointDistances&>().distance);
-}
-
-py::object nearestArray(const py::object& self)
-{
-  return arrayIn(self, self.cast<const PointDistances&>().nearest);
-}
-
-py::object intervalArray(const py::object& self)
+std::optional<py::array_t<double>> intervalArray(const py::object& self)
 {
   static_assert(sizeof(Interval) == 2 * sizeof(double));
   const auto& interval = self.cast<const PointDistances&>().interval;
-  if (interval.empty()) return py::none();
+  if (interval.empty()) return std::nullopt;
   return arrayIn(self, &interval.front().lower, {static_cast<py::ssize_t>(interval.size()), 2});
 }
 
@@ -163,8 +141,8 @@ py::object intervalArray(const py::object& self)
 void bindDistances(py::module_& module)
 {
   py::class_<PointDistances>(module, "PointDistances", "The answer of `point_distances`; unpacks as distance, nearest.")
-      .def_property_readonly("distance", &distanceArray, "(records,) float64; NaN: none.")
-      .def_property_readonly("nearest", &nearestArray, "(records,) uint32; NO_POINT: none.")
+      .def_property_readonly("distance", column(&PointDistances::distance), "(records,) float64; NaN: none.")
+      .def_property_readonly("nearest", column(&PointDistances::nearest), "(records,) uint32; NO_POINT: none.")
       .def_property_readonly("interval", &intervalArray,
                              "(records, 2) float64: holds each distance for certain, where the accuracy is less than "
                              "exact; else None.")
@@ -175,9 +153,7 @@ void bindDistances(py::module_& module)
       .def_readonly("work", &PointDistances::work)
       .def("__len__", [](const PointDistances&) { return 2; })
       .def("__iter__",
-           [](const py::object& self) -> py::object {
-             return py::iter(py::make_tuple(distanceArray(self), nearestArray(self)));
-           })
+           [](const py::object& self) { return py::iter(py::make_tuple(self.attr("distance"), self.attr("nearest"))); })
       .def("__repr__", [](const PointDistances& found) {
         return "PointDistances(" + std::to_string(found.measured) + " of " + std::to_string(found.distance.size()) +
                " measured" + (found.undecided ? ", " + std::to_string(found.undecided) + " undecided" : "") + ")";
@@ -189,7 +165,7 @@ void bindDistances(py::module_& module)
       .def_property_readonly("hausdorff_pair",
                              [](const SymmetricDistances& found) { return tupleOf(found.hausdorff_pair); })
       .def("__repr__", [](const SymmetricDistances& found) {
-        return "SymmetricDistances(hausdorff=" + std::string(py::str(py::float_(found.hausdorff))) + ")";
+        return "SymmetricDistances(hausdorff=" + numberText(found.hausdorff) + ")";
       });
   py::class_<HausdorffDistance>(module, "HausdorffDistance",
                                 "The answer of `hausdorff_distance`; unpacks as distance, pair.")
@@ -198,19 +174,15 @@ void bindDistances(py::module_& module)
       .def_readonly("work", &HausdorffDistance::work)
       .def("__len__", [](const HausdorffDistance&) { return 2; })
       .def("__iter__",
-           [](const HausdorffDistance& found) -> py::object {
-             return py::iter(py::make_tuple(found.distance, tupleOf(found.pair)));
-           })
-      .def("__repr__", [](const HausdorffDistance& found) {
-        return "HausdorffDistance(" + std::string(py::str(py::float_(found.distance))) + ")";
-      });
-  module.def("hausdorff_distance", &hausdorffDistanceOf, kHausdorffDistance, py::arg("a"), py::arg("b"), py::kw_only(),
-             py::arg("pose_a") = py::none(), py::arg("pose_b") = py::none(), py::arg("threads") = 1,
-             py::arg("progress") = py::none());
+           [](const HausdorffDistance& found) { return py::iter(py::make_tuple(found.distance, tupleOf(found.pair))); })
+      .def("__repr__",
+           [](const HausdorffDistance& found) { return "HausdorffDistance(" + numberText(found.distance) + ")"; });
+  module.def("hausdorff_distance", &hausdorffDistanceOf, kHausdorffDistance, "a"_a, "b"_a, py::kw_only(),
+             "pose_a"_a = py::none(), "pose_b"_a = py::none(), "threads"_a = 1, "progress"_a = py::none());
   const auto define = [&](const char* name, auto function, const char* text) {
-    module.def(name, function, text, py::arg("a"), py::arg("b"), py::arg("max_distance") = py::none(), py::kw_only(),
-               py::arg("pose_a") = py::none(), py::arg("pose_b") = py::none(), py::arg("accuracy") = py::none(),
-               py::arg("threads") = 1, py::arg("progress") = py::none());
+    module.def(name, function, text, "a"_a, "b"_a, "max_distance"_a = py::none(), py::kw_only(),
+               "pose_a"_a = py::none(), "pose_b"_a = py::none(), "accuracy"_a = py::none(), "threads"_a = 1,
+               "progress"_a = py::none());
   };
   define("point_distances", &pointDistancesOf, kPointDistances);
   define("symmetric_distances", &symmetricDistancesOf, kSymmetricDistances);

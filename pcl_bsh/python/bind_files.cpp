@@ -3,7 +3,7 @@
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/record_array.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/question_warnings.h>
 
 #include <pybind11/stl.h>
 
@@ -14,10 +14,7 @@
 namespace pcl_bsh::python {
 namespace {
 
-constexpr auto kRead = R"(read(path, columns=None)
---
-
-The points of a file as a structured array, every field in its type.
+constexpr auto kRead = R"(The points of a file as a structured array, every field in its type.
 
 Parameters
 ----------
@@ -48,10 +45,7 @@ See Also
 read_with_header : the viewpoint, and what a LAS file says beside its points, too.
 )";
 
-constexpr auto kReadWithHeader = R"(read_with_header(path, columns=None)
---
-
-As `read`, and what the file says beside its points.
+constexpr auto kReadWithHeader = R"(As `read`, and what the file says beside its points.
 
 Returns
 -------
@@ -61,10 +55,7 @@ header : FileHeader
     records, which `write` keeps.
 )";
 
-constexpr auto kWrite = R"(write(path, records, header=None)
---
-
-Writes a cloud; the file appears complete or not at all.
+constexpr auto kWrite = R"(Writes a cloud; the file appears complete or not at all.
 
 Parameters
 ----------
@@ -91,10 +82,7 @@ Examples
 array([0, 1], dtype=uint8)
 )";
 
-constexpr auto kReadMesh = R"(read_mesh(path)
---
-
-The vertices and faces of a mesh, for `cover_surface`.
+constexpr auto kReadMesh = R"(The vertices and faces of a mesh, for `cover_surface`.
 
 Parameters
 ----------
@@ -110,23 +98,22 @@ triangles : ndarray of uint32, (t, 3)
 
 using FileHeader = io::CloudFacts;
 
-std::string pathOf(const py::object& path)
+std::string pathOf(const PathLike& path)
 {
   return py::module_::import("os").attr("fsdecode")(path).cast<std::string>();
 }
 
-py::tuple readWithHeader(const py::object& path, const std::optional<io::ColumnNames>& columns)
+std::pair<Records, FileHeader> readWithHeader(const PathLike& path, const std::optional<io::ColumnNames>& columns)
 {
   const std::string file = pathOf(path);
   FileHeader header;
   pcl::PCLPointCloud2 cloud =
       unlocked([&] { return io::readCloud(file, &header, columns.value_or(io::ColumnNames())); });
-  for (const std::string& remark : header.remarks)
-    if (PyErr_WarnEx(PyExc_UserWarning, (file + ": " + remark).c_str(), 1) != 0) throw py::error_already_set();
-  return py::make_tuple(recordsFrom(std::move(cloud)), std::move(header));
+  for (const std::string& remark : header.remarks) warn(file + ": " + remark);
+  return {recordsFrom(std::move(cloud)), std::move(header)};
 }
 
-void writeRecords(const py::object& path, const py::object& records, const FileHeader* header)
+void writeRecords(const PathLike& path, const As<"npt.NDArray[Any]">& records, const FileHeader* header)
 {
   const std::string file = pathOf(path);
   const pcl::PCLPointCloud2 cloud = cloudFrom("records", records);
@@ -135,14 +122,14 @@ void writeRecords(const py::object& path, const py::object& records, const FileH
   unlocked([&] { io::writeCloud(file, cloud, kept.viewpoint, kept.las); });
 }
 
-py::tuple readMeshOf(const py::object& path)
+std::pair<Records, py::array_t<std::uint32_t>> readMeshOf(const PathLike& path)
 {
   const std::string file = pathOf(path);
   io::Mesh mesh = unlocked([&] { return io::readMesh(file); });
   py::array_t<std::uint32_t> triangles({static_cast<py::ssize_t>(mesh.triangles.size()), py::ssize_t{3}});
   std::uint32_t* corner = triangles.mutable_data();
   for (const Triangle& triangle : mesh.triangles) corner = std::copy(triangle.begin(), triangle.end(), corner);
-  return py::make_tuple(recordsFrom(std::move(mesh.vertices)), triangles);
+  return {recordsFrom(std::move(mesh.vertices)), triangles};
 }
 
 } // namespace
@@ -154,7 +141,8 @@ void bindFiles(py::module_& module)
       "A file that cannot be read or written, in one line: path, what is wrong, what to do.";
   py::class_<FileHeader>(module, "FileHeader", "What a file says beside its points.")
       .def_property_readonly(
-          "viewpoint", [](const FileHeader& header) { return py::tuple(py::cast(header.viewpoint)); },
+          "viewpoint",
+          [](const FileHeader& header) { return As<"Tuple[float, ...]">(py::tuple(py::cast(header.viewpoint))); },
           "Where the sensor stood: tx, ty, tz, qw, qx, qy, qz.")
       .def_property_readonly(
           "coordinate_system", [](const FileHeader& header) { return header.coordinate_system; },
@@ -163,13 +151,13 @@ void bindFiles(py::module_& module)
       .def("__repr__", [](const FileHeader& header) { return header.las ? "FileHeader(las)" : "FileHeader()"; });
   module.def(
       "read",
-      [](const py::object& path, const std::optional<io::ColumnNames>& columns) {
-        return py::object(readWithHeader(path, columns)[0]);
+      [](const PathLike& path, const std::optional<io::ColumnNames>& columns) {
+        return readWithHeader(path, columns).first;
       },
-      kRead, py::arg("path"), py::arg("columns") = py::none());
-  module.def("read_with_header", &readWithHeader, kReadWithHeader, py::arg("path"), py::arg("columns") = py::none());
-  module.def("read_mesh", &readMeshOf, kReadMesh, py::arg("path"));
-  module.def("write", &writeRecords, kWrite, py::arg("path"), py::arg("records"), py::arg("header") = py::none());
+      kRead, "path"_a, "columns"_a = py::none());
+  module.def("read_with_header", &readWithHeader, kReadWithHeader, "path"_a, "columns"_a = py::none());
+  module.def("read_mesh", &readMeshOf, kReadMesh, "path"_a);
+  module.def("write", &writeRecords, kWrite, "path"_a, "records"_a, "header"_a = py::none());
 }
 
 } // namespace pcl_bsh::python

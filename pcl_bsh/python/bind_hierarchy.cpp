@@ -5,10 +5,11 @@
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/threads/callback.h>
 
 #include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
 
 namespace pcl_bsh::python {
@@ -64,10 +65,7 @@ Examples
 SphereHierarchy(1000 points, float64)
 )";
 
-constexpr auto kRefit = R"(refit(xyz, *, radii=None, uncertainties=None, copy=False, most_growth=1.5)
---
-
-The points have moved: as many rows of the same type, other coordinates.
+constexpr auto kRefit = R"(The points have moved: as many rows of the same type, other coordinates.
 
 Trees stay as they are where they can, and their spheres are fitted to the points anew; answers are those of a new
 hierarchy. It takes as long as measuring all spheres: for points that move a little, a part of what building takes.
@@ -166,23 +164,16 @@ std::string textOf(const SphereHierarchy& hierarchy)
 py::dict statisticsOf(const SphereHierarchy& hierarchy)
 {
   const HierarchyStatistics statistics = unlocked([&] { return hierarchy.statistics(); });
-  py::dict named;
-  named["points"] = statistics.points;
-  named["voxels"] = statistics.voxels;
-  named["voxels_built"] = statistics.voxels_built;
-  named["nodes"] = statistics.nodes;
-  named["leaves"] = statistics.leaves;
-  named["depth"] = statistics.depth;
-  named["bytes"] = statistics.bytes;
-  named["voxel_edge"] = statistics.voxel_edge;
-  named["requested_voxel_edge"] = statistics.requested_voxel_edge;
-  named["mean_leaf_points"] = statistics.mean_leaf_points;
-  named["mean_leaf_radius"] = statistics.mean_leaf_radius;
-  return named;
+  return py::dict("points"_a = statistics.points, "voxels"_a = statistics.voxels,
+                  "voxels_built"_a = statistics.voxels_built, "nodes"_a = statistics.nodes,
+                  "leaves"_a = statistics.leaves, "depth"_a = statistics.depth, "bytes"_a = statistics.bytes,
+                  "voxel_edge"_a = statistics.voxel_edge, "requested_voxel_edge"_a = statistics.requested_voxel_edge,
+                  "mean_leaf_points"_a = statistics.mean_leaf_points,
+                  "mean_leaf_radius"_a = statistics.mean_leaf_radius);
 }
 
-py::dict refit(SphereHierarchy& hierarchy, const py::object& xyz, const py::object& radii,
-               const py::object& uncertainties, bool copy, double most_growth)
+py::dict refit(SphereHierarchy& hierarchy, const ArrayLike& xyz, const OptionalArray& radii,
+               const OptionalArray& uncertainties, bool copy, double most_growth)
 {
   return dictOf(whileNoneComputes(
       [&] {
@@ -191,9 +182,9 @@ py::dict refit(SphereHierarchy& hierarchy, const py::object& xyz, const py::obje
       [&](const MovedView& moved) { return hierarchy.refit(moved.now, most_growth); }));
 }
 
-std::shared_ptr<SphereHierarchy> make(const py::object& xyz, const py::object& radii, const py::object& indices,
-                                      double uncertainty, const py::object& uncertainties, bool copy, double voxel_edge,
-                                      unsigned threads)
+std::shared_ptr<SphereHierarchy> make(const ArrayLike& xyz, const OptionalArray& radii, const OptionalArray& indices,
+                                      double uncertainty, const OptionalArray& uncertainties, bool copy,
+                                      double voxel_edge, unsigned threads)
 {
   const PointsView view = viewOfPoints("points", {xyz, radii, indices, uncertainty, uncertainties, copy});
   HierarchyOptions options;
@@ -208,17 +199,17 @@ void bindHierarchy(py::module_& module)
 {
   py::class_<SphereHierarchy, std::shared_ptr<SphereHierarchy>>(module, "SphereHierarchy", kHierarchy,
                                                                 py::custom_type_setup(&setUpCollection))
-      .def(py::init(&make), py::arg("xyz"), py::kw_only(), py::arg("radii") = py::none(),
-           py::arg("indices") = py::none(), py::arg("uncertainty") = 0.0, py::arg("uncertainties") = py::none(),
-           py::arg("copy") = false, py::arg("voxel_edge") = 0.0, py::arg("threads") = 1)
+      .def(py::init(&make), "xyz"_a, py::kw_only(), "radii"_a = py::none(), "indices"_a = py::none(),
+           "uncertainty"_a = 0.0, "uncertainties"_a = py::none(), "copy"_a = false, "voxel_edge"_a = 0.0,
+           "threads"_a = 1)
       .def("__len__", &sizeOf)
       .def("__repr__", &textOf)
       .def_property_readonly(
           "array",
-          [](const SphereHierarchy& hierarchy) -> py::object {
+          [](const SphereHierarchy& hierarchy) -> std::optional<py::array> {
             const PointsView view = viewNow(hierarchy);
             const KeptArrays* kept = arraysOf(view);
-            if (!kept) return py::none();
+            if (!kept) return std::nullopt;
             return kept->points;
           },
           "The array that it reads; None for the cover of a surface.")
@@ -240,9 +231,9 @@ void bindHierarchy(py::module_& module)
       .def(
           "build_all",
           [](const SphereHierarchy& hierarchy, unsigned threads) { unlocked([&] { hierarchy.buildAll(threads); }); },
-          py::arg("threads") = 1, "Builds every sphere now. threads=0: all of the machine's.")
-      .def("refit", &refit, kRefit, py::arg("xyz"), py::kw_only(), py::arg("radii") = py::none(),
-           py::arg("uncertainties") = py::none(), py::arg("copy") = false, py::arg("most_growth") = 1.5)
+          "threads"_a = 1, "Builds every sphere now. threads=0: all of the machine's.")
+      .def("refit", &refit, kRefit, "xyz"_a, py::kw_only(), "radii"_a = py::none(), "uncertainties"_a = py::none(),
+           "copy"_a = false, "most_growth"_a = 1.5)
       .def(
           "validate",
           [](const SphereHierarchy& hierarchy) { return unlocked([&] { return hierarchy.validate(); }).lines; },

@@ -2,20 +2,17 @@
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/question_warnings.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
 
-#include <algorithm>
+#include <utility>
 
 namespace pcl_bsh::python {
 namespace {
 
 constexpr auto kAnyAtPoses =
-    R"(any_collision_at_poses(a, b, poses, clearance=0.0, *, pose_a=None, accuracy=None, threads=1, progress=None)
---
-
-Does any pair of points collide, b at each of many poses? Neighbouring poses share the search.
+    R"(Does any pair of points collide, b at each of many poses? Neighbouring poses share the search.
 
 Parameters
 ----------
@@ -46,10 +43,7 @@ Examples
 array([1, 1, 0], dtype=uint8)
 )";
 
-constexpr auto kClosestAtPoses = R"(closest_pair_at_poses(a, b, poses, *, pose_a=None, threads=1, progress=None)
---
-
-The smallest distance, b at each of many poses.
+constexpr auto kClosestAtPoses = R"(The smallest distance, b at each of many poses.
 
 Parameters are those of `any_collision_at_poses`.
 
@@ -60,25 +54,8 @@ pairs : ndarray of uint32, (m, 2)
     Rows of a and b; `NO_POINT` when a cloud is empty.
 )";
 
-constexpr auto kFlagsAtPoses =
-    R"(collision_flags_at_poses(a, b, poses, clearance=0.0, *, pose_a=None, accuracy=None, threads=1)
---
-
-Which points of a collide, b at each of many poses.
-
-Parameters are those of `any_collision_at_poses`.
-
-Returns
--------
-ndarray of uint8, (m, records of a)
-    A `Verdict` for each pose and point.
-)";
-
 constexpr auto kOnMotions =
-    R"(any_collision_on_motions(scan, model, poses, motions, clearance=0.0, *, tolerance, pose_scan=None, pivot=None, threads=1, progress=None)
---
-
-Does any pair of points collide on each of many motions: the edges of a planner's roadmap.
+    R"(Does any pair of points collide on each of many motions: the edges of a planner's roadmap.
 
 Parameters
 ----------
@@ -111,9 +88,9 @@ Examples
 array([0, 1], dtype=uint8)
 )";
 
-py::object anyAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, const py::object& poses, double clearance,
-                        const py::object& pose_a, const py::object& accuracy, unsigned threads,
-                        const py::object& progress)
+py::array_t<std::uint8_t> anyAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, const ArrayLike& poses,
+                                       double clearance, const PoseLike& pose_a, const AccuracyLike& accuracy,
+                                       unsigned threads, const ProgressLike& progress)
 {
   const Placed placed(a, poseOf("pose_a", pose_a));
   const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
@@ -122,53 +99,31 @@ py::object anyAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, cons
   request.accuracy = accuracyOf(accuracy);
   request.threads = threads;
   const auto report = progressOf(progress);
-  AnyAtPoses found = unlocked([&] { return anyCollisionAtPoses(placed, b, list, request, report); });
+  AnyAtPoses found = answered({"a", placed, "b", b, list, clearance},
+                              [&] { return anyCollisionAtPoses(placed, b, list, request, report); });
   return arrayFrom(std::move(found.verdicts));
 }
 
-py::tuple closestAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, const py::object& poses,
-                           const py::object& pose_a, unsigned threads, const py::object& progress)
+std::pair<py::array_t<double>, py::array_t<std::uint32_t>>
+closestAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, const ArrayLike& poses, const PoseLike& pose_a,
+                 unsigned threads, const ProgressLike& progress)
 {
   const Placed placed(a, poseOf("pose_a", pose_a));
   const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
   DistanceRequest request;
   request.threads = threads;
   const auto report = progressOf(progress);
-  DistancesAtPoses found = unlocked([&] { return closestPairAtPoses(placed, b, list, request, report); });
+  DistancesAtPoses found = answered({"a", placed, "b", b, list, std::nullopt},
+                                    [&] { return closestPairAtPoses(placed, b, list, request, report); });
   constexpr std::uint32_t kNoPoint = 0xffffffffu;
-  py::array_t<std::uint32_t> pairs({static_cast<py::ssize_t>(list.size()), py::ssize_t{2}});
-  std::fill_n(pairs.mutable_data(), pairs.size(), kNoPoint);
-  std::uint32_t* record = pairs.mutable_data();
-  for (const PointPair& pair : found.pairs) {
-    *record++ = pair.a;
-    *record++ = pair.b;
-  }
-  return py::make_tuple(arrayFrom(std::move(found.distances)), pairs);
+  found.pairs.resize(list.size(), {kNoPoint, kNoPoint});
+  return {arrayFrom(std::move(found.distances)), arrayFrom(found.pairs)};
 }
 
-py::object flagsAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, const py::object& poses, double clearance,
-                          const py::object& pose_a, const py::object& accuracy, unsigned threads)
-{
-  const Placed placed(a, poseOf("pose_a", pose_a));
-  const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
-  FlagsRequest request;
-  request.clearance = clearance;
-  request.accuracy = accuracyOf(accuracy);
-  request.threads = threads;
-  const std::size_t records = viewNow(a).count;
-  py::array_t<std::uint8_t> flags({static_cast<py::ssize_t>(list.size()), static_cast<py::ssize_t>(records)});
-  std::uint8_t* const rows = flags.mutable_data();
-  unlocked([&] {
-    collisionFlagsAtPoses(placed, b, list, request, [&](std::size_t pose, const FlagsResult& found) {
-      std::copy(found.a.begin(), found.a.end(), rows + pose * records);
-    });
-  });
-  return flags;
-}
-
-py::object onMotionsOf(const SphereHierarchy& scan, const SphereHierarchy& model, const py::object& poses,
-                       const py::object& motions, double clearance, double tolerance, const py::object& pose_scan,
-                       const py::object& pivot, unsigned threads, const py::object& progress)
+py::array_t<std::uint8_t> onMotionsOf(const SphereHierarchy& scan, const SphereHierarchy& model, const ArrayLike& poses,
+                                      const ArrayLike& motions, double clearance, double tolerance,
+                                      const PoseLike& pose_scan, const OptionalArray& pivot, unsigned threads,
+                                      const ProgressLike& progress)
 {
   const Placed placed(scan, poseOf("pose_scan", pose_scan));
   const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
@@ -181,7 +136,8 @@ py::object onMotionsOf(const SphereHierarchy& scan, const SphereHierarchy& model
   if (!pivot.is_none()) request.pivot = point3Of("pivot", pivot);
   request.threads = threads;
   request.progress = progressOf(progress);
-  AnyOnMotions found = unlocked([&] { return anyCollisionOnMotions(placed, model, list, edges, request); });
+  AnyOnMotions found = answered({"scan", placed, "model", model, list, clearance},
+                                [&] { return anyCollisionOnMotions(placed, model, list, edges, request); });
   return arrayFrom(std::move(found.verdicts));
 }
 
@@ -189,18 +145,14 @@ py::object onMotionsOf(const SphereHierarchy& scan, const SphereHierarchy& model
 
 void bindManyPoses(py::module_& module)
 {
-  module.def("any_collision_at_poses", &anyAtPosesOf, kAnyAtPoses, py::arg("a"), py::arg("b"), py::arg("poses"),
-             py::arg("clearance") = 0.0, py::kw_only(), py::arg("pose_a") = py::none(),
-             py::arg("accuracy") = py::none(), py::arg("threads") = 1, py::arg("progress") = py::none());
-  module.def("closest_pair_at_poses", &closestAtPosesOf, kClosestAtPoses, py::arg("a"), py::arg("b"), py::arg("poses"),
-             py::kw_only(), py::arg("pose_a") = py::none(), py::arg("threads") = 1, py::arg("progress") = py::none());
-  module.def("collision_flags_at_poses", &flagsAtPosesOf, kFlagsAtPoses, py::arg("a"), py::arg("b"), py::arg("poses"),
-             py::arg("clearance") = 0.0, py::kw_only(), py::arg("pose_a") = py::none(),
-             py::arg("accuracy") = py::none(), py::arg("threads") = 1);
-  module.def("any_collision_on_motions", &onMotionsOf, kOnMotions, py::arg("scan"), py::arg("model"), py::arg("poses"),
-             py::arg("motions"), py::arg("clearance") = 0.0, py::kw_only(), py::arg("tolerance"),
-             py::arg("pose_scan") = py::none(), py::arg("pivot") = py::none(), py::arg("threads") = 1,
-             py::arg("progress") = py::none());
+  module.def("any_collision_at_poses", &anyAtPosesOf, kAnyAtPoses, "a"_a, "b"_a, "poses"_a, "clearance"_a = 0.0,
+             py::kw_only(), "pose_a"_a = py::none(), "accuracy"_a = py::none(), "threads"_a = 1,
+             "progress"_a = py::none());
+  module.def("closest_pair_at_poses", &closestAtPosesOf, kClosestAtPoses, "a"_a, "b"_a, "poses"_a, py::kw_only(),
+             "pose_a"_a = py::none(), "threads"_a = 1, "progress"_a = py::none());
+  module.def("any_collision_on_motions", &onMotionsOf, kOnMotions, "scan"_a, "model"_a, "poses"_a, "motions"_a,
+             "clearance"_a = 0.0, py::kw_only(), "tolerance"_a, "pose_scan"_a = py::none(), "pivot"_a = py::none(),
+             "threads"_a = 1, "progress"_a = py::none());
 }
 
 } // namespace pcl_bsh::python

@@ -3,18 +3,16 @@
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/threads/callback.h>
 
-#include <algorithm>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 namespace pcl_bsh::python {
 namespace {
 
-constexpr auto kRadius = R"(radius_search(cloud, queries, radius, *, most=0, sorted=True, threads=1)
---
-
-All points with |p - query| <= radius.
+constexpr auto kRadius = R"(All points with |p - query| <= radius.
 
 Parameters
 ----------
@@ -47,10 +45,7 @@ Examples
 (array([2, 1], dtype=int32), array([0., 4.], dtype=float32))
 )";
 
-constexpr auto kNearest = R"(nearest_k_search(cloud, queries, k, *, threads=1)
---
-
-The k nearest points, or all when there are fewer.
+constexpr auto kNearest = R"(The k nearest points, or all when there are fewer.
 
 Parameters are those of `radius_search`, and k, the number of neighbours.
 
@@ -67,18 +62,14 @@ Examples
 (array([1, 2], dtype=int32), array([1., 1.], dtype=float32))
 )";
 
-constexpr auto kAny = R"(any_in_radius(cloud, queries, radius, *, threads=1)
---
-
-Does any point lie within the radius of each query? A bool for one point, else an ndarray of uint8, (m,).
+constexpr auto kAny =
+    R"(Does any point lie within the radius of each query? A bool for one point, else an ndarray of uint8, (m,).
 
 Parameters are those of `radius_search`.
 )";
 
-constexpr auto kBox = R"(box_search(cloud, low, high)
---
-
-The rows with low <= p <= high on each axis, ascending: an ndarray of int32. Bounds may be infinite, not NaN.
+constexpr auto kBox =
+    R"(The rows with low <= p <= high on each axis, ascending: an ndarray of int32. Bounds may be infinite, not NaN.
 )";
 
 /// NeighborLists, flat.
@@ -103,65 +94,77 @@ FlatNeighbors flatten(const NeighborLists& lists)
 }
 
 /// Whether it is one point, (3,), rather than a list of them.
-bool isOnePoint(const py::object& queries)
+bool isOnePoint(py::handle queries)
 {
-  return !(py::isinstance<py::array>(queries) && py::reinterpret_borrow<py::array>(queries).dtype().has_fields()) &&
-         py::array::ensure(queries) && py::array::ensure(queries).ndim() == 1;
+  const py::array array = py::array::ensure(queries);
+  return array && array.ndim() == 1 && !array.dtype().has_fields();
 }
 
-py::tuple arraysOf(Neighbors&& found)
+using Point = As<"Sequence[float]", isOnePoint>;
+using Points = As<"npt.NDArray[Any]">; // an array of one point is told from others when it is there
+
+using Found = std::pair<py::array_t<std::int32_t>, py::array_t<float>>;
+
+/// What search(query, found) finds about one point.
+template <class Search>
+Found foundOf(const Point& queries, Search&& search)
 {
-  return py::make_tuple(arrayFrom(std::move(found.indices)), arrayFrom(std::move(found.squared_distances)));
+  const Point3 query = point3Of("queries", queries);
+  Neighbors found;
+  unlocked([&] { return search(query, found); });
+  return {arrayFrom(std::move(found.indices)), arrayFrom(std::move(found.squared_distances))};
 }
 
-py::object radiusSearchOf(const SphereHierarchy& cloud, const py::object& queries, double radius, std::size_t most,
-                          bool sorted, unsigned threads)
+/// What search(queries, found) finds about many.
+template <class Search>
+As<"Any"> foundOf(const Points& queries, Search&& search)
 {
-  const RadiusOptions options{most, sorted};
-  if (isOnePoint(queries)) {
-    const Point3 query = point3Of("queries", queries);
-    Neighbors found;
-    unlocked([&] { return radiusSearch(cloud, query, radius, found, options); });
-    return arraysOf(std::move(found));
-  }
   py::array kept;
   const PointsView view = viewForCall("queries", queries, kept);
   return py::cast(unlocked([&] {
     NeighborLists found;
-    radiusSearch(cloud, view, radius, found, options, threads);
+    search(view, found);
     return flatten(found);
   }));
 }
 
-py::object nearestSearchOf(const SphereHierarchy& cloud, const py::object& queries, std::size_t k, unsigned threads)
+template <class Queries>
+auto radiusSearchOf(const SphereHierarchy& cloud, const Queries& queries, double radius, std::size_t most, bool sorted,
+                    unsigned threads)
 {
-  if (isOnePoint(queries)) {
-    const Point3 query = point3Of("queries", queries);
-    Neighbors found;
-    unlocked([&] { return nearestKSearch(cloud, query, k, found); });
-    return arraysOf(std::move(found));
-  }
-  py::array kept;
-  const PointsView view = viewForCall("queries", queries, kept);
-  return py::cast(unlocked([&] {
-    NeighborLists found;
-    nearestKSearch(cloud, view, k, found, threads);
-    return flatten(found);
-  }));
+  return foundOf(queries, [&](const auto& at, auto& found) {
+    if constexpr (std::is_same_v<Queries, Point>)
+      radiusSearch(cloud, at, radius, found, {most, sorted});
+    else
+      radiusSearch(cloud, at, radius, found, {most, sorted}, threads);
+  });
 }
 
-py::object anyInRadiusOf(const SphereHierarchy& cloud, const py::object& queries, double radius, unsigned threads)
+template <class Queries>
+auto nearestSearchOf(const SphereHierarchy& cloud, const Queries& queries, std::size_t k, unsigned threads)
 {
-  if (isOnePoint(queries)) {
-    const Point3 query = point3Of("queries", queries);
-    return py::bool_(unlocked([&] { return anyInRadius(cloud, query, radius); }));
-  }
+  return foundOf(queries, [&](const auto& at, auto& found) {
+    if constexpr (std::is_same_v<Queries, Point>)
+      nearestKSearch(cloud, at, k, found);
+    else
+      nearestKSearch(cloud, at, k, found, threads);
+  });
+}
+
+bool anyAboutPoint(const SphereHierarchy& cloud, const Point& queries, double radius, unsigned /*threads*/)
+{
+  const Point3 query = point3Of("queries", queries);
+  return unlocked([&] { return anyInRadius(cloud, query, radius); });
+}
+
+As<"Any"> anyAboutEach(const SphereHierarchy& cloud, const Points& queries, double radius, unsigned threads)
+{
   py::array kept;
   const PointsView view = viewForCall("queries", queries, kept);
   return arrayFrom(unlocked([&] { return flagAnyInRadius(cloud, view, radius, threads); }));
 }
 
-py::tuple neighborsOf(const py::object& self, py::ssize_t i)
+Found neighborsOf(const py::object& self, py::ssize_t i)
 {
   const auto& found = self.cast<const FlatNeighbors&>();
   const auto queries = static_cast<py::ssize_t>(found.offsets.size()) - 1;
@@ -169,8 +172,8 @@ py::tuple neighborsOf(const py::object& self, py::ssize_t i)
   if (i < 0 || i >= queries) throw py::index_error("there are " + std::to_string(queries) + " queries");
   const auto begin = found.offsets[static_cast<std::size_t>(i)], end = found.offsets[static_cast<std::size_t>(i) + 1];
   const std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(end - begin)};
-  return py::make_tuple(arrayIn(self, found.indices.data() + begin, shape),
-                        arrayIn(self, found.squared_distances.data() + begin, shape));
+  return {arrayIn(self, found.indices.data() + begin, shape),
+          arrayIn(self, found.squared_distances.data() + begin, shape)};
 }
 
 } // namespace
@@ -178,37 +181,35 @@ py::tuple neighborsOf(const py::object& self, py::ssize_t i)
 void bindNeighbors(py::module_& module)
 {
   py::class_<FlatNeighbors>(module, "Neighbors", "The neighbours of many queries, in flat arrays.")
-      .def_property_readonly(
-          "offsets", [](const py::object& self) { return arrayIn(self, self.cast<const FlatNeighbors&>().offsets); },
-          "(m + 1,) int64: those of query i are at [offsets[i], offsets[i + 1]).")
-      .def_property_readonly(
-          "indices", [](const py::object& self) { return arrayIn(self, self.cast<const FlatNeighbors&>().indices); },
-          "int32: rows of the cloud.")
-      .def_property_readonly(
-          "squared_distances",
-          [](const py::object& self) { return arrayIn(self, self.cast<const FlatNeighbors&>().squared_distances); },
-          "float32, rounded once.")
+      .def_property_readonly("offsets", column(&FlatNeighbors::offsets),
+                             "(m + 1,) int64: those of query i are at [offsets[i], offsets[i + 1]).")
+      .def_property_readonly("indices", column(&FlatNeighbors::indices), "int32: rows of the cloud.")
+      .def_property_readonly("squared_distances", column(&FlatNeighbors::squared_distances), "float32, rounded once.")
       .def("__len__", [](const FlatNeighbors& found) { return found.offsets.size() - 1; })
       .def("__getitem__", &neighborsOf)
       .def("__repr__", [](const FlatNeighbors& found) {
         return "Neighbors(" + std::to_string(found.indices.size()) + " of " + std::to_string(found.offsets.size() - 1) +
                " queries)";
       });
-  module.def("radius_search", &radiusSearchOf, kRadius, py::arg("cloud"), py::arg("queries"), py::arg("radius"),
-             py::kw_only(), py::arg("most") = 0, py::arg("sorted") = true, py::arg("threads") = 1);
-  module.def("nearest_k_search", &nearestSearchOf, kNearest, py::arg("cloud"), py::arg("queries"), py::arg("k"),
-             py::kw_only(), py::arg("threads") = 1);
-  module.def("any_in_radius", &anyInRadiusOf, kAny, py::arg("cloud"), py::arg("queries"), py::arg("radius"),
-             py::kw_only(), py::arg("threads") = 1);
+  const auto define = [&](const char* name, auto of_one, auto of_many, const char* text, auto... arguments) {
+    module.def(name, of_one, text, "cloud"_a, "queries"_a, arguments..., "threads"_a = 1);
+    module.def(name, of_many, "", "cloud"_a, "queries"_a, arguments..., "threads"_a = 1);
+  };
+  const auto radius = "radius"_a;
+  const py::kw_only rest;
+  define("radius_search", &radiusSearchOf<Point>, &radiusSearchOf<Points>, kRadius, radius, rest, "most"_a = 0,
+         "sorted"_a = true);
+  define("nearest_k_search", &nearestSearchOf<Point>, &nearestSearchOf<Points>, kNearest, "k"_a, rest);
+  define("any_in_radius", &anyAboutPoint, &anyAboutEach, kAny, radius, rest);
   module.def(
       "box_search",
-      [](const SphereHierarchy& cloud, const py::object& low, const py::object& high) {
+      [](const SphereHierarchy& cloud, const ArrayLike& low, const ArrayLike& high) {
         const Point3 least = point3Of("low", low), most = point3Of("high", high);
         std::vector<std::int32_t> indices;
         unlocked([&] { return boxSearch(cloud, least, most, indices); });
         return arrayFrom(std::move(indices));
       },
-      kBox, py::arg("cloud"), py::arg("low"), py::arg("high"));
+      kBox, "cloud"_a, "low"_a, "high"_a);
 }
 
 } // namespace pcl_bsh::python

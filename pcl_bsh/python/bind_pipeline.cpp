@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/pipeline.h>
 #include <pcl_bsh/python/arrays/array_input.h>
+#include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/arrays/record_array.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/threads/callback.h>
 
 #include <pybind11/stl.h>
 
@@ -15,10 +16,7 @@
 namespace pcl_bsh::python {
 namespace {
 
-constexpr auto kRun = R"(run_pipeline(document, clouds=None, *, threads=0, validate_only=False, progress=None)
---
-
-Runs a chain of filters, in PDAL's grammar; STAGES.md lists the stages and their options.
+constexpr auto kRun = R"(Runs a chain of filters, in PDAL's grammar; STAGES.md lists the stages and their options.
 
 Parameters
 ----------
@@ -57,39 +55,27 @@ Examples
 )";
 
 struct PipelineRun {
-  py::dict clouds;
+  As<"Dict[str, npt.NDArray[np.void]]"> clouds = py::dict();
   std::vector<std::string> warnings;
-  py::object metadata;
+  py::dict metadata;
 };
 
 /// As JSON; what JSON has no word for by NumPy's tolist(), or as a text.
 std::string textOf(const py::object& document)
 {
   if (py::isinstance<py::str>(document)) return document.cast<std::string>();
-  py::object whole = document;
-  if (!py::isinstance<py::dict>(document)) {
-    py::dict named;
-    named["pipeline"] = document;
-    whole = named;
-  }
+  const py::object whole = py::isinstance<py::dict>(document) ? document : py::dict("pipeline"_a = document);
   const py::cpp_function otherwise([](const py::object& value) -> py::object {
     if (py::hasattr(value, "tolist")) return value.attr("tolist")();
     return py::str(value);
   });
-  return py::module_::import("json").attr("dumps")(whole, py::arg("default") = otherwise).cast<std::string>();
+  return py::module_::import("json").attr("dumps")(whole, "default"_a = otherwise).cast<std::string>();
 }
 
 py::dict dictOf(const StageProgress& stage)
 {
-  py::dict named;
-  named["tag"] = stage.tag;
-  named["type"] = stage.type;
-  named["done"] = stage.done;
-  named["points"] = stage.points;
-  named["seconds"] = stage.seconds;
-  named["finished"] = stage.finished;
-  named["stages"] = stage.stages;
-  return named;
+  return py::dict("tag"_a = stage.tag, "type"_a = stage.type, "done"_a = stage.done, "points"_a = stage.points,
+                  "seconds"_a = stage.seconds, "finished"_a = stage.finished, "stages"_a = stage.stages);
 }
 
 /// Stages run for long without a word, so another thread runs them, and this one listens for Ctrl-C.
@@ -114,8 +100,9 @@ PipelineResult runUntilInterrupted(Pipeline& pipeline)
   }
 }
 
-PipelineRun runPipeline(const py::object& document, const py::object& clouds, unsigned threads, bool validate_only,
-                        const py::object& progress)
+PipelineRun runPipeline(const As<"Union[str, Mapping[str, Any], Sequence[Any]]">& document,
+                        const As<"Optional[Mapping[str, npt.NDArray[Any]]]">& clouds, unsigned threads,
+                        bool validate_only, const As<"Optional[Callable[[Dict[str, Any]], Any]]">& progress)
 {
   Pipeline pipeline = Pipeline::parse(textOf(document));
   if (!clouds.is_none()) {
@@ -146,8 +133,7 @@ PipelineRun runPipeline(const py::object& document, const py::object& clouds, un
     run.clouds[py::str(tag)] = recordsFrom(std::move(own));
   }
   run.warnings = result.warnings;
-  run.metadata =
-      result.metadata.empty() ? py::object(py::dict()) : py::module_::import("json").attr("loads")(result.metadata);
+  if (!result.metadata.empty()) run.metadata = py::module_::import("json").attr("loads")(result.metadata);
   return run;
 }
 
@@ -165,8 +151,8 @@ void bindPipeline(py::module_& module)
         return "PipelineRun(clouds=" + std::string(py::str(py::list(run.clouds))) +
                ", warnings=" + std::to_string(run.warnings.size()) + ")";
       });
-  module.def("run_pipeline", &runPipeline, kRun, py::arg("document"), py::arg("clouds") = py::none(), py::kw_only(),
-             py::arg("threads") = 0, py::arg("validate_only") = false, py::arg("progress") = py::none());
+  module.def("run_pipeline", &runPipeline, kRun, "document"_a, "clouds"_a = py::none(), py::kw_only(), "threads"_a = 0,
+             "validate_only"_a = false, "progress"_a = py::none());
 }
 
 } // namespace pcl_bsh::python

@@ -4,11 +4,13 @@
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/question_warnings.h>
+#include <pcl_bsh/question/scene_warnings.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include <pybind11/stl.h>
 
+#include <map>
 #include <mutex>
 #include <string>
 #include <type_traits>
@@ -63,11 +65,17 @@ Examples
 (True, 4.9)
 )";
 
+using ObjectLike = As<"Union[int, str]">;
+using MotionLike = As<"Union[None, VelocityMotion, CircularMotion, WaypointMotion]">;
+using CloudLike = As<"Union[SphereHierarchy, Sequence[Union[Tuple[str, SphereHierarchy], "
+                     "Tuple[str, SphereHierarchy, npt.ArrayLike]]]]">;
+
 /// Scenes are not for several threads at once.
 struct SharedScene {
   explicit SharedScene(const SceneOptions& options) : scene(options) {}
   Scene scene;
   std::mutex mutex;
+  std::size_t told = 0; ///< objects whose warnings were given
 };
 
 /// Calls use(scene) without the interpreter's lock, when no other thread does.
@@ -80,6 +88,33 @@ auto inTurn(SharedScene& shared, Use&& use)
   });
 }
 
+/// What ask(scene) answers; and warnings, where objects were added since the last time.
+template <class Ask>
+SceneResult resultOf(SharedScene& shared, Ask&& ask)
+{
+  std::vector<std::string> warnings;
+  SceneResult result = inTurn(shared, [&](Scene& scene) {
+    SceneResult answer = ask(scene);
+    if (shared.told == scene.size()) return answer;
+    shared.told = scene.size();
+    std::map<std::string, NamedCloud> clouds;
+    std::vector<NamedObject> objects;
+    for (ObjectId id = 0; id < scene.size(); ++id) {
+      const SceneObject& object = scene[id];
+      objects.push_back({object.name, object.fixed, {}, object.pose, object.motion});
+      for (const ScenePart& part : object.parts) {
+        const std::string name = object.parts.size() == 1 ? object.name : object.name + "." + part.name;
+        clouds.emplace(name, factsOf(name, *part.hierarchy, true));
+        objects.back().parts.push_back({name, part.pose});
+      }
+    }
+    warnings = warningsOf(objects, clouds, scene.options().clearance, std::nullopt);
+    return answer;
+  });
+  for (const std::string& warning : warnings) warn(warning);
+  return result;
+}
+
 Response responseOf(const std::string& text)
 {
   if (text == "none") return Response::none;
@@ -90,10 +125,10 @@ Response responseOf(const std::string& text)
 
 std::unique_ptr<SharedScene> makeScene(double clearance, bool any, bool flags, std::optional<double> distance,
                                        std::optional<std::size_t> contacts, bool first_contact, bool swept,
-                                       bool self_collisions, const std::string& response, std::optional<double> gravity,
-                                       const py::object& down, bool test_pairs, const py::object& accuracy,
-                                       double tolerance, double voxel_edge, unsigned threads,
-                                       std::optional<double> deform)
+                                       bool self_collisions, const As<"Literal['none', 'stop', 'slide']">& response,
+                                       std::optional<double> gravity, const OptionalArray& down, bool test_pairs,
+                                       const AccuracyLike& accuracy, double tolerance, double voxel_edge,
+                                       unsigned threads, std::optional<double> deform)
 {
   SceneOptions options;
   options.effects.any = any;
@@ -103,7 +138,7 @@ std::unique_ptr<SharedScene> makeScene(double clearance, bool any, bool flags, s
   options.effects.first_contact = first_contact;
   options.effects.swept = swept;
   options.effects.self = self_collisions;
-  options.effects.response = responseOf(response);
+  options.effects.response = responseOf(response.cast<std::string>());
   options.effects.deform = deform;
   if (gravity) {
     options.effects.gravity.emplace();
@@ -119,7 +154,7 @@ std::unique_ptr<SharedScene> makeScene(double clearance, bool any, bool flags, s
   return std::make_unique<SharedScene>(options);
 }
 
-Motion motionOf(const py::object& motion)
+Motion motionOf(const MotionLike& motion)
 {
   if (motion.is_none()) return NoMotion{};
   if (py::isinstance<VelocityMotion>(motion)) return motion.cast<VelocityMotion>();
@@ -128,7 +163,7 @@ Motion motionOf(const py::object& motion)
 }
 
 /// A hierarchy, or parts: (name, hierarchy) or (name, hierarchy, pose) each.
-std::vector<ScenePart> partsOf(const std::string& name, const py::object& cloud)
+std::vector<ScenePart> partsOf(const std::string& name, const CloudLike& cloud)
 {
   if (py::isinstance<SphereHierarchy>(cloud))
     return {{name, cloud.cast<std::shared_ptr<SphereHierarchy>>(), Eigen::Isometry3d::Identity()}};
@@ -145,8 +180,8 @@ std::vector<ScenePart> partsOf(const std::string& name, const py::object& cloud)
   return parts;
 }
 
-ObjectId addObject(SharedScene& shared, const std::string& name, const py::object& cloud, const py::object& pose,
-                   bool fixed, const std::string& group, const py::object& motion,
+ObjectId addObject(SharedScene& shared, const std::string& name, const CloudLike& cloud, const PoseLike& pose,
+                   bool fixed, const std::string& group, const MotionLike& motion,
                    std::vector<std::pair<std::uint32_t, std::uint32_t>> adjacent)
 {
   SceneObject object;
@@ -161,7 +196,7 @@ ObjectId addObject(SharedScene& shared, const std::string& name, const py::objec
 }
 
 /// An object's number, or its name.
-ObjectId idOf(SharedScene& shared, const py::object& object)
+ObjectId idOf(SharedScene& shared, const ObjectLike& object)
 {
   const bool named = py::isinstance<py::str>(object);
   const auto name = named ? object.cast<std::string>() : std::string();
@@ -186,37 +221,32 @@ void requirePart(const Scene& scene, ObjectId object, std::uint32_t part)
                        "the object has " + std::to_string(scene[object].parts.size()) + ", counted from 0");
 }
 
-PairRule ruleOf(const std::optional<bool>& tested, const std::optional<double>& clearance)
-{
-  return {tested, clearance};
-}
-
 void bindMotions(py::module_& module)
 {
   py::class_<VelocityMotion>(module, "VelocityMotion",
                              "Straight on, by `linear` each second, turning about its own origin by `angular` (axis "
                              "times radians each second), both as the world sees them.")
-      .def(py::init([](const py::object& linear, const py::object& angular) {
+      .def(py::init([](const ArrayLike& linear, const OptionalArray& angular) {
              VelocityMotion motion;
              motion.linear = vectorOf("linear", linear);
              if (!angular.is_none()) motion.angular = vectorOf("angular", angular);
              return motion;
            }),
-           py::arg("linear"), py::arg("angular") = py::none());
+           "linear"_a, "angular"_a = py::none());
   py::class_<CircularMotion>(module, "CircularMotion",
                              "Around an axis of the world, by `speed` radians each second; turning=False keeps the "
                              "rotation, as a gondola does.")
-      .def(py::init([](const py::object& center, const py::object& axis, double speed, bool turning) {
+      .def(py::init([](const ArrayLike& center, const ArrayLike& axis, double speed, bool turning) {
              return CircularMotion{vectorOf("center", center), vectorOf("axis", axis), speed, turning};
            }),
-           py::arg("center"), py::arg("axis"), py::arg("speed"), py::arg("turning") = true);
+           "center"_a, "axis"_a, "speed"_a, "turning"_a = true);
   py::class_<WaypointMotion>(
       module, "WaypointMotion",
       "From pose to pose (m, 4, 4) at ascending times (m,) in seconds; at rest before and after.")
-      .def(py::init([](std::vector<double> times, const py::object& poses) {
+      .def(py::init([](std::vector<double> times, const ArrayLike& poses) {
              return WaypointMotion{std::move(times), posesOf("poses", poses)};
            }),
-           py::arg("times"), py::arg("poses"));
+           "times"_a, "poses"_a);
 }
 
 } // namespace
@@ -227,15 +257,13 @@ void bindScene(py::module_& module)
   bindSceneResult(module);
   const auto none = py::none();
   py::class_<SharedScene>(module, "Scene", kScene)
-      .def(py::init(&makeScene), py::kw_only(), py::arg("clearance") = 0.0, py::arg("any") = false,
-           py::arg("flags") = false, py::arg("distance") = none, py::arg("contacts") = none,
-           py::arg("first_contact") = false, py::arg("swept") = false, py::arg("self_collisions") = false,
-           py::arg("response") = "none", py::arg("gravity") = none, py::arg("down") = none,
-           py::arg("test_pairs") = true, py::arg("accuracy") = none, py::arg("tolerance") = 1e-4,
-           py::arg("voxel_edge") = 0.0, py::arg("threads") = 1, py::arg("deform") = none)
-      .def("add", &addObject, py::arg("name"), py::arg("cloud"), py::arg("pose") = none, py::kw_only(),
-           py::arg("fixed") = false, py::arg("group") = "", py::arg("motion") = none,
-           py::arg("adjacent") = std::vector<std::pair<std::uint32_t, std::uint32_t>>{},
+      .def(py::init(&makeScene), py::kw_only(), "clearance"_a = 0.0, "any"_a = false, "flags"_a = false,
+           "distance"_a = none, "contacts"_a = none, "first_contact"_a = false, "swept"_a = false,
+           "self_collisions"_a = false, "response"_a = "none", "gravity"_a = none, "down"_a = none,
+           "test_pairs"_a = true, "accuracy"_a = none, "tolerance"_a = 1e-4, "voxel_edge"_a = 0.0, "threads"_a = 1,
+           "deform"_a = none)
+      .def("add", &addObject, "name"_a, "cloud"_a, "pose"_a = none, py::kw_only(), "fixed"_a = false, "group"_a = "",
+           "motion"_a = none, "adjacent"_a = std::vector<std::pair<std::uint32_t, std::uint32_t>>{},
            "Adds an object, and returns its number. `cloud` is a SphereHierarchy, or a list of parts: (name, "
            "hierarchy) or "
            "(name, hierarchy, pose). `adjacent` lists pairs of parts that self_collisions does not compare.")
@@ -248,25 +276,25 @@ void bindScene(py::module_& module)
           [](SharedScene& s, const std::string& name) {
             return inTurn(s, [&](Scene& scene) { return scene.find(name); });
           },
-          py::arg("name"), "The number of the object of that name, or None.")
+          "name"_a, "The number of the object of that name, or None.")
       .def(
           "pose",
-          [](SharedScene& s, const py::object& object) {
+          [](SharedScene& s, const ObjectLike& object) {
             const ObjectId id = idOf(s, object);
             return arrayOf(inTurn(s, [&](Scene& scene) { return scene[id].pose; }));
           },
-          py::arg("object"), "Where an object stands now, (4, 4); `object` is its number or name.")
+          "object"_a, "Where an object stands now, (4, 4); `object` is its number or name.")
       .def(
           "set_pose",
-          [](SharedScene& s, const py::object& object, const py::object& pose) {
+          [](SharedScene& s, const ObjectLike& object, const ArrayLike& pose) {
             const ObjectId id = idOf(s, object);
             const Eigen::Isometry3d to = poseOf("pose", pose);
             inTurn(s, [&](Scene& scene) { scene.setPose(id, to); });
           },
-          py::arg("object"), py::arg("pose"), "Takes an object somewhere, whatever is in between.")
+          "object"_a, "pose"_a, "Takes an object somewhere, whatever is in between.")
       .def(
           "set_part_pose",
-          [](SharedScene& s, const py::object& object, std::uint32_t part, const py::object& pose) {
+          [](SharedScene& s, const ObjectLike& object, std::uint32_t part, const ArrayLike& pose) {
             const ObjectId id = idOf(s, object);
             const Eigen::Isometry3d to = poseOf("pose", pose);
             inTurn(s, [&](Scene& scene) {
@@ -274,11 +302,11 @@ void bindScene(py::module_& module)
               scene.setPartPose(id, part, to);
             });
           },
-          py::arg("object"), py::arg("part"), py::arg("pose"), "Moves a part within its object.")
+          "object"_a, "part"_a, "pose"_a, "Moves a part within its object.")
       .def(
           "deform",
-          [](SharedScene& s, const py::object& object, const py::object& xyz, std::uint32_t part,
-             const py::object& radii, const py::object& uncertainties, bool copy) {
+          [](SharedScene& s, const ObjectLike& object, const ArrayLike& xyz, std::uint32_t part,
+             const OptionalArray& radii, const OptionalArray& uncertainties, bool copy) {
             const ObjectId id = idOf(s, object);
             return dictOf(whileNoneComputes(
                 [&] {
@@ -288,42 +316,41 @@ void bindScene(py::module_& module)
                 },
                 [&](const MovedView& moved) { return s.scene.deform(id, part, moved.now); }));
           },
-          py::arg("object"), py::arg("xyz"), py::arg("part") = 0, py::kw_only(), py::arg("radii") = none,
-          py::arg("uncertainties") = none, py::arg("copy") = false,
+          "object"_a, "xyz"_a, "part"_a = 0, py::kw_only(), "radii"_a = none, "uncertainties"_a = none,
+          "copy"_a = false,
           "The points of a part have moved: as `SphereHierarchy.refit`, with the scene's factor; in every object that "
           "shares the hierarchy.")
       .def(
           "set_motion",
-          [](SharedScene& s, const py::object& object, const py::object& motion) {
+          [](SharedScene& s, const ObjectLike& object, const MotionLike& motion) {
             const ObjectId id = idOf(s, object);
             const Motion next = motionOf(motion);
             inTurn(s, [&](Scene& scene) { scene.setMotion(id, next); });
           },
-          py::arg("object"), py::arg("motion"), "How an object moves from now on; None: at rest.")
+          "object"_a, "motion"_a, "How an object moves from now on; None: at rest.")
       .def(
           "set_rule",
-          [](SharedScene& s, const py::object& a, const py::object& b, std::optional<bool> tested,
+          [](SharedScene& s, const ObjectLike& a, const ObjectLike& b, std::optional<bool> tested,
              std::optional<double> clearance) {
             const ObjectId id_a = idOf(s, a), id_b = idOf(s, b);
-            inTurn(s, [&](Scene& scene) { scene.setRule(id_a, id_b, ruleOf(tested, clearance)); });
+            inTurn(s, [&](Scene& scene) { scene.setRule(id_a, id_b, {tested, clearance}); });
           },
-          py::arg("a"), py::arg("b"), py::kw_only(), py::arg("tested") = none, py::arg("clearance") = none,
+          "a"_a, "b"_a, py::kw_only(), "tested"_a = none, "clearance"_a = none,
           "What holds for a pair of objects, over what holds for their groups.")
       .def(
           "set_group_rule",
           [](SharedScene& s, const std::string& a, const std::string& b, std::optional<bool> tested,
              std::optional<double> clearance) {
-            inTurn(s, [&](Scene& scene) { scene.setGroupRule(a, b, ruleOf(tested, clearance)); });
+            inTurn(s, [&](Scene& scene) { scene.setGroupRule(a, b, {tested, clearance}); });
           },
-          py::arg("a"), py::arg("b"), py::kw_only(), py::arg("tested") = none, py::arg("clearance") = none,
+          "a"_a, "b"_a, py::kw_only(), "tested"_a = none, "clearance"_a = none,
           "What holds for pairs of objects of two groups.")
       .def(
-          "query", [](SharedScene& s) { return inTurn(s, [](Scene& scene) { return scene.query(); }); },
+          "query", [](SharedScene& s) { return resultOf(s, [](Scene& scene) { return scene.query(); }); },
           "The effects at the present poses.")
       .def(
-          "step", [](SharedScene& s, double dt) { return inTurn(s, [&](Scene& scene) { return scene.step(dt); }); },
-          py::arg("dt"),
-          "Moves every object along its motion for `dt` seconds, as response and gravity allow, and queries.")
+          "step", [](SharedScene& s, double dt) { return resultOf(s, [&](Scene& scene) { return scene.step(dt); }); },
+          "dt"_a, "Moves every object along its motion for `dt` seconds, as response and gravity allow, and queries.")
       .def("__repr__", [](SharedScene& s) {
         return inTurn(s, [](Scene& scene) { return "Scene(" + counted(scene.size(), "object") + ")"; });
       });

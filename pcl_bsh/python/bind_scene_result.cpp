@@ -5,7 +5,9 @@
 
 #include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh::python {
@@ -16,131 +18,95 @@ py::tuple tripleOf(const Eigen::Vector3d& v)
   return py::make_tuple(v.x(), v.y(), v.z());
 }
 
-py::dict dictOf(const PartPair& pair)
+template <class T>
+std::vector<py::dict> listOf(const std::vector<T>& entries);
+
+/// A pair of parts, and what more there is of the pair.
+template <class... More>
+py::dict dictOf(const PartPair& pair, More... more)
 {
-  py::dict named;
-  named["a"] = pair.a;
-  named["b"] = pair.b;
-  named["part_a"] = pair.part_a;
-  named["part_b"] = pair.part_b;
-  return named;
+  return py::dict("a"_a = pair.a, "b"_a = pair.b, "part_a"_a = pair.part_a, "part_b"_a = pair.part_b,
+                  std::move(more)...);
 }
 
 py::dict dictOf(const CollidingPair& pair)
 {
-  py::dict named = dictOf(static_cast<const PartPair&>(pair));
-  named["witness"] = py::make_tuple(pair.witness.a, pair.witness.b);
-  return named;
+  return dictOf(pair, "witness"_a = tupleOf(pair.witness));
 }
 
 py::dict dictOf(const DistantPair& pair)
 {
-  py::dict named = dictOf(static_cast<const PartPair&>(pair));
-  named["distance"] = pair.distance;
-  named["interval"] = tupleOf(pair.interval);
-  named["pair"] = py::make_tuple(pair.pair.a, pair.pair.b);
-  return named;
+  return dictOf(pair, "distance"_a = pair.distance, "interval"_a = tupleOf(pair.interval),
+                "pair"_a = tupleOf(pair.pair));
 }
 
 py::dict dictOf(const PartFirstContact& pair)
 {
-  py::dict named = dictOf(static_cast<const PartPair&>(pair));
-  named["fraction"] = pair.fraction;
-  named["pair"] = py::make_tuple(pair.pair.a, pair.pair.b);
-  return named;
+  return dictOf(pair, "fraction"_a = pair.fraction, "pair"_a = tupleOf(pair.pair));
+}
+
+py::dict dictOf(const Contact& contact)
+{
+  return py::dict("pair"_a = tupleOf(contact.pair), "distance"_a = contact.distance,
+                  "normal"_a = tripleOf(contact.normal));
 }
 
 py::dict dictOf(const ContactPair& pair)
 {
-  py::dict named = dictOf(static_cast<const PartPair&>(pair));
-  py::list contacts;
-  for (const Contact& contact : pair.contacts) {
-    py::dict one;
-    one["pair"] = py::make_tuple(contact.pair.a, contact.pair.b);
-    one["distance"] = contact.distance;
-    one["normal"] = tripleOf(contact.normal);
-    contacts.append(one);
-  }
-  named["contacts"] = contacts;
-  named["complete"] = pair.complete;
-  return named;
+  return dictOf(pair, "contacts"_a = listOf(pair.contacts), "complete"_a = pair.complete);
 }
 
 py::dict dictOf(const FlaggedPart& part)
 {
-  py::dict named;
-  named["object"] = part.object;
-  named["part"] = part.part;
-  named["colliding"] = part.colliding;
-  named["undecided"] = part.undecided;
-  named["flags"] = py::array_t<std::uint8_t>(static_cast<py::ssize_t>(part.flags.size()), part.flags.data());
-  return named;
+  const py::array_t<std::uint8_t> flags(static_cast<py::ssize_t>(part.flags.size()), part.flags.data());
+  return py::dict("object"_a = part.object, "part"_a = part.part, "colliding"_a = part.colliding,
+                  "undecided"_a = part.undecided, "flags"_a = flags);
 }
 
 py::dict dictOf(const SelfCollision& pair)
 {
-  py::dict named;
-  named["object"] = pair.object;
-  named["part_a"] = pair.part_a;
-  named["part_b"] = pair.part_b;
-  named["witness"] = py::make_tuple(pair.witness.a, pair.witness.b);
-  return named;
+  return py::dict("object"_a = pair.object, "part_a"_a = pair.part_a, "part_b"_a = pair.part_b,
+                  "witness"_a = tupleOf(pair.witness));
 }
 
 py::dict dictOf(const Leg& leg)
 {
-  py::dict named;
-  named["from"] = arrayOf(leg.from);
-  named["to"] = arrayOf(leg.to);
-  named["center"] = tripleOf(leg.center);
-  named["turn"] = tripleOf(leg.turn);
-  return named;
+  return py::dict("from"_a = arrayOf(leg.from), "to"_a = arrayOf(leg.to), "center"_a = tripleOf(leg.center),
+                  "turn"_a = tripleOf(leg.turn));
 }
 
 py::dict dictOf(const SweptMotion& motion)
 {
-  py::dict named;
-  named["object"] = motion.object;
-  named["part"] = motion.part ? py::object(py::int_(*motion.part)) : py::none();
-  named["leg"] = dictOf(motion.leg);
-  return named;
+  return py::dict("object"_a = motion.object, "part"_a = motion.part, "leg"_a = dictOf(motion.leg));
 }
 
 py::dict dictOf(const UnsweptObject& unswept)
 {
-  py::dict named;
-  named["object"] = unswept.object;
-  named["added"] = unswept.added;
-  named["reshaped"] = unswept.reshaped;
-  named["detoured"] = unswept.detoured;
-  return named;
+  return py::dict("object"_a = unswept.object, "added"_a = unswept.added, "reshaped"_a = unswept.reshaped,
+                  "detoured"_a = unswept.detoured);
 }
 
 py::dict dictOf(const Outcome& outcome)
 {
-  py::dict named;
-  named["object"] = outcome.object;
-  named["touched"] = outcome.touched;
-  named["against"] = outcome.touched ? py::object(py::int_(outcome.against)) : py::none();
-  named["stuck"] = outcome.stuck;
-  named["grounded"] = outcome.grounded;
-  named["wanted"] = outcome.wanted;
-  named["travelled"] = outcome.travelled;
-  py::list legs;
-  for (const Leg& leg : outcome.legs) legs.append(dictOf(leg));
-  named["legs"] = legs;
-  return named;
+  const auto against = outcome.touched ? std::optional(outcome.against) : std::nullopt;
+  return py::dict("object"_a = outcome.object, "touched"_a = outcome.touched, "against"_a = against,
+                  "stuck"_a = outcome.stuck, "grounded"_a = outcome.grounded, "wanted"_a = outcome.wanted,
+                  "travelled"_a = outcome.travelled, "legs"_a = listOf(outcome.legs));
+}
+
+template <class T>
+std::vector<py::dict> listOf(const std::vector<T>& entries)
+{
+  std::vector<py::dict> list;
+  for (const T& entry : entries) list.push_back(dictOf(entry));
+  return list;
 }
 
 /// A property with a dict for each entry of one of the result's vectors.
 template <class T>
 auto listed(std::vector<T> SceneResult::*entries)
 {
-  return [entries](const SceneResult& result) {
-    py::list list;
-    for (const T& entry : result.*entries) list.append(dictOf(entry));
-    return list;
-  };
+  return [entries](const SceneResult& result) { return listOf(result.*entries); };
 }
 
 } // namespace
@@ -177,7 +143,7 @@ void bindSceneResult(py::module_& module)
                              "Of moved objects, with a response or gravity: object, touched, against, stuck, grounded, "
                              "wanted, travelled, legs (as in swept_motions).")
       .def("__repr__", [](const SceneResult& result) {
-        return "SceneResult(time=" + std::string(py::str(py::float_(result.time))) +
+        return "SceneResult(time=" + numberText(result.time) +
                ", colliding pairs=" + std::to_string(result.any.size()) + ")";
       });
 }

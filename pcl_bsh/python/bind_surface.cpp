@@ -3,7 +3,7 @@
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/threads/callback.h>
 #include <pcl_bsh/surface/surface_cover.h>
 
 #include <string>
@@ -11,10 +11,8 @@
 namespace pcl_bsh::python {
 namespace {
 
-constexpr auto kCover = R"(cover_surface(vertices, triangles, tolerance, *, triangles_apart=False, progress=None)
---
-
-Balls that hold every point of a mesh's triangles and hardly more, so that every query answers for the surface.
+constexpr auto kCover =
+    R"(Balls that hold every point of a mesh's triangles and hardly more, so that every query answers for the surface.
 
 Parameters
 ----------
@@ -51,8 +49,8 @@ public:
   std::shared_ptr<const SurfaceCover> cover;
 };
 
-std::shared_ptr<SurfaceCover> coverOf(const py::object& vertices, const py::object& triangles, double tolerance,
-                                      bool triangles_apart, const py::object& progress)
+std::shared_ptr<SurfaceCover> coverOf(const ArrayLike& vertices, const ArrayLike& triangles, double tolerance,
+                                      bool triangles_apart, const ProgressLike& progress)
 {
   py::array kept;
   const PointsView view = viewForCall("vertices", vertices, kept);
@@ -89,21 +87,19 @@ void bindSurface(py::module_& module)
                                const double* const first = cover.centers.empty() ? nullptr : cover.centers[0].data();
                                return arrayIn(self, first, {static_cast<py::ssize_t>(cover.centers.size()), 3});
                              })
-      .def_property_readonly(
-          "radii", [](const py::object& self) { return arrayIn(self, self.cast<const SurfaceCover&>().radii); })
-      .def_property_readonly(
-          "triangles", [](const py::object& self) { return arrayIn(self, self.cast<const SurfaceCover&>().triangles); })
+      .def_property_readonly("radii", column(&SurfaceCover::radii))
+      .def_property_readonly("triangles", column(&SurfaceCover::triangles))
       .def_readonly("tolerance", &SurfaceCover::tolerance)
       .def_readonly("area", &SurfaceCover::area, "Of all triangles.")
-      .def("hierarchy", &hierarchyOf, py::kw_only(), py::arg("threads") = 1,
+      .def("hierarchy", &hierarchyOf, py::kw_only(), "threads"_a = 1,
            "The hierarchy of the balls; it keeps them alive.")
       .def("__len__", [](const SurfaceCover& cover) { return cover.radii.size(); })
       .def("__repr__", [](const SurfaceCover& cover) {
-        return "SurfaceCover(" + counted(cover.radii.size(), "ball") + ", tolerance " +
-               std::string(py::str(py::float_(cover.tolerance))) + ")";
+        return "SurfaceCover(" + counted(cover.radii.size(), "ball") + ", tolerance " + numberText(cover.tolerance) +
+               ")";
       });
-  module.def("cover_surface", &coverOf, kCover, py::arg("vertices"), py::arg("triangles"), py::arg("tolerance"),
-             py::kw_only(), py::arg("triangles_apart") = false, py::arg("progress") = py::none());
+  module.def("cover_surface", &coverOf, kCover, "vertices"_a, "triangles"_a, "tolerance"_a, py::kw_only(),
+             "triangles_apart"_a = false, "progress"_a = py::none());
 }
 
 } // namespace pcl_bsh::python

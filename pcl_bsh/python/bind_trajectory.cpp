@@ -1,25 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/callback.h>
 #include <pcl_bsh/python/question_warnings.h>
-#include <pcl_bsh/python/trajectory_run.h>
+#include <pcl_bsh/python/threads/callback.h>
+
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <pybind11/stl.h>
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace pcl_bsh::python {
 namespace {
 
-constexpr auto kCollideAlong =
-    R"(collide_along(scan, model, poses, clearance=0.0, *, pose_scan=None, flags=True, distances=False, first_poses=False, closest_poses=False, pose_summaries=False, swept=None, pivot=None, accuracy=None, threads=1, progress=None)
---
+/// A result, and what was asked for.
+struct TrajectoryRun {
+  TrajectoryRequest request;
+  TrajectoryResult result;
+};
 
-Which points of a scan does a model come near to along a path, how near, and when?
+constexpr auto kCollideAlong =
+    R"(Which points of a scan does a model come near to along a path, how near, and when?
 
 Parameters
 ----------
@@ -70,10 +77,7 @@ array([ 0,  1,  2, -1, -1], dtype=int32)
 array([ 1.,  1.,  1., nan, nan], dtype=float32)
 )";
 
-constexpr auto kPoseBetween = R"(pose_between(start, end, fraction, pivot=None)
---
-
-The pose at a fraction in [0, 1] of the motion that `collide_along` calls swept.
+constexpr auto kPoseBetween = R"(The pose at a fraction in [0, 1] of the motion that `collide_along` calls swept.
 
 Returns
 -------
@@ -85,11 +89,11 @@ ValueError
     Between poses that are half a turn apart: both directions are as short.
 )";
 
-TrajectoryRun collideAlongOf(const SphereHierarchy& scan, const SphereHierarchy& model, const py::object& poses,
-                             double clearance, const py::object& pose_scan, bool flags, bool distances,
-                             bool first_poses, bool closest_poses, bool pose_summaries, std::optional<double> swept,
-                             const py::object& pivot, const py::object& accuracy, unsigned threads,
-                             const py::object& progress)
+TrajectoryRun collideAlongOf(const SphereHierarchy& scan, const SphereHierarchy& model, const ArrayLike& poses,
+                             double clearance, const PoseLike& pose_scan, bool flags, bool distances, bool first_poses,
+                             bool closest_poses, bool pose_summaries, std::optional<double> swept,
+                             const OptionalArray& pivot, const AccuracyLike& accuracy, unsigned threads,
+                             const ProgressLike& progress)
 {
   const Placed placed(scan, poseOf("pose_scan", pose_scan));
   const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
@@ -112,27 +116,114 @@ TrajectoryRun collideAlongOf(const SphereHierarchy& scan, const SphereHierarchy&
   return run;
 }
 
-py::array poseBetweenOf(const py::object& start, const py::object& end, double fraction, const py::object& pivot)
+py::array_t<double> poseBetweenOf(const ArrayLike& start, const ArrayLike& end, double fraction,
+                                  const OptionalArray& pivot)
 {
   const Point3 at = pivot.is_none() ? Point3{0, 0, 0} : point3Of("pivot", pivot);
   const Eigen::Isometry3d pose = poseBetween(poseOf("start", start), poseOf("end", end), fraction, at);
   return arrayOf(pose);
 }
 
-py::object contactOf(const std::optional<FirstContact>& contact)
+/// A property for one of the contacts.
+auto contact(std::optional<FirstContact> TrajectoryResult::*of)
 {
-  if (!contact) return py::none();
-  return py::make_tuple(contact->pose, contact->fraction);
+  return [of](const TrajectoryRun& run) -> std::optional<std::pair<std::size_t, double>> {
+    const std::optional<FirstContact>& contact = run.result.*of;
+    if (!contact) return std::nullopt;
+    return std::pair(contact->pose, contact->fraction);
+  };
 }
 
-/// A property for one of the result's vectors.
-template <class T>
-auto column(std::vector<T> TrajectoryResult::*values, bool (*asked)(const TrajectoryRequest&))
+/// A property for one of the result's vectors; None where nothing was asked for.
+template <class T, class Asked>
+auto columnWhere(std::vector<T> TrajectoryResult::*values, Asked asked)
 {
-  return [values, asked](const py::object& self) {
+  return [values, asked](const py::object& self) -> std::optional<py::array_t<T>> {
     const auto& run = self.cast<const TrajectoryRun&>();
-    return arrayInOrNone(self, run.result.*values, asked(run.request));
+    if (!std::invoke(asked, run.request)) return std::nullopt;
+    return arrayIn(self, run.result.*values);
   };
+}
+
+constexpr auto kFindClashes =
+    R"(What collides along a path, place by place: clusters of colliding points, the most severe first.
+
+Parameters
+----------
+scan : SphereHierarchy
+    That the path was asked about.
+run : Trajectory
+    Of `collide_along` with flags, distances, first_poses and closest_poses.
+cluster_distance : float
+    Points no farther apart belong together; > 0.
+
+Returns
+-------
+list of Clash
+    With ids that tell the place, the same in every run in which the clash stays there.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> scan = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 1], [0.1, 0, 1], [5, 0, 1]]))
+>>> model = pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
+>>> poses = np.tile(np.eye(4), (2, 1, 1)); poses[1, 0, 3] = 5
+>>> run = pcl_bsh.collide_along(scan, model, poses, 1.1, distances=True, first_poses=True, closest_poses=True)
+>>> [(clash.points, clash.distance, clash.first_pose) for clash in pcl_bsh.find_clashes(scan, run, 0.5)]
+[(2, 1.0, 0), (1, 1.0, 1)]
+)";
+
+constexpr auto kCompare = R"(Tells which clashes were there before.
+
+Parameters
+----------
+clashes, earlier : list of Clash
+nearness : float
+    How near boxes must come to each other, per axis.
+
+Returns
+-------
+list of Clash
+    The same with `status` set and ids passed on, and after them those of `earlier` that are resolved.
+)";
+
+using Status = As<"Literal['new', 'persisting', 'resolved']">;
+
+void bindClashes(py::module_& module)
+{
+  py::class_<Clash>(module, "Clash", "Colliding points of a scan that lie together. Coordinates are the scan's own.")
+      .def_readonly("id", &Clash::id)
+      .def_property_readonly(
+          "status", [](const Clash& clash) { return Status(py::str(nameOf(clash.status))); },
+          "'new', 'persisting' or 'resolved'.")
+      .def_readonly("certain_points", &Clash::certain_points,
+                    "Of its points, how many collide wherever the points truly are; the others are undecided.")
+      .def_property_readonly("records", column(&Clash::records), "uint32: its rows, ascending; empty when resolved.")
+      .def_readonly("points", &Clash::points)
+      .def_readonly("low", &Clash::low, "The lower corner of its box.")
+      .def_readonly("high", &Clash::high)
+      .def_readonly("distance", &Clash::distance, "The smallest.")
+      .def_readonly("scan_point", &Clash::scan_point, "The rows that realise it.")
+      .def_readonly("model_point", &Clash::model_point)
+      .def_readonly("first_pose", &Clash::first_pose)
+      .def_readonly("closest_pose", &Clash::closest_pose)
+      .def("__repr__", [](const Clash& clash) {
+        return "Clash('" + clash.id + "', " + nameOf(clash.status) + ", " + counted(clash.points, "point") +
+               ", distance " + numberText(clash.distance) + ")";
+      });
+  module.def(
+      "find_clashes",
+      [](const SphereHierarchy& scan, const TrajectoryRun& run, double cluster_distance) {
+        return unlocked([&] { return findClashes(scan.view(), run.result, cluster_distance); });
+      },
+      kFindClashes, "scan"_a, "run"_a, "cluster_distance"_a);
+  module.def(
+      "compare_with_earlier",
+      [](std::vector<Clash> clashes, const std::vector<Clash>& earlier, double nearness) {
+        compareWithEarlier(clashes, earlier, nearness);
+        return clashes;
+      },
+      kCompare, "clashes"_a, "earlier"_a, "nearness"_a);
 }
 
 } // namespace
@@ -142,52 +233,47 @@ void bindTrajectory(py::module_& module)
   PYBIND11_NUMPY_DTYPE(PoseSummary, colliding, colliding_points, undecided_points, distance);
 
   using Request = TrajectoryRequest;
-  const auto flags = [](const Request& r) { return r.flags; };
-  const auto distances = [](const Request& r) { return r.distances; };
-  const auto first = [](const Request& r) { return r.first_poses; };
-  const auto closest = [](const Request& r) { return r.closest_poses; };
   const auto closest_point = [](const Request& r) { return r.distances || r.closest_poses; };
-  const auto summaries = [](const Request& r) { return r.pose_summaries; };
   using Result = TrajectoryResult;
   py::class_<TrajectoryRun>(module, "Trajectory",
                             "The answer of `collide_along`: an array has an entry for each record of the scan, and is "
                             "None unless it was asked for.")
-      .def_property_readonly("flags", column(&Result::flags, flags), "uint8: a Verdict.")
-      .def_property_readonly("distance", column(&Result::distance, distances),
+      .def_property_readonly("flags", columnWhere(&Result::flags, &Request::flags), "uint8: a Verdict.")
+      .def_property_readonly("distance", columnWhere(&Result::distance, &Request::distances),
                              "float32: the smallest over all poses, less radii; NaN where free.")
-      .def_property_readonly("first_pose", column(&Result::first_pose, first), "int32; -1 where free.")
-      .def_property_readonly("closest_pose", column(&Result::closest_pose, closest), "int32; -1 where free.")
-      .def_property_readonly("closest_point", column(&Result::closest_point, closest_point),
+      .def_property_readonly("first_pose", columnWhere(&Result::first_pose, &Request::first_poses),
+                             "int32; -1 where free.")
+      .def_property_readonly("closest_pose", columnWhere(&Result::closest_pose, &Request::closest_poses),
+                             "int32; -1 where free.")
+      .def_property_readonly("closest_point", columnWhere(&Result::closest_point, closest_point),
                              "uint32: the row of the model; NO_POINT where free.")
       .def_property_readonly(
           "certain_pose",
-          [](const py::object& self) {
+          [](const py::object& self) -> std::optional<py::array_t<std::int32_t>> {
             const auto& run = self.cast<const TrajectoryRun&>();
-            return arrayInOrNone(self, run.result.certain_pose, !run.result.certain_pose.empty());
+            if (run.result.certain_pose.empty()) return std::nullopt;
+            return arrayIn(self, run.result.certain_pose);
           },
           "int32, with first_poses, where points are uncertain: the first pose at which a point collides for certain.")
-      .def_property_readonly("poses", column(&Result::poses, summaries),
+      .def_property_readonly("poses", columnWhere(&Result::poses, &Request::pose_summaries),
                              "For each pose colliding, colliding_points, undecided_points, distance.")
       .def_property_readonly("colliding", [](const TrajectoryRun& run) { return run.result.colliding; })
       .def_property_readonly("undecided", [](const TrajectoryRun& run) { return run.result.undecided; })
-      .def_property_readonly(
-          "first_contact", [](const TrajectoryRun& run) { return contactOf(run.result.first_contact); },
-          "Swept: (pose, fraction of the motion to the next); None when free.")
-      .def_property_readonly(
-          "certain_contact", [](const TrajectoryRun& run) { return contactOf(run.result.certain_contact); },
-          "The same of what collides for certain, where points are uncertain.")
+      .def_property_readonly("first_contact", contact(&Result::first_contact),
+                             "Swept: (pose, fraction of the motion to the next); None when free.")
+      .def_property_readonly("certain_contact", contact(&Result::certain_contact),
+                             "The same of what collides for certain, where points are uncertain.")
       .def_property_readonly("work", [](const TrajectoryRun& run) { return run.result.work; })
       .def("__repr__", [](const TrajectoryRun& run) {
         return "Trajectory(" + counted(run.result.colliding, "point") + " collide" +
                (run.result.undecided ? ", " + std::to_string(run.result.undecided) + " are undecided" : "") + ")";
       });
-  module.def("collide_along", &collideAlongOf, kCollideAlong, py::arg("scan"), py::arg("model"), py::arg("poses"),
-             py::arg("clearance") = 0.0, py::kw_only(), py::arg("pose_scan") = py::none(), py::arg("flags") = true,
-             py::arg("distances") = false, py::arg("first_poses") = false, py::arg("closest_poses") = false,
-             py::arg("pose_summaries") = false, py::arg("swept") = py::none(), py::arg("pivot") = py::none(),
-             py::arg("accuracy") = py::none(), py::arg("threads") = 1, py::arg("progress") = py::none());
-  module.def("pose_between", &poseBetweenOf, kPoseBetween, py::arg("start"), py::arg("end"), py::arg("fraction"),
-             py::arg("pivot") = py::none());
+  module.def("collide_along", &collideAlongOf, kCollideAlong, "scan"_a, "model"_a, "poses"_a, "clearance"_a = 0.0,
+             py::kw_only(), "pose_scan"_a = py::none(), "flags"_a = true, "distances"_a = false,
+             "first_poses"_a = false, "closest_poses"_a = false, "pose_summaries"_a = false, "swept"_a = py::none(),
+             "pivot"_a = py::none(), "accuracy"_a = py::none(), "threads"_a = 1, "progress"_a = py::none());
+  module.def("pose_between", &poseBetweenOf, kPoseBetween, "start"_a, "end"_a, "fraction"_a, "pivot"_a = py::none());
+  bindClashes(module);
 }
 
 } // namespace pcl_bsh::python

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/verdict.h>
+#include <pcl_bsh/python/typed.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/work.h>
 
@@ -53,7 +53,7 @@ std::string workText(const Work& work)
 
 } // namespace
 
-py::object verdictOf(Verdict verdict)
+VerdictMember verdictOf(Verdict verdict)
 {
   return verdicts()(static_cast<int>(verdict));
 }
@@ -65,7 +65,7 @@ void bindWords(py::module_& module)
   members["COLLIDING"] = static_cast<int>(Verdict::colliding);
   members["UNDECIDED"] = static_cast<int>(Verdict::undecided);
   members["SPARSE"] = static_cast<int>(Verdict::sparse);
-  verdicts() = py::module_::import("enum").attr("IntEnum")("Verdict", members, py::arg("module") = "pcl_bsh").release();
+  verdicts() = py::module_::import("enum").attr("IntEnum")("Verdict", members, "module"_a = "pcl_bsh").release();
   verdicts().attr("__doc__") =
       "What stands in arrays of flags: 0 free, 1 colliding, 2 undecided, 3 free of all points, "
       "but not scanned densely enough.";
@@ -84,20 +84,22 @@ void bindWords(py::module_& module)
       "A callback asked a query to stop. Everything may be asked again.";
 
   py::class_<Accuracy>(module, "Accuracy", kAccuracy)
-      .def(py::init(&Accuracy::parse), py::arg("text") = "exact")
+      .def(py::init(&Accuracy::parse), "text"_a = "exact")
       .def_static("exact", &Accuracy::exact, "The answer of exact arithmetic on the given numbers.")
       .def_static("float_only", &Accuracy::floatOnly, "Float arithmetic alone; the only setting without proof.")
-      .def_static("tolerance", &Accuracy::tolerance, py::arg("length"),
+      .def_static("tolerance", &Accuracy::tolerance, "length"_a,
                   "Pairs in (clearance, clearance + length] may go either way; distances are within `length`.")
-      .def_static("level", &Accuracy::level, py::arg("depth"),
-                  "Spheres below the voxels are opened down to this level.")
-      .def_static("node_pairs", &Accuracy::nodePairs, py::arg("count"), "Stops after about so many sphere tests.")
-      .def_static("time", &Accuracy::time, py::arg("seconds"), "Stops when the seconds are spent.")
+      .def_static("level", &Accuracy::level, "depth"_a, "Spheres below the voxels are opened down to this level.")
+      .def_static("node_pairs", &Accuracy::nodePairs, "count"_a, "Stops after about so many sphere tests.")
+      .def_static("time", &Accuracy::time, "seconds"_a, "Stops when the seconds are spent.")
       .def_property_readonly("is_exact", &Accuracy::isExact)
       .def_property_readonly("stops_early", &Accuracy::stopsEarly, "Whether answers may stay undecided.")
       .def_property_readonly("is_proven", &Accuracy::isProven, "Whether answers carry proof: all but float.")
       .def("__str__", &Accuracy::text)
-      .def("__eq__", [](const Accuracy& a, const Accuracy& b) { return a.text() == b.text(); })
+      .def("__eq__",
+           [](const Accuracy& a, const py::object& other) {
+             return py::isinstance<Accuracy>(other) && a.text() == other.cast<const Accuracy&>().text();
+           })
       .def("__hash__", [](const Accuracy& a) { return py::hash(py::str(a.text())); })
       .def("__repr__", [](const Accuracy& accuracy) { return "Accuracy('" + accuracy.text() + "')"; });
 

@@ -2,9 +2,16 @@
 // The parts of the module, each in the file of its name. Those that others' signatures name come first.
 #pragma once
 
+#include <pcl_bsh/python/typed.h>
+#include <pcl_bsh/query/result.h>
+
 #include <pybind11/pybind11.h>
 
 namespace pcl_bsh::python {
+
+/// A member of pcl_bsh.Verdict, an enum.IntEnum: flags in arrays are compared with it as numbers.
+using VerdictMember = As<"Verdict">;
+VerdictMember verdictOf(Verdict verdict);
 
 void bindWords(pybind11::module_& module);     ///< verdicts, work, accuracy, Cancelled
 void bindHierarchy(pybind11::module_& module); ///< SphereHierarchy
@@ -12,10 +19,9 @@ void bindCollision(pybind11::module_& module); ///< flags, any collision, smalle
 void bindContacts(pybind11::module_& module);
 void bindDistances(pybind11::module_& module);
 void bindNeighbors(pybind11::module_& module);
-void bindClusters(pybind11::module_& module); ///< clusters and spacings of one cloud
-void bindTrajectory(pybind11::module_& module);
-void bindClashes(pybind11::module_& module);
-void bindManyPoses(pybind11::module_& module); ///< many poses, many motions
+void bindClusters(pybind11::module_& module);   ///< clusters and spacings of one cloud
+void bindTrajectory(pybind11::module_& module); ///< and the clashes of a path
+void bindManyPoses(pybind11::module_& module);  ///< many poses, many motions
 void bindSurface(pybind11::module_& module);
 void bindScene(pybind11::module_& module);
 void bindSceneResult(pybind11::module_& module);

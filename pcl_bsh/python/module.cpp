@@ -1,14 +1,77 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The extension module of the Python package pcl_bsh; package/pcl_bsh/__init__.py shows its names.
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/computing.h>
+#include <pcl_bsh/python/threads/computing.h>
 #include <pcl_bsh/version.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+namespace pcl_bsh::python {
+namespace {
+
+/// "f(a: int, b: float = 0.0) -> int" as "f(a, b=0.0)", which Python's inspect reads.
+std::string withoutTypes(std::string_view typed)
+{
+  std::string plain;
+  int level = 0;
+  bool in_type = false;
+  for (std::size_t i = 0; i < typed.size(); ++i) {
+    const char c = typed[i];
+    if (c == '(' || c == '[') ++level;
+    if (c == ')' || c == ']') --level;
+    const bool ends = level == 0 && c == ')';
+    if (ends || (level == 1 && c == ',')) in_type = false;
+    if (level == 1 && c == ':') in_type = true;
+    if (in_type && level == 1 && typed.substr(i, 3) == " = ") {
+      in_type = false;
+      plain += '=';
+      i += 2;
+    }
+    else if (!in_type) {
+      plain += c;
+    }
+    if (ends) break;
+  }
+  return plain;
+}
+
+/// A docstring that begins with the signature of the function, or of its first overload, as Python's own do.
+std::string plainDocstring(std::string_view doc)
+{
+  const std::size_t first = doc.find("\n1. "), second = doc.find("\n2. ");
+  if (first != doc.npos && second != doc.npos) doc = doc.substr(first + 4, second - first - 4);
+  const std::size_t line = std::min(doc.find('\n'), doc.size());
+  const std::size_t text = std::min(doc.find_first_not_of('\n', line), doc.size());
+  return withoutTypes(doc.substr(0, line)) + "\n--\n\n" + std::string(doc.substr(text));
+}
+
+/// Of the functions of a module, or of a class.
+void hideTypes(const py::object& scope)
+{
+  for (const auto& [name, member] : py::dict(scope.attr("__dict__"))) {
+    if (PyType_Check(member.ptr())) hideTypes(py::reinterpret_borrow<py::object>(member));
+    const py::object found = scope.attr(name);
+    const py::handle function = py::detail::get_function(found);
+    if (!PyCFunction_Check(function.ptr()) || !PyCFunction_GET_SELF(function.ptr())) continue;
+    if (!PyCapsule_CheckExact(PyCFunction_GET_SELF(function.ptr()))) continue; // Python's own
+    PyMethodDef& definition = *reinterpret_cast<PyCFunctionObject*>(function.ptr())->m_ml;
+    if (!definition.ml_doc || std::strstr(definition.ml_doc, "\n--\n")) continue;
+    const std::string doc = plainDocstring(definition.ml_doc);
+    std::free(const_cast<char*>(definition.ml_doc)); // as pybind11 does in the end
+    definition.ml_doc = strdup(doc.c_str());
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh::python
 
 PYBIND11_MODULE(_core, module)
 {
   using namespace pcl_bsh::python;
   pybind11::options options;
-  options.disable_function_signatures(); // docstrings begin with one that Python's inspect reads
   options.disable_enum_members_docstring();
   module.attr("__version__") = PCL_BSH_VERSION_TEXT;
   takeTurnsWithInterpreter();
@@ -20,10 +83,10 @@ PYBIND11_MODULE(_core, module)
   bindNeighbors(module);
   bindClusters(module);
   bindTrajectory(module);
-  bindClashes(module);
   bindManyPoses(module);
   bindSurface(module);
   bindScene(module);
   bindFiles(module);
   bindPipeline(module);
+  module.def("_hide_types", [] { hideTypes(py::module_::import("pcl_bsh._core")); });
 }

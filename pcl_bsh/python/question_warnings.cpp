@@ -9,7 +9,6 @@
 namespace pcl_bsh::python {
 namespace {
 
-/// A planner asks about the same clouds thousands of times: measured once for the arrays that a hierarchy stands on.
 Spacing keptSpacing(const SphereHierarchy& hierarchy)
 {
   struct Kept {
@@ -32,15 +31,14 @@ Spacing keptSpacing(const SphereHierarchy& hierarchy)
   return spacing;
 }
 
-/// Points with radii are taken for the balls of a surface, which has no holes.
-NamedCloud factsOf(const char* name, const SphereHierarchy& hierarchy, bool measures)
+} // namespace
+
+NamedCloud factsOf(std::string name, const SphereHierarchy& hierarchy, bool measures)
 {
-  NamedCloud cloud = namedCloud(name, hierarchy);
+  NamedCloud cloud = namedCloud(std::move(name), hierarchy);
   if (measures && !hierarchy.view().radii) cloud.spacing = keptSpacing(hierarchy);
   return cloud;
 }
-
-} // namespace
 
 std::vector<Warning> warningsOf(const Asked& asked)
 {
@@ -50,10 +48,9 @@ std::vector<Warning> warningsOf(const Asked& asked)
   return pcl_bsh::warningsOf(question);
 }
 
-void warn(const std::vector<Warning>& warnings)
+void warn(const std::string& text)
 {
-  for (const Warning& warning : warnings)
-    if (PyErr_WarnEx(PyExc_UserWarning, warning.text.c_str(), 1) != 0) throw py::error_already_set();
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
 } // namespace pcl_bsh::python

@@ -51,9 +51,9 @@ private:
     throw files::FileError(site_.folder / tile_->file, wrong, "make the site again");
   }
 
-  static std::string named(const std::pair<std::uint32_t, std::uint32_t>& name)
+  static std::string named(const SitePoint& name)
   {
-    return "has record " + std::to_string(name.second) + " of source " + std::to_string(name.first);
+    return "has record " + std::to_string(name.record) + " of source " + std::to_string(name.source);
   }
 
   /// Tiles are left out by these, so none may say less than the points do. A greatest value that is not there leaves
@@ -75,11 +75,10 @@ private:
 
   void checkRecords(const pcl::PCLPointCloud2& cloud)
   {
-    const std::size_t source_at = offsetOf(cloud, source_field_name), record_at = offsetOf(cloud, record_field_name);
-    std::pair<std::uint32_t, std::uint32_t> last;
+    const PointNames names(cloud);
+    SitePoint last;
     for (std::size_t i = 0; i < cloud.width; ++i) {
-      const std::uint8_t* const bytes = cloud.data.data() + i * cloud.point_step;
-      const std::pair<std::uint32_t, std::uint32_t> name = {numberAt(bytes + source_at), numberAt(bytes + record_at)};
+      const SitePoint name = names(cloud.data.data() + i * cloud.point_step);
       const auto [source, record] = name;
       if (source >= seen_.size() || record >= seen_[source].size()) fail(named(name) + ", which there is not");
       if (seen_[source][record]) fail(named(name) + ", which is there twice");

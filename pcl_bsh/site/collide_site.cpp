@@ -2,70 +2,131 @@
 #include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
-#include <pcl_bsh/site/answers/candidate.h>
-#include <pcl_bsh/site/answers/inquiry.h>
-#include <pcl_bsh/site/answers/passage_sum.h>
+#include <pcl_bsh/site/answers/comparison.h>
 #include <pcl_bsh/site/collide_site.h>
-#include <pcl_bsh/site/tiles/needed_tiles.h>
+#include <pcl_bsh/site/tiles/records.h>
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace pcl_bsh::site {
 
 namespace {
 
-/// The same where only measured places count.
-SiteRequest measured(SiteRequest request)
+/// Calls query(a, b) with nothing in place of sites: what it refuses is refused although no tile may be asked about.
+template <typename Query>
+void refuse(const Eigen::Isometry3d& pose, const Placed& b, const Query& query)
 {
-  request.uncertainty = {};
+  query(Placed(SphereHierarchy(PointsView{}), pose), b);
+}
+
+template <typename Query>
+void refuse(const Eigen::Isometry3d& pose, const PlacedSite& b, const Query& query)
+{
+  const SphereHierarchy nothing(PointsView{});
+  query(Placed(nothing, pose), Placed(nothing, b.pose));
+}
+
+PlacedSite asFirst(const Site& site, const Uncertainty& uncertainty = {})
+{
+  return {site, Eigen::Isometry3d::Identity(), uncertainty};
+}
+
+SiteRequest with(SiteRequest request, const Uncertainty& uncertainty)
+{
+  request.uncertainty = uncertainty;
   return request;
 }
 
-} // namespace
+/// A point of a site that may be nearest to something: the nearest of a tile.
+struct Candidate {
+  Point3 place;
+  SitePoint point;
+  double distance;
+};
 
-SiteAny anyCollision(const Site& site, const Placed& b, const SiteRequest& request)
+/// Those of all ranks that have a distance, of which exact arithmetic chooses, in the order of their names.
+struct Candidates {
+  Candidates(const std::vector<Candidate>& own, double distance)
+  {
+    std::vector<Candidate> last = gatheredFromAllRanks(own);
+    std::erase_if(last, [&](const Candidate& c) { return c.distance != distance; });
+    std::sort(last.begin(), last.end(), [](const Candidate& c, const Candidate& d) { return c.point < d.point; });
+    for (const Candidate& c : last) {
+      places.push_back(c.place);
+      points.push_back(c.point);
+    }
+  }
+
+  SphereHierarchy hierarchy() const
+  {
+    return SphereHierarchy(viewOf(places.empty() ? nullptr : places.front().data(), places.size()));
+  }
+
+  std::vector<Point3> places;
+  std::vector<SitePoint> points;
+};
+
+template <typename Other>
+SiteAny anyOf(const PlacedSite& asked, const Other& b, const SiteRequest& request)
 {
-  SiteAny result;
-  AnyRequest wanted;
-  wanted.clearance = request.clearance;
-  wanted.accuracy = request.accuracy;
-  wanted.threads = request.threads;
-  pcl_bsh::anyCollision({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
-  requireUncertainty(site, request.uncertainty);
+  const auto wanted = wantedOf<AnyRequest>(request);
+  const auto query = [&](const Placed& x, const Placed& y) { return pcl_bsh::anyCollision(x, y, wanted).verdict; };
+  refuse(asked.pose, b, query);
+  Comparison<Other> comparison(asked, b, request);
   bool collides = false, is_undecided = false;
-  Inquiry inquiry(site, request);
-  const auto ask = [&](const Tile&, const pcl::PCLPointCloud2&, const SphereHierarchy& hierarchy) {
-    const Verdict verdict = pcl_bsh::anyCollision({hierarchy}, b, wanted).verdict;
-    collides = verdict == Verdict::colliding;
-    is_undecided = is_undecided || verdict == Verdict::undecided;
+  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2&, const Placed& a) {
+    comparison.compareWithOther(
+        tile, [&] { return collides ? -infinity : request.clearance; },
+        [&](const pcl::PCLPointCloud2&, const Placed& other) {
+          const Verdict verdict = query(a, other);
+          collides = verdict == Verdict::colliding;
+          is_undecided = is_undecided || verdict == Verdict::undecided;
+        });
   };
-  result.tiles = inquiry.visit(tilesWithin(site, b, request.clearance, request.uncertainty), ask,
-                               [&](std::size_t) { return !(collides = sumOfAllRanks(collides ? 1 : 0) > 0); });
+  SiteAny result;
+  result.tiles = comparison.visit(request.clearance, ask, [&] {
+    collides = sumOfAllRanks(collides ? 1 : 0) > 0;
+    return collides ? -infinity : infinity;
+  });
+  result.tiles_b = comparison.readOfOther();
   result.verdict = verdictOfAllRanks(collides, is_undecided);
   return result;
 }
 
-SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const SiteRequest& request,
-                         const FlagsSink& sink)
+template <typename Other>
+SiteFlags flagsOf(const PlacedSite& asked, const Other& b, Side flagged, const SiteRequest& request,
+                  const FlagsSink& sink)
 {
   SiteFlags result;
   const bool of_b = flagged != Side::a;
-  FlagsRequest wanted;
-  wanted.clearance = request.clearance;
-  wanted.accuracy = request.accuracy;
+  auto wanted = wantedOf<FlagsRequest>(request);
   wanted.flagged = of_b ? Side::both : Side::a;
-  wanted.threads = request.threads;
-  pcl_bsh::collisionFlags({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
-  requireUncertainty(site, request.uncertainty);
-  if (of_b) result.b.assign(b.hierarchy().view().count, 0);
-  Inquiry inquiry(site, request);
-  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
-    const FlagsResult flags = pcl_bsh::collisionFlags({hierarchy}, b, wanted);
-    std::vector<double> numbers = {static_cast<double>(flags.colliding_a), static_cast<double>(flags.undecided_a)};
-    for (std::size_t i = 0; i < flags.b.size(); ++i)
-      if (flags.b[i] != 0) numbers.insert(numbers.end(), {static_cast<double>(i), static_cast<double>(flags.b[i])});
-    if (sink) sink(tile, cloud, flags);
+  refuse(asked.pose, b, [&](const Placed& x, const Placed& y) { pcl_bsh::collisionFlags(x, y, wanted); });
+  if constexpr (std::is_same_v<Other, Placed>)
+    if (of_b) result.b.assign(b.hierarchy().view().count, 0);
+  Comparison<Other> comparison(asked, b, request);
+  const auto append_b = [](const std::vector<std::uint8_t>& flags, std::vector<double>& numbers) {
+    for (std::size_t i = 0; i < flags.size(); ++i)
+      if (flags[i] != 0) numbers.insert(numbers.end(), {static_cast<double>(i), static_cast<double>(flags[i])});
+  };
+  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& a) {
+    FlagsResult all, found;
+    all.a.assign(a.hierarchy().view().count, flagOf(Verdict::free));
+    comparison.compareWithOther(
+        tile, [&] { return request.clearance; },
+        [&](const pcl::PCLPointCloud2&, const Placed& other) {
+          pcl_bsh::collisionFlags(a, other, wanted, found);
+          join(all.a, found.a);
+          all.work += found.work;
+        });
+    all.b = std::move(found.b); // of a cloud, of which there is one
+    all.colliding_a = countOf(Verdict::colliding, all.a);
+    all.undecided_a = countOf(Verdict::undecided, all.a);
+    if (sink) sink(tile, cloud, all);
+    std::vector<double> numbers = {static_cast<double>(all.colliding_a), static_cast<double>(all.undecided_a)};
+    if (of_b) append_b(all.b, numbers);
     return numbers;
   };
   const auto add_flags = [&](const std::vector<double>& numbers, std::size_t begin) {
@@ -79,95 +140,119 @@ SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const 
     result.undecided += static_cast<std::uint64_t>(numbers[1]);
     add_flags(numbers, 2);
   };
-  result.tiles = inquiry.visitAndAdd(tilesWithin(site, b, request.clearance, request.uncertainty), find, add);
+  result.tiles = comparison.visitAndAdd(request.clearance, find, add);
+  result.tiles_b = comparison.readOfOther();
   result.colliding = sumOfAllRanks(result.colliding);
   result.undecided = sumOfAllRanks(result.undecided);
   if (ranks() > 1 && of_b) {
     std::vector<double> own;
-    for (std::size_t i = 0; i < result.b.size(); ++i)
-      if (result.b[i] != 0) own.insert(own.end(), {static_cast<double>(i), static_cast<double>(result.b[i])});
+    append_b(result.b, own);
     add_flags(gatheredFromAllRanks(own), 0);
   }
-  const auto counted = [&](Verdict verdict) {
-    return static_cast<std::uint64_t>(std::count(result.b.begin(), result.b.end(), flagOf(verdict)));
-  };
-  result.colliding_b = counted(Verdict::colliding);
-  result.undecided_b = counted(Verdict::undecided);
+  result.colliding_b = countOf(Verdict::colliding, result.b);
+  result.undecided_b = countOf(Verdict::undecided, result.b);
   return result;
 }
 
-SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& asked)
+template <typename Other>
+SiteClosest closestOf(const PlacedSite& asked, const Other& b, const SiteRequest& request)
 {
-  const SiteRequest request = measured(asked);
-  DistanceRequest wanted;
-  wanted.accuracy = request.accuracy;
-  wanted.threads = request.threads;
-  pcl_bsh::closestPair({SphereHierarchy(PointsView{})}, b, wanted); // refuses a pose that no tile may be asked about
-  const auto by_distance = tilesByDistance(site, b);
-  std::vector<std::uint32_t> tiles;
-  for (const auto& [lower, tile] : by_distance) tiles.push_back(tile);
+  auto wanted = wantedOf<DistanceRequest>(request);
+  const auto query = [&](const Placed& x, const Placed& y) { return pcl_bsh::closestPair(x, y, wanted); };
+  refuse(asked.pose, b, query);
+  Comparison<Other> comparison(asked, b, request);
   double least = infinity, lower = infinity;
-  std::vector<Candidate> candidates;
-  Inquiry inquiry(site, request);
-  const auto ask = [&](const Tile&, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
-    const DistanceResult found = pcl_bsh::closestPair({hierarchy}, b, wanted);
-    lower = std::min(lower, found.interval.lower);
-    if (!found.pair || found.distance > least) return;
-    least = found.distance;
-    candidates.push_back({hierarchy.view().point(found.pair->a), nameOf(cloud, found.pair->a), found.distance});
-  };
-  const auto go_on = [&](std::size_t visited) {
-    least = leastOfAllRanks(least);
-    return visited < tiles.size() && by_distance[visited].first <= least;
+  std::vector<Candidate> candidates_a, candidates_b;
+  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& points) {
+    comparison.compareWithOther(
+        tile, [&] { return least; },
+        [&](const pcl::PCLPointCloud2& other, const Placed& others) {
+          const DistanceResult found = query(points, others);
+          lower = std::min(lower, found.interval.lower);
+          if (!found.pair || found.distance > least) return;
+          least = found.distance;
+          const auto candidate = [&](const pcl::PCLPointCloud2& of, const Placed& in, std::uint32_t i) {
+            return Candidate{in.hierarchy().view().point(i), nameOf(of, i), least};
+          };
+          candidates_a.push_back(candidate(cloud, points, found.pair->a));
+          if (std::is_same_v<Other, PlacedSite>) candidates_b.push_back(candidate(other, others, found.pair->b));
+        });
   };
   SiteClosest result;
-  result.tiles = inquiry.visit(tiles, ask, go_on);
+  result.tiles = comparison.visit(infinity, ask, [&] { return least = leastOfAllRanks(least); });
+  result.tiles_b = comparison.readOfOther();
 
   // Distances that round to the same double may differ: the nearest of each tile are compared once more, exactly.
-  const Candidates last(candidates, least);
+  const Candidates last_a(candidates_a, least), last_b(candidates_b, least);
   lower = leastOfAllRanks(lower);
-  if (last.points.empty()) return result;
+  if (last_a.points.empty()) return result;
   wanted.accuracy = {};
-  DistanceResult nearest = pcl_bsh::closestPair({last.hierarchy()}, b, wanted);
+  const SphereHierarchy nearest_a = last_a.hierarchy(), nearest_b = last_b.hierarchy();
+  DistanceResult nearest;
+  if constexpr (std::is_same_v<Other, Placed>)
+    nearest = query({nearest_a, asked.pose}, b);
+  else
+    nearest = query({nearest_a, asked.pose}, {nearest_b, b.pose});
   nearest.interval.lower = std::min(lower, nearest.interval.lower);
   if (request.surface) tellOfSurface(*request.surface, nearest);
   result.interval = nearest.interval;
   result.distance = nearest.distance;
-  result.point = last.points[nearest.pair->a];
+  result.point = last_a.points[nearest.pair->a];
   result.b = nearest.pair->b;
+  if (!last_b.points.empty()) result.point_b = last_b.points[nearest.pair->b];
   return result;
 }
 
-SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& asked,
-                             const DistancesSink& sink)
+template <typename Other>
+SiteDistances distancesOf(const PlacedSite& asked, const Other& b, double max_distance, const SiteRequest& request,
+                          const DistancesSink& sink)
 {
-  const SiteRequest request = measured(asked);
-  SiteDistances result;
-  PointDistancesRequest wanted;
+  auto wanted = wantedOf<PointDistancesRequest>(request);
   wanted.max_distance = max_distance;
-  wanted.accuracy = request.accuracy;
-  wanted.threads = request.threads;
-  pcl_bsh::pointDistances({SphereHierarchy(PointsView{})}, b, wanted); // refuses what no tile may be asked about
+  refuse(asked.pose, b, [&](const Placed& x, const Placed& y) { pcl_bsh::pointDistances(x, y, wanted); });
+  SiteDistances result;
   double greatest = -infinity;
-  Inquiry inquiry(site, request);
-  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
-    PointDistances found = pcl_bsh::pointDistances({hierarchy}, b, wanted);
-    if (request.surface) tellOfSurface(*request.surface, found);
-    if (sink) sink(tile, cloud, found);
-    return std::vector<double>{static_cast<double>(found.measured), static_cast<double>(found.undecided),
-                               found.greatest};
+  Comparison<Other> comparison(asked, b, request);
+  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& points) {
+    const PointsView& view = points.hierarchy().view();
+    PointDistances all;
+    all.distance.assign(view.count, std::numeric_limits<double>::quiet_NaN());
+    PointDistancesRequest nearer = wanted; // what is farther than all points' distances changes none
+    comparison.compareWithOther(
+        tile, [&] { return nearer.max_distance; },
+        [&](const pcl::PCLPointCloud2&, const Placed& others) {
+          PointDistances found = pcl_bsh::pointDistances(points, others, nearer);
+          if constexpr (std::is_same_v<Other, Placed>) {
+            all = std::move(found);
+            return;
+          }
+          double farthest = 0.0;
+          for (std::uint32_t i = 0; i < view.count; ++i) {
+            double& distance = all.distance[i];
+            distance = std::fmin(distance, found.distance[i]); // the one that is a number
+            if (!isFinite(view.point(i))) continue;
+            farthest = std::isnan(distance) ? infinity : std::max(farthest, distance);
+          }
+          nearer.max_distance = std::min(nearer.max_distance, farthest);
+        });
+    if (std::is_same_v<Other, PlacedSite>) {
+      for (const double distance : all.distance) {
+        if (std::isnan(distance)) continue;
+        ++all.measured;
+        all.greatest = std::fmax(all.greatest, distance);
+      }
+    }
+    if (request.surface) tellOfSurface(*request.surface, all);
+    if (sink) sink(tile, cloud, all);
+    return std::vector<double>{static_cast<double>(all.measured), static_cast<double>(all.undecided), all.greatest};
   };
   const auto add = [&](const std::vector<double>& numbers) {
     result.measured += static_cast<std::uint64_t>(numbers[0]);
     result.undecided += static_cast<std::uint64_t>(numbers[1]);
     if (numbers[0] > 0) greatest = std::max(greatest, numbers[2]);
   };
-  std::vector<std::uint32_t> tiles;
-  if (max_distance < infinity)
-    tiles = tilesWithin(site, b, max_distance);
-  else
-    tiles = tilesWithPoints(site, b);
-  result.tiles = inquiry.visitAndAdd(tiles, find, add);
+  result.tiles = comparison.visitAndAdd(max_distance, find, add);
+  result.tiles_b = comparison.readOfOther();
   result.measured = sumOfAllRanks(result.measured);
   result.undecided = sumOfAllRanks(result.undecided);
   greatest = -leastOfAllRanks(-greatest);
@@ -175,25 +260,57 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
   return result;
 }
 
-SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
-                         const SiteRequest& request, const PassageSink& sink)
+} // namespace
+
+SiteAny anyCollision(const Site& site, const Placed& b, const SiteRequest& request)
 {
-  const TrajectoryRequest wanted = alongPath(request);
-  refusePassage(site, model, poses, wanted);
-  requireUncertainty(site, request.uncertainty);
-  PassageSum sum(request, poses.size());
-  Inquiry inquiry(site, request);
-  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
-    TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
-    if (request.surface) tellOfSurface(found);
-    if (sink) sink(tile, cloud, found);
-    return sum.numbersOf(tile, cloud, found);
-  };
-  const std::vector<std::uint32_t> tiles = tilesAlong(site, model, poses, pathReach(request), request.uncertainty);
-  const TilesRead read = inquiry.visitAndAdd(tiles, find, [&](const auto& numbers) { sum.add(numbers); });
-  SitePassage result = sum.ofAllRanks();
-  result.tiles = read;
-  return result;
+  return anyOf(asFirst(site, request.uncertainty), b, request);
+}
+
+SiteAny anyCollision(const Site& site, const PlacedSite& b, const SiteRequest& request)
+{
+  return anyOf(asFirst(site, request.uncertainty), b, request);
+}
+
+SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const SiteRequest& request,
+                         const FlagsSink& sink)
+{
+  return flagsOf(asFirst(site, request.uncertainty), b, flagged, request, sink);
+}
+
+SiteFlags collisionFlags(const Site& site, const PlacedSite& b, const SiteRequest& request, const FlagsSink& sink)
+{
+  return flagsOf(asFirst(site, request.uncertainty), b, Side::a, request, sink);
+}
+
+SiteFlags collisionFlagsOfB(const Site& site, const PlacedSite& b, const SiteRequest& request, const FlagsSink& sink)
+{
+  return flagsOf(b, asFirst(site, request.uncertainty), Side::a, with(request, b.uncertainty), sink);
+}
+
+SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request)
+{
+  return closestOf(asFirst(site), b, with(request, {}));
+}
+
+SiteClosest closestPair(const Site& site, const PlacedSite& b, const SiteRequest& request)
+{
+  return closestOf(asFirst(site), PlacedSite{b.site, b.pose, {}}, with(request, {}));
+}
+
+SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& request,
+                             const DistancesSink& sink)
+{
+  return distancesOf(asFirst(site), b, max_distance, with(request, {}), sink);
+}
+
+SiteDistances pointDistances(const Site& site, const PlacedSite& b, double max_distance, const SiteRequest& request,
+                             const DistancesSink& sink)
+{
+  if (request.accuracy.stopsEarly())
+    throw std::invalid_argument("accuracy " + request.accuracy.text() +
+                                ": distances of two sites cannot stop early: give exact, float or a tolerance");
+  return distancesOf(asFirst(site), PlacedSite{b.site, b.pose, {}}, max_distance, with(request, {}), sink);
 }
 
 } // namespace pcl_bsh::site

@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Questions about a site and a cloud in memory, with the answers of one hierarchy over all points of the site.
+// Questions about a site and a cloud in memory, or another site, with the answers of one hierarchy over all points of
+// each.
 //
 //   site::Site valley = site::readSite("valley");
 //   SphereHierarchy robot(viewOf(robot_xyz, n));
 //   site::SiteRequest request;
 //   request.clearance = 0.05;
-//   site::SiteClosest nearest = site::closestPair(valley, {robot, T_valley_robot}, request);
+//   site::SiteClosest nearest = site::closestPair(valley, Placed(robot, T_valley_robot), request);
+//   site::SiteFlags changes = site::collisionFlags(valley, site::PlacedSite{before}, request, sink);
 //
 // Only tiles that can matter are read, one at a time. Which, their boxes tell: compared with boxes about parts of the
-// cloud, along its path if it moves.
+// cloud, along its path if it moves. Of two sites a tile of the first is read once. The tiles of the second that come
+// near it are read after one another and cut to what is near, so that memory holds a tile of each; a tile that several
+// of the first come near to is read for each of them.
 //
 // In an MPI job (mpirun -n 4 ...), all ranks call the same function with the same input: the tiles are dealt to them,
 // and each gets the whole answer. Sinks are called on the rank that has the tile. Where points have uncertainties,
-// verdicts are as those of the queries: b's are of its view, the site's are asked for. What an accuracy promises of one
-// cloud holds of the site; those that stop early do so in each tile.
+// verdicts are as those of the queries: those of a cloud are of its view, a site's are asked for. What an accuracy
+// promises of one cloud holds of the site; those that stop early do so in each tile.
 #pragma once
 
 #include <pcl_bsh/distances/point_distances.h>
@@ -34,6 +38,13 @@
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::site {
+
+/// A site as the second of two.
+struct PlacedSite {
+  const Site& site;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< of its points in the first site's frame
+  Uncertainty uncertainty = {};                           ///< of its points, as SiteRequest has that of the first
+};
 
 /// What a question has found of tiles, by their numbers, so that it can be asked again after it was ended: numbers that
 /// only the query understands.
@@ -87,17 +98,6 @@ struct TilesRead {
   std::vector<TileCost> costs; ///< of all ranks, by their places
 };
 
-/// A point of a site.
-struct SitePoint {
-  std::uint32_t source = 0, record = 0;
-  /// By source, then by record.
-  bool operator<(const SitePoint& other) const noexcept
-  {
-    return source != other.source ? source < other.source : record < other.record;
-  }
-  bool operator==(const SitePoint& other) const noexcept { return source == other.source && record == other.record; }
-};
-
 /// A point of a site that another one meets.
 struct MetPoint {
   SitePoint point;
@@ -107,7 +107,7 @@ struct MetPoint {
 /// Whether anything of a site collides.
 struct SiteAny {
   Verdict verdict = Verdict::free; ///< undecided only where points are uncertain, or the accuracy stops early
-  TilesRead tiles;
+  TilesRead tiles, tiles_b;        ///< of the site, and of b where it is one; the costs are of the first's tiles
 };
 
 /// How much of a site collides.
@@ -117,7 +117,7 @@ struct SiteFlags {
   std::vector<std::uint8_t> b; ///< one per record of b's view, where asked for: as FlagsResult has them
   std::uint64_t colliding_b = 0;
   std::uint64_t undecided_b = 0;
-  TilesRead tiles;
+  TilesRead tiles, tiles_b;
 };
 
 /// The smallest distance of a site to another cloud.
@@ -127,7 +127,8 @@ struct SiteClosest {
   /// That realise it; of several the smallest (source, record), and for it the smallest record of b.
   std::optional<SitePoint> point;
   std::uint32_t b = 0;
-  TilesRead tiles;
+  std::optional<SitePoint> point_b; ///< that of b, where it is a site
+  TilesRead tiles, tiles_b;
 };
 
 /// The distances of a site's points to another cloud.
@@ -135,7 +136,7 @@ struct SiteDistances {
   std::uint64_t measured = 0;  ///< points that have a distance
   std::uint64_t undecided = 0; ///< that may have one, where the accuracy stops early
   double greatest = std::numeric_limits<double>::quiet_NaN();
-  TilesRead tiles;
+  TilesRead tiles, tiles_b;
 };
 
 /// What another cloud meets in a site along its path.
@@ -149,10 +150,11 @@ struct SitePassage {
   std::optional<FirstContact> first_contact;   ///< of swept motion, where anything may collide
   std::optional<FirstContact> certain_contact; ///< the same of what collides for certain, where points are uncertain
   std::vector<PoseSummary> poses;              ///< one per pose, where asked for
-  TilesRead tiles;
+  TilesRead tiles, tiles_b;
 };
 
-/// Called for each tile that was read, with its points and what was found of them: vectors have an entry per point.
+/// Called for each tile that was read, with its points and what was found of them: vectors have an entry per point. Of
+/// distances to another site, the distances alone.
 using FlagsSink = std::function<void(const Tile&, const pcl::PCLPointCloud2&, const FlagsResult&)>;
 using DistancesSink = std::function<void(const Tile&, const pcl::PCLPointCloud2&, const PointDistances&)>;
 using PassageSink = std::function<void(const Tile&, const pcl::PCLPointCloud2&, const TrajectoryResult&)>;
@@ -169,18 +171,29 @@ int ranks();
 /// @throws std::invalid_argument as the query of the same name does; files::FileError for a tile that is not what the
 ///   site says; Cancelled
 SiteAny anyCollision(const Site& site, const Placed& b, const SiteRequest& request);
+SiteAny anyCollision(const Site& site, const PlacedSite& b, const SiteRequest& request);
 
 /// Which points do? Those of tiles that are not read are free.
 SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const SiteRequest& request,
                          const FlagsSink& sink = nullptr);
+SiteFlags collisionFlags(const Site& site, const PlacedSite& b, const SiteRequest& request,
+                         const FlagsSink& sink = nullptr);
+
+/// Which points of b do? The same pairs: the counts are of b, and the sink gets its tiles.
+SiteFlags collisionFlagsOfB(const Site& site, const PlacedSite& b, const SiteRequest& request,
+                            const FlagsSink& sink = nullptr);
 
 /// The smallest distance. Tiles come in the order of their lower bounds, and end where these exceed the smallest
 /// distance of any rank. The clearance and uncertainties are not used.
 SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request);
+SiteClosest closestPair(const Site& site, const PlacedSite& b, const SiteRequest& request);
 
-/// The distance of each point to b, up to max_distance; those of tiles that are not read are farther. The clearance is
-/// not used.
+/// The distance of each point to b, up to max_distance; those of tiles that are not read are farther. The clearance and
+/// uncertainties are not used.
+/// @throws std::invalid_argument also for an accuracy that stops early, where b is a site
 SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& request,
+                             const DistancesSink& sink = nullptr);
+SiteDistances pointDistances(const Site& site, const PlacedSite& b, double max_distance, const SiteRequest& request,
                              const DistancesSink& sink = nullptr);
 
 /// The model along its poses, in the site's frame: flags, distances, first and closest poses of each point; flags alone
@@ -189,6 +202,12 @@ SiteDistances pointDistances(const Site& site, const Placed& b, double max_dista
 ///   accuracy stops early
 SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
                          const SiteRequest& request, const PassageSink& sink = nullptr);
+
+/// The same of a site as the model. Of its tiles those are read that come near a tile of the first on their way.
+/// @param model_uncertainty as PlacedSite has it
+SitePassage collideAlong(const Site& site, const Site& model, const Uncertainty& model_uncertainty,
+                         const std::vector<Eigen::Isometry3d>& poses, const SiteRequest& request,
+                         const PassageSink& sink = nullptr);
 
 } // namespace pcl_bsh::site
 PCL_BSH_EXPORT_END

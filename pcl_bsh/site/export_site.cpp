@@ -67,10 +67,10 @@ private:
     pcl::PCLPointCloud2 cloud;
     for (const Tile& tile : site_.tiles) {
       cloud = readTile(site_, tile, std::move(cloud));
-      const std::size_t source_at = offsetOf(cloud, source_field_name), record_at = offsetOf(cloud, record_field_name);
+      const PointNames names(cloud);
       for (std::size_t i = 0; i < cloud.width; ++i) {
         const std::uint8_t* const bytes = cloud.data.data() + i * cloud.point_step;
-        const std::uint32_t source = numberAt(bytes + source_at), record = numberAt(bytes + record_at);
+        const auto [source, record] = names(bytes);
         if (source < first_ || source >= last_ || record >= site_.sources[source].points) continue;
         const std::uint64_t number = begins_[source] + record;
         if (number < begin || number >= end) continue;

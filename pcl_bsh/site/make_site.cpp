@@ -215,8 +215,7 @@ private:
     buffer_ = static_cast<std::size_t>(std::min<std::uint64_t>(largest, options_.memory / 4 / state_.open.size()));
     if (buffer_ < step) failAsTooFine();
     std::vector<std::uint8_t> site_record(step);
-    const std::size_t source_at = offsetOf(layout_, source_field_name),
-                      record_at = offsetOf(layout_, record_field_name);
+    const PointNames names(layout_);
     for (std::size_t i = 0; i < state_.files.size(); ++i) {
       const std::uint64_t points = state_.files[i];
       files_.emplace_back(unfinished_->goOn(tileFileName(i), TileFile::bytesOf(site_.fields, points)), site_.fields,
@@ -227,8 +226,7 @@ private:
     std::uint64_t number = state_.dealt;
     const auto place = [&](std::uint32_t source, std::uint32_t record, const std::uint8_t* bytes, const Point3& point) {
       (*copy_)(bytes, site_record.data());
-      std::memcpy(site_record.data() + source_at, &source, sizeof source);
-      std::memcpy(site_record.data() + record_at, &record, sizeof record);
+      names.set(site_record.data(), {source, record});
       tileFor(isFinite(point) ? tree_.tileOf(point) : unlocated).add(site_record.data(), step);
       if (overview_ && number++ % overview_every_ == 0) overview_->add(site_record.data(), step);
     };

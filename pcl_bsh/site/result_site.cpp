@@ -76,8 +76,7 @@ public:
     folder_(folder),
     layout_(layoutOf(withResults(site, results))),
     copy_(site.fields, layout_),
-    source_at_(offsetOf(layout_, source_field_name)),
-    record_at_(offsetOf(layout_, record_field_name)),
+    names_(layout_),
     record_(layout_.point_step)
   {
     for (const ResultField& result : results) {
@@ -192,9 +191,9 @@ private:
   /// Takes one point of `every_`. @param record of the results, of this tile
   void addToOverview(const Tile& tile, const std::uint8_t* record)
   {
-    const std::uint32_t source = numberAt(record + source_at_);
+    const auto [source, number] = names_(record);
     if (source >= begins_.size()) failAsDamaged(tile, source);
-    if ((begins_[source] + numberAt(record + record_at_)) % every_ == 0)
+    if ((begins_[source] + number) % every_ == 0)
       overview_.append(reinterpret_cast<const char*>(record), layout_.point_step);
   }
 
@@ -286,9 +285,7 @@ private:
     const auto* const bytes = reinterpret_cast<const std::uint8_t*>(records.data());
     std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto name = [&](std::size_t i) {
-      return std::pair{numberAt(bytes + i * step + source_at_), numberAt(bytes + i * step + record_at_)};
-    };
+    const auto name = [&](std::size_t i) { return names_(bytes + i * step); };
     std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return name(i) < name(j); });
     TileFile file(add(overview_file_name), layout_.fields, result_buffer);
     for (const std::size_t i : order) file.add(bytes + i * step, step);
@@ -299,7 +296,7 @@ private:
   fs::path folder_;
   pcl::PCLPointCloud2 layout_;
   RecordCopy copy_;
-  std::size_t source_at_, record_at_; ///< in a record of the results
+  PointNames names_; ///< of records of the results
   std::vector<std::uint8_t> record_;
   std::vector<Place> places_;
   std::vector<std::string> no_longer_of_sources_;      ///< fields of results, and those that are left out

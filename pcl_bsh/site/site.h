@@ -53,6 +53,17 @@ inline void extend(std::optional<Bounds>& bounds, const Point3& point)
   bounds->add(point);
 }
 
+/// A point of a site.
+struct SitePoint {
+  std::uint32_t source = 0, record = 0;
+  /// By source, then by record.
+  bool operator<(const SitePoint& other) const noexcept
+  {
+    return source != other.source ? source < other.source : record < other.record;
+  }
+  bool operator==(const SitePoint& other) const noexcept { return source == other.source && record == other.record; }
+};
+
 /// A file that the site was made of.
 struct Source {
   std::string file;

@@ -26,14 +26,10 @@ public:
     Pieces of_tile;
     of_tile.of_site = met != nullptr;
     const PointsView view = viewOf(cloud);
-    const std::size_t source_at = offsetOf(cloud, source_field_name), record_at = offsetOf(cloud, record_field_name);
+    const PointNames names(cloud);
     const auto memberOf = [&](std::uint32_t i, const SitePoint& piece) {
-      const std::uint8_t* const bytes = cloud.data.data() + std::size_t{i} * cloud.point_step;
-      return Member{view.point(i),
-                    {numberAt(bytes + source_at), numberAt(bytes + record_at)},
-                    piece,
-                    found.distance[i],
-                    found.closest_pose[i]};
+      const SitePoint name = names(cloud.data.data() + std::size_t{i} * cloud.point_step);
+      return Member{view.point(i), name, piece, found.distance[i], found.closest_pose[i]};
     };
     const std::vector<Bounds> others = neighborsOf(tile);
     for (Clash& clash : findClashes(view, found, distance_)) {

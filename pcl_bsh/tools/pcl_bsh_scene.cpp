@@ -122,8 +122,7 @@ void check(const io::SceneFile& file, const cli::CloudNames& names, const Option
 {
   cli::CommandFiles used;
   used.reads("SCENE", options.scene);
-  for (const io::CloudSource& cloud : file.clouds) used.reads("cloud '" + cloud.name + "'", cloud.file);
-  for (const fs::path& trajectory : file.trajectories) used.reads("trajectory", trajectory);
+  for (const auto& [what, path] : file.files()) used.reads(what, path);
   if (!options.out.empty()) {
     for (const char* name : {"steps.csv", "steps.jsonl", "summary.json"}) used.writes("--out", options.out / name);
     if (file.cloud_output != io::CloudOutput::none) {

@@ -21,8 +21,7 @@ void check(const viewer::Options& options)
   cli::CommandFiles files = options.files;
   if (options.scene) {
     const io::SceneFile scene = io::readSceneFile(*options.scene);
-    for (const io::CloudSource& cloud : scene.clouds) files.reads("--scene", cloud.file);
-    for (const std::filesystem::path& trajectory : scene.trajectories) files.reads("--scene", trajectory);
+    for (const auto& [what, path] : scene.files()) files.reads("--scene", path);
   }
   files.requireApart();
   if (options.screenshot) files::requireWritable(*options.screenshot);

@@ -47,6 +47,10 @@ def test_signatures_are_those_of_the_docstrings():
                 value(no_such_argument=1)
     for name, wanted in {"collision_flags": 9, "collide_along": 15, "run_pipeline": 5}.items():
         assert len(inspect.signature(getattr(pcl_bsh, name)).parameters) == wanted
+    flags = inspect.signature(pcl_bsh.collision_flags).parameters
+    assert flags["side"].default == "a" and flags["clearance"].default == 0.0 and flags["pose_a"].default is None
+    assert pcl_bsh.collision_flags.__doc__.startswith("Which points collide")  # once, and without types
+    assert "Overloaded" not in pcl_bsh.collision_flags.__doc__
 
 
 def test_a_call_takes_less_than_five_microseconds():
@@ -80,9 +84,13 @@ def test_stubs(tmp_path):
         "hits: int = int(pcl_bsh.collision_flags(hall, hall, 0.1).sum())\n"
         "near = pcl_bsh.closest_pair(hall, hall).distance + 1.0\n"
         "d, nearest = pcl_bsh.point_distances(hall, hall)\n"
+        "of_hall, of_both = pcl_bsh.collision_flags(hall, hall, side='both')\n"
+        "pcl_bsh.write('hall.ply', of_both, None)\n"
+        "pcl_bsh.euclidean_clusters(hall, 0.1).sizes.dtype\n"
+        "near, squared = pcl_bsh.radius_search(hall, [0.0, 0.0, 0.0], 1.0)  # error: near is a float\n"
         "pcl_bsh.collision_flags(hall, 3)  # error\n"
         "pcl_bsh.closest_pair(hall, hall).distanc  # error\n"
-        "pcl_bsh.collision_flags(hall, hall, side='c')  # error\n") == [7, 8, 9]
+        "pcl_bsh.collision_flags(hall, hall, side='c')  # error\n") == [10, 11, 12, 13]
 
 
 def test_stubs_name_what_the_module_has():

@@ -131,7 +131,6 @@ def test_many_poses(kind):
     A, B = pcl_bsh.SphereHierarchy(a), pcl_bsh.SphereHierarchy(b)
     np.testing.assert_array_equal(pcl_bsh.any_collision_at_poses(A, B, poses, 0.1, threads=2),
                                   (d <= 0.1).any(axis=(1, 2)))
-    np.testing.assert_array_equal(pcl_bsh.collision_flags_at_poses(A, B, poses, 0.1, threads=2), (d <= 0.1).any(axis=2))
     least, pairs = pcl_bsh.closest_pair_at_poses(A, B, poses)
     assert pairs.shape == (len(poses), 2)
     if np.isfinite(d).any():
@@ -141,7 +140,6 @@ def test_many_poses(kind):
         assert np.isinf(least).all() and (pairs == pcl_bsh.NO_POINT).all()
     none = np.zeros((0, 4, 4))
     assert len(pcl_bsh.any_collision_at_poses(A, B, none, 0.1)) == 0
-    assert pcl_bsh.collision_flags_at_poses(A, B, none, 0.1).shape == (0, len(a))
 
 
 def test_many_motions():

@@ -229,6 +229,11 @@ def test_arguments_of_another_type():
             call()
 
 
+def test_accuracies_are_compared():
+    assert pcl_bsh.Accuracy("tolerance=0.1") == pcl_bsh.Accuracy.tolerance(0.1) != pcl_bsh.Accuracy.exact()
+    assert pcl_bsh.Accuracy() != "exact" and pcl_bsh.Accuracy() != None  # noqa: E711
+
+
 def test_work_is_counted():
     A, B = pcl_bsh.SphereHierarchy(cloud("random", 1, 2000)), pcl_bsh.SphereHierarchy(cloud("random", 2, 2000))
     work = pcl_bsh.closest_pair(A, B).work
@@ -273,13 +278,45 @@ def test_warnings_say_what_answers_do_not():
         lambda b: pcl_bsh.point_distances(a, b),
         lambda b: pcl_bsh.symmetric_distances(a, b),
         lambda b: pcl_bsh.hausdorff_distance(a, b),
+        lambda b: pcl_bsh.contacts(a, b, 2.0),
+        lambda b: pcl_bsh.pairs_within(a, b, 2.0),
         lambda b: pcl_bsh.collide_along(a, b, [np.eye(4)], 2.0),
+        lambda b: pcl_bsh.any_collision_at_poses(a, b, [np.eye(4)], 2.0),
+        lambda b: pcl_bsh.closest_pair_at_poses(a, b, [np.eye(4)]),
+        lambda b: pcl_bsh.any_collision_on_motions(a, b, [np.eye(4)], [[0, 0]], 2.0, tolerance=0.1),
     ]
     for query in queries:
         assert warnings_of(lambda: query(b)) == []
         (told,) = warnings_of(lambda: query(nothing))
         assert "has no finite point" in told
+    assert len(warnings_of(lambda: pcl_bsh.any_collision_at_poses(a, b, [far], 2.0))) == 1
+    assert warnings_of(lambda: pcl_bsh.any_collision_at_poses(a, b, [far, np.eye(4)], 2.0)) == []
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         with pytest.raises(UserWarning):
             pcl_bsh.collision_flags(a, nothing, 2.0)
+
+
+def test_warnings_of_scenes():
+    floor = pcl_bsh.SphereHierarchy(np.array([[i, j, 0.0] for i in range(20) for j in range(20)]))
+    far = np.eye(4)
+    far[0, 3] = 5e6
+    drive = pcl_bsh.VelocityMotion([1, 0, 0])
+
+    def told(clearance, *objects):
+        scene = pcl_bsh.Scene(clearance=clearance, any=True)
+        for i, (cloud, more) in enumerate(objects):
+            scene.add(f"object {i}", cloud, **more)
+        first = warnings_of(scene.query)
+        assert warnings_of(lambda: scene.step(0.1)) == []  # nothing was added
+        return first
+
+    assert told(2.0, (floor, {}), (floor, {})) == []
+    (holes,) = told(1.0, (floor, {}), (floor, {}))
+    assert holes.startswith("points lie 1 apart in object 0 and 1 in object 1: surfaces may touch")
+    assert told(1.0, (floor, {"fixed": True}), (floor, {"fixed": True})) == []  # never tested
+    nothing = pcl_bsh.SphereHierarchy(np.zeros((0, 3)))
+    assert told(2.0, (floor, {}), (nothing, {})) == ["object 1: has no finite point: nothing collides with it"]
+    (apart,) = told(2.0, (floor, {}), (floor, {"pose": far}))
+    assert apart.startswith("the boxes of ") and " are 4.99998e+06 apart" in apart
+    assert told(2.0, (floor, {}), (floor, {"pose": far, "motion": drive})) == []  # it may come

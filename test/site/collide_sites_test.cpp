@@ -12,7 +12,7 @@
 #include <pcl_bsh/site/make_site.h>
 
 #ifdef PCL_BSH_SITE_QUERIES
-#include <pcl_bsh/site/collide_sites.h>
+#include <pcl_bsh/site/collide_site.h>
 
 #include <gmock/gmock.h>
 
@@ -113,7 +113,7 @@ protected:
       const auto expectFlags = [&](const auto& query, const Points& points, const std::vector<std::uint8_t>& right,
                                    std::size_t colliding, std::size_t undecided) {
         std::vector<std::uint8_t> found(points.size(), 0);
-        const SitePairFlags of_sites =
+        const SiteFlags of_sites =
             query(site, placed, request, [&](const Tile&, const Cloud& cloud, const FlagsResult& result) {
               for (std::uint32_t i = 0; i < cloud.width; ++i) found[placeOf(cloud, i, points)] = result.a[i];
             });
@@ -128,7 +128,7 @@ protected:
       expectFlags([](const auto&... arguments) { return collisionFlagsOfB(arguments...); }, b, flags.b,
                   flags.colliding_b, flags.undecided_b);
 
-      const SitePairClosest closest = closestPair(site, placed, request);
+      const SiteClosest closest = closestPair(site, placed, request);
       EXPECT_EQ(closest.distance, nearest.distance);
       EXPECT_EQ(closest.interval.lower, nearest.interval.lower);
       EXPECT_EQ(closest.interval.upper, nearest.interval.upper);
@@ -141,9 +141,9 @@ protected:
         near.max_distance = most;
         const PointDistances right = pcl_bsh::pointDistances({measured_a}, {measured_b, pose}, near);
         std::vector<double> found(a.size(), std::numeric_limits<double>::quiet_NaN());
-        const SitePairDistances distances = pointDistances(
-            site, placed, most, request, [&](const Tile&, const Cloud& cloud, const std::vector<double>& distance) {
-              for (std::uint32_t i = 0; i < cloud.width; ++i) found[placeOf(cloud, i, a)] = distance[i];
+        const SiteDistances distances = pointDistances(
+            site, placed, most, request, [&](const Tile&, const Cloud& cloud, const PointDistances& of_tile) {
+              for (std::uint32_t i = 0; i < cloud.width; ++i) found[placeOf(cloud, i, a)] = of_tile.distance[i];
             });
         for (std::size_t i = 0; i < a.size(); ++i) {
           EXPECT_TRUE(found[i] == right.distance[i] || (std::isnan(found[i]) && std::isnan(right.distance[i])))
@@ -217,16 +217,16 @@ void CollideSites::expectSamePassage(const Points& a, const Points& b, const std
     std::fill(found.distance.begin(), found.distance.end(), std::numeric_limits<float>::quiet_NaN());
     std::fill(found.first_pose.begin(), found.first_pose.end(), -1);
     std::fill(found.closest_pose.begin(), found.closest_pose.end(), -1);
-    const SitePairPassage passage = collideAlong(site, other, request.uncertainty, poses, request,
-                                                 [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
-                                                   for (std::uint32_t i = 0; i < cloud.width; ++i) {
-                                                     const std::size_t place = placeOf(cloud, i, a);
-                                                     found.flags[place] = result.flags[i];
-                                                     found.distance[place] = result.distance[i];
-                                                     found.first_pose[place] = result.first_pose[i];
-                                                     found.closest_pose[place] = result.closest_pose[i];
-                                                   }
-                                                 });
+    const SitePassage passage = collideAlong(site, other, request.uncertainty, poses, request,
+                                             [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
+                                               for (std::uint32_t i = 0; i < cloud.width; ++i) {
+                                                 const std::size_t place = placeOf(cloud, i, a);
+                                                 found.flags[place] = result.flags[i];
+                                                 found.distance[place] = result.distance[i];
+                                                 found.first_pose[place] = result.first_pose[i];
+                                                 found.closest_pose[place] = result.closest_pose[i];
+                                               }
+                                             });
     EXPECT_EQ(found.flags, right.flags);
     EXPECT_EQ(found.first_pose, right.first_pose);
     EXPECT_EQ(found.closest_pose, right.closest_pose);
@@ -301,11 +301,11 @@ TEST_F(CollideSites, AlongAPathOfSweptMotion)
   wanted.clearance += *request.swept;
   const std::vector<std::uint8_t> most = pcl_bsh::collideAlong({all_a}, all_b, poses, wanted).flags;
   std::vector<std::uint8_t> found(a.size(), 0);
-  const SitePairPassage passage = collideAlong(site, other, {}, poses, request,
-                                               [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
-                                                 for (std::uint32_t i = 0; i < cloud.width; ++i)
-                                                   found[placeOf(cloud, i, a)] = result.flags[i];
-                                               });
+  const SitePassage passage = collideAlong(site, other, {}, poses, request,
+                                           [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
+                                             for (std::uint32_t i = 0; i < cloud.width; ++i)
+                                               found[placeOf(cloud, i, a)] = result.flags[i];
+                                           });
   EXPECT_GT(passage.colliding, 20u);
   ASSERT_TRUE(passage.first_contact);
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -324,7 +324,7 @@ TEST_F(CollideSites, ASiteAgainstItself)
   const Points points = floorOf(1200, 5);
   const Site site = siteOf("a", points, 100);
   SiteRequest request;
-  const SitePairFlags flags = collisionFlags(site, {site}, request);
+  const SiteFlags flags = collisionFlags(site, {site}, request);
   EXPECT_EQ(flags.colliding, points.size() - 3) << "three are not finite";
   EXPECT_EQ(pointDistances(site, {site}, 1.0, request).greatest, 0.0);
 }
@@ -334,16 +334,16 @@ TEST_F(CollideSites, ReadOnlyTilesThatMatter)
   const Site site = siteOf("a", floorOf(2000, 6), 50), other = siteOf("b", floorOf(2000, 7), 50);
   SiteRequest request;
   request.clearance = 0.1;
-  const SitePairFlags aside = collisionFlags(site, {other, Eigen::Isometry3d(Eigen::Translation3d(19, 0, 0))}, request);
+  const SiteFlags aside = collisionFlags(site, {other, Eigen::Isometry3d(Eigen::Translation3d(19, 0, 0))}, request);
   EXPECT_LT(aside.tiles.needed, aside.tiles.tiles / 2);
   EXPECT_LT(aside.tiles_b.needed, aside.tiles_b.tiles / 2);
   EXPECT_EQ(aside.tiles_b.read, aside.tiles_b.needed) << "all that was read is kept";
-  const SitePairFlags far = collisionFlags(site, {other, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 50))}, request);
+  const SiteFlags far = collisionFlags(site, {other, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 50))}, request);
   EXPECT_EQ(far.tiles.read + far.tiles_b.read, 0u);
   EXPECT_LT(closestPair(site, {other, Eigen::Isometry3d(Eigen::Translation3d(25, 0, 0))}, request).tiles.read, 20u);
   // Where memory holds a tile of each alone, tiles are read for each that they come near to.
   request.memory = 2 * 50 * (3 * 8 + 8 + 64);
-  const SitePairFlags small = collisionFlags(site, {other}, request);
+  const SiteFlags small = collisionFlags(site, {other}, request);
   EXPECT_GT(small.tiles_b.read, small.tiles_b.needed);
   request.memory = 2 * 50 * (3 * 8 + 8 + 64) - 1000;
   EXPECT_THROW(collisionFlags(site, {other}, request), std::invalid_argument);
@@ -364,7 +364,7 @@ TEST_F(CollideSites, TellTheirProgressAndStop)
     of = all;
     return true;
   };
-  const SitePairFlags flags = collisionFlags(site, {other}, request);
+  const SiteFlags flags = collisionFlags(site, {other}, request);
   ASSERT_EQ(told.size(), flags.tiles.needed);
   EXPECT_EQ(told.front(), 1u);
   EXPECT_EQ(told.back(), flags.tiles.needed);

@@ -13,7 +13,6 @@
 
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/site/collide_site.h>
-#include <pcl_bsh/site/collide_sites.h>
 #include <pcl_bsh/site/result_site.h>
 #include <pcl_bsh/site/site_clashes.h>
 #include <pcl_bsh/site/tiles/tile_file.h>
@@ -255,22 +254,23 @@ TEST_F(ResumedSite, AboutTwoSites)
     };
     std::pair<std::vector<std::string>, std::uint64_t> found;
     if (question == 0) {
-      const SitePairFlags flags =
+      const SiteFlags flags =
           collisionFlags(site, {other}, request, [&](const auto& tile, const auto& cloud, const FlagsResult& result) {
             write(tile, cloud, result.a);
           });
       found = {{std::to_string(flags.colliding)}, flags.tiles.read};
     }
     else if (question == 1) {
-      const SitePairDistances distances = pointDistances(
-          site, {other}, 4.0, request,
-          [&](const auto& tile, const auto& cloud, const std::vector<double>& result) { write(tile, cloud, result); });
+      const SiteDistances distances = pointDistances(
+          site, {other}, 4.0, request, [&](const auto& tile, const auto& cloud, const PointDistances& result) {
+            write(tile, cloud, result.distance);
+          });
       found = {{std::to_string(distances.greatest), std::to_string(distances.measured)}, distances.tiles.read};
     }
     else {
       ClashFinder finder(site, 0.5);
       request.clashes = &finder;
-      const SitePairPassage passage = collideAlong(
+      const SitePassage passage = collideAlong(
           site, other, {}, poses, request, [&](const auto& tile, const auto& cloud, const TrajectoryResult& result) {
             write(tile, cloud, result.flags);
           });

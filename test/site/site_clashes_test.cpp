@@ -9,7 +9,7 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
-#include <pcl_bsh/site/collide_sites.h>
+#include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/make_site.h>
 #include <pcl_bsh/site/site_clashes.h>
 

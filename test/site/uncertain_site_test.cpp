@@ -11,7 +11,6 @@
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/collide_site.h>
-#include <pcl_bsh/site/collide_sites.h>
 #include <pcl_bsh/site/make_site.h>
 
 #include <gmock/gmock.h>

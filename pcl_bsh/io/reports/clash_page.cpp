@@ -2,35 +2,18 @@
 // The numbers of the page; clash_page.html has the page itself.
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/page_text.h>
-#include <pcl_bsh/io/reports/report_origin.h>
 
 #include "clash_page.html.h"
-#include "page_style.css.h"
 
-#include <kainjow/mustache.hpp>
-
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 namespace pcl_bsh::io {
 namespace {
 
-using kainjow::mustache::mustache;
-using Data = kainjow::mustache::data;
-using List = kainjow::mustache::list;
-using Object = kainjow::mustache::object;
-
 constexpr std::size_t most_pictures = 200; ///< beyond so many clashes there is only the table
 constexpr std::size_t most_dots = 500;     ///< of a clash in a picture
 
-/// The inside of a drawing, as clash_page.html frames it.
-struct Area {
-  double left, top, width, height;
-};
 constexpr Area path_area{54, 12, 1010, 130}, top_view_area{6, 6, 508, 268}, approach_area{54, 10, 456, 236};
 
 /// The longest side of its box.
@@ -51,12 +34,7 @@ public:
   {
   }
 
-  std::string html() const
-  {
-    mustache page(std::string{clash_page_html});
-    if (!page.is_valid()) throw std::logic_error("clash_page.html: " + page.error_message());
-    return page.render(contents());
-  }
+  std::string html() const { return rendered("clash_page.html", clash_page_html, contents()); }
 
 private:
   /// The smallest distance of all that are there now, infinity where there is none.
@@ -67,8 +45,6 @@ private:
       if (isPresent(clash.status)) closest = std::min(closest, clash.distance);
     return closest;
   }
-
-  static Data textOrNone(const std::string& text) { return text.empty() ? Data(false) : Data(plain(text)); }
 
   static std::string many(std::size_t count) { return std::to_string(count) + (count == 1 ? " clash" : " clashes"); }
 
@@ -93,34 +69,25 @@ private:
   Data contents() const
   {
     const ClashQuestion& question = report_.question;
-    Object page = {{"style", std::string(page_style_css)},
-                   {"input", plain(question.input)},
-                   {"obstacle", plain(question.obstacle)},
-                   {"headline", headline()},
-                   {"program", reportProgram()},
-                   {"date", reportDate()},
-                   {"unit", textOrNone(report_.unit)},
-                   {"in", report_.unit.empty() ? std::string() : " [" + plain(report_.unit) + "]"},
-                   {"coordinate_system", textOrNone(report_.coordinate_system)},
-                   {"uncertainty", uncertainty()},
-                   {"accuracy", question.accuracy.text()},
-                   {"poses", std::to_string(report_.poses.size()) + (report_.poses.size() == 1 ? " pose" : " poses")},
-                   {"clearance", number(question.clearance)},
-                   {"colliding", std::to_string(report_.found.colliding)},
-                   {"closest", false},
-                   {"swept", false},
-                   {"cluster_distance", number(report_.cluster_distance)},
-                   {"compared", false},
-                   {"previous", false},
-                   {"promise", report_.surface != nullptr
-                                   ? Data(promiseOf(*report_.surface, question.swept ? "swept motion" : ""))
-                                   : Data(false)},
-                   {"path", path()},
-                   {"nothing", report_.clashes.empty()},
-                   {"tables", tables()},
-                   {"one_by_one", cards()}};
-    if (std::isfinite(closest_)) page["closest"] = number(closest_);
-    if (question.swept) page["swept"] = number(*question.swept);
+    const std::string promise =
+        report_.surface != nullptr ? promiseOf(*report_.surface, question.swept ? "swept motion" : "") : "";
+    Object page = pageAbout(question, report_.coordinate_system, question.accuracy.text(), promise);
+    page.insert({{"headline", headline()},
+                 {"unit", textOrNone(report_.unit)},
+                 {"in", report_.unit.empty() ? std::string() : " [" + plain(report_.unit) + "]"},
+                 {"uncertainty", uncertainty()},
+                 {"poses", std::to_string(report_.poses.size()) + (report_.poses.size() == 1 ? " pose" : " poses")},
+                 {"clearance", number(question.clearance)},
+                 {"colliding", std::to_string(report_.found.colliding)},
+                 {"closest", numberOrNone(closest_)},
+                 {"swept", question.swept ? Data(number(*question.swept)) : Data(false)},
+                 {"cluster_distance", number(report_.cluster_distance)},
+                 {"compared", false},
+                 {"previous", false},
+                 {"path", path()},
+                 {"nothing", report_.clashes.empty()},
+                 {"tables", tables()},
+                 {"one_by_one", cards()}});
     if (report_.previous) {
       page["previous"] = plain(*report_.previous);
       List compared;
@@ -288,27 +255,22 @@ private:
 
   Data topView(const Clash& clash) const
   {
-    constexpr const Area& area = top_view_area;
     const Eigen::Vector3d scan = report_.scanPoint(clash), model = report_.modelPoint(clash);
     Eigen::AlignedBox2d box(Eigen::Vector2d(clash.low[0], clash.low[1]), Eigen::Vector2d(clash.high[0], clash.high[1]));
     box.extend(model.head<2>());
     const double least = std::max({box.sizes().maxCoeff() * 0.1, report_.cluster_distance, 1e-9});
-    const Eigen::Vector2d middle = box.center(), size = box.sizes().array() + least;
-    const double scale = std::min(area.width / size.x(), area.height / size.y());
-    const auto x = [&](double value) { return area.left + area.width / 2 + scale * (value - middle.x()); };
-    const auto y = [&](double value) { return area.top + area.height / 2 - scale * (value - middle.y()); };
-    // The scale bar is a round length, a fifth of the drawing or so.
-    const double length = roundLength(area.width / scale / 5);
+    const Eigen::Vector2d size = box.sizes().array() + least;
+    const ViewFromAbove seen{top_view_area, box.center(), size};
     return Object{{"dots", dotsOf(
-                               clash, [&](std::uint32_t record) { return x(report_.scan.point(record)[0]); },
-                               [&](std::uint32_t record) { return y(report_.scan.point(record)[1]); })},
-                  {"scan_x", coordinate(x(scan.x()))},
-                  {"scan_y", coordinate(y(scan.y()))},
-                  {"model_x", coordinate(x(model.x()))},
-                  {"model_y", coordinate(y(model.y()))},
-                  {"scale_width", coordinate(length * scale)},
-                  {"scale_end", number(area.left + 10 + length * scale + 6, 6)},
-                  {"scale_length", number(length)}};
+                               clash, [&](std::uint32_t record) { return seen.x(report_.scan.point(record)[0]); },
+                               [&](std::uint32_t record) { return seen.y(report_.scan.point(record)[1]); })},
+                  {"scan_x", coordinate(seen.x(scan.x()))},
+                  {"scan_y", coordinate(seen.y(scan.y()))},
+                  {"model_x", coordinate(seen.x(model.x()))},
+                  {"model_y", coordinate(seen.y(model.y()))},
+                  {"scale_width", coordinate(seen.bar * seen.scale)},
+                  {"scale_end", number(top_view_area.left + 10 + seen.bar * seen.scale + 6, 6)},
+                  {"scale_length", number(seen.bar)}};
   }
 
   /// Poses across, distances up.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/report_origin.h>
@@ -57,15 +56,9 @@ Json toJson(const ClashReport& report, const Clash& clash)
   return json;
 }
 
-using Format = std::string (*)(const ClashReport&);
-
-Format formatOf(const std::filesystem::path& path)
+std::string formatOf(const std::filesystem::path& path)
 {
-  const std::string extension = path.extension().string();
-  if (extension == ".json") return clashJson;
-  if (extension == ".csv") return clashCsv;
-  if (extension == ".html") return clashPage;
-  throw files::FileError(path, "unknown extension '" + extension + "'", "give a .json, .csv or .html file");
+  return io::formatOf(path, {".json", ".csv", ".html"});
 }
 
 } // namespace
@@ -196,14 +189,16 @@ double clusterDistanceFor(double clearance, const Spacing& scan)
 
 void writeClashes(const std::filesystem::path& path, const ClashReport& report)
 {
-  const std::string text = formatOf(path)(report);
+  const std::string format = formatOf(path);
+  const std::string text = format == ".json"  ? clashJson(report)
+                           : format == ".csv" ? clashCsv(report)
+                                              : clashPage(report);
   files::replaceFile(path, [&](std::ostream& out) { out << text; });
 }
 
 void requireClashFormat(const std::filesystem::path& path)
 {
   formatOf(path);
-  reportDate(); // refuses one that is none before anything is done
 }
 
 } // namespace pcl_bsh::io

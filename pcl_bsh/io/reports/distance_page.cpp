@@ -2,27 +2,14 @@
 // The numbers of the page; distance_page.html has the page itself.
 #include <pcl_bsh/io/reports/distance_report.h>
 #include <pcl_bsh/io/reports/page_text.h>
-#include <pcl_bsh/io/reports/report_origin.h>
 
 #include "distance_page.html.h"
-#include "page_style.css.h"
 
-#include <kainjow/mustache.hpp>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 namespace pcl_bsh::io {
 namespace {
-
-using kainjow::mustache::mustache;
-using Data = kainjow::mustache::data;
-using List = kainjow::mustache::list;
-using Object = kainjow::mustache::object;
 
 class DistancePage {
 public:
@@ -34,17 +21,12 @@ public:
   {
   }
 
-  std::string html() const
-  {
-    mustache page(std::string{distance_page_html});
-    if (!page.is_valid()) throw std::logic_error("distance_page.html: " + page.error_message());
-    return page.render(contents());
-  }
+  std::string html() const { return rendered("distance_page.html", distance_page_html, contents()); }
 
 private:
   static constexpr std::size_t most_bars = 60, shades = 24, most_dots = 6000, rings = 10;
   static constexpr double bar_left = 70, bar_top = 12, bar_width = 994, bar_height = 140;
-  static constexpr double view_left = 6, view_top = 6, view_width = 1068, view_height = 458;
+  static constexpr Area view_area{6, 6, 1068, 458};
 
   /// Both histograms end where nearly all distances do: a few outliers should not take the axis for themselves.
   static double endOf(const DistanceReport& report)
@@ -68,32 +50,22 @@ private:
   Data contents() const
   {
     const std::size_t farther = report_.input.farther() + report_.obstacle.farther();
-    const double most = report_.question.request.max_distance;
-    Object page = {{"style", std::string(page_style_css)},
-                   {"input", plain(report_.question.input)},
-                   {"obstacle", plain(report_.question.obstacle)},
-                   {"program", reportProgram()},
-                   {"date", reportDate()},
-                   {"coordinate_system", report_.question.coordinate_system.empty()
-                                             ? Data(false)
-                                             : Data(plain(report_.question.coordinate_system))},
-                   {"unit", unit_},
-                   {"in", report_.question.unit.empty() ? "" : " " + unit_},
-                   {"hausdorff", length(report_.hausdorff)},
-                   {"pair", false},
-                   {"max_distance", std::isfinite(most) ? Data(number(most)) : Data(false)},
-                   {"accuracy", report_.question.request.accuracy.text()},
-                   {"promise", report_.question.surface != nullptr
-                                   ? Data(report_.question.surfaceToTell()["promise"].get<std::string>())
-                                   : Data(false)},
-                   {"part", report_.question.partName()},
-                   {"farther", counted(farther, " point has", " points have")}};
-    if (report_.hausdorff_pair) {
-      page["pair"] = Object{{"a", std::to_string(report_.hausdorff_pair->a)},
-                            {"b", std::to_string(report_.question.partOf(report_.hausdorff_pair->b))}};
-    }
-    page["statistics"] = statistics();
-    page["sides"] = List{side(report_.input, report_.obstacle.name), side(report_.obstacle, report_.input.name)};
+    const DistanceQuestion& question = report_.question;
+    const std::string promise =
+        question.surface != nullptr ? question.surfaceToTell()["promise"].get<std::string>() : "";
+    Object page = pageAbout(question, question.coordinate_system, question.request.accuracy.text(), promise);
+    page.insert(
+        {{"unit", unit_},
+         {"in", question.unit.empty() ? "" : " " + unit_},
+         {"hausdorff", length(report_.hausdorff)},
+         {"pair", false},
+         {"max_distance", numberOrNone(question.request.max_distance)},
+         {"part", question.partName()},
+         {"farther", counted(farther, " point has", " points have")},
+         {"statistics", statistics()},
+         {"sides", List{side(report_.input, report_.obstacle.name), side(report_.obstacle, report_.input.name)}}});
+    if (const auto& pair = report_.hausdorff_pair)
+      page["pair"] = Object{{"a", std::to_string(pair->a)}, {"b", std::to_string(question.partOf(pair->b))}};
     return page;
   }
 
@@ -211,17 +183,14 @@ private:
       at.push_back(from.placeOf(record));
       box.extend(at.back().head<2>());
     }
-    const Eigen::Vector2d middle = box.center();
     Eigen::Vector2d size = box.sizes() * 1.04;
     if (!(size.maxCoeff() > 0)) size.setOnes();
-    const double scale = std::min(view_width / std::max(size.x(), 1e-300), view_height / std::max(size.y(), 1e-300));
-    const auto x = [&](const Eigen::Vector3d& p) { return view_left + view_width / 2 + scale * (p.x() - middle.x()); };
-    const auto y = [&](const Eigen::Vector3d& p) { return view_top + view_height / 2 - scale * (p.y() - middle.y()); };
+    const ViewFromAbove seen{view_area, box.center(), size.cwiseMax(1e-300)};
 
     std::array<std::string, shades> paths; // far points are drawn over near ones
     for (std::size_t i = 0; i < shown.size(); ++i) {
-      paths[shadeOf(from, shown[i])] += 'M' + numberText(x(at[i]), std::chars_format::fixed, 1) + ' ' +
-                                        numberText(y(at[i]), std::chars_format::fixed, 1) + "h2v2h-2z";
+      paths[shadeOf(from, shown[i])] += 'M' + numberText(seen.x(at[i].x()), std::chars_format::fixed, 1) + ' ' +
+                                        numberText(seen.y(at[i].y()), std::chars_format::fixed, 1) + "h2v2h-2z";
     }
     std::string dots, circles, legend;
     for (std::size_t i = 0; i < shades; ++i) {
@@ -232,20 +201,19 @@ private:
     }
     for (std::size_t i = 0; i < std::min(from.places.size(), rings); ++i) {
       const Eigen::Vector3d p = from.placeOf(from.places[i].point);
-      circles += "<circle class=\"closest\" cx=\"" + coordinate(x(p)) + "\" cy=\"" + coordinate(y(p)) +
-                 "\" r=\"9\"/><text x=\"" + coordinate(x(p) + 12) + "\" y=\"" + coordinate(y(p) + 4) + "\">" +
+      const double x = seen.x(p.x()), y = seen.y(p.y());
+      circles += "<circle class=\"closest\" cx=\"" + coordinate(x) + "\" cy=\"" + coordinate(y) +
+                 "\" r=\"9\"/><text x=\"" + coordinate(x + 12) + "\" y=\"" + coordinate(y + 4) + "\">" +
                  std::to_string(i + 1) + "</text>\n";
     }
-    // The scale bar is a round length, a fifth of the drawing or so.
-    const double length = roundLength(view_width / scale / 5);
     return Object{{"dots", dots},
                   {"rings", circles},
                   {"legend", legend},
                   {"shown", std::to_string(shown.size())},
                   {"end", number(scale_)},
-                  {"scale_width", coordinate(length * scale)},
-                  {"scale_end", coordinate(24 + length * scale)},
-                  {"scale_length", number(length)}};
+                  {"scale_width", coordinate(seen.bar * seen.scale)},
+                  {"scale_end", coordinate(24 + seen.bar * seen.scale)},
+                  {"scale_length", number(seen.bar)}};
   }
 
   /// Of a place, which may have none.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/reports/distance_report.h>
 
-#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/report_origin.h>
@@ -67,16 +66,6 @@ Json toJson(const DistanceQuestion& question, const DistanceSide& side, bool is_
   return json;
 }
 
-using DistanceFormat = std::string (*)(const DistanceReport&);
-
-DistanceFormat distanceFormatOf(const std::filesystem::path& path)
-{
-  const std::string extension = path.extension().string();
-  if (extension == ".json") return [](const DistanceReport& report) { return printed(distanceJson(report)); };
-  if (extension == ".html") return distancePage;
-  throw files::FileError(path, "unknown extension '" + extension + "'", "give a .json or .html file");
-}
-
 } // namespace
 
 Json DistanceQuestion::surfaceToTell() const
@@ -116,14 +105,14 @@ Json distanceJson(const DistanceReport& report)
 
 void writeDistances(const std::filesystem::path& path, const DistanceReport& report)
 {
-  const std::string text = distanceFormatOf(path)(report);
+  const bool is_page = formatOf(path, {".json", ".html"}) == ".html";
+  const std::string text = is_page ? distancePage(report) : printed(distanceJson(report));
   files::replaceFile(path, [&](std::ostream& out) { out << text; });
 }
 
 void requireDistanceFormat(const std::filesystem::path& path)
 {
-  distanceFormatOf(path);
-  reportDate(); // refuses one that is none before anything is done
+  formatOf(path, {".json", ".html"});
 }
 
 } // namespace pcl_bsh::io

@@ -1,14 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Texts and numbers as they stand in pages.
+// What all pages have: how they begin, texts and numbers, and clouds seen from above.
 #pragma once
 
 #include <pcl_bsh/io/json/json_document.h>
+#include <pcl_bsh/io/reports/report_origin.h>
 #include <pcl_bsh/io/text/number_text.h>
 
+#include "page_style.css.h"
+
+#include <Eigen/Geometry>
+#include <kainjow/mustache.hpp>
+
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 namespace pcl_bsh::io {
+
+using Data = kainjow::mustache::data;
+using List = kainjow::mustache::list;
+using Object = kainjow::mustache::object;
 
 /// Text of files and their names; the template escapes it. HTML has no control characters.
 inline std::string plain(const std::string& text)
@@ -41,5 +53,55 @@ inline double roundLength(double wish)
   const double decade = std::pow(10.0, std::floor(std::log10(wish)));
   return decade * (wish / decade >= 5 ? 5 : wish / decade >= 2 ? 2 : 1);
 }
+
+/// False, which leaves a section of the template out, for none.
+inline Data textOrNone(const std::string& text)
+{
+  return text.empty() ? Data(false) : Data(plain(text));
+}
+
+/// The same of a number that is not finite.
+inline Data numberOrNone(double value)
+{
+  return std::isfinite(value) ? Data(number(value)) : Data(false);
+}
+
+/// What a page says of two clouds and an answer about them, whatever was asked.
+template <typename Question>
+Object pageAbout(const Question& question, const std::string& coordinate_system, const std::string& accuracy,
+                 const std::string& promise)
+{
+  return {{"style", std::string(page_style_css)},
+          {"input", plain(question.input)},
+          {"obstacle", plain(question.obstacle)},
+          {"program", reportProgram()},
+          {"date", reportDate()},
+          {"coordinate_system", textOrNone(coordinate_system)},
+          {"accuracy", accuracy},
+          {"promise", promise.empty() ? Data(false) : Data(promise)}};
+}
+
+inline std::string rendered(const char* name, std::string_view text, const Data& contents)
+{
+  kainjow::mustache::mustache page{std::string(text)};
+  if (!page.is_valid()) throw std::logic_error(std::string(name) + ": " + page.error_message());
+  return page.render(contents);
+}
+
+/// The inside of a drawing, as the template frames it.
+struct Area {
+  double left, top, width, height;
+};
+
+/// Where points lie in a drawing that looks down on them.
+struct ViewFromAbove {
+  Area area;
+  Eigen::Vector2d middle, size; ///< of what is seen; size > 0
+  double scale = std::min(area.width / size.x(), area.height / size.y());
+  double bar = roundLength(area.width / scale / 5); ///< the scale bar's length, a fifth of the drawing or so
+
+  double x(double value) const { return area.left + area.width / 2 + scale * (value - middle.x()); }
+  double y(double value) const { return area.top + area.height / 2 - scale * (value - middle.y()); }
+};
 
 } // namespace pcl_bsh::io

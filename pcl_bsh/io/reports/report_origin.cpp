@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/reports/report_origin.h>
 
+#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/parse_number.h>
 #include <pcl_bsh/version.h>
 
@@ -42,6 +43,18 @@ std::string reportDate()
   std::array<char, 16> text{};
   std::strftime(text.data(), text.size(), "%Y-%m-%d", &parts);
   return text.data();
+}
+
+std::string formatOf(const std::filesystem::path& file, const std::vector<std::string>& known)
+{
+  reportDate();
+  const std::string extension = file.extension().string();
+  std::string list;
+  for (const std::string& format : known) {
+    if (format == extension) return format;
+    list += (list.empty() ? "" : &format == &known.back() ? " or " : ", ") + format;
+  }
+  throw files::FileError(file, "unknown extension '" + extension + "'", "give a " + list + " file");
 }
 
 } // namespace pcl_bsh::io

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every report says of itself: which program made it, and when.
+// What every report says of itself: which program made it, and when; and as what it is written.
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 namespace pcl_bsh::io {
 
@@ -13,5 +15,8 @@ std::string reportProgram();
 /// report can be made again byte for byte.
 /// @throws std::runtime_error naming the variable when it is no such number
 std::string reportDate();
+
+/// The file's extension. @throws files::FileError when it is none of these. As reportDate(), before anything is done
+std::string formatOf(const std::filesystem::path& file, const std::vector<std::string>& known);
 
 } // namespace pcl_bsh::io

@@ -8,7 +8,7 @@
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/poses/rigid_pose.h>
 #include <pcl_bsh/io/scenes/scattered_motion.h>
-#include <pcl_bsh/io/scenes/shape_points.h>
+#include <pcl_bsh/io/scenes/scene_clouds.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 
 #include "scene.schema.json.h"
@@ -20,14 +20,6 @@
 
 namespace pcl_bsh::io {
 namespace {
-
-constexpr double kMostPoints = 1e8; // of a shape
-
-const JsonSchema& sceneSchema()
-{
-  static const JsonSchema schema(scene_schema_json);
-  return schema;
-}
 
 class SceneParser {
 public:
@@ -41,10 +33,14 @@ public:
 
   SceneFile parse()
   {
-    sceneSchema().check(root_);
+    static const JsonSchema schema(scene_schema_json);
+    schema.check(root_);
     parseOptions();
     if (root_.has("effects")) parseEffects(root_.at("effects"));
-    for (const auto& [name, cloud] : root_.at("clouds").members()) parseCloud(name, cloud);
+    for (const auto& [name, cloud] : root_.at("clouds").members()) {
+      file_.clouds.push_back(cloudFrom(cloud, name, path_.parent_path()));
+      cloud_names_.push_back(name);
+    }
     for (const JsonReader& object : root_.at("objects").elements()) parseObject(object);
     for (const JsonReader& scatter : elementsOf(root_, "scatter")) parseScatter(scatter);
     if (file_.objects.empty()) root_.at("objects").fail("the scene has no objects", "give at least one");
@@ -101,7 +97,13 @@ private:
       read(gravity, "step_height", effects.gravity->step_height);
       if (gravity.has("down")) effects.gravity->down = direction(gravity.at("down"));
     }
-    if (reader.has("deform")) effects.deform = reader.at("deform").number();
+    read(reader, "deform", effects.deform);
+  }
+
+  /// The identity where none is given.
+  Eigen::Isometry3d poseIn(const JsonReader& reader, const char* key)
+  {
+    return reader.has(key) ? reader.at(key).pose(file_.warnings) : Eigen::Isometry3d::Identity();
   }
 
   static Eigen::Vector3d direction(const JsonReader& reader)
@@ -109,100 +111,6 @@ private:
     const Eigen::Vector3d v = reader.vector();
     if (!(v.norm() > 0.0)) reader.fail("has length 0", "give a direction");
     return v;
-  }
-
-  void parseCloud(const std::string& name, const JsonReader& reader)
-  {
-    CloudSource cloud;
-    cloud.name = name;
-    cloud.place = reader.place();
-    if (reader.json().is_string()) {
-      cloud.file = existing(reader);
-    }
-    else {
-      for (const char* shape : {"sphere", "box", "cylinder"})
-        if (reader.has(shape)) {
-          if (!cloud.shape.empty()) reader.fail("is both a " + cloud.shape + " and a " + shape, "give one of them");
-          cloud.shape = shape;
-        }
-      if (cloud.shape.empty() == !reader.has("file"))
-        reader.fail("is neither or both of a file and a shape", "give 'file', 'sphere', 'box' or 'cylinder'");
-      if (reader.has("file")) cloud.file = existing(reader.at("file"));
-      read(reader, "scale", cloud.scale);
-      read(reader, "shift", cloud.shift);
-      parseSurface(reader, cloud);
-      if (!cloud.shape.empty()) parseShape(reader, cloud);
-      parseUncertainty(reader, cloud);
-    }
-    file_.clouds.push_back(cloud);
-    cloud_names_.push_back(name);
-  }
-
-  static void parseUncertainty(const JsonReader& reader, CloudSource& cloud)
-  {
-    const bool of_field = reader.has("uncertainty") && reader.at("uncertainty").json().is_string();
-    double sigmas = 1.0;
-    read(reader, "sigmas", sigmas);
-    if (!of_field) {
-      if (reader.has("sigmas"))
-        reader.at("sigmas").fail("is given, but the uncertainty is no field", "give the length itself");
-      read(reader, "uncertainty", cloud.uncertainty.length);
-      return;
-    }
-    if (!cloud.shape.empty())
-      reader.at("uncertainty").fail("names a field, which a " + cloud.shape + " does not have", "give a length");
-    cloud.uncertainty = {reader.at("uncertainty").text(), sigmas * cloud.scale};
-  }
-
-  static void parseSurface(const JsonReader& reader, CloudSource& cloud)
-  {
-    for (const auto& [key, what] :
-         {std::pair{"surface_tolerance", "faces"}, {"vertices_only", "faces"}, {"columns", "files"}}) {
-      if (reader.has(key) && !cloud.shape.empty())
-        reader.at(key).fail(std::string("is about ") + what + ", and a " + cloud.shape + " is points", "leave it out");
-    }
-    if (reader.has("columns")) {
-      try {
-        cloud.columns = columnNamesOf(reader.at("columns").text());
-      }
-      catch (const FormatError& error) {
-        reader.at("columns").fail(error.what(), error.remedy());
-      }
-    }
-    if (reader.has("surface_tolerance")) cloud.surface.tolerance = reader.at("surface_tolerance").number();
-    read(reader, "vertices_only", cloud.surface.vertices_only);
-    if (cloud.surface.tolerance && cloud.surface.vertices_only)
-      reader.at("surface_tolerance").fail("is about faces, and 'vertices_only' drops them", "give one of the two");
-  }
-
-  static void parseShape(const JsonReader& reader, CloudSource& cloud)
-  {
-    const JsonReader shape = reader.at(cloud.shape.c_str());
-    if (cloud.shape == "sphere") {
-      cloud.size.setConstant(shape.at("radius").number());
-    }
-    else if (cloud.shape == "box") {
-      cloud.size = shape.at("size").vector();
-      if (!(cloud.size.array() > 0).all()) shape.at("size").fail("has an edge that is not > 0", "give three lengths");
-    }
-    else {
-      bool open = false;
-      read(shape, "open", open);
-      cloud.size = {shape.at("radius").number(), shape.at("height").number(), open ? 1.0 : 0.0};
-    }
-    read(reader, "spacing", cloud.spacing);
-    if (!(shapePointCount(cloud.shape, cloud.size, cloud.spacing) <= kMostPoints))
-      reader.fail("would have more than 1e8 points", "give a larger 'spacing'");
-  }
-
-  std::filesystem::path existing(const JsonReader& reader) const
-  {
-    const std::filesystem::path given = reader.text();
-    const std::filesystem::path file = given.is_absolute() ? given : path_.parent_path() / given;
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) reader.fail("no such file: " + file.string(), "check the name");
-    if (std::filesystem::is_directory(file, error)) reader.fail(file.string() + " is a folder", "name a file");
-    return file;
   }
 
   std::string cloudName(const JsonReader& reader) const
@@ -226,12 +134,11 @@ private:
   {
     ObjectEntry object;
     object.name = newName(reader.at("name"));
-    if (reader.has("cloud"))
-      object.parts.push_back({object.name, cloudName(reader.at("cloud")), Eigen::Isometry3d::Identity()});
+    if (reader.has("cloud")) object.parts.push_back({object.name, cloudName(reader.at("cloud"))});
     for (const JsonReader& part : elementsOf(reader, "parts")) parsePart(part, object);
     if (reader.has("adjacent")) parseAdjacent(reader.at("adjacent"), object);
     read(reader, "group", object.group);
-    if (reader.has("pose")) object.pose = reader.at("pose").pose(file_.warnings);
+    object.pose = poseIn(reader, "pose");
     read(reader, "fixed", object.fixed);
     if (reader.has("motion")) object.motion = parseMotion(reader.at("motion"));
     if (object.fixed && !std::holds_alternative<NoMotion>(object.motion))
@@ -243,16 +150,12 @@ private:
   void parseWave(const JsonReader& reader, ObjectEntry& object)
   {
     if (!file_.options.effects.deform) reader.fail("needs the effect 'deform'", "add \"deform\": 1.5 to 'effects'");
-    object.wave = Wave{};
-    object.wave->amplitude = reader.at("amplitude").vector();
-    object.wave->length = reader.at("length").number();
-    object.wave->period = reader.at("period").number();
+    object.wave = Wave{reader.at("amplitude").vector(), reader.at("length").number(), reader.at("period").number()};
   }
 
   void parsePart(const JsonReader& reader, ObjectEntry& object)
   {
-    PartEntry part{reader.at("name").text(), cloudName(reader.at("cloud")), Eigen::Isometry3d::Identity()};
-    if (reader.has("pose")) part.pose = reader.at("pose").pose(file_.warnings);
+    PartEntry part{reader.at("name").text(), cloudName(reader.at("cloud")), poseIn(reader, "pose")};
     for (const PartEntry& other : object.parts)
       if (other.name == part.name) reader.at("name").fail("'" + part.name + "' is taken", "give another name");
     object.parts.push_back(std::move(part));
@@ -310,12 +213,11 @@ private:
 
   Motion parseTrajectory(const JsonReader& reader)
   {
-    const std::filesystem::path file = existing(reader.at("file"));
+    const std::filesystem::path file = existingFile(reader.at("file"), path_.parent_path());
     file_.trajectories.push_back(file);
     double interval = file_.dt;
     read(reader, "interval", interval);
-    const Eigen::Isometry3d base =
-        reader.has("base") ? reader.at("base").pose(file_.warnings) : Eigen::Isometry3d::Identity();
+    const Eigen::Isometry3d base = poseIn(reader, "base");
     WaypointMotion motion;
     for (const Eigen::Isometry3d& pose : readPoses(file, &file_.warnings)) {
       motion.times.push_back(interval * static_cast<double>(motion.times.size()));
@@ -345,7 +247,7 @@ private:
       if (!object_names_.insert(object.name).second)
         reader.at("name").fail("'" + object.name + "' is taken", "give another name");
       object.group = group;
-      object.parts.push_back({object.name, cloud, Eigen::Isometry3d::Identity()});
+      object.parts.push_back({object.name, cloud});
       const auto drift = motions.next(bounces_left_);
       if (!drift)
         reader.fail("bounces more than a million times until the scene ends",
@@ -377,7 +279,7 @@ private:
       entry.b = two[1].oneOf(valid);
       if (!entry.of_groups && entry.a == entry.b) pair.fail("names one object twice", "give two");
       if (element.has("tested")) entry.rule.tested = element.at("tested").boolean();
-      if (element.has("clearance")) entry.rule.clearance = element.at("clearance").number();
+      read(element, "clearance", entry.rule.clearance);
       if (!entry.rule.tested && !entry.rule.clearance) element.fail("says nothing", "give 'tested' or 'clearance'");
       file_.rules.push_back(entry);
     }
@@ -411,8 +313,7 @@ SceneFile parseScene(const std::string& text, const std::filesystem::path& path)
 
 SceneFile readSceneFile(const std::filesystem::path& path)
 {
-  const FileBytes bytes(path);
-  return parseScene(std::string(bytes.view()), path);
+  return parseScene(std::string(FileBytes(path).view()), path);
 }
 
 } // namespace pcl_bsh::io

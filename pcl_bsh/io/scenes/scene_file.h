@@ -79,6 +79,16 @@ struct SceneFile {
   std::vector<RuleEntry> rules;
   CloudOutput cloud_output = CloudOutput::none;
   std::vector<std::string> warnings; ///< what its reader should tell the user, a line each
+
+  /// The files that it is made of, and what each is.
+  std::vector<std::pair<std::string, std::filesystem::path>> files() const
+  {
+    std::vector<std::pair<std::string, std::filesystem::path>> all;
+    for (const CloudSource& cloud : clouds)
+      if (!cloud.file.empty()) all.emplace_back("cloud '" + cloud.name + "'", cloud.file);
+    for (const std::filesystem::path& trajectory : trajectories) all.emplace_back("trajectory", trajectory);
+    return all;
+  }
 };
 
 /// Reads and checks a scene, but none of its clouds: those must only be there.

@@ -3,12 +3,12 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/json/json_reader.h>
+#include <pcl_bsh/io/scenes/scene_clouds.h>
 #include <pcl_bsh/io/scenes/scene_file.h>
-#include <pcl_bsh/io/scenes/scene_warnings.h>
-#include <pcl_bsh/io/scenes/shape_points.h>
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/question/scene_warnings.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <algorithm>
@@ -212,7 +212,14 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
     load(source, file, clouds_[source.name]);
     named.emplace(source.name, measured(source, clouds_[source.name].hierarchy->view(), surface(source.name)));
   }
-  for (std::string& line : warningsOf(file, named)) warnings_.push_back(std::move(line));
+  std::vector<NamedObject> objects;
+  for (const ObjectEntry& object : file.objects) {
+    objects.push_back({object.name, object.fixed, {}, object.pose, object.motion});
+    for (const PartEntry& part : object.parts) objects.back().parts.push_back({part.cloud, part.pose});
+  }
+  const double duration = static_cast<double>(file.steps) * file.dt;
+  for (std::string& line : warningsOf(objects, named, file.options.clearance, duration))
+    warnings_.push_back(std::move(line));
 
   scene_ = std::make_unique<Scene>(file.options);
   for (const ObjectEntry& entry : file.objects) {

@@ -6,7 +6,8 @@
 #include <pcl_bsh/geometry/point3.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/python/arrays/array_lock.h>
-#include <pcl_bsh/python/interpreter_lock.h>
+#include <pcl_bsh/python/threads/interpreter_lock.h>
+#include <pcl_bsh/python/typed.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/placed.h>
 

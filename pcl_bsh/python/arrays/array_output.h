@@ -6,12 +6,14 @@
 #include <pcl_bsh/query/result.h>
 
 #include <pybind11/numpy.h>
+#include <pybind11/stl.h>
 
 #include <Eigen/Geometry>
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -44,23 +46,30 @@ py::array_t<T> arrayIn(const py::handle& object, const std::vector<T>& values)
   return arrayIn(object, values.data(), {static_cast<py::ssize_t>(values.size())});
 }
 
-/// None where nothing was asked for: an empty vector beside a cloud that is not.
-template <class T>
-py::object arrayInOrNone(const py::handle& object, const std::vector<T>& values, bool asked)
+/// A read-only property: the array of one of the object's vectors.
+template <class Object, class T>
+auto column(std::vector<T> Object::*values)
 {
-  if (!asked) return py::none();
-  return arrayIn(object, values);
+  return [values](const py::object& self) { return arrayIn(self, self.cast<const Object&>().*values); };
+}
+
+/// (pairs, 2)
+inline py::array_t<std::uint32_t> arrayFrom(const std::vector<PointPair>& pairs)
+{
+  py::array_t<std::uint32_t> array({pairs.size(), std::size_t{2}});
+  std::uint32_t* record = array.mutable_data();
+  for (const PointPair& pair : pairs) {
+    *record++ = pair.a;
+    *record++ = pair.b;
+  }
+  return array;
 }
 
 inline py::dict dictOf(const RefitReport& report)
 {
-  py::dict named;
-  named["sorted_anew"] = report.sorted_anew;
-  named["voxels_refitted"] = report.voxels_refitted;
-  named["voxels_dropped"] = report.voxels_dropped;
-  named["volumes_refitted"] = report.volumes_refitted;
-  named["looseness"] = report.looseness;
-  return named;
+  return py::dict("sorted_anew"_a = report.sorted_anew, "voxels_refitted"_a = report.voxels_refitted,
+                  "voxels_dropped"_a = report.voxels_dropped, "volumes_refitted"_a = report.volumes_refitted,
+                  "looseness"_a = report.looseness);
 }
 
 /// (4, 4)
@@ -72,15 +81,26 @@ inline py::array_t<double> arrayOf(const Eigen::Isometry3d& pose)
   return array;
 }
 
-inline py::tuple tupleOf(const Interval& interval)
+inline std::pair<double, double> tupleOf(const Interval& interval)
 {
-  return py::make_tuple(interval.lower, interval.upper);
+  return {interval.lower, interval.upper};
 }
 
-inline py::object tupleOf(const std::optional<PointPair>& pair)
+inline std::pair<std::uint32_t, std::uint32_t> tupleOf(const PointPair& pair)
 {
-  if (!pair) return py::none();
-  return py::make_tuple(pair->a, pair->b);
+  return {pair.a, pair.b};
+}
+
+inline std::optional<std::pair<std::uint32_t, std::uint32_t>> tupleOf(const std::optional<PointPair>& pair)
+{
+  if (!pair) return std::nullopt;
+  return tupleOf(*pair);
+}
+
+/// "1.0", "nan": as Python writes it.
+inline std::string numberText(double number)
+{
+  return py::repr(py::float_(number));
 }
 
 } // namespace pcl_bsh::python

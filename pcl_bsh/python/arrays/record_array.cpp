@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/io/clouds/records.h>
+#include <pcl_bsh/python/arrays/array_output.h>
 
 #include <algorithm>
 #include <array>
@@ -75,15 +76,13 @@ Field fieldFrom(const std::string& cloud, const std::string& name, py::dtype typ
 
 } // namespace
 
-py::array recordsFrom(pcl::PCLPointCloud2&& cloud)
+Records recordsFrom(pcl::PCLPointCloud2&& cloud)
 {
   const py::dtype type = dtypeOf(cloud);
   std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(cloud.width)};
   if (cloud.height > 1) shape.insert(shape.begin(), static_cast<py::ssize_t>(cloud.height));
-  auto owned = std::make_unique<std::vector<std::uint8_t>>(std::move(cloud.data));
-  const std::uint8_t* const data = owned->data();
-  const py::capsule free(owned.release(), [](void* bytes) { delete static_cast<std::vector<std::uint8_t>*>(bytes); });
-  return py::array(type, std::move(shape), data, free);
+  const py::array_t<std::uint8_t> bytes = arrayFrom(std::move(cloud.data));
+  return py::array(type, std::move(shape), bytes.data(), bytes);
 }
 
 pcl::PCLPointCloud2 cloudFrom(const std::string& name, const py::object& records)

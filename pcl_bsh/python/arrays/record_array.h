@@ -2,6 +2,8 @@
 // PCL's clouds of any fields as NumPy's structured arrays, and back.
 #pragma once
 
+#include <pcl_bsh/python/typed.h>
+
 #include <pcl/PCLPointCloud2.h>
 
 #include <pybind11/numpy.h>
@@ -11,7 +13,7 @@
 namespace pcl_bsh::python {
 
 /// A structured array that owns the cloud's records: (n,), of an organised cloud (height, width). Nothing is copied.
-pybind11::array recordsFrom(pcl::PCLPointCloud2&& cloud);
+Records recordsFrom(pcl::PCLPointCloud2&& cloud);
 
 /// A structured array, or (n, 3) of float32 or float64, as a cloud; copies.
 /// @param name how errors call it

@@ -24,6 +24,28 @@ inline std::uint8_t surer(std::uint8_t a, std::uint8_t b)
   return a == collides || b == collides ? collides : std::max(a, b);
 }
 
+/// Adds to the flags of points what another tile says of them.
+inline void join(std::vector<std::uint8_t>& flags, const std::vector<std::uint8_t>& of_other)
+{
+  std::transform(flags.begin(), flags.end(), of_other.begin(), flags.begin(), surer);
+}
+
+inline std::size_t countOf(Verdict verdict, const std::vector<std::uint8_t>& flags)
+{
+  return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flagOf(verdict)));
+}
+
+/// What a query is asked of each tile.
+template <typename Wanted, typename Request>
+Wanted wantedOf(const Request& request)
+{
+  Wanted wanted;
+  if constexpr (requires { wanted.clearance; }) wanted.clearance = request.clearance;
+  wanted.accuracy = request.accuracy;
+  wanted.threads = request.threads;
+  return wanted;
+}
+
 /// Of all tiles. @param collides the same on all ranks. @param is_undecided whether a tile of this rank is
 inline Verdict verdictOfAllRanks(bool collides, bool is_undecided)
 {
@@ -101,8 +123,13 @@ private:
     };
   }
 
-  TilesRead readOf(std::size_t needed) const;
-  std::vector<TileCost> costsOfAllRanks() const;
+  /// To be called by all ranks, after the visit.
+  TilesRead readOf(std::size_t needed) const
+  {
+    TilesRead found{site_.tiles.size(), needed, sumOfAllRanks(visitor_.read()), gatheredFromAllRanks(visitor_.costs())};
+    std::sort(found.costs.begin(), found.costs.end(), [](const auto& c, const auto& d) { return c.place < d.place; });
+    return found;
+  }
 
   const Site& site_;
   const SiteRequest& request_;

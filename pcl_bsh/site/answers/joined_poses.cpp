@@ -55,10 +55,7 @@ std::vector<PoseSummary> JoinedPoses::joined(const std::function<SphereHierarchy
 void JoinedPoses::count(const std::vector<std::size_t>& poses,
                         const std::function<SphereHierarchy(std::size_t)>& model_of)
 {
-  FlagsRequest wanted;
-  wanted.clearance = request_.clearance;
-  wanted.accuracy = request_.accuracy;
-  wanted.threads = request_.threads;
+  const auto wanted = wantedOf<FlagsRequest>(request_);
   std::vector<std::vector<std::uint8_t>> flags(poses.size());
   for (auto& of_pose : flags) of_pose.assign(scan_.view().count, flagOf(Verdict::free));
   FlagsResult found;
@@ -68,15 +65,12 @@ void JoinedPoses::count(const std::vector<std::size_t>& poses,
     for (std::size_t i = 0; i < poses.size(); ++i) {
       if (!meets_[m][poses[i]]) continue;
       pcl_bsh::collisionFlags({scan_}, {model, poses_[poses[i]]}, wanted, found);
-      std::transform(flags[i].begin(), flags[i].end(), found.a.begin(), flags[i].begin(), surer);
+      join(flags[i], found.a);
     }
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const auto counted = [&](Verdict verdict) {
-      return static_cast<std::size_t>(std::count(flags[i].begin(), flags[i].end(), flagOf(verdict)));
-    };
-    sum_[poses[i]].colliding_points = counted(Verdict::colliding);
-    sum_[poses[i]].undecided_points = counted(Verdict::undecided);
+    sum_[poses[i]].colliding_points = countOf(Verdict::colliding, flags[i]);
+    sum_[poses[i]].undecided_points = countOf(Verdict::undecided, flags[i]);
   }
 }
 

@@ -49,12 +49,9 @@ std::vector<PoseSummary> posesOf(const std::vector<double>& numbers, std::size_t
 
 std::vector<PoseSummary> summedOverAllRanks(const std::vector<PoseSummary>& own)
 {
-  std::vector<double> numbers;
-  append(numbers, own);
-  const std::vector<double> all = gatheredFromAllRanks(numbers);
-  std::vector<PoseSummary> sum;
-  for (std::size_t begin = 0; begin < all.size(); begin += numbers.size())
-    addPoses(sum, posesOf(all, begin, begin + numbers.size()));
+  const std::vector<PoseSummary> all = gatheredFromAllRanks(own);
+  std::vector<PoseSummary> sum(own.size());
+  for (std::size_t i = 0; i < all.size(); ++i) addSummary(sum[i % own.size()], all[i]);
   return sum;
 }
 
@@ -68,10 +65,7 @@ std::vector<Point3> cornersOf(const Site& site)
 
 TrajectoryRequest alongPath(const SiteRequest& request)
 {
-  TrajectoryRequest wanted;
-  wanted.clearance = request.clearance;
-  wanted.accuracy = request.accuracy;
-  wanted.threads = request.threads;
+  auto wanted = wantedOf<TrajectoryRequest>(request);
   wanted.distances = wanted.first_poses = wanted.closest_poses = !request.accuracy.stopsEarly();
   wanted.swept = request.swept;
   wanted.pivot = request.pivot;

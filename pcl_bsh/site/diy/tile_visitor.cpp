@@ -88,15 +88,6 @@ std::uint64_t sumOfAllRanks(std::uint64_t value)
   return sum;
 }
 
-std::vector<double> gatheredFromAllRanks(const std::vector<double>& values)
-{
-  std::vector<std::vector<double>> parts;
-  diy::mpi::all_gather(world(), values, parts);
-  std::vector<double> all;
-  for (const std::vector<double>& part : parts) all.insert(all.end(), part.begin(), part.end());
-  return all;
-}
-
 std::string gatheredFromAllRanks(const std::string& bytes)
 {
   std::vector<std::vector<char>> parts;

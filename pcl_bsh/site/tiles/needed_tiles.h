@@ -21,18 +21,11 @@ void requireUncertainty(const Site& site, const Uncertainty& uncertainty);
 /// The box about wherever the points of a tile may truly be. @pre it has one
 Bounds trueBounds(const Tile& tile, const Uncertainty& uncertainty);
 
-/// Tiles that may have a point within the distance of b, wherever points truly are.
-std::vector<std::uint32_t> tilesWithin(const Site& site, const Placed& b, double distance,
-                                       const Uncertainty& uncertainty = {});
-
-/// All tiles with points where b has any, too.
-std::vector<std::uint32_t> tilesWithPoints(const Site& site, const Placed& b);
-
-/// The same, those first that may be nearest to b, each with a lower bound of its distance.
-std::vector<std::pair<double, std::uint32_t>> tilesByDistance(const Site& site, const Placed& b);
+/// Boxes about parts of a cloud where it stands. Two steps of rounding are paid for by each of both.
+std::vector<Bounds> placedParts(const CloudBoxes& boxes, const Eigen::Isometry3d& pose);
 
 /// Tiles that the model may come near to on its way, wherever points truly are.
-std::vector<std::uint32_t> tilesAlong(const Site& site, const SphereHierarchy& model,
+std::vector<std::uint32_t> tilesAlong(const Site& site, const CloudBoxes& model,
                                       const std::vector<Eigen::Isometry3d>& poses, const PathReach& reach,
                                       const Uncertainty& uncertainty);
 

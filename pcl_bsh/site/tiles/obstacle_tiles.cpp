@@ -43,6 +43,12 @@ std::vector<std::pair<double, std::uint32_t>> ObstacleTiles::near(const Bounds& 
   return tiles;
 }
 
+std::optional<double> ObstacleTiles::lowerBound(const Bounds& box, double distance) const
+{
+  const auto tiles = near(box, distance);
+  return tiles.empty() ? std::nullopt : std::optional(tiles.front().first);
+}
+
 const pcl::PCLPointCloud2& ObstacleTiles::load(std::uint32_t i)
 {
   const auto kept = std::find_if(kept_.begin(), kept_.end(), [&](const auto& entry) { return entry.first == i; });
@@ -68,17 +74,17 @@ PointsView ObstacleTiles::points(std::uint32_t i)
   return Inquiry::pointsOf(load(i), site_.site, tile(i), site_.uncertainty);
 }
 
-PointsView ObstacleTiles::cut(std::uint32_t i, const Bounds& box, double distance, std::vector<std::int32_t>& indices)
+PointsView ObstacleTiles::cut(std::uint32_t i, const Bounds& box, double distance)
 {
   PointsView points = this->points(i);
   const PointsNear is_near(box, distance + straying(tile(i), site_.uncertainty), *tile(i).bounds, site_.pose);
-  indices.clear();
-  indices.reserve(points.count);
+  indices_.clear();
+  indices_.reserve(points.count);
   for (std::uint32_t record = 0; record < points.count; ++record)
-    if (is_near(points.point(record))) indices.push_back(static_cast<std::int32_t>(record));
-  if (indices.size() == points.count) return points;
-  points.indices = indices.data();
-  points.index_count = indices.size();
+    if (is_near(points.point(record))) indices_.push_back(static_cast<std::int32_t>(record));
+  if (indices_.size() == points.count) return points;
+  points.indices = indices_.data();
+  points.index_count = indices_.size();
   return points;
 }
 

@@ -2,7 +2,7 @@
 // The tiles of a site that another is compared with: read when they are needed, and cut to what is near.
 #pragma once
 
-#include <pcl_bsh/site/collide_sites.h>
+#include <pcl_bsh/site/collide_site.h>
 
 #include <cstdint>
 #include <list>
@@ -18,27 +18,34 @@ public:
   /// @throws std::invalid_argument when the largest tile needs more, or its points cannot be so uncertain
   ObstacleTiles(const PlacedSite& site, std::uint64_t memory);
 
-  /// The tiles that may have a point within the distance of a box in the common frame, wherever points truly are: those
-  /// first that may be nearest, each with a lower bound of its distance.
-  std::vector<std::pair<double, std::uint32_t>> near(const Bounds& box, double distance) const;
+  /// At most the distance of a box in the common frame, wherever points truly are; none: it is greater than this.
+  std::optional<double> lowerBound(const Bounds& box, double distance) const;
 
-  /// The points of a tile that may be within the distance of the box, wherever they truly are. The view, whose records
-  /// are the tile's, is good until `indices` or this changes.
-  PointsView cut(std::uint32_t tile, const Bounds& box, double distance, std::vector<std::int32_t>& indices);
+  /// Calls compare(tile, those of its points that may be near where they stand), nearest tiles first, while there are
+  /// some within the reach of the box, which is asked for before each: it may fall.
+  template <typename Reach, typename Compare>
+  void compare(const Bounds& box, const Reach& reach, const HierarchyOptions& building, const Compare& compare)
+  {
+    for (const auto& [lower, tile] : near(box, reach())) {
+      if (lower > reach()) break;
+      const PointsView points = cut(tile, box, reach());
+      if (points.size() > 0) compare(last(), Placed(SphereHierarchy(points, building), site_.pose));
+    }
+  }
 
-  /// All points of a tile, likewise.
+  /// All points of a tile. The view is good until this changes.
   PointsView points(std::uint32_t tile);
 
   /// The tile that was asked for last.
   const pcl::PCLPointCloud2& last() const { return kept_.front().second; }
 
-  const PlacedSite& site() const noexcept { return site_; }
-  const Tile& tile(std::uint32_t i) const { return site_.site.tiles[i]; }
-
   /// Over all ranks: tiles, those that were needed, and how often one was read.
   TilesRead read() const;
 
 private:
+  const Tile& tile(std::uint32_t i) const { return site_.site.tiles[i]; }
+  std::vector<std::pair<double, std::uint32_t>> near(const Bounds& box, double distance) const;
+  PointsView cut(std::uint32_t tile, const Bounds& box, double distance);
   const pcl::PCLPointCloud2& load(std::uint32_t tile);
 
   PlacedSite site_;
@@ -47,6 +54,7 @@ private:
   std::list<std::pair<std::uint32_t, pcl::PCLPointCloud2>> kept_;
   std::uint64_t kept_points_ = 0, most_kept_points_ = 0;
   std::vector<std::pair<Bounds, std::uint32_t>> boxes_; ///< of tiles with points, wherever these truly are
+  std::vector<std::int32_t> indices_;                   ///< of the points that are near, of the last tile
   std::set<std::uint32_t> needed_;
   std::uint64_t read_ = 0;
 };

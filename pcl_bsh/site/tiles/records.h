@@ -5,10 +5,12 @@
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/json/json_reader.h>
+#include <pcl_bsh/site/site.h>
 
 #include <pcl/PCLPointCloud2.h>
 
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -61,12 +63,37 @@ PointsView viewOfRecords(const pcl::PCLPointCloud2& layout, const std::uint8_t* 
 /// The place of a field in the records. @pre there is one
 std::size_t offsetOf(const pcl::PCLPointCloud2& layout, const std::string& name);
 
-/// The number of 32 bits that stands there.
-inline std::uint32_t numberAt(const std::uint8_t* place)
+/// The names of points in records of a site.
+class PointNames {
+public:
+  explicit PointNames(const pcl::PCLPointCloud2& layout)
+  : source_at_(offsetOf(layout, source_field_name)),
+    record_at_(offsetOf(layout, record_field_name))
+  {
+  }
+
+  SitePoint operator()(const std::uint8_t* record) const
+  {
+    SitePoint point;
+    std::memcpy(&point.source, record + source_at_, sizeof point.source);
+    std::memcpy(&point.record, record + record_at_, sizeof point.record);
+    return point;
+  }
+
+  void set(std::uint8_t* record, const SitePoint& point) const
+  {
+    std::memcpy(record + source_at_, &point.source, sizeof point.source);
+    std::memcpy(record + record_at_, &point.record, sizeof point.record);
+  }
+
+private:
+  std::size_t source_at_, record_at_;
+};
+
+/// That of a tile's point.
+inline SitePoint nameOf(const pcl::PCLPointCloud2& cloud, std::uint32_t i)
 {
-  std::uint32_t number;
-  std::memcpy(&number, place, sizeof number);
-  return number;
+  return PointNames(cloud)(cloud.data.data() + std::size_t{i} * cloud.point_step);
 }
 
 } // namespace pcl_bsh::site

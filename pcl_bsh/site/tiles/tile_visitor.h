@@ -7,9 +7,11 @@
 #include <pcl_bsh/site/site.h>
 
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace pcl_bsh::site {
@@ -17,10 +19,21 @@ namespace pcl_bsh::site {
 double leastOfAllRanks(double value);
 std::uint64_t sumOfAllRanks(std::uint64_t value);
 
-/// The values of all ranks, one after the other, on all of them.
-std::vector<double> gatheredFromAllRanks(const std::vector<double>& values);
-
+/// The bytes of all ranks, one after the other, on all of them.
 std::string gatheredFromAllRanks(const std::string& bytes);
+
+/// The same of structures whose bytes say all.
+template <typename Structure>
+std::vector<Structure> gatheredFromAllRanks(const std::vector<Structure>& own)
+{
+  static_assert(std::is_trivially_copyable_v<Structure>);
+  std::string bytes(own.size() * sizeof(Structure), '\0');
+  if (!own.empty()) std::memcpy(bytes.data(), own.data(), bytes.size());
+  bytes = gatheredFromAllRanks(bytes);
+  std::vector<Structure> all(bytes.size() / sizeof(Structure));
+  if (!all.empty()) std::memcpy(static_cast<void*>(all.data()), bytes.data(), bytes.size());
+  return all;
+}
 
 /// Lets all ranks fail where one has. To be called by all of them.
 /// @param failure of this rank, or null. @throws it; where another rank has one, std::runtime_error

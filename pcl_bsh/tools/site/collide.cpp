@@ -10,15 +10,14 @@
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/files/free_space.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/site/collide_site.h>
 
 #include "clashes.h"
-#include "collide_sites.h"
 #include "output.h"
 #include "report.h"
-#include "warnings.h"
 
 #include <algorithm>
 #include <chrono>
@@ -33,80 +32,212 @@ namespace pcl_bsh::cli {
 #ifdef PCL_BSH_SITE_QUERIES
 namespace {
 
-/// The answer, the same on all ranks. @param told what users should know of the question
-Json askOfFile(const site::Site& site, const ObstacleFile& file, const Poses& poses, const SiteOptions& options,
-               SiteOutput& out, SiteClashList& clashes, MeasuredRun& run, Step* step, std::vector<std::string>& told)
+/// A question about a site, and the answer, which is the same on all ranks.
+struct Asking {
+  const site::Site& site;
+  const Poses& poses;
+  const SiteOptions& options;
+  SiteOutput& out;
+  SiteClashList& clashes;
+  site::SiteRequest request;
+  Json report;
+  site::TilesRead tiles;
+  std::vector<std::string> told; ///< what users should know of the question
+};
+
+/// The number of points that collide, or are undecided, of the one or of the other.
+void putCounts(Json& report, const std::string& of, const Json& colliding, const Json& undecided)
 {
-  HierarchyOptions building;
-  building.threads = options.threads;
-  const SphereHierarchy hierarchy(withUncertainty(file.obstacle.view(), file.obstacle.points().fields,
-                                                  options.obstacle.string(), options.obstacle_uncertainty),
-                                  building);
-  const Placed obstacle(hierarchy, options.pose);
-  const io::Obstacle* const surface = file.surface();
-  site::SiteRequest request = requestOf(options, step);
-  request.answers = out.answers();
-  if (surface != nullptr) request.surface = surface->tolerance();
-  Json report = beginReport(site, options);
-  report["surface"] = io::surfaceJson(surface, besideSurface(options.accuracy, options.swept.has_value()));
+  report["colliding" + of] = colliding;
+  report["undecided" + of] = undecided;
+}
+
+/// A cloud or a mesh in memory.
+class FileObstacle {
+public:
+  FileObstacle(const ObstacleFile& file, Asking& asking)
+  : file_(file),
+    surface_(file.surface()),
+    hierarchy_(withUncertainty(file.obstacle.view(), file.obstacle.points().fields, asking.options.obstacle.string(),
+                               asking.options.obstacle_uncertainty),
+               buildingOf(asking.options)),
+    placed_(hierarchy_, asking.options.pose)
+  {
+    if (surface_ != nullptr) asking.request.surface = surface_->tolerance();
+    asking.report["surface"] =
+        io::surfaceJson(surface_, besideSurface(asking.options.accuracy, asking.options.swept.has_value()));
+  }
+
+  const Placed& placed() const { return placed_; }
+
+  NamedCloud named(const Asking& asking) const
+  {
+    const SurfaceCover* const cover = surface_ != nullptr ? surface_->cover().get() : nullptr;
+    return measuredCloud(asking.options.obstacle.string(), hierarchy_, cover);
+  }
+
+  site::SiteFlags flags(Asking& asking, Step* /*step*/) const
+  {
+    // Which triangles collide is known where each has balls of its own.
+    const bool of_both = surface_ == nullptr || surface_->cover()->triangles_apart;
+    const site::SiteFlags found =
+        site::collisionFlags(asking.site, placed_, of_both ? Side::both : Side::a, asking.request, asking.out.flags());
+    putCounts(asking.report, "", found.colliding, found.undecided);
+    putCounts(asking.report, "_of_obstacle", nullptr, nullptr);
+    if (!of_both) return found;
+    const std::vector<std::uint8_t> flags = file_.flagsOfParts(found.b);
+    file_.write(flags, asking.options);
+    const auto counted = [&](Verdict verdict) { return std::count(flags.begin(), flags.end(), flagOf(verdict)); };
+    putCounts(asking.report, "_of_obstacle", counted(Verdict::colliding), counted(Verdict::undecided));
+    return found;
+  }
+
+  void putNearest(Json& report, const site::SiteClosest& found) const
+  {
+    report[std::string(file_.obstacle.partName()) + "_of_obstacle"] = file_.obstacle.partOf(found.b);
+  }
+
+  site::SitePassage along(const Asking& asking) const
+  {
+    return site::collideAlong(asking.site, hierarchy_, asking.poses, asking.request, asking.out.passage());
+  }
+
+  void finish(Asking& asking, const site::SitePassage& found) const
+  {
+    asking.clashes.finish(hierarchy_, surface_, asking.poses, found, asking.report);
+  }
+
+  void putTilesOf(Json& /*report*/, const site::TilesRead& /*tiles*/) const {}
+
+private:
+  static HierarchyOptions buildingOf(const SiteOptions& options)
+  {
+    HierarchyOptions building;
+    building.threads = options.threads;
+    return building;
+  }
+
+  const ObstacleFile& file_;
+  const io::Obstacle* surface_;
+  SphereHierarchy hierarchy_;
+  Placed placed_;
+};
+
+/// Another site.
+class SiteObstacle {
+public:
+  explicit SiteObstacle(Asking& asking)
+  : site_(site::readSite(asking.options.obstacle)),
+    placed_{site_, asking.options.pose, asking.options.obstacle_uncertainty}
+  {
+    asking.report["points_of_obstacle"] = site_.points;
+  }
+
+  const site::PlacedSite& placed() const { return placed_; }
+  NamedCloud named(const Asking& /*asking*/) const { return namedSite(site_); }
+
+  /// Flags of both sides: each in tiles of its own.
+  site::SiteFlags flags(Asking& asking, Step* step) const
+  {
+    const SiteOptions& options = asking.options;
+    std::optional<site::ResultSite> obstacle_out;
+    if (!options.obstacle_out.empty()) {
+      const std::vector fields = {collisionField()};
+      if (!options.out.empty()) { // which has checked alone that there is room for it
+        files::requireSpace({{options.out, site::spaceWanted(asking.site, options.out, fields)},
+                             {options.obstacle_out, site::spaceWanted(site_, options.obstacle_out, fields)}});
+      }
+      obstacle_out.emplace(site_, options.obstacle_out, fields);
+      const auto lines = droppedBy(*obstacle_out, "--obstacle-out", options.obstacle_out, site_, fields);
+      if (step != nullptr) warn(site_program, lines);
+    }
+    const site::SiteFlags found = site::collisionFlags(asking.site, placed_, asking.request, asking.out.flags());
+    putCounts(asking.report, "", found.colliding, found.undecided);
+    if (!obstacle_out) return found;
+    asking.request.answers = nullptr; // those are of the tiles of the site
+    const site::SiteFlags of_obstacle =
+        site::collisionFlagsOfB(asking.site, placed_, asking.request,
+                                [&](const site::Tile& tile, const pcl::PCLPointCloud2& cloud,
+                                    const FlagsResult& flags) { obstacle_out->write(tile, cloud, {flags.a.data()}); });
+    obstacle_out->finish();
+    putCounts(asking.report, "_of_obstacle", of_obstacle.colliding, of_obstacle.undecided);
+    return found;
+  }
+
+  void putNearest(Json& report, const site::SiteClosest& found) const
+  {
+    report["point_of_obstacle"] = cli::named(site_, *found.point_b);
+  }
+
+  site::SitePassage along(const Asking& asking) const
+  {
+    return site::collideAlong(asking.site, site_, placed_.uncertainty, asking.poses, asking.request,
+                              asking.out.passage());
+  }
+
+  void finish(Asking& asking, const site::SitePassage& found) const
+  {
+    asking.clashes.finish(site_, asking.poses, found, asking.report);
+  }
+
+  void putTilesOf(Json& report, const site::TilesRead& tiles) const { putTiles(report, "tiles_of_obstacle", tiles); }
+
+private:
+  site::Site site_;
+  site::PlacedSite placed_;
+};
+
+template <typename Obstacle>
+void ask(Asking& asking, const Obstacle& obstacle, Step* step)
+{
+  const auto& [site, poses, options, out, clashes, request, unused, tiles, told] = asking;
+  Json& report = asking.report;
+  const auto put_tiles = [&](const auto& found) {
+    asking.tiles = found.tiles;
+    putTiles(report, "tiles", found.tiles);
+    obstacle.putTilesOf(report, found.tiles_b);
+  };
   switch (options.question) {
   case SiteQuestion::any: {
-    const site::SiteAny found = site::anyCollision(site, obstacle, request);
+    const site::SiteAny found = site::anyCollision(site, obstacle.placed(), request);
     report["collides"] = found.verdict == Verdict::colliding;
     report["undecided"] = found.verdict == Verdict::undecided;
-    put(report, found.tiles, run);
+    put_tiles(found);
     break;
   }
-  case SiteQuestion::flags: {
-    // Which triangles collide is known where each has balls of its own.
-    const bool of_both = surface == nullptr || surface->cover()->triangles_apart;
-    const site::SiteFlags found =
-        site::collisionFlags(site, obstacle, of_both ? Side::both : Side::a, request, out.flags());
-    report["colliding"] = found.colliding;
-    report["undecided"] = found.undecided;
-    report["colliding_of_obstacle"] = nullptr;
-    report["undecided_of_obstacle"] = nullptr;
-    if (of_both) {
-      const std::vector<std::uint8_t> flags = file.flagsOfParts(found.b);
-      file.write(flags, options);
-      report["colliding_of_obstacle"] = std::count(flags.begin(), flags.end(), flagOf(Verdict::colliding));
-      report["undecided_of_obstacle"] = std::count(flags.begin(), flags.end(), flagOf(Verdict::undecided));
-    }
-    put(report, found.tiles, run);
+  case SiteQuestion::flags:
+    put_tiles(obstacle.flags(asking, step));
     break;
-  }
   case SiteQuestion::closest: {
-    const site::SiteClosest found = site::closestPair(site, obstacle, request);
+    const site::SiteClosest found = site::closestPair(site, obstacle.placed(), request);
     report["distance"] = orNull(found.distance);
     report["distance_interval"] = {orNull(found.interval.lower), orNull(found.interval.upper)};
     if (found.point) {
       report["point"] = named(site, *found.point);
-      report[std::string(file.obstacle.partName()) + "_of_obstacle"] = file.obstacle.partOf(found.b);
+      obstacle.putNearest(report, found);
     }
-    put(report, found.tiles, run);
+    put_tiles(found);
     break;
   }
   case SiteQuestion::distances: {
     const site::SiteDistances found =
-        site::pointDistances(site, obstacle, options.max_distance, request, out.distances());
+        site::pointDistances(site, obstacle.placed(), options.max_distance, request, out.distances());
     report["max_distance"] = orNull(options.max_distance);
     report["measured"] = found.measured;
     report["greatest"] = orNull(found.greatest);
-    put(report, found.tiles, run);
+    put_tiles(found);
     break;
   }
   case SiteQuestion::path: {
-    clashes.addTo(request);
-    const site::SitePassage found = site::collideAlong(site, obstacle.hierarchy(), poses, request, out.passage());
+    asking.clashes.addTo(asking.request);
+    const site::SitePassage found = obstacle.along(asking);
     putPassage(report, found, poses.size(), options);
-    if (clashes.isWanted()) clashes.finish(obstacle.hierarchy(), surface, poses, found, report);
-    put(report, found.tiles, run);
+    if (clashes.isWanted()) obstacle.finish(asking, found);
+    put_tiles(found);
     break;
   }
   }
-  const SurfaceCover* const cover = surface != nullptr ? surface->cover().get() : nullptr;
-  told = warningsOf(site, measuredCloud(options.obstacle.string(), hierarchy, cover), poses, options);
-  return report;
+  asking.told = warningsOf(site, obstacle.named(asking), poses, options);
 }
 
 /// @param keeps set where what is found stays in --out although the run fails
@@ -132,24 +263,27 @@ int answer(const SiteOptions& options, bool& keeps)
     file.emplace(options);
     warn_of(warningsOf(file->obstacle, options.obstacle));
   }
-  std::vector<std::string> of_poses, of_question;
+  std::vector<std::string> of_poses;
   const Poses poses = options.trajectory.empty() ? Poses{options.pose} : io::readPoses(options.trajectory, &of_poses);
   warn_of(of_poses);
   SiteOutput output(site, file ? &*file : nullptr, poses, clashes.clusterDistance(), options);
   warn_of(output.warnings());
   keeps = output.answers() != nullptr;
-  MeasuredRun run;
-  Json report;
   std::optional<Step> shown;
   if (tells) shown.emplace("Asking about tiles");
   Step* const step = tells ? &*shown : nullptr;
+  Asking asking{site, poses, options, output, clashes, requestOf(options, step), beginReport(site, options), {}, {}};
+  asking.request.answers = output.answers();
   if (file)
-    report = askOfFile(site, *file, poses, options, output, clashes, run, step, of_question);
+    ask(asking, FileObstacle(*file, asking), step);
   else
-    report = askOfSite(site, poses, options, output, clashes, run, step, of_question);
+    ask(asking, SiteObstacle(asking), step);
+  Json& report = asking.report;
   if (tells) shown->done(counted(report["tiles"]["read"].get<std::uint64_t>(), "tile") + " read");
-  warn_of(of_question);
+  warn_of(asking.told);
   if (clashes.isWanted()) warn_of(clashes.warnings());
+  MeasuredRun run;
+  run.tiles = std::move(asking.tiles.costs);
   run.seconds = seconds();
   output.finish();
   run.copying = seconds() - run.seconds;

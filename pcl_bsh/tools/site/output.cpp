@@ -88,7 +88,7 @@ std::string questionOf(const site::Site& site, const ObstacleFile* obstacle, con
                              {"max_distance", options.max_distance}, {"swept", options.swept.value_or(-1.0)},
                              {"clusters", cluster_distance},         {"obstacle", obstacleText(obstacle, options)},
                              {"poses", nlohmann::json::array()}};
-  question["numbers"] = 2; // what a tile's clashes are kept as: certain points are among it
+  question["numbers"] = 3; // what of a tile is kept
   for (const Uncertainty* of : {&options.uncertainty, &options.obstacle_uncertainty})
     question["uncertainty"].push_back({of->field, of->length, of->sigmas});
   for (const Eigen::Isometry3d& pose : poses)
@@ -191,14 +191,6 @@ site::DistancesSink SiteOutput::distances()
   if (!out_) return nullptr;
   return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const PointDistances& found) {
     out_->write(tile, cloud, {inFloats(found.distance).data()});
-  };
-}
-
-site::PairDistancesSink SiteOutput::distancesOfSites()
-{
-  if (!out_) return nullptr;
-  return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const std::vector<double>& distance) {
-    out_->write(tile, cloud, {inFloats(distance).data()});
   };
 }
 

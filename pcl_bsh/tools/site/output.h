@@ -5,7 +5,7 @@
 #include "options.h"
 
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
-#include <pcl_bsh/site/collide_sites.h>
+#include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/result_site.h>
 
 #include <cstdint>
@@ -69,7 +69,6 @@ public:
 
   site::FlagsSink flags();
   site::DistancesSink distances();
-  site::PairDistancesSink distancesOfSites();
   site::PassageSink passage();
 
   /// After the question. To be called by all ranks.

@@ -2,6 +2,10 @@
 #ifdef PCL_BSH_SITE_QUERIES
 #include "report.h"
 
+#include <pcl_bsh/geometry/coordinate_spacing.h>
+#include <pcl_bsh/question/warnings.h>
+#include <pcl_bsh/site/site_clashes.h>
+
 #include <cmath>
 
 namespace pcl_bsh::cli {
@@ -63,12 +67,6 @@ Json named(const site::Site& site, const site::SitePoint& point)
   return {{"source", site.sources.at(point.source).file}, {"record", point.record}};
 }
 
-void put(Json& report, const site::TilesRead& tiles, MeasuredRun& run)
-{
-  run.tiles = tiles.costs;
-  putTiles(report, "tiles", tiles);
-}
-
 void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun& run)
 {
   Json& costs = report["costs"] = {
@@ -86,6 +84,38 @@ void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun
                               {"even", plan.even},
                               {"reading", plan.reading}});
   }
+}
+
+NamedCloud namedSite(const site::Site& site)
+{
+  NamedCloud cloud;
+  cloud.name = site.folder.string();
+  cloud.points = site.points;
+  for (const site::Tile& tile : site.tiles)
+    if (tile.bounds) cloud.finite += tile.points; // points that are not finite have tiles of their own
+  cloud.spacing.emplace();
+  cloud.spacing->samples = cloud.finite;
+  cloud.spacing->median = site::spacingOf(site);
+  if (!site.bounds) return cloud;
+  cloud.box = Eigen::AlignedBox3d(Eigen::Vector3d::Map(site.bounds->low.data()),
+                                  Eigen::Vector3d::Map(site.bounds->high.data()));
+  for (const pcl::PCLPointField& field : site.fields) {
+    if (field.name != "x" || field.datatype != pcl::PCLPointField::FLOAT32) continue;
+    cloud.coordinate_spacing =
+        float32Spacing(cloud.box.min().cwiseAbs().cwiseMax(cloud.box.max().cwiseAbs()).maxCoeff());
+  }
+  return cloud;
+}
+
+std::vector<std::string> warningsOf(const site::Site& site, const NamedCloud& obstacle,
+                                    const std::vector<Eigen::Isometry3d>& poses, const SiteOptions& options)
+{
+  const bool distances = options.question == SiteQuestion::closest || options.question == SiteQuestion::distances;
+  const Question question{namedSite(site), obstacle, poses,
+                          distances ? std::nullopt : std::optional(options.clearance)};
+  std::vector<std::string> told;
+  addTexts(warningsOf(question), told);
+  return told;
 }
 
 } // namespace pcl_bsh::cli

@@ -6,6 +6,8 @@
 #include "plan.h"
 #include <pcl_bsh/tools/cli/step.h>
 
+#include <pcl_bsh/question/named_cloud.h>
+
 #include <nlohmann/json.hpp>
 
 #include <vector>
@@ -26,9 +28,6 @@ Json orNull(double number);
 /// @param key of the report
 void putTiles(Json& report, const char* key, const site::TilesRead& tiles);
 
-/// The tiles of the site asked about, and what they have cost.
-void put(Json& report, const site::TilesRead& tiles, MeasuredRun& run);
-
 /// What a site meets along a path of so many poses.
 void putPassage(Json& report, const site::SitePassage& found, std::size_t poses, const SiteOptions& options);
 
@@ -37,5 +36,13 @@ Json named(const site::Site& site, const site::SitePoint& point);
 
 /// What the tiles have cost, and how long the run would take on other numbers of ranks.
 void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun& run);
+
+/// What site.json says of it; no tile is read.
+NamedCloud namedSite(const site::Site& site);
+
+/// What is to be told of a question.
+/// @param obstacle as measuredCloud() or namedSite() has it. @param poses of it
+std::vector<std::string> warningsOf(const site::Site& site, const NamedCloud& obstacle,
+                                    const std::vector<Eigen::Isometry3d>& poses, const SiteOptions& options);
 
 } // namespace pcl_bsh::cli

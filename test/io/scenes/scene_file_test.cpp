@@ -2,8 +2,8 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/field_type.h>
 #include <pcl_bsh/io/json/json_reader.h>
+#include <pcl_bsh/io/scenes/scene_clouds.h>
 #include <pcl_bsh/io/scenes/scene_file.h>
-#include <pcl_bsh/io/scenes/shape_points.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include "io/clouds/samples.h"
@@ -48,6 +48,19 @@ constexpr auto whole = R"({
   "clearance": 0.1, "tolerance": 0.001, "accuracy": "level=3", "threads": 1, "steps": 20, "dt": 0.5,
   "outputs": { "clouds": "last" }
 })";
+
+TEST(SceneFile, ListsTheFilesThatItIsMadeOf)
+{
+  SceneFile file;
+  file.clouds.resize(2);
+  file.clouds[0].name = "hall";
+  file.clouds[0].file = "hall.ply";
+  file.clouds[1].shape = "sphere"; // no file
+  file.trajectories = {"walk.txt"};
+  const std::vector<std::pair<std::string, std::filesystem::path>> files = {{"cloud 'hall'", "hall.ply"},
+                                                                            {"trajectory", "walk.txt"}};
+  EXPECT_EQ(file.files(), files);
+}
 
 TEST(SceneFile, ReadsEverything)
 {

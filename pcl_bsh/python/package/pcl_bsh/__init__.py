@@ -16,6 +16,7 @@ from . import _core
 from ._core import *  # noqa: F401,F403
 from ._core import __version__  # noqa: F401
 
+_core._hide_types()  # of docstrings, for inspect: the stubs have them
 __all__ = [name for name in dir(_core) if not name.startswith("_")]
 
 for _name in __all__:

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
-#include <pcl_bsh/python/computing.h>
-#include <pcl_bsh/python/interpreter_lock.h>
+#include <pcl_bsh/python/threads/computing.h>
+#include <pcl_bsh/python/threads/interpreter_lock.h>
 
 #include <pybind11/pybind11.h>
 

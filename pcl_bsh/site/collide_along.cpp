@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/site/answers/candidate.h>
 #include <pcl_bsh/site/answers/inquiry.h>
 #include <pcl_bsh/site/answers/joined_poses.h>
 #include <pcl_bsh/site/answers/passage_sum.h>
-#include <pcl_bsh/site/collide_sites.h>
+#include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/tiles/needed_tiles.h>
 #include <pcl_bsh/site/tiles/obstacle_tiles.h>
+#include <pcl_bsh/site/tiles/records.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +37,7 @@ public:
   /// What one of them meets.
   void add(const TrajectoryResult& found, const PointsView& model, const pcl::PCLPointCloud2& cloud)
   {
-    std::transform(joined_.flags.begin(), joined_.flags.end(), found.flags.begin(), joined_.flags.begin(), surer);
+    join(joined_.flags, found.flags);
     for (std::uint32_t i = 0; i < joined_.distance.size(); ++i) {
       if (found.first_pose[i] < 0) continue;
       std::int32_t& first = joined_.first_pose[i];
@@ -61,11 +62,8 @@ public:
         met.push_back(nearest);
       }
     }
-    const auto counted = [&](Verdict verdict) {
-      return static_cast<std::size_t>(std::count(joined_.flags.begin(), joined_.flags.end(), flagOf(verdict)));
-    };
-    joined_.colliding = counted(Verdict::colliding);
-    joined_.undecided = counted(Verdict::undecided);
+    joined_.colliding = countOf(Verdict::colliding, joined_.flags);
+    joined_.undecided = countOf(Verdict::undecided, joined_.flags);
     return joined_;
   }
 
@@ -109,17 +107,37 @@ std::vector<std::vector<std::uint32_t>> tilesOfModelNear(const Site& site, const
   for (std::uint32_t j = 0; j < model.tiles.size(); ++j) {
     if (!model.tiles[j].bounds) continue;
     const CloudBoxes box(trueBounds(model.tiles[j], of_model));
-    const PathBoxes way(box, poses, reach);
-    for (std::uint32_t i = 0; i < site.tiles.size(); ++i)
-      if (site.tiles[i].bounds && way.mayReach(trueBounds(site.tiles[i], uncertainty))) near[i].push_back(j);
+    for (const std::uint32_t i : tilesAlong(site, box, poses, reach, uncertainty)) near[i].push_back(j);
   }
   return near;
 }
 
 } // namespace
 
-SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertainty& model_uncertainty,
-                             const Poses& poses, const SiteRequest& request, const PassageSink& sink)
+SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const Poses& poses, const SiteRequest& request,
+                         const PassageSink& sink)
+{
+  const TrajectoryRequest wanted = alongPath(request);
+  refusePassage(site, model, poses, wanted);
+  requireUncertainty(site, request.uncertainty);
+  PassageSum sum(request, poses.size());
+  Inquiry inquiry(site, request);
+  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+    TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
+    if (request.surface) tellOfSurface(found);
+    if (sink) sink(tile, cloud, found);
+    return sum.numbersOf(tile, cloud, found);
+  };
+  const std::vector<std::uint32_t> tiles =
+      tilesAlong(site, CloudBoxes(model.view()), poses, pathReach(request), request.uncertainty);
+  const TilesRead read = inquiry.visitAndAdd(tiles, find, [&](const auto& numbers) { sum.add(numbers); });
+  SitePassage result = sum.ofAllRanks();
+  result.tiles = read;
+  return result;
+}
+
+SitePassage collideAlong(const Site& site, const Site& model, const Uncertainty& model_uncertainty, const Poses& poses,
+                         const SiteRequest& request, const PassageSink& sink)
 {
   const TrajectoryRequest wanted = alongPath(request);
   const std::vector<Point3> corners = cornersOf(model);
@@ -155,10 +173,9 @@ SitePairPassage collideAlong(const Site& site, const Site& model, const Uncertai
     if (sink) sink(tile, cloud, found);
     return sum.numbersOf(tile, cloud, found, &met);
   };
-  SitePairPassage result;
   const TilesRead read = inquiry.visitAndAdd(
       tiles, find, [&](const auto& numbers) { sum.add(numbers); }, true);
-  static_cast<SitePassage&>(result) = sum.ofAllRanks();
+  SitePassage result = sum.ofAllRanks();
   result.tiles = read;
   result.tiles_b = models.read();
   return result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/python/interpreter_lock.h>
+#include <pcl_bsh/python/threads/interpreter_lock.h>
 
 #include <atomic>
 #include <thread>

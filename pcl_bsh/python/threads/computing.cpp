@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/python/computing.h>
+#include <pcl_bsh/python/threads/computing.h>
 
-#include <pcl_bsh/python/callback.h>
+#include <pcl_bsh/python/threads/callback.h>
 
 #include <chrono>
 #include <condition_variable>

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What users should know of a scene, whoever has made it: as warnings.h has it of two clouds.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/question/named_cloud.h>
+#include <pcl_bsh/scene/motion.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// An object of a scene, as far as warnings depend on it.
+struct NamedObject {
+  std::string name;
+  bool fixed = false;
+  std::vector<std::pair<std::string, Eigen::Isometry3d>> parts; ///< which cloud, T_object_cloud
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();       ///< T_world_object
+  Motion motion;
+};
+
+/// What users should know of a scene whatever its results are, a line each: of its clouds, of the two of them whose
+/// points lie farthest apart, and of objects that are nowhere near the others.
+/// @param clouds by the names that objects know them by: all that objects have
+/// @param duration of all motion, seconds; none: nobody knows, so what moves by itself may be anywhere
+std::vector<std::string> warningsOf(const std::vector<NamedObject>& objects,
+                                    const std::map<std::string, NamedCloud>& clouds, double clearance,
+                                    std::optional<double> duration);
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END
