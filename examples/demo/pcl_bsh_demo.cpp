@@ -6,6 +6,7 @@
 
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -46,7 +47,7 @@ pcl::PCLPointCloud2 load(const char* path)
 {
   cli::Step step("Loading " + std::string(path));
   pcl::PCLPointCloud2 cloud = io::readCloud(path);
-  step.done(std::to_string(cloud.width) + " points");
+  step.done(counted(cloud.width, "point"));
   return cloud;
 }
 
@@ -73,10 +74,10 @@ void printRow(const Stand& stand, const FlagsResult& flags, const DistanceResult
 {
   Work work = flags.work;
   work += closest.work;
-  const auto counted = [](std::uint64_t count) { return static_cast<unsigned long long>(count); };
+  const auto number = [](std::uint64_t count) { return static_cast<unsigned long long>(count); };
   std::printf("%6.1f %10zu %13.3f %13llu %8llu %8llu %11llu %16llu %10.2f", stand.x, flags.colliding_a,
-              closest.distance, counted(work.node_pairs), counted(work.volumes_carried), counted(work.volumes_built),
-              counted(work.leaf_pairs), counted(work.exact_decisions), milliseconds);
+              closest.distance, number(work.node_pairs), number(work.volumes_carried), number(work.volumes_built),
+              number(work.leaf_pairs), number(work.exact_decisions), milliseconds);
   if (!agrees(stand, flags, closest)) std::printf("  not the reference: %zu, %.3f", stand.colliding, stand.distance);
   std::printf("\n");
 }
@@ -124,8 +125,9 @@ int demonstrate(const char* building_path, const char* man_path, const char* out
   FlagsRequest request;
   request.clearance = clearance;
 
-  std::printf("A man of %zu points walks through a scanned building of %zu points; clearance %.1f m\n\n",
-              man_spheres.size(), building_spheres.size(), clearance);
+  std::printf("A man of %s walks through a scanned building of %s; clearance %.1f m\n\n",
+              counted(man_spheres.size(), "point").c_str(), counted(building_spheres.size(), "point").c_str(),
+              clearance);
   std::printf(
       " x [m]  colliding  distance [m]  sphere tests  carried    built  leaf pairs  exact decisions  time [ms]\n");
 

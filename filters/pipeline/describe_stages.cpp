@@ -17,49 +17,34 @@ Json withRange(Json schema, const Option& option)
   return schema;
 }
 
-Json numbersSchema(const Json& number, std::size_t count)
+Json formSchema(const Form& form, const Option& option)
 {
-  return {{"type", "array"}, {"items", number}, {"minItems", count}, {"maxItems", count}};
+  Json number = withRange({{"type", "number"}}, option);
+  switch (form.type) {
+  case Form::Type::boolean:
+    return {{"type", "boolean"}};
+  case Form::Type::integer:
+    return withRange({{"type", "integer"}}, option);
+  case Form::Type::number:
+    return number;
+  case Form::Type::text:
+    return option.choices.empty() ? Json{{"type", "string"}} : Json{{"type", "string"}, {"enum", option.choices}};
+  case Form::Type::name:
+    return {{"type", "string"}, {"minLength", 1}};
+  case Form::Type::limits:
+    number["type"] = {"number", "null"};
+    break;
+  case Form::Type::numbers:
+    break;
+  }
+  return {{"type", "array"}, {"items", number}, {"minItems", form.count}, {"maxItems", form.count}};
 }
 
 Json valueSchema(const Option& option)
 {
-  const Json number = withRange({{"type", "number"}}, option);
-  switch (option.kind) {
-  case Kind::boolean:
-    return {{"type", "boolean"}};
-  case Kind::integer:
-    return withRange({{"type", "integer"}}, option);
-  case Kind::number:
-    return number;
-  case Kind::text: {
-    Json schema = {{"type", "string"}};
-    if (!option.choices.empty()) schema["enum"] = option.choices;
-    return schema;
-  }
-  case Kind::limits: {
-    Json or_null = number;
-    or_null["type"] = {"number", "null"};
-    return numbersSchema(or_null, 2);
-  }
-  case Kind::three_numbers:
-    return numbersSchema(number, 3);
-  case Kind::size:
-    return {{"anyOf", {number, numbersSchema(number, 3)}}};
-  case Kind::pose:
-    return {{"anyOf",
-             {numbersSchema(number, 6),
-              numbersSchema(number, 12),
-              numbersSchema(number, 16),
-              {{"type", "string"}, {"minLength", 1}}}}};
-  case Kind::input_file:
-  case Kind::output_file:
-  case Kind::cloud:
-    return {{"type", "string"}, {"minLength", 1}};
-  case Kind::length_or_field:
-    return {{"anyOf", {number, {{"type", "string"}, {"minLength", 1}}}}};
-  }
-  return {};
+  Json schemas = Json::array();
+  for (const Form& form : formsOf(option.kind)) schemas.push_back(formSchema(form, option));
+  return schemas.size() == 1 ? schemas[0] : Json{{"anyOf", schemas}};
 }
 
 Json optionSchema(const Option& option)
@@ -118,7 +103,12 @@ std::string jsonSchema()
 {
   Json types = Json::array();
   Json cases = Json::array();
+  const Json list = {{"description", "the stages; a text is a file to read or, when last, to write"},
+                     {"type", "array"},
+                     {"minItems", 1},
+                     {"items", {{"anyOf", {{{"type", "string"}}, {{"$ref", "#/definitions/stage"}}}}}}};
   Json definitions = {
+      {"pipeline", list},
       {"tag", {{"description", "names the stage for others' `inputs`"}, {"type", "string"}, {"pattern", tag_pattern}}},
       {"inputs",
        {{"description", "tags of earlier stages; without it, the stage before this one"},
@@ -134,10 +124,6 @@ std::string jsonSchema()
                           {"properties", {{"type", {{"description", "what the stage does"}, {"enum", types}}}}},
                           {"anyOf", {{{"required", {"type"}}}, {{"required", {"filename"}}}}},
                           {"allOf", cases}};
-  const Json list = {{"description", "the stages; a text is a file to read or, when last, to write"},
-                     {"type", "array"},
-                     {"minItems", 1},
-                     {"items", {{"anyOf", {{{"type", "string"}}, {{"$ref", "#/definitions/stage"}}}}}}};
   const Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
                        {"title", "A pipeline of point cloud filters, for pcl_bsh_pipeline"},
                        {"anyOf", {{{"type", "object"}}, {{"$ref", "#/definitions/pipeline"}}}},
@@ -148,10 +134,8 @@ std::string jsonSchema()
                          {"user_data", Json::object()},
                          {"metadata", {{"description", "what a run added; ignored"}}}}},
                        {"additionalProperties", false},
-                       {"definitions", Json{{"pipeline", list}}}};
-  Json complete = schema;
-  complete["definitions"].update(definitions);
-  return io::printed(complete);
+                       {"definitions", definitions}};
+  return io::printed(schema);
 }
 
 std::string stageDocumentation()

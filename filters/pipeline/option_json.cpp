@@ -73,14 +73,6 @@ std::int64_t integerOf(const Json& json, const Option& option)
   return static_cast<std::int64_t>(number);
 }
 
-std::vector<double> numbersOf(const Json& json, std::size_t count, const Option& option)
-{
-  if (!json.is_array() || json.size() != count) refuse(json, option);
-  std::vector<double> numbers;
-  for (const Json& number : json) numbers.push_back(numberOf(number, json, option));
-  return numbers;
-}
-
 Limit limitOf(const Json& json, const Json& whole, const Option& option)
 {
   if (json.is_null()) return {};
@@ -90,15 +82,8 @@ Limit limitOf(const Json& json, const Json& whole, const Option& option)
   return number;
 }
 
-Limits limitsOf(const Json& json, const Option& option)
-{
-  if (!json.is_array() || json.size() != 2) refuse(json, option);
-  return {limitOf(json[0], json, option), limitOf(json[1], json, option)};
-}
-
 std::string textOf(const Json& json, const Option& option)
 {
-  if (!json.is_string()) refuse(json, option);
   const auto text = json.get<std::string>();
   if (!option.choices.empty() &&
       std::find(option.choices.begin(), option.choices.end(), text) == option.choices.end()) {
@@ -110,26 +95,45 @@ std::string textOf(const Json& json, const Option& option)
 /// For files and clouds; a name with a zero byte would name another file than it says.
 std::string nameOf(const Json& json, const Option& option)
 {
-  const std::string name = textOf(json, option);
+  const auto name = json.get<std::string>();
   if (name.empty() || name.find('\0') != std::string::npos) refuse(json, option);
   return name;
 }
 
-Value poseOf(const Json& json, const Option& option)
+/// The value of a form that fits.
+Value read(const Form& form, const Json& json, const Option& option)
+{
+  switch (form.type) {
+  case Form::Type::boolean:
+    return json.get<bool>();
+  case Form::Type::integer:
+    return integerOf(json, option);
+  case Form::Type::number:
+    return numberOf(json, json, option);
+  case Form::Type::text:
+    return textOf(json, option);
+  case Form::Type::name:
+    return nameOf(json, option);
+  case Form::Type::limits:
+    return Limits{limitOf(json[0], json, option), limitOf(json[1], json, option)};
+  case Form::Type::numbers:
+    break;
+  }
+  std::vector<double> numbers;
+  for (const Json& number : json) numbers.push_back(numberOf(number, json, option));
+  return numbers;
+}
+
+/// @param given the name of a file, or numbers
+Value poseOf(const Value& given, const Json& json)
 {
   Pose pose;
-  if (json.is_string()) {
-    try {
-      pose.matrix = io::readPose(nameOf(json, option)).matrix();
-    }
-    catch (const files::FileError& error) {
-      throw std::invalid_argument(error.what());
-    }
+  try {
+    const auto* const file = std::get_if<std::string>(&given);
+    pose.matrix = (file ? io::readPose(*file) : io::poseFrom(std::get<std::vector<double>>(given))).matrix();
   }
-  else {
-    const bool counted = json.is_array() && (json.size() == 6 || json.size() == 12 || json.size() == 16);
-    if (!counted) refuse(json, option);
-    pose.matrix = io::poseFrom(numbersOf(json, json.size(), option)).matrix();
+  catch (const files::FileError& error) {
+    throw std::invalid_argument(error.what());
   }
   if (!pose.matrix.allFinite() || pose.matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
     throw std::invalid_argument("is " + io::shown(json) + ": give finite numbers, and 0 0 0 1 as the last row");
@@ -137,118 +141,97 @@ Value poseOf(const Json& json, const Option& option)
   return OptionType<Pose>::to(pose);
 }
 
+/// What messages say of a kind, a range being put before the rest; and its forms.
+struct KindRow {
+  Kind kind;
+  const char* phrase;
+  std::vector<Form> forms;
+  const char* rest = "";
+};
+
+const KindRow& rowOf(Kind kind)
+{
+  using Type = Form::Type;
+  static const std::vector<KindRow> rows = {
+      {Kind::boolean, "true or false", {{Type::boolean}}},
+      {Kind::integer, "an integer", {{Type::integer}}},
+      {Kind::number, "a number", {{Type::number}}},
+      {Kind::text, "a text", {{Type::text}}},
+      {Kind::limits, "[least, most], numbers or null", {{Type::limits, 2}}},
+      {Kind::three_numbers, "[x, y, z], numbers", {{Type::numbers, 3}}},
+      {Kind::size, "a number or [x, y, z], each", {{Type::number}, {Type::numbers, 3}}},
+      {Kind::pose,
+       "[x, y, z, roll, pitch, yaw] (angles in radians), the 12 or 16 numbers of a matrix, row by row, or the name of "
+       "a file with these",
+       {{Type::numbers, 6}, {Type::numbers, 12}, {Type::numbers, 16}, {Type::name}}},
+      {Kind::input_file, "the name of a file", {{Type::name}}},
+      {Kind::output_file, "the name of a file to write", {{Type::name}}},
+      {Kind::cloud, "the tag of an earlier stage, or the name of a cloud file", {{Type::name}}},
+      {Kind::length_or_field, "a number", {{Type::number}, {Type::name}}, ", or the name of a field"}};
+  return *std::find_if(rows.begin(), rows.end(), [&](const KindRow& row) { return row.kind == kind; });
+}
+
 } // namespace
+
+bool Form::fits(const Json& json) const
+{
+  if (type == Type::boolean) return json.is_boolean();
+  if (type == Type::integer || type == Type::number) return json.is_number();
+  if (type == Type::text || type == Type::name) return json.is_string();
+  return json.is_array() && json.size() == count;
+}
+
+const std::vector<Form>& formsOf(Kind kind)
+{
+  return rowOf(kind).forms;
+}
 
 std::string expectation(const Option& option)
 {
-  switch (option.kind) {
-  case Kind::boolean:
-    return "true or false";
-  case Kind::integer:
-    return "an integer" + rangeOf(option);
-  case Kind::number:
-    return "a number" + rangeOf(option);
-  case Kind::text: {
-    if (option.choices.empty()) return "a text";
-    std::string list = "one of";
-    for (const std::string& choice : option.choices) list += (choice == option.choices[0] ? " " : ", ") + choice;
-    return list;
-  }
-  case Kind::limits:
-    return "[least, most], numbers or null" + rangeOf(option);
-  case Kind::three_numbers:
-    return "[x, y, z], numbers" + rangeOf(option);
-  case Kind::size:
-    return "a number or [x, y, z], each" + rangeOf(option);
-  case Kind::pose:
-    return "[x, y, z, roll, pitch, yaw] (angles in radians), the 12 or 16 numbers of a matrix, row by row, or the name "
-           "of a file with these";
-  case Kind::input_file:
-    return "the name of a file";
-  case Kind::output_file:
-    return "the name of a file to write";
-  case Kind::cloud:
-    return "the tag of an earlier stage, or the name of a cloud file";
-  case Kind::length_or_field:
-    return "a number" + rangeOf(option) + ", or the name of a field";
-  }
-  return {};
+  if (option.choices.empty()) return rowOf(option.kind).phrase + rangeOf(option) + rowOf(option.kind).rest;
+  std::string list = "one of";
+  for (const std::string& choice : option.choices) list += (choice == option.choices[0] ? " " : ", ") + choice;
+  return list;
 }
 
 Value valueOf(const Json& json, const Option& option)
 {
   if (json.is_null() && option.nullable) return {};
-  switch (option.kind) {
-  case Kind::boolean:
-    if (!json.is_boolean()) refuse(json, option);
-    return json.get<bool>();
-  case Kind::integer:
-    return integerOf(json, option);
-  case Kind::number:
-    return numberOf(json, json, option);
-  case Kind::text:
-    return textOf(json, option);
-  case Kind::limits:
-    return limitsOf(json, option);
-  case Kind::three_numbers:
-    return numbersOf(json, 3, option);
-  case Kind::size:
-    if (json.is_number()) return std::vector<double>(3, numberOf(json, json, option));
-    return numbersOf(json, 3, option);
-  case Kind::pose:
-    return poseOf(json, option);
-  case Kind::input_file:
-  case Kind::output_file:
-  case Kind::cloud:
-    return nameOf(json, option);
-  case Kind::length_or_field:
-    if (json.is_number()) return numberOf(json, json, option);
-    return nameOf(json, option);
+  for (const Form& form : formsOf(option.kind)) {
+    if (!form.fits(json)) continue;
+    const Value value = read(form, json, option);
+    if (option.kind == Kind::pose) return poseOf(value, json);
+    const bool cube = option.kind == Kind::size && form.type == Form::Type::number;
+    return cube ? std::vector<double>(3, std::get<double>(value)) : value;
   }
-  return {};
+  refuse(json, option);
 }
-
-namespace {
-
-Json jsonOf(const Limit& limit)
-{
-  return std::visit(
-      [](const auto& number) -> Json {
-        if constexpr (std::is_same_v<std::decay_t<decltype(number)>, std::monostate>) {
-          return nullptr;
-        }
-        else {
-          return number;
-        }
-      },
-      limit);
-}
-
-} // namespace
 
 Json jsonOf(const Value& value)
 {
+  const auto written = [](const auto& held) -> Json {
+    if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>)
+      return nullptr;
+    else
+      return held;
+  };
+  if (const auto* const limits = std::get_if<Limits>(&value))
+    return Json::array({std::visit(written, limits->least), std::visit(written, limits->most)});
   return std::visit(
-      [](const auto& held) -> Json {
-        using Held = std::decay_t<decltype(held)>;
-        if constexpr (std::is_same_v<Held, std::monostate>) {
-          return nullptr;
-        }
-        else if constexpr (std::is_same_v<Held, Limits>) {
-          return Json::array({jsonOf(held.least), jsonOf(held.most)});
-        }
-        else {
-          return held;
-        }
+      [&](const auto& held) -> Json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, Limits>)
+          return nullptr; // written above
+        else
+          return written(held);
       },
       value);
 }
 
 Json jsonOfText(const std::string& text, const Option& option)
 {
-  const bool is_name = option.kind == Kind::text || option.kind == Kind::input_file ||
-                       option.kind == Kind::output_file || option.kind == Kind::cloud;
-  if (is_name && !(option.nullable && text == "null")) return text;
+  const Form::Type first = formsOf(option.kind).front().type;
+  const bool is_text = first == Form::Type::text || first == Form::Type::name;
+  if (is_text && !(option.nullable && text == "null")) return text;
   for (const std::string& json : {text, "[" + text + "]"}) {
     try {
       return io::parseJson(json);

@@ -6,11 +6,27 @@
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 #include <pcl_bsh/io/json/json_document.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace pcl_bsh::pipeline {
 
 using io::Json;
+
+/// A way to write a value in JSON.
+struct Form {
+  enum class Type : std::uint8_t { boolean, integer, number, text, name, numbers, limits };
+
+  Type type;
+  std::size_t count = 0; ///< of an array: how many numbers
+
+  bool fits(const Json& json) const;
+};
+
+/// In which ways options of a kind may be written.
+const std::vector<Form>& formsOf(Kind kind);
 
 /// What may be written: "a number above 0", "one of free, colliding".
 std::string expectation(const Option& option);

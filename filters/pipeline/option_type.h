@@ -116,11 +116,51 @@ struct NumberLimits<std::optional<T>> : NumberLimits<T> {
 template <typename T, typename = void>
 struct OptionType;
 
+namespace detail {
+
+/// Of a type that a Value holds as it is.
+template <typename T, Kind K>
+struct HeldType {
+  static constexpr Kind kind = K;
+  static T from(const Value& value) { return std::get<T>(value); }
+  static Value to(const T& option) { return option; }
+};
+
+/// Of a type that a name stands for. @param name its member
+template <typename T, std::string T::*name, Kind K>
+struct NamedType {
+  static constexpr Kind kind = K;
+  static T from(const Value& value)
+  {
+    T option;
+    option.*name = std::get<std::string>(value);
+    return option;
+  }
+  static Value to(const T& option) { return option.*name; }
+};
+
+} // namespace detail
+
 template <>
-struct OptionType<bool> {
-  static constexpr Kind kind = Kind::boolean;
-  static bool from(const Value& value) { return std::get<bool>(value); }
-  static Value to(bool option) { return option; }
+struct OptionType<bool> : detail::HeldType<bool, Kind::boolean> {
+};
+template <>
+struct OptionType<double> : detail::HeldType<double, Kind::number> {
+};
+template <>
+struct OptionType<std::string> : detail::HeldType<std::string, Kind::text> {
+};
+template <>
+struct OptionType<Limits> : detail::HeldType<Limits, Kind::limits> {
+};
+template <>
+struct OptionType<InputFile> : detail::NamedType<InputFile, &InputFile::path, Kind::input_file> {
+};
+template <>
+struct OptionType<OutputFile> : detail::NamedType<OutputFile, &OutputFile::path, Kind::output_file> {
+};
+template <>
+struct OptionType<OtherCloud> : detail::NamedType<OtherCloud, &OtherCloud::name, Kind::cloud> {
 };
 
 template <typename T>
@@ -131,38 +171,14 @@ struct OptionType<T, std::enable_if_t<std::is_integral_v<T> && !std::is_same_v<T
 };
 
 template <>
-struct OptionType<double> {
-  static constexpr Kind kind = Kind::number;
-  static double from(const Value& value) { return std::get<double>(value); }
-  static Value to(double option) { return option; }
-};
-
-template <>
-struct OptionType<std::string> {
-  static constexpr Kind kind = Kind::text;
-  static std::string from(const Value& value) { return std::get<std::string>(value); }
-  static Value to(const std::string& option) { return option; }
-};
-
-template <std::size_t N>
-struct OptionType<Numbers<N>> {
-  static_assert(N == 3, "two numbers are Limits");
+struct OptionType<Numbers<3>> {
   static constexpr Kind kind = Kind::three_numbers;
-  static Numbers<N> from(const Value& value)
+  static Numbers<3> from(const Value& value)
   {
     const auto& numbers = std::get<std::vector<double>>(value);
-    Numbers<N> option;
-    for (std::size_t i = 0; i < N; ++i) option[i] = numbers[i];
-    return option;
+    return {numbers[0], numbers[1], numbers[2]};
   }
-  static Value to(const Numbers<N>& option) { return std::vector<double>(option.begin(), option.end()); }
-};
-
-template <>
-struct OptionType<Limits> {
-  static constexpr Kind kind = Kind::limits;
-  static Limits from(const Value& value) { return std::get<Limits>(value); }
-  static Value to(const Limits& option) { return option; }
+  static Value to(const Numbers<3>& option) { return std::vector<double>(option.begin(), option.end()); }
 };
 
 template <>
@@ -175,38 +191,16 @@ struct OptionType<Size3> {
 template <>
 struct OptionType<Pose> {
   static constexpr Kind kind = Kind::pose;
+  using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
   static Pose from(const Value& value)
   {
-    using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
     return {Eigen::Map<const RowMajor>(std::get<std::vector<double>>(value).data())};
   }
   static Value to(const Pose& option)
   {
-    std::vector<double> rows;
-    for (Eigen::Index i = 0; i < 16; ++i) rows.push_back(option.matrix(i / 4, i % 4));
-    return rows;
+    const RowMajor rows = option.matrix;
+    return std::vector<double>(rows.data(), rows.data() + rows.size());
   }
-};
-
-template <>
-struct OptionType<InputFile> {
-  static constexpr Kind kind = Kind::input_file;
-  static InputFile from(const Value& value) { return {std::get<std::string>(value)}; }
-  static Value to(const InputFile& option) { return option.path; }
-};
-
-template <>
-struct OptionType<OutputFile> {
-  static constexpr Kind kind = Kind::output_file;
-  static OutputFile from(const Value& value) { return {std::get<std::string>(value)}; }
-  static Value to(const OutputFile& option) { return option.path; }
-};
-
-template <>
-struct OptionType<OtherCloud> {
-  static constexpr Kind kind = Kind::cloud;
-  static OtherCloud from(const Value& value) { return {std::get<std::string>(value), {}, {}}; }
-  static Value to(const OtherCloud& option) { return option.name; }
 };
 
 template <>

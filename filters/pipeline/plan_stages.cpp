@@ -40,19 +40,18 @@ PipelineFiles filesOf(const Graph& graph)
   PipelineFiles all;
   for (const Node& node : graph.nodes) {
     std::string replaceable;
-    for (std::size_t i = 0; i < node.options.size(); ++i) {
-      const Option& option = node.type->options[i];
-      if (option.kind != Kind::input_file || !std::holds_alternative<std::string>(node.options[i]) || node.given)
-        continue;
-      all.add(node, option.name, std::get<std::string>(node.options[i]), files::Use::read);
-      if (option.replaceable) replaceable = all.used.back().name;
-    }
+    const auto addAll = [&](Kind kind, files::Use use) {
+      for (std::size_t i = 0; i < node.options.size(); ++i) {
+        const Option& option = node.type->options[i];
+        const auto* const file = std::get_if<std::string>(&node.options[i]);
+        if (option.kind != kind || !file) continue;
+        all.add(node, option.name, *file, use, use == files::Use::written ? replaceable : "");
+        if (option.replaceable) replaceable = all.used.back().name;
+      }
+    };
+    if (!node.given) addAll(Kind::input_file, files::Use::read);
     for (const auto& [option, file] : node.pose_files) all.add(node, option, file, files::Use::read);
-    for (std::size_t i = 0; i < node.options.size(); ++i) {
-      const Option& option = node.type->options[i];
-      if (option.kind != Kind::output_file || !std::holds_alternative<std::string>(node.options[i])) continue;
-      all.add(node, option.name, std::get<std::string>(node.options[i]), files::Use::written, replaceable);
-    }
+    addAll(Kind::output_file, files::Use::written);
   }
   all.used.insert(all.used.end(), graph.other_files.begin(), graph.other_files.end());
   return all;

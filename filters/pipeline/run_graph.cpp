@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/graph.h>
 #include <pcl_bsh/filters/pipeline/option_json.h>
-#include <pcl_bsh/filters/pipeline/process_memory.h>
 
 #include <pcl_bsh/base/cancelled.h>
 
@@ -9,8 +8,12 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -23,6 +26,23 @@ using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start)
 {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// What the whole program has in memory now; 0 where the system does not tell.
+std::size_t residentBytes()
+{
+  std::size_t total_pages = 0;
+  std::size_t resident_pages = 0;
+  std::ifstream("/proc/self/statm") >> total_pages >> resident_pages;
+  return resident_pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// The most that was in memory so far.
+std::size_t peakBytes()
+{
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
 std::size_t pointsOf(const StageCloud& cloud)

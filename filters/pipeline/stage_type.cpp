@@ -10,6 +10,20 @@
 namespace pcl_bsh::pipeline {
 namespace {
 
+/// In the order of the documentation.
+std::deque<StageType> builtInStages()
+{
+  std::deque<StageType> all = fileReaders();
+  for (const auto& stage :
+       {voxelGrid, approximateVoxelGrid, uniformSampling, passThrough, cropBox, statisticalOutlierRemoval,
+        radiusOutlierRemoval, transform, normalEstimation, euclideanCluster, merge, bshCollision, bshFlag, bshDistance})
+    all.push_back(stage());
+  const std::deque<StageType> writers = fileWriters();
+  all.insert(all.end(), writers.begin(), writers.end());
+  for (const auto& stage : {clashWriter, distanceWriter}) all.push_back(stage());
+  return all;
+}
+
 std::deque<StageType>& table()
 {
   static std::deque<StageType> types = builtInStages(); // a deque: pointers to its rows stay valid when more are added

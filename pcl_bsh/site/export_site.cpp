@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
-#include <pcl_bsh/io/clouds/pcd.h>
+#include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/free_space.h>
 #include <pcl_bsh/io/files/replace_file.h>

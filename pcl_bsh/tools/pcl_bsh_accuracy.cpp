@@ -5,8 +5,7 @@
 #include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/obstacle.h>
-#include <pcl_bsh/tools/cli/pose.h>
-#include <pcl_bsh/tools/cli/surface_options.h>
+#include <pcl_bsh/tools/cli/path.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 #include <pcl_bsh/tools/collide/options.h>
 

@@ -6,7 +6,7 @@
 
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
-#include <pcl_bsh/io/clouds/pcd.h>
+#include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>

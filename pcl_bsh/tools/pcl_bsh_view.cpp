@@ -3,7 +3,6 @@
 #include <pcl_bsh/tools/cli/program.h>
 #include <pcl_bsh/tools/viewer/content/view_content.h>
 #include <pcl_bsh/tools/viewer/options.h>
-#include <pcl_bsh/tools/viewer/picture.h>
 #include <pcl_bsh/tools/viewer/viewer.h>
 
 #include <pcl_bsh/io/files/replace_file.h>

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/vtk/cloud_data.h>
 
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
+#include <vtkIdList.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -45,31 +47,23 @@ void add(vtkPolyData& cloud, const std::string& name, const std::vector<T>& valu
   for (vtkIdType i = 0; i < cloud.GetNumberOfPoints(); ++i) {
     const auto record = static_cast<std::size_t>(index->GetValue(i));
     if (record >= values.size())
-      throw std::invalid_argument("array " + name + ": " + std::to_string(values.size()) +
-                                  " values, and none for point " + std::to_string(record) + ": give one per point");
+      throw std::invalid_argument("array " + name + ": " + counted(values.size(), "value") + ", and none for point " +
+                                  std::to_string(record) + ": give one per point");
     array->SetValue(i, values[record]);
   }
   cloud.GetPointData()->AddArray(array);
 }
 
-vtkSmartPointer<vtkPolyData> picked(vtkPolyData& cloud, const std::vector<vtkIdType>& ids)
+/// These points, with their arrays.
+vtkSmartPointer<vtkPolyData> picked(vtkPolyData& cloud, vtkIdList& ids)
 {
   vtkNew<vtkPoints> points;
   points->SetDataType(cloud.GetPoints()->GetDataType());
-  points->SetNumberOfPoints(static_cast<vtkIdType>(ids.size()));
-  for (std::size_t i = 0; i < ids.size(); ++i)
-    points->SetPoint(static_cast<vtkIdType>(i), cloud.GetPoints()->GetPoint(ids[i]));
+  cloud.GetPoints()->GetPoints(&ids, points);
   vtkSmartPointer<vtkPolyData> data = polyVertex(points);
-  vtkPointData* const from = cloud.GetPointData();
-  for (int k = 0; k < from->GetNumberOfArrays(); ++k) {
-    vtkDataArray* const source = from->GetArray(k);
-    const auto copy = vtkSmartPointer<vtkDataArray>::Take(source->NewInstance());
-    copy->SetName(source->GetName());
-    copy->SetNumberOfComponents(source->GetNumberOfComponents());
-    copy->SetNumberOfTuples(static_cast<vtkIdType>(ids.size()));
-    for (std::size_t i = 0; i < ids.size(); ++i) copy->SetTuple(static_cast<vtkIdType>(i), ids[i], source);
-    data->GetPointData()->AddArray(copy);
-  }
+  data->GetPointData()->CopyAllocate(cloud.GetPointData(), ids.GetNumberOfIds());
+  for (vtkIdType i = 0; i < ids.GetNumberOfIds(); ++i)
+    data->GetPointData()->CopyData(cloud.GetPointData(), ids.GetId(i), i);
   return data;
 }
 
@@ -111,19 +105,19 @@ vtkSmartPointer<vtkPolyData> subset(vtkPolyData& cloud, const std::vector<std::u
 {
   auto* const index = vtkIntArray::SafeDownCast(cloud.GetPointData()->GetArray(index_name));
   if (!index) throw std::invalid_argument("subset: the data has no array 'index': take it from cloudData()");
-  std::vector<vtkIdType> ids;
+  vtkNew<vtkIdList> ids;
   for (vtkIdType i = 0; i < cloud.GetNumberOfPoints(); ++i)
-    if (keep.at(static_cast<std::size_t>(index->GetValue(i))) != 0) ids.push_back(i);
-  return picked(cloud, ids);
+    if (keep.at(static_cast<std::size_t>(index->GetValue(i))) != 0) ids->InsertNextId(i);
+  return picked(cloud, *ids);
 }
 
 vtkSmartPointer<vtkPolyData> thinned(vtkPolyData& cloud, vtkIdType most)
 {
   const vtkIdType count = cloud.GetNumberOfPoints();
   if (count <= most) return &cloud;
-  std::vector<vtkIdType> ids(static_cast<std::size_t>(most));
-  for (vtkIdType i = 0; i < most; ++i) ids[static_cast<std::size_t>(i)] = i * count / most;
-  return picked(cloud, ids);
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType i = 0; i < most; ++i) ids->InsertNextId(i * count / most);
+  return picked(cloud, *ids);
 }
 
 } // namespace pcl_bsh::vtk

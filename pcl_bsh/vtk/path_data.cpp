@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/vtk/path_data.h>
 
 #include <vtkCellArray.h>
@@ -17,8 +18,8 @@ vtkSmartPointer<vtkPolyData> pathData(const std::vector<Eigen::Isometry3d>& pose
                                       const Point3& point)
 {
   if (!times.empty() && times.size() != poses.size())
-    throw std::invalid_argument("times: " + std::to_string(times.size()) + " for " + std::to_string(poses.size()) +
-                                " poses: give one per pose, or none");
+    throw std::invalid_argument("times: " + std::to_string(times.size()) + " for " + counted(poses.size(), "pose") +
+                                ": give one per pose, or none");
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   vtkNew<vtkCellArray> line;

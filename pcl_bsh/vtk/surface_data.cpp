@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/vtk/surface_data.h>
 
 #include <vtkCellArray.h>
@@ -19,8 +20,9 @@ template <class Array, class T>
 void addToCells(vtkPolyData& surface, const std::string& name, const std::vector<T>& values)
 {
   if (values.size() != static_cast<std::size_t>(surface.GetNumberOfCells()))
-    throw std::invalid_argument("array " + name + ": " + std::to_string(values.size()) + " values for " +
-                                std::to_string(surface.GetNumberOfCells()) + " triangles: give one per triangle");
+    throw std::invalid_argument("array " + name + ": " + counted(values.size(), "value") + " for " +
+                                counted(static_cast<std::uint64_t>(surface.GetNumberOfCells()), "triangle") +
+                                ": give one per triangle");
   vtkNew<Array> array;
   array->SetName(name.c_str());
   array->SetNumberOfTuples(surface.GetNumberOfCells());

@@ -2,10 +2,10 @@
 // Files of meshes: the first byte says which format, the rest is the file.
 #include "read.h"
 
+#include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/meshes/mesh_faces.h>
 #include <pcl_bsh/io/clouds/meshes/stl.h>
-#include <pcl_bsh/io/clouds/ply.h>
-#include <pcl_bsh/io/clouds/text_clouds.h>
+#include <pcl_bsh/io/clouds/ply/ply.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 namespace pcl_bsh::fuzz {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "read.h"
 
-#include <pcl_bsh/io/clouds/ply.h>
+#include <pcl_bsh/io/clouds/ply/ply.h>
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {

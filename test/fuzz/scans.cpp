@@ -2,8 +2,8 @@
 // Each input is read as PTS, as PTX (all scans, and the second alone), and as columns that are written as CSV.
 #include "read.h"
 
-#include <pcl_bsh/io/clouds/scan_text.h>
-#include <pcl_bsh/io/clouds/text_clouds.h>
+#include <pcl_bsh/io/clouds/lines/scan_text.h>
+#include <pcl_bsh/io/clouds/lines/text_clouds.h>
 
 namespace {
 

@@ -2,7 +2,7 @@
 // The three formats that are lines of text; each input is read as all of them, columns also with names that are given.
 #include "read.h"
 
-#include <pcl_bsh/io/clouds/text_clouds.h>
+#include <pcl_bsh/io/clouds/lines/text_clouds.h>
 
 #include <algorithm>
 

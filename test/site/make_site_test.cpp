@@ -5,7 +5,7 @@
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/cloud_stream.h>
-#include <pcl_bsh/io/clouds/pcd.h>
+#include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/check_site.h>

@@ -2,7 +2,7 @@
 #include <pcl_bsh/vtk/cloud_data.h>
 #include <pcl_bsh/vtk/path_data.h>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <vtkDataArray.h>
 #include <vtkPointData.h>
@@ -43,7 +43,9 @@ TEST(CloudData, ArraysAndSubsetsFollowTheNumbers)
   EXPECT_EQ(some->GetPoint(0)[0], 2);
   EXPECT_EQ(some->GetPointData()->GetArray("distance")->GetTuple1(0), 2.5);
   EXPECT_EQ(some->GetPointData()->GetArray("index")->GetTuple1(0), 2);
-  EXPECT_THROW(addArray(*data, "short", std::vector<float>{1.0f}), std::invalid_argument);
+  EXPECT_THAT(
+      [&] { addArray(*data, "short", std::vector<float>{1.0f}); },
+      testing::ThrowsMessage<std::invalid_argument>(testing::StartsWith("array short: 1 value, and none for point ")));
 }
 
 TEST(CloudData, ThinsEvenly)
@@ -70,7 +72,12 @@ TEST(PathData, IsALineWithTimes)
   EXPECT_EQ(path->GetPointData()->GetArray("time")->GetTuple1(1), 0.5);
   EXPECT_EQ(path->GetPointData()->GetArray("pose")->GetTuple1(2), 2);
   EXPECT_EQ(pathData(poses)->GetPointData()->GetArray("time")->GetTuple1(2), 2);
-  EXPECT_THROW(pathData(poses, {1.0}), std::invalid_argument);
+  poses.resize(1);
+  EXPECT_THAT(
+      [&] {
+        pathData(poses, {1.0, 2.0});
+      },
+      testing::ThrowsMessage<std::invalid_argument>("times: 2 for 1 pose: give one per pose, or none"));
 }
 
 } // namespace

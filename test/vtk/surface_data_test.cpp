@@ -2,7 +2,7 @@
 // Triangles as VTK's cells, with values.
 #include <pcl_bsh/vtk/surface_data.h>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -30,7 +30,11 @@ TEST(SurfaceData, RefusesWhatIsNotThere)
 {
   EXPECT_THROW(surfaceData(viewOf(&corners[0][0], 4), {{0, 1, 4}}), std::invalid_argument);
   const auto data = surfaceData(viewOf(&corners[0][0], 4), {{0, 1, 2}});
-  EXPECT_THROW(addTriangleArray(*data, "flags", std::vector<std::uint8_t>{0, 1}), std::invalid_argument);
+  EXPECT_THAT(
+      [&] {
+        addTriangleArray(*data, "flags", std::vector<std::uint8_t>{0, 1});
+      },
+      testing::ThrowsMessage<std::invalid_argument>("array flags: 2 values for 1 triangle: give one per triangle"));
 }
 
 } // namespace

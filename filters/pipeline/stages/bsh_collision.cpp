@@ -5,7 +5,7 @@
 #include <pcl_bsh/filters/pipeline/stages/collision_question.h>
 #include <pcl_bsh/filters/pipeline/stages/faces.h>
 #include <pcl_bsh/filters/pipeline/stages/other_cloud.h>
-#include <pcl_bsh/filters/pipeline/stages/selecting_stage.h>
+#include <pcl_bsh/filters/pipeline/stages/selection/selecting_stage.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 namespace pcl_bsh::pipeline {

@@ -4,9 +4,9 @@
 #include <pcl_bsh/filters/distance_filter.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/distance_question.h>
-#include <pcl_bsh/filters/pipeline/stages/exact_limits.h>
 #include <pcl_bsh/filters/pipeline/stages/other_cloud.h>
-#include <pcl_bsh/filters/pipeline/stages/selecting_stage.h>
+#include <pcl_bsh/filters/pipeline/stages/selection/exact_limits.h>
+#include <pcl_bsh/filters/pipeline/stages/selection/selecting_stage.h>
 
 namespace pcl_bsh::pipeline {
 namespace {

@@ -9,15 +9,7 @@
 
 namespace pcl_bsh::pipeline {
 
-StageType pcdReader();
-StageType plyReader();
-StageType objReader();
-StageType offReader();
-StageType meshReader();
-StageType lasReader();
-StageType ptsReader();
-StageType ptxReader();
-StageType textReader();
+std::deque<StageType> fileReaders();
 StageType voxelGrid();
 StageType approximateVoxelGrid();
 StageType uniformSampling();
@@ -32,17 +24,8 @@ StageType merge();
 StageType bshCollision();
 StageType bshFlag();
 StageType bshDistance();
-StageType pcdWriter();
-StageType plyWriter();
-StageType lasWriter();
-StageType objWriter();
-StageType ptsWriter();
-StageType ptxWriter();
-StageType textWriter();
+std::deque<StageType> fileWriters();
 StageType clashWriter();
 StageType distanceWriter();
-
-/// All of them, in the order of the documentation.
-std::deque<StageType> builtInStages();
 
 } // namespace pcl_bsh::pipeline

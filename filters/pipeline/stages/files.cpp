@@ -3,9 +3,9 @@
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/lines/scan_text.h>
+#include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/pcl_names.h>
-#include <pcl_bsh/io/clouds/scan_text.h>
-#include <pcl_bsh/io/clouds/text_clouds.h>
 #include <pcl_bsh/io/text/column_names.h>
 #include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/io/text/small_letters.h>
@@ -185,11 +185,14 @@ private:
 };
 
 template <typename S>
-StageType ofFiles(const std::string& name, const std::vector<std::string>& extensions, const std::string& doc,
-                  const std::string& option_doc)
+StageType ofFiles(const std::string& name, const std::vector<std::string>& extensions, const std::string& doc)
 {
   StageDescription<S> description = describe<S>(name, doc);
-  description.extensions(extensions).option(&S::filename, "filename", option_doc).required();
+  description.extensions(extensions)
+      .option(&S::filename, "filename",
+              std::is_base_of_v<FileWriter, S> ? "the file to write; it appears complete or not at all"
+                                               : "the file to read")
+      .required();
   if constexpr (std::is_same_v<S, PtxReader>) {
     description.option(&S::scan, "scan", "only that scan, from 0, as an organised cloud; all when it is not given")
         .atLeast(0);
@@ -207,144 +210,76 @@ StageType ofFiles(const std::string& name, const std::vector<std::string>& exten
   return type;
 }
 
-StageType reader(const std::string& name, const std::vector<std::string>& extensions, const std::string& doc)
-{
-  return ofFiles<FileReader>(name, extensions, doc, "the file to read");
-}
-
-constexpr auto to_write = "the file to write; it appears complete or not at all";
-
 } // namespace
 
-StageType pcdReader()
+std::deque<StageType> fileReaders()
 {
-  return reader("readers.pcd", {".pcd"}, "PCL's own format, every field in its type, with the sensor's viewpoint.");
-}
-
-StageType plyReader()
-{
-  return reader("readers.ply", {".ply"},
-                "The vertices of a PLY file and its faces, every property in its type: nx ny nz as normal_x normal_y "
-                "normal_z, uchar red "
-                "green blue [alpha] packed as rgb or rgba, the sensor's viewpoint where it has an element camera.");
-}
-
-StageType objReader()
-{
-  return reader(
-      "readers.obj", {".obj"},
-      "The vertices of a Wavefront OBJ file, as float64, with their colours packed as rgb and their normals, and its "
-      "faces.");
-}
-
-StageType offReader()
-{
-  return reader(
-      "readers.off", {".off"},
-      "The vertices of an OFF file, as float64, with their normals, and their colours packed as rgba or rgb, and its "
-      "faces.");
-}
-
-StageType meshReader()
-{
-  StageType type = reader(
+  StageType mesh = ofFiles<FileReader>(
       "readers.mesh", {".stl", ".obj", ".off", ".ply"},
       "A mesh, .stl, .obj, .off or .ply: its vertices, and its faces, cut into triangles. As the obstacle of a "
       "stage it is a surface, and as the input of filters.bsh_flag and filters.bsh_collision, which ask about its "
       "triangles. Faces go on through stages that keep all points; writers.ply writes them.");
-  type.extensions = {".stl"}; // the others have readers of their own
-  return type;
+  mesh.extensions = {".stl"}; // the others have readers of their own
+  return {ofFiles<FileReader>("readers.pcd", {".pcd"},
+                              "PCL's own format, every field in its type, with the sensor's viewpoint."),
+          ofFiles<FileReader>(
+              "readers.ply", {".ply"},
+              "The vertices of a PLY file and its faces, every property in its type: nx ny nz as normal_x normal_y "
+              "normal_z, uchar red "
+              "green blue [alpha] packed as rgb or rgba, the sensor's viewpoint where it has an element camera."),
+          ofFiles<FileReader>("readers.obj", {".obj"},
+                              "The vertices of a Wavefront OBJ file, as float64, with their colours packed as rgb and "
+                              "their normals, and its "
+                              "faces."),
+          ofFiles<FileReader>("readers.off", {".off"},
+                              "The vertices of an OFF file, as float64, with their normals, and their colours packed "
+                              "as rgba or rgb, and its "
+                              "faces."),
+          std::move(mesh),
+          ofFiles<FileReader>(
+              "readers.las", {".las", ".laz"},
+              "LAS 1.0 to 1.4, point formats 0 to 10, and LAZ, .copc.laz too: x y z as float64, every field and the "
+              "extra bytes by their descriptions. Scale, offset and all records, as of the coordinate system, go on to "
+              "writers.las."),
+          ofFiles<FileReader>("readers.pts", {".pts"},
+                              "Leica's PTS: x y z as float64, intensity as float32, colours packed as rgb."),
+          ofFiles<PtxReader>("readers.ptx", {".ptx"},
+                             "Leica's PTX: all scans in their common frame, the scanner's pose as viewpoint, NaN where "
+                             "it saw nothing. One scan "
+                             "is an organised cloud; several are one row of points with a field `scan`."),
+          ofFiles<TextReader>("readers.text", {".txt", ".xyz", ".csv"},
+                              "A point per line, as float64: x y z and more columns, named by the first line or "
+                              "column_4, ...; E N H and the "
+                              "like are x y z; columns r g b of whole numbers up to 255 are packed as rgb, nx ny nz "
+                              "become normal_x normal_y "
+                              "normal_z.")};
 }
 
-StageType lasReader()
+std::deque<StageType> fileWriters()
 {
-  return reader(
-      "readers.las", {".las", ".laz"},
-      "LAS 1.0 to 1.4, point formats 0 to 10, and LAZ, .copc.laz too: x y z as float64, every field and the "
-      "extra bytes by their descriptions. Scale, offset and all records, as of the coordinate system, go on to "
-      "writers.las.");
-}
-
-StageType ptsReader()
-{
-  return reader("readers.pts", {".pts"}, "Leica's PTS: x y z as float64, intensity as float32, colours packed as rgb.");
-}
-
-StageType ptxReader()
-{
-  return ofFiles<PtxReader>("readers.ptx", {".ptx"},
-                            "Leica's PTX: all scans in their common frame, the scanner's pose as viewpoint, NaN where "
-                            "it saw nothing. One scan "
-                            "is an organised cloud; several are one row of points with a field `scan`.",
-                            "the file to read");
-}
-
-StageType textReader()
-{
-  return ofFiles<TextReader>(
-      "readers.text", {".txt", ".xyz", ".csv"},
-      "A point per line, as float64: x y z and more columns, named by the first line or column_4, ...; E N H and the "
-      "like are x y z; columns r g b of whole numbers up to 255 are packed as rgb, nx ny nz become normal_x normal_y "
-      "normal_z.",
-      "the file to read");
-}
-
-StageType pcdWriter()
-{
-  return ofFiles<FileWriter>("writers.pcd", {".pcd"}, "PCL's own format, with every field and the viewpoint.",
-                             to_write);
-}
-
-StageType plyWriter()
-{
-  return ofFiles<PlyWriter>(
-      "writers.ply", {".ply"},
-      "Binary PLY, with every field but 64-bit integers; normals are nx ny nz, colours uchar red green blue. A mesh is "
-      "written with its faces, as triangles, and what filters.bsh_flag found of them.",
-      to_write);
-}
-
-StageType lasWriter()
-{
-  return ofFiles<NarrowWriter>(
-      "writers.las", {".las"},
-      "LAS as its input file was: version, point format, scale, offset and all records; without "
-      "one LAS 1.4, the scale by "
-      "the cloud's extent. Other fields, as `collision`, are extra bytes with a description. "
-      "Points that are not finite "
-      "are left out, with a warning.",
-      to_write);
-}
-
-StageType objWriter()
-{
-  return ofFiles<NarrowWriter>("writers.obj", {".obj"},
-                               "Wavefront OBJ: vertices with their colours and normals; a warning names lost fields.",
-                               to_write);
-}
-
-StageType ptsWriter()
-{
-  return ofFiles<NarrowWriter>("writers.pts", {".pts"},
-                               "Leica's PTS: x y z, intensity, rgb. Points that are not finite are left out; warnings "
-                               "name lost points and fields.",
-                               to_write);
-}
-
-StageType ptxWriter()
-{
-  return ofFiles<NarrowWriter>("writers.ptx", {".ptx"},
-                               "Leica's PTX: x y z, intensity, rgb, the viewpoint as the scanner's pose; NaN is no "
-                               "return, a field `scan` parts several scans. A warning names lost fields.",
-                               to_write);
-}
-
-StageType textWriter()
-{
-  return ofFiles<FileWriter>("writers.text", {".txt", ".xyz", ".csv"},
-                             "A line that names the fields, then a point per line; colours are columns r g b. A .csv "
-                             "has commas between values, others blanks.",
-                             to_write);
+  return {
+      ofFiles<FileWriter>("writers.pcd", {".pcd"}, "PCL's own format, with every field and the viewpoint."),
+      ofFiles<PlyWriter>("writers.ply", {".ply"},
+                         "Binary PLY, with every field but 64-bit integers; normals are nx ny nz, colours uchar red "
+                         "green blue. A mesh is "
+                         "written with its faces, as triangles, and what filters.bsh_flag found of them."),
+      ofFiles<NarrowWriter>("writers.las", {".las"},
+                            "LAS as its input file was: version, point format, scale, offset and all records; without "
+                            "one LAS 1.4, the scale by "
+                            "the cloud's extent. Other fields, as `collision`, are extra bytes with a description. "
+                            "Points that are not finite "
+                            "are left out, with a warning."),
+      ofFiles<NarrowWriter>("writers.pts", {".pts"},
+                            "Leica's PTS: x y z, intensity, rgb. Points that are not finite are left out; warnings "
+                            "name lost points and fields."),
+      ofFiles<NarrowWriter>("writers.ptx", {".ptx"},
+                            "Leica's PTX: x y z, intensity, rgb, the viewpoint as the scanner's pose; NaN is no "
+                            "return, a field `scan` parts several scans. A warning names lost fields."),
+      ofFiles<NarrowWriter>("writers.obj", {".obj"},
+                            "Wavefront OBJ: vertices with their colours and normals; a warning names lost fields."),
+      ofFiles<FileWriter>("writers.text", {".txt", ".xyz", ".csv"},
+                          "A line that names the fields, then a point per line; colours are columns r g b. A .csv "
+                          "has commas between values, others blanks.")};
 }
 
 } // namespace pcl_bsh::pipeline

@@ -2,13 +2,13 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/las/las.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
+#include <pcl_bsh/io/clouds/lines/scan_text.h>
+#include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/meshes/mesh_faces.h>
 #include <pcl_bsh/io/clouds/meshes/stl.h>
-#include <pcl_bsh/io/clouds/pcd.h>
-#include <pcl_bsh/io/clouds/ply.h>
+#include <pcl_bsh/io/clouds/pcd/pcd.h>
+#include <pcl_bsh/io/clouds/ply/ply.h>
 #include <pcl_bsh/io/clouds/records.h>
-#include <pcl_bsh/io/clouds/scan_text.h>
-#include <pcl_bsh/io/clouds/text_clouds.h>
 #include <pcl_bsh/io/files/file_identity.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/text/file_bytes.h>
@@ -59,7 +59,15 @@ void requireColumnText(const std::string& extension, const ColumnNames& columns)
                     "give names of columns for .xyz, .txt and .csv files alone");
 }
 
-Contents parse(const std::string& extension, std::string_view file, const ColumnNames& columns, unsigned threads)
+/// The faces of a file, as it has them.
+struct Faces {
+  Polygons polygons;
+  std::vector<Triangle> triangles;
+};
+
+/// @param faces if not null, set where the format has some
+Contents parse(const std::string& extension, std::string_view file, const ColumnNames& columns, unsigned threads,
+               Faces* faces)
 {
   requireColumnText(extension, columns);
   if (isLasExtension(extension)) return readAll(LasReader(std::make_unique<HeldBytes>(file), threads));
@@ -68,19 +76,21 @@ Contents parse(const std::string& extension, std::string_view file, const Column
     contents.cloud = parsePcd(file, contents.facts.viewpoint);
   }
   else if (extension == ".ply") {
-    contents.cloud = parsePly(file, contents.facts.viewpoint);
+    contents.cloud = parsePly(file, contents.facts.viewpoint, faces ? &faces->polygons : nullptr);
   }
   else if (extension == ".ptx") {
     contents.cloud = parsePtx(file, contents.facts.viewpoint);
   }
   else if (extension == ".obj") {
     contents.cloud = parseObj(file);
+    if (faces) faces->polygons = parseObjFaces(file);
   }
   else if (extension == ".off") {
     contents.cloud = parseOff(file);
+    if (faces) faces->polygons = parseOffFaces(file);
   }
   else if (extension == ".stl") {
-    contents.cloud = parseStl(file, nullptr);
+    contents.cloud = parseStl(file, faces ? &faces->triangles : nullptr);
   }
   else if (extension == ".pts") {
     contents.cloud = parsePts(file);
@@ -204,10 +214,8 @@ pcl::PCLPointCloud2 headerOf(const std::filesystem::path& path, const FileBytes&
   return naming(path, [&] { return checkedHeader(parseHeader(extension, file.view(), file.isWhole(), columns)); });
 }
 
-} // namespace
-
-pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns,
-                              unsigned threads)
+pcl::PCLPointCloud2 read(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns,
+                         unsigned threads, Faces* faces)
 {
   if (isLasFile(path)) {
     return naming(path, [&] {
@@ -217,7 +225,15 @@ pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* fac
   }
   const FileBytes file(path);
   const std::string extension = readableExtension(path, file.view());
-  return naming(path, [&] { return checked(parse(extension, file.view(), columns, threads), facts); });
+  return naming(path, [&] { return checked(parse(extension, file.view(), columns, threads, faces), facts); });
+}
+
+} // namespace
+
+pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns,
+                              unsigned threads)
+{
+  return read(path, facts, columns, threads, nullptr);
 }
 
 pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts)
@@ -232,30 +248,13 @@ pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t s
 
 Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns, unsigned threads)
 {
-  Mesh mesh;
-  if (isLasFile(path)) {
-    mesh.vertices = readCloud(path, facts, columns, threads);
-    return mesh;
-  }
-  const FileBytes file(path);
-  const std::string extension = readableExtension(path, file.view());
-  return naming(path, [&] {
-    Contents contents;
-    Polygons faces;
-    requireColumnText(extension, columns);
-    if (extension == ".stl")
-      contents.cloud = parseStl(file.view(), &mesh.triangles);
-    else if (extension == ".ply")
-      contents.cloud = parsePly(file.view(), contents.facts.viewpoint, &faces);
-    else
-      contents = parse(extension, file.view(), columns, threads);
-    if (extension == ".obj") faces = parseObjFaces(file.view());
-    if (extension == ".off") faces = parseOffFaces(file.view());
-    mesh.vertices = checked(std::move(contents), facts);
-    for (const Triangle& triangle : trianglesOf(faces, viewOf(mesh.vertices), &mesh.face_values))
-      mesh.triangles.push_back(triangle);
-    return std::move(mesh);
+  Faces faces;
+  Mesh mesh{read(path, facts, columns, threads, &faces), std::move(faces.triangles)};
+  naming(path, [&] {
+    const std::vector<Triangle> cut = trianglesOf(faces.polygons, viewOf(mesh.vertices), &mesh.face_values);
+    mesh.triangles.insert(mesh.triangles.end(), cut.begin(), cut.end());
   });
+  return mesh;
 }
 
 pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan)

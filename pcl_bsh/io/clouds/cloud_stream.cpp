@@ -4,7 +4,7 @@
 #include <pcl_bsh/io/clouds/cloud_stream.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/clouds/las/reader.h>
-#include <pcl_bsh/io/clouds/pcd.h>
+#include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/text/byte_source.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 #include <pcl_bsh/io/text/format_error.h>

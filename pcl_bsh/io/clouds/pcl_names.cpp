@@ -96,18 +96,17 @@ std::vector<std::uint32_t> layOutForPcl(const Fields& values, pcl::PCLPointCloud
   for (PointField& value : named) value.name = inSmallLetters(value.name);
   const std::vector<std::size_t> channels = channelsIn(named);
   renameNormals(named, 0, 1);
-  for (std::size_t i = 0; i < named.size(); ++i) {
-    const bool known = std::find(plain_names.begin(), plain_names.end(), named[i].name) != plain_names.end();
-    if (!known || !placeOf(named, named[i].name)) named[i].name = values[i].name;
-  }
+  Fields fields = values;
+  for (const char* name : plain_names)
+    if (const auto place = placeOf(named, name)) fields[*place].name = name;
 
   std::vector<std::uint32_t> offsets(values.size());
   std::optional<std::uint32_t> packed;
-  for (std::size_t i = 0; i < named.size(); ++i) {
+  for (std::size_t i = 0; i < fields.size(); ++i) {
     const auto channel = std::find(channels.begin(), channels.end(), i);
     if (channel == channels.end()) {
       offsets[i] = cloud.point_step;
-      if (named[i].count > 0) addField(cloud, named[i].name, named[i].datatype, named[i].count);
+      if (fields[i].count > 0) addField(cloud, fields[i].name, fields[i].datatype, fields[i].count);
       continue;
     }
     if (!packed) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/replace_file.h>
-#include <pcl_bsh/io/poses/pose_columns.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/poses/pose_text.h>
 #include <pcl_bsh/io/poses/rigid_pose.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 #include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/io/text/number_text.h>
+#include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/io/text/text_cursor.h>
 
 #include <pcl_bsh/base/invalid_input.h>
@@ -15,6 +15,8 @@
 #include <pcl_bsh/query/request_check.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -26,15 +28,6 @@ namespace {
 constexpr auto forms_of_a_pose =
     "give 12 or 16 numbers of a rigid matrix, row by row, or time tx ty tz qx qy qz qw, a pose to "
     "a line; or a first line that names the columns, tx ty tz qx qy qz qw among them";
-
-Eigen::Isometry3d fromMatrix(const std::vector<double>& numbers)
-{
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    pose.matrix()(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = numbers[i];
-  }
-  return pose;
-}
 
 /// @param n time tx ty tz qx qy qz qw
 Eigen::Isometry3d fromQuaternion(const std::vector<double>& n, const TextCursor& cursor)
@@ -57,6 +50,80 @@ void requireRigid(const Eigen::Isometry3d& pose, const TextCursor& cursor)
   catch (const InvalidInput& error) {
     cursor.fail("holds no pose, " + error.wrong());
   }
+}
+
+/// Where x y z of the position and x y z w of the quaternion stand in a line.
+struct PoseColumns {
+  std::array<std::size_t, 3> position = {};
+  std::array<std::size_t, 4> quaternion = {};
+  std::size_t count = 0; ///< of all columns
+};
+
+/// Parts of a name in small letters, without a unit in brackets.
+std::vector<std::string> partsOf(std::string_view name)
+{
+  std::vector<std::string> parts(1);
+  for (const char c : name.substr(0, name.find_first_of("[("))) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      parts.back() += c;
+    else if (!parts.back().empty())
+      parts.emplace_back();
+  }
+  if (parts.size() > 1 && parts.back().empty()) parts.pop_back();
+  for (std::string& part : parts) part = inSmallLetters(part);
+  return parts;
+}
+
+struct Meaning {
+  bool rotation = false;
+  std::size_t axis = 0; ///< of x y z w
+};
+
+std::optional<Meaning> meaningOf(const std::string& name)
+{
+  std::vector<std::string> parts = partsOf(name);
+  if (parts.back().empty()) return std::nullopt;
+  const std::size_t axis = std::string_view("xyzw").find(parts.back().back());
+  parts.back().pop_back(); // tx is t and x
+  if (parts.back().empty()) parts.pop_back();
+  if (axis == std::string_view::npos) return std::nullopt;
+  const auto has = [&](std::initializer_list<std::string_view> words) {
+    return std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
+      return std::find(words.begin(), words.end(), part) != words.end();
+    });
+  };
+  const std::string first = parts.empty() ? "" : parts.front();
+  const bool rotation = first == "q" || has({"quaternion", "quat", "orientation", "rotation", "rot"});
+  const bool position = first.empty() || first == "t" || first == "p" || has({"position", "pos", "translation"});
+  if (rotation) return Meaning{true, axis};
+  return position && axis < 3 ? std::optional<Meaning>({false, axis}) : std::nullopt;
+}
+
+/// The last part of a name is the axis, the parts before it say of what: tx qw (TUM), p_RS_R_x [m] q_RS_w [] (EuRoC),
+/// field.pose.position.x field.pose.orientation.w (ROS), position_x, x; in any case of letters.
+/// @return none unless each of the seven is there once
+std::optional<PoseColumns> poseColumnsOf(const std::vector<std::string>& names)
+{
+  PoseColumns columns;
+  columns.count = names.size();
+  std::array<int, 7> found = {};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::optional<Meaning> meaning = meaningOf(names[i]);
+    if (!meaning) continue;
+    (meaning->rotation ? columns.quaternion[meaning->axis] : columns.position[meaning->axis]) = i;
+    ++found[meaning->axis + (meaning->rotation ? 3 : 0)];
+  }
+  if (std::any_of(found.begin(), found.end(), [](int times) { return times != 1; })) return std::nullopt;
+  return columns;
+}
+
+/// The words of a line, separated as separatorOf() has it. Takes them off the line.
+std::vector<std::string> wordsOfLine(TextCursor& line)
+{
+  line.separateBy(separatorOf(line.line()));
+  std::vector<std::string> words;
+  while (!line.line().empty()) words.emplace_back(line.word());
+  return words;
 }
 
 /// The last comment before the first pose that names the columns.
@@ -122,7 +189,7 @@ std::vector<Eigen::Isometry3d> parsePoses(std::string_view text, std::vector<std
       cursor.fail("has " + count + " numbers, the lines before have " + std::to_string(columns));
     }
     columns = numbers.size();
-    const RigidPose rigid = nearestRigid(columns == 8 ? fromQuaternion(numbers, cursor) : fromMatrix(numbers));
+    const RigidPose rigid = nearestRigid(columns == 8 ? fromQuaternion(numbers, cursor) : poseFrom(numbers));
     requireRigid(rigid.pose, cursor);
     poses.push_back(rigid.pose);
     if (rigid.deviation > 0) ++replaced;

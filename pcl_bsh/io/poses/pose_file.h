@@ -13,7 +13,7 @@ namespace pcl_bsh::io {
 
 /// Reads a pose from each line; numbers are separated as numbersOfLine() has it, the rest of a line from '#' on is
 /// ignored, and so are lines without a number. A first line without numbers, or a comment before the first pose, may
-/// name the columns (pose_columns.h): then position and quaternion are where it says, and other columns are not read.
+/// name the columns: then position and quaternion are where it says, and other columns are not read.
 /// Otherwise how a pose is written is told by how many numbers a line has, the same in the whole file:
 ///
 ///   12  the upper three rows of its matrix, row by row (KITTI)

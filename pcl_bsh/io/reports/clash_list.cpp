@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/json/json_reader.h>
@@ -265,7 +266,7 @@ std::vector<std::string> surveyWarnings(const std::filesystem::path& path, const
   if (!earlier.survey) return warnings;
   const Survey& before = *earlier.survey;
   if (before.poses != now.poses || before.path_checksum != now.path_checksum) {
-    warnings.push_back(path.string() + ": lists clashes of another path (" + std::to_string(before.poses) + " poses " +
+    warnings.push_back(path.string() + ": lists clashes of another path (" + counted(before.poses, "pose") + ' ' +
                        boxText(before.path) + ", now " + std::to_string(now.poses) + ' ' + boxText(now.path) +
                        "): what was where the path does not come any more is called not_visited, and not resolved");
   }

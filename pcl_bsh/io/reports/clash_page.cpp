@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The numbers of the page; clash_page.html has the page itself.
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/page_text.h>
 
@@ -46,14 +47,13 @@ private:
     return closest;
   }
 
-  static std::string many(std::size_t count) { return std::to_string(count) + (count == 1 ? " clash" : " clashes"); }
 
   /// Certain ones first.
   std::string headline() const
   {
-    const std::size_t present = report_.present(), perhaps = report_.perhaps();
-    if (!report_.question.isUncertain()) return many(present);
-    return many(present - perhaps) + ", " + std::to_string(perhaps) + " perhaps";
+    const std::size_t perhaps = report_.question.isUncertain() ? report_.perhaps() : 0;
+    const std::string certain = counted(report_.present() - perhaps, "clash", "clashes");
+    return report_.question.isUncertain() ? certain + ", " + std::to_string(perhaps) + " perhaps" : certain;
   }
 
   /// What is uncertain, where anything is.
@@ -76,7 +76,7 @@ private:
                  {"unit", textOrNone(report_.unit)},
                  {"in", report_.unit.empty() ? std::string() : " [" + plain(report_.unit) + "]"},
                  {"uncertainty", uncertainty()},
-                 {"poses", std::to_string(report_.poses.size()) + (report_.poses.size() == 1 ? " pose" : " poses")},
+                 {"poses", counted(report_.poses.size(), "pose")},
                  {"clearance", number(question.clearance)},
                  {"colliding", std::to_string(report_.found.colliding)},
                  {"closest", numberOrNone(closest_)},
@@ -170,6 +170,7 @@ private:
             {"perhaps", !clash.isCertain()},
             {"distance", number(clash.distance)},
             {"points", std::to_string(clash.points)},
+            {"points_noun", nounOf(clash.points, "point")},
             {"first_pose", std::to_string(clash.first_pose)},
             {"closest_pose", std::to_string(clash.closest_pose)}};
   }

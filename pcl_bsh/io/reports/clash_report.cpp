@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/report_origin.h>
@@ -155,8 +156,7 @@ std::string clashCsv(const ClashReport& report)
 std::string clashCounts(const ClashReport& report)
 {
   const std::size_t present = report.present(), perhaps = report.perhaps();
-  const auto many = [](std::size_t count) { return std::to_string(count) + (count == 1 ? " clash" : " clashes"); };
-  std::string text = many(present - perhaps);
+  std::string text = counted(present - perhaps, "clash", "clashes");
   if (report.question.isUncertain()) text += ", " + std::to_string(perhaps) + " perhaps";
   if (!report.previous) return text;
   for (const auto& [status, name] : {std::pair{ClashStatus::resolved, "resolved"},

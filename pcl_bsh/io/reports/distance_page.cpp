@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The numbers of the page; distance_page.html has the page itself.
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/reports/distance_report.h>
 #include <pcl_bsh/io/reports/page_text.h>
 
@@ -42,9 +43,9 @@ private:
   }
 
   /// None of none.
-  static Data counted(std::size_t count, const char* one, const char* many)
+  static Data countedIfAny(std::size_t count, const char* one, const char* many)
   {
-    return count > 0 ? Data(std::to_string(count) + (count == 1 ? one : many)) : Data(false);
+    return count > 0 ? Data(counted(count, one, many)) : Data(false);
   }
 
   Data contents() const
@@ -61,7 +62,7 @@ private:
          {"pair", false},
          {"max_distance", numberOrNone(question.request.max_distance)},
          {"part", question.partName()},
-         {"farther", counted(farther, " point has", " points have")},
+         {"farther", countedIfAny(farther, "point has", "points have")},
          {"statistics", statistics()},
          {"sides", List{side(report_.input, report_.obstacle.name), side(report_.obstacle, report_.input.name)}}});
     if (const auto& pair = report_.hausdorff_pair)
@@ -94,7 +95,7 @@ private:
   {
     Object side = {{"from", plain(from.name)},
                    {"to", plain(to)},
-                   {"points", std::to_string(from.points)},
+                   {"points", counted(from.points, "point")},
                    {"beyond", length(from.beyond)},
                    {"view", from.points > 0 ? view(from) : Data(false)},
                    {"places", places(from)}};
@@ -130,8 +131,8 @@ private:
     side["ticks"] = ticks;
     side["most"] = std::to_string(most);
     side["width"] = number(histogram.width);
-    side["above"] = counted(histogram.above, " point is", " points are");
-    side["without"] = counted(from.farther(), " point has", " points have");
+    side["above"] = countedIfAny(histogram.above, "point is", "points are");
+    side["without"] = countedIfAny(from.farther(), "point has", "points have");
     side["axis_end"] = number(histogram.end());
   }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 namespace pcl_bsh::io {
 
@@ -29,6 +30,7 @@ constexpr std::array<Axis, 3> surveyed = {{
 ColumnNames columnNamesOf(std::string_view text)
 {
   ColumnNames names;
+  std::set<std::string> seen;
   for (bool last = false; !last;) {
     const std::size_t end = std::min(text.find(','), text.size());
     last = end == text.size();
@@ -36,7 +38,7 @@ ColumnNames columnNamesOf(std::string_view text)
     std::string name(text.substr(from, end - from));
     name.resize(name.find_last_not_of(" \t") + 1);
     if (name.empty()) throw FormatError("has a column without a name", give_columns);
-    if (name != skipped_column && std::find(names.begin(), names.end(), name) != names.end())
+    if (name != skipped_column && !seen.insert(name).second)
       throw FormatError("names two columns " + name, give_columns);
     names.push_back(std::move(name));
     if (!last) text.remove_prefix(end + 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
-#include <pcl_bsh/io/clouds/pcd.h>
+#include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/neighbors/spacing.h>

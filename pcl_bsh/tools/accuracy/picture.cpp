@@ -1,36 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "picture.h"
 
+#include <pcl_bsh/base/plain_text.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace pcl_bsh::accuracy {
 namespace {
 
-std::string shortText(double value)
-{
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
-}
-
 std::string timeText(double seconds)
 {
-  if (seconds >= 1.0) return shortText(seconds) + " s";
-  if (seconds >= 1e-3) return shortText(1e3 * seconds) + " ms";
-  if (seconds >= 1e-6) return shortText(1e6 * seconds) + " \xc2\xb5s";
-  return shortText(1e9 * seconds) + " ns";
+  if (seconds >= 1.0) return plainText(seconds) + " s";
+  if (seconds >= 1e-3) return plainText(1e3 * seconds) + " ms";
+  if (seconds >= 1e-6) return plainText(1e6 * seconds) + " \xc2\xb5s";
+  return plainText(1e9 * seconds) + " ns";
 }
 
 std::string lengthText(double length, const std::string& unit)
 {
-  if (unit == "m" && length >= 1e3) return shortText(1e-3 * length) + " km";
-  if (unit == "m" && length < 1e-2) return shortText(1e3 * length) + " mm";
-  if (unit == "m" && length < 1.0) return shortText(1e2 * length) + " cm";
-  return unit.empty() ? shortText(length) : shortText(length) + ' ' + unit;
+  if (unit == "m" && length >= 1e3) return plainText(1e-3 * length) + " km";
+  if (unit == "m" && length < 1e-2) return plainText(1e3 * length) + " mm";
+  if (unit == "m" && length < 1.0) return plainText(1e2 * length) + " cm";
+  return unit.empty() ? plainText(length) : plainText(length) + ' ' + unit;
 }
 
 /// Whole decades that hold the values, two ticks at least.
@@ -102,7 +95,7 @@ std::vector<vtk::Span> spansOf(const vtk::Series& ours, const vtk::Series& tree)
   const double from = ours.points.front().x, to = tree.points.front().x;
   if (!(to > 1.5 * from)) return {};
   const double digits = std::pow(10.0, std::floor(std::log10(to / from)) - 1.0); // two digits are as many as last
-  return {{from, to, shortText(std::round(to / from / digits) * digits) + " x faster"}};
+  return {{from, to, plainText(std::round(to / from / digits) * digits) + " x faster"}};
 }
 
 vtk::Chart chartOf(const Study& study, const View& view)
@@ -176,7 +169,7 @@ std::vector<vtk::Chart> chartsOf(const Subject& subject, const Study& study)
   flags.title = "Which points collide?";
   flags.x = {"time per pose", times};
   flags.y = {"wrong or undecided / colliding", decades(errorsOf(flags), [](double share) {
-               return share > 1.0 ? shortText(share) + " x" : shortText(100.0 * share) + " %";
+               return share > 1.0 ? plainText(share) + " x" : plainText(100.0 * share) + " %";
              })};
   flags.lowest = "exact";
   return {distance, flags};

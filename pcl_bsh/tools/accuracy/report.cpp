@@ -4,6 +4,7 @@
 #include "picture.h"
 #include <pcl_bsh/tools/cli/json_output.h>
 
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/files/replace_file.h>
 
 #include <nlohmann/json.hpp>
@@ -138,8 +139,8 @@ void writeMarkdown(std::ostream& out, const std::string& heading, const Subject&
 {
   out << "# What accuracy costs in time\n\n"
       << heading << "\n\n"
-      << format("Clearance %g, %zu poses, diameter of the first cloud %.4g (the clouds' unit). ", subject.clearance,
-                subject.poses.size(), subject.diameter)
+      << format("Clearance %g, ", subject.clearance) << counted(subject.poses.size(), "pose")
+      << format(", diameter of the first cloud %.4g (the clouds' unit). ", subject.diameter)
       << "Trees are built before. Times are of one query, on one thread its processor time, averaged over the poses: "
          "the median of the repetitions, and "
          "from their tenth to their nine tenths.\n\n"

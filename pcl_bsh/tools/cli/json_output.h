@@ -2,7 +2,8 @@
 // Reports for programs: in a file, or on standard output, where --json asks for it.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/json/json_document.h>
 
 #include <filesystem>
 #include <iostream>
@@ -11,10 +12,16 @@
 namespace pcl_bsh::cli {
 
 /// Indented; bytes that are no UTF-8, as file names may hold, are replaced.
-void writeJson(std::ostream& out, const nlohmann::ordered_json& report);
+inline void writeJson(std::ostream& out, const nlohmann::ordered_json& report)
+{
+  out << io::printed(report);
+}
 
 /// In a file, or on standard output as `-`. @throws files::FileError
-void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& report);
+inline void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& report)
+{
+  files::replaceFile(file, [&](std::ostream& out) { writeJson(out, report); });
+}
 
 /// What `check` returns. Where it throws, and `json` is set, standard output gets `failure` with the text as `error`.
 template <class Check>

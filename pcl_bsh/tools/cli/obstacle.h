@@ -6,11 +6,18 @@
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/query/accuracy.h>
 
+#include <CLI/CLI.hpp>
+
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace pcl_bsh::cli {
+
+/// --surface-tolerance and --vertices-only, of which one is given.
+/// @param tolerance finite and > 0, or none
+void addSurfaceOptions(CLI::App& app, std::optional<double>& tolerance, bool& vertices_only);
 
 /// Reads it, as a step of the program.
 /// @param clearance of the query. @param seconds that it took are added

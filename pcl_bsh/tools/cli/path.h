@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the obstacle moves, as users write it: a file of poses, or a straight run from one pose to another.
+// How the obstacle stands or moves, as users write it: a pose, a file of poses, or a straight run from one pose to
+// another.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,6 +12,12 @@
 #include <vector>
 
 namespace pcl_bsh::cli {
+
+/// The pose that the value of an option stands for: six numbers x,y,z,roll,pitch,yaw or the name of a file for
+/// io::readPose(). A matrix with |R'R - I| from 1e-6 to 1e-4, as few printed digits leave it, stands for its nearest
+/// rotation; `warnings` gets a line then, and for angles of more than two turns.
+/// @throws UsageError when it is neither, files::FileError as readPose() does
+Eigen::Isometry3d parsePose(const std::string& option, const std::string& text, std::vector<std::string>& warnings);
 
 /// The values of --trajectory, --from, --to, --steps and --swept.
 struct PathOptions {

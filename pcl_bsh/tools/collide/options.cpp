@@ -4,9 +4,8 @@
 #include <pcl_bsh/tools/cli/accuracy.h>
 #include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
+#include <pcl_bsh/tools/cli/obstacle.h>
 #include <pcl_bsh/tools/cli/path.h>
-#include <pcl_bsh/tools/cli/pose.h>
-#include <pcl_bsh/tools/cli/surface_options.h>
 #include <pcl_bsh/tools/cli/uncertainty.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "link_body.h"
 
-#include "shape_surface.h"
+#include "surface.h"
 
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/surface/surface_cover.h>

@@ -3,13 +3,31 @@
 #pragma once
 
 #include "robot.h"
-#include "solid.h"
 
 #include <pcl_bsh/hierarchy/points_view.h>
 
+#include <variant>
 #include <vector>
 
 namespace pcl_bsh::self_filter {
+
+/// A body that is solid.
+using Solid = std::variant<Box, Cylinder, Sphere>;
+
+/// How far a point in the solid's frame lies from it, m; 0 inside. But for a few roundings of double.
+double distanceTo(const Solid& solid, const Eigen::Vector3d& point);
+
+/// A cylinder about an axis of the solid's frame, centred, that encloses a box or a cylinder. Of a sphere, which lies
+/// within the radius of its centre, the length is 0.
+struct Rod {
+  int axis = 2;
+  double radius = 0.0, half_length = 0.0; ///< m
+};
+
+Rod rodAround(const Solid& solid);
+
+/// @throws std::runtime_error for a size that is not finite, not above 0, or beyond what a float holds
+void requireSize(const Solid& solid);
 
 /// Centres and radii, m.
 struct Balls {

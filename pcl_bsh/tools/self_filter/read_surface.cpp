@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "read_surface.h"
+#include "surface.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/file_bytes.h>
+#include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
 #include <utility>
 
@@ -63,12 +63,9 @@ Surface readCollada(const fs::path& path)
   importer.SetPropertyInteger(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);          // where there is no mesh
   const aiScene* const scene =
       importer.ReadFileFromMemory(bytes.view().data(), bytes.view().size(), aiProcess_Triangulate, "dae");
-  if (!scene || !scene->mRootNode) {
-    std::string why = importer.GetErrorString();
-    std::replace_if(
-        why.begin(), why.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-    throw files::FileError(path, "is refused by assimp: " + why, "mend the COLLADA, or give a .stl file in metres");
-  }
+  if (!scene || !scene->mRootNode)
+    throw files::FileError(path, std::string("is refused by assimp: ") + importer.GetErrorString(),
+                           "mend the COLLADA, or give a .stl file in metres");
   Surface surface;
   addNode(surface, *scene, *scene->mRootNode, Eigen::Affine3d::Identity());
   return surface;
@@ -91,9 +88,7 @@ Surface readCollada(const fs::path& path)
 
 Surface readSurface(const fs::path& path)
 {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = io::extensionOf(path);
   if (extension == ".dae") return readCollada(path);
   constexpr std::array meshes = {".stl", ".obj", ".ply", ".off"};
   if (std::find(meshes.begin(), meshes.end(), extension) == meshes.end())

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "shape_surface.h"
-
-#include "read_surface.h"
+#include "surface.h"
 
 #include <pcl_bsh/io/files/file_error.h>
 

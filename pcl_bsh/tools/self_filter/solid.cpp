@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solid.h"
+#include "link_body.h"
 
 #include <algorithm>
 #include <cmath>

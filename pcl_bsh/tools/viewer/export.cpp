@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "export.h"
+#include "render_view.h"
 
 #include <pcl_bsh/tools/cli/step.h>
-#include <pcl_bsh/tools/viewer/actors/actors.h>
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
 #include <pcl_bsh/vtk/cloud_data.h>
@@ -48,31 +47,31 @@ vtkSmartPointer<vtkPolyData> knownScan(const CloudActor& cloud, const ViewConten
 
 } // namespace
 
-void exportTo(const std::filesystem::path& path, const ViewContent& content, CloudActors clouds,
-              const StepCollisions& collisions, std::size_t at, unsigned level)
+void RenderView::exportTo(const std::filesystem::path& path) const
 {
   cli::Step step("Writing " + path.string());
-  const auto scan = knownScan(*clouds[0], content, collisions, at);
+  const auto scan = knownScan(*clouds_[0], content_, collisions_, step_);
   if (path.extension() == ".vtp") {
     vtk::writeVtp(*scan, path);
-    const vtkIdType written = content.scan().hasTriangles() ? scan->GetNumberOfCells() : scan->GetNumberOfPoints();
-    step.done(grouped(static_cast<std::size_t>(written)) + ' ' + content.scan().partName() + 's');
+    const vtkIdType written = content_.scan().hasTriangles() ? scan->GetNumberOfCells() : scan->GetNumberOfPoints();
+    step.done(groupedCount(static_cast<std::size_t>(written), content_.scan().partName()));
     return;
   }
+  const unsigned level = extras_.level.value_or(0);
   std::vector<vtk::NamedData> blocks;
-  for (std::size_t i = 0; i < content.viewedClouds().size(); ++i) {
-    const ViewedCloud& viewed = content.viewedClouds()[i];
-    const Eigen::Isometry3d pose = content.poseOf(i, at);
+  for (std::size_t i = 0; i < content_.viewedClouds().size(); ++i) {
+    const ViewedCloud& viewed = content_.viewedClouds()[i];
+    const Eigen::Isometry3d pose = content_.poseOf(i, step_);
     const auto spheres = vtk::sphereData(*viewed.hierarchy, level);
-    blocks.emplace_back(viewed.name, posed(i == 0 ? scan : known(viewed, *clouds[i], collisions.flags[i]), pose));
+    blocks.emplace_back(viewed.name, posed(i == 0 ? scan : known(viewed, *clouds_[i], collisions_.flags[i]), pose));
     blocks.emplace_back(viewed.name + " spheres", posed(spheres, pose));
     blocks.emplace_back(viewed.name + " sphere glyphs", posed(vtk::sphereGlyphs(*spheres), pose));
     blocks.emplace_back(viewed.name + " voxels", posed(vtk::voxelBoxes(*viewed.hierarchy), pose));
     blocks.emplace_back(viewed.name + " cells", posed(vtk::cellBoxes(*viewed.hierarchy, level), pose));
   }
-  for (const auto& motion : content.paths(at).poses) blocks.emplace_back("path", vtk::pathData(motion));
+  for (const auto& motion : content_.paths(step_).poses) blocks.emplace_back("path", vtk::pathData(motion));
   vtk::writeVtm(blocks, path);
-  step.done(std::to_string(blocks.size()) + " blocks");
+  step.done(counted(blocks.size(), "block"));
 }
 
 } // namespace pcl_bsh::viewer

@@ -3,8 +3,8 @@
 
 #include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
-#include <pcl_bsh/tools/cli/pose.h>
-#include <pcl_bsh/tools/cli/surface_options.h>
+#include <pcl_bsh/tools/cli/obstacle.h>
+#include <pcl_bsh/tools/cli/path.h>
 
 #include <pcl_bsh/io/poses/pose_text.h>
 #include <pcl_bsh/io/text/parse_number.h>

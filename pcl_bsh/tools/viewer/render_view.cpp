@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render_view.h"
 
-#include "export.h"
 #include <pcl_bsh/tools/viewer/actors/camera.h>
-#include <pcl_bsh/tools/viewer/actors/closest_pair_actor.h>
 #include <pcl_bsh/tools/viewer/actors/coloring.h>
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/vtk/cloud_data.h>
-#include <pcl_bsh/vtk/path_data.h>
 
 #include <vtkBoundingBox.h>
 #include <vtkCamera.h>
 #include <vtkCellPicker.h>
 #include <vtkMath.h>
 #include <vtkNew.h>
-#include <vtkPointData.h>
 #include <vtkPointPicker.h>
-#include <vtkProperty.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,8 +62,10 @@ void RenderView::show(std::size_t step)
   if (step != step_) collisions_ = content_.collisions(step);
   step_ = step;
   drawClouds();
-  drawPaths();
-  drawClosestPair();
+  path_props_.clear();
+  addPaths(path_props_, content_.paths(step_));
+  closest_props_.clear();
+  if (collisions_.closest) addClosestPair(closest_props_, *collisions_.closest, content_.options().unit);
   drawExtras();
   writeTexts();
 }
@@ -99,25 +95,6 @@ void RenderView::drawExtras()
 {
   extra_props_.clear();
   addExtras(extra_props_, content_, extras_, step_);
-}
-
-void RenderView::drawClosestPair()
-{
-  closest_props_.clear();
-  if (collisions_.closest) addClosestPair(closest_props_, *collisions_.closest, content_.options().unit);
-}
-
-void RenderView::drawPaths()
-{
-  path_props_.clear();
-  for (const std::vector<Eigen::Isometry3d>& motion : content_.paths(step_).poses) {
-    const auto path = vtk::pathData(motion);
-    path->GetPointData()->SetActiveScalars(nullptr);
-    const auto line = actorOf(path);
-    setColor(*line, path_color);
-    line->GetProperty()->SetLineWidth(2.0f);
-    path_props_.add(line);
-  }
 }
 
 void RenderView::writeTexts()
@@ -269,11 +246,6 @@ std::string RenderView::describePart(const ViewContent& content, std::size_t clo
              : flag == flagOf(Verdict::sparse)    ? "; not scanned densely enough"
                                                   : "; collides");
   return text.str() + content.details(cloud, part, step_);
-}
-
-void RenderView::exportTo(const std::filesystem::path& path)
-{
-  viewer::exportTo(path, content_, clouds_, collisions_, step_, extras_.level.value_or(0));
 }
 
 } // namespace pcl_bsh::viewer

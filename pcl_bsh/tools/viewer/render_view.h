@@ -5,7 +5,7 @@
 #include <pcl_bsh/tools/viewer/actors/actors.h>
 #include <pcl_bsh/tools/viewer/actors/caption.h>
 #include <pcl_bsh/tools/viewer/actors/cloud_actor.h>
-#include <pcl_bsh/tools/viewer/actors/extra_actors.h>
+#include <pcl_bsh/tools/viewer/actors/extras.h>
 #include <pcl_bsh/tools/viewer/actors/tile_actors.h>
 #include <pcl_bsh/tools/viewer/actors/value_bar.h>
 #include <pcl_bsh/tools/viewer/actors/value_histogram.h>
@@ -45,8 +45,8 @@ public:
   /// What a picked prop and the id of a point, or of a triangle's cell, say; empty when that is of no cloud.
   std::string describe(const vtkProp* prop, vtkIdType id) const;
 
-  /// @throws std::runtime_error naming the file
-  void exportTo(const std::filesystem::path& path);
+  /// Writes clouds with their arrays, spheres of a level, boxes and paths. @throws std::runtime_error naming the file
+  void exportTo(const std::filesystem::path& path) const;
 
   const StepCollisions& collisions() const { return collisions_; }
 
@@ -55,8 +55,6 @@ private:
                            std::uint32_t part) const;
   void drawClouds();
   void drawExtras();
-  void drawClosestPair();
-  void drawPaths();
   void writeTexts();
   std::vector<LegendEntry> legend() const;
   vtkBoundingBox boundsOf(std::size_t cloud) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The window: mouse, keys, a slider along the steps, picking.
+// The window: mouse, keys, a slider along the steps, picking; and pictures without one.
 #pragma once
 
 #include "render_view.h"
@@ -22,6 +22,9 @@ left right   step before, after
 click   point or triangle: number, place, distance, first pose
 r  s    reset the camera, save a picture
 h  q    hide this, quit)";
+
+/// Writes what --screenshot and --export ask for; needs no display. @throws std::runtime_error naming the file
+void drawFiles(const ViewContent& content);
 
 class Viewer {
 public:

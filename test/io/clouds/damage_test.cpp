@@ -4,10 +4,10 @@
 #include "samples.h"
 
 #include <pcl_bsh/io/clouds/las/las.h>
-#include <pcl_bsh/io/clouds/pcd.h>
-#include <pcl_bsh/io/clouds/ply.h>
-#include <pcl_bsh/io/clouds/scan_text.h>
-#include <pcl_bsh/io/clouds/text_clouds.h>
+#include <pcl_bsh/io/clouds/lines/scan_text.h>
+#include <pcl_bsh/io/clouds/lines/text_clouds.h>
+#include <pcl_bsh/io/clouds/pcd/pcd.h>
+#include <pcl_bsh/io/clouds/ply/ply.h>
 
 #include <functional>
 

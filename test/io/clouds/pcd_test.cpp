@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "samples.h"
 
-#include <pcl_bsh/io/clouds/pcd.h>
+#include <pcl_bsh/io/clouds/pcd/pcd.h>
 
 #include <pcl/io/pcd_io.h>
 

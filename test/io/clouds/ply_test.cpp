@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "samples.h"
 
-#include <pcl_bsh/io/clouds/ply.h>
+#include <pcl_bsh/io/clouds/ply/ply.h>
 
 #include <pcl/io/ply_io.h>
 

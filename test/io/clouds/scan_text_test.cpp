@@ -2,8 +2,8 @@
 #include "samples.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
-#include <pcl_bsh/io/clouds/scan_text.h>
-#include <pcl_bsh/io/clouds/text_clouds.h>
+#include <pcl_bsh/io/clouds/lines/scan_text.h>
+#include <pcl_bsh/io/clouds/lines/text_clouds.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "samples.h"
 
-#include <pcl_bsh/io/clouds/text_clouds.h>
+#include <pcl_bsh/io/clouds/lines/text_clouds.h>
 
 #include <gmock/gmock.h>
 
@@ -27,6 +27,19 @@ TEST(TextClouds, MoreColumnsAreKept)
   ASSERT_EQ(cloud.fields.size(), 5U);
   EXPECT_EQ(valueOf(cloud, 0, "column_4"), 40);
   EXPECT_EQ(valueOf(cloud, 1, "column_5"), 100);
+}
+
+TEST(TextClouds, TakesAsLongAsTheTextIsWhateverItsColumns)
+{
+  constexpr std::size_t columns = 400'000; // with a step for each pair of columns, hours
+  std::string row = "1,2,3", names = "a0,a1,x,y,z";
+  for (std::size_t i = 4; i <= columns; ++i) row += ",7";
+  for (std::size_t i = 6; i <= columns; ++i) names += ",a" + std::to_string(i);
+  EXPECT_EQ(parseColumns(row).fields.size(), columns);
+  const pcl::PCLPointCloud2 named = parseColumns(names + '\n' + row + '\n' + row);
+  EXPECT_EQ(named.fields.size(), columns);
+  EXPECT_EQ(valueOf(named, 1, "z"), 7);
+  EXPECT_EQ(columnNamesOf(names).size(), columns);
 }
 
 TEST(TextClouds, AFirstLineMayNameTheColumns)

@@ -155,6 +155,9 @@ TEST(ClashLists, WarnOfAnotherPathAndAnotherExtent)
                   "0, 0) to (50, 0, 0)): what was where the path does not come any more is called not_visited, "
                   "and not resolved"));
   EXPECT_EQ(warnings({0, 50.001, 100}, box).size(), 1U);
+  earlier.survey = Survey(posesAt({7}), box);
+  EXPECT_THAT(warnings({0}, box), ElementsAre(HasSubstr("clashes of another path (1 pose from ")));
+  earlier.survey = Survey(posesAt({0, 50, 100}), box);
   EXPECT_EQ(warnings({0, 100, 50}, box).size(), 1U);
   EXPECT_THAT(
       warnings({0, 50, 100}, {{0, 0, 0}, {60, 5, 5}}),

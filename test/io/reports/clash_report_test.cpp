@@ -223,6 +223,7 @@ TEST_F(ClashReports, TheTableListsEveryClashWithItsNumbers)
   EXPECT_EQ(occurrences(page, "<svg"), 5U) << "of the path, and two of each clash";
   EXPECT_TRUE(has(page, "between point 32 of the input at (8.000, 0.000, 1234567.250) and point 0 of the obstacle; "
                         "<b>3</b> points; first at pose <b>3</b>"));
+  EXPECT_TRUE(has(page, "<b>1</b> point; first at pose <b>0</b>"));
   EXPECT_FALSE(has(page, "Perhaps")) << "no point is uncertain";
   for (const char* tile : {"<b>0.3</b><span>clearance", "<b>4</b><span>colliding points", "<b>0.1</b><span>smallest",
                            "<b>2</b><span>new", "<b>0</b><span>persisting", "<b>1</b><span>resolved"})

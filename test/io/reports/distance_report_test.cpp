@@ -168,6 +168,13 @@ TEST_F(DistanceReports, PageStandsAlone)
   EXPECT_THAT(page(), HasSubstr("All lengths in the clouds&apos; unit."));
 }
 
+TEST_F(DistanceReports, PageCountsASinglePoint)
+{
+  EXPECT_THAT(page(), HasSubstr("From above, 100 of 100 points; circles"));
+  high.resize(3);
+  EXPECT_THAT(page(), HasSubstr("From above, 1 of 1 point; circles"));
+}
+
 TEST_F(DistanceReports, TextOfUsersIsNoMarkup)
 {
   question.input = "a\"b<script>alert('x')</script>.ply";

@@ -16,6 +16,9 @@ TEST(Demo, NoticesOtherNumbers)
   EXPECT_EQ(demo.exit_code, 1);
   EXPECT_THAT(demo.out, HasSubstr("not the reference: 53, 0.004"));
   EXPECT_THAT(demo.out, HasSubstr("0 of 10 rows agree"));
+  const std::string alone = folder.write("alone.xyz", "0 0 0\n").string();
+  EXPECT_THAT(run("pcl_bsh_demo", building + " " + alone + " " + (folder / "out.pcd").string()).out,
+              HasSubstr("A man of 1 point walks through a scanned building of 2 points; "));
 }
 
 TEST(Demo, SaysWhatItNeeds)

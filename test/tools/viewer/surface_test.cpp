@@ -100,7 +100,7 @@ TEST_F(SurfaceViewTest, TrianglesOfTheFirstCloudCollide)
   expected[touched] = 1;
   EXPECT_EQ(found.flags[0], expected);
   EXPECT_EQ(found.colliding, 1u);
-  EXPECT_THAT(content.heading(found, 0), HasSubstr("crate.off: 12 triangles, 1 collide"));
+  EXPECT_THAT(content.heading(found, 0), HasSubstr("crate.off: 12 triangles, 1 collides"));
   Options corners = asked();
   corners.surface.vertices_only = true;
   EXPECT_THAT(CloudsContent(corners).collisions(0).flags[0], Each(0));

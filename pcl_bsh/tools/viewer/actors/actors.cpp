@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "actors.h"
 
-#include <vtkIntArray.h>
+#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/vtk/surface_data.h>
+
 #include <vtkNew.h>
-#include <vtkPlane.h>
-#include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkTransform.h>
 #include <vtkTransformPolyDataFilter.h>
-#include <vtkUnsignedCharArray.h>
 
 namespace pcl_bsh::viewer {
 
@@ -31,30 +30,27 @@ vtkSmartPointer<vtkActor> actorOf(vtkPolyData* data)
   return actor;
 }
 
+void setData(vtkActor& actor, vtkPolyData& data)
+{
+  vtkPolyDataMapper::SafeDownCast(actor.GetMapper())->SetInputData(&data);
+}
+
 void setColor(vtkActor& actor, const Color& color)
 {
   const std::array<double, 3> c = fractions(color);
   actor.GetProperty()->SetColor(c[0], c[1], c[2]);
 }
 
-void setColors(vtkPolyData& data, const std::vector<Color>& colors)
+vtkSmartPointer<vtkActor> surfaceActor(const ViewedCloud& viewed, const Color& color)
 {
-  auto* const index = vtkIntArray::SafeDownCast(data.GetPointData()->GetArray("index"));
-  vtkNew<vtkUnsignedCharArray> array;
-  array->SetName("colors");
-  array->SetNumberOfComponents(3);
-  array->SetNumberOfTuples(data.GetNumberOfPoints());
-  for (vtkIdType i = 0; i < data.GetNumberOfPoints(); ++i)
-    array->SetTypedTuple(i, colors[static_cast<std::size_t>(index ? index->GetValue(i) : i)].data());
-  data.GetPointData()->SetScalars(array);
-}
-
-void cut(vtkActor& actor, const Cut& plane)
-{
-  vtkNew<vtkPlane> kept;
-  kept->SetOrigin(plane.point.data());
-  kept->SetNormal(-plane.normal[0], -plane.normal[1], -plane.normal[2]);
-  actor.GetMapper()->AddClippingPlane(kept);
+  const auto actor = actorOf(vtk::surfaceData(viewOf(viewed.surface->points()), *viewed.surface->triangles()));
+  setColor(*actor, color);
+  actor->GetProperty()->LightingOn();
+  actor->GetProperty()->SetInterpolationToFlat();
+  actor->GetProperty()->SetAmbient(0.3);
+  actor->GetProperty()->SetDiffuse(0.7);
+  actor->PickableOff();
+  return actor;
 }
 
 vtkSmartPointer<vtkPolyData> posed(vtkPolyData* data, const Eigen::Isometry3d& pose)

@@ -3,16 +3,17 @@
 #pragma once
 
 #include "palette.h"
-#include <pcl_bsh/tools/viewer/options.h>
+#include <pcl_bsh/tools/viewer/content/viewed_cloud.h>
 
 #include <Eigen/Geometry>
 #include <vtkActor.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkMatrix4x4.h>
 #include <vtkPolyData.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
+#include <vtkUnsignedCharArray.h>
 
-#include <string>
 #include <vector>
 
 namespace pcl_bsh::viewer {
@@ -21,13 +22,27 @@ vtkSmartPointer<vtkMatrix4x4> matrixOf(const Eigen::Isometry3d& pose);
 
 /// Without lighting: colours are seen as they are.
 vtkSmartPointer<vtkActor> actorOf(vtkPolyData* data);
+void setData(vtkActor& actor, vtkPolyData& data); ///< of one that actorOf() made
 void setColor(vtkActor& actor, const Color& color);
 
-/// A colour of its own for each point, by record where the data has record numbers.
-void setColors(vtkPolyData& data, const std::vector<Color>& colors);
+/// A surface in one colour, lit, so that its shape is seen. It cannot be picked: what is asked about may be the balls
+/// of its cover. @pre viewed.surface has triangles
+vtkSmartPointer<vtkActor> surfaceActor(const ViewedCloud& viewed, const Color& color);
 
-/// Nothing of the actor is drawn on the side of the plane's normal.
-void cut(vtkActor& actor, const Cut& plane);
+/// A colour of its own for each point or cell. @param color_of called with numbers up to `count`
+template <class ColorOf>
+void setColors(vtkDataSetAttributes& parts, vtkIdType count, const ColorOf& color_of)
+{
+  const auto colors = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  colors->SetName("colors");
+  colors->SetNumberOfComponents(3);
+  colors->SetNumberOfTuples(count);
+  for (vtkIdType i = 0; i < count; ++i) {
+    const Color color = color_of(i);
+    colors->SetTypedTuple(i, color.data());
+  }
+  parts.SetScalars(colors);
+}
 
 /// The data in another frame; itself where that is the same.
 vtkSmartPointer<vtkPolyData> posed(vtkPolyData* data, const Eigen::Isometry3d& pose);

@@ -9,9 +9,11 @@
 #include <pcl_bsh/hierarchy/points_view.h>
 
 #include <Eigen/Geometry>
+#include <vtkActor.h>
 #include <vtkPicker.h>
 #include <vtkPolyData.h>
 #include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
 
 #include <cstdint>
 #include <memory>
@@ -28,8 +30,9 @@ public:
   CloudActor(const CloudActor&) = delete;
   CloudActor& operator=(const CloudActor&) = delete;
 
-  /// Takes the points as they are now; paint and mark them anew. For points that move in their own frame.
-  virtual void setPoints(const PointsView& points) = 0;
+  /// Takes the points as they are now; paint and mark them anew. For points that move in their own frame: surfaces do
+  /// not.
+  virtual void setPoints(const PointsView& /*points*/) {}
 
   /// @param colors one per part
   virtual void paint(const std::vector<Color>& colors) = 0;
@@ -42,15 +45,15 @@ public:
   /// @param flags empty: none
   virtual void mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors = {}) = 0;
 
-  virtual void place(const Eigen::Isometry3d& pose) = 0;
-  virtual void setMoving(bool moving) = 0;
-  virtual void setVisible(bool visible) = 0;
-  virtual void remove(vtkRenderer& renderer) = 0; ///< for good
-  virtual void cut(const Cut& plane) = 0;         ///< in the world frame; nothing is drawn on the side of its normal
+  virtual void setMoving(bool /*moving*/) {} ///< less is drawn then, where that is much
+  virtual void setVisible(bool visible) = 0; ///< of a picture that does not move
+  void place(const Eigen::Isometry3d& pose);
+  void remove();              ///< for good
+  void cut(const Cut& plane); ///< in the world frame; nothing is drawn on the side of its normal
 
-  virtual vtkPolyData& data() const = 0;   ///< what is drawn
-  virtual vtkPolyData& all() const = 0;    ///< with what withoutFarPoints() leaves out
-  virtual vtkPolyData& marked() const = 0; ///< what stands out
+  vtkPolyData& data() const { return *data_; }     ///< what is drawn
+  vtkPolyData& all() const { return *all_; }       ///< with points that are left out, as they lie far off
+  vtkPolyData& marked() const { return *marked_; } ///< what stands out
   vtkIdType leftOut() const { return all().GetNumberOfPoints() - data().GetNumberOfPoints(); }
 
   /// Lets the pickers find the parts.
@@ -61,15 +64,35 @@ public:
   virtual std::optional<std::uint32_t> partOf(const vtkProp* prop, vtkIdType id) const = 0;
 
 protected:
-  CloudActor() = default;
+  explicit CloudActor(vtkRenderer& renderer) : renderer_(renderer) {}
+  void draw(vtkActor& actor); ///< from now on
+
+  vtkSmartPointer<vtkPolyData> data_, all_, marked_;
+
+private:
+  vtkRenderer& renderer_;
+  std::vector<vtkSmartPointer<vtkActor>> actors_;
 };
 
 /// Clouds of a picture, in the order of its content's.
 using CloudActors = std::span<const std::unique_ptr<CloudActor>>;
 
-/// Adds a cloud to what is drawn.
+/// A cloud as points; marks are drawn once more, larger. A surface of whose triangles nothing is asked is drawn as
+/// such, with the balls of its cover that are marked.
+std::unique_ptr<CloudActor> makePointsActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
+                                            const Color& marked);
+
+/// A surface whose triangles have colours of their own. What is marked is outlined, too: small triangles are seen from
+/// afar. @pre viewed.hasTriangles()
+std::unique_ptr<CloudActor> makeTrianglesActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
+                                               const Color& marked);
+
+/// The one that fits, added to what is drawn.
 /// @param marked the colour of marks
-std::unique_ptr<CloudActor> makeCloudActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
-                                           const Color& marked);
+inline std::unique_ptr<CloudActor> makeCloudActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
+                                                  const Color& marked)
+{
+  return (viewed.hasTriangles() ? makeTrianglesActor : makePointsActor)(viewed, renderer, color, marked);
+}
 
 } // namespace pcl_bsh::viewer

@@ -206,7 +206,7 @@ bool paintDistances(CloudActors clouds, ValueBar& bar, ValueHistogram& histogram
   if (shared) return true;
   bar.show(*table, title, false);
   histogram.show(distances, *table, "distance [" + (options.unit.empty() ? "cloud's unit" : options.unit) + "]",
-                 options.unit, content.partsName());
+                 content);
   return true;
 }
 

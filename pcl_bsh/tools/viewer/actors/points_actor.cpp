@@ -1,22 +1,71 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "points_actor.h"
-
 #include "actors.h"
-#include "far_points.h"
-#include "surface_actor.h"
+#include "cloud_actor.h"
 
 #include <pcl_bsh/vtk/cloud_data.h>
 
 #include <vtkIntArray.h>
-#include <vtkNew.h>
+#include <vtkMapper.h>
 #include <vtkPointData.h>
-#include <vtkUnsignedCharArray.h>
+#include <vtkProperty.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace pcl_bsh::viewer {
 namespace {
+
+constexpr double tail = 0.005; // of the points, at each end of an axis
+constexpr double farthest = 1000.0;
+
+struct Bulk {
+  std::array<double, 3> low, high;
+  double size = 0.0;
+};
+
+Bulk bulkOf(vtkPolyData& cloud)
+{
+  Bulk bulk;
+  const auto count = static_cast<std::size_t>(cloud.GetNumberOfPoints());
+  std::vector<double> along(count);
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < count; ++i) along[i] = cloud.GetPoint(static_cast<vtkIdType>(i))[k];
+    const auto at = [&](double share) {
+      const auto nth = along.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(count - 1));
+      std::nth_element(along.begin(), nth, along.end());
+      return *nth;
+    };
+    bulk.low[k] = at(tail);
+    bulk.high[k] = at(1.0 - tail);
+    bulk.size = std::max(bulk.size, bulk.high[k] - bulk.low[k]);
+  }
+  return bulk;
+}
+
+/// The cloud without the points that lie more than a thousand times as far from its bulk (99 of 100 points, along each
+/// axis) as that is large; the cloud itself where there are none, or the bulk is one place. A picture with them, a
+/// sensor's "no return" written as a number, would show nothing of the others.
+vtkSmartPointer<vtkPolyData> withoutFarPoints(vtkPolyData& cloud)
+{
+  const vtkIdType count = cloud.GetNumberOfPoints();
+  if (count == 0) return &cloud;
+  const double* const bounds = cloud.GetBounds();
+  const double size = std::max({bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]});
+  const Bulk bulk = bulkOf(cloud);
+  if (!(bulk.size > 0.0) || size <= farthest * bulk.size) return &cloud;
+  vtkDataArray& index = *cloud.GetPointData()->GetArray("index");
+  std::vector<std::uint8_t> near;
+  for (vtkIdType i = 0; i < count; ++i) {
+    const double* const p = cloud.GetPoint(i);
+    const auto record = static_cast<std::size_t>(index.GetTuple1(i));
+    near.resize(std::max(near.size(), record + 1));
+    near[record] = 1;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (bulk.low[k] - p[k] > farthest * bulk.size || p[k] - bulk.high[k] > farthest * bulk.size) near[record] = 0;
+  }
+  return vtk::subset(cloud, near);
+}
 
 /// Sparse clouds need larger points to be seen as surfaces.
 float sizeFor(std::size_t count)
@@ -24,115 +73,168 @@ float sizeFor(std::size_t count)
   return count > 300'000 ? 1.5f : count > 30'000 ? 2.0f : 3.0f;
 }
 
-vtkSmartPointer<vtkPolyData> noPoints()
-{
-  auto data = vtkSmartPointer<vtkPolyData>::New();
-  data->SetPoints(vtkNew<vtkPoints>());
-  return data;
-}
+/// Points of one size; few of them only while the picture moves. All and few are two actors, of which one is seen: what
+/// the graphics card holds of the many stays there.
+class PointLayer {
+public:
+  /// @param in_front drawn before other points of the same place
+  PointLayer(float size, bool in_front)
+  : data_(vtkSmartPointer<vtkPolyData>::New()),
+    all_(actorOf(data_)),
+    few_(actorOf(data_))
+  {
+    // VTK moves all points by -8 once any are to be moved at all: the others stay where they are.
+    vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
+    few_->SetProperty(all_->GetProperty());
+    all_->GetProperty()->SetPointSize(size);
+    for (vtkActor* actor : {all_.Get(), few_.Get()})
+      actor->GetMapper()->SetRelativeCoincidentTopologyPointOffsetParameter(in_front ? -8.0 : 8.0);
+    setMoving(false);
+  }
+
+  /// @param data of vtk::cloudData(), with an array `colors` or in the layer's colour
+  void show(vtkPolyData& data)
+  {
+    data_ = &data;
+    setData(*all_, data);
+    few_is_old_ = true;
+    if (few_->GetVisibility() != 0) setMoving(true);
+  }
+
+  vtkActor& all() const { return *all_; } ///< what one picks: nothing moves then
+  vtkActor& few() const { return *few_; }
+
+  void setMoving(bool moving)
+  {
+    constexpr vtkIdType points_while_moving = 300'000;
+    if (moving && few_is_old_) {
+      setData(*few_, *vtk::thinned(*data_, points_while_moving));
+      few_is_old_ = false;
+    }
+    all_->SetVisibility(!moving && !hidden_);
+    few_->SetVisibility(moving && !hidden_);
+  }
+
+  /// For good.
+  void hide()
+  {
+    hidden_ = true;
+    setMoving(false);
+  }
+
+  /// Of a picture that does not move.
+  void setVisible(bool visible) { all_->SetVisibility(visible && !hidden_); }
+
+private:
+  vtkSmartPointer<vtkPolyData> data_;
+  vtkSmartPointer<vtkActor> all_, few_;
+  bool few_is_old_ = true;
+  bool hidden_ = false;
+};
+
+class PointsActor final : public CloudActor {
+public:
+  PointsActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color, const Color& marked)
+  : CloudActor(renderer),
+    points_(sizeFor(viewed.points().size()), false),
+    marks_(6.0f, true)
+  {
+    for (const PointLayer* layer : {&points_, &marks_})
+      for (vtkActor* actor : {&layer->all(), &layer->few()}) draw(*actor);
+    setColor(marks_.all(), marked);
+    setPoints(viewed.points());
+    mark({}, {});
+    if (!viewed.surface) return;
+    surface_ = surfaceActor(viewed, color);
+    draw(*surface_);
+    points_.hide();
+  }
+
+  void setPoints(const PointsView& points) override
+  {
+    all_ = vtk::cloudData(points);
+    data_ = withoutFarPoints(*all_);
+    points_.show(*data_);
+  }
+
+  void paint(const std::vector<Color>& colors) override
+  {
+    setColorsOfRecords(*data_, colors);
+    points_.show(*data_);
+  }
+
+  void paint(const Color& color, const ColorRange* heights) override
+  {
+    const double* const bounds = data_->GetBounds();
+    const ColorRange range = heights ? *heights : ColorRange{bounds[4], bounds[5]};
+    const double height = std::max(range.high - range.low, std::numeric_limits<double>::min());
+    setColors(*data_->GetPointData(), data_->GetNumberOfPoints(), [&](vtkIdType i) {
+      const double share = 0.55 + 0.45 * std::clamp((data_->GetPoint(i)[2] - range.low) / height, 0.0, 1.0);
+      Color shaded;
+      for (std::size_t k = 0; k < 3; ++k) shaded[k] = static_cast<unsigned char>(color[k] * share);
+      return shaded;
+    });
+    points_.show(*data_);
+  }
+
+  void mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors) override
+  {
+    marked_ = flags.empty() ? vtkSmartPointer<vtkPolyData>::New() : vtk::subset(*data_, flags);
+    marked_->GetPointData()->RemoveArray("colors");
+    if (!colors.empty()) setColorsOfRecords(*marked_, colors);
+    marks_.show(*marked_);
+  }
+
+  void setMoving(bool moving) override
+  {
+    points_.setMoving(moving);
+    marks_.setMoving(moving);
+  }
+
+  void setVisible(bool visible) override
+  {
+    points_.setVisible(visible);
+    marks_.setVisible(visible);
+    if (surface_) surface_->SetVisibility(visible);
+  }
+
+  void offerTo(vtkPicker& points, vtkPicker& /*triangles*/) const override
+  {
+    if (surface_) return;
+    for (const PointLayer* layer : {&points_, &marks_}) points.AddPickList(&layer->all());
+  }
+
+  std::optional<std::uint32_t> partOf(const vtkProp* prop, vtkIdType id) const override
+  {
+    if (prop != &points_.all() && prop != &marks_.all()) return std::nullopt;
+    vtkPolyData& picked = prop == &points_.all() ? *data_ : *marked_;
+    if (id < 0 || id >= picked.GetNumberOfPoints()) return std::nullopt;
+    return static_cast<std::uint32_t>(recordsOf(picked).GetValue(id));
+  }
+
+private:
+  static vtkIntArray& recordsOf(vtkPolyData& points)
+  {
+    return *vtkIntArray::SafeDownCast(points.GetPointData()->GetArray("index"));
+  }
+
+  static void setColorsOfRecords(vtkPolyData& points, const std::vector<Color>& colors)
+  {
+    const vtkIntArray& records = recordsOf(points);
+    setColors(*points.GetPointData(), points.GetNumberOfPoints(),
+              [&](vtkIdType i) { return colors[static_cast<std::size_t>(records.GetValue(i))]; });
+  }
+
+  PointLayer points_, marks_;
+  vtkSmartPointer<vtkActor> surface_; ///< null where the cloud is points
+};
 
 } // namespace
 
-PointsActor::PointsActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color, const Color& marked)
-: points_(renderer, sizeFor(viewed.points().size()), false),
-  marks_(renderer, 6.0f, true)
+std::unique_ptr<CloudActor> makePointsActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
+                                            const Color& marked)
 {
-  setColor(marks_.actor(), marked);
-  setPoints(viewed.points());
-  if (!viewed.surface) return;
-  surface_ = addSurface(viewed, renderer, color);
-  points_.hide();
-}
-
-void PointsActor::setPoints(const PointsView& points)
-{
-  all_ = vtk::cloudData(points);
-  points_.show(withoutFarPoints(*all_));
-}
-
-void PointsActor::paint(const std::vector<Color>& colors)
-{
-  setColors(data(), colors);
-  points_.show(&data());
-}
-
-void PointsActor::paint(const Color& color, const ColorRange* heights)
-{
-  const double* const bounds = data().GetBounds();
-  const ColorRange range = heights ? *heights : ColorRange{bounds[4], bounds[5]};
-  const double height = std::max(range.high - range.low, std::numeric_limits<double>::min());
-  vtkNew<vtkUnsignedCharArray> colors;
-  colors->SetName("colors");
-  colors->SetNumberOfComponents(3);
-  colors->SetNumberOfTuples(data().GetNumberOfPoints());
-  for (vtkIdType i = 0; i < data().GetNumberOfPoints(); ++i) {
-    double p[3];
-    data().GetPoint(i, p);
-    const double share = 0.55 + 0.45 * std::clamp((p[2] - range.low) / height, 0.0, 1.0);
-    for (int k = 0; k < 3; ++k)
-      colors->SetTypedComponent(i, k, static_cast<unsigned char>(color[static_cast<std::size_t>(k)] * share));
-  }
-  data().GetPointData()->SetScalars(colors);
-  points_.show(&data());
-}
-
-void PointsActor::mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors)
-{
-  if (flags.empty()) {
-    marks_.show(noPoints());
-    return;
-  }
-  const auto marked = vtk::subset(data(), flags);
-  marked->GetPointData()->RemoveArray("colors");
-  if (!colors.empty()) setColors(*marked, colors);
-  marks_.show(marked);
-}
-
-void PointsActor::place(const Eigen::Isometry3d& pose)
-{
-  points_.place(pose);
-  marks_.place(pose);
-  if (surface_) surface_->SetUserMatrix(matrixOf(pose));
-}
-
-void PointsActor::setMoving(bool moving)
-{
-  points_.setMoving(moving);
-  marks_.setMoving(moving);
-}
-
-void PointsActor::setVisible(bool visible)
-{
-  points_.setVisible(visible);
-  marks_.setVisible(visible);
-  if (surface_) surface_->SetVisibility(visible);
-}
-
-void PointsActor::remove(vtkRenderer& renderer)
-{
-  points_.remove(renderer);
-  marks_.remove(renderer);
-  renderer.RemoveActor(surface_);
-}
-
-void PointsActor::cut(const Cut& plane)
-{
-  points_.cut(plane);
-  marks_.cut(plane);
-}
-
-void PointsActor::offerTo(vtkPicker& points, vtkPicker& /*triangles*/) const
-{
-  if (surface_) return;
-  for (const PointLayer* layer : {&points_, &marks_}) points.AddPickList(&layer->actor());
-}
-
-std::optional<std::uint32_t> PointsActor::partOf(const vtkProp* prop, vtkIdType id) const
-{
-  if (!points_.owns(prop) && !marks_.owns(prop)) return std::nullopt;
-  vtkPolyData& picked = points_.owns(prop) ? data() : marked();
-  if (id < 0 || id >= picked.GetNumberOfPoints()) return std::nullopt;
-  return static_cast<std::uint32_t>(vtkIntArray::SafeDownCast(picked.GetPointData()->GetArray("index"))->GetValue(id));
+  return std::make_unique<PointsActor>(viewed, renderer, color, marked);
 }
 
 } // namespace pcl_bsh::viewer

@@ -58,7 +58,7 @@ bool TileActors::step()
   choice_.look(eye());
   const std::vector<std::size_t> superfluous = choice_.superfluous();
   for (const std::size_t tile : superfluous) {
-    shown_.at(tile).actor->remove(renderer_);
+    shown_.at(tile).actor->remove();
     shown_.erase(tile);
     choice_.drop(tile);
   }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "triangles_actor.h"
-
 #include "actors.h"
-#include "surface_actor.h"
+#include "cloud_actor.h"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -10,20 +8,9 @@
 #include <vtkNew.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
-#include <vtkUnsignedCharArray.h>
 
 namespace pcl_bsh::viewer {
 namespace {
-
-void setCellColors(vtkPolyData& data, const std::vector<Color>& colors)
-{
-  vtkNew<vtkUnsignedCharArray> array;
-  array->SetName("colors");
-  array->SetNumberOfComponents(3);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(colors.size()));
-  for (std::size_t i = 0; i < colors.size(); ++i) array->SetTypedTuple(static_cast<vtkIdType>(i), colors[i].data());
-  data.GetCellData()->SetScalars(array);
-}
 
 /// The flagged triangles, each with corners of its own: bounds are theirs alone.
 vtkSmartPointer<vtkPolyData> someOf(vtkPolyData& data, const std::vector<std::uint8_t>& flags)
@@ -44,89 +31,89 @@ vtkSmartPointer<vtkPolyData> someOf(vtkPolyData& data, const std::vector<std::ui
   return some;
 }
 
+class TrianglesActor final : public CloudActor {
+public:
+  TrianglesActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color, const Color& marked)
+  : CloudActor(renderer),
+    faces_(surfaceActor(viewed, color)),
+    marked_color_(marked),
+    colors_(viewed.parts(), color)
+  {
+    all_ = data_ = vtkPolyDataMapper::SafeDownCast(faces_->GetMapper())->GetInput();
+    marked_ = vtkSmartPointer<vtkPolyData>::New();
+    outlines_ = actorOf(marked_);
+    faces_->PickableOn();
+    outlines_->GetProperty()->SetRepresentationToWireframe();
+    outlines_->GetProperty()->SetLineWidth(2.5f);
+    outlines_->PickableOff();
+    for (vtkActor* actor : {faces_.Get(), outlines_.Get()}) draw(*actor);
+    show();
+  }
+
+  void paint(const std::vector<Color>& colors) override
+  {
+    colors_ = colors;
+    show();
+  }
+
+  void paint(const Color& color, const ColorRange* /*heights*/) override
+  {
+    paint(std::vector<Color>(colors_.size(), color));
+  }
+
+  void mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors) override
+  {
+    flags_ = flags;
+    marked_colors_ = colors;
+    show();
+  }
+
+  void setVisible(bool visible) override
+  {
+    for (vtkActor* actor : {faces_.Get(), outlines_.Get()}) actor->SetVisibility(visible);
+  }
+
+  void offerTo(vtkPicker& /*points*/, vtkPicker& triangles) const override { triangles.AddPickList(faces_); }
+
+  std::optional<std::uint32_t> partOf(const vtkProp* prop, vtkIdType id) const override
+  {
+    if (prop != faces_.Get() || id < 0 || id >= data_->GetNumberOfCells()) return std::nullopt;
+    return static_cast<std::uint32_t>(id);
+  }
+
+private:
+  void show()
+  {
+    std::vector<Color> shown = colors_, outlined;
+    for (std::size_t i = 0; i < flags_.size(); ++i) {
+      if (flags_[i] == 0) continue;
+      shown[i] = marked_colors_.empty() ? marked_color_ : marked_colors_[i];
+      outlined.push_back(shown[i]);
+    }
+    marked_ = someOf(*data_, flags_);
+    setCellColors(*data_, shown);
+    setCellColors(*marked_, outlined);
+    setData(*outlines_, *marked_);
+  }
+
+  static void setCellColors(vtkPolyData& data, const std::vector<Color>& colors)
+  {
+    setColors(*data.GetCellData(), static_cast<vtkIdType>(colors.size()),
+              [&](vtkIdType i) { return colors[static_cast<std::size_t>(i)]; });
+  }
+
+  vtkSmartPointer<vtkActor> faces_, outlines_;
+  Color marked_color_;
+  std::vector<Color> colors_, marked_colors_;
+  std::vector<std::uint8_t> flags_;
+};
+
 } // namespace
 
-TrianglesActor::TrianglesActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
-                               const Color& marked)
-: marked_(vtkSmartPointer<vtkPolyData>::New()),
-  faces_(addSurface(viewed, renderer, color)),
-  outlines_(actorOf(marked_)),
-  marked_color_(marked),
-  colors_(viewed.parts(), color)
+std::unique_ptr<CloudActor> makeTrianglesActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
+                                               const Color& marked)
 {
-  data_ = vtkPolyDataMapper::SafeDownCast(faces_->GetMapper())->GetInput();
-  faces_->PickableOn();
-  outlines_->GetProperty()->SetRepresentationToWireframe();
-  outlines_->GetProperty()->SetLineWidth(2.5f);
-  outlines_->PickableOff();
-  renderer.AddActor(outlines_);
-  show();
-}
-
-void TrianglesActor::paint(const std::vector<Color>& colors)
-{
-  colors_ = colors;
-  show();
-}
-
-void TrianglesActor::paint(const Color& color, const ColorRange* /*heights*/)
-{
-  paint(std::vector<Color>(colors_.size(), color));
-}
-
-void TrianglesActor::mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors)
-{
-  flags_ = flags;
-  marked_colors_ = colors;
-  show();
-}
-
-void TrianglesActor::show()
-{
-  std::vector<Color> shown = colors_, outlined;
-  for (std::size_t i = 0; i < flags_.size(); ++i) {
-    if (flags_[i] == 0) continue;
-    shown[i] = marked_colors_.empty() ? marked_color_ : marked_colors_[i];
-    outlined.push_back(shown[i]);
-  }
-  setCellColors(*data_, shown);
-  marked_ = someOf(*data_, flags_);
-  setCellColors(*marked_, outlined);
-  vtkPolyDataMapper::SafeDownCast(outlines_->GetMapper())->SetInputData(marked_);
-}
-
-void TrianglesActor::place(const Eigen::Isometry3d& pose)
-{
-  const auto matrix = matrixOf(pose);
-  faces_->SetUserMatrix(matrix);
-  outlines_->SetUserMatrix(matrix);
-}
-
-void TrianglesActor::cut(const Cut& plane)
-{
-  viewer::cut(*faces_, plane);
-  viewer::cut(*outlines_, plane);
-}
-
-void TrianglesActor::setVisible(bool visible)
-{
-  for (vtkActor* actor : {faces_.Get(), outlines_.Get()}) actor->SetVisibility(visible);
-}
-
-void TrianglesActor::remove(vtkRenderer& renderer)
-{
-  for (vtkActor* actor : {faces_.Get(), outlines_.Get()}) renderer.RemoveActor(actor);
-}
-
-void TrianglesActor::offerTo(vtkPicker& /*points*/, vtkPicker& triangles) const
-{
-  triangles.AddPickList(faces_);
-}
-
-std::optional<std::uint32_t> TrianglesActor::partOf(const vtkProp* prop, vtkIdType id) const
-{
-  if (prop != faces_.Get() || id < 0 || id >= data_->GetNumberOfCells()) return std::nullopt;
-  return static_cast<std::uint32_t>(id);
+  return std::make_unique<TrianglesActor>(viewed, renderer, color, marked);
 }
 
 } // namespace pcl_bsh::viewer

@@ -54,8 +54,9 @@ ValueHistogram::ValueHistogram(vtkRenderer& renderer, int width, int height)
 }
 
 void ValueHistogram::show(const std::vector<double>& distances, vtkLookupTable& colors, const std::string& axis_title,
-                          const std::string& unit, const std::string& parts)
+                          const ViewContent& content)
 {
+  const std::string &unit = content.options().unit, parts = content.partsName(2);
   constexpr std::size_t most_bars = 40;
   const DistanceStatistics statistics = statisticsOf(distances);
   const DistanceHistogram histogram = histogramOf(distances, colors.GetTableRange()[1], most_bars);
@@ -86,7 +87,8 @@ void ValueHistogram::show(const std::vector<double>& distances, vtkLookupTable& 
   std::string title = "mean " + lengthOf(statistics.mean, unit) + ", RMS " + lengthOf(statistics.rms, unit) +
                       "\nmedian " + lengthOf(statistics.median, unit) + ", greatest " +
                       lengthOf(statistics.maximum, unit);
-  if (histogram.above > 0) title += "\n" + grouped(histogram.above) + ' ' + parts + " beyond the axis";
+  if (histogram.above > 0)
+    title += "\n" + grouped(histogram.above) + ' ' + content.partsName(histogram.above) + " beyond the axis";
   chart_->SetTitle(title);
   actor_->SetVisibility(statistics.count > 0);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <pcl_bsh/tools/viewer/content/view_content.h>
+
 #include <vtkChartXY.h>
 #include <vtkContextActor.h>
 #include <vtkLookupTable.h>
@@ -19,9 +21,8 @@ public:
 
   /// @param distances one per part, NaN where there is none
   /// @param colors whose range ends where the axis does
-  /// @param parts what is counted
   void show(const std::vector<double>& distances, vtkLookupTable& colors, const std::string& axis_title,
-            const std::string& unit, const std::string& parts);
+            const ViewContent& content);
   void hide() { actor_->VisibilityOff(); }
   bool isShown() const { return actor_->GetVisibility() != 0; }
 

@@ -163,11 +163,11 @@ std::optional<ClosestPair> CloudsContent::closest(std::size_t step) const
 std::string CloudsContent::heading(const StepCollisions& collisions, std::size_t step) const
 {
   std::ostringstream text;
-  text << scan().name << ": " << grouped(scan().hasTriangles() ? scan().parts() : scan().hierarchy->size())
-       << (scan().hasTriangles() ? " triangles" : " points");
+  text << scan().name << ": "
+       << groupedCount(scan().hasTriangles() ? scan().parts() : scan().hierarchy->size(), scan().partName());
   if (collisions.known) {
-    text << ", " << grouped(collisions.colliding) << " collide";
-    if (collisions.undecided > 0) text << ", " << grouped(collisions.undecided) << " are undecided";
+    text << ", " << groupedCount(collisions.colliding, "collides", "collide");
+    if (collisions.undecided > 0) text << ", " << groupedCount(collisions.undecided, "is undecided", "are undecided");
     if (collisions.sparse > 0) text << ", " << grouped(collisions.sparse) << " not scanned densely enough";
     if (options_.clearance) text << "  (clearance " << lengthOf(*options_.clearance, options_.unit) << ')';
   }

@@ -205,12 +205,13 @@ std::string SceneContent::heading(const StepCollisions& collisions, std::size_t 
 {
   std::ostringstream text;
   text << name() << ": " << groupedCount(file_.objects.size(), "object") << ", " << groupedCount(points_, "point")
-       << ", " << grouped(collisions.colliding) << " collide  (clearance " << lengthOf(clearance(), options_.unit)
-       << ")\nstep " << step << " of 0.." << file_.steps << ", " << shortest(static_cast<double>(step) * file_.dt)
-       << " s";
+       << ", " << groupedCount(collisions.colliding, "collides", "collide") << "  (clearance "
+       << lengthOf(clearance(), options_.unit) << ")\nstep " << step << " of 0.." << file_.steps << ", "
+       << shortest(static_cast<double>(step) * file_.dt) << " s";
   const std::vector<std::string>& contacts = at(step).contacts;
   for (std::size_t i = 0; i < std::min(contacts.size(), most_contacts); ++i) text << '\n' << contacts[i];
-  if (contacts.size() > most_contacts) text << "\n... " << contacts.size() - most_contacts << " more meet something";
+  if (contacts.size() > most_contacts)
+    text << "\n... " << counted(contacts.size() - most_contacts, "more meets", "more meet") << " something";
   return text.str();
 }
 

@@ -19,7 +19,7 @@ public:
 
   std::string name() const override { return viewed_clouds_[0].name; }
   std::string heading(const StepCollisions& collisions, std::size_t step) const override;
-  std::string partsName() const override { return "points of the overview"; }
+  std::string partsName(std::size_t count) const override { return nounOf(count, "point") + " of the overview"; }
   const SiteContent* site() const override { return this; }
 
   const site::Site& tiles() const { return site_; }

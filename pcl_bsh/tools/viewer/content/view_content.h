@@ -5,6 +5,7 @@
 #include "viewed_cloud.h"
 #include <pcl_bsh/tools/viewer/options.h>
 
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/pairs/trace.h>
 
 #include <Eigen/Geometry>
@@ -92,7 +93,8 @@ public:
   virtual std::string details(std::size_t /*cloud*/, std::uint32_t /*part*/, std::size_t /*step*/) const { return {}; }
   virtual std::vector<Trace> traces(std::size_t /*step*/) const { return {}; }
 
-  virtual std::string partsName() const { return std::string(scan().partName()) + "s"; } ///< of what values are of
+  /// The noun of so many parts, of which values are.
+  virtual std::string partsName(std::size_t count) const { return nounOf(count, scan().partName()); }
   virtual const SharedColors* sharedColors() const { return nullptr; } ///< where this is a part of a whole
   virtual const SiteContent* site() const { return nullptr; }          ///< where there are tiles to draw, too
 

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/pipeline/stages/selection/selecting_stage.h>
+#include <pcl_bsh/filters/removed_points.h>
+#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <limits>
+
+namespace pcl_bsh::pipeline {
+
+float SelectionOptions::filterValue() const
+{
+  return user_filter_value ? static_cast<float>(*user_filter_value) : std::numeric_limits<float>::quiet_NaN();
+}
+
+StageCloudPtr SelectingStage::run(StageClouds&& inputs)
+{
+  StageCloudPtr input = std::move(inputs[0]);
+  pcl::Indices kept;
+  pcl::Indices removed;
+  {
+    const std::vector<std::uint8_t> passes = passing(input);
+    const PointsView points = viewOf(input->cloud);
+    for (std::uint32_t i = 0; i < points.count; ++i) {
+      const bool keep = (passes[i] != 0) != negative && isFinite(points.point(i));
+      if (keep && !keep_organized) kept.push_back(static_cast<pcl::index_t>(i));
+      if (!keep && keep_organized) removed.push_back(static_cast<pcl::index_t>(i));
+    }
+  }
+  if (!keep_organized) {
+    return std::make_shared<StageCloud>(
+        StageCloud{selectedRecords(input->cloud, kept), input->viewpoint, input->las_header});
+  }
+  const auto output = ownCloud(std::move(input));
+  output->triangles.reset(); // whose corners may go
+  output->face_properties.clear();
+  overwritePoints(output->cloud, removed, filterValue());
+  return output;
+}
+
+} // namespace pcl_bsh::pipeline

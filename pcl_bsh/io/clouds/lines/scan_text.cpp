@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/clouds/lines/scan_text.h>
+#include <pcl_bsh/io/clouds/lines/text_rows.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+
+namespace pcl_bsh::io {
+
+namespace {
+
+/// The words of the line that comes next, which is not taken.
+std::vector<std::string_view> nextWords(TextCursor text)
+{
+  std::vector<std::string_view> words;
+  if (text.nextLine())
+    while (!text.line().empty()) words.push_back(text.word());
+  return words;
+}
+
+/// What the values of a point are, by the first point's line.
+struct PointLine {
+  Fields values;
+  bool shares = false; ///< colours are shares of 1
+
+  explicit PointLine(const std::vector<std::string_view>& words)
+  {
+    for (const char* axis : {"x", "y", "z"}) values.push_back(textValue(axis));
+    const std::size_t count = words.size();
+    if (count > 3 && count != 6) values.push_back(textValue("intensity", pcl::PCLPointField::FLOAT32));
+    if (count == 6 || count >= 7) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (words[values.size()].find('.') != std::string_view::npos) shares = true;
+        values.push_back(textValue(ply_channels[k], pcl::PCLPointField::UINT8));
+      }
+    }
+    while (values.size() < count) values.push_back(textValue("column_" + std::to_string(values.size() + 1)));
+  }
+
+  std::size_t intensity() const { return values.size() > 3 && values[3].name == "intensity" ? 3 : 0; }
+};
+
+/// Takes the next line as a point.
+class PointReader {
+public:
+  explicit PointReader(PointLine line) : line_(std::move(line)), numbers_(line_.values.size()) {}
+
+  /// @return false when the next line is none of numbers alone, and nothing has happened
+  bool nextPlain(TextCursor& text)
+  {
+    if (!text.nextNumbers(numbers_)) return false;
+    checkColours(text);
+    return true;
+  }
+
+  /// @return false at the end of the text
+  bool next(TextCursor& text)
+  {
+    if (nextPlain(text)) return true;
+    if (!text.nextLine()) return false;
+    for (double& number : numbers_) number = text.number<double>();
+    text.requireEndOfLine();
+    checkColours(text);
+    return true;
+  }
+
+  std::vector<double>& numbers() { return numbers_; }
+
+private:
+  void checkColours(const TextCursor& text)
+  {
+    for (std::size_t i = 3; i < numbers_.size(); ++i) {
+      if (line_.values[i].datatype != pcl::PCLPointField::UINT8) continue;
+      if (line_.shares) numbers_[i] = std::round(numbers_[i] * 255);
+      if (!(numbers_[i] >= 0 && numbers_[i] <= 255 && std::trunc(numbers_[i]) == numbers_[i])) {
+        text.fail("has a colour that is no whole number from 0 to 255");
+      }
+    }
+  }
+
+  PointLine line_;
+  std::vector<double> numbers_;
+};
+
+std::optional<std::uint64_t> countOf(const std::vector<std::string_view>& words)
+{
+  std::uint64_t count = 0;
+  if (words.size() != 1) return std::nullopt;
+  const auto [end, error] = std::from_chars(words[0].data(), words[0].data() + words[0].size(), count);
+  if (error != std::errc() || end != words[0].data() + words[0].size()) return std::nullopt;
+  return count;
+}
+
+/// Reads a block's count, if there is one. @return the number of its points at least
+std::uint64_t readPtsCount(TextCursor& text)
+{
+  const std::optional<std::uint64_t> count = countOf(nextWords(text));
+  if (!count) return 0;
+  text.nextLine();
+  constexpr std::uint64_t least_bytes = 6; // three digits and their separators
+  requireBytes(*count, least_bytes, text.rest().size() + 1);
+  return *count;
+}
+
+PointLine ptsLine(const TextCursor& text, std::uint64_t promised)
+{
+  TextCursor line = text;
+  const std::vector<std::string_view> words = nextWords(text);
+  if (words.size() >= 3) return PointLine(words);
+  if (line.nextLine()) line.fail("is no point: it has fewer than three numbers");
+  if (promised > 0) throw FormatError("is truncated: its header promises points, and there are none");
+  return PointLine({"", "", ""});
+}
+
+struct PtxScan {
+  std::uint64_t columns = 0, rows = 0;
+  Eigen::Matrix<double, 4, 3> transform = Eigen::Matrix<double, 4, 3>::Zero(); ///< (x y z 1) times this
+};
+
+/// Reads a scan's ten lines. @return false at the end of the text
+bool readPtxScan(TextCursor& text, PtxScan& scan)
+{
+  if (!text.nextLine()) return false;
+  const auto next = [&](bool there) {
+    if (!there) throw FormatError("is truncated: it ends within a scan's header");
+  };
+  const auto last = [&] { text.requireEndOfLine(); };
+  scan.columns = text.number<std::uint32_t>();
+  last();
+  next(text.nextLine());
+  scan.rows = text.number<std::uint32_t>();
+  last();
+  for (std::size_t i = 0; i < 4; ++i) { // the registered position and axes, which the transform has, too
+    next(text.nextLine());
+    for (std::size_t k = 0; k < 3; ++k) text.number<double>();
+    last();
+  }
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    next(text.nextLine());
+    for (Eigen::Index k = 0; k < 3; ++k) scan.transform(i, k) = text.number<double>();
+    if (text.number<double>() != (i == 3 ? 1 : 0)) text.fail("does not end with 0 0 0 1, as a transform's rows do");
+    last();
+  }
+  if (!scan.transform.allFinite()) text.fail("ends a transform that is not finite");
+  constexpr std::uint64_t least_bytes = 6; // three digits and their separators
+  requireBytes(scan.columns * scan.rows, least_bytes, text.rest().size() + 1);
+  return true;
+}
+
+Viewpoint scannerPose(const PtxScan& scan)
+{
+  Eigen::Matrix3d turn = scan.transform.topRows<3>().transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(turn, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d sides(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
+  turn = svd.matrixU() * sides.asDiagonal() * svd.matrixV().transpose();
+  const Eigen::Quaterniond q(turn);
+  const Eigen::Vector3d at = scan.transform.row(3);
+  return {at.x(), at.y(), at.z(), q.w(), q.x(), q.y(), q.z()};
+}
+
+/// Into the common frame, and NaN where the scanner saw nothing.
+void place(const PtxScan& scan, std::size_t intensity, std::vector<double>& numbers)
+{
+  const Eigen::RowVector3d point(numbers[0], numbers[1], numbers[2]);
+  const bool at_scanner = numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0;
+  const bool no_return = at_scanner && (intensity == 0 || numbers[intensity] == 0 || numbers[intensity] == 0.5);
+  const Eigen::RowVector3d turned = point * scan.transform.topRows<3>();
+  const Eigen::RowVector3d placed = turned + scan.transform.row(3);
+  for (Eigen::Index k = 0; k < 3; ++k)
+    numbers[static_cast<std::size_t>(k)] = no_return ? std::numeric_limits<double>::quiet_NaN() : placed[k];
+}
+
+/// How many scans there are, and how the first wanted one's points look.
+struct PtxContents {
+  std::size_t scans = 0;
+  std::optional<PointLine> line;
+
+  PtxContents(std::string_view file, std::optional<std::size_t> wanted)
+  {
+    TextCursor text(file);
+    for (PtxScan scan; readPtxScan(text, scan); ++scans) {
+      const std::vector<std::string_view> words = nextWords(text);
+      const bool empty = scan.columns * scan.rows == 0;
+      if (!empty && words.size() < 3) text.fail("is followed by no point");
+      if (!empty && !line && wanted.value_or(scans) == scans) line = PointLine(words);
+      for (std::uint64_t i = 0; i < scan.columns * scan.rows; ++i)
+        if (!text.nextLine()) throw FormatError("is truncated: it ends before the last of its points");
+    }
+    if (scans == 0) throw FormatError("is not a PTX file: it has no scan");
+    if (wanted && *wanted >= scans) {
+      throw FormatError("has " + counted(scans, "scan") + ", and no scan " + std::to_string(*wanted), "count from 0");
+    }
+    if (!line) line = PointLine({"", "", ""});
+  }
+
+  Fields values(bool several) const
+  {
+    Fields values = line->values;
+    if (several) values.push_back(textValue("scan", pcl::PCLPointField::UINT16));
+    return values;
+  }
+};
+
+/// From column by column to row by row.
+void transpose(pcl::PCLPointCloud2& cloud, const PtxScan& scan)
+{
+  const auto columns = static_cast<std::size_t>(scan.columns), rows = static_cast<std::size_t>(scan.rows);
+  const std::size_t step = cloud.point_step;
+  std::vector<std::uint8_t> turned(cloud.data.size());
+  for (std::size_t i = 0; i < columns * rows; ++i) {
+    const std::size_t to = i % rows * columns + i / rows;
+    std::memcpy(&turned[to * step], &cloud.data[i * step], step);
+  }
+  cloud.data = std::move(turned);
+  cloud.width = static_cast<std::uint32_t>(columns);
+  cloud.height = static_cast<std::uint32_t>(rows);
+  cloud.row_step = cloud.width * cloud.point_step;
+}
+
+} // namespace
+
+pcl::PCLPointCloud2 parsePts(std::string_view file)
+{
+  TextCursor text(file);
+  std::uint64_t promised = readPtsCount(text);
+  const PointLine line = ptsLine(text, promised);
+  TextRows rows(line.values);
+  rows.reserveLines(text.rest());
+  PointReader reader(line);
+  std::uint64_t points = 0; // of the block
+  const auto requirePromised = [&] {
+    if (points < promised) {
+      throw FormatError("is truncated: " + std::to_string(points) + " of " +
+                        counted(promised, "point is", "points are") + " there");
+    }
+  };
+  for (;;) {
+    if (!reader.nextPlain(text)) {
+      if (countOf(nextWords(text))) {
+        requirePromised();
+        promised = readPtsCount(text);
+        points = 0;
+        continue;
+      }
+      if (!reader.next(text)) break;
+    }
+    rows.add(reader.numbers());
+    ++points;
+  }
+  requirePromised();
+  return std::move(rows).finished();
+}
+
+pcl::PCLPointCloud2 parsePtsHeader(std::string_view file)
+{
+  TextCursor text(file);
+  const std::uint64_t promised = readPtsCount(text);
+  return TextRows(ptsLine(text, promised).values).finished();
+}
+
+pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::optional<std::size_t> wanted)
+{
+  const PtxContents contents(file, wanted);
+  const bool several = contents.scans > 1 && !wanted;
+  TextRows rows(contents.values(several));
+  rows.reserveLines(file);
+  PointReader reader(*contents.line);
+  viewpoint = no_viewpoint;
+  TextCursor text(file);
+  PtxScan scan, only;
+  for (std::size_t number = 0; readPtxScan(text, scan); ++number) {
+    const bool kept = wanted.value_or(number) == number;
+    if (number == wanted.value_or(0)) viewpoint = scannerPose(scan);
+    if (kept) only = scan;
+    for (std::uint64_t i = 0; i < scan.columns * scan.rows; ++i) {
+      if (!kept) {
+        text.nextLine();
+        continue;
+      }
+      if (!reader.next(text)) throw FormatError("is truncated: it ends before the last of its points");
+      std::vector<double>& numbers = reader.numbers();
+      place(scan, contents.line->intensity(), numbers);
+      rows.add(numbers);
+      if (several) rows.put(rows.size() - 1, numbers.size(), static_cast<double>(number));
+    }
+  }
+  pcl::PCLPointCloud2 cloud = std::move(rows).finished();
+  if (!several && only.columns > 0 && only.rows > 0) transpose(cloud, only);
+  return cloud;
+}
+
+pcl::PCLPointCloud2 parsePtxHeader(std::string_view file, std::optional<std::size_t> wanted)
+{
+  const PtxContents contents(file, wanted);
+  return TextRows(contents.values(contents.scans > 1 && !wanted)).finished();
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The surfaces of bodies as triangles, and the files of meshes that a URDF names.
+#pragma once
+
+#include "robot.h"
+
+#include <pcl_bsh/geometry/point3.h>
+#include <pcl_bsh/surface/surface_cover.h>
+
+#include <filesystem>
+#include <vector>
+
+namespace pcl_bsh::self_filter {
+
+struct Surface {
+  std::vector<Point3> vertices;
+  std::vector<Triangle> triangles;
+};
+
+/// Reads .stl, .obj, .ply and .off, whose unit is taken for metres, and .dae where this is compiled with assimp. Of
+/// COLLADA the file's <unit> counts, and its <up_axis> does not: coordinates are those of the link, as RViz shows them.
+/// @throws files::FileError
+Surface readSurface(const std::filesystem::path& path);
+
+/// In the link's frame. What is round is a polyhedron within it.
+/// @param sagitta how far that may be from what is round, m; > 0
+/// @pre requireSize() of what is no mesh
+/// @throws files::FileError for a mesh that cannot be read or has no faces; std::runtime_error for a size that is too
+///   large for the sagitta
+Surface surfaceOf(const Shape& shape, double sagitta);
+
+} // namespace pcl_bsh::self_filter

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "extras.h"
+
+#include "caption.h"
+#include "text.h"
+
+#include <pcl_bsh/vtk/hierarchy_data.h>
+#include <pcl_bsh/vtk/path_data.h>
+
+#include <vtkBillboardTextActor3D.h>
+#include <vtkCellArray.h>
+#include <vtkGlyph3DMapper.h>
+#include <vtkLineSource.h>
+#include <vtkMapper.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkProperty.h>
+#include <vtkSphereSource.h>
+#include <vtkTextProperty.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+namespace pcl_bsh::viewer {
+namespace {
+
+/// Three great circles of radius 1: they outline a sphere from every side.
+vtkSmartPointer<vtkPolyData> circles()
+{
+  constexpr int corners = 96;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> lines;
+  for (int axis = 0; axis < 3; ++axis) {
+    lines->InsertNextCell(corners + 1);
+    for (int i = 0; i <= corners; ++i) {
+      double p[3] = {0, 0, 0};
+      p[axis] = std::cos(2 * std::numbers::pi * i / corners);
+      p[(axis + 1) % 3] = std::sin(2 * std::numbers::pi * i / corners);
+      lines->InsertCellPoint(points->InsertNextPoint(p));
+    }
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetLines(lines);
+  return data;
+}
+
+/// Adds translucent spheres, outlined where they are not too many. @param spheres points with an array `radius`
+void addSpheres(PropGroup& group, vtkPolyData& spheres, const Eigen::Isometry3d& pose, const Color& color,
+                double opacity)
+{
+  if (spheres.GetNumberOfPoints() == 0) return;
+  const auto add = [&](vtkPolyData* shape, double how_opaque) {
+    vtkNew<vtkGlyph3DMapper> mapper;
+    mapper->SetInputData(&spheres);
+    mapper->SetSourceData(shape);
+    mapper->SetScaleArray("radius");
+    mapper->SetScaleModeToScaleByMagnitude();
+    mapper->SetScaleFactor(1.0);
+    mapper->ScalarVisibilityOff();
+    const auto actor = vtkSmartPointer<vtkActor>::New();
+    actor->SetMapper(mapper);
+    setColor(*actor, color);
+    actor->GetProperty()->LightingOff();
+    actor->GetProperty()->SetOpacity(how_opaque);
+    actor->SetUserMatrix(matrixOf(pose));
+    group.add(actor);
+  };
+  vtkNew<vtkSphereSource> ball;
+  ball->SetRadius(1.0);
+  const vtkIdType count = spheres.GetNumberOfPoints();
+  const int corners = count > 20'000 ? 8 : count > 500 ? 20 : 48;
+  ball->SetThetaResolution(corners);
+  ball->SetPhiResolution(corners);
+  ball->Update();
+  // The more there are, the less each may hide.
+  const double crowd = std::clamp(40.0 / std::sqrt(static_cast<double>(count)), 0.15, 1.0);
+  add(ball->GetOutput(), opacity * crowd);
+  if (count <= 20'000) add(circles(), std::min(1.0, 0.15 + 2.5 * opacity * crowd));
+}
+
+void addWires(PropGroup& group, vtkPolyData& boxes, const Eigen::Isometry3d& pose, const Color& color)
+{
+  const auto actor = actorOf(&boxes);
+  actor->GetMapper()->ScalarVisibilityOff();
+  setColor(*actor, color);
+  actor->GetProperty()->SetOpacity(0.6);
+  actor->SetUserMatrix(matrixOf(pose));
+  group.add(actor);
+}
+
+/// Opened spheres are drawn as their children, so each place is drawn once.
+void addTraced(PropGroup& group, const std::vector<TracedSphere>& all, const Eigen::Isometry3d& pose)
+{
+  for (const SphereFate fate : {SphereFate::pruned, SphereFate::kept, SphereFate::compared}) {
+    std::vector<TracedSphere> some;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(some),
+                 [fate](const TracedSphere& sphere) { return sphere.fate == fate; });
+    const double opacity = fate == SphereFate::compared ? 0.6 : fate == SphereFate::kept ? 0.3 : 0.12;
+    addSpheres(group, *vtk::traceData(some), pose, fate_colors[static_cast<std::size_t>(fate)], opacity);
+  }
+}
+
+} // namespace
+
+void addExtras(PropGroup& group, const ViewContent& content, const Extras& extras, std::size_t step)
+{
+  for (std::size_t i = 0; i < content.viewedClouds().size(); ++i) {
+    const SphereHierarchy& hierarchy = *content.viewedClouds()[i].hierarchy;
+    const Eigen::Isometry3d pose = content.poseOf(i, step);
+    if (extras.level) addSpheres(group, *vtk::sphereData(hierarchy, *extras.level), pose, sphere_color, 0.16);
+    if (extras.voxels) addWires(group, *vtk::voxelBoxes(hierarchy), pose, voxel_color);
+    if (extras.cells) addWires(group, *vtk::cellBoxes(hierarchy, extras.level.value_or(1)), pose, cell_color);
+  }
+  if (!extras.trace) return;
+  for (const Trace& query : content.traces(step)) {
+    addTraced(group, query.trace.a, content.poseOf(query.a, step));
+    addTraced(group, query.trace.b, content.poseOf(query.b, step));
+  }
+}
+
+void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::string& unit)
+{
+  vtkNew<vtkLineSource> line;
+  line->SetPoint1(closest.a.data());
+  line->SetPoint2(closest.b.data());
+  line->Update();
+  const auto segment = actorOf(line->GetOutput());
+  setColor(*segment, segment_color);
+  segment->GetProperty()->SetLineWidth(3.0f);
+  group.add(segment);
+  vtkNew<vtkBillboardTextActor3D> label;
+  const Eigen::Vector3d middle = (closest.a + closest.b) / 2;
+  label->SetPosition(middle.x(), middle.y(), middle.z());
+  label->SetDisplayOffset(8, 8);
+  label->SetInput(lengthOf(closest.distance, unit).c_str());
+  const std::array<double, 3> c = fractions(segment_color);
+  label->GetTextProperty()->SetColor(c[0], c[1], c[2]);
+  label->GetTextProperty()->SetFontSize(text_size);
+  group.add(label.Get());
+}
+
+void addPaths(PropGroup& group, const MotionPaths& paths)
+{
+  for (const std::vector<Eigen::Isometry3d>& motion : paths.poses) {
+    const auto line = actorOf(vtk::pathData(motion));
+    line->GetMapper()->ScalarVisibilityOff();
+    setColor(*line, path_color);
+    line->GetProperty()->SetLineWidth(2.0f);
+    group.add(line);
+  }
+}
+
+} // namespace pcl_bsh::viewer

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is drawn beside the clouds.
+#pragma once
+
+#include "actors.h"
+#include <pcl_bsh/tools/viewer/content/view_content.h>
+
+#include <optional>
+#include <string>
+
+namespace pcl_bsh::viewer {
+
+/// Which extras are on.
+struct Extras {
+  std::optional<unsigned> level; ///< of the spheres
+  bool voxels = false, cells = false, trace = false;
+};
+
+/// Adds what shows the algorithm at work: spheres of a level, voxels and octree cells as wire boxes, and what a query
+/// tested and pruned.
+void addExtras(PropGroup& group, const ViewContent& content, const Extras& extras, std::size_t step);
+
+/// Adds a closest pair as a segment, with its distance.
+void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::string& unit);
+
+/// Adds the paths of a step as lines.
+void addPaths(PropGroup& group, const MotionPaths& paths);
+
+} // namespace pcl_bsh::viewer
