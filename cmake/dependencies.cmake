@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Everything comes from the packages listed in packages.txt; of its sections, the first is enough for what needs no PCL.
+# Everything comes from the packages listed in packages.txt: what core, search and filters need, then what is shared by
+# components. What one component alone needs, its own CMakeLists.txt looks for.
 
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
@@ -7,18 +8,16 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Boost 1.74 REQUIRED) # headers of Multiprecision
 find_package(TBB 2021 REQUIRED CONFIG)
 find_package(hwy 1.0 REQUIRED CONFIG)
-find_package(nlohmann_json 3.11 REQUIRED CONFIG)
-find_package(FastFloat 3 REQUIRED CONFIG)
+if(PCL_BSH_WITHOUT_PCL OR PCL_BSH_BUILD_PIPELINES OR PCL_BSH_BUILD_SITES OR PCL_BSH_BUILD_VTK)
+  find_package(nlohmann_json 3.11 REQUIRED CONFIG)
+  find_package(FastFloat 3 REQUIRED CONFIG)
+endif()
 if(PCL_BSH_BUILD_TOOLS)
   find_package(CLI11 2 REQUIRED CONFIG)
 endif()
 if(PCL_BSH_WITHOUT_PCL)
   return()
 endif()
-find_path(KAINJOW_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)
-find_path(LIBDEFLATE_INCLUDE_DIR libdeflate.h REQUIRED) # beside VTK, which needs it, too
-find_library(LIBDEFLATE_LIBRARY deflate REQUIRED)
-mark_as_advanced(KAINJOW_INCLUDE_DIR LIBDEFLATE_INCLUDE_DIR LIBDEFLATE_LIBRARY)
 
 # Without what they need, tests are left out: who only runs the programs need not install it.
 if(PCL_BSH_BUILD_TESTS)
@@ -30,28 +29,25 @@ if(PCL_BSH_BUILD_TESTS)
   endif()
 endif()
 
+set(pcl_components common search filters)
+if(PCL_BSH_BUILD_PIPELINES OR PCL_BSH_BUILD_SITES)
+  find_path(KAINJOW_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)
+  mark_as_advanced(KAINJOW_INCLUDE_DIR)
+  list(APPEND pcl_components io features segmentation)
+endif()
+if(PCL_BSH_BUILD_TESTS OR PCL_BSH_BUILD_TOOLS) # algorithms that are given our search class
+  list(APPEND pcl_components io features segmentation keypoints registration surface)
+endif()
 # Reading and writing clouds needs nothing of what pcl_io would drag in for cameras and windows.
 set(unwanted VTK OpenNI OpenNI2 libusb)
 foreach(package IN LISTS unwanted)
   set(CMAKE_DISABLE_FIND_PACKAGE_${package} ON)
 endforeach()
-set(pcl_components common search filters io features segmentation)
-if(PCL_BSH_BUILD_TESTS OR PCL_BSH_BUILD_TOOLS) # algorithms that are given our search class
-  list(APPEND pcl_components keypoints registration surface)
-endif()
+list(REMOVE_DUPLICATES pcl_components)
 find_package(PCL 1.13 REQUIRED QUIET COMPONENTS ${pcl_components})
 foreach(package IN LISTS unwanted)
   unset(CMAKE_DISABLE_FIND_PACKAGE_${package})
 endforeach()
-
-# Optional, and for pcl_bsh::certify alone: GPL-3.0-or-later, see pcl_bsh/certify/LICENSE.
-set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
-find_package(CGAL 5.4 QUIET)
-option(PCL_BSH_BUILD_CERTIFY "pcl_bsh::certify and pcl_bsh_certify, where CGAL is found; binaries are GPL-3.0-or-later" ON)
-if(PCL_BSH_BUILD_CERTIFY AND NOT CGAL_FOUND)
-  message(STATUS "pcl_bsh::certify is left out: CGAL (libcgal-dev) is not found")
-  set(PCL_BSH_BUILD_CERTIFY OFF)
-endif()
 
 if(PCL_BSH_BUILD_BENCHMARKS)
   find_package(nanoflann 1.4 REQUIRED CONFIG)

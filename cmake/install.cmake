@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# For find_package(pcl_bsh). Components: libs, dev (headers, CMake package), with the programs tools, with VTK vtk, its
-# library and headers, with CGAL certify, which is all that falls under the GPL, and python (pcl_bsh/python).
+# For find_package(pcl_bsh). Components: libs, dev (headers, CMake package), with the programs tools, and where they are
+# built vtk and certify, libraries with their headers (all that falls under the GPL is certify), python and self_filter.
 include(CMakePackageConfigHelpers)
-
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pcl_bsh")
-set(libraries pcl_bsh_core pcl_bsh_files pcl_bsh_search pcl_bsh_filters pcl_bsh_documents pcl_bsh_io pcl_bsh_pipeline
-              pcl_bsh_sites)
+
+set(libraries "")
+foreach(name IN ITEMS core files search filters documents io pipeline sites)
+  if(TARGET pcl_bsh_${name})
+    list(APPEND libraries pcl_bsh_${name})
+  endif()
+endforeach()
 install(
   TARGETS ${libraries}
   EXPORT pcl_bsh
@@ -13,6 +17,18 @@ install(
   ARCHIVE COMPONENT dev
   FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT dev)
 install(EXPORT pcl_bsh FILE pcl_bshTargets.cmake NAMESPACE pcl_bsh:: DESTINATION "${package_dir}" COMPONENT dev)
+foreach(name IN ITEMS certify vtk) # only for those who ask: find_package(pcl_bsh COMPONENTS certify)
+  if(TARGET pcl_bsh_${name})
+    install(
+      TARGETS pcl_bsh_${name}
+      EXPORT pcl_bsh_${name}
+      LIBRARY COMPONENT ${name}
+      ARCHIVE COMPONENT ${name}
+      FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT ${name})
+    install(EXPORT pcl_bsh_${name} FILE pcl_bsh_${name}Targets.cmake NAMESPACE pcl_bsh:: DESTINATION "${package_dir}"
+            COMPONENT ${name})
+  endif()
+endforeach()
 
 configure_package_config_file(
   "${PROJECT_SOURCE_DIR}/cmake/pcl_bshConfig.cmake.in" "${PROJECT_BINARY_DIR}/pcl_bshConfig.cmake"
@@ -22,24 +38,3 @@ install(
   FILES "${PROJECT_BINARY_DIR}/pcl_bshConfig.cmake" "${PROJECT_BINARY_DIR}/pcl_bshConfigVersion.cmake"
   DESTINATION "${package_dir}"
   COMPONENT dev)
-
-if(PCL_BSH_BUILD_CERTIFY) # find_package(pcl_bsh COMPONENTS certify)
-  install(
-    TARGETS pcl_bsh_certify
-    EXPORT pcl_bsh_certify
-    LIBRARY COMPONENT certify
-    ARCHIVE COMPONENT certify
-    FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT certify)
-  install(EXPORT pcl_bsh_certify FILE pcl_bsh_certifyTargets.cmake NAMESPACE pcl_bsh:: DESTINATION "${package_dir}"
-          COMPONENT certify)
-endif()
-
-if(TARGET pcl_bsh_vtk) # find_package(pcl_bsh COMPONENTS vtk)
-  install(
-    TARGETS pcl_bsh_vtk
-    EXPORT pcl_bsh_vtk
-    LIBRARY COMPONENT vtk
-    ARCHIVE COMPONENT vtk
-    FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT vtk)
-  install(EXPORT pcl_bsh_vtk FILE pcl_bsh_vtkTargets.cmake NAMESPACE pcl_bsh:: DESTINATION "${package_dir}" COMPONENT vtk)
-endif()

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian packages that are missing, configures and builds. Does no more than is left to do.
 #   bash cmake/setup.sh [PRESET [TARGET...]]     default: release, all targets; into build/PRESET
-# For the targets `demonstration`, `programs`, `python`, `docs` and `self_filter` it installs the sections of
-# packages.txt that these need, for others all but [paraview]. The preset `paraview` needs packages that exclude those of
-# the others: apt-get removes nothing, and fails.
+# Installs the sections of packages.txt which the preset and the target need: for `library` what core, search and filters
+# need, for the targets `demonstration`, `programs`, `python`, `docs` and `self_filter` what these need, otherwise all but
+# [paraview]. The preset `paraview` needs packages that exclude those of the others: apt-get removes nothing, and fails.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -13,15 +13,17 @@ die() { printf 'setup.sh: %s\n' "$*" >&2; exit 1; }
 
 preset="${1:-release}"
 targets=("${@:2}")
+shown="core library documents pipelines sites viewer" # what the demonstration needs
 case "${targets[*]}" in
-  demonstration) sections="core demonstration" ;;
-  programs) sections="core demonstration programs" ;;
-  python) sections="core demonstration python" ;;
-  self_filter) sections="core demonstration self_filter" ;;
-  docs) sections="core demonstration docs" ;;
-  *) sections="core demonstration programs tests docs self_filter python" ;;
+  demonstration) sections="$shown" ;;
+  programs) sections="$shown certify" ;;
+  python | self_filter | docs) sections="$shown ${targets[*]}" ;;
+  *) sections="$shown certify tests docs self_filter python" ;;
 esac
-if [[ "$preset" == paraview ]]; then sections="core paraview"; fi
+case "$preset" in
+  library) sections="core library" ;;
+  paraview) sections="core documents paraview" ;;
+esac
 
 # The packages of some sections that are not installed.
 missing_packages() {
@@ -72,7 +74,7 @@ download_and_install() { # FOLDER OF DOWNLOADS, PACKAGES TO DOWNLOAD..., --, PAC
 # packages are installed, and installed while the core is compiled.
 install_all_and_build_core() {
   local core rest others log="$PWD/build/apt.log"
-  mapfile -t core < <(missing_packages core)
+  mapfile -t core < <(missing_packages core documents)
   mapfile -t rest < <(missing_packages $sections)
   mapfile -t others < <(comm -13 <(with_dependencies "${core[@]}") <(with_dependencies "${rest[@]}"))
   mkdir -p build/packages/partial

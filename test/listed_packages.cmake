@@ -5,10 +5,11 @@ cmake_minimum_required(VERSION 3.25)
 get_filename_component(root "${CMAKE_CURRENT_LIST_DIR}" DIRECTORY)
 
 file(STRINGS "${root}/cmake/setup.sh" sections REGEX "^  \\*\\) sections=") # those for no target in particular
-if(NOT sections MATCHES "sections=\"([a-z_ ]+)\"")
-  message(FATAL_ERROR "cmake/setup.sh: has no line *) sections=\"...\"")
+file(STRINGS "${root}/cmake/setup.sh" shown REGEX "^shown=")
+if(NOT "${shown} ${sections}" MATCHES "shown=\"([a-z_ ]+)\".*sections=\"[$]shown ([a-z_ ]+)\"")
+  message(FATAL_ERROR "cmake/setup.sh: has no lines shown=\"...\" and *) sections=\"$shown ...\"")
 endif()
-string(REPLACE " " ";" sections "${CMAKE_MATCH_1}")
+string(REPLACE " " ";" sections "${CMAKE_MATCH_1} ${CMAKE_MATCH_2}")
 
 set(listed "")
 set(is_wanted FALSE)

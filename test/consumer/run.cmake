@@ -17,7 +17,7 @@ file(WRITE "${readme_example}" "${CMAKE_MATCH_1}")
 run(${CMAKE_COMMAND} -S "${CMAKE_CURRENT_LIST_DIR}" -B "${WORK}/build" -G Ninja -D CMAKE_BUILD_TYPE=Release -D
     "CMAKE_PREFIX_PATH=${WORK}/prefix" -D "README_EXAMPLE=${readme_example}")
 execute_process(COMMAND ${CMAKE_COMMAND} -S "${CMAKE_CURRENT_LIST_DIR}" -B "${WORK}/refused" -G Ninja -D
-                        "CMAKE_PREFIX_PATH=${WORK}/prefix" -D MORE_COMPONENTS=tree RESULT_VARIABLE status
+                        "CMAKE_PREFIX_PATH=${WORK}/prefix" -D PCL_BSH_COMPONENTS=tree RESULT_VARIABLE status
                 OUTPUT_QUIET ERROR_VARIABLE text)
 if(status EQUAL 0 OR NOT text MATCHES "no[ \n]+component[ \n]+tree")
   message(FATAL_ERROR "the component `tree` was not refused by its name: status ${status}, ${text}")
