@@ -6,6 +6,7 @@
 #include <pcl_bsh/geometry/compensated_sum.h>
 #include <pcl_bsh/geometry/dyadic.h>
 #include <pcl_bsh/geometry/expansion.h>
+#include <pcl_bsh/geometry/nearest_double.h>
 #include <pcl_bsh/geometry/rounded_length.h>
 
 #include <limits>
@@ -72,19 +73,6 @@ double approximateDifference(const Dyadic& squared, const Dyadic& length)
   const double denominator =
       std::ldexp(root.mantissa, root.exponent - exponent) + std::ldexp(shorter.mantissa, shorter.exponent - exponent);
   return std::ldexp(numerator.mantissa / denominator, numerator.exponent - exponent);
-}
-
-/// Halfway to the next double above x; the one above the largest counts as 2^1024.
-Dyadic halfwayAbove(double x)
-{
-  constexpr double largest = std::numeric_limits<double>::max();
-  const Dyadic above = x < largest ? Dyadic(std::nextafter(x, largest)) : Dyadic(0x1p1023) * Dyadic(2.0);
-  return (Dyadic(x) + above) * Dyadic(0.5);
-}
-
-bool isEven(double x)
-{
-  return (std::bit_cast<std::uint64_t>(x) & 1) == 0;
 }
 
 } // namespace
@@ -173,59 +161,55 @@ double ExactDistance::gap(const Pair& pair) const
   const Dyadic radii = Dyadic(pair.radius_p) + Dyadic(pair.radius_q);
   if (compareRoot(squared, radii) == 0) return 0.0;
 
-  constexpr double largest = std::numeric_limits<double>::max();
-  double rounded = std::min(approximateDifference(squared, radii), largest);
-  const auto belongs_above = [&](double x) {
-    const int side = compareRoot(squared, radii + halfwayAbove(x));
-    return side > 0 || (side == 0 && !isEven(x));
-  };
-  while (rounded < kUnbounded && belongs_above(rounded)) rounded = std::nextafter(rounded, kUnbounded);
-  while (rounded > -kUnbounded && !belongs_above(std::nextafter(rounded, -kUnbounded)))
-    rounded = std::nextafter(rounded, -kUnbounded);
-  return rounded;
+  return nearestDouble(approximateDifference(squared, radii),
+                       [&](const Dyadic& x) { return compareRoot(squared, radii + x); });
+}
+
+ExactDistance::Enclosure ExactDistance::enclose(const Point3& p, const Point3& q) const
+{
+  const Difference z = approximate(p, q);
+  const double distance = std::sqrt(z.vector[0] * z.vector[0] + z.vector[1] * z.vector[1] + z.vector[2] * z.vector[2]);
+  const double error = translations_only_ ? kFewDoubleRoundings * distance + z.error : z.error;
+  if (!std::isfinite(distance + error)) return {-kUnbounded, kUnbounded};
+  return {distance - error, distance + error};
 }
 
 /// Double arithmetic with its error. A coordinate sums eight terms, each rounded at most five times, so it errs by less
 /// than 5.01 v of their absolute sum. All terms of all coordinates together are also >= the distance; kTermsError of
 /// them pays for that, for the squares, the root, their own summation and the last subtraction; kUnderflow for
 /// underflow.
-ExactDistance::Enclosure ExactDistance::enclose(const Point3& p, const Point3& q) const
+ExactDistance::Difference ExactDistance::approximate(const Point3& p, const Point3& q) const
 {
-  if (translations_only_) return encloseTranslated(p, q);
-  double squared = 0.0;
+  if (translations_only_) return approximateTranslated(p, q);
+  Difference z;
   double terms = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double a[] = {a_[k][0] * p[0], a_[k][1] * p[1], a_[k][2] * p[2], a_[k][3]};
     const double b[] = {b_[k][0] * q[0], b_[k][1] * q[1], b_[k][2] * q[2], b_[k][3]};
-    const double difference = (a[0] + a[1] + a[2] + a[3]) - (b[0] + b[1] + b[2] + b[3]);
-    squared += difference * difference;
+    z.vector[k] = (a[0] + a[1] + a[2] + a[3]) - (b[0] + b[1] + b[2] + b[3]);
     for (const double term : a) terms += std::abs(term);
     for (const double term : b) terms += std::abs(term);
   }
-  if (!std::isfinite(squared)) return {-kUnbounded, kUnbounded};
-  const double distance = std::sqrt(squared);
-  const double error = kTermsError * terms + kUnderflow;
-  return {distance - error, distance + error};
+  z.error = kTermsError * terms + kUnderflow;
+  return z;
 }
 
 /// Without rotations, (p - q) + (t_a - t_b): the errors of these three sums are known, so that points of any scale are
-/// told apart wherever they lie. The norm of the sums is rounded by 2.5 v of itself, the last subtraction by one more;
-/// kUnderflow pays for underflow of the squares. Twice the errors pay for their own summation.
-ExactDistance::Enclosure ExactDistance::encloseTranslated(const Point3& p, const Point3& q) const
+/// told apart wherever they lie. Twice the errors pay for their own summation; of a distance, the norm of the sums is
+/// rounded by 2.5 v of itself, the last subtraction by one more. kUnderflow pays for underflow of the squares.
+ExactDistance::Difference ExactDistance::approximateTranslated(const Point3& p, const Point3& q) const
 {
-  double squared = 0.0;
+  Difference z;
   double errors = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const WithError between = twoSum(p[k], -q[k]);
     const WithError shift = twoSum(a_[k][3], -b_[k][3]);
     const WithError difference = twoSum(between.value, shift.value);
-    squared += difference.value * difference.value;
+    z.vector[k] = difference.value;
     errors += std::abs(between.error) + std::abs(shift.error) + std::abs(difference.error);
   }
-  if (!std::isfinite(squared + errors)) return {-kUnbounded, kUnbounded};
-  const double distance = std::sqrt(squared);
-  const double error = kFewDoubleRoundings * distance + 2.0 * errors + kUnderflow;
-  return {distance - error, distance + error};
+  z.error = 2.0 * errors + kUnderflow;
+  return z;
 }
 
 /// Sums with their rounding errors: for places whose points double arithmetic cannot tell apart from afar. A coordinate

@@ -37,6 +37,13 @@ public:
 
   ExactDistance(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b);
 
+  /// T_a p - T_b q by double arithmetic, and how far that may be off as a vector: not finite where nothing is known.
+  struct Difference {
+    Point3 vector;
+    double error;
+  };
+  Difference approximate(const Point3& p, const Point3& q) const;
+
   /// Bounds of |T_a p - T_b q| as far as double arithmetic can tell; low may be negative, or both infinite.
   Enclosure enclose(const Point3& p, const Point3& q) const;
 
@@ -62,7 +69,7 @@ public:
 private:
   using Row = std::array<double, 4>; // of a pose: rotation, then translation
 
-  Enclosure encloseTranslated(const Point3& p, const Point3& q) const;
+  Difference approximateTranslated(const Point3& p, const Point3& q) const;
   Enclosure encloseClosely(const Point3& p, const Point3& q) const;
   std::array<LongCoordinate, 3> difference(const Point3& p, const Point3& q) const;
   bool exactDifference(const Point3& p, const Point3& q, Point3& difference) const;

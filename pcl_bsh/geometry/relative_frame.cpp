@@ -135,6 +135,13 @@ DistanceBand RelativeFrame::band(double clearance) const noexcept
   return skewedBand(clearance / unit_b_, error, skew_);
 }
 
+DistanceBand RelativeFrame::band(double clearance, double more_error, double more_share) const noexcept
+{
+  constexpr double of_second_order = 1.0 + 0x1p-16; // shares are below 2^-18, together
+  return skewedBand(clearance / unit_b_, (error + more_error) * of_second_order,
+                    (skew_ + more_share) * of_second_order);
+}
+
 DistanceBand RelativeFrame::bandUnproven(double clearance) const noexcept
 {
   const double d = clearance / unit_b_;

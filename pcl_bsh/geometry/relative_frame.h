@@ -49,6 +49,10 @@ public:
   /// The band for a clearance >= 0 given in the clouds' unit. @pre finite or infinite, not NaN.
   DistanceBand band(double clearance) const noexcept;
 
+  /// The same of what errs by more than stored points do: by so much, and such a share of its distance. A triangle of b
+  /// that was laid flat has flat.error and kFlatShare.
+  DistanceBand band(double clearance, double more_error, double more_share) const noexcept;
+
   /// A band without width: the float distance decides, right or wrong.
   DistanceBand bandUnproven(double clearance) const noexcept;
 

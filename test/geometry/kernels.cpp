@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "test/geometry/kernels.cpp"
@@ -10,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/simd/segment_lanes-inl.h>
+#include <pcl_bsh/simd/triangle_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -72,6 +74,14 @@ test::Stay segmentInBoxOnTarget(const float* start, const float* end, const floa
   return {in_box, clipped.from[0], clipped.to[0]};
 }
 
+void toTriangleOnTarget(const FlatTriangle<float>& triangle, const float* x, const float* y, const float* z,
+                        test::ToTriangle& out)
+{
+  squaredToTriangle(triangle, x, y, z, 8, out.squared);
+  std::fill(out.lowered, out.lowered + 8, std::numeric_limits<float>::infinity());
+  lowerToTriangle(triangle, x, y, z, 8, out.lowered);
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh
 HWY_AFTER_NAMESPACE();
@@ -84,6 +94,7 @@ HWY_EXPORT(squaredOnTarget);
 HWY_EXPORT(testOnTarget);
 HWY_EXPORT(slabsApartOnTarget);
 HWY_EXPORT(segmentInBoxOnTarget);
+HWY_EXPORT(toTriangleOnTarget);
 } // namespace
 
 namespace test {
@@ -119,6 +130,14 @@ Stay segmentInBox(const float (&start)[3], const float (&end)[3], const float (&
                   const float (&low)[3], const float (&high)[3])
 {
   return HWY_DYNAMIC_DISPATCH(segmentInBoxOnTarget)(start, end, bow, smallest, reach, low, high);
+}
+
+ToTriangle squaredToTriangleEight(const FlatTriangle<float>& triangle, const float (&x)[8], const float (&y)[8],
+                                  const float (&z)[8])
+{
+  ToTriangle found;
+  HWY_DYNAMIC_DISPATCH(toTriangleOnTarget)(triangle, x, y, z, found);
+  return found;
 }
 
 } // namespace test

@@ -2,6 +2,8 @@
 // The float kernels as they are compiled for the instruction set in use: for tests that judge their rounding.
 #pragma once
 
+#include <pcl_bsh/simd/flat_triangle.h>
+
 namespace pcl_bsh::test {
 
 /// Eight points carried, by carry(); and the first of them by carryPoint().
@@ -38,5 +40,12 @@ struct Stay {
 };
 Stay segmentInBox(const float (&start)[3], const float (&end)[3], const float (&bow)[3], float smallest, float reach,
                   const float (&low)[3], const float (&high)[3]);
+
+/// squaredToTriangle() of eight points; and lowerToTriangle() of them, where nothing is nearer.
+struct ToTriangle {
+  alignas(32) float squared[8], lowered[8];
+};
+ToTriangle squaredToTriangleEight(const FlatTriangle<float>& triangle, const float (&x)[8], const float (&y)[8],
+                                  const float (&z)[8]);
 
 } // namespace pcl_bsh::test

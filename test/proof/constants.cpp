@@ -3,6 +3,7 @@
 #include <pcl_bsh/distances/bound_margin.h>
 #include <pcl_bsh/geometry/local_frame.h>
 #include <pcl_bsh/geometry/rounded_length.h>
+#include <pcl_bsh/geometry/triangle/flat_triangle.h>
 #include <pcl_bsh/simd/roundings.h>
 
 #include <cstdio>
@@ -27,4 +28,6 @@ int main()
   PCL_BSH_PRINT(kBoundMargin);
   PCL_BSH_PRINT(kNeighborShare);
   PCL_BSH_PRINT(kNeighborMargin);
+  std::printf("kFlatTriangleError %a\n", pcl_bsh::kFlatTriangleUnits * pcl_bsh::kFloatUnit);
+  std::printf("kFlatSkewOfFloats %a\n", pcl_bsh::kFlatSkew<float>);
 }

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Squared distances of triangles as fractions, by which of their features are nearest: in LongNumber, which may be
+// unsure, or in Dyadic, which never is.
+#pragma once
+
+#include <pcl_bsh/geometry/dyadic.h>
+#include <pcl_bsh/geometry/long_number.h>
+#include <pcl_bsh/geometry/triangle/vector3.h>
+
+#include <cstdint>
+
+namespace pcl_bsh {
+
+inline int signOf(const LongNumber& x, bool& sure)
+{
+  return x.sign(sure);
+}
+inline int signOf(const Dyadic& x, bool&)
+{
+  return x.sign();
+}
+
+/// numerator / denominator, of which the latter is positive.
+template <class Number>
+struct Fraction {
+  Number numerator = Number(0.0), denominator = Number(1.0);
+};
+
+/// Sign of x - y.
+template <class Number>
+int compareFractions(const Fraction<Number>& x, const Fraction<Number>& y, bool& sure)
+{
+  return signOf(x.numerator * y.denominator - y.numerator * x.denominator, sure);
+}
+
+/// Which pairs of features are to be compared: all that may be the nearest.
+struct FeaturePairs {
+  std::uint16_t edges =
+      0x1ff;                 ///< bit 3 i + j: edge i of the first triangle, edge j of the second; each from its corner
+  std::uint8_t faces = 0x3f; ///< bit i: corner i of the first, the second's face; bit 3 + j: corner j of the second
+};
+
+/// The smallest squared distance of two closed triangles, or of a point, which is corner 0 of the first, and a
+/// triangle.
+///
+/// The nearest places of two triangles that do not meet are a corner and a place inside a face, or places of two edges.
+/// Of two edges they are inside both, or a corner and an edge. Each pair of two corners, of corner and edge and so on
+/// is offered once at most, so that equal distances are not compared where one feature is shared. Where a sign is
+/// unknown, `sure` is false and the result worth nothing.
+template <class Number>
+class NearestFeatures {
+public:
+  using Vector = Vector3<Number>;
+  using Corners = std::array<Vector, 3>;
+
+  /// Of a point and a triangle.
+  NearestFeatures(const Vector& point, const Corners& triangle) : a_{point, point, point}, b_(triangle)
+  {
+    const Vector normal = normalOf(b_);
+    const bool flat = isZero(normal);
+    if (!flat && isOver(point, b_, normal)) {
+      offerPlane(point, b_, normal);
+      return;
+    }
+    for (std::size_t j = 0; j < 3 && sure_; ++j) // the nearest edge is one that has the point on its outer side
+      if (flat || outer_[j]) offerEdge(0, j, true);
+  }
+
+  /// Of two triangles.
+  NearestFeatures(const Corners& a, const Corners& b, FeaturePairs pairs) : a_(a), b_(b)
+  {
+    const Vector normals[2] = {normalOf(a), normalOf(b)};
+    if (pierces(a, b, normals[1]) || (sure_ && pierces(b, a, normals[0]))) {
+      if (sure_) best_ = {}, found_ = true;
+      return;
+    }
+    for (std::size_t k = 0; k < 9 && sure_; ++k)
+      if ((pairs.edges >> k & 1) != 0) offerEdges(k / 3, k % 3);
+    for (std::size_t k = 0; k < 6 && sure_; ++k) {
+      if ((pairs.faces >> k & 1) == 0) continue;
+      const Corners& face = k < 3 ? b : a;
+      const Vector& point = k < 3 ? a[k] : b[k - 3];
+      const Vector& normal = normals[k < 3 ? 1 : 0];
+      if (!isZero(normal) && isOver(point, face, normal)) offerPlane(point, face, normal);
+    }
+  }
+
+  bool sure() const { return sure_ && found_; }
+  const Fraction<Number>& squared() const { return best_; }
+
+private:
+  static Vector normalOf(const Corners& t) { return cross(t[1] - t[0], t[2] - t[0]); }
+
+  bool isZero(const Vector& v)
+  {
+    // An unknown sign of a component does not matter beside one that is known.
+    bool sure = true, zero = true;
+    for (const Number& x : v) zero = signOf(x, sure) == 0 && zero;
+    sure_ = sure_ && (sure || !zero);
+    return zero;
+  }
+
+  /// Whether a point is over the closed triangle, seen along its normal; notes the edges that it is outside of.
+  bool isOver(const Vector& point, const Corners& t, const Vector& normal)
+  {
+    bool over = true;
+    for (std::size_t j = 0; j < 3; ++j) {
+      outer_[j] = signOf(dot(normal, cross(t[(j + 1) % 3] - t[j], point - t[j])), sure_) < 0;
+      over = over && !outer_[j];
+    }
+    return over && sure_;
+  }
+
+  /// Whether an edge passes through the triangle from one side of its plane to the other.
+  bool pierces(const Corners& edges, const Corners& t, const Vector& normal)
+  {
+    int sides[3];
+    for (std::size_t i = 0; i < 3; ++i) sides[i] = signOf(dot(normal, edges[i] - t[0]), sure_);
+    for (std::size_t i = 0; i < 3 && sure_; ++i) {
+      if (sides[i] * sides[(i + 1) % 3] >= 0) continue;
+      const Vector from[3] = {t[0] - edges[i], t[1] - edges[i], t[2] - edges[i]};
+      const Vector way = edges[(i + 1) % 3] - edges[i];
+      bool some_left = false, some_right = false;
+      for (std::size_t j = 0; j < 3; ++j) {
+        const int side = signOf(dot(way, cross(from[j], from[(j + 1) % 3])), sure_);
+        some_left = some_left || side > 0, some_right = some_right || side < 0;
+      }
+      if (sure_ && !(some_left && some_right)) return true;
+    }
+    return false;
+  }
+
+  void offer(const Number& numerator, const Number& denominator)
+  {
+    const Fraction<Number> offered{numerator, denominator};
+    if (!found_ || compareFractions(offered, best_, sure_) < 0) best_ = offered;
+    found_ = true;
+  }
+
+  void offerPlane(const Vector& point, const Corners& t, const Vector& normal)
+  {
+    const Number height = dot(normal, point - t[0]);
+    offer(height * height, dot(normal, normal));
+  }
+
+  void offerCorners(std::size_t i, std::size_t j)
+  {
+    const std::uint32_t bit = 1u << (3 * i + j);
+    if ((corners_ & bit) != 0) return;
+    corners_ |= bit;
+    const Vector between = a_[i] - b_[j];
+    offer(dot(between, between), Number(1.0));
+  }
+
+  /// Corner i of the first and edge j of the second; or the other way round.
+  void offerEdge(std::size_t i, std::size_t j, bool of_first)
+  {
+    const std::uint32_t bit = 1u << (3 * i + j + (of_first ? 0 : 9));
+    if ((corner_edges_ & bit) != 0) return;
+    corner_edges_ |= bit;
+    const Corners& ends = of_first ? b_ : a_;
+    const std::size_t next = (j + 1) % 3;
+    const Vector edge = ends[next] - ends[j], from = (of_first ? a_ : b_)[i] - ends[j];
+    const auto offer_end = [&](std::size_t end) { of_first ? offerCorners(i, end) : offerCorners(end, i); };
+    const Number share = dot(from, edge), whole = dot(edge, edge);
+    if (signOf(share, sure_) <= 0) return offer_end(j);
+    if (signOf(share - whole, sure_) >= 0) return offer_end(next);
+    const Vector moment = cross(from, edge);
+    offer(dot(moment, moment), whole);
+  }
+
+  void offerEdges(std::size_t i, std::size_t j)
+  {
+    const std::size_t next_i = (i + 1) % 3, next_j = (j + 1) % 3;
+    const Vector u = a_[next_i] - a_[i], v = b_[next_j] - b_[j], w = a_[i] - b_[j];
+    const Vector normal = cross(u, v);
+    if (!isZero(normal)) {
+      const Number square = dot(normal, normal);
+      const Number on_u = dot(normal, cross(v, w)), on_v = dot(normal, cross(u, w));
+      const bool inside = signOf(on_u, sure_) > 0 && signOf(on_u - square, sure_) < 0 && signOf(on_v, sure_) > 0 &&
+                          signOf(on_v - square, sure_) < 0;
+      if (inside && sure_) {
+        const Number volume = dot(normal, w);
+        offer(volume * volume, square);
+      }
+      if (inside) return;
+    }
+    offerEdge(i, j, true);
+    offerEdge(next_i, j, true);
+    offerEdge(j, i, false);
+    offerEdge(next_j, i, false);
+  }
+
+  Corners a_, b_;
+  std::array<bool, 3> outer_ = {};
+  std::uint32_t corners_ = 0, corner_edges_ = 0;
+  Fraction<Number> best_;
+  bool found_ = false, sure_ = true;
+};
+
+} // namespace pcl_bsh

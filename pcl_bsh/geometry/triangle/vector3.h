@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Vectors of any kind of number: doubles, LongNumber, Dyadic.
+#pragma once
+
+#include <array>
+
+namespace pcl_bsh {
+
+template <class Number>
+using Vector3 = std::array<Number, 3>;
+
+template <class Number>
+Vector3<Number> operator-(const Vector3<Number>& a, const Vector3<Number>& b)
+{
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+template <class Number>
+Vector3<Number> operator+(const Vector3<Number>& a, const Vector3<Number>& b)
+{
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+template <class Number>
+Vector3<Number> operator*(const Number& s, const Vector3<Number>& a)
+{
+  return {s * a[0], s * a[1], s * a[2]};
+}
+
+template <class Number>
+Number dot(const Vector3<Number>& a, const Vector3<Number>& b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+template <class Number>
+Vector3<Number> cross(const Vector3<Number>& a, const Vector3<Number>& b)
+{
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+} // namespace pcl_bsh

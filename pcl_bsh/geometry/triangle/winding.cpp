@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/triangle/winding.h>
+
+#include <pcl_bsh/geometry/triangle/nearest_features.h>
+
+#include <cmath>
+#include <type_traits>
+
+namespace pcl_bsh {
+namespace {
+
+/// Double numbers within a common error, and what is computed of them.
+struct Rough {
+  double value = 0.0, error = 0.0;
+
+  friend Rough operator-(const Rough& x) { return {-x.value, x.error}; }
+  friend Rough operator+(const Rough& x, const Rough& y)
+  {
+    const double sum = x.value + y.value;
+    return {sum, (x.error + y.error + kDoubleUnit * std::abs(sum)) * (1.0 + kDoubleMargin)};
+  }
+  friend Rough operator-(const Rough& x, const Rough& y) { return x + -y; }
+  friend Rough operator*(const Rough& x, const Rough& y)
+  {
+    const double product = x.value * y.value;
+    const double error = std::abs(x.value) * y.error + std::abs(y.value) * x.error + x.error * y.error;
+    return {product, (error + kDoubleUnit * std::abs(product)) * (1.0 + kDoubleMargin) + 0x1p-1000};
+  }
+};
+
+int signOf(const Rough& x, bool& sure)
+{
+  if (std::abs(x.value) > x.error) return x.value > 0.0 ? 1 : -1;
+  if (!(x.value == 0.0 && x.error == 0.0)) sure = false;
+  return 0;
+}
+
+/// Corners seen from the point, the ray's axis first. `sure` is false where a sign was unknown, and the rest then worth
+/// nothing.
+template <class Number>
+Winding::Crossing meet(const std::array<Vector3<Number>, 3>& t, bool& sure)
+{
+  // All on one side: the ray does not come near, and the point is not on the triangle. An unknown sign counts as 0.
+  for (std::size_t k = 0; k < 3; ++k) {
+    int all = 0;
+    bool known = true;
+    for (std::size_t i = 0; i < 3; ++i) all += signOf(t[i][k], known);
+    if (all == -3 || (k > 0 && all == 3)) return {};
+  }
+  // In units of e << 1 along the second axis and e^2 along the third, the point is at (0, e, e^2). A side seen from
+  // there along the ray: the sign of its area with the point, by falling powers of e.
+  int turns[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3<Number>&u = t[i], &v = t[(i + 1) % 3];
+    turns[i] = signOf(u[1] * v[2] - u[2] * v[1], sure);
+    if (turns[i] == 0) turns[i] = signOf(u[2] - v[2], sure);
+    if (turns[i] == 0) turns[i] = signOf(v[1] - u[1], sure);
+  }
+  const Vector3<Number> normal = cross(t[1] - t[0], t[2] - t[0]);
+  const Number volume = dot(normal, t[0]);
+  const int side = signOf(volume, sure);
+  if (!sure) return {};
+  if (side == 0) { // in the plane of the triangle, or there is no plane: on it?
+    if constexpr (std::is_same_v<Number, Rough>) {
+      sure = false;
+      return {};
+    }
+    else {
+      const NearestFeatures<Number> nearest({Number(0.0), Number(0.0), Number(0.0)}, t);
+      sure = nearest.sure();
+      if (sure && signOf(nearest.squared().numerator, sure) == 0 && sure) return {0, true};
+      if (!sure) return {};
+    }
+  }
+  if (turns[0] == 0 || turns[0] != turns[1] || turns[1] != turns[2]) return {};
+  // The ray meets the plane in front of the point where volume over the normal along the ray is positive; in the plane,
+  // where the step beside it says so.
+  int towards = side;
+  if (towards == 0) towards = -signOf(normal[1], sure);
+  if (towards == 0) towards = -signOf(normal[2], sure);
+  if (!sure || towards * turns[0] <= 0) return {};
+  return {turns[0], false};
+}
+
+} // namespace
+
+Winding::Winding(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b, int axis)
+: points_(pose_a, pose_b),
+  axis_(static_cast<std::size_t>(axis))
+{
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto row = static_cast<Eigen::Index>((i + axis_) % 3);
+    for (std::size_t j = 0; j < 4; ++j) {
+      a_[i][j] = pose_a.matrix()(row, static_cast<Eigen::Index>(j));
+      b_[i][j] = pose_b.matrix()(row, static_cast<Eigen::Index>(j));
+    }
+  }
+}
+
+/// T_b q - T_a p.
+template <class Number>
+std::array<Number, 3> Winding::seen(const Point3& p, const Point3& q) const
+{
+  std::array<Number, 3> at;
+  for (std::size_t k = 0; k < 3; ++k) {
+    at[k] = Number(b_[k][3]) - Number(a_[k][3]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (b_[k][j] != 0.0) at[k] += Number(b_[k][j]) * Number(q[j]);
+      if (a_[k][j] != 0.0) at[k] += Number(-a_[k][j]) * Number(p[j]);
+    }
+  }
+  return at;
+}
+
+Winding::Crossing Winding::crossing(const Point3& p, const Triangle3& triangle, Stages* stages) const
+{
+  Stages none, &count = stages ? *stages : none;
+  std::array<Vector3<Rough>, 3> rough;
+  bool sure = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const ExactDistance::Difference z = points_.approximate(p, triangle[i]);
+    for (std::size_t k = 0; k < 3; ++k) rough[i][k] = {-z.vector[(k + axis_) % 3], z.error};
+  }
+  if (const Crossing found = meet(rough, sure); sure) return ++count.doubles, found;
+  sure = true;
+  const auto at = [&]<class Number>(std::array<Vector3<Number>, 3>& t) {
+    for (std::size_t i = 0; i < 3; ++i) t[i] = seen<Number>(p, triangle[i]);
+  };
+  std::array<Vector3<LongNumber>, 3> longer;
+  at(longer);
+  if (const Crossing found = meet(longer, sure); sure) return ++count.long_numbers, found;
+  sure = true;
+  ++count.integers;
+  std::array<Vector3<Dyadic>, 3> exact;
+  at(exact);
+  return meet(exact, sure);
+}
+
+std::optional<int> Winding::number(const Point3& p, std::size_t count,
+                                   const std::function<Triangle3(std::size_t)>& triangle) const
+{
+  int turns = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Triangle3 t = triangle(i);
+    if (!isFinite(t)) continue;
+    const Crossing found = crossing(p, t);
+    if (found.on_surface) return std::nullopt;
+    turns += found.turns;
+  }
+  return turns;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A triangle in a frame of its own, as the kernels of triangle_lanes-inl.h read it.
+#pragma once
+
+#include <pcl_bsh/simd/roundings.h>
+
+namespace pcl_bsh {
+
+/// The triangle (0, 0, 0), (length, 0, 0), (apex_x, apex_y, 0) of the frame y = rows (x - origin), where length is the
+/// longest side, 0 <= apex_x <= length and apex_y >= 0; what the kernels need of it beside.
+/// @tparam Number float or double
+template <class Number>
+struct FlatTriangle {
+  Number origin[3] = {};
+  Number rows[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}; ///< orthonormal but for rounding
+  Number length = 0, apex_x = 0, apex_y = 0;
+  Number to_start = 0, to_end = 0; ///< one over the squares of the apex's two sides; 0 where that is too large
+  Number rise = 0, fall = 0;       ///< slopes of these sides above the longest, not negative; large where upright
+  Number error = 0;                ///< in the frame's unit: see flatten()
+};
+
+/// Roundings of the kernel squaredToTriangle(), of which each is u of a length; derived there.
+inline constexpr int kFlatTurnRoundings = 4;  ///< of a point turned into the triangle's frame, in each coordinate
+inline constexpr int kFlatAlongRoundings = 4; ///< of a parameter along a side, relative to the terms of its products
+inline constexpr int kFlatUnderRoundings = 3; ///< of the height of a side above a place of the longest
+/// What these amount to together, in units of (distance + longest side): proved in test/proof/triangles.g.
+inline constexpr int kFlatTriangleUnits = 15;
+
+} // namespace pcl_bsh

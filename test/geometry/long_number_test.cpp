@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/long_number.h>
+
+#include <pcl_bsh/geometry/dyadic.h>
+
+#include "support/random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+/// A number and what it stands for.
+struct Known {
+  LongNumber number;
+  Dyadic exact;
+};
+
+void expectWithinError(const Known& known)
+{
+  const LongNumber& n = known.number;
+  const Dyadic off = known.exact - Dyadic(n.value()) - Dyadic(n.tail());
+  const Dyadic error(n.error());
+  EXPECT_LE((off - error).sign(), 0) << n.value();
+  EXPECT_LE((-off - error).sign(), 0) << n.value();
+  bool sure = true;
+  const int sign = n.sign(sure);
+  if (sure) {
+    EXPECT_EQ(sign, known.exact.sign());
+  }
+}
+
+TEST(LongNumber, KnowsItsError)
+{
+  test::Random random(401);
+  for (int round = 0; round < 3000; ++round) {
+    std::vector<Known> known;
+    for (int k = 0; k < 4; ++k) {
+      const double x = std::ldexp(random.uniform(-1, 1), random.integer(-40, 40));
+      known.push_back({LongNumber(x), Dyadic(x)});
+    }
+    for (int k = 0; k < 12; ++k) {
+      const Known& x = known[static_cast<std::size_t>(random.integer(0, static_cast<int>(known.size()) - 1))];
+      const Known& y = known[static_cast<std::size_t>(random.integer(0, static_cast<int>(known.size()) - 1))];
+      const int what = random.integer(0, 2);
+      const Known made = what == 0   ? Known{x.number + y.number, x.exact + y.exact}
+                         : what == 1 ? Known{x.number - y.number, x.exact - y.exact}
+                                     : Known{x.number * y.number, x.exact * y.exact};
+      if (std::abs(made.number.value()) > 0x1p300) continue;
+      expectWithinError(made);
+      known.push_back(made);
+    }
+  }
+}
+
+TEST(LongNumber, IsExactWhereTwoDoublesAre)
+{
+  bool sure = true;
+  const LongNumber x(0x1p53 + 2), y(3.0), z = x * y;
+  EXPECT_EQ(z.error(), 0.0);
+  EXPECT_EQ((z - y * x).sign(sure), 0);
+  EXPECT_EQ((z - LongNumber(0x1p55)).sign(sure), -1);
+  EXPECT_TRUE(sure);
+  const LongNumber third = z * z * z; // more than two doubles hold
+  EXPECT_GT(third.error(), 0.0);
+  EXPECT_EQ((third - z * z * z).sign(sure), 0);
+  EXPECT_FALSE(sure);
+}
+
+TEST(LongNumber, IsUnsureBeyondItsRange)
+{
+  for (const double x : {1e-200, 1e200}) {
+    bool sure = true;
+    const LongNumber square = LongNumber(x) * LongNumber(x);
+    EXPECT_EQ((square - LongNumber(x) * LongNumber(x)).sign(sure), 0);
+    EXPECT_FALSE(sure) << x;
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/triangle/open_edges.h>
+
+#include "soups.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace pcl_bsh {
+namespace {
+
+using test::both;
+using test::boxOf;
+using test::flipped;
+using test::Soup;
+
+OpenEdges find(const Soup& soup)
+{
+  return findOpenEdges(soup.size(), [&](std::size_t i) { return soup[i]; });
+}
+
+TEST(OpenEdges, OfClosedTriangles)
+{
+  const Soup box = boxOf({0, 0, 0}, {2, 2, 2});
+  EXPECT_TRUE(find({}).closed());
+  EXPECT_TRUE(find(box).closed());
+  EXPECT_TRUE(find(both(box, boxOf({2, 0, 0}, {4, 2, 2}))).closed()); // four triangles at each edge between them
+  EXPECT_TRUE(find(both(box, box)).closed());
+  EXPECT_TRUE(find({box[0], flipped(box)[0]}).closed()); // a face doubled in opposite directions
+  Soup signs = box;
+  for (Triangle3& t : signs)
+    for (Point3& corner : t)
+      for (double& x : corner) x = x == 0.0 && &t == &signs[3] ? -0.0 : x;
+  EXPECT_TRUE(find(signs).closed());
+}
+
+TEST(OpenEdges, NamesTheFirst)
+{
+  const Soup box = boxOf({0, 0, 0}, {2, 2, 2});
+  Soup open = box;
+  open.erase(open.begin() + 7);
+  OpenEdges found = find(open);
+  EXPECT_EQ(found.count, 3u);
+  std::size_t first = open.size();
+  for (std::size_t i = open.size(); i-- > 0;)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t j = 0; j < 3; ++j)
+        if (open[i][k] == box[7][(j + 1) % 3] && open[i][(k + 1) % 3] == box[7][j]) first = i;
+  EXPECT_EQ(found.triangle, first);
+  bool is_edge = false;
+  for (std::size_t k = 0; k < 3; ++k)
+    is_edge = is_edge || (open[first][k] == found.from && open[first][(k + 1) % 3] == found.to);
+  EXPECT_TRUE(is_edge);
+
+  Soup turned = box; // one that looks inward: its three edges are there twice, and so are their neighbours'
+  std::swap(turned[5][0], turned[5][1]);
+  EXPECT_EQ(find(turned).count, 6u);
+  EXPECT_EQ(find(both(box, {box[0]})).count, 3u);
+  Soup broken = box;
+  broken[2][1][0] = std::nan("");
+  EXPECT_EQ(find(broken).count, 3u);
+}
+
+} // namespace
+} // namespace pcl_bsh
