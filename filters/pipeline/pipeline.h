@@ -89,7 +89,7 @@ public:
   /// document itself is in that file. @param name how errors call it
   void reserve(const std::string& name, const std::filesystem::path& file);
 
-  /// How many stages may run at once; 0: as many as the machine has threads (default). The results are the same.
+  /// How many stages run at once, and threads read LAZ; 0: as many as the machine has (default). Results are the same.
   void setNumberOfThreads(unsigned threads);
 
   /// Called when a stage begins and when it is done, one call at a time, from whichever thread runs it. It may call

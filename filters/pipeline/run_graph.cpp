@@ -84,7 +84,8 @@ public:
   {
     const Clock::time_point start = Clock::now();
     const std::size_t machine = std::max(std::thread::hardware_concurrency(), 1U);
-    const std::size_t threads = std::min(graph_.threads != 0 ? graph_.threads : machine, graph_.nodes.size());
+    const std::size_t asked = graph_.threads != 0 ? graph_.threads : machine;
+    const std::size_t threads = std::min(asked, std::max(graph_.nodes.size(), machine)); // stages, and readers of LAZ
     // By default, oneTBB has no more threads than the machine; stages that wait for files can use more.
     const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, std::max(threads, machine));
     tbb::task_arena arena(static_cast<int>(threads));

@@ -23,6 +23,8 @@ path : str or path-like
 columns : sequence of str, optional
     Of .csv, .xyz and .txt: names of all columns in place of what the file says, ``["x", "y", "z", "_"]``; "_" is not
     read.
+threads : int, default 0
+    That unpack LAZ; 0: all of the machine's. Any number gives the same result.
 
 Returns
 -------
@@ -88,6 +90,8 @@ Parameters
 ----------
 path : str or path-like
     .obj, .off, .ply or .stl; polygons are cut into triangles. Of other formats there are no triangles.
+threads : int, default 0
+    That unpack LAZ; 0: all of the machine's. Any number gives the same result.
 
 Returns
 -------
@@ -103,12 +107,12 @@ std::string pathOf(const PathLike& path)
   return py::module_::import("os").attr("fsdecode")(path).cast<std::string>();
 }
 
-std::pair<Records, FileHeader> readWithHeader(const PathLike& path, const std::optional<io::ColumnNames>& columns)
+std::pair<Records, FileHeader> readWithHeader(const PathLike& path, const std::optional<io::ColumnNames>& columns, unsigned threads)
 {
   const std::string file = pathOf(path);
   FileHeader header;
   pcl::PCLPointCloud2 cloud =
-      unlocked([&] { return io::readCloud(file, &header, columns.value_or(io::ColumnNames())); });
+      unlocked([&] { return io::readCloud(file, &header, columns.value_or(io::ColumnNames()), threads); });
   for (const std::string& remark : header.remarks) warn(file + ": " + remark);
   return {recordsFrom(std::move(cloud)), std::move(header)};
 }
@@ -122,10 +126,10 @@ void writeRecords(const PathLike& path, const As<"npt.NDArray[Any]">& records, c
   unlocked([&] { io::writeCloud(file, cloud, kept.viewpoint, kept.las); });
 }
 
-std::pair<Records, py::array_t<std::uint32_t>> readMeshOf(const PathLike& path)
+std::pair<Records, py::array_t<std::uint32_t>> readMeshOf(const PathLike& path, unsigned threads)
 {
   const std::string file = pathOf(path);
-  io::Mesh mesh = unlocked([&] { return io::readMesh(file); });
+  io::Mesh mesh = unlocked([&] { return io::readMesh(file, nullptr, {}, threads); });
   py::array_t<std::uint32_t> triangles({static_cast<py::ssize_t>(mesh.triangles.size()), py::ssize_t{3}});
   std::uint32_t* corner = triangles.mutable_data();
   for (const Triangle& triangle : mesh.triangles) corner = std::copy(triangle.begin(), triangle.end(), corner);
@@ -151,12 +155,12 @@ void bindFiles(py::module_& module)
       .def("__repr__", [](const FileHeader& header) { return header.las ? "FileHeader(las)" : "FileHeader()"; });
   module.def(
       "read",
-      [](const PathLike& path, const std::optional<io::ColumnNames>& columns) {
-        return readWithHeader(path, columns).first;
+      [](const PathLike& path, const std::optional<io::ColumnNames>& columns, unsigned threads) {
+        return readWithHeader(path, columns, threads).first;
       },
-      kRead, "path"_a, "columns"_a = py::none());
-  module.def("read_with_header", &readWithHeader, kReadWithHeader, "path"_a, "columns"_a = py::none());
-  module.def("read_mesh", &readMeshOf, kReadMesh, "path"_a);
+      kRead, "path"_a, "columns"_a = py::none(), py::kw_only(), "threads"_a = 0);
+  module.def("read_with_header", &readWithHeader, kReadWithHeader, "path"_a, "columns"_a = py::none(), py::kw_only(), "threads"_a = 0);
+  module.def("read_mesh", &readMeshOf, kReadMesh, "path"_a, py::kw_only(), "threads"_a = 0);
   module.def("write", &writeRecords, kWrite, "path"_a, "records"_a, "header"_a = py::none());
 }
 

@@ -25,7 +25,7 @@ document : dict, list or str
 clouds : dict of str to ndarray, optional
     For each tag of a reader the records that it gives instead of reading its file: structured, or (n, 3).
 threads : int, default 0
-    How many stages may run at once; 0: all of the machine's threads.
+    How many stages may run at once, and threads read a LAZ file; 0: all of the machine's threads.
 validate_only : bool, default False
     Check options, files and fields without reading a point.
 progress : callable, optional

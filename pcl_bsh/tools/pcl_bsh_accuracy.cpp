@@ -107,7 +107,8 @@ std::optional<Options> parse(int argc, char** argv)
 io::Obstacle load(const Options& options, const std::filesystem::path& path, io::SurfaceSettings settings)
 {
   double seconds = 0.0;
-  io::Obstacle loaded = cli::loadObstacle(path, settings, options.clearance, seconds, options.columns.of(path));
+  io::Obstacle loaded =
+      cli::loadObstacle(path, settings, options.clearance, seconds, options.columns.of(path), nullptr, options.threads);
   cli::warn(program, cli::warningsOf(loaded, path));
   if (options.peers && loaded.isSurface())
     throw std::runtime_error("--peers: are measured on points, and " + path.string() +

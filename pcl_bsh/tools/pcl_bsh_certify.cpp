@@ -31,11 +31,11 @@ void check(const Options& options)
   if (options.report) files::requireWritable(*options.report);
 }
 
-pcl::PCLPointCloud2 load(const fs::path& path, const io::ColumnChoice& columns)
+pcl::PCLPointCloud2 load(const fs::path& path, const Options& options)
 {
   cli::Step step("Loading " + path.string());
   io::CloudFacts facts;
-  pcl::PCLPointCloud2 cloud = io::readCloud(path, &facts, columns.of(path));
+  pcl::PCLPointCloud2 cloud = io::readCloud(path, &facts, options.columns.of(path), options.certify.threads);
   step.done(counted(std::size_t{cloud.width} * cloud.height, "point"));
   cli::warnOfFile(program, path, facts.remarks);
   return cloud;
@@ -85,7 +85,7 @@ void complain(const Options& options, const std::string& name, const Certificate
 int run(const Options& options)
 {
   check(options);
-  const pcl::PCLPointCloud2 cloud = load(options.cloud, options.columns);
+  const pcl::PCLPointCloud2 cloud = load(options.cloud, options);
   const PointsView view = viewOf(cloud);
 
   bool holds = true;

@@ -333,8 +333,9 @@ int collide(const Options& options)
   const std::shared_ptr<const SurfaceCover> cover = coverOf(options, input, report.seconds.load, report.warnings);
   if (!cover && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
-  const io::Obstacle obstacle = cli::loadObstacle(options.obstacle, options.surface, options.clearance,
-                                                  report.seconds.load, options.columns.of(options.obstacle));
+  const io::Obstacle obstacle =
+      cli::loadObstacle(options.obstacle, options.surface, options.clearance, report.seconds.load,
+                        options.columns.of(options.obstacle), nullptr, options.threads);
   cli::requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
   const auto a = cli::build(cover ? cover->view() : viewOf(input.cloud), input.cloud.fields, options.input,
                             options.input_uncertainty, options.threads, report.seconds.build);

@@ -76,6 +76,7 @@ int make(const Options& options)
   site::MakeOptions wanted;
   wanted.memory = options.memory;
   wanted.tile_points = options.tile_points;
+  wanted.threads = options.make_threads;
   wanted.vertices_only = options.surface.vertices_only;
   wanted.columns = [&](const std::filesystem::path& file) { return options.columns.of(file); };
   wanted.remark = [](const std::filesystem::path& file, const std::vector<std::string>& remarks) {

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files name normals and colours in their own way; between reader and writer they have PCL's names and meaning.
-#include "io/clouds/las_sample.h"
+#include "io/clouds/laz_encoder.h"
+#include "io/clouds/laz_sample.h"
 #include "io/clouds/samples.h"
 #include "run_stage.h"
+#include "support/threads_of.h"
+
+#include <pcl_bsh/base/parallel.h>
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
 
@@ -126,6 +130,22 @@ TEST_F(FileFields, HeadersOfLasGoFromReaderToWriter)
     EXPECT_NE(file.find("PROJCS"), std::string::npos) << stage;
     EXPECT_TRUE(file.ends_with("waves")) << stage;
   }
+}
+
+/// Also where there are fewer stages than threads.
+TEST_F(FileFields, LazIsReadOnTheThreadsOfThePipeline)
+{
+  static const io::TemporaryFolder own;
+  io::LasSample sample(4, 6);
+  io::addScan(sample, 1000);
+  const auto file = own.write("a.laz", io::laz_test::compressed(sample.text()));
+  const auto run_on = [&](unsigned threads) {
+    Pipeline pipeline = Pipeline::parse("[\"" + file.string() + "\"]");
+    pipeline.setNumberOfThreads(threads);
+    pipeline.run();
+  };
+  expectOtherThreads(false, [&] { run_on(1); });
+  if (threadCount(2) == 2) expectOtherThreads(true, [&] { run_on(2); });
 }
 
 TEST_F(FileFields, LasLeavesOutWhatIsNotFinite)

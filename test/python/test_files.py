@@ -74,6 +74,21 @@ def test_plain_arrays_strides_and_organised_clouds(tmp_path):
     assert pcl_bsh.read(tmp_path / "none.pcd").shape == (0,)
 
 
+def test_laz_is_read_on_any_number_of_threads(tmp_path):
+    laz = pathlib.Path(__file__).parents[1] / "fuzz" / "corpus" / "laz" / "f1_v2_chunks"
+    (tmp_path / "cloud.laz").write_bytes(laz.read_bytes())
+    expected = pcl_bsh.read(tmp_path / "cloud.laz")
+    assert len(expected) > 0
+    for threads in (0, 1, 2):
+        np.testing.assert_array_equal(pcl_bsh.read(tmp_path / "cloud.laz", threads=threads), expected)
+        read, header = pcl_bsh.read_with_header(tmp_path / "cloud.laz", threads=threads)
+        np.testing.assert_array_equal(read, expected)
+        assert header.is_las
+        np.testing.assert_array_equal(pcl_bsh.read_mesh(tmp_path / "cloud.laz", threads=threads)[0], expected)
+    with pytest.raises(TypeError):
+        pcl_bsh.read(tmp_path / "cloud.laz", threads=-1)
+
+
 def test_headers_are_kept(tmp_path):
     pcl_bsh.write(tmp_path / "cloud.las", records())
     read, header = pcl_bsh.read_with_header(tmp_path / "cloud.las")

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/clouds/laz_encoder.h"
+#include "io/clouds/laz_sample.h"
 #include "io/clouds/samples.h"
 #include "support/temporary_folder.h"
+#include "support/threads_of.h"
 
 #include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/cloud_stream.h>
 #include <pcl_bsh/io/clouds/pcd/pcd.h>
@@ -134,6 +138,21 @@ TEST(MakeSite, ReadsAllFormats)
     exportSource(site, i, folder / "out.pcd");
     io::expectSame(io::readCloud(folder / "out.pcd"), io::readCloud(files[i]));
   }
+}
+
+TEST(MakeSite, ReadsLazOnAsManyThreadsAsAreAskedFor)
+{
+  static const files::TemporaryFolder folder;
+  io::LasSample sample(4, 6);
+  io::addScan(sample, 1000);
+  const auto file = folder.write("a.laz", io::laz_test::compressed(sample.text()));
+  const auto make_on = [&](unsigned threads) {
+    MakeOptions options;
+    options.threads = threads;
+    makeSite({file}, folder / "site", options);
+  };
+  expectOtherThreads(false, [&] { make_on(1); });
+  if (threadCount(2) == 2) expectOtherThreads(true, [&] { make_on(2); });
 }
 
 TEST(MakeSite, DrawsAnOverviewEvenly)

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 class LasStream : public CloudStream {
 public:
-  explicit LasStream(const fs::path& path) : path_(path), reader_(openBytes(path)) {}
+  LasStream(const fs::path& path, unsigned threads) : path_(path), reader_(openBytes(path), threads) {}
 
   const pcl::PCLPointCloud2& header() const override { return reader_.cloudHeader(); }
   std::uint64_t size() const override { return reader_.size(); }
@@ -144,10 +144,11 @@ void CloudStream::skip(std::uint64_t points)
   }
 }
 
-std::unique_ptr<CloudStream> openCloud(const fs::path& path, std::uint64_t memory, const ColumnNames& columns)
+std::unique_ptr<CloudStream> openCloud(const fs::path& path, std::uint64_t memory, const ColumnNames& columns,
+                                       unsigned threads)
 {
   const pcl::PCLPointCloud2 header = readCloudHeader(path, columns); // which checks that it can be read
-  if (isLasExtension(extensionOf(path))) return std::make_unique<LasStream>(path);
+  if (isLasExtension(extensionOf(path))) return std::make_unique<LasStream>(path, threads);
   if (std::optional<PcdBody> body = binaryBody(path)) return std::make_unique<PcdStream>(path, std::move(*body));
   if (bytesWhenHeld(path, header) > memory) {
     throw files::FileError(path, "does not fit into the memory given, and its format is not read in pieces",

@@ -41,9 +41,10 @@ public:
 };
 
 /// Opens any file that readCloud() reads. LAS, LAZ and binary PCD are read batch by batch, the other formats at once,
-/// for which `memory`, in bytes, must hold the file and its cloud together. @param columns as readCloud() has it
+/// for which `memory`, in bytes, must hold the file and its cloud together.
+/// @param columns and @param threads as readCloud() has them
 /// @throws files::FileError as readCloud() does; for a pipe; for a file that `memory` cannot hold
 std::unique_ptr<CloudStream> openCloud(const std::filesystem::path& path, std::uint64_t memory,
-                                       const ColumnNames& columns = {});
+                                       const ColumnNames& columns = {}, unsigned threads = 0);
 
 } // namespace pcl_bsh::io

@@ -261,10 +261,8 @@ void SceneWorld::load(const CloudSource& source, const SceneFile& file, Loaded& 
   CloudFacts facts;
   if (!source.shape.empty())
     mesh.vertices = cloudOf(shapePoints(source.shape, source.size, source.spacing));
-  else if (source.surface.vertices_only)
-    mesh.vertices = readCloud(source.file, &facts, source.columns);
   else
-    mesh = readMesh(source.file, &facts, source.columns);
+    mesh = readMesh(source.file, source.surface, &facts, source.columns, file.options.threads);
   for (const std::string& remark : facts.remarks) warnings_.push_back(source.file.string() + ": " + remark);
   scaleAndShift(mesh.vertices, source, file.path.string());
   HierarchyOptions options;

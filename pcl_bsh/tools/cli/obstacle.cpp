@@ -24,14 +24,14 @@ void addSurfaceOptions(CLI::App& app, std::optional<double>& tolerance, bool& ve
 }
 
 io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double clearance,
-                          double& seconds, const io::ColumnNames& columns, io::CloudFacts* facts)
+                          double& seconds, const io::ColumnNames& columns, io::CloudFacts* facts, unsigned threads)
 {
   Step step("Loading " + path.string());
   const auto progress = [&](double fraction) {
     step.share(fraction);
     return true;
   };
-  io::Obstacle obstacle = io::readObstacle(path, settings, clearance, progress, columns, facts);
+  io::Obstacle obstacle = io::readObstacle(path, settings, clearance, progress, columns, facts, threads);
   const pcl::PCLPointCloud2& points = obstacle.points();
   std::string result = counted(std::size_t{points.width} * points.height, "point");
   if (obstacle.isSurface()) {

@@ -16,14 +16,10 @@ Scan loadInput(const CollideOptions& options, double& seconds)
 {
   Step step("Loading " + options.input.string());
   Scan scan;
-  if (options.surface.vertices_only) {
-    scan.cloud = io::readCloud(options.input, &scan.facts, options.columns.of(options.input), options.threads);
-  }
-  else {
-    io::Mesh mesh = io::readMesh(options.input, &scan.facts, options.columns.of(options.input), options.threads);
-    scan.cloud = std::move(mesh.vertices);
-    scan.triangles = std::move(mesh.triangles);
-  }
+  const io::ColumnNames columns = options.columns.of(options.input);
+  io::Mesh mesh = io::readMesh(options.input, options.surface, &scan.facts, columns, options.threads);
+  scan.cloud = std::move(mesh.vertices);
+  scan.triangles = std::move(mesh.triangles);
   const std::string triangles = scan.triangles.empty() ? "" : ", " + counted(scan.triangles.size(), "triangle");
   seconds += step.done(counted(std::size_t{scan.cloud.width} * scan.cloud.height, "point") + triangles);
   return scan;

@@ -123,7 +123,7 @@ Json filterCloud(const Options& options, const std::string& name, const JointVal
                  self_filter::SelfFilter& filter)
 {
   io::CloudFacts facts;
-  const pcl::PCLPointCloud2 cloud = io::readCloud(name, &facts, options.columns.of(name));
+  const pcl::PCLPointCloud2 cloud = io::readCloud(name, &facts, options.columns.of(name), options.settings.threads);
   cli::warnOfFile(program, name, facts.remarks);
   const PointsView view = viewOf(cloud);
   const Eigen::Isometry3d T_scan_root = filter.robot().poses(values)[frame].inverse();

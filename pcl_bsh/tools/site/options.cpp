@@ -236,6 +236,9 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
       ->type_name("N")
       ->transform(amount(1000, 1, "give 1 or more"));
   make->add_flag("--vertices-only", options.surface.vertices_only, "clouds with faces are their vertices alone");
+  make->add_option("--threads", options.make_threads, "that read .laz; 0: all of the machine's (default)")
+      ->type_name("N")
+      ->transform(number<unsigned>(give_threads));
   for (CLI::App* const told :
        {command("info", "print what a site holds", SiteCommand::info),
         command("validate", "read all tiles and check that each point is there once, and where it should be",

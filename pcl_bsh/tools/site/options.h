@@ -56,7 +56,7 @@ struct SiteOptions {
   std::optional<double> swept;
   double max_distance = std::numeric_limits<double>::infinity();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  unsigned threads = 1;
+  unsigned threads = 1, make_threads = 0;
   std::vector<unsigned> plan; ///< numbers of ranks whose time is predicted
   std::vector<std::string> warnings;
   io::ColumnChoice columns; ///< of `make` and `collide`

@@ -116,9 +116,11 @@ ObstacleFile::ObstacleFile(const SiteOptions& options)
   double seconds = 0.0;
   const io::ColumnNames columns = options.columns.of(options.obstacle);
   if (site::rankHere() == 0)
-    obstacle = loadObstacle(options.obstacle, options.surface, options.clearance, seconds, columns, &facts);
+    obstacle =
+        loadObstacle(options.obstacle, options.surface, options.clearance, seconds, columns, &facts, options.threads);
   else
-    obstacle = io::readObstacle(options.obstacle, options.surface, options.clearance, nullptr, columns, &facts);
+    obstacle = io::readObstacle(options.obstacle, options.surface, options.clearance, nullptr, columns, &facts,
+                                options.threads);
   requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
   if (options.obstacle_out.empty()) return;
   if (obstacle.isSurface()) {

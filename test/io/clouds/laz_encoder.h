@@ -13,6 +13,7 @@ struct LazOptions {
   std::vector<std::uint32_t> chunks; ///< of chunks that differ, instead
   bool one_stream = false;           ///< compressor 1
   bool place_of_table_at_end = false;
+  bool without_table = false; ///< as by a writer that could neither go back nor end its file
 };
 
 struct ItemCode {
@@ -163,7 +164,10 @@ inline std::string compressed(const std::string& las, const LazOptions& options 
     out += chunk;
   }
   const std::uint64_t table_at = out.size();
-  if (!options.one_stream) {
+  if (options.without_table) {
+    put(out, first, ~std::uint64_t{0});
+  }
+  else if (!options.one_stream) {
     put(out, first, options.place_of_table_at_end ? ~std::uint64_t{0} : table_at);
     std::string head(8, '\0');
     put(head, 4, static_cast<std::uint32_t>(sizes.size()));

@@ -4,12 +4,18 @@
 #include "laz_sample.h"
 #include "samples.h"
 
+#include "support/threads_of.h"
+
+#include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/cloud_stream.h>
 #include <pcl_bsh/io/clouds/las/las.h>
+#include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/files/file_error.h>
 
 #include <gmock/gmock.h>
+
+#include <functional>
 
 namespace pcl_bsh::io {
 
@@ -58,6 +64,45 @@ TEST(Laz, FilesGiveWhatTheirLasGives)
     }
     expectSame(readCloud(folder.write("uncompressed.laz", las)), expected);
   }
+}
+
+TEST(Laz, IsReadOnAsManyThreadsAsAreAskedFor)
+{
+  static const TemporaryFolder folder;
+  const auto file = folder.write("a.laz", laz_test::compressed(describedScan(6).text()));
+  const auto read_stream = [&](unsigned threads) {
+    const auto stream = openCloud(file, 0, {}, threads);
+    std::vector<std::uint8_t> records(stream->header().point_step * std::size_t{1000});
+    stream->read(records.data(), 1000);
+  };
+  SurfaceSettings vertices;
+  vertices.vertices_only = true;
+  const std::vector<std::function<void(unsigned)>> readers = {
+      [&](unsigned threads) { readCloud(file, nullptr, {}, threads); },
+      [&](unsigned threads) { readMesh(file, nullptr, {}, threads); },
+      [&](unsigned threads) { readMesh(file, vertices, nullptr, {}, threads); },
+      [&](unsigned threads) { readObstacle(file, {}, 0.1, nullptr, {}, nullptr, threads); },
+      [&](unsigned threads) { readObstacle(file, vertices, 0.1, nullptr, {}, nullptr, threads); },
+      read_stream};
+  for (const auto& reader : readers) {
+    expectOtherThreads(false, [&] { reader(1); });
+    if (threadCount(2) == 2) expectOtherThreads(true, [&] { reader(2); });
+  }
+}
+
+TEST(Laz, CopcWrittenAsLasDoesNotSayWhereItsPartsWere)
+{
+  const TemporaryFolder folder;
+  LasSample copc(4, 7);
+  copc.records = {LasSample::record("copc", 1, std::string(160, 'i'))};
+  copc.extended = {LasSample::extendedRecord("copc", 1000, std::string(96, 'h'))};
+  addScan(copc, 300);
+  CloudFacts facts;
+  const auto cloud = readCloud(folder.write("a.copc.laz", laz_test::compressed(copc.text())), &facts);
+  writeCloud(folder / "b.las", cloud, no_viewpoint, facts.las);
+  copc.records.clear();
+  copc.extended.clear();
+  EXPECT_EQ(contentOf(folder / "b.las"), copc.text());
 }
 
 TEST(Laz, WrittenAsLasIsTheFileThatWasCompressed)

@@ -119,6 +119,104 @@ TEST(UnpackedLaz, EveryKindOfChunks)
   EXPECT_EQ(differenceOf(unpacked(compressed(las, options)), las), "");
 }
 
+TEST(UnpackedLaz, ChunksOfOneSizeNeedNoTable)
+{
+  for (const std::uint8_t format : std::initializer_list<std::uint8_t>{0, 3, 6, 10}) {
+    for (const unsigned version : versionsOf(format)) {
+      LasSample sample = scan(format, 300, 2, 3);
+      if (format >= 6) sample.extended = {LasSample::extendedRecord("somebody", 9, "more")};
+      if (format >= 6) sample.minor = 4;
+      const std::string las = sample.text();
+      LazOptions options;
+      options.version = version;
+      options.without_table = true;
+      for (const std::uint32_t points : {1U, 7U, 299U, 300U, 0xfffffffeU}) {
+        options.chunk_points = points;
+        EXPECT_EQ(differenceOf(unpacked(compressed(las, options)), las), "") << unsigned{format} << ' ' << points;
+      }
+    }
+  }
+  LasSample sample(4, 7, 970); // more than is unpacked at once
+  addScan(sample, 9000);
+  const std::string las = sample.text();
+  LazOptions options;
+  options.without_table = true;
+  const std::string laz = compressed(las, options);
+  const auto file = unpackedLaz(std::make_unique<HeldBytes>(laz), 2);
+  for (const std::size_t point : {8999, 50, 8800, 4000, 3999, 200, 8500, 0}) {
+    const std::size_t at = get<std::uint32_t>(las, 96) + point * sample.length();
+    ASSERT_EQ(file->text(at, sample.length()), las.substr(at, sample.length())) << point;
+  }
+}
+
+TEST(UnpackedLaz, WithoutATableWhatIsMissingIsRefused)
+{
+  using testing::HasSubstr;
+  for (const std::uint8_t format : std::initializer_list<std::uint8_t>{1, 8}) {
+    const LasSample sample = scan(format, 500);
+    LazOptions options;
+    options.without_table = true;
+    const std::string laz = compressed(sample.text(), options);
+    const std::size_t first_chunk = get<std::uint32_t>(laz, 96) + 8;
+    for (const std::size_t size :
+         {first_chunk, first_chunk + 3, first_chunk + sample.length(), laz.size() / 2, laz.size() - 20}) {
+      const std::string text = refusal(laz.substr(0, size));
+      EXPECT_TRUE(text.find("ends before its points do") != std::string::npos ||
+                  text.find("more bytes than itself") != std::string::npos ||
+                  text.find("in 0 bytes") != std::string::npos)
+          << size << ": " << text;
+    }
+    std::string lying = laz;
+    put(lying, format < 6 ? 107 : 247, 0x7fffffffU);
+    EXPECT_THAT(refusal(lying), HasSubstr("should have 2147483647 points in"));
+    put(lying, format < 6 ? 107 : 247, 501U); // one more than there are
+    EXPECT_THAT(refusal(lying), HasSubstr("chunk 1 of 1"));
+    const std::size_t scheme_at = laz.find("laszip encoded") + 52;
+    lying = laz;
+    put(lying, scheme_at + 12, 99U); // chunks end where no other begins
+    EXPECT_THAT(refusal(lying), HasSubstr("is damaged"));
+    options.chunks = {100, 400};
+    EXPECT_THAT(refusal(compressed(sample.text(), options)), HasSubstr("chunks of different sizes, and no table"));
+    if (format >= 6) {
+      lying = laz; // records that begin among the points' first bytes
+      put(lying, 235, std::uint64_t{first_chunk - 4});
+      put(lying, 243, 1U);
+      EXPECT_NE(refusal(lying), "");
+    }
+  }
+}
+
+/// They say where chunks are, which are not there any more.
+TEST(UnpackedLaz, LeavesOutWhereThePartsOfCopcAre)
+{
+  LasSample plain(4, 7, 2);
+  plain.records = {LasSample::record("LASF_Projection", 2112, "PROJCS[...]"), LasSample::record("copc", 7, "other")};
+  plain.extended = {LasSample::extendedRecord("before", 1, "a"), LasSample::extendedRecord("copc", 1001, "other"),
+                    LasSample::extendedRecord("somebody", 1000, "c")};
+  addScan(plain, 300);
+  LasSample copc = plain;
+  copc.records.insert(copc.records.begin(), LasSample::record("copc", 1, std::string(160, 'i')));
+  const std::string hierarchy = LasSample::extendedRecord("copc", 1000, std::string(96, 'h'));
+  LazOptions options;
+  options.chunks = {100, 200};
+  for (std::ptrdiff_t at = 0; at <= 3; ++at) {
+    LasSample one = copc;
+    one.extended.insert(one.extended.begin() + at, hierarchy);
+    for (const bool at_end : {false, true}) {
+      options.place_of_table_at_end = at_end;
+      EXPECT_EQ(differenceOf(unpacked(compressed(one.text(), options)), plain.text()), "") << at;
+    }
+    one.extended.insert(one.extended.begin(), hierarchy);
+    EXPECT_EQ(differenceOf(unpacked(compressed(one.text(), options)), plain.text()), "") << "two, " << at;
+  }
+  plain.extended.clear();
+  copc.extended = {hierarchy};
+  options.place_of_table_at_end = false;
+  const std::string laz = compressed(copc.text(), options);
+  EXPECT_EQ(differenceOf(unpacked(laz), plain.text()), "");
+  EXPECT_THAT(refusal(laz.substr(0, laz.size() - 1)), testing::HasSubstr("extended record 1 of 1"));
+}
+
 TEST(UnpackedLaz, NoPoints)
 {
   for (const std::uint8_t format : std::initializer_list<std::uint8_t>{0, 10}) {
@@ -221,7 +319,7 @@ TEST(UnpackedLaz, TablesThatLieAreRefused)
   const std::string laz = compressed(sample.text());
   const std::size_t points_at = get<std::uint32_t>(laz, 96);
   const auto table_at = get<std::uint64_t>(laz, points_at);
-  for (const std::uint64_t place : {std::uint64_t{0}, std::uint64_t{points_at}, ~std::uint64_t{0},
+  for (const std::uint64_t place : {std::uint64_t{0}, std::uint64_t{points_at}, ~std::uint64_t{1},
                                     std::uint64_t{1} << 63, std::uint64_t{laz.size()}, std::uint64_t{laz.size()} - 7}) {
     std::string lying = laz;
     put(lying, points_at, place);

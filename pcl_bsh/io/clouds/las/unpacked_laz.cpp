@@ -7,6 +7,7 @@
 #include <pcl_bsh/io/text/format_error.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace pcl_bsh::io {
 
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::size_t most_piece_bytes = std::size_t{1} << 22; // of points unpacked at once by a thread
 
-/// All before the points, without the record of the compression.
+/// All before the points, without what says how they are compressed.
 struct UnpackedHead {
   std::string bytes;
   laz::Scheme scheme;
@@ -23,6 +24,13 @@ struct UnpackedHead {
 bool isLazRecord(const LasRecord& record)
 {
   return record.user() == laz::laz_user && record.id() == laz::laz_id;
+}
+
+/// What says where the parts of a COPC file are, which are there in no other one.
+bool isOfCopc(std::string_view user, std::uint16_t id)
+{
+  constexpr std::uint16_t info = 1, hierarchy = 1000;
+  return user == "copc" && (id == info || id == hierarchy);
 }
 
 UnpackedHead headOf(ByteSource& file, const LasBlock& block)
@@ -36,7 +44,7 @@ UnpackedHead headOf(ByteSource& file, const LasBlock& block)
   UnpackedHead head = {packed.substr(0, block.header_size), laz::parseScheme(of_laz->content(), block.record_length)};
   auto records = block.variable_records;
   for (const LasRecord& record : found.records) {
-    if (isLazRecord(record))
+    if (isLazRecord(record) || isOfCopc(record.user(), record.id()))
       --records;
     else
       head.bytes += record.bytes;
@@ -61,15 +69,10 @@ public:
     laz::ChunkTable table = laz::readChunkTable(*file_, block, scheme_);
     chunks_ = std::move(table.chunks);
     points_end_ = head_.size() + block.points * length_;
-    behind_at_ = behind_end_ = table.end;
-    const bool extended = block.extended_records > 0, waves = hasLasWaves(block.format);
-    if (extended && block.extended_at >= block.points_at) behind_at_ = std::min(behind_at_, block.extended_at);
-    if (waves && block.waveforms_at >= block.points_at) behind_at_ = std::min(behind_at_, block.waveforms_at);
-    if (extended) moveBehind(las_at::extended, block.extended_at);
-    if (waves && block.waveforms_at != 0) moveBehind(las_at::waveforms, block.waveforms_at);
+    keepBehind(block, table.end);
   }
 
-  std::uint64_t size() const override { return points_end_ + (behind_end_ - behind_at_); }
+  std::uint64_t size() const override { return placeOf(std::numeric_limits<std::uint64_t>::max()); }
 
   void read(std::uint64_t at, char* to, std::size_t count) override
   {
@@ -83,7 +86,7 @@ public:
                           static_cast<std::size_t>(std::min<std::uint64_t>(count, points_end_ - at)));
       }
       else {
-        file_->read(behind_at_ + (at - points_end_), to, count);
+        part = readBehind(at - points_end_, to, count);
       }
       at += part;
       to += part;
@@ -92,10 +95,53 @@ public:
   }
 
 private:
+  struct Range {
+    std::uint64_t at, end;
+  };
+
   /// What lies behind the points lies behind them unpacked.
-  void moveBehind(std::size_t number_at, std::uint64_t place)
+  void keepBehind(const LasBlock& block, std::uint64_t end)
   {
-    if (place >= behind_at_) setLasNumber(head_, number_at, points_end_ + (place - behind_at_));
+    const bool extended = block.extended_records > 0 && block.extended_at >= block.points_at;
+    const bool waves = hasLasWaves(block.format) && block.waveforms_at >= block.points_at;
+    std::uint64_t at = end;
+    if (extended) at = std::min(at, block.extended_at);
+    if (waves) at = std::min(at, block.waveforms_at);
+    LasBlock packed = block;
+    packed.points = 0; // which end where what is behind them begins
+    std::uint32_t left_out = 0;
+    if (extended) {
+      for (const LasExtendedRecord& record : lasExtendedRecords(*file_, packed)) {
+        if (!isOfCopc(record.user, record.id) || record.at < at || record.at >= end) continue;
+        behind_.push_back({at, record.at});
+        at = record.at + las_extended_head + record.content_bytes;
+        ++left_out;
+      }
+    }
+    behind_.push_back({at, std::max(at, end)});
+    if (extended)
+      setLasNumber(head_, las_at::extended, left_out < block.extended_records ? placeOf(block.extended_at) : 0);
+    if (extended) setLasNumber(head_, las_at::extended_records, block.extended_records - left_out);
+    if (waves) setLasNumber(head_, las_at::waveforms, placeOf(block.waveforms_at));
+  }
+
+  /// Where what is there in the compressed file, behind its points, is unpacked; beyond all of it: the end.
+  std::uint64_t placeOf(std::uint64_t packed) const
+  {
+    std::uint64_t place = points_end_;
+    for (const Range& kept : behind_) place += std::clamp(packed, kept.at, kept.end) - kept.at;
+    return place;
+  }
+
+  /// @param at behind the points. @return how many bytes were read
+  std::size_t readBehind(std::uint64_t at, char* to, std::size_t count)
+  {
+    auto kept = behind_.begin();
+    for (; at >= kept->end - kept->at && kept + 1 != behind_.end(); ++kept) at -= kept->end - kept->at;
+    const std::uint64_t left = kept->end - kept->at - at;
+    if (kept + 1 != behind_.end()) count = static_cast<std::size_t>(std::min<std::uint64_t>(count, left));
+    file_->read(kept->at + at, to, count);
+    return count;
   }
 
   /// @param at in all points. @return how many bytes were read
@@ -192,11 +238,11 @@ private:
   std::string head_;
   laz::Scheme scheme_;
   std::vector<laz::Chunk> chunks_;
-  std::uint64_t points_end_ = 0;                 ///< unpacked
-  std::uint64_t behind_at_ = 0, behind_end_ = 0; ///< in the compressed file
-  std::uint64_t first_ = 0;                      ///< point of records_
-  std::string records_;                          ///< unpacked last
-  std::unique_ptr<laz::ChunkDecoder> piece_;     ///< of a chunk that is read in pieces; behind records_
+  std::uint64_t points_end_ = 0;             ///< unpacked
+  std::vector<Range> behind_;                ///< what is kept of the compressed file behind its points
+  std::uint64_t first_ = 0;                  ///< point of records_
+  std::string records_;                      ///< unpacked last
+  std::unique_ptr<laz::ChunkDecoder> piece_; ///< of a chunk that is read in pieces; behind records_
   std::size_t piece_chunk_ = 0;
 };
 

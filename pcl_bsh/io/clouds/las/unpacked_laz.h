@@ -10,9 +10,10 @@
 namespace pcl_bsh::io {
 
 /// The file itself when its points are not compressed. Otherwise all that is in it, with the places of an uncompressed
-/// file in its header, but for the record of the compression. Points are unpacked where they are read: some chunks at
-/// once, on as many threads, or a piece of a large one. So reading from front to back is fast, and takes memory for a
-/// chunk per thread, compressed, and at most 4 MB of its points.
+/// file in its header, but for the records of the compression and of COPC's parts. Points are unpacked where they are
+/// read: some chunks at once, on as many threads, or a piece of a large one. So reading from front to back is fast, and
+/// takes memory for a chunk per thread, compressed, and at most 4 MB of its points; where chunks have no table, for all
+/// that is compressed.
 /// @param threads 0: as many as the caller's oneTBB arena has
 /// @throws FormatError as readLasBlock(); for a compression that is not read; for a table of chunks that the file has
 ///   no room for. read() does so for chunks that are damaged

@@ -116,12 +116,20 @@ std::string promiseOf(const Obstacle& surface, const std::string& beside)
          (beside.empty() ? "" : "; the tolerance of " + beside + " comes on top");
 }
 
+Mesh readMesh(const std::filesystem::path& path, const SurfaceSettings& settings, CloudFacts* facts,
+              const ColumnNames& columns, unsigned threads)
+{
+  if (settings.vertices_only) return {readCloud(path, facts, columns, threads), {}};
+  return readMesh(path, facts, columns, threads);
+}
+
 Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& settings, double clearance,
-                      const std::function<bool(double)>& progress, const ColumnNames& columns, CloudFacts* facts)
+                      const std::function<bool(double)>& progress, const ColumnNames& columns, CloudFacts* facts,
+                      unsigned threads)
 {
   CloudFacts own;
   CloudFacts& told = facts != nullptr ? *facts : own;
-  Mesh mesh = settings.vertices_only ? Mesh{readCloud(path, &told, columns), {}} : readMesh(path, &told, columns);
+  Mesh mesh = readMesh(path, settings, &told, columns, threads);
   Obstacle obstacle = obstacleOf(path, std::move(mesh), settings, clearance, progress);
   obstacle.addRemarks(told.remarks);
   return obstacle;

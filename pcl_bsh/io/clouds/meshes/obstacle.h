@@ -103,12 +103,16 @@ private:
 /// @param beside whose tolerance comes on top; empty: none
 std::string promiseOf(const Obstacle& surface, const std::string& beside = "");
 
+/// What readMesh() reads, without faces where the settings take a mesh for its vertices. Arguments and errors are its.
+Mesh readMesh(const std::filesystem::path& path, const SurfaceSettings& settings, CloudFacts* facts,
+              const ColumnNames& columns, unsigned threads);
+
 /// Reads any file that readCloud() reads.
-/// @param columns and @param facts as readCloud() takes them
+/// @param columns, @param facts and @param threads as readCloud() takes them
 /// @throws files::FileError as readMesh() does, and where its faces cannot be covered. Cancelled
 Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& settings, double clearance,
                       const std::function<bool(double)>& progress = nullptr, const ColumnNames& columns = {},
-                      CloudFacts* facts = nullptr);
+                      CloudFacts* facts = nullptr, unsigned threads = 0);
 
 /// That of a file whose mesh is read already.
 /// @throws files::FileError naming the file, where its faces cannot be covered. Cancelled

@@ -31,9 +31,7 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, cons
   io::SurfaceSettings settings = options.surface;
   settings.triangles_apart = role == ViewedCloud::Role::scan;
   io::CloudFacts facts;
-  const io::ColumnNames columns = options.columns.of(file);
-  io::Mesh mesh =
-      settings.vertices_only ? io::Mesh{io::readCloud(file, &facts, columns), {}} : io::readMesh(file, &facts, columns);
+  io::Mesh mesh = io::readMesh(file, settings, &facts, options.columns.of(file), options.threads);
   viewed.face_values = std::move(mesh.face_values);
   const io::Obstacle read = io::obstacleOf(file, std::move(mesh), settings, options.clearance.value_or(0.0));
   HierarchyOptions how;

@@ -15,14 +15,30 @@ constexpr unsigned bit_place_bits = 13, most_bit_count = 1U << bit_place_bits;
 
 } // namespace
 
+void SymbolModel::prepare()
+{
+  constexpr unsigned bytes = 256; // of most models, which small chunks use for a few points
+  static const SymbolModel fresh = [] {
+    SymbolModel model(bytes);
+    model.start();
+    return model;
+  }();
+  if (!numbers_.empty())
+    update();
+  else if (symbols_ == bytes)
+    *this = fresh;
+  else
+    start();
+}
+
 void SymbolModel::start()
 {
   const unsigned slot_bits = static_cast<unsigned>(std::bit_width(symbols_ - 1));
   slot_shift_ = place_bits - slot_bits;
   // The interval is no multiple of its 2^15 parts: places reach 63 beyond.
   const std::size_t slots = (std::size_t{1} << slot_bits) + (std::size_t{63} >> slot_shift_) + 1;
-  numbers_.assign(2 * std::size_t{symbols_} + 1 + slots, 0);
-  std::fill_n(counts(), symbols_, std::uint16_t{1});
+  numbers_.assign(slotsAt() + slots, 1);
+  numbers_[slotsAt() - 2] = std::numeric_limits<std::uint16_t>::max();
   total_ = 0;
   cycle_ = symbols_;
   update();
@@ -31,34 +47,26 @@ void SymbolModel::start()
 
 void SymbolModel::update()
 {
-  std::uint16_t* const count = counts();
+  std::uint16_t* const slots = numbers_.data() + slotsAt();
   total_ += cycle_;
   if (total_ > most_count) {
     total_ = 0;
-    for (unsigned i = 0; i < symbols_; ++i) {
-      count[i] = static_cast<std::uint16_t>((count[i] + 1) / 2);
-      total_ += count[i];
+    for (std::uint16_t* entry = numbers_.data(); entry != slots - 2; entry += 2) {
+      entry[1] = static_cast<std::uint16_t>((entry[1] + 1) / 2);
+      total_ += entry[1];
     }
   }
-  const std::uint32_t scale = (1U << 31) / total_;
-  std::uint16_t* const begin = begins();
+  const std::uint32_t scale = (1U << 31) / total_, round_up = (1U << slot_shift_) - 1;
   std::uint32_t sum = 0;
-  for (unsigned i = 0; i < symbols_; ++i) {
-    begin[i] = static_cast<std::uint16_t>(scale * sum >> (31 - place_bits));
-    sum += count[i];
+  std::uint16_t* slot = slots;
+  for (unsigned twice = 0; twice < 2 * symbols_; twice += 2) {
+    std::uint16_t* const entry = numbers_.data() + twice;
+    entry[0] = static_cast<std::uint16_t>(scale * sum >> (31 - place_bits));
+    sum += entry[1];
+    for (const std::uint16_t* const end = slots + ((entry[0] + round_up) >> slot_shift_); slot < end;)
+      *slot++ = static_cast<std::uint16_t>(twice - 2);
   }
-  begin[symbols_] = std::numeric_limits<std::uint16_t>::max();
-
-  std::uint16_t* slot = slots();
-  std::uint16_t* const first = slot;
-  std::uint16_t* const end = numbers_.data() + numbers_.size();
-  const unsigned round_up = (1U << slot_shift_) - 1;
-  for (unsigned i = 0; i + 1 < symbols_; ++i) {
-    std::uint16_t* const next = first + ((begin[i + 1] + round_up) >> slot_shift_);
-    while (slot < next) *slot++ = static_cast<std::uint16_t>(i);
-  }
-  std::fill(slot, end, static_cast<std::uint16_t>(symbols_ - 1));
-
+  std::fill(slot, numbers_.data() + numbers_.size(), static_cast<std::uint16_t>(2 * symbols_ - 2));
   cycle_ = std::min(cycle_ * 5 / 4, (symbols_ + 6) * 8);
   until_update_ = cycle_;
 }
@@ -77,9 +85,11 @@ void BitModel::update()
   until_update_ = cycle_;
 }
 
-ArithmeticDecoder::ArithmeticDecoder(std::string_view bytes) : at_(bytes.data()), end_(at_ + bytes.size())
+ArithmeticDecoder::ArithmeticDecoder(std::string_view bytes) : bytes_(bytes)
 {
-  for (unsigned i = 0; i < sizeof value_; ++i) value_ = value_ << 8 | next();
+  const auto first = static_cast<unsigned>(sizeof value_);
+  value_ = bytes.size() >= first ? nextFour() : lastOnes(first);
+  at_ += first;
   if (value_ == length_) throw FormatError("has bytes that no encoder writes");
 }
 
@@ -94,16 +104,19 @@ std::uint32_t ArithmeticDecoder::bits(unsigned count)
   const std::uint32_t value = value_ / length_;
   if (value >> count != 0) throw FormatError("has bytes that no encoder writes");
   value_ -= value * length_;
-  if (length_ < least_length) renormalise();
+  renormalise();
   return value;
 }
 
-/// Encoders write more than decoders need; some leave out zeros at the end.
-std::uint8_t ArithmeticDecoder::pastEnd()
+/// Behind the end come zeros: encoders write more than decoders need, but some leave out zeros there.
+std::uint32_t ArithmeticDecoder::lastOnes(unsigned bytes)
 {
-  constexpr unsigned most = 8;
-  if (++past_end_ > most) throw FormatError("ends before its points do");
-  return 0;
+  constexpr std::size_t most_beyond = 8;
+  if (at_ + bytes > bytes_.size() + most_beyond) throw FormatError("ends before its points do");
+  std::uint32_t ones = 0;
+  for (std::size_t i = at_; i < at_ + 4; ++i)
+    ones = ones << 8 | (i < bytes_.size() ? static_cast<std::uint8_t>(bytes_[i]) : 0U);
+  return ones;
 }
 
 } // namespace pcl_bsh::io::laz

@@ -3,6 +3,11 @@
 // comes (A. Said, "Introduction to arithmetic coding", HPL-2004-76; "Arithmetic coding" of the LAZ specification).
 #pragma once
 
+#include <pcl_bsh/io/clouds/las/stored_number.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -18,13 +23,14 @@ public:
 private:
   friend class ArithmeticDecoder;
 
+  void prepare();
   void start();
   void update();
 
-  std::uint16_t* begins() { return numbers_.data(); } ///< of the symbols' parts of 2^15; one more, beyond all places
-  std::uint16_t* counts() { return begins() + symbols_ + 1; }
-  std::uint16_t* slots() { return counts() + symbols_; } ///< the symbol where a slot of places begins
+  std::size_t slotsAt() const { return 2 * (std::size_t{symbols_} + 1); }
 
+  /// Of each symbol where its part of 2^15 begins, and its count; once more, beyond all places. Then slots of places:
+  /// twice the symbol where each begins.
   std::vector<std::uint16_t> numbers_;
   unsigned symbols_, slot_shift_ = 0;
   unsigned total_ = 0, cycle_ = 0, until_update_ = 0;
@@ -47,19 +53,19 @@ public:
 
   unsigned symbol(SymbolModel& model)
   {
-    if (model.until_update_ == 0) model.start();
+    if (model.until_update_ == 0) model.prepare();
+    --model.until_update_;
     const std::uint32_t unit = length_ >> 15;
     const std::uint32_t place = value_ / unit;
-    const std::uint16_t* const begins = model.begins();
-    unsigned symbol = model.slots()[place >> model.slot_shift_];
-    while (begins[symbol + 1] <= place) ++symbol;
-    const std::uint32_t low = begins[symbol] * unit;
+    std::uint16_t* const numbers = model.numbers_.data();
+    std::uint16_t* entry = numbers + numbers[model.slotsAt() + (place >> model.slot_shift_)];
+    while (entry[2] <= place) entry += 2;
+    const std::uint32_t low = entry[0] * unit;
     value_ -= low;
-    length_ = symbol + 1 == model.symbols_ ? length_ - low : begins[symbol + 1] * unit - low;
-    if (length_ < least_length) renormalise();
-    ++model.counts()[symbol];
-    if (--model.until_update_ == 0) model.update();
-    return symbol;
+    length_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(std::uint64_t{entry[2]} * unit, length_)) - low;
+    renormalise();
+    ++entry[1];
+    return static_cast<unsigned>(entry - numbers) / 2;
   }
 
   unsigned bit(BitModel& model)
@@ -74,10 +80,13 @@ public:
       value_ -= zeros;
       length_ -= zeros;
     }
-    if (length_ < least_length) renormalise();
+    renormalise();
     if (--model.until_update_ == 0) model.update();
     return bit;
   }
+
+  /// How many of the bytes have been read: all that the encoder has written, when all that it was given is read.
+  std::size_t consumed() const { return at_; }
 
   /// Bits without a model. @param count 1 to 32
   std::uint32_t bits(unsigned count);
@@ -89,22 +98,23 @@ public:
   }
 
 private:
-  static constexpr std::uint32_t least_length = 1U << 24;
-
+  /// The interval becomes at least 2^24 long: no branch depends on how many bytes that takes, which are 0 to 3.
   void renormalise()
   {
-    do {
-      value_ = value_ << 8 | next();
-      length_ <<= 8;
-    } while (length_ < least_length);
+    const auto bits = static_cast<unsigned>(std::countl_zero(length_)) & ~7U;
+    const std::uint64_t joined =
+        std::uint64_t{value_} << 32 | (at_ + 4 <= bytes_.size() ? nextFour() : lastOnes(bits / 8));
+    value_ = static_cast<std::uint32_t>(joined >> (32 - bits));
+    length_ <<= bits;
+    at_ += bits / 8;
   }
 
-  std::uint8_t next() { return at_ != end_ ? static_cast<std::uint8_t>(*at_++) : pastEnd(); }
-  std::uint8_t pastEnd();
+  std::uint32_t nextFour() const { return __builtin_bswap32(loaded<std::uint32_t>(bytes_.data() + at_)); }
+  std::uint32_t lastOnes(unsigned bytes);
 
-  const char *at_, *end_;
+  std::string_view bytes_;
+  std::size_t at_ = 0; ///< may be beyond their end
   std::uint32_t value_ = 0, length_ = 0xffffffffU;
-  unsigned past_end_ = 0;
 };
 
 } // namespace pcl_bsh::io::laz

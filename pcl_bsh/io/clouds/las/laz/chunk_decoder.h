@@ -15,7 +15,9 @@ namespace pcl_bsh::io::laz {
 
 class ChunkDecoder {
 public:
-  /// @param scheme which outlives the decoder. @param bytes of the chunk, compressed. @param points which it has, not 0
+  /// @param scheme which outlives the decoder. @param bytes of the chunk, compressed. @param points which it has, not
+  /// 0;
+  ///   where these are more than all chunks of the scheme have, the bytes are those of several, one behind the other
   /// @throws FormatError, as read() does, for bytes that are not those of so many points
   ChunkDecoder(const Scheme& scheme, std::string bytes, std::uint64_t points);
   ChunkDecoder(const ChunkDecoder&) = delete;
@@ -31,9 +33,13 @@ private:
     std::unique_ptr<LayeredItem> layered;
   };
 
-  void startLayers(std::uint64_t points);
+  void startChunk();
+  void startLayers();
 
+  const Scheme& scheme_;
   const std::string bytes_;
+  std::uint64_t points_left_, chunk_left_ = 0; ///< behind this chunk; in it
+  std::size_t at_ = 0, layers_end_ = 0;        ///< of this chunk
   std::size_t record_length_ = 0;
   std::vector<Part> parts_;
   bool at_first_ = true;

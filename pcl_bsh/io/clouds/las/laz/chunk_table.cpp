@@ -4,28 +4,32 @@
 #include <pcl_bsh/io/text/format_error.h>
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 namespace pcl_bsh::io::laz {
 
 namespace {
 
 constexpr std::size_t place_bytes = 8, table_head = 8;
+constexpr auto remedy_for_cut = "write or copy the file again, to its end";
 
 /// Where the table is: told before the chunks, or, by a writer that could not go back there, in the last eight bytes.
+/// None where it could not go back, and did not write them either.
 /// @param end of the file, before which those are
-std::uint64_t placeOfTable(ByteSource& file, const LasBlock& block, std::uint64_t& end)
+std::optional<std::uint64_t> placeOfTable(ByteSource& file, const LasBlock& block, std::uint64_t& end)
 {
   const std::uint64_t first_chunk = block.points_at + place_bytes;
   if (file.size() < first_chunk) throw FormatError("is truncated: it ends before its points");
   const auto told = [&](std::uint64_t at) { return lasNumber<std::uint64_t>(file.text(at, place_bytes), 0); };
   const auto inside = [&](std::uint64_t at) { return at >= first_chunk && at <= end && end - at >= table_head; };
-  if (const std::uint64_t at = told(block.points_at); inside(at)) return at;
-  end = file.size() - place_bytes;
-  const std::uint64_t at = told(end);
-  if (!inside(at)) {
-    throw FormatError("is truncated: it has no table of its chunks", "write or copy the file again, to its end");
-  }
-  return at;
+  const std::uint64_t before = told(block.points_at);
+  if (inside(before)) return before;
+  end -= place_bytes;
+  if (const std::uint64_t at = told(end); inside(at)) return at;
+  end += place_bytes;
+  if (before == std::numeric_limits<std::uint64_t>::max()) return std::nullopt;
+  throw FormatError("is truncated: it has no table of its chunks", remedy_for_cut);
 }
 
 std::string nameOf(std::size_t chunk, std::size_t chunks)
@@ -41,14 +45,14 @@ void requireGrowth(const Chunk& chunk, const std::string& name, std::size_t reco
                     std::to_string(chunk.bytes) + " bytes");
 }
 
-/// Compressor 1: one chunk, to the end of the file or to the records behind it.
-ChunkTable oneChunk(ByteSource& file, const LasBlock& block)
+/// Of compressor 1, or where no table tells them apart: one, to the end of the file or to the records behind it.
+ChunkTable oneChunk(ByteSource& file, const LasBlock& block, std::uint64_t at)
 {
   ChunkTable table{{}, file.size()};
   if (block.points == 0) return table;
   std::uint64_t end = file.size();
-  if (block.extended_records > 0 && block.extended_at >= block.points_at) end = std::min(end, block.extended_at);
-  table.chunks.push_back({0, block.points, block.points_at, end - block.points_at});
+  if (block.extended_records > 0 && block.extended_at >= at) end = std::min(end, block.extended_at);
+  table.chunks.push_back({0, block.points, at, end - at});
   requireGrowth(table.chunks.back(), "only chunk", block.record_length);
   return table;
 }
@@ -57,10 +61,16 @@ ChunkTable oneChunk(ByteSource& file, const LasBlock& block)
 
 ChunkTable readChunkTable(ByteSource& file, const LasBlock& block, const Scheme& scheme)
 {
-  if (!scheme.in_chunks) return oneChunk(file, block);
+  if (!scheme.in_chunks) return oneChunk(file, block, block.points_at);
   ChunkTable table{{}, file.size()};
   if (block.points == 0) return table;
-  const std::uint64_t table_at = placeOfTable(file, block, table.end);
+  const std::optional<std::uint64_t> place = placeOfTable(file, block, table.end);
+  if (!place && scheme.chunk_points == 0) {
+    throw FormatError("has chunks of different sizes, and no table of them: it was not written to its end",
+                      remedy_for_cut);
+  }
+  if (!place) return oneChunk(file, block, block.points_at + place_bytes);
+  const std::uint64_t table_at = *place;
   const std::string head = file.text(table_at, table_head);
   const auto version = lasNumber<std::uint32_t>(head, 0), count = lasNumber<std::uint32_t>(head, 4);
   if (version != 0) throw FormatError("has a table of chunks of version " + std::to_string(version));

@@ -18,6 +18,7 @@ struct Chunk {
   std::uint64_t bytes;
 };
 
+/// Chunks of one size need no table: where it is missing, one stands for all that follow each other.
 struct ChunkTable {
   std::vector<Chunk> chunks; ///< those that have points, which together have all of the header's
   std::uint64_t end;         ///< of what belongs to the points in the file, but for records that lie before
@@ -29,7 +30,8 @@ inline constexpr std::uint64_t most_laz_growth = std::uint64_t{1} << 14;
 
 /// Takes no more memory than the chunks take in the file.
 /// @param block of the compressed file
-/// @throws FormatError when the table is missing, is cut off, or says what the file has no room for
+/// @throws FormatError when the table is cut off, is missing though chunks differ, or says what the file has no room
+/// for
 ChunkTable readChunkTable(ByteSource& file, const LasBlock& block, const Scheme& scheme);
 
 } // namespace pcl_bsh::io::laz

@@ -81,7 +81,8 @@ Scheme parseScheme(std::string_view record, std::size_t record_length)
   scheme.in_chunks = compressor != pointwise;
   scheme.layered = compressor == layered_in_chunks;
   const auto chunk_points = lasNumber<std::uint32_t>(record, 12);
-  scheme.chunk_points = chunk_points == std::numeric_limits<std::uint32_t>::max() ? 0 : chunk_points;
+  const bool alike = scheme.in_chunks && chunk_points != std::numeric_limits<std::uint32_t>::max();
+  scheme.chunk_points = alike ? chunk_points : 0;
   std::size_t length = 0;
   for (std::size_t at = head; scheme.parts.size() < count; at += item_bytes) {
     const auto type = lasNumber<std::uint16_t>(record, at);

@@ -24,7 +24,7 @@ struct Scheme {
 
   bool in_chunks = true; ///< all points are one chunk otherwise
   bool layered = false;
-  std::uint32_t chunk_points = 0; ///< 0: chunks differ, as the table of chunks says
+  std::uint32_t chunk_points = 0; ///< 0: chunks differ, as the table of chunks says, or there is one
   std::vector<Part> parts;        ///< of a record, one behind the other
 };
 
