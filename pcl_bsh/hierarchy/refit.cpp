@@ -32,8 +32,7 @@ void requireFit(const PointsView& before, const PointsView& now, double most_gro
     refuse("the view is of another subset");
   checkView(name, now);
   if (!now.radii != !before.radii) refuse("the view has radii and the one before none, or the other way round");
-  for (std::size_t i = 0; now.radii && i < now.count; ++i) checkRadius(name, now, i);
-  checkUncertainties(name, now);
+  checkLengths(name, now);
 }
 
 double sumOfLeafRadii(const Voxel& voxel)

@@ -17,8 +17,7 @@ namespace {
 void check(const PointsView& view, const HierarchyOptions& options)
 {
   checkView("SphereHierarchy", view);
-  for (std::size_t i = 0; view.radii && i < view.count; ++i) checkRadius("SphereHierarchy", view, i);
-  checkUncertainties("SphereHierarchy", view);
+  checkLengths("SphereHierarchy", view);
   if (!(options.voxel_edge >= 0.0 && options.voxel_edge <= std::numeric_limits<double>::max()))
     throw InvalidInput(Input::voxel_edge, "SphereHierarchy",
                        "voxel edge " + std::to_string(options.voxel_edge) + " is not finite and >= 0")

@@ -221,8 +221,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
   if (announced < now.count - before.count || (!records_.empty() && records_.back() >= now.count))
     refuse("the new view has " + std::to_string(now.count - before.count) + " more records, of which " +
            std::to_string(announced) + " were announced: announce each of them, and no others");
-  for (std::size_t record = 0; now.radii && record < now.count; ++record) checkRadius("HierarchyUpdate", now, record);
-  checkUncertainties("HierarchyUpdate", now);
+  checkLengths("HierarchyUpdate", now);
   if (hierarchy_.empty()) return sortAnew(now);
 
   const DefaultFloatEnvironment environment;

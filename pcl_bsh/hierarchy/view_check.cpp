@@ -68,8 +68,17 @@ void checkView(const std::string& name, const PointsView& view)
            Input::index);
 }
 
-void checkUncertainties(const std::string& name, const PointsView& view)
+void checkLengths(const std::string& name, const PointsView& view)
 {
+  for (std::size_t i = 0; view.radii && i < view.count; ++i) {
+    const float radius = view.radii[i];
+    if (radius >= 0.0f && radius <= std::numeric_limits<float>::max()) continue;
+    throw InvalidInput(Input::radius, name,
+                       "radius " + std::to_string(radius) + " of point " + std::to_string(i) +
+                           " is not finite and >= 0")
+        .withValue(static_cast<double>(radius))
+        .withIndex(i);
+  }
   const auto refuse = [&](double value, const std::string& of) {
     return InvalidInput(Input::uncertainty, name, plainText("uncertainty ", value, of, " is not finite and >= 0"))
         .withValue(value);
@@ -79,17 +88,6 @@ void checkUncertainties(const std::string& name, const PointsView& view)
     const double own = view.uncertainties[i];
     if (!(std::isfinite(own) && own >= 0.0)) throw refuse(own, " of point " + std::to_string(i)).withIndex(i);
   }
-}
-
-void checkRadius(const std::string& name, const PointsView& view, std::size_t record)
-{
-  const float radius = view.radii[record];
-  if (!(radius >= 0.0f && radius <= std::numeric_limits<float>::max()))
-    throw InvalidInput(Input::radius, name,
-                       "radius " + std::to_string(radius) + " of point " + std::to_string(record) +
-                           " is not finite and >= 0")
-        .withValue(static_cast<double>(radius))
-        .withIndex(record);
 }
 
 } // namespace pcl_bsh

@@ -12,10 +12,7 @@ namespace pcl_bsh {
 ///   lie over each other, an index outside the view.
 void checkView(const std::string& name, const PointsView& view);
 
-/// The uncertainty of all points, and those of all records: finite and >= 0. @throws std::invalid_argument
-void checkUncertainties(const std::string& name, const PointsView& view);
-
-/// Radii of some records of the view: finite and >= 0. @throws std::invalid_argument
-void checkRadius(const std::string& name, const PointsView& view, std::size_t record);
+/// Radii and uncertainties, of all points and of all records: finite and >= 0. @throws std::invalid_argument
+void checkLengths(const std::string& name, const PointsView& view);
 
 } // namespace pcl_bsh

@@ -159,12 +159,4 @@ DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, c
   return result;
 }
 
-void collisionFlagsAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                           const FlagsRequest& request,
-                           const std::function<void(std::size_t pose, const FlagsResult& flags)>& found)
-{
-  for (std::size_t i = 0; i < T_world_b.size(); ++i)
-    found(i, brute_force::collisionFlags(a, {b, T_world_b[i]}, request));
-}
-
 } // namespace pcl_bsh::brute_force

@@ -3,7 +3,7 @@
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/query/brute_force_points.h>
 #include <pcl_bsh/query/uncertain.h>
-#include <pcl_bsh/roadmap/check_motions.h>
+#include <pcl_bsh/roadmap/motions_query.h>
 #include <pcl_bsh/trajectory/leaf/point_segment.h>
 
 #include <algorithm>

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/roadmap/check_motions.h>
+#include <pcl_bsh/roadmap/motions_query.h>
 
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/query/request_check.h>
-#include <pcl_bsh/roadmap/pose_tasks.h>
+#include <pcl_bsh/query/uncertain.h>
+#include <pcl_bsh/roadmap/batches.h>
+#include <pcl_bsh/trajectory/check_trajectory.h>
 #include <pcl_bsh/traversal/point_pairs.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -18,8 +18,6 @@
 
 namespace pcl_bsh {
 namespace {
-
-constexpr std::size_t kMotionBlock = 1024; // motions of one task
 
 std::string nameOf(const std::vector<PoseMotion>& motions, std::size_t m)
 {
@@ -57,39 +55,14 @@ bool isRefused(const MotionsQuery& query, const Eigen::Isometry3d& from, const E
   return false;
 }
 
-/// The first of these that is wrong; `count` where none is.
-template <class IsWrong>
-std::size_t firstWrong(std::size_t count, unsigned threads, const IsWrong& isWrong)
-{
-  std::atomic<std::size_t> first{count};
-  parallelFor((count + kMotionBlock - 1) / kMotionBlock, threadCount(threads), [&](std::size_t block) {
-    const std::size_t end = std::min(count, (block + 1) * kMotionBlock);
-    for (std::size_t i = block * kMotionBlock; i < end; ++i) {
-      std::size_t known = first.load(std::memory_order_relaxed);
-      if (i >= known) return;
-      if (!isWrong(i)) continue;
-      while (i < known && !first.compare_exchange_weak(known, i, std::memory_order_relaxed)) {
-      }
-      return;
-    }
-  });
-  return first;
-}
-
 } // namespace
 
 void check(const Placed& scan, const PoseList& poses, const std::vector<PoseMotion>& motions,
            const MotionsRequest& request)
 {
   checkClearance(request.clearance);
-  if (!(std::isfinite(request.tolerance) && request.tolerance > 0.0))
-    throw InvalidInput(Input::swept, "tolerance of the motions", plainText(request.tolerance),
-                       "give a finite length > 0")
-        .withValue(request.tolerance);
-  for (const double coordinate : request.pivot)
-    if (!std::isfinite(coordinate))
-      throw InvalidInput(Input::pivot, "pivot", plainText(coordinate), "give three finite coordinates")
-          .withValue(coordinate);
+  checkSweptTolerance("tolerance of the motions", request.tolerance);
+  checkPivot(request.pivot);
   checkPose("pose of the scan", scan.pose);
   checkPoses(poses, "the model", request.threads);
   constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
@@ -107,8 +80,9 @@ void check(const Placed& scan, const PoseList& poses, const std::vector<PoseMoti
 void checkSwept(const MotionsQuery& query, const PoseList& poses, const std::vector<std::uint32_t>& used,
                 const std::vector<PoseMotion>& motions)
 {
-  const double reach = reachOf(query.scan, query.model, query.swept,
-                               reachBetween(query.scan, {query.model}, query.request.clearance, query.places));
+  const double reach = reachOf(
+      query.scan, query.model, query.swept,
+      reachBetween(query.scan, {query.model}, query.request.clearance, possiblePlaces(query.scan, {query.model})));
   double far = 0.0;
   for (const std::uint32_t k : used) far = std::max(far, farthestPlace(poses[k], query.boxes, query.request.pivot));
   checkTolerance(query.scan, query.swept, query.boxes, reach, far);

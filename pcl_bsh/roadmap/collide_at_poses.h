@@ -12,7 +12,6 @@
 
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/query/pose_list.h>
@@ -60,15 +59,6 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
 DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
                                     const DistanceRequest& request = {}, const PosesProgress& progress = {});
 
-/// Which points collide, b at each of the poses: calls found(pose, flags) once for each, in any order, from several
-/// threads at once for different poses where the request has more than one. What it throws comes out of this call, and
-/// no further poses are begun. The flags' memory is used again for the next pose.
-/// @param found is given the pose's index in the list
-/// @throws as anyCollisionAtPoses()
-void collisionFlagsAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                           const FlagsRequest& request,
-                           const std::function<void(std::size_t pose, const FlagsResult& flags)>& found);
-
 namespace brute_force {
 
 /// The oracle, pose by pose and pair by pair in exact arithmetic.
@@ -76,9 +66,6 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
                                const AnyRequest& request = {});
 DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
                                     const DistanceRequest& request = {});
-void collisionFlagsAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                           const FlagsRequest& request,
-                           const std::function<void(std::size_t pose, const FlagsResult& flags)>& found);
 
 } // namespace brute_force
 } // namespace pcl_bsh

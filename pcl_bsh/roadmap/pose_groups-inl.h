@@ -182,7 +182,7 @@ private:
     double motion = 0.0;
     for (std::size_t i = begin; i < end && !(motion > most); ++i)
       motion = std::max(motion, motionBound(batch_.body, batch_.poses[middle], batch_.poses[i]) +
-                                    (batch_.extents.empty() ? 0.0 : batch_.extents[i]));
+                                    (batch_.motions ? batch_.motions->extents[i] : 0.0));
     return motion;
   }
 

@@ -22,6 +22,12 @@ bool isWhole(const Eigen::Isometry3d& pose)
   return pose.matrix() == Eigen::Matrix4d::Identity();
 }
 
+void checkRule(const PairRule& rule)
+{
+  if (rule.clearance && !isLength(*rule.clearance))
+    refuse("clearance " + plainText(*rule.clearance) + " of a rule is not finite and >= 0");
+}
+
 } // namespace
 
 /// A product with the identity may turn -0 into 0; beyond that, poses are passed on bit by bit.
@@ -259,16 +265,14 @@ void Scene::setRule(ObjectId a, ObjectId b, const PairRule& rule)
   state_->body(a);
   state_->body(b);
   if (a == b) refuse("a rule needs two objects, not object " + plainText(a) + " twice");
-  if (rule.clearance && !isLength(*rule.clearance))
-    refuse("clearance " + plainText(*rule.clearance) + " of a rule is not finite and >= 0");
+  checkRule(rule);
   state_->rules.set(a, b, rule);
   state_->grid_stale = true;
 }
 
 void Scene::setGroupRule(const std::string& group_a, const std::string& group_b, const PairRule& rule)
 {
-  if (rule.clearance && !isLength(*rule.clearance))
-    refuse("clearance " + plainText(*rule.clearance) + " of a rule is not finite and >= 0");
+  checkRule(rule);
   state_->rules.setGroups(group_a, group_b, rule);
   state_->grid_stale = true;
 }
@@ -277,6 +281,22 @@ void Scene::pointsChanged(ObjectId object)
 {
   state_->body(object);
   state_->pointsChanged(object);
+}
+
+RefitReport Scene::deform(ObjectId object, std::uint32_t part, const PointsView& now)
+{
+  const Body& body = state_->body(object);
+  if (!state_->options.effects.deform)
+    throw InvalidInput(Input::scene, "Scene", "object '" + body.object.name + "' cannot deform",
+                       "deform is not listed");
+  if (part >= body.object.parts.size()) refuse("object '" + body.object.name + "' has no part " + std::to_string(part));
+  EffectCost& cost = state_->cost(Effect::deform);
+  const Timed timed(cost.seconds);
+  const RefitReport report = body.object.parts[part].hierarchy->refit(now, *state_->options.effects.deform);
+  state_->followPoints();
+  ++cost.pairs;
+  cost.work.volumes_built += report.volumes_refitted;
+  return report;
 }
 
 SceneResult Scene::query()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a query computes: the pairs worth asking about, then each listed effect by itself, with its own cost.
-#include <pcl_bsh/scene/effect.h>
+#include <pcl_bsh/scene/effects/each_pair.h>
 
 #include <algorithm>
 
@@ -33,13 +33,18 @@ SceneResult Scene::State::query()
   const bool of_near = effects.any || effects.flags || effects.contacts;
   if (of_near || effects.distance || usesSweptMotion(effects)) prepareGrid();
   if (of_near) findNear();
-  if (effects.any) findAny();
-  if (effects.flags) findFlags();
-  if (effects.distance) findDistances();
-  if (effects.contacts) findContacts();
-  if (effects.first_contact) findFirstContacts();
-  if (effects.swept) findSwept();
-  if (effects.self) findSelf();
+  const auto find = [&](Effect effect, void (State::*findIts)(EffectCost&)) {
+    if (!effects.has(effect)) return;
+    const Timed timed(cost(effect).seconds);
+    (this->*findIts)(cost(effect));
+  };
+  find(Effect::any, &State::findAny);
+  find(Effect::flags, &State::findFlags);
+  find(Effect::distance, &State::findDistances);
+  find(Effect::contacts, &State::findContacts);
+  find(Effect::first_contact, &State::findFirstContacts);
+  find(Effect::swept, &State::findSwept);
+  find(Effect::self, &State::findSelf);
   if (!of_near) grid.dropParted(); // no list holds them
   for (const ObjectId object : moved_before) bodies[object].last_motion = 0.0;
   for (const ObjectId object : moved) {

@@ -2,10 +2,11 @@
 // What a Scene holds between queries.
 #pragma once
 
-#include <pcl_bsh/scene/broad_phase.h>
-#include <pcl_bsh/scene/object_motion.h>
+#include <pcl_bsh/scene/pairs/broad_phase.h>
 #include <pcl_bsh/scene/scene.h>
+#include <pcl_bsh/scene/swept/object_motion.h>
 
+#include <chrono>
 #include <unordered_map>
 #include <vector>
 
@@ -13,6 +14,19 @@ namespace pcl_bsh {
 
 /// T_world_cloud of a part that is at `part` (T_object_cloud) in an object at `pose`.
 Eigen::Isometry3d worldPoseOf(const Eigen::Isometry3d& pose, const Eigen::Isometry3d& part);
+
+/// Adds the time until its end to a cost.
+class Timed {
+public:
+  explicit Timed(double& seconds) : seconds_(seconds) {}
+  ~Timed() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 /// An object as it stands.
 struct Body {
@@ -115,13 +129,13 @@ public:
 private:
   void place(ObjectId object);
   void findNear();
-  void findAny();
-  void findFlags();
-  void findDistances();
-  void findContacts();
-  void findFirstContacts();
-  void findSwept();
-  void findSelf();
+  void findAny(EffectCost& spent);
+  void findFlags(EffectCost& spent);
+  void findDistances(EffectCost& spent);
+  void findContacts(EffectCost& spent);
+  void findFirstContacts(EffectCost& spent);
+  void findSwept(EffectCost& spent);
+  void findSelf(EffectCost& spent);
 
   void decideAny(BroadPair& pair) const;
   bool remembersAny(BroadPair& pair) const;
@@ -130,6 +144,10 @@ private:
   void compareBoxes(BroadPair& pair);
   template <class Decide>
   void eachPair(const std::vector<BroadPair*>& pairs, EffectCost& cost, const Decide& decide);
+  template <class Ask>
+  void eachPartPair(BroadPair& pair, const Ask& ask) const;
+  template <class Ask>
+  void eachNearPair(EffectCost& cost, const Ask& ask);
   template <class Ask>
   void eachSweptPair(EffectCost& cost, const Ask& ask);
   void checkMotion(const Body& body, const ObjectMotion& motion, double rounding) const;

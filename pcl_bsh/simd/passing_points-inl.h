@@ -125,12 +125,11 @@ private:
 ///   largest coordinate
 /// @param clipped becomes when that is: from the first instant for any of the points to the last; of lanes whose bit is
 ///   set
-/// @param near_points becomes which points it may be, as bits; likewise. @pre count <= 32
 template <std::size_t Count>
 HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, std::uint32_t lanes, const float* x,
                                             const float* y, const float* z, std::size_t count, const float* shift,
                                             float steps, float smallest, float rounding,
-                                            ClippedSegments<Count>& clipped, std::uint32_t (&near_points)[Count])
+                                            ClippedSegments<Count>& clipped)
 {
   const LaneTag d;
   const LaneVector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
@@ -151,7 +150,6 @@ HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, std
     }
     const LineLanes line(first, way, reach, smallest, rounding);
     LaneVector from = one, to = zero;
-    near_points[i] = 0;
     for (std::size_t j = 0; j < count; j += hn::Lanes(d)) {
       const Passage by = line.past(hn::LoadU(d, x + j), hn::LoadU(d, y + j), hn::LoadU(d, z + j));
       const auto within = hn::And(hn::FirstN(d, count - j), by.isWithin());
@@ -165,7 +163,6 @@ HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, std
       const auto near = hn::And(within, isInsideAtStep(d, {enter, leave}, steps));
       if (hn::AllFalse(d, near)) continue;
       near_lanes |= 1u << i;
-      near_points[i] |= bitsOf(d, near) << j;
       from = hn::Min(from, hn::IfThenElse(near, enter, one));
       to = hn::Max(to, hn::IfThenElse(near, leave, zero));
     }

@@ -71,26 +71,27 @@ void TrajectoryQuery::collectNear(std::uint32_t node, std::uint32_t lane, std::u
   }
 }
 
-void TrajectoryQuery::collectNear(const StopRule& rule, Progress& progress, std::vector<NearVoxel>& near_voxels) const
+std::vector<NearVoxel> TrajectoryQuery::nearVoxels(const StopRule& rule, Progress& progress) const
 {
   const SphereHierarchy::Storage& storage = scan.hierarchy().storage();
-  if (storage.size == 0 || boxes.storage.size == 0 || path.poses.empty()) return;
+  std::vector<NearVoxel> near_voxels;
+  if (storage.size == 0 || boxes.storage.size == 0 || path.poses.empty()) return near_voxels;
   for (std::uint32_t lane = 0; lane < storage.top[0].count; ++lane) {
     collectNear(0, lane, 0, rule, progress, near_voxels);
     progress.skipTo(lane + 1);
   }
+  std::stable_sort(near_voxels.begin(), near_voxels.end(),
+                   [](const NearVoxel& one, const NearVoxel& other) { return one.voxel < other.voxel; });
+  return near_voxels;
 }
 
-std::vector<std::vector<std::uint32_t>> TrajectoryQuery::nearIntervals(const StopRule& rule, Progress& progress) const
+std::span<const NearVoxel> takeVoxel(std::span<const NearVoxel>& near_voxels)
 {
-  const SphereHierarchy::Storage& storage = scan.hierarchy().storage();
-  std::vector<std::vector<std::uint32_t>> near_intervals(storage.voxel_count);
-  progress.begin(kBroadPhaseDone, storage.size == 0 ? 0 : storage.top[0].count);
-  std::vector<NearVoxel> near_voxels;
-  collectNear(rule, progress, near_voxels);
-  for (const NearVoxel& near : near_voxels) near_intervals[near.voxel].push_back(near.interval);
-  progress.end();
-  return near_intervals;
+  std::size_t count = 0;
+  while (count < near_voxels.size() && near_voxels[count].voxel == near_voxels[0].voxel) ++count;
+  const std::span<const NearVoxel> taken = near_voxels.first(count);
+  near_voxels = near_voxels.subspan(count);
+  return taken;
 }
 
 } // namespace pcl_bsh

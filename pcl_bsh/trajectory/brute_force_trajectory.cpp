@@ -41,19 +41,9 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   for (const Eigen::Isometry3d& pose : model_poses) distances.emplace_back(scan.pose, pose);
 
   if (!asksForAnything(request)) return {};
-  const std::size_t records = scan.hierarchy().view().count;
-  const auto sized = [records](bool asked) { return asked ? records : 0; };
-  const bool closest = request.distances || request.closest_poses;
-  TrajectoryResult result;
-  result.flags.assign(sized(request.flags), 0);
-  result.distance.assign(sized(request.distances), std::numeric_limits<float>::quiet_NaN());
-  result.first_pose.assign(sized(request.first_poses), -1);
-  result.closest_pose.assign(sized(request.closest_poses), -1);
-  result.closest_point.assign(sized(closest), TrajectoryResult::kNoPoint);
-  if (request.pose_summaries) result.poses.resize(model_poses.size());
-
+  TrajectoryResult result = allFree(request, scan.hierarchy().view().count, model_poses.size());
   const bool uncertain = areUncertain(scan, {model});
-  if (uncertain) result.certain_pose.assign(sized(request.first_poses), -1);
+  if (uncertain) result.certain_pose = result.first_pose;
   const auto reachAt = [&](Places places) {
     return PairReach(scan.hierarchy().view(), model.view(), request.clearance, places);
   };
@@ -88,7 +78,7 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
     if (request.first_poses) result.first_pose[p.record] = first;
     if (request.distances) result.distance[p.record] = static_cast<float>(of_point.distance->gap(of_point.pair));
     if (request.closest_poses) result.closest_pose[p.record] = static_cast<std::int32_t>(of_point.pose);
-    if (closest) result.closest_point[p.record] = of_point.record;
+    if (!result.closest_point.empty()) result.closest_point[p.record] = of_point.record;
   }
   for (std::size_t k = 0; k < result.poses.size(); ++k) {
     PoseSummary& summary = result.poses[k];

@@ -22,17 +22,11 @@ void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses
     throw InvalidInput(Input::accuracy, "accuracy", request.accuracy.text(),
                        "decides which points collide, not when and how near: ask for flags alone, or give exact, float "
                        "or tolerance=LENGTH");
-  if (request.swept && !(std::isfinite(*request.swept) && *request.swept > 0.0))
-    throw InvalidInput(Input::swept, "tolerance of the swept motion", plainText(*request.swept),
-                       "give a finite length > 0")
-        .withValue(*request.swept);
+  if (request.swept) checkSweptTolerance("tolerance of the swept motion", *request.swept);
   if (request.swept && request.pose_summaries)
     throw InvalidInput(Input::summaries, "pose_summaries", "are of poses, swept motion is of what is between",
                        "ask for one of them");
-  for (const double coordinate : request.pivot)
-    if (!std::isfinite(coordinate))
-      throw InvalidInput(Input::pivot, "pivot", plainText(coordinate), "give three finite coordinates")
-          .withValue(coordinate);
+  checkPivot(request.pivot);
   constexpr std::size_t most_poses = std::numeric_limits<std::int32_t>::max();
   if (model_poses.size() > most_poses)
     throw InvalidInput(Input::trajectory, "trajectory",
@@ -43,10 +37,37 @@ void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses
       checkPose("pose " + std::to_string(k) + " of the model", model_poses[k], k);
 }
 
+void checkSweptTolerance(const char* name, double tolerance)
+{
+  if (!(std::isfinite(tolerance) && tolerance > 0.0))
+    throw InvalidInput(Input::swept, name, plainText(tolerance), "give a finite length > 0").withValue(tolerance);
+}
+
+void checkPivot(const Point3& pivot)
+{
+  for (const double coordinate : pivot)
+    if (!std::isfinite(coordinate))
+      throw InvalidInput(Input::pivot, "pivot", plainText(coordinate), "give three finite coordinates")
+          .withValue(coordinate);
+}
+
 bool asksForAnything(const TrajectoryRequest& request)
 {
   return request.flags || request.distances || request.first_poses || request.closest_poses || request.pose_summaries ||
          request.swept;
+}
+
+TrajectoryResult allFree(const TrajectoryRequest& request, std::size_t records, std::size_t poses)
+{
+  const auto sized = [records](bool asked) { return asked ? records : 0; };
+  TrajectoryResult result;
+  result.flags.assign(sized(request.flags), 0);
+  result.distance.assign(sized(request.distances), std::numeric_limits<float>::quiet_NaN());
+  result.first_pose.assign(sized(request.first_poses), -1);
+  result.closest_pose.assign(sized(request.closest_poses), -1);
+  result.closest_point.assign(sized(request.distances || request.closest_poses), TrajectoryResult::kNoPoint);
+  if (request.pose_summaries) result.poses.resize(poses);
+  return result;
 }
 
 } // namespace pcl_bsh

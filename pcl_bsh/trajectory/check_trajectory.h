@@ -10,7 +10,16 @@ namespace pcl_bsh {
 ///   its declaration asks for, and what the request's accuracy cannot tell.
 void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
 
+/// Refuses a tolerance of swept motion that is not finite and > 0. @param name in the message
+void checkSweptTolerance(const char* name, double tolerance);
+
+/// Refuses a pivot that is not finite.
+void checkPivot(const Point3& pivot);
+
 /// Whether a trajectory's result would hold anything.
 bool asksForAnything(const TrajectoryRequest& request);
+
+/// A result for so many records and poses, where nothing collides.
+TrajectoryResult allFree(const TrajectoryRequest& request, std::size_t records, std::size_t poses);
 
 } // namespace pcl_bsh

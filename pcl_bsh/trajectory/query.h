@@ -12,6 +12,7 @@
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <mutex>
+#include <span>
 
 namespace pcl_bsh {
 
@@ -19,6 +20,11 @@ namespace pcl_bsh {
 struct NearestAtPose {
   PointPair pair;
   bool found = false;
+};
+
+/// A voxel of the scan, and an interval of the path during which it may be near the model.
+struct NearVoxel {
+  std::uint32_t voxel, interval;
 };
 
 /// What a walk has to find.
@@ -71,21 +77,15 @@ struct TrajectoryQuery {
   /// Whether floats can hold the places and lengths that a walk compares. Where not, every pair is compared.
   bool inFloatRange() const;
 
-  /// The intervals of the path during which each voxel may be near the model, in their order. Once the rule's time is
-  /// over, all intervals not yet tested are included.
-  std::vector<std::vector<std::uint32_t>> nearIntervals(const StopRule& rule, Progress& progress) const;
+  /// All voxels that may be near the model, each with its intervals in their order. Once the rule's time is over, all
+  /// intervals not yet tested are included.
+  std::vector<NearVoxel> nearVoxels(const StopRule& rule, Progress& progress) const;
 
-  /// A voxel of the scan, and an interval during which it may be near the model.
-  struct NearVoxel {
-    std::uint32_t voxel, interval;
-  };
-
-  /// Appends all of them; those of a voxel in the order of its intervals.
-  void collectNear(const StopRule& rule, Progress& progress, std::vector<NearVoxel>& near_voxels) const;
-
-  mutable std::mutex mutex; ///< of the two below
+  mutable std::mutex mutex; ///< of those below, and of the result's number of colliding points
   mutable std::vector<NearestAtPose> nearest_at_pose;
   mutable std::vector<std::size_t> pose_counts;
+  mutable double earliest = std::numeric_limits<double>::infinity(); ///< swept: pose of the path plus fraction of
+                                                                     ///< the motion to the next
 
 private:
   struct WorldSphere {
@@ -118,14 +118,19 @@ double reachOf(const Placed& scan, const SphereHierarchy& model, const Trajector
 /// Of a request with `swept`. @param reach as TrajectoryQuery has it
 PosePath::Sweep sweepOf(const TrajectoryRequest& request, const BoxTree& boxes, double reach);
 
+/// Cuts those of the first voxel off a list that nearVoxels() gave.
+std::span<const NearVoxel> takeVoxel(std::span<const NearVoxel>& near_voxels);
+
 /// What a voxel's walk returns.
 struct VoxelResult {
   Work work;
-  std::size_t colliding = 0;
   bool undecided = false;           ///< whether points were left so
   std::optional<PointPair> witness; ///< where one is wanted
-  double first_contact =
-      std::numeric_limits<double>::infinity(); ///< swept: pose of the path plus fraction of the motion to the next
 };
+
+/// Takes one voxel of the scan along its intervals. Writes what it finds of the voxel's points to the query's result.
+/// Different voxels may be walked at the same time.
+VoxelResult walkVoxel(const TrajectoryQuery& query, const StopRule& rule, std::span<const NearVoxel> near_voxel,
+                      Progress& progress);
 
 } // namespace pcl_bsh

@@ -2,7 +2,6 @@
 #include <pcl_bsh/trajectory/strays.h>
 
 #include <pcl_bsh/hierarchy/storage.h>
-#include <pcl_bsh/trajectory/add_summary.h>
 
 #include <algorithm>
 #include <cmath>
@@ -133,7 +132,7 @@ void addStrays(TrajectoryResult& result, const TrajectoryResult& strays, const s
   take(result.certain_pose, strays.certain_pose);
   result.colliding += strays.colliding;
   result.undecided += strays.undecided;
-  for (std::size_t k = 0; k < result.poses.size(); ++k) addSummary(result.poses[k], strays.poses[k]);
+  for (std::size_t k = 0; k < result.poses.size(); ++k) result.poses[k] += strays.poses[k];
   result.work += strays.work;
 }
 

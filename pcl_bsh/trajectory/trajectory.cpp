@@ -5,8 +5,9 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/trajectory/check_trajectory.h>
+#include <pcl_bsh/trajectory/query.h>
 #include <pcl_bsh/trajectory/strays.h>
-#include <pcl_bsh/trajectory/walk.h>
+#include <pcl_bsh/traversal/voxel_passes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,17 +17,6 @@
 
 namespace pcl_bsh {
 namespace {
-
-void allocate(TrajectoryResult& result, const TrajectoryRequest& request, std::size_t records, std::size_t poses)
-{
-  const auto sized = [records](bool asked) { return asked ? records : 0; };
-  result.flags.assign(sized(request.flags), 0);
-  result.distance.assign(sized(request.distances), std::numeric_limits<float>::quiet_NaN());
-  result.first_pose.assign(sized(request.first_poses), -1);
-  result.closest_pose.assign(sized(request.closest_poses), -1);
-  result.closest_point.assign(sized(request.distances || request.closest_poses), TrajectoryResult::kNoPoint);
-  if (request.pose_summaries) result.poses.resize(poses);
-}
 
 /// Equal poses in a row were looked at once.
 void summarize(const TrajectoryQuery& query, TrajectoryResult& result)
@@ -59,31 +49,6 @@ FirstContact instantOf(const PosePath& path, double time)
   return {pose.given, std::min(fraction, 1.0 - kDoubleUnit)};
 }
 
-/// Takes the given voxels along the trajectory.
-std::vector<VoxelResult> followAll(const TrajectoryQuery& query, const StopRule& rule,
-                                   const std::vector<std::vector<std::uint32_t>>& near_intervals,
-                                   const std::vector<std::uint32_t>& voxels, Progress& progress)
-{
-  std::vector<VoxelResult> answers(voxels.size());
-  const auto walk = [&](std::size_t i, const StopRule& own) {
-    if (progress.stopped()) return;
-    answers[i] = walkVoxel(query, own, voxels[i], near_intervals[voxels[i]], progress);
-    progress.step();
-  };
-  if (rule.node_pairs == StopRule::kNever) {
-    parallelFor(voxels.size(), threadCount(query.request.threads), [&](std::size_t i) { walk(i, rule); });
-  }
-  else { // one after another: what one leaves is the next one's
-    StopRule own = rule;
-    for (std::size_t i = 0; i < voxels.size(); ++i) {
-      walk(i, own);
-      own.node_pairs -= std::min(own.node_pairs, answers[i].work.node_pairs);
-    }
-  }
-  progress.throwIfStopped();
-  return answers;
-}
-
 void markUndecided(const SphereHierarchy& scan, std::uint32_t voxel, std::vector<std::uint8_t>& flags)
 {
   scan.storage().forEachRecord(voxel, [&](std::uint32_t i) { flags[i] = flagOf(Verdict::undecided); });
@@ -91,40 +56,11 @@ void markUndecided(const SphereHierarchy& scan, std::uint32_t voxel, std::vector
 
 void countFlags(TrajectoryResult& result)
 {
-  const auto count = [&](Verdict verdict) {
-    return static_cast<std::size_t>(std::count(result.flags.begin(), result.flags.end(), flagOf(verdict)));
-  };
-  result.colliding = count(Verdict::colliding);
-  result.undecided = count(Verdict::undecided);
+  result.colliding = countOf(result.flags, Verdict::colliding);
+  result.undecided = countOf(result.flags, Verdict::undecided);
 }
 
-/// The same in passes, each for the voxels that the one before left with undecided points.
-void followUntilStopped(const TrajectoryQuery& query, StopRule rule,
-                        const std::vector<std::vector<std::uint32_t>>& near_intervals,
-                        std::vector<std::uint32_t> voxels, Progress& progress)
-{
-  for (const std::uint32_t voxel : voxels) markUndecided(query.scan.hierarchy(), voxel, query.result.flags);
-  const std::size_t all = voxels.size();
-  const std::uint64_t budget = rule.node_pairs;
-  std::uint64_t spent = query.result.work.node_pairs; // above the voxels
-  if (budget != StopRule::kNever) rule.node_pairs = budget - std::min(budget, spent);
-  std::size_t passed = 0;
-  for (const std::uint64_t deepest : rule.passes()) {
-    rule.deepest = deepest;
-    std::vector<std::uint32_t> left;
-    const std::vector<VoxelResult> answers = followAll(query, rule, near_intervals, voxels, progress);
-    for (std::size_t i = 0; i < voxels.size(); ++i) {
-      query.result.work += answers[i].work;
-      spent += answers[i].work.node_pairs;
-      if (answers[i].undecided) left.push_back(voxels[i]);
-    }
-    if (budget != StopRule::kNever) rule.node_pairs = budget - std::min(budget, spent);
-    voxels = std::move(left);
-    progress.skipTo(++passed * all);
-  }
-  countFlags(query.result);
-}
-
+/// Takes all voxels along the trajectory.
 void follow(const TrajectoryQuery& query, const StopRule& rule, Progress& progress)
 {
   const TrajectoryRequest& request = query.request;
@@ -133,24 +69,26 @@ void follow(const TrajectoryQuery& query, const StopRule& rule, Progress& progre
     query.nearest_at_pose.resize(query.path.poses.size());
     query.pose_counts.resize(query.path.poses.size());
   }
-  const std::vector<std::vector<std::uint32_t>> near_intervals = query.nearIntervals(rule, progress);
-  std::vector<std::uint32_t> voxels;
-  for (std::uint32_t v = 0; v < near_intervals.size(); ++v)
-    if (!near_intervals[v].empty()) voxels.push_back(v);
+  progress.begin(kBroadPhaseDone, query.scan.hierarchy().storage().top[0].count);
+  const std::vector<NearVoxel> near_voxels = query.nearVoxels(rule, progress);
+  progress.end();
 
-  progress.begin(1.0, voxels.size() * (rule.mayStop() ? rule.passes().size() : 1));
-  double first_contact = std::numeric_limits<double>::infinity();
-  if (rule.mayStop()) {
-    followUntilStopped(query, rule, near_intervals, std::move(voxels), progress);
-  }
-  else {
-    for (const VoxelResult& answer : followAll(query, rule, near_intervals, voxels, progress)) {
-      result.work += answer.work;
-      result.colliding += answer.colliding;
-      first_contact = std::min(first_contact, answer.first_contact);
-    }
-  }
-  if (request.swept && std::isfinite(first_contact)) result.first_contact = instantOf(query.path, first_contact);
+  VoxelPasses<std::span<const NearVoxel>, VoxelResult> voxels(threadCount(request.threads), result.work);
+  for (std::span<const NearVoxel> left = near_voxels; !left.empty();) voxels.places.push_back(takeVoxel(left));
+  if (rule.mayStop())
+    for (const auto& near : voxels.places) markUndecided(query.scan.hierarchy(), near[0].voxel, result.flags);
+  progress.begin(1.0, voxels.places.size() * (rule.mayStop() ? rule.passes().size() : 1));
+  const std::uint64_t tests = // those above the voxels count, too
+      rule.node_pairs - (rule.node_pairs == StopRule::kNever ? 0 : std::min(rule.node_pairs, result.work.node_pairs));
+  voxels.run(rule, tests, [&](const StopRule& own, std::span<const NearVoxel> near) {
+    if (progress.stopped()) return VoxelResult();
+    const VoxelResult answer = walkVoxel(query, own, near, progress);
+    progress.step();
+    return answer;
+  });
+  progress.throwIfStopped();
+  if (rule.mayStop()) countFlags(result);
+  if (request.swept && std::isfinite(query.earliest)) result.first_contact = instantOf(query.path, query.earliest);
   if (request.pose_summaries) summarize(query, result);
 }
 
@@ -159,8 +97,7 @@ std::optional<TrajectoryResult> walkAlong(const Placed& scan, const SphereHierar
                                           const std::vector<Eigen::Isometry3d>& model_poses,
                                           const TrajectoryRequest& request, Places places)
 {
-  TrajectoryResult result;
-  allocate(result, request, scan.hierarchy().view().count, model_poses.size());
+  TrajectoryResult result = allFree(request, scan.hierarchy().view().count, model_poses.size());
   if (!asksForAnything(request) || scan.hierarchy().empty() || model.empty() || model_poses.empty()) return result;
   const StopRule rule(request.accuracy);
   Progress progress(request.progress);

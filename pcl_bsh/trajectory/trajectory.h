@@ -33,6 +33,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -70,6 +71,16 @@ struct PoseSummary {
   std::size_t undecided_points = 0; ///< those that may collide, but do not for certain: their places are uncertain
   /// Smallest distance of any pair that may collide, as measured; infinity when there is none.
   double distance = std::numeric_limits<double>::infinity();
+
+  /// Becomes that of its points and of `more`'s, which are others at the same pose.
+  PoseSummary& operator+=(const PoseSummary& more)
+  {
+    colliding = colliding || more.colliding;
+    colliding_points += more.colliding_points;
+    undecided_points += more.undecided_points;
+    distance = std::min(distance, more.distance);
+    return *this;
+  }
 };
 
 /// An instant of the motion: `fraction` in [0, 1) of the motion from `pose` to the next; 0 at the last pose.

@@ -43,18 +43,19 @@ void VoxelResults::beginPoses(std::uint32_t first_pose, std::uint32_t last_pose)
   pose_counts_.assign(nearest_at_pose_.size(), 0);
 }
 
-VoxelResult VoxelResults::finish(const Voxel& voxel)
+void VoxelResults::finish(const Voxel& voxel)
 {
   const TrajectoryRequest& request = query_.request;
   TrajectoryResult& result = query_.result;
-  VoxelResult answer;
+  std::size_t colliding = 0;
+  double first_contact = std::numeric_limits<double>::infinity();
   eachPoint(voxel, hit, [&](std::uint32_t i, std::uint32_t end) {
     float distance = 0.0f;
-    if (query_.first) answer.first_contact = std::min(answer.first_contact, first[i]);
+    if (query_.first) first_contact = std::min(first_contact, first[i]);
     if (request.distances) distance = distanceOf(voxel.records()[i], best[i]);
     for (std::uint32_t p = i; p < end; ++p) {
       const std::uint32_t record = voxel.records()[p];
-      ++answer.colliding;
+      ++colliding;
       if (request.flags) result.flags[record] = 1;
       if (request.first_poses) result.first_pose[record] = givenPose(first[i]);
       if (request.distances) result.distance[record] = distance;
@@ -62,8 +63,10 @@ VoxelResult VoxelResults::finish(const Voxel& voxel)
       if (query_.closest) result.closest_point[record] = best[i].record;
     }
   });
+  const std::lock_guard<std::mutex> lock(query_.mutex);
+  result.colliding += colliding;
+  query_.earliest = std::min(query_.earliest, first_contact);
   if (request.pose_summaries) mergePoses();
-  return answer;
 }
 
 bool VoxelResults::decide(const Voxel& voxel, bool unsure)
@@ -93,7 +96,6 @@ bool VoxelResults::decide(const Voxel& voxel, bool unsure)
 
 void VoxelResults::mergePoses() const
 {
-  const std::lock_guard<std::mutex> lock(query_.mutex);
   for (std::size_t i = 0; i < pose_counts_.size(); ++i) {
     const auto k = first_pose_ + static_cast<std::uint32_t>(i);
     query_.pose_counts[k] += pose_counts_[i];

@@ -29,8 +29,8 @@ public:
   /// Allocates the results of poses first..last of the path.
   void beginPoses(std::uint32_t first, std::uint32_t last);
 
-  /// Writes to the query's result. @return colliding points, and the first contact.
-  VoxelResult finish(const Voxel& voxel);
+  /// Writes to the query's result.
+  void finish(const Voxel& voxel);
 
   /// Where flags start as undecided: writes those of the voxel that are decided now.
   /// @param unsure nothing but a hit is. @return whether points were left undecided.
@@ -85,7 +85,7 @@ private:
   ExactDistance::Pair posed(PointPair pair) const;
   std::int32_t givenPose(double time) const;
   float distanceOf(std::uint32_t record, const NearestPoint& nearest) const;
-  void mergePoses() const;
+  void mergePoses() const; // with the query locked
 
   const TrajectoryQuery& query_;
   std::uint32_t first_pose_ = 0;

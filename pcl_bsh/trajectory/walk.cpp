@@ -3,7 +3,7 @@
 // poses at once. Seen by the model, the scan's points move nearly on parabolas: a node is a thick arc, the model a tree
 // of boxes. How thick follows from the node's sphere and from how far the interval strays from a parabola; whichever is
 // larger is divided.
-#include <pcl_bsh/trajectory/walk.h>
+#include <pcl_bsh/trajectory/query.h>
 
 #include <algorithm>
 #include <cmath>
@@ -62,13 +62,14 @@ public:
   {
   }
 
-  /// @param intervals of the path, at least one, in their order.
-  VoxelResult run(const std::vector<std::uint32_t>& intervals)
+  /// @param near at least one interval
+  VoxelResult run(std::span<const NearVoxel> near)
   {
+    const std::vector<PathInterval>& intervals = query_.path.intervals;
     if (query_.request.pose_summaries)
-      results_.beginPoses(query_.path.intervals[intervals.front()].first, query_.path.intervals[intervals.back()].last);
+      results_.beginPoses(intervals[near.front().interval].first, intervals[near.back().interval].last);
     std::vector<Siblings> candidates;
-    for (const std::uint32_t interval : intervals) {
+    for (const auto [voxel, interval] : near) {
       if (stop_check_.isOver() || isDone()) return leave(true);
       const VoxelMotion motion = voxel_frame_.motionOf(interval);
       candidates.clear();
@@ -95,7 +96,7 @@ private:
   VoxelResult leave(bool unsure)
   {
     VoxelResult answer;
-    if (voxel_ && !rule_.mayStop() && !query_.witness) answer = results_.finish(*voxel_);
+    if (voxel_ && !rule_.mayStop() && !query_.witness) results_.finish(*voxel_);
     answer.witness = results_.witness;
     if (rule_.mayStop()) answer.undecided = voxel_ ? results_.decide(*voxel_, unsure) : unsure;
     if (rule_.mayStop() && !voxel_ && !unsure)
@@ -366,11 +367,11 @@ private:
 
 } // namespace
 
-VoxelResult walkVoxelOnTarget(const TrajectoryQuery& query, const StopRule& rule, std::uint32_t voxel,
-                              const std::vector<std::uint32_t>& intervals, Progress& progress)
+VoxelResult walkVoxelOnTarget(const TrajectoryQuery& query, const StopRule& rule, std::span<const NearVoxel> near,
+                              Progress& progress)
 {
   thread_local std::deque<NodeVisit> visits; // kept from voxel to voxel for their storage only
-  return TrajectoryWalk(query, rule, voxel, progress, visits).run(intervals);
+  return TrajectoryWalk(query, rule, near.front().voxel, progress, visits).run(near);
 }
 
 } // namespace HWY_NAMESPACE
@@ -382,10 +383,10 @@ namespace pcl_bsh {
 
 HWY_EXPORT(walkVoxelOnTarget);
 
-VoxelResult walkVoxel(const TrajectoryQuery& query, const StopRule& rule, std::uint32_t voxel,
-                      const std::vector<std::uint32_t>& intervals, Progress& progress)
+VoxelResult walkVoxel(const TrajectoryQuery& query, const StopRule& rule, std::span<const NearVoxel> near_voxel,
+                      Progress& progress)
 {
-  return HWY_DYNAMIC_DISPATCH(walkVoxelOnTarget)(query, rule, voxel, intervals, progress);
+  return HWY_DYNAMIC_DISPATCH(walkVoxelOnTarget)(query, rule, near_voxel, progress);
 }
 
 } // namespace pcl_bsh

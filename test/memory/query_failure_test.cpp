@@ -212,12 +212,6 @@ TEST(AllocationFailure, OfManyPoses)
       const DistancesAtPoses found = closestPairAtPoses(pair->placedA(), pair->b, poses, request(threads));
       return std::tuple(found.distances, found.pairs);
     });
-    failEachAllocation(freshPair, [&](const auto& pair) {
-      std::vector<std::size_t> colliding(poses.size());
-      collisionFlagsAtPoses(pair->placedA(), pair->b, poses, request(threads, Side::a),
-                            [&](std::size_t pose, const FlagsResult& flags) { colliding[pose] = flags.colliding_a; });
-      return colliding;
-    });
   }
 }
 

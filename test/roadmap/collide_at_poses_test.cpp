@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <deque>
 #include <limits>
-#include <mutex>
 #include <random>
 
 namespace pcl_bsh {
@@ -65,23 +64,6 @@ void expectSingleAnswers(const Scene& scene, const Poses& poses, double clearanc
     }
     ASSERT_EQ(any.colliding, colliding);
   }
-  std::vector<FlagsResult> flags(poses.size());
-  std::mutex mutex;
-  FlagsRequest request;
-  request.clearance = clearance;
-  request.flagged = Side::both;
-  request.threads = threads;
-  collisionFlagsAtPoses(placed, b, poses, request, [&](std::size_t pose, const FlagsResult& found) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    ASSERT_TRUE(flags[pose].a.empty() && flags[pose].b.empty()) << "once for each pose";
-    flags[pose] = found;
-  });
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const FlagsResult single = collisionFlags(placed, {b, poses[i]}, request);
-    ASSERT_EQ(flags[i].a, single.a);
-    ASSERT_EQ(flags[i].b, single.b);
-    ASSERT_EQ(flags[i].colliding_a, single.colliding_a);
-  }
 }
 
 TEST(AtPoses, SameAsSingleQueriesOnRandomCloudsAndThreads)
@@ -112,13 +94,6 @@ TEST(AtPoses, SameAsBruteForce)
     const DistancesAtPoses brute = brute_force::closestPairAtPoses(placed, b, poses);
     EXPECT_EQ(closest.distances, brute.distances) << scene.name;
     EXPECT_EQ(closest.pairs, brute.pairs) << scene.name;
-    FlagsRequest request;
-    request.clearance = scene.clearance;
-    std::vector<std::vector<std::uint8_t>> flags(poses.size());
-    brute_force::collisionFlagsAtPoses(placed, b, poses, request,
-                                       [&](std::size_t i, const FlagsResult& found) { flags[i] = found.a; });
-    collisionFlagsAtPoses(placed, b, poses, request,
-                          [&](std::size_t i, const FlagsResult& found) { EXPECT_EQ(found.a, flags[i]); });
   }
 }
 
@@ -278,7 +253,6 @@ TEST(AtPoses, TakesAnyListAndEmptyOnes)
   EXPECT_EQ(anyCollisionAtPoses({a}, a, std::deque<Eigen::Isometry3d>(3, Eigen::Isometry3d::Identity())).colliding, 3u);
   EXPECT_TRUE(anyCollisionAtPoses({a}, a, Poses()).verdicts.empty());
   EXPECT_TRUE(closestPairAtPoses({a}, a, Poses()).distances.empty());
-  collisionFlagsAtPoses({a}, a, Poses(), {}, [](std::size_t, const FlagsResult&) { FAIL(); });
   EXPECT_EQ(anyCollisionAtPoses({a}, empty, Shelf(), request).colliding, 0u);
   EXPECT_EQ(anyCollisionAtPoses({empty}, a, Shelf(), request).verdicts, std::vector<std::uint8_t>(50, 0));
   EXPECT_TRUE(closestPairAtPoses({a}, empty, Shelf()).pairs.empty());
@@ -313,10 +287,6 @@ TEST(AtPoses, RefusesWhatTheSingleQueriesRefuseByTheIndexOfThePose)
                   closestPairAtPoses({a}, a, poses, {{}, threads});
                 }),
                 testing::HasSubstr("pose 1234 of b"));
-    FlagsRequest flags;
-    flags.threads = threads;
-    EXPECT_THAT(messageOf([&] { collisionFlagsAtPoses({a}, a, poses, flags, [](std::size_t, const FlagsResult&) {}); }),
-                testing::HasSubstr("pose 1234 of b"));
   }
   poses.resize(10);
   EXPECT_THAT(messageOf([&] { anyCollisionAtPoses({a}, a, poses, {-1.0, {}}); }), testing::HasSubstr("clearance"));
@@ -327,21 +297,6 @@ TEST(AtPoses, RefusesWhatTheSingleQueriesRefuseByTheIndexOfThePose)
   Eigen::Isometry3d scaled = poses[0];
   scaled.linear() *= 2.0;
   EXPECT_THAT(messageOf([&] { closestPairAtPoses({a, scaled}, a, poses); }), testing::HasSubstr("pose of a"));
-}
-
-TEST(AtPoses, ACallbackEndsFlagsInThreads)
-{
-  const Cloud point({{0, 0, 0}});
-  const SphereHierarchy a(point.view());
-  FlagsRequest request;
-  for (const unsigned threads : {1u, 2u}) {
-    request.threads = threads;
-    EXPECT_THROW(collisionFlagsAtPoses({a}, a, Shelf(), request,
-                                       [](std::size_t pose, const FlagsResult&) {
-                                         if (pose == 7) throw Cancelled();
-                                       }),
-                 Cancelled);
-  }
 }
 
 TEST(AtPoses, ACallbackStopsThemInThreads)

@@ -3,7 +3,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
-#include <pcl_bsh/roadmap/motion_batch.h>
+#include <pcl_bsh/roadmap/motions_query.h>
 #include <pcl_bsh/roadmap/pose_order.h>
 
 #include "support/journeys.h"

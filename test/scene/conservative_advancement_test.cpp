@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // When two moving points meet, judged in exact integers where they go straight, and in extended precision at many
 // instants where they turn.
-#include <pcl_bsh/scene/conservative_advancement.h>
-#include <pcl_bsh/scene/object_motion.h>
+#include <pcl_bsh/scene/swept/conservative_advancement.h>
+#include <pcl_bsh/scene/swept/object_motion.h>
 
 #include "support/random.h"
 

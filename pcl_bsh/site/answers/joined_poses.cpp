@@ -2,7 +2,6 @@
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/site/answers/inquiry.h>
 #include <pcl_bsh/site/answers/joined_poses.h>
-#include <pcl_bsh/trajectory/add_summary.h>
 
 #include <algorithm>
 
@@ -27,7 +26,7 @@ void JoinedPoses::add(const std::vector<PoseSummary>& of_model)
 {
   meets_.emplace_back(poses_.size());
   for (std::size_t k = 0; k < of_model.size(); ++k) {
-    addSummary(sum_[k], of_model[k]);
+    sum_[k] += of_model[k];
     meets_.back()[k] = of_model[k].colliding_points + of_model[k].undecided_points > 0;
   }
 }

@@ -2,7 +2,6 @@
 #include <pcl_bsh/site/answers/inquiry.h>
 #include <pcl_bsh/site/answers/passage_sum.h>
 #include <pcl_bsh/site/site_clashes.h>
-#include <pcl_bsh/trajectory/add_summary.h>
 
 #include <algorithm>
 #include <utility>
@@ -26,7 +25,7 @@ FirstContact earliestOfAllRanks(const FirstContact& own)
 void addPoses(std::vector<PoseSummary>& poses, const std::vector<PoseSummary>& more)
 {
   poses.resize(std::max(poses.size(), more.size()));
-  for (std::size_t k = 0; k < more.size(); ++k) addSummary(poses[k], more[k]);
+  for (std::size_t k = 0; k < more.size(); ++k) poses[k] += more[k];
 }
 
 void append(std::vector<double>& numbers, const std::vector<PoseSummary>& poses)

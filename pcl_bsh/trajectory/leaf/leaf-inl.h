@@ -16,9 +16,7 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
 inline constexpr double kLeafStray = 0.01; ///< of a leaf's radius: an interval that strays farther is divided
-/// The same where distances count: by what arcs stray, pairs are too much alike to be told apart on them.
-inline constexpr double kMeasuredStray = 0.003;
-inline constexpr float kFewPoses = 4; ///< as quickly looked at one by one as all together
+inline constexpr float kFewPoses = 4;      ///< as quickly looked at one by one as all together
 
 /// Compares leaves of the scan with what they may meet of the model.
 class LeafWalk {
@@ -45,8 +43,7 @@ public:
   {
     const std::uint32_t all = firstBits(points.count);
     if ((all & ~results_.settled[slot]) == 0 || results_.witness) return false;
-    const double share = query_.everything() ? kMeasuredStray : kLeafStray;
-    const double limit = path_.is_swept ? path_.stray : share * node.r[lane] * voxel_frame_.frame.unit;
+    const double limit = path_.is_swept ? path_.stray : kLeafStray * node.r[lane] * voxel_frame_.frame.unit;
     if (motion.interval->divided() && (path_.is_swept ? motion.line_stray : motion.stray) > limit) {
       return compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->left), candidates, bound) &&
              compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->right), candidates, bound);
@@ -115,11 +112,9 @@ private:
   void compareBox(LeafVisit& leaf, const Siblings& boxes, const VoxelMotion& motion)
   {
     const ModelBox box = boxes[static_cast<std::uint32_t>(std::countr_zero(boxes.lanes))];
-    const BoxEnds ends(box);
     results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(leaf.open));
-    const LeafPoints& at = at_pose_.placesAt(leaf, motion, motion.interval->first);
-    const std::uint32_t points =
-        leaf.open & pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, leaf.near_squared);
+    const auto& at = leaf.segments.start;
+    const std::uint32_t points = leaf.open & leaf.nearBox(at[0], at[1], at[2], box);
     if (points == 0) return;
     if (box.isLeaf())
       at_pose_.compare(leaf, points, box, motion.interval->first, motion);
@@ -196,20 +191,8 @@ private:
     const bool narrows = motion.squares && tree_.unit(box.voxel) == 1.0;
     if (narrows && on_arcs_.areFor(motion))
       return on_arcs_.compare(leaf, rangesOf(lanes, clipped, motion), box, motion);
-    std::uint32_t near_points[kLeafPoints];
-    if (narrows) lanes = nearPoints(leaf, lanes, box, motion, clipped, near_points);
-    const PoseRanges ranges = rangesOf(lanes, clipped, motion);
-    lanes = ranges.lanes;
-    if (narrows && !query_.everything() && !query_.first) {
-      // Any pose will do: the one in the middle is nearest.
-      for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-        if ((leaf.open >> i & 1) == 0) continue;
-        const std::uint32_t k = ranges.first[i] + (ranges.last[i] - ranges.first[i]) / 2;
-        at_pose_.compare(leaf, ranges.at(k, lanes & leaf.open), box, k, motion);
-      }
-    }
-    eachPose(leaf, ranges, box, motion);
+    if (narrows) lanes = nearPoints(leaf, lanes, box, motion, clipped);
+    eachPose(leaf, rangesOf(lanes, clipped, motion), box, motion);
   }
 
   /// Points against a box, at each pose that brings them near.
@@ -232,14 +215,12 @@ private:
   }
 
   /// Bits of the leaf's points whose segments come near to points of the model's leaf, and when.
-  /// @param near_points becomes which points of the model's leaf these are, as bits
   std::uint32_t nearPoints(const LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, const VoxelMotion& motion,
-                           ClippedSegments<kLeafPoints>& clipped, std::uint32_t (&near_points)[kLeafPoints]) const
+                           ClippedSegments<kLeafPoints>& clipped) const
   {
     const BoxLeaf other = box.points(tree_);
     return segmentsNearPoints(leaf.segments, lanes, other.x(), other.y(), other.z(), other.count,
-                              tree_.shift(box.voxel).data(), motion.steps, motion.smallest, motion.rounding, clipped,
-                              near_points);
+                              tree_.shift(box.voxel).data(), motion.steps, motion.smallest, motion.rounding, clipped);
   }
 
   const TrajectoryQuery& query_;

@@ -34,16 +34,9 @@ public:
   /// Before a leaf is compared during a motion.
   void beginVisit(const VoxelMotion& motion)
   {
-    places_.beginVisit();
     met_.clear();
     if (query_.request.pose_summaries)
       pose_hits_.assign(motion.interval->last - motion.interval->first + 1 + kLanes, 0);
-  }
-
-  /// The leaf's points at pose k. @return valid until the next call
-  const LeafPoints& placesAt(const LeafVisit& leaf, const VoxelMotion& motion, std::uint32_t k)
-  {
-    return places_.at(voxel_frame_, leaf.points, motion, k);
   }
 
   /// Where summaries are asked for, per pose of the motion: the points that are known to collide. Readable for whole
@@ -57,12 +50,7 @@ public:
   void compare(LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, std::uint32_t k, const VoxelMotion& motion)
   {
     if (!met_.empty() && (lanes &= ~metBefore(box.voxel, k, motion)) == 0) return;
-    const LeafPoints& at = placesAt(leaf, motion, k);
-    const BoxEnds ends(box);
-    alignas(64) float near_squared[kLeafPoints];
-    std::copy(leaf.near_squared, leaf.near_squared + kLeafPoints, near_squared);
-    if (query_.request.pose_summaries) boundAtPose(leaf, lanes, k, motion, near_squared);
-    lanes &= pointsNearBox(at.x, at.y, at.z, kLeafPoints, ends.low, ends.high, near_squared);
+    if (!motion.at_rest) lanes &= nearBoxAt(leaf, box, k);
     if (lanes == 0) return;
     ++results_.work.leaf_pairs;
     const BoxLeaf other = box.points(tree_);
@@ -171,18 +159,13 @@ private:
         lanes & ~hit & ~(query_.certain ? aboveEach(longer, limits.sure_miss) : aboveEach(shorter, limits.miss));
   }
 
-  /// A point that is known to collide at pose k matters again only where it may be nearer than the nearest so far, of
-  /// itself or of the pose. Nothing is bounded where the nearest pair does not decide: no reach is known there.
-  void boundAtPose(LeafVisit& leaf, std::uint32_t lanes, std::uint32_t k, const VoxelMotion& motion,
-                   float* near_squared) const
+  /// Bits of the leaf's points to which something in a box may matter at pose k.
+  std::uint32_t nearBoxAt(const LeafVisit& leaf, const ModelBox& box, std::uint32_t k) const
   {
-    for (std::uint32_t bits = lanes & pose_hits_[k - motion.interval->first]; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      float best = results_.poseReach(k);
-      if (query_.closest) best = std::max(best, results_.best[leaf.points.begin + i].reach);
-      if (motion.at_rest) leaf.lowerReach(voxel_frame_, i, best, motion);
-      near_squared[i] = std::min(near_squared[i], voxel_frame_.nearSquared(motion, best));
-    }
+    LeafPoints at;
+    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], {0, 0, 0}, 1.0);
+    carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, at.x, at.y, at.z);
+    return leaf.nearBox(at.x, at.y, at.z, box);
   }
 
   /// The points in `hit` collide at pose k.
@@ -251,7 +234,6 @@ private:
   const VoxelInModelFrame& voxel_frame_;
   VoxelResults& results_;
   const UncertainReach reach_;
-  PlacesAtPoses places_;
   std::vector<std::uint16_t> pose_hits_; // per pose of a motion: points of a leaf
 
   /// The voxel of the model that points of the leaf met last in doubles.

@@ -8,7 +8,7 @@
 #define PCL_BSH_TRAJECTORY_LEAF_LEAF_VISIT_INL_H_
 #endif
 
-#include <pcl_bsh/trajectory/voxel_in_model_frame-inl.h>
+#include <pcl_bsh/trajectory/model_boxes-inl.h>
 
 #include <algorithm>
 
@@ -46,45 +46,19 @@ struct LeafVisit {
     if (motion.at_rest) near_squared[i] = std::min(near_squared[i], voxel_frame.nearSquared(motion, best));
   }
 
+  /// Bits of the points, seen at these places at one pose, to which something in a box may matter.
+  std::uint32_t nearBox(const float* x, const float* y, const float* z, const ModelBox& box) const
+  {
+    const BoxEnds ends(box);
+    return pointsNearBox(x, y, z, kLeafPoints, ends.low, ends.high, near_squared);
+  }
+
 private:
   void see(const AffineMap& map, float (&at)[3][kLeafPoints]) const
   {
     carry(map.m, map.g, points.x(), points.y(), points.z(), points.count, at[0], at[1], at[2]);
     for (float* along : at) std::fill(along + points.count, along + kLeafPoints, 0.0f);
   }
-};
-
-/// The points of a leaf as seen at single poses; kept, for many boxes ask at the same few.
-class PlacesAtPoses {
-public:
-  /// Forgets what is kept.
-  void beginVisit() { ++visit_; }
-
-  /// @param k a pose of the motion. @return valid until the next call
-  const LeafPoints& at(const VoxelInModelFrame& voxel_frame, const LeafRange& points, const VoxelMotion& motion,
-                       std::uint32_t k)
-  {
-    Places& places = places_[(k - motion.interval->first) % kKept];
-    if (places.visit == visit_ && places.pose == k) return places.points;
-    places.visit = visit_;
-    places.pose = k;
-    const AffineMap map = voxel_frame.mapAt(voxel_frame.path.poses[k], {0, 0, 0}, 1.0);
-    carry(map.m, map.g, points.x(), points.y(), points.z(), points.count, places.points.x, places.points.y,
-          places.points.z);
-    return places.points;
-  }
-
-private:
-  static constexpr std::uint32_t kKept = 16;
-
-  struct Places {
-    std::uint64_t visit = 0;
-    std::uint32_t pose = 0;
-    LeafPoints points{};
-  };
-
-  std::uint64_t visit_ = 0; // how many there were
-  Places places_[kKept];
 };
 
 } // namespace HWY_NAMESPACE

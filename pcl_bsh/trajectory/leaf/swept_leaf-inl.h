@@ -45,8 +45,8 @@ public:
       pass(leaf, i, other, box, motion);
       std::optional<PointSegment> segment;
       for (std::uint32_t left = mattering(leaf, i, passages_.near, motion); left != 0;) {
-        const std::uint32_t j = nearest(left);
-        left &= ~(1u << j);
+        const auto j = static_cast<std::uint32_t>(std::countr_zero(left));
+        left &= left - 1;
         if (!segment) segment.emplace(query_, leaf.points.record(i), *motion.interval);
         const PointPair pair{leaf.points.record(i), other.record(j)};
         ++results_.work.exact_decisions;
@@ -102,17 +102,6 @@ private:
     const float farthest = query_.closest ? results_.best[point].reach + astrayIn(motion) : -1.0f;
     const float limit = query_.closest ? farthest * farthest * (1.0f + kRadiusMargin) : -1.0f;
     return passages_.before(points, part, limit);
-  }
-
-  /// Of the others: it bounds what is left.
-  std::uint32_t nearest(std::uint32_t points) const
-  {
-    auto nearest = static_cast<std::uint32_t>(std::countr_zero(points));
-    for (std::uint32_t bits = points & (points - 1); bits != 0; bits &= bits - 1) {
-      const auto j = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (passages_.squared[j] < passages_.squared[nearest]) nearest = j;
-    }
-    return nearest;
   }
 
   /// A pair that comes near enough.

@@ -2,9 +2,9 @@
 // Moves one object among all the others, which stand still meanwhile.
 #pragma once
 
-#include <pcl_bsh/scene/conservative_advancement.h>
-#include <pcl_bsh/scene/contact_planes.h>
+#include <pcl_bsh/scene/responses/contact_planes.h>
 #include <pcl_bsh/scene/state.h>
+#include <pcl_bsh/scene/swept/conservative_advancement.h>
 
 #include <vector>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the files of a scene's effects share: each effect times itself, asks its pairs side by side, and adds up their
-// work.
+// What the files of a scene's effects share: each asks its pairs side by side, and adds up their work.
 #pragma once
 
 #include <pcl_bsh/base/parallel.h>
@@ -8,27 +7,13 @@
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/scene/state.h>
-#include <pcl_bsh/scene/swept_object.h>
+#include <pcl_bsh/scene/swept/swept_object.h>
 
-#include <chrono>
 #include <limits>
 
 namespace pcl_bsh {
 
 constexpr double scene_rounding = 0x1p-40; ///< relative; far above that of a few operations in double
-
-/// Adds the time until its end to a cost.
-class Timed {
-public:
-  explicit Timed(double& seconds) : seconds_(seconds) {}
-  ~Timed() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-  Timed(const Timed&) = delete;
-  Timed& operator=(const Timed&) = delete;
-
-private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Calls decide(i) for each pair, in parallel, and adds up what the pairs note of it.
 template <class Decide>
@@ -47,6 +32,32 @@ void Scene::State::eachPair(const std::vector<BroadPair*>& pairs, EffectCost& co
   }
 }
 
+/// Calls ask(parts) for each two parts of a pair, until it returns false.
+template <class Ask>
+void Scene::State::eachPartPair(BroadPair& pair, const Ask& ask) const
+{
+  for (std::uint32_t i = 0; i < bodies[pair.a].world.size(); ++i)
+    for (std::uint32_t j = 0; j < bodies[pair.b].world.size(); ++j) {
+      ++pair.memory.asked;
+      if (!ask(PartPair{pair.a, pair.b, i, j})) return;
+    }
+}
+
+/// Calls ask(k, pair, parts) for each two parts of near pair k that is not known to be free.
+template <class Ask>
+void Scene::State::eachNearPair(EffectCost& cost, const Ask& ask)
+{
+  eachPair(near, cost, [&](std::size_t k) {
+    BroadPair& pair = *near[k];
+    pair.memory.reused = isKnownFree(pair);
+    if (pair.memory.reused) return;
+    eachPartPair(pair, [&](const PartPair& parts) {
+      ask(k, pair, parts);
+      return true;
+    });
+  });
+}
+
 /// Calls ask(k, pair, parts, a, b) for each two parts of pair k of the grid, if the motions of its objects come near
 /// enough to meet.
 template <class Ask>
@@ -59,11 +70,10 @@ void Scene::State::eachSweptPair(EffectCost& cost, const Ask& ask)
     Box3 box = a.box();
     box.grow((pair.clearance + options.tolerance) * (1.0 + scene_rounding));
     if (!box.meets(b.box())) return;
-    for (std::uint32_t i = 0; i < bodies[pair.a].world.size(); ++i)
-      for (std::uint32_t j = 0; j < bodies[pair.b].world.size(); ++j) {
-        ask(k, pair, PartPair{pair.a, pair.b, i, j}, a.part(i), b.part(j));
-        ++pair.memory.asked;
-      }
+    eachPartPair(pair, [&](const PartPair& parts) {
+      ask(k, pair, parts, a.part(parts.part_a), b.part(parts.part_b));
+      return true;
+    });
   });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/scene/bounds.h>
+#include <pcl_bsh/scene/pairs/bounds.h>
 
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/scene/scene.h>
@@ -39,17 +39,23 @@ double outreach(const SphereHierarchy& hierarchy)
                                         : storage.largest_radius;
 }
 
+Box3 boxOf(const LocalFrame& frame)
+{
+  Box3 box;
+  for (int k = 0; k < 3; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    const double half = (frame.reach[axis] + frame.slack(k)) * frame.unit;
+    box.low[k] = frame.origin[axis] - half;
+    box.high[k] = frame.origin[axis] + half;
+  }
+  return box;
+}
+
 Box3 boxOf(const ScenePart& part)
 {
   const SphereHierarchy::Storage& storage = part.hierarchy->storage();
-  Box3 box;
-  if (storage.size == 0) return box;
-  for (int k = 0; k < 3; ++k) {
-    const auto axis = static_cast<std::size_t>(k);
-    const double half = (storage.frame.reach[axis] + storage.frame.slack(k)) * storage.frame.unit;
-    box.low[k] = storage.frame.origin[axis] - half;
-    box.high[k] = storage.frame.origin[axis] + half;
-  }
+  if (storage.size == 0) return Box3();
+  Box3 box = boxOf(storage.frame);
   box.grow(outreach(*part.hierarchy) + kMargin * largest(box));
   return box;
 }

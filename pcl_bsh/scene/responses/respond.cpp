@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Responses to collisions: a moving object stops, slides, or follows the ground.
-#include <pcl_bsh/scene/mover.h>
-#include <pcl_bsh/scene/swept_object.h>
+#include <pcl_bsh/scene/responses/mover.h>
+#include <pcl_bsh/scene/swept/swept_object.h>
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
 
-#include <chrono>
 #include <numbers>
 #include <string>
 
@@ -84,10 +83,6 @@ Eigen::Vector3d sumOfTurns(const std::vector<Leg>& legs)
 
 void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, const Eigen::Vector3d& turn)
 {
-  using Clock = std::chrono::steady_clock;
-  const auto seconds = [](Clock::time_point since) {
-    return std::chrono::duration<double>(Clock::now() - since).count();
-  };
   Body& body = bodies[object];
   const Response response = options.effects.response;
   EffectCost unused; // what moves without a response costs nothing to speak of
@@ -96,7 +91,6 @@ void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, con
   const Eigen::Isometry3d start = body.object.pose;
   const Goal goal{target, turn};
 
-  auto begin = Clock::now();
   const bool was_moved = body.isMoved();
   Mover mover(*this, object, moving);
   const Eigen::Vector3d from = mover.center();
@@ -107,13 +101,13 @@ void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, con
     mover.legs.push_back({start, target, body.center(), turn});
   }
   else {
+    const Timed timed(moving.seconds);
     reached = moveTo(mover, body, goal, response);
   }
-  moving.seconds += seconds(begin);
 
   if (options.effects.gravity && !mover.outcome.stuck) {
     EffectCost& spent = cost(Effect::gravity);
-    begin = Clock::now();
+    const Timed timed(spent.seconds);
     const double height = options.effects.gravity->step_height;
     const Eigen::Vector3d down = options.effects.gravity->down.normalized();
     const Eigen::Vector3d wanted = target.translation() - start.translation();
@@ -168,7 +162,6 @@ void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, con
       }
       mover.legs.insert(mover.legs.end(), faller.legs.begin(), faller.legs.end());
     }
-    spent.seconds += seconds(begin);
   }
   mover.outcome.object = object;
   mover.outcome.travelled = (mover.center() - from).norm();

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/scene/state.h>
-#include <pcl_bsh/scene/sweep.h>
+#include <pcl_bsh/scene/swept/sweep.h>
 
 #include <optional>
 #include <vector>

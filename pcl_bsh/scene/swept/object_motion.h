@@ -4,8 +4,8 @@
 
 #include <pcl_bsh/geometry/rigid_motion.h>
 #include <pcl_bsh/geometry/rounding.h>
-#include <pcl_bsh/scene/bounds.h>
 #include <pcl_bsh/scene/motion.h>
+#include <pcl_bsh/scene/pairs/bounds.h>
 
 namespace pcl_bsh {
 

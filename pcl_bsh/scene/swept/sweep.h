@@ -4,8 +4,8 @@
 
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/query/reach.h>
-#include <pcl_bsh/scene/conservative_advancement.h>
-#include <pcl_bsh/scene/object_motion.h>
+#include <pcl_bsh/scene/swept/conservative_advancement.h>
+#include <pcl_bsh/scene/swept/object_motion.h>
 
 #include <optional>
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Both questions in the same way: the pairs of points that can meet at all within an interval are collected, and each
 // is followed by itself. Too many of them: the interval is halved, and they get fewer.
+#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/pairs/any_at_places.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/query/pair_reach.h>
-#include <pcl_bsh/scene/sweep.h>
+#include <pcl_bsh/scene/swept/sweep.h>
 
 #include <algorithm>
 #include <numeric>
@@ -34,14 +35,25 @@ public:
     const AnyResult start = anyCollisionAt(a_.at(0), b_.at(0), {clearance_, {}}, places_);
     work_ += start.work;
     if (start.witness) return PairContact{0.0, *start.witness};
-    return first(0.0, 1.0);
+    std::optional<PairContact> earliest;
+    eachPart(0.0, 1.0, [&](double begin, double end, const PairsWithin& found) {
+      earliest = found.complete ? firstOf(found, begin, end) : firstOfCrowd(begin, end);
+      return earliest.has_value();
+    });
+    return earliest;
   }
 
   void flag(std::vector<std::uint8_t>& flags_a, std::vector<std::uint8_t>& flags_b)
   {
     flags_a_ = &flags_a;
     flags_b_ = &flags_b;
-    flag(0.0, 1.0);
+    eachPart(0.0, 1.0, [&](double begin, double end, const PairsWithin& found) {
+      if (found.complete)
+        flagPairs(found, begin, end);
+      else
+        flagCrowd(begin, end);
+      return false;
+    });
   }
 
 private:
@@ -56,11 +68,18 @@ private:
     return angle_ * length > kWideTurn && found.pairs.size() > kFewToTurn;
   }
 
-  PairsWithin pairs(double begin, double end)
+  /// Calls visit(begin, end, found) with the pairs that can meet in an interval: in its halves, in their order, where
+  /// they are too many, until it returns true.
+  template <class Visit>
+  bool eachPart(double begin, double end, const Visit& visit)
   {
-    PairsWithin found = pairsWithin(a_.at(begin), b_.at(begin), {reach(end - begin), kMostPairs});
+    const PairsWithin found = pairsWithin(a_.at(begin), b_.at(begin), {reach(end - begin), kMostPairs});
     work_ += found.work;
-    return found;
+    if ((!found.complete || isWide(end - begin, found)) && !isShort(end - begin)) {
+      const double middle = 0.5 * (begin + end);
+      return eachPart(begin, middle, visit) || eachPart(middle, end, visit);
+    }
+    return visit(begin, end, found);
   }
 
   /// None where no distance is near enough. What is hardly below 0 may be so by rounding, and is 0: the tolerance
@@ -73,15 +92,8 @@ private:
     return ContactZone{std::max(0.0, reach), tolerance_};
   }
 
-  std::optional<PairContact> first(double begin, double end)
+  std::optional<PairContact> firstOf(const PairsWithin& found, double begin, double end) const
   {
-    const PairsWithin found = pairs(begin, end);
-    if ((!found.complete || isWide(end - begin, found)) && !isShort(end - begin)) {
-      const double middle = 0.5 * (begin + end);
-      const auto early = first(begin, middle);
-      return early ? early : first(middle, end);
-    }
-    if (!found.complete) return firstOfCrowd(begin, end);
     std::optional<PairContact> earliest;
     for (const PointPair pair : found.pairs) {
       const std::optional<ContactZone> near = zone(pair);
@@ -110,25 +122,19 @@ private:
     return PairContact{begin, *near.witness};
   }
 
-  void flag(double begin, double end)
+  void flagCrowd(double begin, double end)
   {
-    const PairsWithin found = pairs(begin, end);
-    if ((!found.complete || isWide(end - begin, found)) && !isShort(end - begin)) {
-      const double middle = 0.5 * (begin + end);
-      flag(begin, middle);
-      flag(middle, end);
-      return;
-    }
-    if (!found.complete) {
-      FlagsRequest wide;
-      wide.clearance = wideClearance(begin, end);
-      wide.flagged = Side::both;
-      const FlagsResult near = collisionFlags(a_.at(begin), b_.at(begin), wide);
-      work_ += near.work;
-      take(near.a, *flags_a_);
-      take(near.b, *flags_b_);
-      return;
-    }
+    FlagsRequest wide;
+    wide.clearance = wideClearance(begin, end);
+    wide.flagged = Side::both;
+    const FlagsResult near = collisionFlags(a_.at(begin), b_.at(begin), wide);
+    work_ += near.work;
+    take(near.a, *flags_a_);
+    take(near.b, *flags_b_);
+  }
+
+  void flagPairs(const PairsWithin& found, double begin, double end)
+  {
     for (const PointPair pair : found.pairs) {
       std::uint8_t &flag_a = (*flags_a_)[pair.a], &flag_b = (*flags_b_)[pair.b];
       if (flag_a != 0 && flag_b != 0) continue;

@@ -8,6 +8,7 @@
 
 namespace pcl_bsh {
 
+struct LocalFrame;
 struct SceneObject;
 struct ScenePart;
 class SphereHierarchy;
@@ -44,6 +45,9 @@ Box3 moved(const Box3& box, const Eigen::Isometry3d& pose);
 
 /// How far places of a part may be from its points: their radii and uncertainties.
 double outreach(const SphereHierarchy& hierarchy);
+
+/// Of all places that a frame stores, but for rounding.
+Box3 boxOf(const LocalFrame& frame);
 
 /// Of all places that a part's points and their radii may take, in the frame of its cloud.
 Box3 boxOf(const ScenePart& part);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/scene/object_motion.h>
+#include <pcl_bsh/scene/swept/object_motion.h>
 
 namespace pcl_bsh {
 

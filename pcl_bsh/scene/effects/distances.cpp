@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How near pairs are: smallest distances, contacts, first contacts.
 #include <pcl_bsh/query/uncertain.h>
-#include <pcl_bsh/scene/effect.h>
+#include <pcl_bsh/scene/effects/each_pair.h>
 
 #include <algorithm>
 
 namespace pcl_bsh {
 
-void Scene::State::findDistances()
+void Scene::State::findDistances(EffectCost& spent)
 {
-  EffectCost& spent = cost(Effect::distance);
-  const Timed timed(spent.seconds);
   const std::vector<BroadPair*>& pairs = grid.pairs();
   const double within = *options.effects.distance;
   eachPair(pairs, spent, [&](std::size_t i) { decideDistance(*pairs[i], within); });
@@ -22,12 +20,8 @@ void Scene::State::decideDistance(BroadPair& pair, double within) const
 {
   const Body &a = bodies[pair.a], &b = bodies[pair.b];
   PairMemory& memory = pair.memory;
-  if (memory.distance_a == a.version && memory.distance_b == b.version) {
-    memory.reused = true;
-    return;
-  }
-  memory.distance_a = a.version;
-  memory.distance_b = b.version;
+  memory.reused = !memory.of_distance.follow(a.version, b.version);
+  if (memory.reused) return;
   memory.within = false;
   Interval& interval = memory.distance.interval;
   interval = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -35,51 +29,37 @@ void Scene::State::decideDistance(BroadPair& pair, double within) const
   box.grow(within * (1.0 + scene_rounding));
   if (a.box.empty() || b.box.empty() || !box.meets(b.world_box)) return;
   bool first = true;
-  for (std::uint32_t i = 0; i < a.world.size(); ++i)
-    for (std::uint32_t j = 0; j < b.world.size(); ++j) {
-      const DistanceResult found = closestPair(placed(pair.a, i), placed(pair.b, j), {options.accuracy});
-      memory.work += found.work;
-      ++memory.asked;
-      interval.lower = std::min(interval.lower, found.interval.lower);
-      interval.upper = std::min(interval.upper, found.interval.upper);
-      if (!found.pair || (!first && !(found.distance < memory.distance.distance))) continue;
-      memory.distance = {{pair.a, pair.b, i, j}, found.distance, interval, *found.pair};
-      first = false;
-    }
+  eachPartPair(pair, [&](const PartPair& parts) {
+    const DistanceResult found =
+        closestPair(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b), {options.accuracy});
+    memory.work += found.work;
+    interval.lower = std::min(interval.lower, found.interval.lower);
+    interval.upper = std::min(interval.upper, found.interval.upper);
+    if (!found.pair || (!first && !(found.distance < memory.distance.distance))) return true;
+    memory.distance = {parts, found.distance, interval, *found.pair};
+    first = false;
+    return true;
+  });
   const bool certain = options.accuracy.isExact() || !options.accuracy.isProven();
   memory.within = !first && (certain ? memory.distance.distance : interval.lower) <= within;
 }
 
-void Scene::State::findContacts()
+void Scene::State::findContacts(EffectCost& spent)
 {
-  EffectCost& spent = cost(Effect::contacts);
-  const Timed timed(spent.seconds);
   std::vector<std::vector<ContactPair>> found(near.size());
-  eachPair(near, spent, [&](std::size_t k) {
-    const BroadPair& pair = *near[k];
-    PairMemory& memory = near[k]->memory;
-    if (isKnownFree(pair)) {
-      memory.reused = true;
-      return;
-    }
-    for (std::uint32_t i = 0; i < bodies[pair.a].world.size(); ++i)
-      for (std::uint32_t j = 0; j < bodies[pair.b].world.size(); ++j) {
-        ContactsResult contacts =
-            nearestContacts(placed(pair.a, i), placed(pair.b, j), {pair.clearance, *options.effects.contacts});
-        memory.work += contacts.work;
-        ++memory.asked;
-        if (contacts.contacts.empty() && contacts.complete) continue;
-        found[k].push_back({{pair.a, pair.b, i, j}, std::move(contacts.contacts), contacts.complete});
-      }
+  eachNearPair(spent, [&](std::size_t k, BroadPair& pair, const PartPair& parts) {
+    ContactsResult contacts = nearestContacts(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b),
+                                              {pair.clearance, *options.effects.contacts});
+    pair.memory.work += contacts.work;
+    if (contacts.contacts.empty() && contacts.complete) return;
+    found[k].push_back({parts, std::move(contacts.contacts), contacts.complete});
   });
   for (auto& of_pair : found)
     for (ContactPair& contacts : of_pair) result.contacts.push_back(std::move(contacts));
 }
 
-void Scene::State::findFirstContacts()
+void Scene::State::findFirstContacts(EffectCost& spent)
 {
-  EffectCost& spent = cost(Effect::first_contact);
-  const Timed timed(spent.seconds);
   using Contacts = std::vector<std::optional<PartFirstContact>>;
   Contacts possible(grid.pairs().size()), certain(grid.pairs().size());
   eachSweptPair(

@@ -3,8 +3,8 @@
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/query/uncertain.h>
-#include <pcl_bsh/scene/mover.h>
-#include <pcl_bsh/scene/sweep.h>
+#include <pcl_bsh/scene/responses/mover.h>
+#include <pcl_bsh/scene/swept/sweep.h>
 
 #include <algorithm>
 #include <limits>

@@ -3,8 +3,8 @@
 // voxels it leaves and enters.
 #pragma once
 
-#include <pcl_bsh/scene/bounds.h>
-#include <pcl_bsh/scene/pair_rules.h>
+#include <pcl_bsh/scene/pairs/bounds.h>
+#include <pcl_bsh/scene/pairs/pair_rules.h>
 
 #include <cstdint>
 #include <deque>
@@ -14,12 +14,26 @@
 
 namespace pcl_bsh {
 
-/// What is known of a pair from earlier steps. Version 0: nothing.
-struct PairMemory {
-  std::uint64_t version_a = 0, version_b = 0; ///< of the poses at which `near` was found
-  bool near = false;                          ///< boxes within the clearance
+/// How two objects stood when something was found of them; 0: nothing was.
+struct Versions {
+  std::uint64_t a = 0, b = 0;
 
-  std::uint64_t any_a = 0, any_b = 0; ///< likewise of `colliding`
+  /// Becomes these. @return whether it was others
+  bool follow(std::uint64_t now_a, std::uint64_t now_b)
+  {
+    const bool same = a == now_a && b == now_b;
+    a = now_a;
+    b = now_b;
+    return !same;
+  }
+};
+
+/// What is known of a pair from earlier steps.
+struct PairMemory {
+  Versions of_near;
+  bool near = false; ///< boxes within the clearance
+
+  Versions of_any; ///< of `colliding`
   bool colliding = false;
   std::optional<PartPair> undecided; ///< parts that may collide, if none are known to
   CollidingPair witness;             ///< of the last collision found
@@ -28,7 +42,7 @@ struct PairMemory {
   Eigen::Isometry3d apart_a, apart_b;
   unsigned patience = 0; ///< queries to come before another wider one is tried
 
-  std::uint64_t distance_a = 0, distance_b = 0; ///< likewise of `distance`
+  Versions of_distance;
   bool within = false;
   DistantPair distance;
 

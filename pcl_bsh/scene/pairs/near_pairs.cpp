@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which pairs are worth asking about: a voxel grid over the scene, then boxes.
 #include <pcl_bsh/hierarchy/storage.h>
-#include <pcl_bsh/scene/effect.h>
+#include <pcl_bsh/scene/effects/each_pair.h>
 
 #include <algorithm>
 #include <cmath>
@@ -65,15 +65,7 @@ void Scene::State::place(ObjectId object)
       const SphereHierarchy& hierarchy = *body.object.parts[p].hierarchy;
       const SphereHierarchy::Storage& storage = hierarchy.storage();
       for (std::size_t v = 0; v < storage.voxel_count; ++v) {
-        const LocalFrame& frame = storage.voxels[v].frame;
-        Box3 box;
-        for (int k = 0; k < 3; ++k) {
-          const auto axis = static_cast<std::size_t>(k);
-          const double half = (frame.reach[axis] + frame.slack(k)) * frame.unit * (1.0 + scene_rounding);
-          box.low[k] = frame.origin[axis] - half;
-          box.high[k] = frame.origin[axis] + half;
-        }
-        box = pcl_bsh::moved(box, body.world[p]);
+        Box3 box = pcl_bsh::moved(boxOf(storage.voxels[v].frame), body.world[p]); // grown beyond what rounding takes
         box.grow(outreach(hierarchy) + 0.5 * reach);
         boxes_.push_back(box);
       }
@@ -86,10 +78,8 @@ void Scene::State::compareBoxes(BroadPair& pair)
 {
   const Body &a = bodies[pair.a], &b = bodies[pair.b];
   PairMemory& memory = pair.memory;
-  if (memory.version_a == a.version && memory.version_b == b.version) return;
+  if (!memory.of_near.follow(a.version, b.version)) return;
   ++result.broad_phase.box_tests;
-  memory.version_a = a.version;
-  memory.version_b = b.version;
   Box3 box = a.world_box;
   box.grow(pair.clearance * (1.0 + scene_rounding));
   const bool was_near = memory.near;

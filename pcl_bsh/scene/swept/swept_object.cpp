@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/scene/swept_object.h>
+#include <pcl_bsh/scene/swept/swept_object.h>
 
 namespace pcl_bsh {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/scene/conservative_advancement.h>
+#include <pcl_bsh/scene/swept/conservative_advancement.h>
 
 #include <algorithm>
 #include <cmath>

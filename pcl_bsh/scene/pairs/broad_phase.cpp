@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/scene/broad_phase.h>
+#include <pcl_bsh/scene/pairs/broad_phase.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // Which pairs collide, in the scene and within an object; remembered from step to step.
 #include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/query/uncertain.h>
-#include <pcl_bsh/scene/effect.h>
+#include <pcl_bsh/scene/effects/each_pair.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,10 +23,8 @@ bool collides(const Placed& a, const Placed& b, PointPair pair, double clearance
 
 } // namespace
 
-void Scene::State::findAny()
+void Scene::State::findAny(EffectCost& spent)
 {
-  EffectCost& spent = cost(Effect::any);
-  const Timed timed(spent.seconds);
   eachPair(near, spent, [this](std::size_t i) { decideAny(*near[i]); });
   for (const BroadPair* pair : near) {
     if (pair->memory.colliding) result.any.push_back(pair->memory.witness);
@@ -38,34 +36,25 @@ void Scene::State::decideAny(BroadPair& pair) const
 {
   const Body &a = bodies[pair.a], &b = bodies[pair.b];
   PairMemory& memory = pair.memory;
-  if (memory.any_a == a.version && memory.any_b == b.version) {
-    memory.reused = true;
-    return;
-  }
-  memory.any_a = a.version;
-  memory.any_b = b.version;
   const bool remember = options.remember && options.accuracy.isExact(); // else memory would change answers
-  if (remember && remembersAny(pair)) {
-    memory.reused = true;
-    return;
-  }
+  memory.reused = !memory.of_any.follow(a.version, b.version) || (remember && remembersAny(pair));
+  if (memory.reused) return;
 
   /// Whether any parts collide at the clearance; if so, notes the witness; if not, parts that may.
   const auto ask = [&](double clearance) {
     memory.undecided.reset();
-    for (std::uint32_t i = 0; i < a.world.size(); ++i)
-      for (std::uint32_t j = 0; j < b.world.size(); ++j) {
-        const AnyResult found = anyCollision(placed(pair.a, i), placed(pair.b, j), {clearance, options.accuracy});
-        memory.work += found.work;
-        ++memory.asked;
-        const PartPair parts{pair.a, pair.b, i, j};
-        if (found.verdict == Verdict::undecided && !memory.undecided) memory.undecided = parts;
-        if (!found.witness) continue;
-        memory.undecided.reset();
-        memory.witness = {{pair.a, pair.b, i, j}, *found.witness};
-        return true;
-      }
-    return false;
+    bool free = true;
+    eachPartPair(pair, [&](const PartPair& parts) {
+      const AnyResult found =
+          anyCollision(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b), {clearance, options.accuracy});
+      memory.work += found.work;
+      if (found.verdict == Verdict::undecided && !memory.undecided) memory.undecided = parts;
+      if (!found.witness) return true;
+      memory.undecided.reset();
+      memory.witness = {parts, *found.witness};
+      return free = false;
+    });
+    return !free;
   };
   memory.has_witness = false;
   memory.apart = 0.0;
@@ -116,10 +105,8 @@ bool Scene::State::isKnownFree(const BroadPair& pair) const
   return options.effects.any && options.accuracy.isProven() && !pair.memory.colliding && !pair.memory.undecided;
 }
 
-void Scene::State::findSelf()
+void Scene::State::findSelf(EffectCost& spent)
 {
-  EffectCost& spent = cost(Effect::self);
-  const Timed timed(spent.seconds);
   for (ObjectId object = 0; object < bodies.size(); ++object) {
     const SceneObject& whole = bodies[object].object;
     for (std::uint32_t i = 0; i < whole.parts.size(); ++i)

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many poses as a whole: the order in which neighbours share a search, and their batches.
+#include <pcl_bsh/roadmap/collide_at_poses.h>
+
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/query/request_check.h>
+#include <pcl_bsh/query/uncertain.h>
+#include <pcl_bsh/roadmap/batches.h>
+
+#include <limits>
+
+namespace pcl_bsh {
+namespace {
+
+void checkAtPoses(const Placed& a, const PoseList& poses, const Accuracy& accuracy, unsigned threads)
+{
+  checkAccuracy(accuracy);
+  if (accuracy.stopsEarly())
+    throw InvalidInput(Input::accuracy, "accuracy", accuracy.text() + " stops early, which many poses at once do not",
+                       "give exact, float or tolerance=LENGTH");
+  checkPose("pose of a", a.pose);
+  checkPoses(poses, "b", threads);
+}
+
+/// Each by itself: calls answer(i, pose), from several threads. @return the sum of the work that it returns
+template <class Answer>
+Work forEachPose(const PoseList& poses, unsigned threads, Progress& progress, const Answer& answer)
+{
+  return forEachBatch(poses.size(), threads, progress, [&](std::size_t begin, std::size_t end) {
+    Work work;
+    for (std::size_t i = begin; i < end && !progress.stopped(); ++i) {
+      work += answer(i, poses[i]);
+      if (i % 16 == 0) progress.pulse();
+    }
+    return work;
+  });
+}
+
+/// Calls answer(batch, order) for batches of poses that are near each other, from several threads: `order` has the
+/// poses' indices in the list. Neither cloud is empty. @return the sum of the work that it returns
+template <class Answer>
+Work forEachNeighborhood(const Placed& a, const SphereHierarchy& b, const PoseList& poses, unsigned threads,
+                         Progress& progress, const Answer& answer)
+{
+  const BodyBall body(b);
+  const std::vector<std::uint32_t> order = orderOf(poses, body, threadCount(threads));
+  return forEachBatch(order.size(), threads, progress, [&](std::size_t begin, std::size_t end) {
+    PoseBatch batch{a, b, body, {}};
+    batch.poses.reserve(end - begin);
+    for (std::size_t k = begin; k < end; ++k) batch.poses.push_back(poses[order[k]]);
+    return answer(batch, order.data() + begin);
+  });
+}
+
+} // namespace
+
+void checkPoses(const PoseList& poses, const char* whose, unsigned threads)
+{
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+  if (poses.size() > most)
+    throw InvalidInput(Input::pose, "poses", plainText(poses.size(), " are more than an index can name (", most, ")"),
+                       "ask for fewer at a time");
+  const std::size_t wrong = firstWrong(poses.size(), threads, [&](std::size_t i) { return !isRigid(poses[i]); });
+  if (wrong < poses.size()) checkPose(plainText("pose ", wrong, " of ", whose), poses[wrong], wrong);
+}
+
+AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                               const AnyRequest& request, const PosesProgress& report)
+{
+  checkClearance(request.clearance);
+  checkAtPoses(a, T_world_b, request.accuracy, request.threads);
+  const DefaultFloatEnvironment environment;
+  AnyAtPoses result;
+  result.verdicts.assign(T_world_b.size(), flagOf(Verdict::free));
+  if (a.hierarchy().empty() || b.empty() || T_world_b.size() == 0) return result;
+  if (!request.accuracy.isExact()) {
+    AnyRequest single = request;
+    single.threads = 1;
+    Progress progress(report);
+    result.work = forEachPose(T_world_b, request.threads, progress, [&](std::size_t i, const Eigen::Isometry3d& pose) {
+      const AnyResult found = anyCollision(a, {b, pose}, single);
+      result.verdicts[i] = flagOf(found.verdict);
+      return found.work;
+    });
+  }
+  else {
+    result.work =
+        giveVerdicts(areUncertain(a, {b}), report, 0.0, result.verdicts,
+                     [&](const std::vector<std::uint32_t>& some, Places places, Progress& progress, const auto& mark) {
+                       return forEachNeighborhood(a, b, SomePoses{T_world_b, some}, request.threads, progress,
+                                                  [&](const PoseBatch& batch, const std::uint32_t* order) {
+                                                    bool found[kBatchPoses] = {};
+                                                    const Work work = anyOfBatch(batch, request, places, found);
+                                                    for (std::size_t i = 0; i < batch.poses.size(); ++i)
+                                                      if (found[i]) mark(order[i]);
+                                                    return work;
+                                                  });
+                     });
+  }
+  result.colliding = countOf(result.verdicts, Verdict::colliding);
+  result.undecided = countOf(result.verdicts, Verdict::undecided);
+  return result;
+}
+
+DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                                    const DistanceRequest& request, const PosesProgress& report)
+{
+  checkAtPoses(a, T_world_b, request.accuracy, request.threads);
+  const DefaultFloatEnvironment environment;
+  DistancesAtPoses result;
+  result.distances.assign(T_world_b.size(), std::numeric_limits<double>::infinity());
+  if (a.hierarchy().empty() || b.empty() || T_world_b.size() == 0) return result;
+  Progress progress(report);
+  result.pairs.resize(T_world_b.size());
+  if (request.accuracy.isExact())
+    result.work = forEachNeighborhood(
+        a, b, T_world_b, request.threads, progress,
+        [&](const PoseBatch& batch, const std::uint32_t* order) { return closestOfBatch(batch, order, result); });
+  else
+    result.work = forEachPose(T_world_b, request.threads, progress, [&](std::size_t i, const Eigen::Isometry3d& pose) {
+      const DistanceResult found = closestPair(a, {b, pose}, {request.accuracy});
+      result.distances[i] = found.distance;
+      result.pairs[i] = *found.pair;
+      return found.work;
+    });
+  return result;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which points collide at the present poses, and during the motion to them.
+#include <pcl_bsh/query/uncertain.h>
+#include <pcl_bsh/scene/effects/each_pair.h>
+
+#include <algorithm>
+#include <map>
+
+namespace pcl_bsh {
+namespace {
+
+bool isNotFree(std::uint8_t flag)
+{
+  return flag != flagOf(Verdict::free);
+}
+
+/// The flags of one pair of parts.
+struct PairFlags {
+  PartPair parts;
+  std::vector<std::uint8_t> a, b;
+};
+
+/// Those of each part, where any of its points is flagged.
+std::vector<FlaggedPart> mergedFlags(const std::vector<Body>& bodies, const std::vector<std::vector<PairFlags>>& found)
+{
+  std::map<std::pair<ObjectId, std::uint32_t>, FlaggedPart> parts;
+  const auto merge = [&](ObjectId object, std::uint32_t part, const std::vector<std::uint8_t>& flags) {
+    if (std::none_of(flags.begin(), flags.end(), isNotFree)) return;
+    FlaggedPart& target = parts[{object, part}];
+    target.object = object;
+    target.part = part;
+    target.flags.resize(bodies[object].object.parts[part].hierarchy->view().count);
+    for (std::size_t i = 0; i < flags.size(); ++i)
+      if (isNotFree(flags[i]) && target.flags[i] != flagOf(Verdict::colliding)) target.flags[i] = flags[i];
+  };
+  for (const auto& of_pair : found)
+    for (const PairFlags& flags : of_pair) {
+      merge(flags.parts.a, flags.parts.part_a, flags.a);
+      merge(flags.parts.b, flags.parts.part_b, flags.b);
+    }
+  std::vector<FlaggedPart> list;
+  for (auto& [names, part] : parts) {
+    part.colliding = countOf(part.flags, Verdict::colliding);
+    part.undecided = countOf(part.flags, Verdict::undecided);
+    list.push_back(std::move(part));
+  }
+  return list;
+}
+
+/// Of the motion; what may collide is undecided, unless it does for certain.
+void flagSwept(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, PairFlags& flags, Work& work)
+{
+  const bool uncertain = areUncertain({a.hierarchy}, {b.hierarchy});
+  flagContacts(a, b, clearance, tolerance, uncertain ? Places::possible : Places::measured, flags.a, flags.b, work);
+  if (!uncertain || std::none_of(flags.a.begin(), flags.a.end(), isNotFree)) return;
+  std::vector<std::uint8_t> certain_a(flags.a.size()), certain_b(flags.b.size());
+  flagContacts(a, b, clearance, tolerance, Places::certain, certain_a, certain_b, work);
+  std::size_t colliding = 0, undecided = 0; // counted once all pairs are known
+  withhold(flags.a, certain_a, colliding, undecided);
+  withhold(flags.b, certain_b, colliding, undecided);
+}
+
+} // namespace
+
+void Scene::State::findFlags(EffectCost& spent)
+{
+  std::vector<std::vector<PairFlags>> found(near.size());
+  eachNearPair(spent, [&](std::size_t k, BroadPair& pair, const PartPair& parts) {
+    FlagsRequest request;
+    request.clearance = pair.clearance;
+    request.flagged = Side::both;
+    request.accuracy = options.accuracy;
+    FlagsResult flags = collisionFlags(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b), request);
+    pair.memory.work += flags.work;
+    const std::size_t not_free = flags.colliding_a + flags.colliding_b + flags.undecided_a + flags.undecided_b;
+    if (not_free > 0) found[k].push_back({parts, std::move(flags.a), std::move(flags.b)});
+  });
+  result.flags = mergedFlags(bodies, found);
+}
+
+void Scene::State::findSwept(EffectCost& spent)
+{
+  std::vector<std::vector<PairFlags>> found(grid.pairs().size());
+  eachSweptPair(spent,
+                [&](std::size_t k, BroadPair& pair, const PartPair& parts, const SweptPart& a, const SweptPart& b) {
+                  PairFlags flags{parts, std::vector<std::uint8_t>(a.hierarchy.view().count, 0),
+                                  std::vector<std::uint8_t>(b.hierarchy.view().count, 0)};
+                  flagSwept(a, b, pair.clearance, options.tolerance, flags, pair.memory.work);
+                  if (std::any_of(flags.a.begin(), flags.a.end(), isNotFree)) found[k].push_back(std::move(flags));
+                });
+  result.swept = mergedFlags(bodies, found);
+}
+
+} // namespace pcl_bsh
