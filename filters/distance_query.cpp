@@ -63,7 +63,7 @@ void DistanceQuery::requireSettings() const
   }
   if (accuracy_.stopsEarly()) {
     throw std::invalid_argument("accuracy: " + accuracy_.text() +
-                                ": leaves points without a distance: give exact, float or tolerance=LENGTH");
+                                ": leaves points without a distance: give exact or tolerance=LENGTH");
   }
   if (!(max_distance_ >= 0.0)) {
     throw std::invalid_argument("max distance: " + std::to_string(max_distance_) + ": give a length >= 0, or infinity");

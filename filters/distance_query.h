@@ -18,7 +18,7 @@ namespace pcl_bsh {
 
 /// The settings that DistanceFilter adds to PCL's, and the query they ask. Lengths are in the clouds' own unit.
 ///
-/// Accuracy: exact(), floatOnly() or tolerance(), with which a distance is that much greater than the true one at most.
+/// Accuracy: exact() or tolerance(), with which a distance is that much greater than the true one at most.
 /// Filtering throws for an accuracy that stops early, because points would be left without a distance.
 class DistanceQuery : public ObstacleSettings {
 public:

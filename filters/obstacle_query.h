@@ -27,7 +27,7 @@ struct TrajectoryResult;
 
 /// The settings that CollisionFilter adds to PCL's, and the query they ask. Lengths are in the clouds' own unit.
 ///
-/// Accuracy: unless it is floatOnly(), no point is called free or colliding that is not, within the tolerance if one
+/// Accuracy: no point is called free or colliding that is not, within the tolerance if one
 /// was given. What an early stop leaves undecided is never kept as free: it counts as colliding wherever points are
 /// kept or removed, and its flag is 2. A time is that of the query alone, after both clouds are sorted into voxels.
 /// Filtering throws for what TrajectoryRequest::accuracy says that a trajectory cannot tell.

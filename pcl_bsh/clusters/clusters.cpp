@@ -17,15 +17,14 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/clusters/disjoint_sets.h>
-#include <pcl_bsh/traversal/leaf_pair-inl.h>
-#include <pcl_bsh/traversal/pair_walk-inl.h>
+#include <pcl_bsh/traversal/visit_pairs-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace {
 
-class ClusterWalk {
+class ClusterWalk : public PairVisitor {
 public:
   ClusterWalk(const SphereHierarchy& cloud, double distance)
   : placed_{cloud},
@@ -39,39 +38,41 @@ public:
 
   DisjointSets run(Work& work)
   {
-    walk_.seed(pairs_.clearance,
-               [this](const LanePair& pair, const PairWalk::Step&, std::uint32_t) { stack_.push_back(pair); });
+    walk_.seed(reach(), [this](const LanePair& pair, const PairWalk::Step&, std::uint32_t) { stack_.push_back(pair); });
     nearestLast(stack_, 0);
-    while (!stack_.empty()) {
-      const LanePair pair = stack_.back();
-      stack_.pop_back();
-      if (!settled(pair)) visit(pair);
-    }
+    visitPairs(walk_, stack_, *this);
     work = walk_.work;
     return std::move(sets_);
   }
 
-private:
-  void visit(const LanePair& pair)
+  // As visitPairs() asks.
+
+  double reach() const { return pairs_.reach.length(); }
+
+  Next visit(const LanePair& pair) { return settled(pair) ? Next::prune : Next::go_on; }
+
+  Next opened(const LanePair& pair, Opened opened, const PairWalk::Step& step)
   {
-    const Opened opened = walk_.choose(pair);
-    if (opened == Opened::neither) return compareLeaves(pair);
-    const bool parent_united = united(opened == Opened::a ? pair.a : pair.b);
-    PairWalk::Step step;
-    walk_.step(pair, opened, pairs_.clearance, step);
-    const std::size_t from = stack_.size();
-    for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-      const LanePair child = PairWalk::childOf(pair, opened, step, lane);
-      if (parent_united) united(opened == Opened::a ? child.a : child.b) = 1;
-      if ((step.inside >> lane & 1u) != 0)
-        unite(child);
-      else
-        stack_.push_back(child);
-    }
-    nearestLast(stack_, from);
+    parent_united_ = united(opened == Opened::a ? pair.a : pair.b) != 0;
+    inside_ = step.inside(reach());
+    return Next::go_on;
   }
 
+  bool keep(LanePair& child, Opened opened, const PairWalk::Step&, std::uint32_t lane)
+  {
+    if (parent_united_) united(opened == Opened::a ? child.a : child.b) = 1;
+    if ((inside_ >> lane & 1u) == 0) return true;
+    unite(child);
+    return false;
+  }
+
+  Next compare(const LanePair& pair)
+  {
+    compareLeaves(pair);
+    return Next::go_on;
+  }
+
+private:
   /// Whether nothing below the pair can join two clusters any more.
   bool settled(const LanePair& pair)
   {
@@ -109,15 +110,12 @@ private:
   {
     const Node &node_a = walk_.nodeOf(walk_.a, pair.a), &node_b = walk_.nodeOf(walk_.b, pair.b);
     if (node_a.lowest[pair.a.lane] > node_b.lowest[pair.b.lane]) return; // its mirror image is compared
-    ++walk_.work.leaf_pairs;
-    const LeafRange a = walk_.leaf(walk_.a, pair.a), b = walk_.leaf(walk_.b, pair.b);
+    const ComparedLeaves leaves = walk_.compare(pair);
+    const LeafRange &a = leaves.a, &b = leaves.b;
     uniteCoincident(a, node_a.points(pair.a.lane));
     uniteCoincident(b, node_b.points(pair.b.lane));
-    const RelativeFrame& frame = walk_.frames.find(pair.a.space, pair.b.space);
-    LeafPoints points;
-    carryLeaf(frame, a, points);
-    const DistanceBand band = frame.band(pairs_.clearance);
-    eachPairNotBeyond(points, firstBits(a.count), b, band.miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
+    const DistanceBand band = leaves.frame.band(reach());
+    eachPairNotBeyond(leaves.points, leaves.near, b, band.miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
       const std::uint32_t p = a.record(i), q = b.record(j);
       if (sets_.find(p) != sets_.find(q) && (squared <= band.hit || withinDistance({p, q}))) sets_.unite(p, q);
       return false;
@@ -135,7 +133,7 @@ private:
   {
     ++walk_.work.exact_decisions;
     const ExactDistance::Pair posed = pairs_.posed(pair);
-    return pairs_.distance.compare(posed.p, posed.q, pairs_.clearance) <= 0;
+    return pairs_.distance.compare(posed.p, posed.q, reach()) <= 0;
   }
 
   std::uint8_t& united(const Lane& lane)
@@ -171,6 +169,8 @@ private:
   std::vector<std::vector<std::uint8_t>> united_; ///< per voxel, per lane of its nodes: known to be of one cluster
   std::vector<std::uint8_t> united_above_;
   std::vector<LanePair> stack_;
+  bool parent_united_ = false; ///< of the node whose children are tested
+  std::uint32_t inside_ = 0;   ///< bits of these
 };
 
 } // namespace

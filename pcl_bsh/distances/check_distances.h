@@ -5,7 +5,7 @@
 
 namespace pcl_bsh {
 
-/// @throws InvalidInput naming the value: a greatest distance that is negative or NaN, an accuracy or a pose
+/// @throws InvalidInput naming the value: a max_distance that is negative or NaN, an accuracy or a pose
 void check(const Placed& a, const Placed& b, const PointDistancesRequest& request);
 
 } // namespace pcl_bsh

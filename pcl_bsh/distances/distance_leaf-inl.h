@@ -39,8 +39,8 @@ public:
     unit_(query.b.hierarchy().storage().frame.unit),
     largest_radius_(query.b.hierarchy().storage().largest_radius),
     own_radii_(roundUp(query.a.hierarchy().storage().largest_radius / unit_)),
-    max_(query.pairs.clearance),
-    lengths_only_(query.proven && !query.pairs.haveRadii() && query.a.pose.linear() == Eigen::Matrix3d::Identity() &&
+    max_(query.pairs.reach.most),
+    lengths_only_(!query.pairs.haveRadii() && query.a.pose.linear() == Eigen::Matrix3d::Identity() &&
                   query.b.pose.linear() == Eigen::Matrix3d::Identity())
   {
     for (int k = 0; k < 3; ++k)
@@ -101,7 +101,7 @@ private:
       const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
       std::uint32_t facing = firstBits(other.count);
       if constexpr (!kBalls) {
-        const float reach = (limit + own_radii_) * obstacle.at_most_inside + obstacle.prune_reach;
+        const float reach = (limit + own_radii_) * obstacle.at_most_inside + obstacle.slack;
         facing &= pointsNearBox(other.x(), other.y(), other.z(), own.low, own.high, reach,
                                 2 * kSphereMargin); // twice: the limit is rounded, too
         if (facing == 0) continue;
@@ -118,7 +118,7 @@ private:
         if (query_.exceeds(limit, unit_)) return true;
       }
     }
-    undecided = query_.proven ? ambiguous<kBalls>() : 0;
+    undecided = ambiguous<kBalls>();
     return true;
   }
 
@@ -193,7 +193,7 @@ private:
     const ObstacleSphere& sphere = near[name / kLeafPoints].sphere;
     Found found{obstacles_[sphere.obstacle].voxel,
                 sphere.node->begin[sphere.lane] + static_cast<std::uint32_t>(name % kLeafPoints)};
-    if (query_.proven && max_ == kInfinity) return found;
+    if (max_ == kInfinity) return found;
     const bool balls = largest_radius_ > 0.0;
     const float value = two_.first[i];
     found.least = (balls ? leastOf<true>(value) : leastOf<false>(value)) * unit_;
@@ -259,7 +259,7 @@ private:
 
   static std::uint32_t recordOf(const Found& found) { return found.voxel->records()[found.point]; }
 
-  /// Whether the nearest point is within the greatest distance.
+  /// Whether the nearest point is within max_distance.
   bool isWithin(const Found& found, const ExactDistance::Pair& pair)
   {
     if (max_ == kInfinity || found.most - pair.radius_p < max_ * (1.0 - kDoubleMargin)) return true;
@@ -290,9 +290,7 @@ private:
       const ExactDistance::Pair pair = is_known ? ExactDistance::Pair() : posed(i, found);
       if (is_known || isWithin(found, pair)) {
         nearest = recordOf(found);
-        const bool by_float = !query_.proven && found.most < kInfinity;
         distance = lengths_only_ ? lengths_[i] : kNotKnown;
-        if (by_float) distance = (found.least + found.most) / 2 - pair.radius_p;
         if (std::isnan(distance)) distance = query_.pairs.distance.gap(pair);
         if (query_.reached) query_.reached->raise(distance);
         if (sheet_.interval) interval = intervalOf(distance);

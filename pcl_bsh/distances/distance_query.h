@@ -10,16 +10,15 @@
 
 namespace pcl_bsh {
 
-/// What the walks through all voxels of a have in common. The greatest distance is the pairs' clearance.
+/// What the walks through all voxels of a have in common. The pairs' reach is the request's max_distance.
 struct DistancesQuery {
   const Placed& a;
   const Placed& b;
   const PointPairs& pairs;
   RelativeRotation rotation;
   double tolerance = 0.0; ///< how much farther than the nearest a point may be
-  bool proven = true;     ///< whether more than float has to decide
   /// Where only the greatest distance is asked for: what is nearer than this one need not be measured. Null: all are.
-  /// @pre not null: no greatest distance, the accuracy exact; else bounds are not those of the nearest
+  /// @pre not null: no max_distance, the accuracy exact; else bounds are not those of the nearest
   ReachedDistance* reached = nullptr;
 
   /// Whether a greater distance than the bound has been measured, where only the greatest is asked for.

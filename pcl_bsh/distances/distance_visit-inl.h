@@ -27,7 +27,7 @@ namespace HWY_NAMESPACE {
 struct DistanceObstacle {
   const Voxel* voxel; ///< null: the tree above the voxels
   RelativeFrame frame;
-  float prune_reach;    ///< pruneReach(0)
+  float slack;          ///< pruneReach(0): what floats may err by
   float blunt_radius;   ///< as the frame has it
   float error;          ///< of carried points, at least
   float least, most;    ///< at most, and at least, what a length of 1 in the frame is, in the walk's unit
@@ -38,7 +38,7 @@ struct DistanceObstacle {
   DistanceObstacle(const Voxel* entered, const LocalFrame& space, const RelativeFrame& from_a, double unit)
   : voxel(entered),
     frame(from_a),
-    prune_reach(frame.pruneReach(0.0)),
+    slack(frame.pruneReach(0.0)),
     blunt_radius(frame.bluntRadius()),
     error(roundUp(frame.error))
   {
@@ -127,7 +127,7 @@ struct DistanceVisit {
 /// Lower bounds of the distances from each of eight spheres to one other; lowers each `cut` to an upper bound of the
 /// distances from any point of that sphere to its nearest one in the other.
 ///
-/// In the frame, centres are sqrt(s) apart within its error, which prune_reach includes. kBoundMargin covers what
+/// In the frame, centres are sqrt(s) apart within its error, which slack includes. kBoundMargin covers what
 /// rounding takes (test/proof/distances.g). Squares that overflow stand for lengths above 2^63. NaN bounds nothing.
 /// @param radius of the other, stretched
 HWY_INLINE void boundDistances(const CarriedNode& spheres, const DistanceObstacle& obstacle, const Point& center,
@@ -138,7 +138,7 @@ HWY_INLINE void boundDistances(const CarriedNode& spheres, const DistanceObstacl
     const LaneVector between = hn::Sqrt(squaredNorm(hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, center.x)),
                                                     hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, center.y)),
                                                     hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, center.z))));
-    const LaneVector radii = hn::Add(hn::LoadU(d, spheres.r + i), hn::Set(d, radius + obstacle.prune_reach));
+    const LaneVector radii = hn::Add(hn::LoadU(d, spheres.r + i), hn::Set(d, radius + obstacle.slack));
     const LaneVector margin = hn::Mul(hn::Add(between, radii), hn::Set(d, kBoundMargin));
     const LaneVector near = hn::Sub(hn::Sub(hn::Min(between, hn::Set(d, 0x1p63f)), radii), margin);
     const LaneVector far = hn::Add(hn::Add(between, radii), margin);

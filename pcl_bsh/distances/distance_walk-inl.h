@@ -38,7 +38,7 @@ public:
     a_(query.a),
     b_(query.b),
     unit_(b_.storage.frame.unit),
-    max_(query.pairs.clearance),
+    max_(query.pairs.reach.most),
     leaf_(query, sheet, scratch, found.work)
   {
     forgetObstacles();
@@ -229,7 +229,7 @@ private:
     float cut = -std::numeric_limits<float>::infinity();
     for (std::uint32_t bits = opening; bits != 0; bits &= bits - 1)
       cut = std::max(cut, visit.cut[std::countr_zero(bits)]);
-    const float reach = (own.radius + cut * obstacle.at_most_inside + obstacle.prune_reach) * (1.0f + kReachMargin);
+    const float reach = (own.radius + cut * obstacle.at_most_inside + obstacle.slack) * (1.0f + kReachMargin);
     alignas(32) float gap[kLanes];
     found.work.node_pairs += node.count;
     std::uint32_t children = spheresNear({node.x, node.y, node.z, node.r, obstacle.frame.stretch_b},
@@ -323,7 +323,7 @@ private:
     a_.storage.forEachRecord(voxel_, visit);
   }
 
-  /// Farther than the greatest distance.
+  /// Farther than max_distance.
   void setBeyond(std::uint32_t record)
   {
     sheet_.set(record, std::numeric_limits<double>::quiet_NaN(), PointDistances::kNoPoint, {max_, kInfinity});
@@ -344,7 +344,7 @@ private:
     known = {std::max(known.lower, interval.lower), std::min(known.upper, interval.upper)};
   }
 
-  /// Of points that have not been measured: what is beyond the greatest distance has not been looked at, and may be
+  /// Of points that have not been measured: what is beyond max_distance has not been looked at, and may be
   /// the nearest all the same.
   Interval certain(float lower, float upper) const
   {

@@ -61,7 +61,7 @@ void clear(PointDistances& result, const Placed& a, const PointDistancesRequest&
   fresh.distance.assign(cloud.view().count, kNoDistance);
   fresh.nearest.assign(cloud.view().count, PointDistances::kNoPoint);
   fresh.interval.clear();
-  if (!request.accuracy.isExact() && request.accuracy.isProven()) {
+  if (!request.accuracy.isExact()) {
     fresh.interval.assign(cloud.view().count, {kNoDistance, kNoDistance});
     for (std::size_t v = 0; v < cloud.storage().voxel_count; ++v)
       cloud.storage().forEachRecord(v, [&](std::uint32_t record) { fresh.interval[record] = Interval(); });
@@ -80,7 +80,6 @@ public:
            pairs_,
            RelativeRotation(a.pose, b.pose),
            request.accuracy.mode == Accuracy::Mode::tolerance ? request.accuracy.value : 0.0,
-           request.accuracy.isProven(),
            reached},
     sheet_{result.distance.data(), result.nearest.data(), result.interval.empty() ? nullptr : result.interval.data()},
     progress_(progress),

@@ -14,51 +14,55 @@
 #include <utility>
 #include <vector>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "pcl_bsh/flags/colliding_indices.cpp"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
-
-#include <pcl_bsh/flags/walk-inl.h>
-
-#ifndef PCL_BSH_COLLISION_COLLIDING_INDICES_ONCE
-#define PCL_BSH_COLLISION_COLLIDING_INDICES_ONCE
 namespace pcl_bsh {
 namespace {
 
 using Indices = std::vector<std::int32_t>;
 
 /// What the walks through one voxel have found.
-struct VoxelLists {
+struct VoxelLists final : FlagSink {
   Indices colliding; ///< in any order, some more than once
   Indices undecided; ///< after the passes so far
   Indices possible;  ///< of uncertain points: those that may collide, in any order, perhaps among the others, too
   Indices left;      ///< undecided by the last walk
   bool none_decided = true; ///< nothing of the voxel was looked at so far
   bool left_all = false;    ///< nor by the last walk
+  const SphereHierarchy::Storage* cloud = nullptr;
+  std::uint32_t voxel = 0;
 
-  void begin()
+  void begin(const SphereHierarchy::Storage& of, std::uint32_t number)
   {
+    cloud = &of;
+    voxel = number;
     colliding.clear();
     undecided.clear();
     possible.clear();
     none_decided = true;
   }
 
-  void collide(std::uint32_t record) { colliding.push_back(static_cast<std::int32_t>(record)); }
-  static bool takesFree() { return false; }
-  static void free(std::uint32_t) {}
-  static bool takesUndecided() { return true; }
-  void leave(std::uint32_t record) { left.push_back(static_cast<std::int32_t>(record)); }
-  void leaveAll() { left_all = true; }
+  void tell(Finding finding, const std::uint32_t* first, const std::uint32_t* last) override
+  {
+    if (finding == Finding::free) return;
+    Indices& list = finding == Finding::colliding ? colliding : finding == Finding::possible ? possible : left;
+    list.insert(list.end(), first, last);
+  }
+
+  void tellAll(Finding finding) override
+  {
+    left_all = left_all || finding == Finding::left;
+    if (finding == Finding::colliding) appendAll(colliding);
+  }
+
+  void appendAll(Indices& list) const
+  {
+    cloud->forEachRecord(voxel, [&](std::uint32_t record) { list.push_back(static_cast<std::int32_t>(record)); });
+  }
 
   void beginWalk()
   {
     left.clear();
     left_all = false;
   }
-
-  void perhaps(std::uint32_t record) { possible.push_back(static_cast<std::int32_t>(record)); }
 
   /// What any walk decides stays decided.
   void endWalk()
@@ -77,38 +81,15 @@ struct VoxelLists {
   }
 };
 
-} // namespace
-} // namespace pcl_bsh
-#endif
-
-HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
-
-FlaggedVoxel listVoxelOnTarget(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, VoxelLists& lists)
-{
-  return walkVoxel(query, rule, voxel, lists);
-}
-
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
-namespace pcl_bsh {
-namespace {
-
-HWY_EXPORT(listVoxelOnTarget);
-
 /// Memory of one cloud's lists after another, to be had by a ScratchLease.
 struct ListScratch {
-  std::vector<VoxelLists> voxels;     ///< by slot; more than the last query had, for their storage
-  std::vector<std::uint32_t> numbers; ///< of the voxels, by slot
+  std::vector<VoxelLists> voxels; ///< by slot; more than the last query had, for their storage
+  std::size_t count = 0;          ///< those of the last query
   hwy::Sorter sorter;
 
   std::size_t bytes() const noexcept
   {
-    std::size_t sum = voxels.capacity() * sizeof(VoxelLists) + numbers.capacity() * sizeof(std::uint32_t);
+    std::size_t sum = voxels.capacity() * sizeof(VoxelLists);
     for (const VoxelLists& lists : voxels)
       sum += (lists.colliding.capacity() + lists.undecided.capacity() + lists.possible.capacity() +
               lists.left.capacity()) *
@@ -124,22 +105,19 @@ public:
 
   void begin(const FlagQuery& query, const std::vector<FlaggedPlace>& places, bool)
   {
-    cloud_ = &query.a.hierarchy().storage();
     are_uncertain_ = query.certain != nullptr;
     ListScratch& scratch = *lease_.emplace();
     if (scratch.voxels.size() < places.size()) scratch.voxels.resize(places.size());
-    scratch.numbers.clear();
-    for (const FlaggedPlace& place : places) {
-      scratch.voxels[place.slot].begin();
-      scratch.numbers.push_back(place.voxel);
-    }
+    scratch.count = places.size();
+    for (const FlaggedPlace& place : places)
+      scratch.voxels[place.slot].begin(query.a.hierarchy().storage(), place.voxel);
   }
 
   FlaggedVoxel walk(const FlagQuery& query, const StopRule& rule, const FlaggedPlace& place)
   {
     VoxelLists& lists = (**lease_).voxels[place.slot];
     lists.beginWalk();
-    const FlaggedVoxel found = HWY_DYNAMIC_DISPATCH(listVoxelOnTarget)(query, rule, place.voxel, lists);
+    const FlaggedVoxel found = flagVoxel(query, rule, place.voxel, lists);
     lists.endWalk();
     return found;
   }
@@ -147,14 +125,12 @@ public:
   void end()
   {
     ListScratch& scratch = **lease_;
-    for (std::size_t slot = 0; slot < scratch.numbers.size(); ++slot) {
+    for (std::size_t slot = 0; slot < scratch.count; ++slot) {
       const VoxelLists& lists = scratch.voxels[slot];
       colliding_.insert(colliding_.end(), lists.colliding.begin(), lists.colliding.end());
       for (const Indices* const left : {&lists.undecided, &lists.possible})
         undecided_.insert(undecided_.end(), left->begin(), left->end());
-      if (!lists.none_decided) continue;
-      cloud_->forEachRecord(scratch.numbers[slot],
-                            [this](std::uint32_t record) { undecided_.push_back(static_cast<std::int32_t>(record)); });
+      if (lists.none_decided) lists.appendAll(undecided_);
     }
     for (Indices* const indices : {&colliding_, &undecided_}) {
       scratch.sorter(indices->data(), indices->size(), hwy::SortAscending());
@@ -171,7 +147,6 @@ private:
   Indices& colliding_;
   Indices& undecided_;
   std::optional<ScratchLease<ListScratch>> lease_;
-  const SphereHierarchy::Storage* cloud_ = nullptr;
   bool are_uncertain_ = false;
 };
 
@@ -199,4 +174,3 @@ CollidingIndices collidingIndices(const Placed& a, const Placed& b, const FlagsR
 }
 
 } // namespace pcl_bsh
-#endif

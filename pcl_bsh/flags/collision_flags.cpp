@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flags as an array: one per record.
+// Flags as an array: one for each record.
 #include <pcl_bsh/flags/check_request.h>
 #include <pcl_bsh/flags/side.h>
 #include <pcl_bsh/query/uncertain.h>
@@ -8,20 +8,11 @@
 #include <atomic>
 #include <vector>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "pcl_bsh/flags/collision_flags.cpp"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
-
-#include <pcl_bsh/flags/walk-inl.h>
-
-#ifndef PCL_BSH_COLLISION_COLLISION_FLAGS_ONCE
-#define PCL_BSH_COLLISION_COLLISION_FLAGS_ONCE
 namespace pcl_bsh {
 namespace {
 
 /// Writes verdicts into an array in which all points are free, or all undecided, at first.
-class FlagArray {
+class FlagArray final : public FlagSink {
 public:
   FlagArray(const SphereHierarchy::Storage& cloud, std::uint32_t voxel, std::uint8_t* flags, bool marked)
   : cloud_(cloud),
@@ -31,58 +22,45 @@ public:
   {
   }
 
-  void collide(std::uint32_t record)
+  void tell(Finding finding, const std::uint32_t* first, const std::uint32_t* last) override
   {
-    colliding += flags_[record] != flagOf(Verdict::colliding);
-    flags_[record] = flagOf(Verdict::colliding);
+    each(finding, [=](const auto& take) { std::for_each(first, last, take); });
   }
 
-  void perhaps(std::uint32_t record)
+  void tellAll(Finding finding) override
   {
-    if (flags_[record] != flagOf(Verdict::colliding)) flags_[record] = flagOf(Verdict::undecided);
-  }
-
-  bool takesFree() const { return marked_; }
-  void free(std::uint32_t record) { flags_[record] = flagOf(Verdict::free); }
-
-  bool takesUndecided() const { return !marked_; }
-  void leave(std::uint32_t record) { flags_[record] = flagOf(Verdict::undecided); }
-  void leaveAll()
-  {
-    if (!marked_) cloud_.forEachRecord(voxel_, [this](std::uint32_t record) { leave(record); });
+    each(finding, [this](const auto& take) { cloud_.forEachRecord(voxel_, take); });
   }
 
   std::size_t colliding = 0; ///< points flagged so that were not before
 
 private:
+  /// @param visit calls a function for each record
+  template <class Visit>
+  void each(Finding finding, const Visit& visit)
+  {
+    if (finding == Finding::colliding) {
+      visit([this](std::uint32_t record) {
+        colliding += flags_[record] != flagOf(Verdict::colliding);
+        flags_[record] = flagOf(Verdict::colliding);
+      });
+    }
+    else if (finding == Finding::possible) {
+      visit([this](std::uint32_t record) {
+        if (flags_[record] != flagOf(Verdict::colliding)) flags_[record] = flagOf(Verdict::undecided);
+      });
+    }
+    else if ((finding == Finding::free) == marked_) {
+      const std::uint8_t flag = flagOf(marked_ ? Verdict::free : Verdict::undecided);
+      visit([this, flag](std::uint32_t record) { flags_[record] = flag; });
+    }
+  }
+
   const SphereHierarchy::Storage& cloud_;
   const std::uint32_t voxel_;
   std::uint8_t* const flags_;
   const bool marked_;
 };
-
-} // namespace
-} // namespace pcl_bsh
-#endif
-
-HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
-
-FlaggedVoxel flagVoxelOnTarget(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagArray& flags)
-{
-  return walkVoxel(query, rule, voxel, flags);
-}
-
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
-namespace pcl_bsh {
-namespace {
-
-HWY_EXPORT(flagVoxelOnTarget);
 
 /// The array of one cloud.
 class FlagSheet {
@@ -105,7 +83,7 @@ public:
   FlaggedVoxel walk(const FlagQuery& query, const StopRule& rule, const FlaggedPlace& place)
   {
     FlagArray array(query.a.hierarchy().storage(), place.voxel, flags_.data(), marked_);
-    const FlaggedVoxel found = HWY_DYNAMIC_DISPATCH(flagVoxelOnTarget)(query, rule, place.voxel, array);
+    const FlaggedVoxel found = flagVoxel(query, rule, place.voxel, array);
     colliding_.fetch_add(array.colliding, std::memory_order_relaxed);
     return found;
   }
@@ -177,4 +155,3 @@ FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest&
 }
 
 } // namespace pcl_bsh
-#endif

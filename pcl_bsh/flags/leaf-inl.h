@@ -63,7 +63,7 @@ inline std::uint32_t facingPoints(const ObstacleVoxel& obstacle, const FlagVisit
                                   const LeafRange& other)
 {
   return pointsNear(other.x(), other.y(), other.z(), other.count, visit.x[lane], visit.y[lane], visit.z[lane],
-                    visit.r[lane] + obstacle.prune_reach, kSphereMargin);
+                    visit.r[lane] + obstacle.reach, kSphereMargin);
 }
 
 /// Where points are uncertain: by the nearest of b, each as far as its own uncertainty makes it, and pair by pair where
@@ -145,8 +145,8 @@ inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, s
     if (hit == open) break;
     ++work.leaf_pairs;
     const LeafRange other = candidate.leaf(*obstacle.voxel);
-    eachBallPairNear(obstacle.frame, points, open, leaf, other, query.pairs.clearance, query.surePairs().reach.least,
-                     [&](std::uint32_t i, std::uint32_t j, float squared, bool surely) {
+    eachBallPairNear(obstacle.frame, points, open, leaf, other, query.pairs.reach.length(),
+                     query.surePairs().reach.least, [&](std::uint32_t i, std::uint32_t j, float squared, bool surely) {
                        if ((hit >> i & 1) != 0) return false;
                        const PointPair pair{leaf.record(i), other.record(j)};
                        if (surely || query.surePairs().collide(obstacle.frame, squared, pair, work)) {

@@ -43,7 +43,7 @@ public:
         shift_[axis][count_] = obstacle.frame.g[axis];
         half_[axis][count_] = roundUp(reach[axis] + stretched);
       }
-      squared_reach_[count_] = obstacle.prune_reach * obstacle.prune_reach * (1.0f + kSphereMargin) + kVanishingSquare;
+      squared_reach_[count_] = obstacle.reach * obstacle.reach * (1.0f + kSphereMargin) + kVanishingSquare;
       ++count_;
     }
   }

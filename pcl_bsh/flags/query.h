@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <pcl_bsh/flags/sink.h>
 #include <pcl_bsh/query/acceptance.h>
 #include <pcl_bsh/query/stop_rule.h>
 #include <pcl_bsh/traversal/point_pairs.h>
@@ -38,5 +39,8 @@ struct FlaggedVoxel {
 
 /// Appends the voxels of a that may come near to anything of b, in their order.
 void findNearVoxels(const FlagQuery& query, std::vector<FlaggedPlace>& near, Work& work);
+
+/// Flags the points of one voxel of a.
+FlaggedVoxel flagVoxel(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagSink& sink);
 
 } // namespace pcl_bsh

@@ -28,13 +28,12 @@ inline constexpr std::uint64_t kMostStepsPerPoint = 20;
 /// The radius of a group at most, in reaches.
 inline constexpr float kWidestGroup = 3.0f;
 
-/// @tparam Sink as FlagWalk has it; free and undecided points are not reported
-template <class Sink>
+/// Only points that collide, or may, are told.
 class FlagRuns {
 public:
   /// @param voxel listed. @param obstacles all voxels of b that it can reach; points have no radii
   FlagRuns(const Voxel& voxel, const PointsView& view, const std::vector<ObstacleVoxel>& obstacles,
-           const FlagQuery& query, Sink& sink, Work& work)
+           const FlagQuery& query, FlagSink& sink, Work& work)
   : voxel_(voxel),
     view_(view),
     obstacles_(obstacles),
@@ -141,7 +140,7 @@ private:
     for (int before = 2 * kLeafPoints; open_ != 0 && 2 * std::popcount(open_) <= before;) {
       before = std::popcount(open_);
       const std::uint32_t target = middleOpen();
-      seek(obstacle, root, {carried_.x[target], carried_.y[target], carried_.z[target], obstacle.prune_reach, 0.0f});
+      seek(obstacle, root, {carried_.x[target], carried_.y[target], carried_.z[target], obstacle.reach, 0.0f});
     }
     if (open_ == 0 || isTooMuch()) return true;
     if (open_ != enclosed_) {
@@ -207,7 +206,7 @@ private:
   std::uint32_t nearBox(const ObstacleVoxel& obstacle, const Node& node)
   {
     work_.node_pairs += node.count;
-    return spheresNearBox(spheresOf(obstacle, node), seen_, obstacle.prune_reach) & firstBits(node.count);
+    return spheresNearBox(spheresOf(obstacle, node), seen_, obstacle.reach) & firstBits(node.count);
   }
 
   static SphereLanes spheresOf(const ObstacleVoxel& obstacle, const Node& node)
@@ -244,7 +243,7 @@ private:
       }
       const std::uint32_t points =
           open_ & pointsNear(carried_.x, carried_.y, carried_.z, kLeafPoints, node.x[lane], node.y[lane], node.z[lane],
-                             node.r[lane] * obstacle.frame.stretch_b + obstacle.prune_reach, kSphereMargin);
+                             node.r[lane] * obstacle.frame.stretch_b + obstacle.reach, kSphereMargin);
       ++work_.node_pairs;
       if (points == 0) continue;
       if (collected_ == kMostCollected) compareCollected(obstacle);
@@ -293,7 +292,7 @@ private:
         return (undecided & ~hit) == 0;
       });
     if (hit == 0) return false;
-    for (std::uint32_t bits = hit; bits != 0; bits &= bits - 1) sink_.collide(points_[std::countr_zero(bits)].record);
+    tellBits(sink_, Finding::colliding, hit, [this](std::uint32_t i) { return points_[i].record; });
     open_ &= ~hit;
     hit_in_ = &obstacle;
     hit_leaf_ = leaf;
@@ -309,7 +308,7 @@ private:
     const OpenPoints hit = hitUncertain(
         obstacle, carried_, [this](std::uint32_t i) { return points_[i].record; }, leaf, open, query_, work_);
     perhaps = (perhaps | hit.perhaps) & ~hit.surely;
-    for (; perhaps != 0; perhaps &= perhaps - 1) sink_.perhaps(points_[std::countr_zero(perhaps)].record);
+    tellBits(sink_, Finding::possible, perhaps, [this](std::uint32_t i) { return points_[i].record; });
     return hit.surely;
   }
 
@@ -317,7 +316,7 @@ private:
   const PointsView& view_;
   const std::vector<ObstacleVoxel>& obstacles_;
   const FlagQuery& query_;
-  Sink& sink_;
+  FlagSink& sink_;
   Work& work_;
   const float slack_;
   const ObstacleBoxes boxes_;
@@ -338,13 +337,12 @@ private:
 };
 
 /// Flags the points of a voxel of a, where it lists them and this was not done before. @return whether all are flagged
-template <class Sink>
-bool flagRuns(const SphereHierarchy::Storage& a, std::uint32_t voxel, const std::vector<ObstacleVoxel>& obstacles,
-              const FlagQuery& query, Sink& sink, Work& work)
+inline bool flagRuns(const SphereHierarchy::Storage& a, std::uint32_t voxel,
+                     const std::vector<ObstacleVoxel>& obstacles, const FlagQuery& query, FlagSink& sink, Work& work)
 {
   if (query.pairs.haveRadii()) return false;
-  return a.readOnce(
-      voxel, [&](const Voxel& listed) { return FlagRuns<Sink>(listed, a.view, obstacles, query, sink, work).run(); });
+  return a.readOnce(voxel,
+                    [&](const Voxel& listed) { return FlagRuns(listed, a.view, obstacles, query, sink, work).run(); });
 }
 
 } // namespace HWY_NAMESPACE

@@ -129,7 +129,7 @@ public:
       const OwnUncertainties* const of_b = ownUncertainties(b.storage, reached[i]);
       reaches_.emplace_back(frame.error, frame.skew(), obstacles[i].voxel->frame.unit, of_pairs.leastInCommon(),
                             of_pairs.mostInCommon(), of_b ? static_cast<double>(of_b->most) : 0.0,
-                            frame.pruneReach(query_.pairs.clearance));
+                            frame.pruneReach(query_.pairs.reach.length()));
       reaches_.back().of_b = of_b;
     }
   }
@@ -177,8 +177,7 @@ public:
   }
 
   /// Tells the sink which points may collide, of the open children that are done with.
-  template <class Sink>
-  HWY_NOINLINE void report(const FlagVisit& visit, Sink& sink) const
+  HWY_NOINLINE void report(const FlagVisit& visit, FlagSink& sink) const
   {
     for (std::uint32_t bits = visit.open; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
@@ -190,9 +189,9 @@ public:
                                                                                           voxel_->records() +
                                                                                           visit.node->begin[lane + 1];
       if (all)
-        std::for_each(first, last, [&](std::uint32_t record) { sink.perhaps(record); });
+        sink.tell(Finding::possible, first, last);
       else
-        for (; points != 0; points &= points - 1) sink.perhaps(first[std::countr_zero(points)]);
+        tellBits(sink, Finding::possible, points, [first](std::uint32_t i) { return first[i]; });
     }
   }
 

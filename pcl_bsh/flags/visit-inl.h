@@ -9,6 +9,7 @@
 #define PCL_BSH_FLAGS_VISIT_INL_H_
 #endif
 
+#include <pcl_bsh/flags/sink.h>
 #include <pcl_bsh/geometry/distance_band.h>
 #include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/traversal/obstacle_sphere-inl.h>
@@ -25,7 +26,7 @@ namespace HWY_NAMESPACE {
 struct ObstacleVoxel {
   const Voxel* voxel;
   RelativeFrame frame;
-  float prune_reach;
+  float reach;        ///< what is farther apart is free
   float sure_reach;   ///< what comes within it collides
   float accept_reach; ///< what comes within it may count as colliding; no less
   float blunt_radius;
@@ -75,16 +76,14 @@ struct FlagVisit {
   }
 };
 
-/// The children whose slabs are apart from the candidate's. @param radius the candidate's, stretched
-inline std::uint32_t slabsApartFrom(const FlagVisit& visit, const ObstacleVoxel& obstacle,
-                                    const ObstacleSphere& candidate, float radius)
+/// Tells a sink of some of sixteen points. @param bits of them. @param recordOf(i) of one
+template <class RecordOf>
+inline void tellBits(FlagSink& sink, Finding finding, std::uint32_t bits, const RecordOf& recordOf)
 {
-  const Node& node = *candidate.node;
-  const std::uint32_t k = candidate.lane;
-  const Slabs& slabs = obstacle.slabs[&node - obstacle.voxel->nodes.data()];
-  const Slab other{{slabs.x[k], slabs.y[k], slabs.z[k]}, slabs.h[k], {node.x[k], node.y[k], node.z[k]}, radius};
-  return slabsApart({visit.x, visit.y, visit.z, visit.r, 1.0f}, {visit.nx, visit.ny, visit.nz, visit.slabs->h}, other,
-                    obstacle.prune_reach);
+  if (bits == 0) return;
+  std::uint32_t records[kLeafPoints], count = 0;
+  for (; bits != 0; bits &= bits - 1) records[count++] = recordOf(static_cast<std::uint32_t>(std::countr_zero(bits)));
+  sink.tell(finding, records, records + count);
 }
 
 /// Finds points of b by their distance alone, for hasPointWithin().
@@ -111,15 +110,11 @@ inline bool hasPointWithin(const Finder& finder, const ObstacleVoxel& obstacle, 
 {
   if (candidate.isLeaf()) return finder.isIn(candidate.leaf(*obstacle.voxel), ball);
   const Node& below = obstacle.voxel->nodes[candidate.node->child[candidate.lane]];
-  float gap[kLanes];
+  alignas(32) float gap[kLanes];
   work.node_pairs += below.count;
   std::uint32_t near = finder.spheresIn(below, ball, gap) & firstBits(below.count);
   while (near != 0) {
-    auto nearest = static_cast<std::uint32_t>(std::countr_zero(near));
-    for (std::uint32_t bits = near & (near - 1); bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (gap[lane] < gap[nearest]) nearest = lane;
-    }
+    const std::uint32_t nearest = smallestLane(gap, near);
     if (hasPointWithin(finder, obstacle, candidate.below(below, nearest), ball, work)) return true;
     near &= ~(1u << nearest);
   }

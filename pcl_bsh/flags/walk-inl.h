@@ -11,34 +11,31 @@
 #endif
 
 #include <pcl_bsh/base/kept_scratch.h>
-#include <pcl_bsh/flags/apart-inl.h>
 #include <pcl_bsh/flags/leaf-inl.h>
 #include <pcl_bsh/flags/query.h>
 #include <pcl_bsh/flags/runs-inl.h>
+#include <pcl_bsh/traversal/separation-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// @tparam Sink is called with the result of each point, once in a walk but for some that collide: collide(record);
-///   perhaps(record) where points are uncertain and it may, before collide() if that turns out to be so for certain;
-///   free(record) if takesFree(); leave(record) for undecided points if takesUndecided(); leaveAll() if no point of the
-///   voxel was tested
-template <class Sink>
 class FlagWalk {
 public:
-  FlagWalk(const FlagQuery& query, const StopRule& rule, Sink& sink, FlagScratch& scratch)
+  FlagWalk(const FlagQuery& query, const StopRule& rule, FlagSink& sink, FlagScratch& scratch)
   : query_(query),
     a_(query.a),
     b_(query.b),
     pairs_(query.pairs),
+    reach_(pairs_.reach.length()),
     rule_(rule),
     sink_(sink),
     visits_(scratch.visits),
     obstacles_(scratch.obstacles),
     spheres_(scratch.spheres),
     reached_(scratch.reached),
-    uncertain_(query, scratch.uncertain)
+    uncertain_(query, scratch.uncertain),
+    separation_(pairs_.distance, a_, b_, found.work)
   {
     obstacles_.clear();
     spheres_.clear();
@@ -50,24 +47,20 @@ public:
   {
     const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose, query_.rotation);
     if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs)) return leaveAll();
-    const bool apart = above.separates(pairs_.clearance + a_.storage.largest_radius + b_.storage.largest_radius);
+    const bool apart = above.separates(reach_ + a_.storage.largest_radius + b_.storage.largest_radius);
     if (!apart) ++found.work.volumes_carried; // the voxel's own sphere
     const bool all = !apart && !reach(voxel, above, b_.storage.top[0]);
-    if (all) return a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { sink_.collide(record); });
-    if (apart || reached_.empty()) {
-      if (sink_.takesFree()) a_.storage.forEachRecord(voxel, [this](std::uint32_t record) { sink_.free(record); });
-      return;
-    }
+    if (all) return sink_.tellAll(Finding::colliding);
+    if (apart || reached_.empty()) return sink_.tellAll(Finding::free);
     if (!mayEnter(voxel)) return leaveAll();
     for (const std::uint32_t other : reached_) {
       const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, query_.rotation);
       const Node& root = b_.voxel(other, found.work).nodes[0];
       for (std::uint32_t lane = 0; lane < root.count; ++lane)
         spheres_.push_back({&root, static_cast<std::uint16_t>(lane), 1, static_cast<std::uint32_t>(obstacles_.size())});
-      obstacles_.push_back({&b_.storage.voxels[other], frame, frame.pruneReach(pairs_.clearance),
-                            frame.acceptReach(query_.surePairs().reach.least),
-                            frame.acceptReach(query_.surely.accepted), frame.bluntRadius(), query_.surely.band(frame),
-                            query_.acceptance.band(frame)});
+      obstacles_.push_back({&b_.storage.voxels[other], frame, frame.pruneReach(reach_),
+                            frame.acceptReach(query_.surePairs().reach.least), frame.acceptReach(query_.surely.hit),
+                            frame.bluntRadius(), query_.surely.band(frame), query_.acceptance.band(frame)});
     }
     // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
     if (mayUseKnownSlabs() && &a_.storage != &b_.storage &&
@@ -107,8 +100,8 @@ private:
   bool reach(std::uint32_t voxel, const RelativeFrame& frame, const Node& node)
   {
     const float radius = a_.storage.voxels[voxel].radius * frame.stretch_a;
-    const QueryBall ball{frame.g[0], frame.g[1], frame.g[2], radius + frame.pruneReach(pairs_.clearance),
-                         frame.acceptReach(query_.surely.accepted) - radius * (1.0f + kSphereMargin)};
+    const QueryBall ball{frame.g[0], frame.g[1], frame.g[2], radius + frame.pruneReach(reach_),
+                         frame.acceptReach(query_.surely.hit) - radius * (1.0f + kSphereMargin)};
     const SphereLanes spheres{node.x, node.y, node.z, node.r, frame.stretch_b};
     found.work.node_pairs += node.count;
     if ((spheresInside(spheres, ball) & firstBits(node.count)) != 0) return false;
@@ -128,7 +121,8 @@ private:
   void descend(const Node& node, const BoundingSphere& around, const std::vector<ObstacleSphere>& candidates,
                std::size_t depth, bool may_collide)
   {
-    if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs)) return leave(node.begin[0], node.begin[node.count]);
+    if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs))
+      return tell(Finding::left, node.begin[0], node.begin[node.count]);
     if (visits_.size() == depth) visits_.emplace_back();
     FlagVisit& visit = visits_[depth];
     visit.begin(node, around, may_collide);
@@ -153,7 +147,7 @@ private:
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
       if (depth + 1 >= rule_.deepest) {
-        leave(node.begin[lane], node.begin[lane + 1]);
+        tell(Finding::left, node.begin[lane], node.begin[lane + 1]);
         continue;
       }
       const BoundingSphere child{{node.x[lane], node.y[lane], node.z[lane]}, node.r[lane]};
@@ -167,17 +161,17 @@ private:
     for (std::uint32_t bits = visit.open; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       const std::uint32_t begin = visit.node->begin[lane], end = visit.node->begin[lane + 1];
-      const bool unsure = (visit.unsure >> lane & 1) != 0;
+      const Finding finding = (visit.unsure >> lane & 1) != 0 ? Finding::left : Finding::free;
       if ((visit.leaves >> lane & 1) == 0) {
-        if (visit.near[lane].empty() && (visit.known >> lane & 1) == 0) free(begin, end);
+        if (visit.near[lane].empty() && (visit.known >> lane & 1) == 0) tell(Finding::free, begin, end);
       }
       else if (visit.node->isCoincident(lane)) {
-        if (visit.perhaps[lane] == 0) unsure ? leave(begin, end) : free(begin, end);
+        if (visit.perhaps[lane] == 0) tell(finding, begin, end);
       }
       else {
         for (std::uint32_t points = visit.open_points[lane] & ~visit.perhaps[lane]; points != 0; points &= points - 1) {
           const std::uint32_t i = begin + static_cast<std::uint32_t>(std::countr_zero(points));
-          unsure ? leave(i, i + 1) : free(i, i + 1);
+          tell(finding, i, i + 1);
         }
       }
     }
@@ -193,8 +187,8 @@ private:
     const Point center = carryPoint(frame.m.data(), frame.g.data(), visit.around.center);
     found.work.volumes_carried +=
         visit.node->count + std::uint64_t{1}; // the children's spheres and the one around them
-    visit.ball = {center.x, center.y, center.z,
-                  visit.around.radius * frame.stretch_a + obstacles_[obstacle].prune_reach, 0.0f};
+    visit.ball = {center.x, center.y, center.z, visit.around.radius * frame.stretch_a + obstacles_[obstacle].reach,
+                  0.0f};
     visit.smallest = std::numeric_limits<float>::infinity();
     visit.largest_leaf = 0.0f;
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) visit.r[lane] = visit.node->r[lane] * frame.stretch_a;
@@ -215,18 +209,34 @@ private:
     if (!obstacle.slabs)
       obstacle.slabs = b_.storage.voxels[reached_[visit.obstacle]].slabs.of(*obstacle.voxel, found.work);
     visit.slabs = a_.storage.voxels[voxel_].slabs.of(*a_voxel_, found.work) + (visit.node - a_voxel_->nodes.data());
-    constexpr float nowhere[3] = {0.0f, 0.0f, 0.0f};
-    carry(obstacle.frame.m.data(), nowhere, visit.slabs->x, visit.slabs->y, visit.slabs->z, kLanes, visit.nx, visit.ny,
+    carry(obstacle.frame.m.data(), kNowhere, visit.slabs->x, visit.slabs->y, visit.slabs->z, kLanes, visit.nx, visit.ny,
           visit.nz);
     return true;
   }
 
-  ComparedSides sidesOf(const FlagVisit& visit) const
+  /// Of the children in `near`, those that are apart from a sphere of b, though their spheres and slabs are not.
+  std::uint32_t separated(const FlagVisit& visit, const ObstacleSphere& candidate, float radius, std::uint32_t near)
   {
-    return {a_.storage.voxels[voxel_],
-            {a_.pose, a_.storage.view},
-            b_.storage.voxels[reached_[visit.obstacle]],
-            {b_.pose, b_.storage.view}};
+    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    const bool is_blunt = radius <= obstacle.blunt_radius;
+    const bool has_large_leaf =
+        candidate.isLeaf() ? radius > kLargeLeaf * visit.smallest : visit.largest_leaf > kLargeLeaf * radius;
+    const bool may_be_far = visit.has_several && mayBeFar(obstacle.reach, radius);
+    if (HWY_LIKELY(!is_blunt && !has_large_leaf && !may_be_far)) return 0;
+    const Node& node = *candidate.node;
+    const std::uint32_t k = candidate.lane;
+    const Point center{node.x[k], node.y[k], node.z[k]};
+    const SphereLanes children{visit.x, visit.y, visit.z, visit.r, 1.0f};
+    Voxel* const other_voxel = &b_.storage.voxels[reached_[visit.obstacle]];
+    const Facing facing{
+        obstacle.frame, true,  &a_.storage.voxels[voxel_], *visit.node, children, other_voxel, node, k, center,
+        radius,         reach_};
+    std::uint32_t apart = is_blunt ? separation_.asGiven(facing, near) : 0;
+    if (has_large_leaf) apart |= separation_.byLeafPoints(facing, near & ~apart);
+    if (!may_be_far || (near & ~apart) == 0) return apart;
+    alignas(32) float gap[kLanes];
+    spheresNear(children, {center.x, center.y, center.z, 0.0f, 0.0f}, gap);
+    return apart | separation_.byExtent(facing, gap, near & ~apart);
   }
 
   /// Compares a sphere of b with those children of the visit that are in `lanes`: settles them, drops it, keeps it for
@@ -237,7 +247,7 @@ private:
     const Node& node = *candidate.node;
     const std::uint32_t k = candidate.lane;
     const float radius = node.r[k] * obstacle.frame.stretch_b;
-    const QueryBall ball{node.x[k], node.y[k], node.z[k], radius + obstacle.prune_reach,
+    const QueryBall ball{node.x[k], node.y[k], node.z[k], radius + obstacle.reach,
                          obstacle.accept_reach - radius * (1.0f + kSphereMargin)};
     const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
     lanes &= visit.open;
@@ -245,18 +255,13 @@ private:
     std::uint32_t near = lanes & (query_.certain ? uncertain_.near(visit, obstacle, candidate, lanes)
                                                  : spheresNear(spheres, ball, nullptr));
     if (near == 0) return;
-    if (visit.has_slabs && (near &= ~slabsApartFrom(visit, obstacle, candidate, radius)) == 0) return;
-    if (radius <= obstacle.blunt_radius &&
-        (near &= ~apartAsGiven(obstacle, sidesOf(visit), visit, candidate, ball, pairs_, near, found.work)) == 0)
-      return;
-    const bool has_large_leaf =
-        candidate.isLeaf() ? radius > kLargeLeaf * visit.smallest : visit.largest_leaf > kLargeLeaf * radius;
-    if (HWY_UNLIKELY(has_large_leaf) &&
-        (near &= ~leavesApart(obstacle, *a_voxel_, visit, candidate, ball, pairs_, near, found.work)) == 0)
-      return;
-    if (visit.has_several && mayBeFar(obstacle.prune_reach, radius) &&
-        (near &= ~farApart(obstacle, sidesOf(visit), visit, candidate, ball, pairs_, near, found.work)) == 0)
-      return;
+    if (visit.has_slabs) {
+      const Slab slab =
+          slabOf(obstacle.slabs[&node - obstacle.voxel->nodes.data()], k, {ball.x, ball.y, ball.z}, radius);
+      near &= ~slabsApart(spheres, {visit.nx, visit.ny, visit.nz, visit.slabs->h}, slab, obstacle.reach);
+      if (near == 0) return;
+    }
+    if ((near &= ~separated(visit, candidate, radius, near)) == 0) return;
     if (ball.inside_reach > visit.smallest) {
       for (std::uint32_t bits = spheresInside(spheres, ball) & near; bits != 0; bits &= bits - 1)
         settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
@@ -319,12 +324,12 @@ private:
       LeafPoints points;
       carryLeaf(obstacles_[visit.obstacle].frame, leaf, points);
       const std::uint32_t hit = collidingPoints(visit, lane, leaf, points);
-      for (std::uint32_t set = hit; set != 0; set &= set - 1)
-        sink_.collide(leaf.record(static_cast<std::uint32_t>(std::countr_zero(set))));
+      tellBits(sink_, Finding::colliding, hit, [&leaf](std::uint32_t i) { return leaf.record(i); });
       visit.open_points[lane] &= ~hit;
       if (visit.open_points[lane] != 0) continue;
       visit.open &= ~(1u << lane);
-      settle(leaf.begin + leaf.count, visit.node->begin[lane + 1]); // those at the place of the one that was compared
+      tell(Finding::colliding, leaf.begin + leaf.count,
+           visit.node->begin[lane + 1]); // those at the place of the one that was compared
     }
   }
 
@@ -342,39 +347,28 @@ private:
   void settleChild(FlagVisit& visit, std::uint32_t lane)
   {
     visit.open &= ~(1u << lane);
-    settle(visit.node->begin[lane], visit.node->begin[lane + 1]);
+    tell(Finding::colliding, visit.node->begin[lane], visit.node->begin[lane + 1]);
   }
 
-  // Of the points at these places of a's voxel.
-  void settle(std::uint32_t begin, std::uint32_t end)
+  /// @param begin, end places in a's voxel
+  void tell(Finding finding, std::uint32_t begin, std::uint32_t end)
   {
-    for (std::uint32_t i = begin; i < end; ++i) sink_.collide(a_voxel_->records()[i]);
-  }
-
-  void free(std::uint32_t begin, std::uint32_t end)
-  {
-    if (!sink_.takesFree()) return;
-    for (std::uint32_t i = begin; i < end; ++i) sink_.free(a_voxel_->records()[i]);
-  }
-
-  void leave(std::uint32_t begin, std::uint32_t end)
-  {
-    found.undecided = true;
-    if (!sink_.takesUndecided()) return;
-    for (std::uint32_t i = begin; i < end; ++i) sink_.leave(a_voxel_->records()[i]);
+    found.undecided = found.undecided || finding == Finding::left;
+    sink_.tell(finding, a_voxel_->records() + begin, a_voxel_->records() + end);
   }
 
   void leaveAll()
   {
     found.undecided = true;
-    sink_.leaveAll();
+    sink_.tellAll(Finding::left);
   }
 
   const FlagQuery& query_;
   const Spaces a_, b_;
   const PointPairs& pairs_;
+  const double reach_; ///< of all pairs
   const StopRule& rule_;
-  Sink& sink_;
+  FlagSink& sink_;
   static constexpr std::size_t kManyCandidates = 256;   ///< as they are where surfaces face each other
   static constexpr std::size_t kSeveralCandidates = 64; ///< as the clearance leaves them about what is far smaller
 
@@ -386,17 +380,8 @@ private:
   std::vector<ObstacleSphere>& spheres_; ///< of the obstacles' roots
   std::vector<std::uint32_t>& reached_;
   UncertainWalk uncertain_; ///< where points are
+  const Separation separation_;
 };
-
-/// One walk through a voxel of a, in memory that the thread keeps.
-template <class Sink>
-FlaggedVoxel walkVoxel(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, Sink& sink)
-{
-  const ScratchLease<FlagScratch> scratch;
-  FlagWalk walk(query, rule, sink, *scratch);
-  walk.run(voxel);
-  return walk.found;
-}
 
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh

@@ -142,13 +142,6 @@ DistanceBand RelativeFrame::band(double clearance, double more_error, double mor
                     (skew_ + more_share) * of_second_order);
 }
 
-DistanceBand RelativeFrame::bandUnproven(double clearance) const noexcept
-{
-  const double d = clearance / unit_b_;
-  const auto squared = static_cast<float>(d * d);
-  return {squared, squared};
-}
-
 float RelativeFrame::pruneReach(double clearance) const noexcept
 {
   // At least kSmallestLength, so that the cast errs by u at most; the factor rounds outward again.

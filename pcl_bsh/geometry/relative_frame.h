@@ -53,9 +53,6 @@ public:
   /// that was laid flat has flat.error and kFlatShare.
   DistanceBand band(double clearance, double more_error, double more_share) const noexcept;
 
-  /// A band without width: the float distance decides, right or wrong.
-  DistanceBand bandUnproven(double clearance) const noexcept;
-
   /// At least (clearance + error) in b's units: two nodes whose centres' float distance exceeds the sum of their
   /// stretched radii and this, by more than rounding, hold no colliding pair.
   float pruneReach(double clearance) const noexcept;

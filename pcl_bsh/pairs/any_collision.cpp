@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any pair: done at the first witness.
+// Any pair, by one thread or by several: done at the first witness.
 #include <pcl_bsh/pairs/any_at_places.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/check_request.h>
 #include <pcl_bsh/pairs/interval_search.h>
-#include <pcl_bsh/pairs/shared_search.h>
 #include <pcl_bsh/query/stop_rule.h>
+
+#include <optional>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pcl_bsh/pairs/any_collision.cpp"
@@ -25,9 +26,10 @@ class Hurried : public NoObserver {
 public:
   explicit Hurried(const StopRule& rule) : rule_(rule) {}
 
-  bool stops(const PairWalk& walk, const LanePair& pair, Opened opened)
+  bool stops(const PairWalk& walk, const LanePair& pair)
   {
     if (asked_++ % 16 == 0 && rule_.isOver()) return true; // a clock costs as much as a step
+    const Opened opened = walk.choose(pair);
     if (opened == Opened::neither) return false;
     const Spaces& side = opened == Opened::a ? walk.a : walk.b;
     const Lane& lane = opened == Opened::a ? pair.a : pair.b;
@@ -41,11 +43,61 @@ private:
   std::uint64_t asked_ = 0;
 };
 
+/// Stops where one of several threads is to pause.
+class Pausing : public NoObserver {
+public:
+  explicit Pausing(Pause& pause) : pause_(pause) {}
+
+  bool stops(const PairWalk&, const LanePair&) { return pause_.stops(); }
+
+private:
+  Pause& pause_;
+};
+
+/// What one of several threads does.
+class AnyShare {
+public:
+  AnyShare(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
+  : search_(a, b, request, Pausing(pause_), places)
+  {
+  }
+
+  void operator()(SharedStack<LanePair>::Piece& piece)
+  {
+    pause_ = {kStepsOfPiece, &piece.dropped};
+    search_.visitPiece(piece);
+  }
+
+private:
+  Pause pause_;
+  AnySearch<Pausing> search_;
+};
+
+/// By so many threads. A search that is soon over is that of one.
+AnyResult searchShared(const Placed& a, const Placed& b, const AnyRequest& request, Places places, unsigned threads)
+{
+  std::optional<SharedStack<LanePair>> shared;
+  Work alone;
+  {
+    Pause pause;
+    AnySearch search(a, b, request, Pausing(pause), places);
+    const AnyResult result = search.run();
+    if (result.verdict != Verdict::undecided) return result;
+    alone = result.work;
+    shared.emplace(search.left());
+  } // what it used is there for this thread's share
+  shared->visit(threads, [&] { return AnyShare(a, b, request, places); });
+  return resultOf({reachBetween(a, b, request.clearance, places), request.accuracy}, shared->found(), false,
+                  alone += shared->work());
+}
+
 } // namespace
 
-AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
+AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, Places places,
+                               unsigned threads)
 {
-  return AnySearch(a, b, request, NoObserver{}, places).run();
+  return threads > 1 ? searchShared(a, b, request, places, threads)
+                     : AnySearch(a, b, request, NoObserver(), places).run();
 }
 
 AnyResult anyCollisionInTimeOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, const StopRule& rule)
@@ -100,9 +152,7 @@ AnyResult searchUncertain(const Placed& a, const Placed& b, const AnyRequest& re
 
 AnyResult anyCollisionAt(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
 {
-  const unsigned threads = threadCount(request.threads);
-  if (threads > 1) return anyCollisionShared(a, b, request, places, threads);
-  return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request, places);
+  return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request, places, threadCount(request.threads));
 }
 
 AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request)

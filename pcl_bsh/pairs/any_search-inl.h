@@ -9,9 +9,8 @@
 #endif
 
 #include <pcl_bsh/query/acceptance.h>
-#include <pcl_bsh/traversal/leaf_pair-inl.h>
-#include <pcl_bsh/traversal/pair_walk-inl.h>
 #include <pcl_bsh/traversal/shared_stack.h>
+#include <pcl_bsh/traversal/visit_pairs-inl.h>
 
 #include <algorithm>
 #include <utility>
@@ -23,10 +22,10 @@ namespace HWY_NAMESPACE {
 
 /// An observer that does nothing: its calls compile to nothing.
 struct NoObserver {
-  void seeded(const LanePair&) {}
-  void stepped(const LanePair&, Opened, const PairWalk::Step&) {}
-  void compared(const LanePair&) {}
-  static bool stops(const PairWalk&, const LanePair&, Opened) { return false; }
+  static void seeded(const LanePair&) {}
+  static void stepped(const LanePair&, Opened, const PairWalk::Step&) {}
+  static void compared(const LanePair&) {}
+  static bool stops(const PairWalk&, const LanePair&) { return false; }
 };
 
 inline AnyResult resultOf(const Acceptance& acceptance, const std::optional<PointPair>& witness, bool stopped,
@@ -36,7 +35,7 @@ inline AnyResult resultOf(const Acceptance& acceptance, const std::optional<Poin
   result.witness = witness;
   result.work = work;
   result.verdict = witness ? Verdict::colliding : stopped ? Verdict::undecided : Verdict::free;
-  if (acceptance.proven && result.verdict != Verdict::undecided)
+  if (result.verdict != Verdict::undecided)
     (witness ? result.distance.upper : result.distance.lower) =
         witness ? acceptance.surely_within : acceptance.surely_beyond;
   return result;
@@ -44,9 +43,9 @@ inline AnyResult resultOf(const Acceptance& acceptance, const std::optional<Poin
 
 /// @tparam Observer is called with the pairs of the roots' children that may meet (seeded), with each pair whose larger
 ///   side was opened and the test of its children (stepped), with each pair of leaves whose points were compared
-///   (compared), and before each pair is opened, whether to stop there (stops)
+///   (compared), and before each pair is looked at, whether to stop there (stops)
 template <class Observer>
-class AnySearch {
+class AnySearch : public PairVisitor {
 public:
   AnySearch(const Placed& a, const Placed& b, const AnyRequest& request, Observer observer,
             Places places = Places::measured)
@@ -55,14 +54,12 @@ public:
     acceptance_(pairs_.reach, request.accuracy),
     observer_(std::move(observer))
   {
-    walk_.accepted_beyond = acceptance_.accepted - acceptance_.clearance;
-    if (walk_.accepted_beyond < 0.0) walk_.accepted_beyond -= kDoubleMargin * acceptance_.clearance;
   }
 
   AnyResult run()
   {
     stack_.clear();
-    walk_.seed(pairs_.clearance, [this](const LanePair& pair, const PairWalk::Step&, std::uint32_t) {
+    walk_.seed(reach(), [this](const LanePair& pair, const PairWalk::Step&, std::uint32_t) {
       observer_.seeded(pair);
       stack_.push_back(pair);
     });
@@ -72,7 +69,7 @@ public:
   }
 
   /// Visits the pairs of a piece and what is below, until a witness is found or the observer stops.
-  void visit(SharedStack<LanePair>::Piece& piece)
+  void visitPiece(SharedStack<LanePair>::Piece& piece)
   {
     stack_.assign(piece.pairs.begin(), piece.pairs.end());
     piece.found = search();
@@ -92,71 +89,59 @@ public:
   /// What is left to be visited since the observer stopped the search, the next one last.
   const std::vector<LanePair>& left() const { return stack_; }
 
+  // As visitPairs() asks.
+
+  double reach() const { return acceptance_.miss; }
+
+  Next visit(const LanePair& pair)
+  {
+    stopped_ = observer_.stops(walk_, pair);
+    return stopped_ ? Next::stop : Next::go_on;
+  }
+
+  Next opened(const LanePair& pair, Opened opened, const PairWalk::Step& step)
+  {
+    observer_.stepped(pair, opened, step);
+    const std::uint32_t inside = step.inside(acceptance_.hit);
+    if (inside == 0) return Next::go_on;
+    const LanePair child = PairWalk::childOf(pair, opened, step, static_cast<std::uint32_t>(std::countr_zero(inside)));
+    witness_ = PointPair{firstRecord(walk_.a, child.a), firstRecord(walk_.b, child.b)};
+    return Next::stop;
+  }
+
+  Next compare(const LanePair& pair)
+  {
+    observer_.compared(pair);
+    const ComparedLeaves leaves = walk_.compare(pair, reach());
+    if (leaves.near == 0) return Next::go_on;
+    const auto found = [&](std::uint32_t i, std::uint32_t j, bool surely) {
+      const PointPair candidate{leaves.a.record(i), leaves.b.record(j)};
+      if (surely || pairs_.collide(candidate, walk_.work)) witness_ = candidate;
+      return witness_.has_value();
+    };
+    if (pairs_.haveRadii()) {
+      eachBallPairNear(leaves.frame, leaves.points, leaves.near, leaves.a, leaves.b, reach(), pairs_.reach.least,
+                       [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
+    }
+    else {
+      const DistanceBand band = acceptance_.band(leaves.frame);
+      alignas(64) float nearest[kLeafPoints];
+      std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
+      nearestSquared(leaves.points, leaves.b.x(), leaves.b.y(), leaves.b.z(), firstBits(leaves.b.count), nearest);
+      eachPairNotBeyond(
+          leaves.points, leaves.near & ~above(nearest, band.miss), leaves.b, band.miss,
+          [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared <= band.hit); });
+    }
+    return witness_ ? Next::stop : Next::go_on;
+  }
+
 private:
   std::optional<PointPair> search()
   {
     stopped_ = false;
-    PairWalk::Step step;
-    while (!stack_.empty()) {
-      const LanePair pair = stack_.back();
-      stack_.pop_back();
-      const Opened opened = walk_.choose(pair);
-      if (observer_.stops(walk_, pair, opened)) {
-        stopped_ = true;
-        stack_.push_back(pair);
-        return std::nullopt;
-      }
-      if (opened == Opened::neither) {
-        if (const auto witness = compareLeaves(pair)) return witness;
-        continue;
-      }
-      walk_.step(pair, opened, pairs_.clearance, step);
-      observer_.stepped(pair, opened, step);
-      if (step.inside != 0) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(step.inside));
-        const LanePair inside = PairWalk::childOf(pair, opened, step, lane);
-        return PointPair{firstRecord(walk_.a, inside.a), firstRecord(walk_.b, inside.b)};
-      }
-      const std::size_t from = stack_.size();
-      for (std::uint32_t near = step.near; near != 0; near &= near - 1)
-        stack_.push_back(PairWalk::childOf(pair, opened, step, static_cast<std::uint32_t>(std::countr_zero(near))));
-      nearestLast(stack_, from);
-    }
-    return std::nullopt;
-  }
-
-  std::optional<PointPair> compareLeaves(const LanePair& pair)
-  {
-    ++walk_.work.leaf_pairs;
-    observer_.compared(pair);
-    const LeafRange a = walk_.leaf(walk_.a, pair.a), b = walk_.leaf(walk_.b, pair.b);
-    const RelativeFrame& frame = walk_.frames.find(pair.a.space, pair.b.space);
-    LeafPoints points;
-    carryLeaf(frame, a, points);
-    const std::uint32_t lanes =
-        pointsNearLeaf(frame, points, a, walk_.nodeOf(walk_.b, pair.b), pair.b.lane, pairs_.clearance);
-    if (lanes == 0) return std::nullopt;
-
-    std::optional<PointPair> witness;
-    const auto found = [&](std::uint32_t i, std::uint32_t j, bool surely) {
-      const PointPair candidate{a.record(i), b.record(j)};
-      if (surely || pairs_.collide(candidate, walk_.work)) witness = candidate;
-      return witness.has_value();
-    };
-    if (pairs_.haveRadii()) {
-      eachBallPairNear(frame, points, lanes, a, b, pairs_.clearance, pairs_.reach.least,
-                       [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
-    }
-    else {
-      const DistanceBand band = acceptance_.band(frame);
-      alignas(64) float nearest[kLeafPoints];
-      std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
-      nearestSquared(points, b.x(), b.y(), b.z(), firstBits(b.count), nearest);
-      eachPairNotBeyond(
-          points, lanes & ~above(nearest, band.miss), b, band.miss,
-          [&](std::uint32_t i, std::uint32_t j, float squared) { return found(i, j, squared <= band.hit); });
-    }
-    return witness;
+    witness_.reset();
+    visitPairs(walk_, stack_, *this);
+    return witness_;
   }
 
   std::uint32_t firstRecord(const Spaces& side, const Lane& lane)
@@ -167,9 +152,10 @@ private:
   }
 
   PairWalk walk_;
-  PointPairs pairs_;
-  Acceptance acceptance_;
+  const PointPairs pairs_;
+  const Acceptance acceptance_;
   Observer observer_;
+  std::optional<PointPair> witness_;
   bool stopped_ = false;
   const ScratchLease<PairStack> kept_stack_;
   std::vector<LanePair>& stack_ = (*kept_stack_).pairs;

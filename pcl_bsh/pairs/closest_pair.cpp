@@ -4,7 +4,11 @@
 #include <pcl_bsh/pairs/check_request.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/pairs/interval_search.h>
-#include <pcl_bsh/pairs/shared_search.h>
+#include <pcl_bsh/traversal/shared_stack.h>
+
+#include <atomic>
+#include <mutex>
+#include <optional>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pcl_bsh/pairs/closest_pair.cpp"
@@ -13,13 +17,91 @@
 
 #include <pcl_bsh/pairs/closest_search-inl.h>
 
+#ifndef PCL_BSH_PAIRS_CLOSEST_PAIR_ONCE
+#define PCL_BSH_PAIRS_CLOSEST_PAIR_ONCE
+namespace pcl_bsh {
+namespace {
+
+/// Of several threads, the nearest pair that any has found.
+class SharedNearest {
+public:
+  /// Makes both the nearer one of the two; of equals, the smaller (a, b).
+  void merge(Nearest& own, const PointPairs& pairs)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (nearest_.pair) {
+      const int sign = pairs.distance.compareGaps(pairs.posed(*own.pair), pairs.posed(*nearest_.pair));
+      if (sign > 0 || (sign == 0 && !(*own.pair < *nearest_.pair))) {
+        own = nearest_;
+        return;
+      }
+    }
+    nearest_ = own;
+    version_.fetch_add(1, std::memory_order_relaxed);
+  }
+
+  /// Of which the next get() is at least as new.
+  std::uint64_t version() const { return version_.load(std::memory_order_relaxed); }
+
+  Nearest get() const
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return nearest_;
+  }
+
+private:
+  mutable std::mutex mutex_;
+  Nearest nearest_;
+  std::atomic<std::uint64_t> version_{0};
+};
+
+/// One of several searches that share what they find, and pause after some steps.
+class Sharing {
+public:
+  explicit Sharing(SharedNearest& shared) : shared_(shared) {}
+
+  void allow(const Pause& pause) { pause_ = pause; }
+  bool stops() { return pause_.stops(); }
+
+  void hear(Nearest& own)
+  {
+    const std::uint64_t version = shared_.version();
+    if (version == heard_) return;
+    heard_ = version;
+    own = shared_.get();
+  }
+
+  void tell(Nearest& own, const PointPairs& pairs) { shared_.merge(own, pairs); }
+
+private:
+  SharedNearest& shared_;
+  Pause pause_;
+  std::uint64_t heard_ = 0;
+};
+
+} // namespace
+} // namespace pcl_bsh
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-DistanceResult closestPairOnTarget(const Placed& a, const Placed& b, const Accuracy& accuracy)
+DistanceResult closestPairOnTarget(const Placed& a, const Placed& b, const Accuracy& accuracy, unsigned threads)
 {
-  return ClosestSearch(a, b, accuracy, NoOthers()).run();
+  if (threads == 1) return ClosestSearch(a, b, accuracy, NoOthers()).run();
+  SharedNearest nearest;
+  std::optional<SharedStack<LanePair>> shared;
+  Work work;
+  {
+    ClosestSearch alone(a, b, accuracy, Sharing(nearest));
+    const DistanceResult result = alone.run();
+    if (alone.left().empty()) return result;
+    work = result.work;
+    shared.emplace(alone.left());
+  } // what it used is there for this thread's share
+  shared->visit(threads, [&] { return ClosestSearch(a, b, accuracy, Sharing(nearest)); });
+  return ClosestSearch(a, b, accuracy, Sharing(nearest)).result(work += shared->work());
 }
 
 } // namespace HWY_NAMESPACE
@@ -41,8 +123,7 @@ DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceReque
     return {gap, found.pair, found.distance, found.work};
   }
   const unsigned threads = request.accuracy.isExact() ? threadCount(request.threads) : 1;
-  if (threads > 1) return closestPairShared(a, b, request, threads);
-  return HWY_DYNAMIC_DISPATCH(closestPairOnTarget)(a, b, request.accuracy);
+  return HWY_DYNAMIC_DISPATCH(closestPairOnTarget)(a, b, request.accuracy, threads);
 }
 
 } // namespace pcl_bsh

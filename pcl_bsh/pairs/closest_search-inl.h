@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The search for the closest pair: depth first, nearest children first, until nothing left can be nearer. (A heap of
-// pairs, best first, visits as many nodes and spends more than half of the time on itself.)
+// The search for the closest pair: depth first, nearest children first, until nothing left can be nearer.
 
 #if defined(PCL_BSH_PAIRS_CLOSEST_SEARCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_PAIRS_CLOSEST_SEARCH_INL_H_
@@ -11,8 +10,8 @@
 
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/pairs/nearest.h>
-#include <pcl_bsh/traversal/pair_walk-inl.h>
 #include <pcl_bsh/traversal/shared_stack.h>
+#include <pcl_bsh/traversal/visit_pairs-inl.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,9 +35,9 @@ struct NoOthers {
 
 /// @tparam Others the searches of other threads: `stops()` before each pair is visited, whether to pause there;
 ///   `hear(nearest)`: takes over what they have found; `tell(nearest, pairs)`: gives it to them, and takes what is
-///   nearer; `allow(steps, dropped)`: until when not to stop
+///   nearer; `allow(pause)`: until when not to stop
 template <class Others>
-class ClosestSearch {
+class ClosestSearch : public PairVisitor {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 public:
@@ -46,8 +45,7 @@ public:
   : walk_(a, b),
     pairs_(a, b, 0.0),
     others_(std::move(others)),
-    tolerance_(accuracy.mode == Accuracy::Mode::tolerance ? accuracy.value : 0.0),
-    proven_(accuracy.isProven())
+    tolerance_(accuracy.mode == Accuracy::Mode::tolerance ? accuracy.value : 0.0)
   {
   }
 
@@ -55,11 +53,11 @@ public:
   DistanceResult run()
   {
     stack_.clear();
-    walk_.seed(kInfinity, [this](const LanePair& pair, const PairWalk::Step& step, std::uint32_t lane) {
-      push(pair, step, lane);
+    walk_.seed(kInfinity, [this](LanePair pair, const PairWalk::Step& step, std::uint32_t lane) {
+      if (keep(pair, Opened::b, step, lane)) stack_.push_back(pair);
     });
     nearestLast(stack_, 0);
-    search();
+    visitPairs(walk_, stack_, *this);
     return result(walk_.work);
   }
 
@@ -73,9 +71,9 @@ public:
   /// Visits the pairs of a piece and what is below, until it is stopped.
   void operator()(SharedStack<LanePair>::Piece& piece)
   {
-    others_.allow(kStepsOfPiece, &piece.dropped);
+    others_.allow({kStepsOfPiece, &piece.dropped});
     stack_.assign(piece.pairs.begin(), piece.pairs.end());
-    search();
+    visitPairs(walk_, stack_, *this);
     piece.pairs.assign(stack_.begin(), stack_.end());
     piece.work = std::exchange(walk_.work, Work());
   }
@@ -86,45 +84,38 @@ public:
   DistanceResult result(const Work& work)
   {
     others_.hear(best_);
-    return {best_.gap, best_.pair, proven_ ? interval() : Interval{}, work};
+    return {best_.gap, best_.pair, interval(), work};
+  }
+
+  // As visitPairs() asks.
+
+  /// Distances above this are of no interest.
+  double reach() const { return std::max(best_.to_beat, 0.0); }
+
+  Next visit(const LanePair& pair)
+  {
+    others_.hear(best_);
+    if (!canImprove(pair)) return Next::prune;
+    return others_.stops() ? Next::stop : Next::go_on;
+  }
+
+  bool keep(LanePair& pair, Opened, const PairWalk::Step& step, std::uint32_t lane) const
+  {
+    pair.key = walk_.boundKey(pair, step, lane);
+    return canImprove(pair);
+  }
+
+  Next compare(const LanePair& pair)
+  {
+    const ComparedLeaves leaves = walk_.compare(pair);
+    eachPairMaybeNearest(leaves, pairs_.haveRadii(), best_.to_beat, [&](std::uint32_t i, std::uint32_t j) {
+      consider({leaves.a.record(i), leaves.b.record(j)});
+      return false;
+    });
+    return Next::go_on;
   }
 
 private:
-  void search()
-  {
-    while (!stack_.empty()) {
-      others_.hear(best_);
-      const LanePair pair = stack_.back();
-      if (!canImprove(pair)) {
-        stack_.pop_back();
-        continue;
-      }
-      if (others_.stops()) return;
-      stack_.pop_back();
-      visit(pair);
-    }
-  }
-
-  void visit(const LanePair& pair)
-  {
-    const Opened opened = walk_.choose(pair);
-    if (opened == Opened::neither) return compareLeaves(pair);
-    PairWalk::Step step;
-    walk_.step(pair, opened, clearanceToBeat(), step);
-    const std::size_t from = stack_.size();
-    for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-      push(PairWalk::childOf(pair, opened, step, lane), step, lane);
-    }
-    nearestLast(stack_, from);
-  }
-
-  void push(LanePair pair, const PairWalk::Step& step, std::uint32_t lane)
-  {
-    pair.key = keyOf(walk_.lowerBound(pair, step, lane));
-    if (canImprove(pair)) stack_.push_back(pair);
-  }
-
   /// Nothing was passed over but what is no nearer than the best less the tolerance.
   Interval interval() const
   {
@@ -134,62 +125,17 @@ private:
             best_.high};
   }
 
-  /// Distances above this are of no interest.
-  double clearanceToBeat() const { return std::max(best_.to_beat, 0.0); }
-
   /// A pair is worth a visit if it may be nearer, or as near with smaller record numbers.
   bool canImprove(const LanePair& pair) const
   {
     const double bound = std::max(pair.key, lowestKey());
     if (bound < best_.to_beat) return true;
     if (bound > best_.to_beat || tolerance_ > 0.0) return false;
-    return PointPair{lowest(walk_.a, pair.a), lowest(walk_.b, pair.b)} < *best_.pair;
-  }
-
-  std::uint32_t lowest(const Spaces& side, const Lane& lane) const
-  {
-    return walk_.nodeOf(side, lane).lowest[lane.lane];
-  }
-
-  /// A lower bound as a key. NaN is no bound at all.
-  static float keyOf(double bound)
-  {
-    return std::isnan(bound) ? -std::numeric_limits<float>::infinity() : roundDownToFloat(bound);
-  }
-
-  static float roundDownToFloat(double value)
-  {
-    const auto rounded = static_cast<float>(value);
-    return static_cast<double>(rounded) > value ? std::nextafter(rounded, -std::numeric_limits<float>::infinity())
-                                                : rounded;
+    return walk_.lowest(pair) < *best_.pair;
   }
 
   /// Without radii no distance is below 0, so that pairs at 0 are settled by their record numbers.
   float lowestKey() const { return pairs_.haveRadii() ? -std::numeric_limits<float>::infinity() : 0.0f; }
-
-  void compareLeaves(const LanePair& pair)
-  {
-    ++walk_.work.leaf_pairs;
-    const LeafRange a = walk_.leaf(walk_.a, pair.a), b = walk_.leaf(walk_.b, pair.b);
-    const RelativeFrame& frame = walk_.frames.find(pair.a.space, pair.b.space);
-    LeafPoints points;
-    carryLeaf(frame, a, points);
-    const double unit = walk_.b.frame(pair.b.space).unit;
-    const auto found = [&](std::uint32_t i, std::uint32_t j, float squared) {
-      const PointPair candidate{a.record(i), b.record(j)};
-      if (proven_)
-        consider(candidate);
-      else
-        believe(candidate, std::sqrt(static_cast<double>(squared)) * unit - a.radius(i) - b.radius(j));
-      return false;
-    };
-    if (pairs_.haveRadii()) {
-      eachBallPairNear(frame, points, firstBits(a.count), a, b, best_.to_beat, -kInfinity,
-                       [&](std::uint32_t i, std::uint32_t j, float squared, bool) { return found(i, j, squared); });
-      return;
-    }
-    eachPairMaybeNearest(frame, points, a, b, unit, clearanceToBeat(), found);
-  }
 
   void consider(PointPair candidate)
   {
@@ -213,14 +159,6 @@ private:
     others_.tell(best_, pairs_);
   }
 
-  /// The same with the gap that float arithmetic computed, for answers without proof.
-  void believe(PointPair candidate, double gap)
-  {
-    if (best_.pair && !(gap < best_.gap)) return;
-    best_.pair = candidate;
-    best_.gap = best_.high = best_.to_beat = gap;
-  }
-
   PairWalk walk_;
   PointPairs pairs_;
   const ScratchLease<PairStack> kept_stack_;
@@ -228,7 +166,6 @@ private:
   Others others_;
   Nearest best_;
   double tolerance_;
-  bool proven_;
 };
 
 } // namespace HWY_NAMESPACE

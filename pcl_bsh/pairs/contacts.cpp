@@ -3,8 +3,6 @@
 #include <pcl_bsh/pairs/check_request.h>
 #include <pcl_bsh/pairs/contacts.h>
 
-#include <pcl_bsh/geometry/rounding.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -14,8 +12,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <pcl_bsh/traversal/leaf_pair-inl.h>
-#include <pcl_bsh/traversal/pair_walk-inl.h>
+#include <pcl_bsh/traversal/visit_pairs-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -28,7 +25,7 @@ enum class Added { kept, dropped, stop };
 /// Walks to every pair of points within a reach and hands it to a sink: `double reach()`, how far pairs are still of
 /// interest, which may shrink, to less than 0 where points have radii; `Added add(PointPair, Work&)`.
 template <class Sink>
-class ReachWalk {
+class ReachWalk : public PairVisitor {
 public:
   ReachWalk(const Placed& a, const Placed& b, double clearance, Sink& sink)
   : walk_(a, b),
@@ -40,55 +37,35 @@ public:
   Work run()
   {
     stack_.clear();
-    walk_.seed(lengthOfReach(), [this](const LanePair& pair, const PairWalk::Step& step, std::uint32_t lane) {
-      push(pair, step, lane);
+    walk_.seed(reach(), [this](LanePair pair, const PairWalk::Step& step, std::uint32_t lane) {
+      keep(pair, Opened::b, step, lane);
+      stack_.push_back(pair);
     });
     nearestLast(stack_, 0);
-    PairWalk::Step step;
-    while (!stack_.empty()) {
-      const LanePair pair = stack_.back();
-      stack_.pop_back();
-      if (pair.key > sink_.reach()) continue;
-      const Opened opened = walk_.choose(pair);
-      if (opened == Opened::neither) {
-        if (!compareLeaves(pair)) break;
-        continue;
-      }
-      walk_.step(pair, opened, lengthOfReach(), step);
-      const std::size_t from = stack_.size();
-      for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-        push(PairWalk::childOf(pair, opened, step, lane), step, lane);
-      }
-      nearestLast(stack_, from);
-    }
+    visitPairs(walk_, stack_, *this);
     return walk_.work;
   }
 
-private:
-  /// What spheres are tested with.
-  double lengthOfReach() const { return std::max(sink_.reach(), 0.0); }
+  // As visitPairs() asks.
 
-  void push(LanePair pair, const PairWalk::Step& step, std::uint32_t lane)
+  /// What spheres are tested with.
+  double reach() const { return std::max(sink_.reach(), 0.0); }
+
+  Next visit(const LanePair& pair) const { return pair.key > sink_.reach() ? Next::prune : Next::go_on; }
+
+  bool keep(LanePair& pair, Opened, const PairWalk::Step& step, std::uint32_t lane) const
   {
-    const double bound = walk_.lowerBound(pair, step, lane);
-    pair.key = std::isnan(bound) ? -std::numeric_limits<float>::infinity() : roundDown(bound);
-    stack_.push_back(pair);
+    pair.key = walk_.boundKey(pair, step, lane);
+    return true;
   }
 
-  bool compareLeaves(const LanePair& pair)
+  Next compare(const LanePair& pair)
   {
-    ++walk_.work.leaf_pairs;
-    const LeafRange a = walk_.leaf(walk_.a, pair.a), b = walk_.leaf(walk_.b, pair.b);
+    const ComparedLeaves leaves = walk_.compare(pair, reach());
+    if (leaves.near == 0) return Next::go_on;
+    const LeafRange &a = leaves.a, &b = leaves.b;
     // Points of one place share a leaf, and the first of them was compared for all.
     const std::uint32_t places_a = coincident(walk_.a, pair.a), places_b = coincident(walk_.b, pair.b);
-    const RelativeFrame& frame = walk_.frames.find(pair.a.space, pair.b.space);
-    LeafPoints points;
-    carryLeaf(frame, a, points);
-    const std::uint32_t lanes =
-        pointsNearLeaf(frame, points, a, walk_.nodeOf(walk_.b, pair.b), pair.b.lane, lengthOfReach());
-    if (lanes == 0) return true;
-
     bool going = true;
     const auto found = [&](std::uint32_t i, std::uint32_t j, bool surely) {
       if (surely || pairs_.collide({a.record(i), b.record(j)}, walk_.work))
@@ -96,23 +73,25 @@ private:
       return !going;
     };
     if (pairs_.haveRadii()) {
-      eachBallPairNear(frame, points, lanes, a, b, sink_.reach(), pairs_.reach.least,
+      eachBallPairNear(leaves.frame, leaves.points, leaves.near, a, b, sink_.reach(), pairs_.reach.least,
                        [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
-      return going;
     }
-    const float hit = frame.band(pairs_.clearance).hit;
-    double reach = sink_.reach();
-    float miss = frame.band(reach).miss;
-    eachPairNotBeyond(points, lanes, b, miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
-      if (sink_.reach() < reach) { // shrunk since the last pair that was near
-        reach = sink_.reach();
-        miss = frame.band(reach).miss;
-      }
-      return !(squared > miss) && found(i, j, squared <= hit);
-    });
-    return going;
+    else {
+      const float hit = leaves.frame.band(pairs_.reach.length()).hit;
+      double reach = sink_.reach();
+      float miss = leaves.frame.band(reach).miss;
+      eachPairNotBeyond(leaves.points, leaves.near, b, miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
+        if (sink_.reach() < reach) { // shrunk since the last pair that was near
+          reach = sink_.reach();
+          miss = leaves.frame.band(reach).miss;
+        }
+        return !(squared > miss) && found(i, j, squared <= hit);
+      });
+    }
+    return going ? Next::go_on : Next::stop;
   }
 
+private:
   /// How many points stand where the leaf's compared ones do: more than one only where a single one is compared.
   std::uint32_t coincident(const Spaces& side, const Lane& lane) const
   {

@@ -11,7 +11,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <pcl_bsh/traversal/pair_walk-inl.h>
+#include <pcl_bsh/traversal/visit_pairs-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -21,10 +21,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A pair of lanes that may hold the smallest distance, and how deep they lie.
-struct Open {
+struct Open : LanePair {
   double lower; ///< no pair of points below is nearer; at least that of the pair it comes from
-  LanePair pair;
-  std::uint32_t level_a, level_b;
+  std::uint32_t level_a = 0, level_b = 0;
 };
 
 bool laterThan(const Open& x, const Open& y)
@@ -32,7 +31,7 @@ bool laterThan(const Open& x, const Open& y)
   return x.lower > y.lower;
 }
 
-class IntervalSearch {
+class IntervalSearch : public PairVisitor {
 public:
   IntervalSearch(const Placed& a, const Placed& b, const StopRule& rule, std::optional<double> clearance)
   : rule_(rule),
@@ -47,7 +46,7 @@ public:
   {
     walk_.seed(clearance_.value_or(kInfinity),
                [this](const LanePair& pair, const PairWalk::Step& step, std::uint32_t lane) {
-                 open_.push_back({lowerOr(-kInfinity, walk_.lowerBound(pair, step, lane)), pair, 0, 0});
+                 open_.push_back({pair, lowerOr(-kInfinity, walk_.lowerBound(pair, step, lane))});
                });
     if (!open_.empty()) measure(open_.front());
     if (rule_.deepest != StopRule::kNever)
@@ -55,6 +54,43 @@ public:
     else
       searchBestFirst();
     return conclude();
+  }
+
+  // As visitPairs() and expand() ask.
+
+  double reach() const { return std::max(std::min(upper_, clearance_.value_or(kInfinity)), 0.0); }
+
+  Next visit(const Open& open) const
+  {
+    return isSettled() ? Next::stop : matters(open.lower) ? Next::go_on : Next::prune;
+  }
+
+  /// Whether the rule lets a pair be opened; if not, it stays closed.
+  bool opens(const Open& open, Opened opened)
+  {
+    const bool may_open = mayOpen(open, opened);
+    if (!may_open) cut_lower_ = std::min(cut_lower_, open.lower);
+    if (!may_open || isAboveVoxels(open)) measure(open); // the points that stand for it are others below
+    return may_open;
+  }
+
+  bool keep(Open& child, Opened opened, const PairWalk::Step& step, std::uint32_t lane) const
+  {
+    child.lower = std::max(child.lower, lowerOr(child.lower, walk_.lowerBound(child, step, lane)));
+    if (step.entered.space != kAboveVoxels) ++(opened == Opened::a ? child.level_a : child.level_b);
+    return matters(child.lower);
+  }
+
+  Next compare(const Open& open)
+  {
+    const ComparedLeaves leaves = walk_.compare(open);
+    const auto found = [&](std::uint32_t i, std::uint32_t j) {
+      lowerTo({leaves.a.record(i), leaves.b.record(j)}, open.lower);
+      if (isSettled()) cut_lower_ = std::min(cut_lower_, open.lower); // the rest is not looked at
+      return isSettled();
+    };
+    eachPairMaybeNearest(leaves, pairs_.haveRadii(), std::min(upper_, clearance_.value_or(kInfinity)), found);
+    return Next::go_on;
   }
 
 private:
@@ -66,15 +102,8 @@ private:
   /// Down to a level all pairs that matter are opened in any order, and a stack is cheaper than a heap.
   void searchDepthFirst()
   {
-    nearestLast(0);
-    while (!open_.empty() && !isSettled()) {
-      const Open next = open_.back();
-      open_.pop_back();
-      if (!matters(next.lower)) continue;
-      const std::size_t from = open_.size();
-      expand(next, [this](const Open& child) { open_.push_back(child); });
-      nearestLast(from);
-    }
+    nearestLast(open_, 0);
+    visitPairs(walk_, open_, *this);
   }
 
   /// Within a budget, the pair with the smallest lower bound is opened first: it limits what can be proven.
@@ -87,7 +116,7 @@ private:
       const Open next = open_.back();
       open_.pop_back();
       measure(next);
-      expand(next, [this](const Open& child) {
+      expand(walk_, next, step_, *this, [this](const Open& child) {
         open_.push_back(child);
         std::push_heap(open_.begin(), open_.end(), laterThan);
       });
@@ -97,54 +126,23 @@ private:
   /// By the nearest children down to a first pair of points, for an upper bound to begin with. The others stay open.
   void dive()
   {
-    nearestLast(0);
+    nearestLast(open_, 0);
     std::optional<Open> nearest = open_.back();
     open_.pop_back();
     while (nearest) {
       const Open next = *nearest;
       nearest.reset();
-      expand(next, [&](const Open& child) {
-        if (nearest) open_.push_back(child.pair.key < nearest->pair.key ? *nearest : child);
-        if (!nearest || child.pair.key < nearest->pair.key) nearest = child;
+      expand(walk_, next, step_, *this, [&](const Open& child) {
+        if (nearest) open_.push_back(child.key < nearest->key ? *nearest : child);
+        if (!nearest || child.key < nearest->key) nearest = child;
       });
     }
   }
 
-  /// Compares two leaves; or opens a pair and calls take() with those of its children that matter; or leaves the pair
-  /// closed where the rule does not let it be opened.
-  template <class Take>
-  void expand(const Open& open, const Take& take)
-  {
-    const Opened opened = walk_.choose(open.pair);
-    if (opened == Opened::neither) return compareLeaves(open);
-    if (!mayOpen(open, opened)) {
-      measure(open);
-      cut_lower_ = std::min(cut_lower_, open.lower);
-      return;
-    }
-    if (isAboveVoxels(open.pair)) measure(open); // the points that stand for it are others below
-    PairWalk::Step step;
-    walk_.step(open.pair, opened, std::max(std::min(upper_, clearance_.value_or(kInfinity)), 0.0), step);
-    for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
-      const Open child = childOf(open, opened, step, static_cast<std::uint32_t>(std::countr_zero(near)));
-      if (matters(child.lower)) take(child);
-    }
-  }
-
-  Open childOf(const Open& open, Opened opened, const PairWalk::Step& step, std::uint32_t lane) const
-  {
-    const LanePair child = PairWalk::childOf(open.pair, opened, step, lane);
-    return {std::max(open.lower, lowerOr(open.lower, walk_.lowerBound(child, step, lane))), child,
-            open.level_a + (opened == Opened::a && isBelowVoxels(step) ? 1 : 0),
-            open.level_b + (opened == Opened::b && isBelowVoxels(step) ? 1 : 0)};
-  }
-
-  static bool isBelowVoxels(const PairWalk::Step& step) { return step.entered.space != kAboveVoxels; }
-
   bool mayOpen(const Open& open, Opened opened) const
   {
     const Spaces& side = opened == Opened::a ? walk_.a : walk_.b;
-    const Lane& lane = opened == Opened::a ? open.pair.a : open.pair.b;
+    const Lane& lane = opened == Opened::a ? open.a : open.b;
     const Node& node = walk_.nodeOf(side, lane);
     if (lane.space == kAboveVoxels && !node.isLeaf(lane.lane)) return true;
     if ((opened == Opened::a ? open.level_a : open.level_b) >= rule_.deepest) return false;
@@ -154,13 +152,6 @@ private:
   /// NaN is no bound.
   static double lowerOr(double otherwise, double bound) { return std::isnan(bound) ? otherwise : bound; }
 
-  /// Orders what was opened last by nearness, the nearest to be taken first.
-  void nearestLast(std::size_t from)
-  {
-    std::stable_sort(open_.begin() + static_cast<std::ptrdiff_t>(from), open_.end(),
-                     [](const Open& x, const Open& y) { return x.pair.key > y.pair.key; });
-  }
-
   static bool isAboveVoxels(const LanePair& pair)
   {
     return pair.a.space == kAboveVoxels || pair.b.space == kAboveVoxels;
@@ -169,25 +160,16 @@ private:
   /// Takes some pair of points below the lanes for an upper bound.
   void measure(const Open& open)
   {
-    const LanePair& pair = open.pair;
-    if (isAboveVoxels(pair)) {
-      lowerTo({lowest(walk_.a, pair.a), lowest(walk_.b, pair.b)}, open.lower);
-      return;
-    }
-    const LeafRange a = walk_.leaf(walk_.a, pair.a), b = walk_.leaf(walk_.b, pair.b);
-    const RelativeFrame& frame = walk_.frames.find(pair.a.space, pair.b.space);
+    if (isAboveVoxels(open)) return lowerTo(walk_.lowest(open), open.lower);
+    const LeafRange a = walk_.leaf(walk_.a, open.a), b = walk_.leaf(walk_.b, open.b);
+    const RelativeFrame& frame = walk_.frames.find(open.a.space, open.b.space);
     const Point p = carryPoint(frame.m.data(), frame.g.data(), {a.x()[0], a.y()[0], a.z()[0]});
     const double dx = static_cast<double>(p.x) - static_cast<double>(b.x()[0]);
     const double dy = static_cast<double>(p.y) - static_cast<double>(b.y()[0]);
     const double dz = static_cast<double>(p.z) - static_cast<double>(b.z()[0]);
     const double least = std::sqrt(dx * dx + dy * dy + dz * dz) - frame.error; // in b's units
-    if (least * (1.0 - frame.skew()) * walk_.b.frame(pair.b.space).unit - a.radius(0) - b.radius(0) < upper_)
+    if (least * (1.0 - frame.skew()) * walk_.b.frame(open.b.space).unit - a.radius(0) - b.radius(0) < upper_)
       lowerTo({a.record(0), b.record(0)}, open.lower);
-  }
-
-  std::uint32_t lowest(const Spaces& side, const Lane& lane) const
-  {
-    return walk_.nodeOf(side, lane).lowest[lane.lane];
   }
 
   /// Lowers the upper bound to the gap of a pair, if that is less. @param lower bounds the gap from below
@@ -204,27 +186,6 @@ private:
     upper_ = gap == 0.0 && !pairs_.haveRadii() ? 0.0 : std::nextafter(gap, kInfinity);
     if (clearance_ && upper_ > *clearance_ && gap <= *clearance_ && pairs_.collide(candidate, walk_.work))
       upper_ = *clearance_;
-  }
-
-  void compareLeaves(const Open& open)
-  {
-    ++walk_.work.leaf_pairs;
-    const LeafRange a = walk_.leaf(walk_.a, open.pair.a), b = walk_.leaf(walk_.b, open.pair.b);
-    const RelativeFrame& frame = walk_.frames.find(open.pair.a.space, open.pair.b.space);
-    LeafPoints points;
-    carryLeaf(frame, a, points);
-    const double asked = std::min(upper_, clearance_.value_or(kInfinity));
-    const auto found = [&](std::uint32_t i, std::uint32_t j, float) {
-      lowerTo({a.record(i), b.record(j)}, open.lower);
-      if (isSettled()) cut_lower_ = std::min(cut_lower_, open.lower); // the rest is not looked at
-      return isSettled();
-    };
-    if (pairs_.haveRadii()) {
-      eachBallPairNear(frame, points, firstBits(a.count), a, b, asked, -kInfinity,
-                       [&](std::uint32_t i, std::uint32_t j, float squared, bool) { return found(i, j, squared); });
-      return;
-    }
-    eachPairMaybeNearest(frame, points, a, b, walk_.b.frame(open.pair.b.space).unit, std::max(asked, 0.0), found);
   }
 
   IntervalFinding conclude()
@@ -246,6 +207,7 @@ private:
   const StopRule rule_;
   const std::optional<double> clearance_;
   PairWalk walk_;
+  PairWalk::Step step_;
   StopCheck stop_check_;
   PointPairs pairs_;
   std::vector<Open> open_; // a stack, the nearest last, or a heap, the least lower bound first

@@ -77,7 +77,9 @@ private:
   std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, Entry> met_;
 };
 
-struct TraceObserver {
+struct TraceObserver : NoObserver {
+  TraceObserver(Met& met_a, Met& met_b) : a(&met_a), b(&met_b) {}
+
   Met* a;
   Met* b;
 
@@ -101,8 +103,6 @@ struct TraceObserver {
     a->note(pair.a, SphereFate::compared, -1);
     b->note(pair.b, SphereFate::compared, -1);
   }
-
-  static bool stops(const PairWalk&, const LanePair&, Opened) { return false; }
 };
 
 } // namespace
@@ -112,7 +112,7 @@ CollisionTrace traceOnTarget(const Placed& a, const Placed& b, const AnyRequest&
   Met met_a(a), met_b(b);
   CollisionTrace trace;
   const auto search = [&](Places places) {
-    return AnySearch(a, b, request, TraceObserver{&met_a, &met_b}, places).run();
+    return AnySearch(a, b, request, TraceObserver(met_a, met_b), places).run();
   };
   trace.result = areUncertain(a, b) ? anyOfUncertain(search) : search(Places::measured);
   trace.a = met_a.spheres();
@@ -139,7 +139,7 @@ CollisionTrace traceCollision(const Placed& a, const Placed& b, const AnyRequest
   check(a, b, request);
   if (request.accuracy.stopsEarly())
     throw InvalidInput(Input::accuracy, "accuracy", request.accuracy.text() + " stops early, which is not traced",
-                       "give exact, float or tolerance");
+                       "give exact or tolerance");
   const DefaultFloatEnvironment environment;
   return HWY_DYNAMIC_DISPATCH(traceOnTarget)(a, b, request);
 }

@@ -35,7 +35,7 @@ struct CollisionTrace {
 
 /// Answers as anyCollision() does, with the same work, and tells how. Where points have uncertainties, both searches
 /// are told together: the one for what may collide and the one for what does for certain. The request's accuracy must
-/// be exact, float only or a tolerance: those that search depth first.
+/// be exact or a tolerance: those that search depth first.
 /// @throws std::invalid_argument as anyCollision() does, and for an accuracy that stops early
 CollisionTrace traceCollision(const Placed& a, const Placed& b, const AnyRequest& request);
 

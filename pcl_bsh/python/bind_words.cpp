@@ -15,7 +15,7 @@ namespace py = pybind11;
 
 constexpr auto kAccuracy = R"(How sure an answer has to be, and so what it may cost.
 
-Every query takes one as `accuracy`, or the text that makes it: ``"exact"``, ``"float"``, ``"tolerance=LENGTH"``,
+Every query takes one as `accuracy`, or the text that makes it: ``"exact"``, ``"tolerance=LENGTH"``,
 ``"level=N"``, ``"pairs=N"`` or ``"time=SECONDS"``. What a query that stops early does not know is undecided, or lies in
 an interval that holds the truth.
 
@@ -86,7 +86,6 @@ void bindWords(py::module_& module)
   py::class_<Accuracy>(module, "Accuracy", kAccuracy)
       .def(py::init(&Accuracy::parse), "text"_a = "exact")
       .def_static("exact", &Accuracy::exact, "The answer of exact arithmetic on the given numbers.")
-      .def_static("float_only", &Accuracy::floatOnly, "Float arithmetic alone; the only setting without proof.")
       .def_static("tolerance", &Accuracy::tolerance, "length"_a,
                   "Pairs in (clearance, clearance + length] may go either way; distances are within `length`.")
       .def_static("level", &Accuracy::level, "depth"_a, "Spheres below the voxels are opened down to this level.")
@@ -94,7 +93,6 @@ void bindWords(py::module_& module)
       .def_static("time", &Accuracy::time, "seconds"_a, "Stops when the seconds are spent.")
       .def_property_readonly("is_exact", &Accuracy::isExact)
       .def_property_readonly("stops_early", &Accuracy::stopsEarly, "Whether answers may stay undecided.")
-      .def_property_readonly("is_proven", &Accuracy::isProven, "Whether answers carry proof: all but float.")
       .def("__str__", &Accuracy::text)
       .def("__eq__",
            [](const Accuracy& a, const py::object& other) {

@@ -16,8 +16,7 @@ struct ModeName {
   bool counts;
 };
 
-constexpr std::array<ModeName, 6> mode_names = {{{Accuracy::Mode::exact, "exact", false},
-                                                 {Accuracy::Mode::float_only, "float", false},
+constexpr std::array<ModeName, 5> mode_names = {{{Accuracy::Mode::exact, "exact", false},
                                                  {Accuracy::Mode::tolerance, "tolerance", true},
                                                  {Accuracy::Mode::level, "level", true},
                                                  {Accuracy::Mode::node_pairs, "pairs", true},
@@ -26,7 +25,7 @@ constexpr std::array<ModeName, 6> mode_names = {{{Accuracy::Mode::exact, "exact"
 [[noreturn]] void refuseText(const std::string& text)
 {
   throw InvalidInput(Input::accuracy, "accuracy", "'" + text + "' is none",
-                     "give exact, float, tolerance=LENGTH, level=N, pairs=N or time=SECONDS");
+                     "give exact, tolerance=LENGTH, level=N, pairs=N or time=SECONDS");
 }
 
 bool isWhole(Accuracy::Mode mode)

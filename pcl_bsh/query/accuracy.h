@@ -3,8 +3,7 @@
 //
 //   request.accuracy = Accuracy::time(0.001); // the best certified answer that a millisecond buys
 //
-// Every answer is proven, whatever the setting, but for floatOnly(): what is not known is Undecided, or an interval
-// that holds the truth.
+// Every answer is proven, whatever the setting: what is not known is Undecided, or an interval that holds the truth.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -18,17 +17,13 @@ namespace pcl_bsh {
 /// How sure an answer has to be. Lengths in the clouds' unit.
 struct Accuracy {
   /// One for each function below that makes an Accuracy.
-  enum class Mode : std::uint8_t { exact, float_only, tolerance, level, node_pairs, time };
+  enum class Mode : std::uint8_t { exact, tolerance, level, node_pairs, time };
 
   Mode mode = Mode::exact;
   double value = 0.0; ///< what the mode counts; 0 where it counts nothing
 
   /// The answer of exact arithmetic on the given numbers.
   static Accuracy exact() noexcept { return {Mode::exact, 0.0}; }
-
-  /// Points are compared in float alone, in local frames: right but within some 1e-7 of a voxel's edge of the
-  /// clearance. The only mode whose answers carry no proof.
-  static Accuracy floatOnly() noexcept { return {Mode::float_only, 0.0}; }
 
   /// Pairs at distances in (clearance, clearance + length] may go either way, all others are right; a distance is found
   /// to within `length`. @param length finite, >= 0
@@ -46,7 +41,7 @@ struct Accuracy {
   /// the search of exact(), so that it decides whatever that decides in this time. @param seconds finite, >= 0
   static Accuracy time(double seconds) noexcept { return {Mode::time, seconds}; }
 
-  /// `exact`, `float`, `tolerance=LENGTH`, `level=N`, `pairs=N` or `time=SECONDS`.
+  /// `exact`, `tolerance=LENGTH`, `level=N`, `pairs=N` or `time=SECONDS`.
   /// @throws std::invalid_argument quoting the text when it is none of these
   static Accuracy parse(const std::string& text);
 
@@ -57,8 +52,6 @@ struct Accuracy {
 
   /// Whether answers may stay undecided: the modes that stop before the end.
   bool stopsEarly() const noexcept { return mode == Mode::level || mode == Mode::node_pairs || mode == Mode::time; }
-
-  bool isProven() const noexcept { return mode != Mode::float_only; } ///< all but floatOnly()
 };
 
 } // namespace pcl_bsh

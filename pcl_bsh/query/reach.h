@@ -51,6 +51,9 @@ struct Reach {
     most = up(most + patches.most / 2);
   }
 
+  /// That of spheres, which hold points that may be within it.
+  double length() const { return std::max(0.0, most); }
+
   double least; ///< below 0 where no pair without radii may be near enough
   double most;
 

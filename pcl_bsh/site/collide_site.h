@@ -123,7 +123,7 @@ struct SiteFlags {
 /// The smallest distance of a site to another cloud.
 struct SiteClosest {
   double distance = std::numeric_limits<double>::infinity(); ///< as closestPair() has it
-  Interval interval; ///< holds the smallest distance for certain, where there is one and the accuracy is proven
+  Interval interval; ///< holds the smallest distance for certain, where there is one
   /// That realise it; of several the smallest (source, record), and for it the smallest record of b.
   std::optional<SitePoint> point;
   std::uint32_t b = 0;

@@ -26,7 +26,7 @@ using namespace pcl_bsh;
 
 constexpr auto program = "pcl_bsh_accuracy";
 constexpr auto footer =
-    R"(Queries whether the clouds collide, where, and their distance, at every setting: exact, float only, tolerance, level of
+    R"(Queries whether the clouds collide, where, and their distance, at every setting: exact, tolerance, level of
 detail, budgets. Writes accuracy.csv, accuracy.json, accuracy.md and accuracy.png. A or B may be a pipe, or - for standard input.
 Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 

@@ -20,8 +20,8 @@ void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses
   const bool more = request.distances || request.first_poses || request.closest_poses || request.pose_summaries;
   if (request.accuracy.stopsEarly() && more)
     throw InvalidInput(Input::accuracy, "accuracy", request.accuracy.text(),
-                       "decides which points collide, not when and how near: ask for flags alone, or give exact, float "
-                       "or tolerance=LENGTH");
+                       "decides which points collide, not when and how near: ask for flags alone, or give exact or "
+                       "tolerance=LENGTH");
   if (request.swept) checkSweptTolerance("tolerance of the swept motion", *request.swept);
   if (request.swept && request.pose_summaries)
     throw InvalidInput(Input::summaries, "pose_summaries", "are of poses, swept motion is of what is between",

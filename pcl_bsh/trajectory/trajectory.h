@@ -21,8 +21,8 @@
 // is what cannot come within the clearance during the motion, colliding what surely comes within clearance + tolerance.
 // That costs about two queries; a budget is divided between them.
 //
-// An answer does not depend on what else is asked for. (Where the accuracy is a tolerance, or
-// float alone, pairs that may count or not may do so for one question and not for another.)
+// An answer does not depend on what else is asked for. (Where the accuracy is a tolerance, pairs that may count or not
+// may do so for one question and not for another.)
 #pragma once
 
 #include <pcl_bsh/base/cancelled.h>

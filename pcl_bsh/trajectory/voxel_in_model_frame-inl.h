@@ -67,9 +67,7 @@ public:
     const double carried = kCarriedShiftError * far + kCarriedProductError * (1.0 + skew) * radius;
     error = placing_ + kAxes * carried * (1.0 + kDoubleMargin) + kSmallestLength;
     const Acceptance acceptance(query.between, query.request.accuracy);
-    const auto squared = static_cast<float>(acceptance.clearance * acceptance.clearance);
-    band = acceptance.proven ? acceptance.provenBand([&](double distance) { return skewedBand(distance, error, skew); })
-                             : DistanceBand{squared, squared};
+    band = acceptance.band([&](double distance) { return skewedBand(distance, error, skew); });
   }
 
   const Voxel& voxel; ///< sorted at least

@@ -90,23 +90,6 @@ bool eachPairNotBeyond(const LeafPoints& points, std::uint32_t lanes, const Leaf
   return false;
 }
 
-/// Calls found(i, j, squared) for those pairs of two leaves that may be the nearest of all and no farther apart than
-/// `to_beat`: the smallest float distance bounds which are worth an exact look. Points without radii.
-/// @param unit of the frame's lengths, in the clouds' unit. @param to_beat in the clouds' unit, >= 0
-template <class Found>
-void eachPairMaybeNearest(const RelativeFrame& frame, const LeafPoints& points, const LeafRange& a, const LeafRange& b,
-                          double unit, double to_beat, const Found& found)
-{
-  alignas(64) float nearest[kLeafPoints];
-  std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
-  nearestSquared(points, b.x(), b.y(), b.z(), firstBits(b.count), nearest);
-  const float least = *std::min_element(nearest, nearest + a.count);
-  const double within = (lengthOver(least) + frame.error) * (1.0 + frame.skew()) * (1.0 + kDoubleMargin) * unit;
-  const float miss = frame.band(std::isnan(within) ? to_beat : std::min(within, to_beat)).miss;
-  const std::uint32_t lanes = firstBits(a.count) & ~above(nearest, miss);
-  if (lanes != 0) eachPairNotBeyond(points, lanes, b, miss, found);
-}
-
 /// Of two balls whose squared float distance is at most this, the gap is at most `least`, for certain.
 /// @param least as Reach has it; may be below 0
 HWY_INLINE float ballHit(const RelativeFrame& frame, double least, double radius_a, double radius_b)
@@ -144,6 +127,52 @@ bool eachBallPairNear(const RelativeFrame& frame, const LeafPoints& points, std:
     }
   }
   return false;
+}
+
+/// Two leaves whose points are compared.
+struct ComparedLeaves {
+  ComparedLeaves(const LeafRange& of_a, const LeafRange& of_b, const RelativeFrame& between, double unit_of_b)
+  : a(of_a),
+    b(of_b),
+    frame(between),
+    unit(unit_of_b),
+    near(firstBits(a.count))
+  {
+    carryLeaf(frame, a, points);
+  }
+
+  LeafRange a, b;
+  const RelativeFrame& frame;
+  double unit;        ///< of the frame's lengths, in the clouds' unit
+  std::uint32_t near; ///< bits of a's points that may be near b's
+  LeafPoints points;  ///< a's, in the frame
+};
+
+/// Calls found(i, j) for those pairs that may be the nearest of all and no farther apart than `to_beat`: the smallest
+/// float distance bounds which are worth an exact look. Stops when found() returns true.
+/// @param to_beat in the clouds' unit; below 0 only where points have radii
+template <class Found>
+void eachPairMaybeNearest(const ComparedLeaves& leaves, bool have_radii, double to_beat, const Found& found)
+{
+  const LeafRange &a = leaves.a, &b = leaves.b;
+  if (have_radii) {
+    eachBallPairNear(leaves.frame, leaves.points, firstBits(a.count), a, b, to_beat,
+                     -std::numeric_limits<double>::infinity(),
+                     [&](std::uint32_t i, std::uint32_t j, float, bool) { return found(i, j); });
+    return;
+  }
+  alignas(64) float nearest[kLeafPoints];
+  std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
+  nearestSquared(leaves.points, b.x(), b.y(), b.z(), firstBits(b.count), nearest);
+  const float least = *std::min_element(nearest, nearest + a.count);
+  const double within =
+      (lengthOver(least) + leaves.frame.error) * (1.0 + leaves.frame.skew()) * (1.0 + kDoubleMargin) * leaves.unit;
+  to_beat = std::max(to_beat, 0.0);
+  const float miss = leaves.frame.band(std::isnan(within) ? to_beat : std::min(within, to_beat)).miss;
+  const std::uint32_t lanes = firstBits(a.count) & ~above(nearest, miss);
+  if (lanes != 0)
+    eachPairNotBeyond(leaves.points, lanes, b, miss,
+                      [&](std::uint32_t i, std::uint32_t j, float) { return found(i, j); });
 }
 
 } // namespace HWY_NAMESPACE

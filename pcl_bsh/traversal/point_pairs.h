@@ -16,14 +16,17 @@ inline Reach reachBetween(const Placed& a, const Placed& b, double clearance, Pl
 /// Decides pairs of points by the coordinates as given, in exact arithmetic.
 class PointPairs {
 public:
-  PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places = Places::measured,
+  PointPairs(const Placed& a, const Placed& b, double clearance, Places places = Places::measured,
              const PatchSpacings& patches_of_b = {})
-  : PointPairs(a, b, greatest_distance, places, patches_of_b,
-               reachBetween(a, b, greatest_distance, places, patches_of_b))
+  : reach(reachBetween(a, b, clearance, places, patches_of_b)),
+    distance(a.pose, b.pose),
+    a_(a.hierarchy().view()),
+    b_(b.hierarchy().view()),
+    of_pairs_(a_, b_, clearance, places, patches_of_b)
   {
   }
 
-  /// Whether the pair's gap is at most the clearance, at the places that the constructor was told.
+  /// Whether the pair's gap is within its reach, at the places that the constructor was told.
   bool collide(PointPair pair, Work& work) const
   {
     ++work.exact_decisions;
@@ -59,22 +62,10 @@ public:
 
   const PairReach& ofPairs() const { return of_pairs_; }
 
-  const Reach reach;      ///< of all pairs
-  const double clearance; ///< at least any pair's reach, and >= 0
+  const Reach reach; ///< of all pairs
   const ExactDistance distance;
 
 private:
-  PointPairs(const Placed& a, const Placed& b, double greatest_distance, Places places,
-             const PatchSpacings& patches_of_b, const Reach& of_all)
-  : reach(of_all),
-    clearance(std::max(0.0, of_all.most)),
-    distance(a.pose, b.pose),
-    a_(a.hierarchy().view()),
-    b_(b.hierarchy().view()),
-    of_pairs_(a_, b_, greatest_distance, places, patches_of_b)
-  {
-  }
-
   const PointsView& a_;
   const PointsView& b_;
   const PairReach of_pairs_;

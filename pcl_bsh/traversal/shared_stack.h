@@ -24,6 +24,20 @@ inline constexpr std::uint32_t kStepsAlone = 512;
 /// Steps between two looks at what the other threads do.
 inline constexpr std::uint32_t kStepsOfPiece = 256;
 
+/// Tells a search when to pause: after some steps, or when what it looks for is of no use any more.
+struct Pause {
+  std::uint32_t steps = kStepsAlone;
+  const std::atomic<bool>* dropped = nullptr;
+
+  /// Counts a step.
+  bool stops()
+  {
+    if (steps == 0 || (dropped && dropped->load(std::memory_order_relaxed))) return true;
+    --steps;
+    return false;
+  }
+};
+
 /// Pairs still to be visited, kept as a list of pieces in the order of the depth-first search. A thread takes pairs
 /// from the first piece that waits, visits them and what is below for some steps, and puts back what is left in their
 /// place. What one piece finds ends the search for all pieces behind it, and for none before it: the first find in

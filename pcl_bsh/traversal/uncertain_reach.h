@@ -34,13 +34,13 @@ struct UncertainReach {
 
   /// @param error of distances of points, in b's unit; may be infinite. @param skew as RelativeFrame has it. @param
   /// unit of b. @param least, most reach of all pairs, without what points have of their own, in the clouds' unit, as
-  /// `b_most`, the most that points of b have; `least` may be below 0. @param prune_reach of spheres where none of this
-  /// can be known
-  UncertainReach(double error, double skew, double unit, double least, double most, double b_most, float prune_reach)
+  /// `b_most`, the most that points of b have; `least` may be below 0. @param of_spheres their reach where none of
+  /// this can be known
+  UncertainReach(double error, double skew, double unit, double least, double most, double b_most, float of_spheres)
   : sure(-kNever),
     maybe(-kNever),
-    sure_near(prune_reach),
-    near(prune_reach),
+    sure_near(of_spheres),
+    near(of_spheres),
     sure_miss(kNever),
     miss(kNever),
     scale_up(0.0f),

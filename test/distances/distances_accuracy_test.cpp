@@ -145,22 +145,5 @@ TEST_F(DistancesAccuracy, BudgetsSpentBeforeTheFirstStepLeaveIntervalsOfOverlapp
   EXPECT_GT(begun, 0u) << "else nothing is tested";
 }
 
-TEST_F(DistancesAccuracy, FloatAloneIsNearlyRight)
-{
-  forEachScene([](const Placed& a, const Placed& b, PointDistancesRequest request, const PointDistances&,
-                  const PointDistances& all) {
-    if (std::isfinite(request.max_distance)) return;
-    request.accuracy = Accuracy::floatOnly();
-    const PointDistances found = pointDistances(a, b, request);
-    EXPECT_TRUE(found.interval.empty());
-    const double scale = std::isnan(all.greatest) ? 0.0 : std::abs(all.greatest);
-    for (std::size_t i = 0; i < all.distance.size(); ++i) {
-      ASSERT_EQ(std::isnan(found.distance[i]), std::isnan(all.distance[i]));
-      if (std::isnan(all.distance[i])) continue;
-      EXPECT_NEAR(found.distance[i], all.distance[i], 1e-3 + 1e-5 * scale) << i;
-    }
-  });
-}
-
 } // namespace
 } // namespace pcl_bsh

@@ -44,7 +44,7 @@ void boundDistanceOnTarget(const float* center, float radius, const float* other
   std::fill(std::begin(spheres.z), std::end(spheres.z), center[2]);
   std::fill(std::begin(spheres.r), std::end(spheres.r), radius);
   DistanceObstacle obstacle(nullptr, LocalFrame(), RelativeFrame(), 1.0);
-  obstacle.prune_reach = frame.prune_reach;
+  obstacle.slack = frame.prune_reach;
   obstacle.least = frame.least;
   obstacle.most = frame.most;
   float lower[kLanes], cut[kLanes];

@@ -489,8 +489,7 @@ TEST(CollisionFlags, OtherThanExactDoNotDependOnEarlierQueries)
   const Placed placed_a{a, sheets.pose_a}, placed_b{b, sheets.pose_b};
   a.buildAll();
   b.buildAll();
-  const std::vector<Accuracy> accuracies = {Accuracy::floatOnly(), Accuracy::tolerance(0.1), Accuracy::level(2),
-                                            Accuracy::nodePairs(3000)};
+  const std::vector<Accuracy> accuracies = {Accuracy::tolerance(0.1), Accuracy::level(2), Accuracy::nodePairs(3000)};
   FlagsRequest request = within(0.1, Side::both);
   std::vector<FlagsResult> before;
   for (const Accuracy& accuracy : accuracies) {

@@ -234,8 +234,7 @@ TEST(AllocationFailure, OfDistancesContactsAndPairs)
 
 TEST(AllocationFailure, OfLessThanExactQueries)
 {
-  for (const Accuracy& accuracy :
-       {Accuracy::floatOnly(), Accuracy::tolerance(0.01), Accuracy::level(1), Accuracy::nodePairs(2000)}) {
+  for (const Accuracy& accuracy : {Accuracy::tolerance(0.01), Accuracy::level(1), Accuracy::nodePairs(2000)}) {
     test::Question asked = request();
     asked.accuracy = accuracy;
     failEachAllocation(freshPair, [&](const auto& pair) {

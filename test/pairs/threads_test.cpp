@@ -50,7 +50,7 @@ TEST(ThreadsOfAnyCollision, GiveTheFirstWitnessAndTheWorkOfOneThread)
     for (int touching = trial % 4; touching > 0; --touching) // few, so that the search takes long
       above[static_cast<std::size_t>(random.integer(0, side * side - 1))][2] -= 1.5;
     const Cloud cloud_a(below), cloud_b(above);
-    for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.01), Accuracy::floatOnly()}) {
+    for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.01), Accuracy::tolerance(0.02)}) {
       AnyRequest request{1.4, accuracy};
       const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
       const AnyResult one = anyCollision({a}, {b}, request);
@@ -98,7 +98,7 @@ TEST(ThreadsOfClosestPair, GiveTheSmallestOfEqualPairs)
       ASSERT_EQ(one.pair, brute.pair);
       ASSERT_EQ(one.distance, brute.distance);
     }
-    for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.3), Accuracy::floatOnly()}) {
+    for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.3)}) {
       const DistanceResult expected = closestPair({a}, {b, pose}, {accuracy});
       for (const unsigned threads : {2u, 5u}) {
         const SphereHierarchy fresh_a(cloud_a.view()), fresh_b(cloud_b.view());

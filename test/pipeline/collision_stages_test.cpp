@@ -142,7 +142,7 @@ TEST_F(CollisionStages, SweptFindsMoreThanPosesAlone)
 TEST_F(CollisionStages, AccuracyIsTheFilters)
 {
   const std::string at_pose = R"("clearance": 0.03, "accuracy": )";
-  for (const std::string accuracy : {"exact", "float", "tolerance=0.01", "level=1", "pairs=20"}) {
+  for (const std::string accuracy : {"exact", "tolerance=0.01", "level=1", "pairs=20"}) {
     auto direct = filter();
     direct.setPose(Eigen::Isometry3d::Identity());
     direct.setAccuracy(Accuracy::parse(accuracy));
@@ -369,10 +369,10 @@ TEST_F(CollisionStages, RefuseAccuraciesThatAreNone)
   for (const std::string type : {"filters.bsh_flag", "filters.bsh_collision", "writers.clashes"}) {
     const std::string file = type == "writers.clashes" ? R"("filename": )" + quoted(folder / "a.csv") + ", " : "";
     EXPECT_THAT(error(type, file + R"("accuracy": "fast")"),
-                EndsWith("/accuracy: 'fast' is none: give exact, float, tolerance=LENGTH, level=N, pairs=N or "
+                EndsWith("/accuracy: 'fast' is none: give exact, tolerance=LENGTH, level=N, pairs=N or "
                          "time=SECONDS"));
-    EXPECT_THAT(error(type, file + along + R"(, "accuracy": "float", "swept": 0.01)"),
-                EndsWith("/accuracy: float: swept motion has a tolerance of its own: give exact"));
+    EXPECT_THAT(error(type, file + along + R"(, "accuracy": "tolerance=0.01", "swept": 0.01)"),
+                EndsWith("/accuracy: tolerance=0.01: swept motion has a tolerance of its own: give exact"));
     if (type == "filters.bsh_collision") continue;
     EXPECT_THAT(error(type, file + along + R"(, "accuracy": "level=1")"),
                 HasSubstr("/accuracy: level=1: decides which points collide, not when and how near"));

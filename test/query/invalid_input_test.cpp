@@ -88,7 +88,7 @@ TEST_F(InvalidInputTest, NamesWhatATrajectoryRefuses)
   EXPECT_EQ(refused([](auto& request) { request.pivot[1] = nan; }).input(), Input::pivot);
   EXPECT_EQ(refused([](auto& request) {
               request.swept = 0.1;
-              request.accuracy = Accuracy::floatOnly();
+              request.accuracy = Accuracy::tolerance(0.1);
             }).input(),
             Input::accuracy);
   EXPECT_EQ(refused([](auto& request) {

@@ -45,11 +45,10 @@ HierarchyOptions voxels(unsigned options)
   return built;
 }
 
-/// On the grid, where float arithmetic errs nowhere.
 TEST(RequestCombinations, AnyFlagsAndClosestPair)
 {
-  const Accuracy accuracies[] = {Accuracy::exact(),  Accuracy::floatOnly(),  Accuracy::tolerance(0.1),
-                                 Accuracy::level(1), Accuracy::nodePairs(9), Accuracy::time(0.0)};
+  const Accuracy accuracies[] = {Accuracy::exact(), Accuracy::tolerance(0.1), Accuracy::level(1),
+                                 Accuracy::nodePairs(9), Accuracy::time(0.0)};
   Random random(1);
   Eigen::Isometry3d shifted = Eigen::Isometry3d::Identity();
   shifted.translation() = Eigen::Vector3d(0.5, -0.25, 0.125);

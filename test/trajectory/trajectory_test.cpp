@@ -753,27 +753,11 @@ TEST(TrajectoryAccuracy, ToleranceErrsOnlyWithinIt)
   EXPECT_GT(earlier, 0u) << "no tolerance ever made a difference: nothing was tested";
 }
 
-TEST(TrajectoryAccuracy, FloatAloneErrsOnlyNearTheClearance)
-{
-  for (std::uint64_t seed = 3400; seed < 3460; ++seed) {
-    const TrueJourney journey(seed, 60, 20);
-    const double near = 1e-5 * (journey.run.scene.clearance + 1500); // scales go up to 2^10
-    const TrajectoryResult most = journey.within(near), least = journey.within(-near);
-    const TrajectoryResult result = journey.flagsAt(Accuracy::floatOnly());
-    for (std::size_t i = 0; i < result.flags.size(); ++i) {
-      EXPECT_LE(result.flags[i], most.flags[i]);
-      if (journey.run.scene.clearance > near) {
-        EXPECT_GE(result.flags[i], least.flags[i]);
-      }
-    }
-  }
-}
-
 TEST(TrajectoryAccuracy, SameForAnyNumberOfThreads)
 {
   for (std::uint64_t seed = 3500; seed < 3510; ++seed) {
     const TrueJourney journey(seed, 600, 20);
-    for (const char* setting : {"level=1", "level=2", "pairs=2000", "float", "tolerance=0.1"}) {
+    for (const char* setting : {"level=1", "level=2", "pairs=2000", "tolerance=0.1"}) {
       const Accuracy accuracy = Accuracy::parse(setting);
       EXPECT_EQ(journey.flagsAt(accuracy, 4).flags, journey.flagsAt(accuracy).flags) << setting;
     }
@@ -848,11 +832,11 @@ TEST(TrajectoryAccuracy, RefusesWhatItCannotTell)
                                           &TrajectoryRequest::closest_poses, &TrajectoryRequest::pose_summaries}) {
       TrajectoryRequest asking = request;
       asking.*more = true;
-      EXPECT_THAT(refusal(poses, asking), AllOf(HasSubstr("accuracy: " + std::string(setting)),
-                                                HasSubstr("give exact, float or tolerance=LENGTH")));
+      EXPECT_THAT(refusal(poses, asking),
+                  AllOf(HasSubstr("accuracy: " + std::string(setting)), HasSubstr("give exact or tolerance=LENGTH")));
     }
   }
-  for (const char* setting : {"float", "tolerance=0.1", "level=2"}) {
+  for (const char* setting : {"tolerance=0.1", "level=2"}) {
     request = flagsOnly(0.1);
     request.swept = 0.1;
     request.accuracy = Accuracy::parse(setting);

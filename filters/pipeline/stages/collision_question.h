@@ -94,7 +94,7 @@ StageDescription<S>& withCollisionOptions(StageDescription<S>& description)
               &S::accuracy, "accuracy",
               "how sure the answer is; less sure is faster: `exact`; `tolerance=LENGTH`: distances in (clearance, "
               "clearance + LENGTH] may count, too; `level=N`, `pairs=N`, `time=SECONDS`: stops early, and what stays "
-              "undecided is not free; `float`: without proof. With `swept` `exact`")
+              "undecided is not free. With `swept` `exact`")
           .option(
               &S::uncertainty, "uncertainty",
               "how far the input's points may truly be from where they were measured: a length, or the field that "

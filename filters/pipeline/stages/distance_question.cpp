@@ -17,7 +17,7 @@ std::vector<std::string> DistanceQuestion::check()
     pointDistances({nothing}, {nothing, obstacle_pose_}, request);
     if (request.accuracy.stopsEarly()) {
       throw OptionError("accuracy", "is '" + accuracy +
-                                        "', which leaves points without a distance: give exact, float or "
+                                        "', which leaves points without a distance: give exact or "
                                         "tolerance=LENGTH");
     }
   }

@@ -61,8 +61,7 @@ StageDescription<S>& withDistanceOptions(StageDescription<S>& description)
           .atLeast(0)
           .option(
               &S::accuracy, "accuracy",
-              "how sure distances are; less sure is faster: `exact`; `tolerance=LENGTH`: that much too great at most; "
-              "`float`: without proof")
+              "how sure distances are; less sure is faster: `exact`; `tolerance=LENGTH`: that much too great at most")
           .option(&S::number_of_threads, "number_of_threads",
                   "0: all of the machine's; the result is the same for any number")
           .atMost(1024));

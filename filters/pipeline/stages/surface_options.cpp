@@ -13,7 +13,6 @@ namespace {
 std::string besideSurface(const Accuracy& accuracy, bool swept)
 {
   if (swept) return "swept motion";
-  if (!accuracy.isProven()) return "the accuracy float (without proof)";
   return accuracy.isExact() || accuracy.stopsEarly() ? "" : "the accuracy " + accuracy.text();
 }
 

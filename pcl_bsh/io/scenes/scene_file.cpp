@@ -70,8 +70,7 @@ private:
       return Accuracy::parse(text);
     }
     catch (const std::invalid_argument&) {
-      reader.fail("'" + text + "' is no accuracy",
-                  "give exact, float, tolerance=LENGTH, level=N, pairs=N or time=SECONDS");
+      reader.fail("'" + text + "' is no accuracy", "give exact, tolerance=LENGTH, level=N, pairs=N or time=SECONDS");
     }
   }
 

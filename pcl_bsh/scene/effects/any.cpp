@@ -102,7 +102,7 @@ bool Scene::State::remembersAny(BroadPair& pair) const
 /// As `any` has just found.
 bool Scene::State::isKnownFree(const BroadPair& pair) const
 {
-  return options.effects.any && options.accuracy.isProven() && !pair.memory.colliding && !pair.memory.undecided;
+  return options.effects.any && !pair.memory.colliding && !pair.memory.undecided;
 }
 
 void Scene::State::findSelf(EffectCost& spent)

@@ -40,7 +40,7 @@ void Scene::State::decideDistance(BroadPair& pair, double within) const
     first = false;
     return true;
   });
-  const bool certain = options.accuracy.isExact() || !options.accuracy.isProven();
+  const bool certain = options.accuracy.isExact();
   memory.within = !first && (certain ? memory.distance.distance : interval.lower) <= within;
 }
 

@@ -105,7 +105,7 @@ PassageSum::PassageSum(const SiteRequest& request, std::size_t poses)
 {
   if (clashes_ != nullptr && !measures_)
     throw std::invalid_argument("accuracy " + request.accuracy.text() +
-                                ": clashes need distances: give exact, float or a tolerance");
+                                ": clashes need distances: give exact or a tolerance");
   if (request.pose_summaries) sum_.poses.resize(poses);
 }
 

@@ -20,8 +20,6 @@ const char* nameOf(Query query)
 const char* knobOf(const Accuracy& accuracy)
 {
   switch (accuracy.mode) {
-  case Accuracy::Mode::float_only:
-    return "float only";
   case Accuracy::Mode::tolerance:
     return "tolerance";
   case Accuracy::Mode::level:
@@ -97,7 +95,6 @@ public:
     m.query = nameOf(query);
     m.knob = knobOf(accuracy);
     m.setting = accuracy.text();
-    m.certified = accuracy.isProven();
     m.poses = subject_.poses.size();
     double answers = 0.0, undecided = 0.0;
     for (std::size_t i = 0; i < subject_.poses.size(); ++i) {
@@ -127,7 +124,7 @@ public:
     }
     if (query == Query::distance) {
       // The width of an exact answer is the rounding of the number given.
-      if (!m.certified || accuracy.isExact()) m.certified_error = 0.0;
+      if (accuracy.isExact()) m.certified_error = 0.0;
     }
     else {
       m.certified_error = undecided / answers;
@@ -157,7 +154,7 @@ private:
 /// Tolerances from a millionth of the object up, levels until nothing is left open, budgets up to twice the exact time.
 std::vector<Accuracy> dialOf(Query query, const Laboratory& laboratory, double diameter)
 {
-  std::vector<Accuracy> dial = {Accuracy::exact(), Accuracy::floatOnly()};
+  std::vector<Accuracy> dial = {Accuracy::exact()};
   for (const double part : {1e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2})
     dial.push_back(Accuracy::tolerance(roundLength(part * diameter)));
   for (unsigned level = 0; level <= 16; ++level) {

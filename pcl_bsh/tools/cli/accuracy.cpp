@@ -20,10 +20,10 @@ Accuracy parseAccuracy(const std::string& text)
 void requireAnswers(const Accuracy& accuracy, const AccuracyNeeds& needs)
 {
   const auto refuse = [&](const char* wrong) { throw UsageError("--accuracy: " + accuracy.text() + ": " + wrong); };
-  if (accuracy.stopsEarly() && needs.clashes) refuse("clashes need distances: give exact, float or tolerance=LENGTH");
+  if (accuracy.stopsEarly() && needs.clashes) refuse("clashes need distances: give exact or tolerance=LENGTH");
   if (!accuracy.isExact() && needs.swept) refuse("swept motion has a tolerance of its own: give exact");
   if (accuracy.stopsEarly() && needs.distances)
-    refuse("leaves points without a distance: give exact, float or tolerance=LENGTH");
+    refuse("leaves points without a distance: give exact or tolerance=LENGTH");
 }
 
 } // namespace pcl_bsh::cli

@@ -59,7 +59,6 @@ void requireLength(const io::Obstacle& obstacle, const std::filesystem::path& pa
 std::string besideSurface(const Accuracy& accuracy, bool swept)
 {
   if (swept) return "swept motion";
-  if (!accuracy.isProven()) return "--accuracy float (without proof)";
   return accuracy.isExact() || accuracy.stopsEarly() ? "" : "--accuracy " + accuracy.text();
 }
 

@@ -132,7 +132,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("WHICH")
       ->transform(choice<Keep>({{"flagged", Keep::flagged}, {"colliding", Keep::colliding}, {"free", Keep::free}}));
   app.add_option("--accuracy", accuracy,
-                 "what may be given up for time: exact (default); float: without proof;\n"
+                 "what may be given up for time: exact (default);\n"
                  "tolerance=LENGTH: pairs up to that much beyond D may count; level=N:\n"
                  "spheres are opened down to this level; pairs=N or time=SECONDS: each\n"
                  "query stops there. Points that are undecided then get 2 in the field\n"

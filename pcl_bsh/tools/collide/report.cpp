@@ -68,7 +68,6 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
     json["distance_interval"] = {orNull(report.closest.interval.lower), orNull(report.closest.interval.upper)};
   }
   json["accuracy"] = report.path && report.path->swept ? "swept" : report.accuracy.text();
-  json["proven"] = report.accuracy.isProven();
   json["density"] = {{"input", toJson(report.density.input.value_or(Spacing()))},
                      {"obstacle", report.density.obstacle ? toJson(*report.density.obstacle) : nullptr},
                      {"blind", report.density.blind()},

@@ -16,7 +16,6 @@ std::string distanceText(const CollisionReport& report)
 {
   std::ostringstream text;
   text << report.closest.distance;
-  if (!report.accuracy.isProven()) return text.str() + " without proof";
   if (report.accuracy.isExact()) return text.str();
   if (report.path) return text.str() + " within the tolerance";
   text << " or less, certainly in [" << report.closest.interval.lower << ", " << report.closest.interval.upper << "]";

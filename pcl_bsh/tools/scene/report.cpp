@@ -194,7 +194,7 @@ nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const
     list("distance", result.distance, [&](Json& e, const DistantPair& pair) {
       e["distance"] = pair.distance;
       e["pair"] = points(pair.pair);
-      if (accuracy.isProven() && !accuracy.isExact()) e["interval"] = {pair.interval.lower, pair.interval.upper};
+      if (!accuracy.isExact()) e["interval"] = {pair.interval.lower, pair.interval.upper};
     });
   if (effects.contacts)
     list("contacts", result.contacts, [&](Json& e, const ContactPair& pair) {

@@ -126,7 +126,7 @@ struct CollideTexts {
     app.add_flag("--resume", options.resume, "goes on with what the same command has left in --out when it was killed");
     app.add_option(
            "--accuracy", accuracy,
-           "what may be given up for time: exact (default); float: without proof; tolerance=LENGTH: pairs up to "
+           "what may be given up for time: exact (default); tolerance=LENGTH: pairs up to "
            "that much beyond D may count; level=N: spheres are opened down to this level; pairs=N or "
            "time=SECONDS: the query of each tile stops there. Points that are undecided then get 2 in the field "
            "'collision'")

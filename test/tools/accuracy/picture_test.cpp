@@ -50,9 +50,6 @@ Study studied()
                         measured("distance", "budget of tests", "pairs=10000", 2e-3, 0.001), // slower than exact
                         measured("flags", "exact", "exact", 1e-4, 0.0),
                         measured("flags", "level of detail", "level=0", 5e-5, 0.02)};
-  Measurement unproven = measured("distance", "float only", "float", 1e-6, 0.0);
-  unproven.certified = false;
-  study.measurements.push_back(unproven);
   study.measurements.push_back(peer("distance", "k-d tree", "epsilon=0", 0.25, 1e-9));
   study.measurements.push_back(peer("distance", "VoxelGrid + k-d tree", "leaf=1", 2e-2, 0.6));
   study.colliding = 10;

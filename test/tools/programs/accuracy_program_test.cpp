@@ -96,7 +96,7 @@ TEST_F(AccuracyProgram, MeasuresEveryKnobAndIsNeverWrongWhereCertified)
   EXPECT_EQ(report["fits"].size(), 3U);
   EXPECT_EQ(report["poses"], 2);
   for (const char* query : {"distance", "flags", "any"}) EXPECT_GE(certified_of[query], 5) << query;
-  for (const char* knob : {"exact", "float only", "tolerance", "level of detail", "budget of tests", "k-d tree",
+  for (const char* knob : {"exact", "tolerance", "level of detail", "budget of tests", "k-d tree",
                            "approximate k-d tree", "octree", "VoxelGrid + k-d tree"})
     EXPECT_EQ(knobs.count(knob), 1u) << knob;
   const std::string text = io::contentOf(folder / "study" / "accuracy.md");

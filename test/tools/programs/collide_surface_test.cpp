@@ -127,14 +127,13 @@ TEST_F(CollideSurface, KnowsUncertaintiesAndAccuracies)
   EXPECT_THAT(column("collision"), ElementsAre(1, 1, 0, 0, 0));
   collideOutput("scan.xyz crate.off out.pcd --clearance 0.1 --obstacle-uncertainty 0.08");
   EXPECT_THAT(column("collision"), ElementsAre(1, 2, 0, 0, 0));
-  for (const std::string accuracy : {"float", "tolerance=0.01", "level=2", "pairs=100000", "time=10"}) {
+  for (const std::string accuracy : {"tolerance=0.01", "level=2", "pairs=100000", "time=10"}) {
     collideOutput("scan.xyz crate.off out.pcd --clearance 0.1 --accuracy " + accuracy);
     const std::vector<double> flags = column("collision");
     EXPECT_NE(flags[0], 0) << accuracy;
     EXPECT_NE(flags[1], 0) << accuracy;
     EXPECT_NE(flags[4], 1) << accuracy;
   }
-  EXPECT_THAT(collideOutput("scan.xyz crate.off out.pcd --clearance 0.1 --accuracy float"), HasSubstr("without proof"));
   EXPECT_THAT(collideOutput("scan.xyz crate.off out.pcd --clearance 0.1 --density"),
               HasSubstr("crate.off: is a surface, which has no holes"));
 }

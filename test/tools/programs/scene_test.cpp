@@ -165,7 +165,7 @@ TEST(SceneProgram, SaysWhatLessAccuracyLeavesOpen)
 
   const Outcome wrong = run("pcl_bsh_scene", sceneAt("roughly") + " --out " + out);
   EXPECT_EQ(wrong.exit_code, 1);
-  EXPECT_THAT(wrong.err, HasSubstr("crash.json: accuracy: 'roughly' is no accuracy: give exact, float, "));
+  EXPECT_THAT(wrong.err, HasSubstr("crash.json: accuracy: 'roughly' is no accuracy: give exact, "));
 }
 
 TEST(SceneProgram, SaysWhatUncertainPointsLeaveOpen)

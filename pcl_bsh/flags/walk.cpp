@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Which voxels are walked, and the walk, for each instruction set.
 #include <pcl_bsh/flags/query.h>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "pcl_bsh/flags/near_voxels.cpp"
+#define HWY_TARGET_INCLUDE "pcl_bsh/flags/walk.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <pcl_bsh/traversal/leaf_pair-inl.h>
+#include <pcl_bsh/flags/walk-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -37,8 +38,17 @@ void findNearVoxelsOnTarget(const FlagQuery& query, std::vector<FlaggedPlace>& n
 {
   const Spaces a(query.a), b(query.b);
   const RelativeFrame frame(a.frame(kAboveVoxels), a.pose, b.frame(kAboveVoxels), b.pose, query.rotation);
-  if (frame.separates(query.pairs.clearance + a.storage.largest_radius + b.storage.largest_radius)) return;
-  findNearVoxels(a, b.storage.top[0], frame, frame.pruneReach(query.pairs.clearance), a.storage.top[0], near, work);
+  const double reach = query.pairs.reach.length();
+  if (frame.separates(reach + a.storage.largest_radius + b.storage.largest_radius)) return;
+  findNearVoxels(a, b.storage.top[0], frame, frame.pruneReach(reach), a.storage.top[0], near, work);
+}
+
+FlaggedVoxel flagVoxelOnTarget(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagSink& sink)
+{
+  const ScratchLease<FlagScratch> scratch;
+  FlagWalk walk(query, rule, sink, *scratch);
+  walk.run(voxel);
+  return walk.found;
 }
 
 } // namespace HWY_NAMESPACE
@@ -49,10 +59,16 @@ HWY_AFTER_NAMESPACE();
 namespace pcl_bsh {
 
 HWY_EXPORT(findNearVoxelsOnTarget);
+HWY_EXPORT(flagVoxelOnTarget);
 
 void findNearVoxels(const FlagQuery& query, std::vector<FlaggedPlace>& near, Work& work)
 {
   HWY_DYNAMIC_DISPATCH(findNearVoxelsOnTarget)(query, near, work);
+}
+
+FlaggedVoxel flagVoxel(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagSink& sink)
+{
+  return HWY_DYNAMIC_DISPATCH(flagVoxelOnTarget)(query, rule, voxel, sink);
 }
 
 } // namespace pcl_bsh

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Children of a node of one cloud against a sphere of the other, where spheres say least: nodes too small for floats,
+// leaves large beside what they are compared with, and nodes far from each other for their size. What spheres and slabs
+// leave is asked here, by every walk, before it is opened or compared.
+
+#if defined(PCL_BSH_TRAVERSAL_SEPARATION_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAVERSAL_SEPARATION_INL_H_
+#undef PCL_BSH_TRAVERSAL_SEPARATION_INL_H_
+#else
+#define PCL_BSH_TRAVERSAL_SEPARATION_INL_H_
+#endif
+
+#include <pcl_bsh/hierarchy/build/crowded_cell.h>
+#include <pcl_bsh/traversal/far_nodes.h>
+#include <pcl_bsh/traversal/leaf_pair-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// The slab of one child of a node.
+inline Slab slabOf(const Slabs& slabs, std::uint32_t lane, const Point& center, float radius)
+{
+  return {{slabs.x[lane], slabs.y[lane], slabs.z[lane]}, slabs.h[lane], center, radius};
+}
+
+/// Without a shift: what carries normals.
+inline constexpr float kNowhere[3] = {0.0f, 0.0f, 0.0f};
+
+/// A node's children and a sphere of the other cloud, in the frame of b's space.
+struct Facing {
+  const RelativeFrame& frame;
+  bool of_a;    ///< whether the children are a's
+  Voxel* voxel; ///< that the node is in; null above the voxels
+  const Node& node;
+  SphereLanes spheres; ///< the node's children
+  Voxel* other_voxel;  ///< likewise
+  const Node& other_node;
+  std::uint32_t other_lane;
+  Point center; ///< of the other sphere
+  float radius; ///< its own, stretched
+  double reach; ///< how far apart points are still of interest, less their radii, in the clouds' unit
+
+  float radiusOf(std::uint32_t lane) const { return spheres.r[lane] * spheres.stretch; }
+  bool areInVoxels() const { return voxel && other_voxel; }
+  bool isLeaf(std::uint32_t lane) const { return voxel && node.isLeaf(lane); }
+  bool otherIsLeaf() const { return other_voxel && other_node.isLeaf(other_lane); }
+  LeafRange leaf(std::uint32_t lane) const { return {voxel, node.begin[lane], node.comparedPoints(lane)}; }
+  LeafRange otherLeaf() const
+  {
+    return {other_voxel, other_node.begin[other_lane], other_node.comparedPoints(other_lane)};
+  }
+};
+
+/// Each function returns those of the children in `near` that are proven to be apart from the other sphere's points.
+class Separation {
+public:
+  Separation(const ExactDistance& distance, const Spaces& a, const Spaces& b, Work& work)
+  : distance_(distance),
+    a_(a),
+    b_(b),
+    work_(work)
+  {
+  }
+
+  /// Of nodes as small as the float error: by their points as given. @pre both are in voxels
+  HWY_NOINLINE std::uint32_t asGiven(const Facing& facing, std::uint32_t near) const
+  {
+    alignas(32) float squared[kLanes];
+    centersSquared(facing.spheres, facing.center, squared);
+    std::uint32_t apart = 0;
+    GivenSphere other;
+    for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const float radius = facing.radiusOf(lane);
+      if (radius > facing.frame.bluntRadius() ||
+          !facing.frame.isUndecided(squared[lane], radius + facing.radius + facing.frame.pruneReach(facing.reach)))
+        continue;
+      ++work_.exact_decisions;
+      if (!other.isKnown())
+        other = givenSphereOf(others(facing).storage.view, *facing.other_voxel, facing.other_node, facing.other_lane);
+      const GivenSphere own = givenSphereOf(owners(facing).storage.view, *facing.voxel, facing.node, lane);
+      if (facing.of_a ? areApart(distance_, own, other, facing.reach) : areApart(distance_, other, own, facing.reach))
+        apart |= 1u << lane;
+    }
+    return apart;
+  }
+
+  /// Of a leaf and a node that is none and much smaller: by the leaf's points.
+  HWY_NOINLINE std::uint32_t byLeafPoints(const Facing& facing, std::uint32_t near) const
+  {
+    const bool other_is_leaf = facing.otherIsLeaf();
+    std::uint32_t apart = 0;
+    for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const float radius = facing.radiusOf(lane);
+      const Point center{facing.spheres.x[lane], facing.spheres.y[lane], facing.spheres.z[lane]};
+      bool is_apart = false;
+      if (!other_is_leaf && facing.isLeaf(lane) && radius > kLargeLeaf * facing.radius)
+        is_apart =
+            isLeafApart(facing.frame, facing.leaf(lane), facing.of_a, facing.center, facing.radius, facing.reach);
+      else if (other_is_leaf && !facing.isLeaf(lane) && facing.radius > kLargeLeaf * radius)
+        is_apart = isLeafApart(facing.frame, facing.otherLeaf(), !facing.of_a, center, radius, facing.reach);
+      if (is_apart) apart |= 1u << lane;
+    }
+    return apart;
+  }
+
+  /// Of nodes far from each other for their size: by how far their points reach towards each other, and point by point
+  /// where one is a leaf much larger than the other. @param gap as spheresNear() gave it. @pre both are in voxels, no
+  /// radii
+  HWY_NOINLINE std::uint32_t byExtent(const Facing& facing, const float* gap, std::uint32_t near) const
+  {
+    std::uint32_t far = near & spheresFar(gap, facing.spheres.r, facing.spheres.stretch, facing.radius, kFarNodes);
+    if (far == 0) return 0;
+    const NodeSupport other = nodeSupport(*facing.other_voxel, facing.other_node, facing.other_lane, work_);
+    const bool other_is_leaf = facing.otherIsLeaf();
+    std::uint32_t apart = 0;
+    for (; far != 0; far &= far - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(far));
+      const float radius = facing.radiusOf(lane);
+      const NodeSupport own = nodeSupport(*facing.voxel, facing.node, lane, work_);
+      bool is_apart = areFarApart(facing, facing.of_a ? own : other, facing.of_a ? other : own);
+      if (!is_apart && !other_is_leaf && facing.isLeaf(lane) && radius > kLargeFarLeaf * facing.radius)
+        is_apart = isLeafFarApart(facing, facing.leaf(lane), facing.of_a, other);
+      else if (!is_apart && other_is_leaf && !facing.isLeaf(lane) && facing.radius > kLargeFarLeaf * radius)
+        is_apart = isLeafFarApart(facing, facing.otherLeaf(), !facing.of_a, own);
+      if (is_apart) apart |= 1u << lane;
+    }
+    return apart;
+  }
+
+  /// Whether none of a leaf's points is near a sphere of the other cloud, in the frame of b's space.
+  /// @param radius stretched. @param reach as Facing has it
+  bool isLeafApart(const RelativeFrame& frame, const LeafRange& leaf, bool leaf_is_a, const Point& center, float radius,
+                   double reach) const
+  {
+    const float within = radius + frame.pruneReach(reach + leaf.largestRadius());
+    work_.node_pairs += leaf.count;
+    LeafPoints carried;
+    if (leaf_is_a) carryLeaf(frame, leaf, carried);
+    const float *const x = leaf_is_a ? carried.x : leaf.x(), *const y = leaf_is_a ? carried.y : leaf.y(),
+                       *const z = leaf_is_a ? carried.z : leaf.z();
+    return pointsNear(x, y, z, leaf.count, center.x, center.y, center.z, within, kSphereMargin) == 0;
+  }
+
+private:
+  const Spaces& owners(const Facing& facing) const { return facing.of_a ? a_ : b_; }
+  const Spaces& others(const Facing& facing) const { return facing.of_a ? b_ : a_; }
+
+  bool areFarApart(const Facing& facing, const NodeSupport& a, const NodeSupport& b) const
+  {
+    return areFarNodesApart(distance_, a_.pose, a, b_.pose, b, facing.reach, work_.exact_decisions);
+  }
+
+  /// Whether a node is apart from each point of a leaf of the other cloud: a leaf of a cylinder bends by more than the
+  /// points near its axis differ in their distance.
+  bool isLeafFarApart(const Facing& facing, const LeafRange& leaf, bool leaf_is_a, const NodeSupport& node) const
+  {
+    const PointsView& view = leaf_is_a ? a_.storage.view : b_.storage.view;
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+      const NodeSupport point(view.point(leaf.record(i)));
+      ++work_.node_pairs;
+      if (!areFarApart(facing, leaf_is_a ? point : node, leaf_is_a ? node : point)) return false;
+    }
+    return true;
+  }
+
+  const ExactDistance& distance_;
+  const Spaces &a_, &b_;
+  Work& work_;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle
