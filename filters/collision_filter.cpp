@@ -13,8 +13,8 @@ namespace pcl_bsh {
 void CollisionFilter<pcl::PCLPointCloud2>::applyFilter(pcl::PCLPointCloud2& output)
 {
   if (keep_flagged_) {
-    output = getTrajectory() ? withFields(*input_, fieldsOf(alongTrajectory(inputView())))
-                             : withField(*input_, collision_field_name, collisionFlags(inputView()));
+    output = getTrajectory() ? withFields(*input_, fieldsOf(alongTrajectory(inputShape())))
+                             : withField(*input_, collision_field_name, collisionFlags(inputShape()));
     removed_indices_->clear();
     return;
   }
@@ -26,13 +26,13 @@ void CollisionFilter<pcl::PCLPointCloud2>::applyFilter(pcl::PCLPointCloud2& outp
     return;
   }
 
-  select(inputView(), negative_, kept, removed_indices_.get());
+  select(passing(inputShape()), kept, removed_indices_.get());
   output = *input_;
   overwritePoints(output, *removed_indices_, user_filter_value_);
 }
 
 } // namespace pcl_bsh
 
-template class pcl_bsh::QueryFilter<pcl::PCLPointCloud2, pcl_bsh::ObstacleQuery>;
+template class pcl_bsh::QueryFilter<pcl::PCLPointCloud2, pcl_bsh::CollisionSettings>;
 template class pcl_bsh::CollisionFilterBase<pcl::PCLPointCloud2>;
 PCL_INSTANTIATE(CollisionFilter, PCL_XYZ_POINT_TYPES)

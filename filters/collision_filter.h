@@ -12,9 +12,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/filters/obstacle_query.h>
 #include <pcl_bsh/filters/query_filter.h>
-#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/point_cloud.h>
@@ -33,7 +31,7 @@ namespace pcl_bsh {
 /// are undecided (setAccuracy()). Called through a pointer to pcl::Filter, setKeepFlagged() needs an output that is not
 /// the input.
 template <typename PointT>
-class CollisionFilterBase : public QueryFilter<PointT, ObstacleQuery> {
+class CollisionFilterBase : public QueryFilter<PointT, CollisionSettings> {
 public:
   /// @param extract_removed_indices keep what getRemovedIndices() returns
   explicit CollisionFilterBase(bool extract_removed_indices = false);
@@ -48,10 +46,6 @@ public:
   /// smallest distance, the first pose and the closest; a summary of each pose, unless swept. Throws as filter() does.
   void computeTrajectory(TrajectoryResult& result);
 
-protected:
-  PointsView inputView() const override;
-
-public:
   PCL_MAKE_ALIGNED_OPERATOR_NEW
 };
 
@@ -72,8 +66,9 @@ public:
   void setIndices(std::size_t row_start, std::size_t col_start, std::size_t nb_rows, std::size_t nb_cols) override;
 };
 
-extern template class PCL_BSH_EXPORT QueryFilter<pcl::PCLPointCloud2, ObstacleQuery>; // PCL's hidden type would hide
-extern template class PCL_BSH_EXPORT CollisionFilterBase<pcl::PCLPointCloud2>;        // both
+extern template class PCL_BSH_EXPORT
+    QueryFilter<pcl::PCLPointCloud2, CollisionSettings>;                       // PCL's hidden type would hide
+extern template class PCL_BSH_EXPORT CollisionFilterBase<pcl::PCLPointCloud2>; // both
 
 /// The same for clouds whose fields are known at run time only. Keeps every field; reads float64 coordinates at full
 /// precision; can flag the points instead of removing any.

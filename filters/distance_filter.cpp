@@ -14,7 +14,7 @@ void DistanceFilter<pcl::PCLPointCloud2>::applyFilter(pcl::PCLPointCloud2& outpu
 {
   pcl::Indices kept;
   std::vector<float> distances;
-  select(inputView(), negative_, kept, removed_indices_.get(), distances);
+  select(passing(inputShape(), &distances), kept, removed_indices_.get());
   output = withFields(*input_, {{distance_field_name, &distances}});
   if (keep_organized_)
     overwritePoints(output, *removed_indices_, user_filter_value_);
@@ -24,6 +24,6 @@ void DistanceFilter<pcl::PCLPointCloud2>::applyFilter(pcl::PCLPointCloud2& outpu
 
 } // namespace pcl_bsh
 
-template class pcl_bsh::QueryFilter<pcl::PCLPointCloud2, pcl_bsh::DistanceQuery>;
+template class pcl_bsh::QueryFilter<pcl::PCLPointCloud2, pcl_bsh::DistanceSettings>;
 template class pcl_bsh::DistanceFilterBase<pcl::PCLPointCloud2>;
 PCL_INSTANTIATE(DistanceFilter, PCL_XYZ_POINT_TYPES)

@@ -12,7 +12,6 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/filters/distance_query.h>
 #include <pcl_bsh/filters/query_filter.h>
 
 #include <cstddef>
@@ -23,7 +22,7 @@ namespace pcl_bsh {
 
 /// What the typed filter and the one of pcl::PCLPointCloud2 share. Use DistanceFilter.
 template <typename PointT>
-class DistanceFilterBase : public QueryFilter<PointT, DistanceQuery> {
+class DistanceFilterBase : public QueryFilter<PointT, DistanceSettings> {
 public:
   /// @param extract_removed_indices keep what getRemovedIndices() returns
   explicit DistanceFilterBase(bool extract_removed_indices = false);
@@ -52,8 +51,8 @@ public:
   void setIndices(std::size_t row_start, std::size_t col_start, std::size_t nb_rows, std::size_t nb_cols) override;
 };
 
-extern template class PCL_BSH_EXPORT QueryFilter<pcl::PCLPointCloud2, DistanceQuery>; // PCL's hidden type would hide
-extern template class PCL_BSH_EXPORT DistanceFilterBase<pcl::PCLPointCloud2>;         // both
+extern template class PCL_BSH_EXPORT QueryFilter<pcl::PCLPointCloud2, DistanceSettings>; // PCL's hidden type would hide
+extern template class PCL_BSH_EXPORT DistanceFilterBase<pcl::PCLPointCloud2>;            // both
 
 /// The same for clouds whose fields are known at run time only. Keeps every field, and adds one: `distance` (FLOAT32,
 /// NaN beyond setMaxDistance() and for points that are not finite or outside setIndices()); a FLOAT32 field of that

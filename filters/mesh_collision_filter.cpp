@@ -44,35 +44,27 @@ void MeshCollisionFilter::setInputSurface(const std::shared_ptr<const SurfaceCov
   mesh_.reset();
 }
 
-const SurfaceCover& MeshCollisionFilter::requiredInput() const
+Shape MeshCollisionFilter::inputShape() const
 {
   if (!cover_) throw std::invalid_argument("input mesh is missing: call setInputMesh() before filtering");
-  return *cover_;
-}
-
-PointsView MeshCollisionFilter::inputView() const
-{
   if (mesh_ && checksumOf(*mesh_) != checksum_)
     throw std::invalid_argument("input mesh has changed since setInputMesh(): call it again");
-  return asUncertainInput(requiredInput().view(), {});
+  return {"the input", cover_};
 }
 
 void MeshCollisionFilter::computeFlags(std::vector<std::uint8_t>& flags)
 {
-  const PointsView balls = inputView();
-  flags = collisionFlags(balls, cover_.get());
+  flags = collisionFlags(inputShape());
 }
 
 void MeshCollisionFilter::computeTrajectory(TrajectoryResult& result)
 {
-  const PointsView balls = inputView();
-  result = alongTrajectory(balls, cover_.get());
+  result = alongTrajectory(inputShape());
 }
 
 void MeshCollisionFilter::filter(pcl::PolygonMesh& output)
 {
-  requiredInput();
-  if (!mesh_)
+  if (cover_ && !mesh_)
     throw std::invalid_argument("input mesh is missing: a cover has no polygons to keep: call setInputMesh()");
   std::vector<std::uint8_t> flags;
   computeFlags(flags);

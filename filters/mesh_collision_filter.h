@@ -12,9 +12,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/filters/obstacle_query.h>
-#include <pcl_bsh/surface/surface_cover.h>
-#include <pcl_bsh/trajectory/trajectory.h>
+#include <pcl_bsh/filters/question_filter.h>
 
 #include <pcl/PolygonMesh.h>
 
@@ -25,10 +23,10 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// The obstacle, its pose and all other settings are those of CollisionFilter (ObstacleQuery). The counts of undecided
-/// points are those of undecided polygons. A density guard is refused, and so is an uncertainty of the input that is a
-/// field: both are about points. What a closed mesh encloses is not part of it.
-class MeshCollisionFilter : public ObstacleQuery {
+/// The obstacle, its pose and all other settings are those of CollisionFilter (CollisionSettings). The counts of
+/// undecided points are those of undecided polygons. A density guard is refused, and so is an uncertainty of the input
+/// that is a field: both are about points. What a closed mesh encloses is not part of it.
+class MeshCollisionFilter : public CollisionSettings {
 public:
   /// The mesh that is asked about. It is covered by balls here and now; its vertices and polygons must not change:
   /// every use throws when they have, after a filter() that wrote over it, too.
@@ -62,8 +60,7 @@ public:
   void filter(pcl::PolygonMesh& output);
 
 private:
-  const SurfaceCover& requiredInput() const;
-  PointsView inputView() const;
+  Shape inputShape() const;
 
   std::shared_ptr<const SurfaceCover> cover_;
   pcl::PolygonMesh::ConstPtr mesh_;

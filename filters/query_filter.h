@@ -4,7 +4,7 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/input_filter.h>
-#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/filters/question_filter.h>
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/point_cloud.h>
@@ -16,10 +16,9 @@ namespace pcl_bsh {
 
 /// PCL's filter() is not virtual. Called through a pointer to pcl::Filter, it leaves the output alone when the input is
 /// missing.
-/// @tparam Query has select(input, negative, kept, removed), and can be copied and moved. Its assignment leaves it as
-///   it was where memory runs out
-template <typename PointT, typename Query>
-class QueryFilter : public InputFilter<PointT>, public Query {
+/// @tparam Settings a QuestionFilter with passing()
+template <typename PointT, typename Settings>
+class QueryFilter : public InputFilter<PointT>, public Settings {
 public:
   using Cloud =
       std::conditional_t<std::is_same_v<PointT, pcl::PCLPointCloud2>, pcl::PCLPointCloud2, pcl::PointCloud<PointT>>;
@@ -47,9 +46,15 @@ protected:
   using pcl::FilterIndices<PointT>::applyFilter;
   void applyFilter(pcl::Indices& indices) override;
 
-  /// The points that are asked about.
-  virtual PointsView inputView() const;
-  void requireInput() const;
+  /// The points that are asked about. @throws std::invalid_argument when there are none
+  Shape inputShape() const { return this->inputOf(inputView(), *this->input_); }
+  PointsView inputView() const;
+
+  /// By what passing() told of them.
+  void select(const std::vector<std::uint8_t>& passes, pcl::Indices& kept, pcl::Indices* removed) const
+  {
+    partRecords(inputView(), passes, this->negative_, kept, removed);
+  }
 
   /// Where `set` throws, the indices stay as they were.
   template <typename Set>

@@ -8,29 +8,20 @@ namespace pcl_bsh {
 
 template <typename PointT>
 CollisionFilterBase<PointT>::CollisionFilterBase(bool extract_removed_indices)
-: QueryFilter<PointT, ObstacleQuery>(extract_removed_indices, "CollisionFilter")
+: QueryFilter<PointT, CollisionSettings>(extract_removed_indices, "CollisionFilter")
 {
 }
 
 template <typename PointT>
 void CollisionFilterBase<PointT>::computeFlags(std::vector<std::uint8_t>& flags)
 {
-  this->requireInput();
-  flags = this->collisionFlags(inputView());
+  flags = this->collisionFlags(this->inputShape());
 }
 
 template <typename PointT>
 void CollisionFilterBase<PointT>::computeTrajectory(TrajectoryResult& result)
 {
-  this->requireInput();
-  result = this->alongTrajectory(inputView());
-}
-
-template <typename PointT>
-PointsView CollisionFilterBase<PointT>::inputView() const
-{
-  const PointsView view = QueryFilter<PointT, ObstacleQuery>::inputView();
-  return this->getInputUncertainty().isZero() ? view : this->asUncertainInput(view, fieldsOfRecords(*this->input_));
+  result = this->alongTrajectory(this->inputShape());
 }
 
 template <typename PointT>
@@ -43,6 +34,6 @@ void CollisionFilter<PointT>::setIndices(std::size_t row_start, std::size_t col_
 } // namespace pcl_bsh
 
 #define PCL_INSTANTIATE_CollisionFilter(T)                                                                             \
-  template class PCL_BSH_EXPORT pcl_bsh::QueryFilter<T, pcl_bsh::ObstacleQuery>;                                       \
+  template class PCL_BSH_EXPORT pcl_bsh::QueryFilter<T, pcl_bsh::CollisionSettings>;                                   \
   template class PCL_BSH_EXPORT pcl_bsh::CollisionFilterBase<T>;                                                       \
   template class PCL_BSH_EXPORT pcl_bsh::CollisionFilter<T>;

@@ -8,15 +8,14 @@ namespace pcl_bsh {
 
 template <typename PointT>
 DistanceFilterBase<PointT>::DistanceFilterBase(bool extract_removed_indices)
-: QueryFilter<PointT, DistanceQuery>(extract_removed_indices, "DistanceFilter")
+: QueryFilter<PointT, DistanceSettings>(extract_removed_indices, "DistanceFilter")
 {
 }
 
 template <typename PointT>
 void DistanceFilterBase<PointT>::computeDistances(PointDistances& result)
 {
-  this->requireInput();
-  result = this->distances(this->inputView());
+  result = this->distances(this->inputShape());
 }
 
 template <typename PointT>
@@ -29,6 +28,6 @@ void DistanceFilter<PointT>::setIndices(std::size_t row_start, std::size_t col_s
 } // namespace pcl_bsh
 
 #define PCL_INSTANTIATE_DistanceFilter(T)                                                                              \
-  template class PCL_BSH_EXPORT pcl_bsh::QueryFilter<T, pcl_bsh::DistanceQuery>;                                       \
+  template class PCL_BSH_EXPORT pcl_bsh::QueryFilter<T, pcl_bsh::DistanceSettings>;                                    \
   template class PCL_BSH_EXPORT pcl_bsh::DistanceFilterBase<T>;                                                        \
   template class PCL_BSH_EXPORT pcl_bsh::DistanceFilter<T>;

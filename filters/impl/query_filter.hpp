@@ -10,23 +10,23 @@
 
 namespace pcl_bsh {
 
-template <typename PointT, typename Query>
-QueryFilter<PointT, Query>::QueryFilter(bool extract_removed_indices, const char* name)
+template <typename PointT, typename Settings>
+QueryFilter<PointT, Settings>::QueryFilter(bool extract_removed_indices, const char* name)
 : InputFilter<PointT>(extract_removed_indices)
 {
   this->filter_name_ = name;
 }
 
-template <typename PointT, typename Query>
-QueryFilter<PointT, Query>::QueryFilter(const QueryFilter& other) : InputFilter<PointT>(other),
-                                                                    Query(other)
+template <typename PointT, typename Settings>
+QueryFilter<PointT, Settings>::QueryFilter(const QueryFilter& other) : InputFilter<PointT>(other),
+                                                                       Settings(other)
 {
   this->removed_indices_ = removedOfItsOwn();
   this->indices_ = indicesOfItsOwn();
 }
 
-template <typename PointT, typename Query>
-QueryFilter<PointT, Query>& QueryFilter<PointT, Query>::operator=(const QueryFilter& other)
+template <typename PointT, typename Settings>
+QueryFilter<PointT, Settings>& QueryFilter<PointT, Settings>::operator=(const QueryFilter& other)
 {
   if (this == &other) return *this;
   // All that allocates comes first. Otherwise memory that runs out would leave half of each filter, or lists that both
@@ -34,7 +34,7 @@ QueryFilter<PointT, Query>& QueryFilter<PointT, Query>::operator=(const QueryFil
   pcl::IndicesPtr removed = other.removedOfItsOwn(), indices = other.indicesOfItsOwn();
   this->filter_name_.reserve(other.filter_name_.size());
   if constexpr (std::is_same_v<PointT, pcl::PCLPointCloud2>) this->field_sizes_.reserve(other.field_sizes_.size());
-  Query::operator=(other);
+  Settings::operator=(other);
 
   InputFilter<PointT>::operator=(other);
   this->removed_indices_ = std::move(removed);
@@ -44,53 +44,47 @@ QueryFilter<PointT, Query>& QueryFilter<PointT, Query>::operator=(const QueryFil
 
 /// PCL's classes copy pointers to what each filter() writes: the removed indices and, unless the user has set them, the
 /// numbers of all points.
-template <typename PointT, typename Query>
-pcl::IndicesPtr QueryFilter<PointT, Query>::removedOfItsOwn() const
+template <typename PointT, typename Settings>
+pcl::IndicesPtr QueryFilter<PointT, Settings>::removedOfItsOwn() const
 {
   return this->removed_indices_ ? std::make_shared<pcl::Indices>(*this->removed_indices_) : nullptr;
 }
 
-template <typename PointT, typename Query>
-pcl::IndicesPtr QueryFilter<PointT, Query>::indicesOfItsOwn() const
+template <typename PointT, typename Settings>
+pcl::IndicesPtr QueryFilter<PointT, Settings>::indicesOfItsOwn() const
 {
   return this->indices_ && this->fake_indices_ ? std::make_shared<pcl::Indices>(*this->indices_) : this->indices_;
 }
 
-template <typename PointT, typename Query>
-void QueryFilter<PointT, Query>::filter(Cloud& output)
+template <typename PointT, typename Settings>
+void QueryFilter<PointT, Settings>::filter(Cloud& output)
 {
-  requireInput();
+  inputView();
   Cloud result; // apart, so that output may be the input and is untouched by an error
   pcl::FilterIndices<PointT>::filter(result);
   output = std::move(result);
 }
 
-template <typename PointT, typename Query>
-void QueryFilter<PointT, Query>::filter(pcl::Indices& indices)
+template <typename PointT, typename Settings>
+void QueryFilter<PointT, Settings>::filter(pcl::Indices& indices)
 {
-  requireInput();
+  inputView();
   pcl::FilterIndices<PointT>::filter(indices);
 }
 
-template <typename PointT, typename Query>
-void QueryFilter<PointT, Query>::applyFilter(pcl::Indices& indices)
+template <typename PointT, typename Settings>
+void QueryFilter<PointT, Settings>::applyFilter(pcl::Indices& indices)
 {
-  this->select(inputView(), this->negative_, indices,
-               this->extract_removed_indices_ ? this->removed_indices_.get() : nullptr);
+  select(this->passing(inputShape()), indices, this->extract_removed_indices_ ? this->removed_indices_.get() : nullptr);
 }
 
-template <typename PointT, typename Query>
-PointsView QueryFilter<PointT, Query>::inputView() const
+template <typename PointT, typename Settings>
+PointsView QueryFilter<PointT, Settings>::inputView() const
 {
+  if (!this->input_) throw std::invalid_argument("input cloud is missing: call setInputCloud() before filtering");
   // PCL fills in the indices of the whole cloud where none were set.
   const bool subset = this->indices_ && !this->fake_indices_;
   return subset ? viewOf(*this->input_, *this->indices_) : viewOf(*this->input_);
-}
-
-template <typename PointT, typename Query>
-void QueryFilter<PointT, Query>::requireInput() const
-{
-  if (!this->input_) throw std::invalid_argument("input cloud is missing: call setInputCloud() before filtering");
 }
 
 } // namespace pcl_bsh

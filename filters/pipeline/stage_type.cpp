@@ -69,7 +69,7 @@ const Option* StageType::findOption(const std::string& option) const
 void StageType::addOption(Option option)
 {
   option.standard = option.get(*make());
-  option.nullable = std::holds_alternative<std::monostate>(option.standard);
+  option.nullable = !option.required && std::holds_alternative<std::monostate>(option.standard);
   options.push_back(std::move(option));
 }
 

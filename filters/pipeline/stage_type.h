@@ -121,6 +121,13 @@ public:
     return *this;
   }
 
+  /// A row that is made already; `set` and `get` are of S.
+  StageDescription& option(Option option)
+  {
+    type_.addOption(std::move(option));
+    return *this;
+  }
+
   /// Of the last option: what its number counts.
   StageDescription& unit(std::string unit)
   {

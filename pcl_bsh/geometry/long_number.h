@@ -13,7 +13,7 @@ namespace pcl_bsh {
 ///
 /// Error bound: a sum drops two terms that it knows. A product drops the product of the tails and rounds four terms of
 /// low order, each by v of their absolute sum at most; kDoubleMargin pays for the arithmetic of errors. What underflows
-/// in a product is below 2^-960 where the product is below 2^-900, and nothing else.
+/// is below kVanishing, which is added where something may: in products below 2^-900, of tails, and of errors.
 class LongNumber {
 public:
   constexpr LongNumber() = default;
@@ -52,17 +52,19 @@ public:
       const double first = x.value_ * y.tail_, second = x.tail_ * y.value_;
       sum = twoSum(product.value, product.error + (first + second));
       error = 4 * kDoubleUnit * (std::abs(product.error) + std::abs(first) + std::abs(second)) +
-              std::abs(x.tail_ * y.tail_);
+              std::abs(x.tail_ * y.tail_) + kVanishing;
     }
     if (x.error_ != 0.0 || y.error_ != 0.0)
       error += (std::abs(x.value_) + std::abs(x.tail_) + x.error_) * y.error_ +
-               (std::abs(y.value_) + std::abs(y.tail_)) * x.error_;
-    if (std::abs(product.value) < 0x1p-900 && x.value_ != 0.0 && y.value_ != 0.0) error += 0x1p-950;
+               (std::abs(y.value_) + std::abs(y.tail_)) * x.error_ + kVanishing;
+    if (std::abs(product.value) < 0x1p-900 && x.value_ != 0.0 && y.value_ != 0.0) error += kVanishing;
     return {sum.value, sum.error, error * (1.0 + kDoubleMargin)};
   }
   LongNumber& operator+=(const LongNumber& other) noexcept { return *this = *this + other; }
 
 private:
+  static constexpr double kVanishing = 0x1p-960;
+
   double value_ = 0.0, tail_ = 0.0, error_ = 0.0;
 };
 

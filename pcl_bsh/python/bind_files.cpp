@@ -107,7 +107,8 @@ std::string pathOf(const PathLike& path)
   return py::module_::import("os").attr("fsdecode")(path).cast<std::string>();
 }
 
-std::pair<Records, FileHeader> readWithHeader(const PathLike& path, const std::optional<io::ColumnNames>& columns, unsigned threads)
+std::pair<Records, FileHeader> readWithHeader(const PathLike& path, const std::optional<io::ColumnNames>& columns,
+                                              unsigned threads)
 {
   const std::string file = pathOf(path);
   FileHeader header;
@@ -159,7 +160,8 @@ void bindFiles(py::module_& module)
         return readWithHeader(path, columns, threads).first;
       },
       kRead, "path"_a, "columns"_a = py::none(), py::kw_only(), "threads"_a = 0);
-  module.def("read_with_header", &readWithHeader, kReadWithHeader, "path"_a, "columns"_a = py::none(), py::kw_only(), "threads"_a = 0);
+  module.def("read_with_header", &readWithHeader, kReadWithHeader, "path"_a, "columns"_a = py::none(), py::kw_only(),
+             "threads"_a = 0);
   module.def("read_mesh", &readMeshOf, kReadMesh, "path"_a, py::kw_only(), "threads"_a = 0);
   module.def("write", &writeRecords, kWrite, "path"_a, "records"_a, "header"_a = py::none());
 }

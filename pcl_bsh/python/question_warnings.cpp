@@ -42,8 +42,8 @@ NamedCloud factsOf(std::string name, const SphereHierarchy& hierarchy, bool meas
 
 std::vector<Warning> warningsOf(const Asked& asked)
 {
-  Question question{factsOf(asked.name_a, asked.a.hierarchy(), asked.measures),
-                    factsOf(asked.name_b, asked.b, asked.measures), asked.poses_b, asked.clearance};
+  QuestionFacts question{factsOf(asked.name_a, asked.a.hierarchy(), asked.measures),
+                         factsOf(asked.name_b, asked.b, asked.measures), asked.poses_b, asked.clearance};
   for (Eigen::Isometry3d& pose : question.poses) pose = asked.a.pose.inverse() * pose;
   return pcl_bsh::warningsOf(question);
 }

@@ -40,7 +40,7 @@ bool Density::couldHide(double clearance) const
   return (!input || isScan(input)) && (!obstacle || isScan(obstacle)) && blind() > clearance;
 }
 
-std::vector<Warning> warningsOf(const NamedCloud& cloud, std::optional<double> clearance)
+std::vector<Warning> warningsOf(const NamedCloud& cloud, std::optional<double> clearance, double least_length)
 {
   std::vector<Warning> warnings;
   if (cloud.box.isEmpty()) {
@@ -60,10 +60,11 @@ std::vector<Warning> warningsOf(const NamedCloud& cloud, std::optional<double> c
     warnings.push_back({WarningKind::loose,
                         plainText(cloud.name, ": ", cloud.loose, belong, " no part of the surface that is compared")});
   }
-  if (clearance && *clearance > 0 && cloud.coordinate_spacing > coarse_share * *clearance) {
+  const double length = clearance.value_or(least_length);
+  if (length > 0 && cloud.coordinate_spacing > coarse_share * length) {
     warnings.push_back(
         {WarningKind::coarse, plainText(cloud.name, ": its float32 coordinates lie ", cloud.coordinate_spacing,
-                                        " apart, coarse for a clearance of ", *clearance,
+                                        " apart, coarse for a ", clearance ? "clearance" : "limit", " of ", length,
                                         ": give float64 coordinates, or ones near the origin")});
   }
   return warnings;
@@ -103,11 +104,11 @@ std::optional<Warning> warningOfFrames(const std::string& a, const Eigen::Aligne
                            b, " to that of ", a)};
 }
 
-std::vector<Warning> warningsOf(const Question& question)
+std::vector<Warning> warningsOf(const QuestionFacts& facts)
 {
-  const auto& [input, obstacle, poses, clearance] = question;
-  std::vector<Warning> warnings = warningsOf(input, clearance);
-  for (Warning& warning : warningsOf(obstacle, clearance)) append(warnings, std::move(warning));
+  const auto& [input, obstacle, poses, clearance, least_length] = facts;
+  std::vector<Warning> warnings = warningsOf(input, clearance, least_length);
+  for (Warning& warning : warningsOf(obstacle, clearance, least_length)) append(warnings, std::move(warning));
   if (auto far =
           warningOfFrames(input.name, input.box, obstacle.name, boxAlong(obstacle.box, poses), clearance.value_or(0.0)))
     warnings.push_back(std::move(*far));

@@ -2,8 +2,10 @@
 // What a question's answer does not say by itself, as each program, filter and package tells it: the conditions and the
 // sentences stand here alone.
 //
-//   const Question question{measuredCloud("hall.ply", hall), measuredCloud("robot.pcd", robot), poses, 0.05};
-//   for (const Warning& warning : warningsOf(question)) tell(warning.text);
+//   const QuestionFacts facts{measuredCloud("hall.ply", hall), measuredCloud("robot.pcd", robot), poses, 0.05};
+//   for (const Warning& warning : warningsOf(facts)) tell(warning.text);
+//
+// ask() (ask.h) has them in its answer.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -12,6 +14,7 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,11 +22,13 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What is asked, as far as warnings depend on it. Lengths are in the clouds' own unit.
-struct Question {
+/// What of a question warnings depend on. Lengths are in the clouds' own unit.
+struct QuestionFacts {
   NamedCloud input, obstacle;
   std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()}; ///< T_input_obstacle, one after another
-  std::optional<double> clearance; ///< that points collide within; none: distances are asked for
+  std::optional<double> clearance = {}; ///< that points collide within; none: distances are asked for
+  double least_length =
+      std::numeric_limits<double>::infinity(); ///< without a clearance, that distances are compared with
 };
 
 /// How wide the holes between points are that a collision may hide in.
@@ -42,9 +47,10 @@ enum class WarningKind : std::uint8_t {
   empty,      ///< no finite point
   not_finite, ///< some points are not
   loose,      ///< vertices of a surface that no face has
-  coarse,     ///< float32 coordinates that are coarse for the clearance
+  coarse,     ///< float32 coordinates that are coarse for the clearance, or for limits of distances
   sparse,     ///< surfaces may touch while no two points are within the clearance
   apart,      ///< boxes far from each other: not in one frame, perhaps
+  unguarded,  ///< a density guard of a surface
 };
 
 /// One sentence for users, which names the cloud and says what to do.
@@ -54,10 +60,11 @@ struct Warning {
 };
 
 /// All that is to be told of a question. A sentence about two clouds of one name that would be told twice is told once.
-std::vector<Warning> warningsOf(const Question& question);
+std::vector<Warning> warningsOf(const QuestionFacts& facts);
 
 /// Of one cloud by itself: empty, not finite, loose vertices, coarse.
-std::vector<Warning> warningsOf(const NamedCloud& cloud, std::optional<double> clearance);
+std::vector<Warning> warningsOf(const NamedCloud& cloud, std::optional<double> clearance,
+                                double least_length = std::numeric_limits<double>::infinity());
 
 /// Of two clouds, where their spacings are known.
 std::optional<Warning> warningOfDensity(const NamedCloud& a, const NamedCloud& b, double clearance);

@@ -19,7 +19,7 @@ void checkAtPoses(const Placed& a, const PoseList& poses, const Accuracy& accura
   checkAccuracy(accuracy);
   if (accuracy.stopsEarly())
     throw InvalidInput(Input::accuracy, "accuracy", accuracy.text() + " stops early, which many poses at once do not",
-                       "give exact, float or tolerance=LENGTH");
+                       "give exact or tolerance=LENGTH");
   checkPose("pose of a", a.pose);
   checkPoses(poses, "b", threads);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/question/surface_answers.h>
 #include <pcl_bsh/site/answers/inquiry.h>
 #include <pcl_bsh/site/answers/joined_poses.h>
 #include <pcl_bsh/site/answers/passage_sum.h>

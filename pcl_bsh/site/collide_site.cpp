@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/question/surface_answers.h>
 #include <pcl_bsh/site/answers/comparison.h>
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/tiles/records.h>
@@ -309,7 +309,7 @@ SiteDistances pointDistances(const Site& site, const PlacedSite& b, double max_d
 {
   if (request.accuracy.stopsEarly())
     throw std::invalid_argument("accuracy " + request.accuracy.text() +
-                                ": distances of two sites cannot stop early: give exact, float or a tolerance");
+                                ": distances of two sites cannot stop early: give exact or a tolerance");
   return distancesOf(asFirst(site), PlacedSite{b.site, b.pose, {}}, max_distance, with(request, {}), sink);
 }
 

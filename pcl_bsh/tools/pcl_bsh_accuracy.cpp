@@ -6,6 +6,7 @@
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/obstacle.h>
 #include <pcl_bsh/tools/cli/path.h>
+#include <pcl_bsh/tools/cli/question_options.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 #include <pcl_bsh/tools/collide/options.h>
 
@@ -84,11 +85,14 @@ std::optional<Options> parse(int argc, char** argv)
   cli::ColumnOptions columns;
   columns.addTo(app);
   app.add_option("--unit", options.unit, "name of the clouds' unit, for the picture")->type_name("NAME");
-  cli::addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
+  Question question;
+  cli::addQuestionOptions(app, question, {"surface_tolerance", "vertices_only"});
   app.add_flag("--peers", options.peers,
                "measure PCL's kd-tree, octree and VoxelGrid on the same clouds, too, which\n"
                "must be points");
   if (!cli::understood(app, program, argc, argv)) return std::nullopt;
+  cli::requireAccepted(question);
+  options.surface = {question.surface_tolerance, question.vertices_only};
   if (!options.trajectory.empty() && (!pose.empty() || poses))
     throw cli::UsageError(std::string(pose.empty() ? "--poses" : "--pose") + ": --trajectory is given too: give one");
   options.poses = poses.value_or(1);

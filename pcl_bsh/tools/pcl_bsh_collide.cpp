@@ -2,36 +2,27 @@
 // Which points of a cloud collide with an obstacle, at a pose or along a path? From two files to a third, with reports.
 #include <pcl_bsh/tools/cli/obstacle.h>
 #include <pcl_bsh/tools/cli/program.h>
+#include <pcl_bsh/tools/cli/question_options.h>
 #include <pcl_bsh/tools/cli/step.h>
-#include <pcl_bsh/tools/collide/checks.h>
 #include <pcl_bsh/tools/collide/loading.h>
 #include <pcl_bsh/tools/collide/options.h>
 #include <pcl_bsh/tools/collide/report.h>
 #include <pcl_bsh/tools/collide/summary.h>
-#include <pcl_bsh/tools/collide/surface_input.h>
 
-#include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/collide.h>
-#include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/selected_records.h>
-#include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/distance_report.h>
-#include <pcl_bsh/neighbors/patch_spacings.h>
-#include <pcl_bsh/question/warnings.h>
+#include <pcl_bsh/io/reports/report_origin.h>
+#include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/search/cloud_view.h>
-#include <pcl_bsh/trajectory/trajectory.h>
 
-#include <algorithm>
-#include <iostream>
-#include <memory>
 #include <optional>
-#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,19 +36,6 @@ using Options = cli::CollideOptions;
 
 constexpr auto program = cli::collide_program;
 
-/// From a query about the balls to what users asked: about the triangles.
-TrajectoryResult ofInput(const SurfaceCover* cover, TrajectoryResult found, cli::CollisionReport& report)
-{
-  if (!cover) return found;
-  found = ofTriangles(*cover, std::move(found));
-  report.input_surface = cover->tolerance;
-  report.undecided = found.undecided;
-  tellOfSurface(cover->tolerance, report.closest);
-  if (report.closest.pair) report.closest.pair->a = cover->triangles[report.closest.pair->a];
-  if (report.path) report.path->table.clear(); // it counts balls
-  return found;
-}
-
 pcl::PCLPointCloud2 marked(const fs::path& path, const pcl::PCLPointCloud2& cloud, const std::vector<NewField>& fields)
 {
   try {
@@ -68,22 +46,16 @@ pcl::PCLPointCloud2 marked(const fs::path& path, const pcl::PCLPointCloud2& clou
   }
 }
 
-/// The distance of every point, of both clouds, and that of the input's as the output tells it.
-struct Distances {
-  SymmetricDistances found;
-  std::vector<float> field;
-};
-
-/// What the output gets beside all the input had.
-std::vector<NewField> newFields(const Options& options, const TrajectoryResult& found, const Distances& distances)
+/// What the output gets beside all the input had. @param distances as it tells them
+std::vector<NewField> newFields(const Options& options, const TrajectoryResult& found,
+                                const std::vector<float>& distances)
 {
-  const bool all = options.moves() && !options.accuracy.stopsEarly();
   std::vector<NewField> fields;
-  if (all)
+  if (options.tellsContacts())
     fields = fieldsOf(found);
   else if (options.keep == Keep::flagged)
     fields.push_back({collision_field_name, &found.flags});
-  if (options.distances) fields.push_back({distance_field_name, &distances.field});
+  if (options.distances) fields.push_back({distance_field_name, &distances});
   return fields;
 }
 
@@ -100,16 +72,16 @@ pcl::PCLPointCloud2 select(const pcl::PCLPointCloud2& cloud, const PointsView& v
   return selectedRecords(cloud, kept);
 }
 
-void write(const Options& options, const Scan& input, const TrajectoryResult& found, const Distances& distances,
-           double& seconds)
+void write(const Options& options, const Scan& input, const Answer& answer, double& seconds)
 {
   cli::Step step("Writing " + options.output.string());
+  const TrajectoryResult& found = answer.collisions;
   if (!input.triangles.empty()) {
-    const std::size_t written =
-        cli::writeSurface(options, {input.cloud, input.triangles}, input.facts.viewpoint, found);
-    seconds += step.done(counted(written, "triangle"));
+    seconds += step.done(counted(cli::writeSurface(options, input, found), "triangle"));
     return;
   }
+  const std::vector<double>& measured = answer.distances.a.distance;
+  const std::vector<float> distances(measured.begin(), measured.end());
   pcl::PCLPointCloud2 cloud;
   if (options.keep == Keep::flagged || options.distances)
     cloud = marked(options.input, input.cloud, newFields(options, found, distances));
@@ -119,121 +91,68 @@ void write(const Options& options, const Scan& input, const TrajectoryResult& fo
   seconds += step.done(counted(std::size_t{cloud.width} * cloud.height, "point"));
 }
 
-/// Of the density guard; none where it is not asked for, or the obstacle has no two places.
-std::vector<float> guardedSpacings(const Options& options, const SphereHierarchy& obstacle,
-                                   cli::CollisionReport& report)
+/// Asks as a step of the program. @param done of the answer, for the step's end
+template <typename Done>
+Answer askInStep(const std::string& what, Question question, Shape& input, Shape& obstacle, double& seconds,
+                 const Done& done)
 {
-  if (!options.density) return {};
-  if (report.surface) {
-    report.warnings.push_back(report.obstacle.file + ": is a surface, which has no holes: --density guards nothing");
-    return {};
-  }
-  report.widest_gap = options.widest_gap > 0 ? options.widest_gap : usualGap(obstacle);
-  return report.widest_gap > 0 ? patchSpacings(obstacle, report.widest_gap, options.threads) : std::vector<float>();
-}
-
-/// From the records of a query to what users know of the obstacle.
-void nameParts(cli::CollisionReport& report)
-{
-  if (report.surface && report.closest.pair) report.closest.pair->b = report.surface->partOf(report.closest.pair->b);
-}
-
-/// At one pose, without a list of clashes: flags, and the smallest distance however large.
-TrajectoryResult atPose(const Options& options, const SphereHierarchy& a, const SphereHierarchy& b,
-                        cli::CollisionReport& report)
-{
-  cli::Step query("Comparing");
-  FlagsRequest request;
-  request.clearance = options.clearance;
-  request.threads = options.threads;
-  request.accuracy = options.accuracy;
-  const std::vector<float> spacings = guardedSpacings(options, b, report);
-  if (!spacings.empty()) request.spacings_of_b = spacings.data();
-  FlagsResult flags = collisionFlags({a}, {b, options.pose}, request);
-  report.closest = closestPair({a}, {b, options.pose}, {options.accuracy});
-  if (report.surface) tellOfSurface(report.surface->tolerance(), report.closest);
-  nameParts(report);
-  report.seconds.query = query.done(std::to_string(flags.colliding_a) + " colliding");
-  report.work = flags.work;
-  report.work += report.closest.work;
-  report.undecided = flags.undecided_a;
-  report.sparse = flags.sparse_a;
-  TrajectoryResult found;
-  found.flags = std::move(flags.a);
-  found.colliding = flags.colliding_a;
-  return found;
-}
-
-/// Of all colliding points, that of the smallest distance.
-DistanceResult closestOf(const TrajectoryResult& found)
-{
-  DistanceResult closest;
-  for (std::size_t i = 0; i < found.distance.size(); ++i) {
-    const double distance = static_cast<double>(found.distance[i]);
-    if (!(distance < closest.distance)) continue;
-    closest.distance = distance;
-    closest.pair = PointPair{static_cast<std::uint32_t>(i), found.closest_point[i]};
-  }
-  return closest;
-}
-
-TrajectoryResult alongPath(const Options& options, const std::vector<Eigen::Isometry3d>& poses,
-                           const SphereHierarchy& a, const SphereHierarchy& b, cli::CollisionReport& report)
-{
-  cli::Step query("Following " + counted(poses.size(), "pose"));
-  TrajectoryRequest request;
-  request.clearance = options.clearance;
-  request.accuracy = options.accuracy;
-  const bool all = !request.accuracy.stopsEarly(); // that leaves times and distances open
-  request.distances = request.first_poses = request.closest_poses = all;
-  request.swept = options.swept;
-  request.pose_summaries = all && !options.swept; // swept motion is of what lies between poses
-  request.threads = options.threads;
-  request.progress = [&](double fraction) {
-    query.share(fraction);
+  cli::Step step(what);
+  question.progress = [&](double fraction) {
+    step.share(fraction);
     return true;
   };
-  TrajectoryResult found = collideAlong({a}, b, poses, request);
-  report.seconds.query = query.done(std::to_string(found.colliding) + " colliding");
-  report.work = found.work;
-  report.undecided = found.undecided;
-  if (report.surface) tellOfSurface(found);
-  report.closest = closestOf(found);
-  nameParts(report);
-  if (options.moves()) report.path = cli::PathReport{poses.size(), options.swept, found.poses, found.first_contact};
-  return found;
+  Answer answer = ask(question, input, obstacle);
+  seconds += step.done(done(answer));
+  return answer;
 }
 
-/// @param cover of the input, where it is a surface
-void warnOfQuestion(const Options& options, const std::vector<Eigen::Isometry3d>& poses, const SphereHierarchy& a,
-                    const SurfaceCover* cover, const SphereHierarchy& b, const io::Obstacle& obstacle,
-                    cli::CollisionReport& report)
+/// What collides first, then all distances: each tells how long it takes.
+void answer(Shape& input, Shape& obstacle, cli::CollisionReport& report)
 {
-  const SurfaceCover* const surface = report.surface ? report.surface->cover().get() : nullptr;
-  Question question{namedCloud(options.input.string(), a, cover), namedCloud(options.obstacle.string(), b, surface),
-                    poses, options.asks_collisions ? std::optional(options.clearance) : std::nullopt};
-  question.input.spacing = report.density.input;
-  question.obstacle.spacing = report.density.obstacle;
-  addTexts(warningsOf(question), report.warnings);
-  for (std::string& remark : cli::warningsOf(obstacle, options.obstacle)) addOnce(std::move(remark), report.warnings);
+  Question question = report.question;
+  Wanted& wanted = question.wanted;
+  const Wanted all = wanted;
+  wanted.distances = wanted.both_ways = false;
+  wanted.spacings = !all.measures(); // at last, for it builds voxels
+  report.answer = askInStep(question.path ? "Following " + counted(question.path->size(), "pose") : "Comparing",
+                            question, input, obstacle, report.seconds.query, [](const Answer& found) {
+                              return std::to_string(found.collisions.colliding) + " colliding";
+                            });
+  if (!all.measures()) return;
+  wanted = {};
+  wanted.distances = wanted.both_ways = wanted.spacings = true;
+  Answer measured = askInStep("Measuring distances", question, input, obstacle, report.seconds.distances,
+                              [](const Answer& found) { return counted(found.distances.a.measured, "point"); });
+  report.answer.distances = std::move(measured.distances);
+  report.answer.density = measured.density;
+  for (Warning& warning : measured.warnings) report.answer.warnings.push_back(std::move(warning));
+  report.answer.work += measured.work;
 }
 
 io::ClashQuestion clashQuestion(const Options& options)
 {
-  return {options.input.string(), options.obstacle.string(), options.clearance,           options.swept,
-          options.accuracy,       options.input_uncertainty, options.obstacle_uncertainty};
+  const Question& asked = options.question;
+  return {options.input.string(),
+          options.obstacle.string(),
+          asked.clearance.value_or(0.0),
+          asked.swept > 0.0 ? std::optional(asked.swept) : std::nullopt,
+          asked.accuracy,
+          asked.uncertaintyOfInput(),
+          asked.uncertaintyOfObstacle()};
 }
 
 /// @return how many there are
-std::string listClashes(const Options& options, const std::vector<Eigen::Isometry3d>& poses, const SphereHierarchy& a,
-                        const SphereHierarchy& b, const TrajectoryResult& found,
+std::string listClashes(const Options& options, const SphereHierarchy& a, const SphereHierarchy& b,
                         const std::optional<io::ClashList>& earlier, cli::CollisionReport& report)
 {
   cli::Step step("Listing clashes");
+  const io::ClashQuestion question = clashQuestion(options);
   const double distance = options.cluster_distance > 0
                               ? options.cluster_distance
-                              : io::clusterDistanceFor(options.clearance, *report.density.input);
-  io::ClashReport list{.question = clashQuestion(options),
+                              : io::clusterDistanceFor(question.clearance, *report.answer.density.input);
+  const std::vector<Eigen::Isometry3d> poses = report.question.poses();
+  const TrajectoryResult& found = report.answer.collisions;
+  io::ClashReport list{.question = question,
                        .cluster_distance = distance,
                        .clashes = findClashes(a.view(), found, distance),
                        .scan = a.view(),
@@ -246,8 +165,8 @@ std::string listClashes(const Options& options, const std::vector<Eigen::Isometr
                        .surface = report.surface ? &*report.surface : nullptr};
   if (earlier) {
     TrajectoryRequest motion;
-    motion.swept = options.swept;
-    motion.threads = options.threads;
+    motion.swept = question.swept;
+    motion.threads = report.question.threads;
     for (std::string& warning : io::compareWithList(list, *options.previous, *earlier, [&](FormerPlaces& former) {
            former.visit(b, poses, motion);
            former.scan(a.view());
@@ -259,12 +178,6 @@ std::string listClashes(const Options& options, const std::vector<Eigen::Isometr
   return io::clashCounts(list);
 }
 
-std::vector<Eigen::Isometry3d> posesOf(const Options& options, std::vector<std::string>& warnings)
-{
-  if (!options.trajectory.empty()) return io::readPoses(options.trajectory, &warnings);
-  return options.path.empty() ? std::vector{options.pose} : options.path;
-}
-
 std::optional<io::ClashList> readEarlier(const Options& options, std::vector<std::string>& warnings)
 {
   if (!options.previous) return std::nullopt;
@@ -274,103 +187,105 @@ std::optional<io::ClashList> readEarlier(const Options& options, std::vector<std
   return list;
 }
 
-PointDistancesRequest distancesRequest(const Options& options)
-{
-  PointDistancesRequest request;
-  request.max_distance = options.distances->most;
-  request.accuracy = options.accuracy;
-  request.threads = options.threads;
-  return request;
-}
-
-Distances measure(const Options& options, const SphereHierarchy& a, const SphereHierarchy& b,
-                  cli::CollisionReport& report)
-{
-  cli::Step step("Measuring distances");
-  PointDistancesRequest request = distancesRequest(options);
-  request.progress = [&](double fraction) {
-    step.share(fraction);
-    return true;
-  };
-  Distances distances;
-  distances.found = symmetricDistances({a}, {b, options.pose}, request);
-  if (report.surface) tellOfSurface(report.surface->tolerance(), distances.found);
-  distances.field.assign(distances.found.a.distance.begin(), distances.found.a.distance.end());
-  report.work += distances.found.a.work;
-  report.work += distances.found.b.work;
-  report.seconds.distances = step.done(counted(distances.found.a.measured, "point"));
-  return distances;
-}
-
 std::optional<io::DistanceReport> reportDistances(const Options& options, const SphereHierarchy& a,
-                                                  const SphereHierarchy& b, const Distances& distances,
-                                                  const cli::CollisionReport& found)
+                                                  const SphereHierarchy& b, const cli::CollisionReport& found)
 {
   if (!options.distances) return std::nullopt;
+  PointDistancesRequest request;
+  request.max_distance = options.question.max_distance.value_or(request.max_distance);
+  request.accuracy = options.question.accuracy;
   const io::DistanceQuestion question = {options.input.string(), options.obstacle.string(),
-                                         options.unit,           distancesRequest(options),
+                                         options.unit,           request,
                                          std::nullopt,           found.surface ? &*found.surface : nullptr,
                                          found.coordinate_system};
-  io::DistanceReport report = io::reportOf(question, {a}, {b, options.pose}, distances.found);
-  if (options.distances->page) io::writeDistances(*options.distances->page, report);
+  io::DistanceReport report = io::reportOf(question, {a}, {b, options.question.pose}, found.answer.distances);
+  if (options.distance_page) io::writeDistances(*options.distance_page, report);
   return report;
 }
 
-int collide(const Options& options)
+/// Refuses what can be refused before the first cloud is loaded.
+/// @throws std::invalid_argument, UsageError or files::FileError naming the option and the value
+void check(const Options& options, const Question& question)
 {
-  check(options);
-  cli::CollisionReport report;
-  report.warnings = options.warnings;
-  const std::vector<Eigen::Isometry3d> poses = posesOf(options, report.warnings);
-  const std::optional<io::ClashList> earlier = readEarlier(options, report.warnings);
-  report.clearance = options.clearance;
-  report.accuracy = options.accuracy;
-  report.input_uncertainty = options.input_uncertainty;
-  report.obstacle_uncertainty = options.obstacle_uncertainty;
+  cli::requireAccepted(question, options.names_of_poses);
+  io::requireWritableCloud(options.output);
+  if (options.report) files::requireWritable(*options.report);
+  for (const fs::path& list : options.clashes) {
+    try {
+      io::requireClashFormat(list);
+    }
+    catch (const files::FileError& error) {
+      throw cli::UsageError(std::string("--clashes: ") + error.what());
+    }
+    files::requireWritable(list);
+  }
+  if (options.distances) io::reportDate(); // refuses one that is none before anything is done
+  if (!options.distance_page) return;
+  if (options.distance_page->extension() != ".html")
+    throw cli::UsageError("--distance-page: " + options.distance_page->string() +
+                          ": is no page for browsers: name a .html file");
+  files::requireWritable(*options.distance_page);
+}
 
-  const Scan input = loadInput(options, report.seconds.load);
-  report.coordinate_system = input.facts.coordinate_system;
-  const std::shared_ptr<const SurfaceCover> cover = coverOf(options, input, report.seconds.load, report.warnings);
-  if (!cover && (options.keep == Keep::flagged || options.distances))
-    marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
-  const io::Obstacle obstacle =
-      cli::loadObstacle(options.obstacle, options.surface, options.clearance, report.seconds.load,
-                        options.columns.of(options.obstacle), nullptr, options.threads);
-  cli::requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
-  const auto a = cli::build(cover ? cover->view() : viewOf(input.cloud), input.cloud.fields, options.input,
-                            options.input_uncertainty, options.threads, report.seconds.build);
-  const auto b = cli::build(obstacle.view(), obstacle.points().fields, options.obstacle, options.obstacle_uncertainty,
-                            options.threads, report.seconds.build);
+/// From two things to all that is told of them.
+int tell(const Options& options, const Scan& input, Shape& scan, const io::Obstacle& obstacle,
+         const std::optional<io::ClashList>& earlier, cli::CollisionReport& report)
+{
+  const Question& question = report.question;
+  Shape other = obstacle.shape(options.obstacle.string());
+  const auto built = [&](Shape& shape, const Uncertainty& uncertainty) -> const SphereHierarchy& {
+    return cli::build(shape, uncertainty, question.threads, report.seconds.build);
+  };
+  const SphereHierarchy& a = built(scan, question.uncertaintyOfInput());
+  const SphereHierarchy& b = built(other, question.uncertaintyOfObstacle());
   report.input = {options.input.string(), a.view().count, a.size()};
   report.obstacle = {options.obstacle.string(), b.view().count, b.size()};
-  if (cover) report.input.points = report.input.finite = input.triangles.size();
+  if (scan.surface()) {
+    report.input_surface = scan.surface()->tolerance;
+    report.input.points = report.input.finite = input.triangles.size();
+  }
   if (obstacle.isSurface()) {
     report.surface = obstacle;
     const PointsView vertices = viewOf(obstacle.points());
     report.obstacle.points = vertices.count;
     report.obstacle.finite = SphereHierarchy(vertices).size();
   }
-
-  const bool by_place = options.moves() || !options.clashes.empty();
-  const TrajectoryResult found =
-      ofInput(cover.get(), by_place ? alongPath(options, poses, a, b, report) : atPose(options, a, b, report), report);
-  const Distances distances = options.distances ? measure(options, a, b, report) : Distances();
-  if (!cover) report.density.input = spacingOf(a);
-  if (!report.surface) report.density.obstacle = spacingOf(b);
-  report.colliding = found.colliding;
+  answer(scan, other, report);
   report.voxels_total = a.statistics().voxels + b.statistics().voxels;
   for (const std::string& remark : input.facts.remarks)
     addOnce(options.input.string() + ": " + remark, report.warnings);
-  warnOfQuestion(options, poses, a, cover.get(), b, obstacle, report);
+  addTexts(report.answer.warnings, report.warnings);
+  for (std::string& remark : cli::warningsOf(obstacle, options.obstacle)) addOnce(std::move(remark), report.warnings);
 
-  write(options, input, found, distances, report.seconds.write);
-  std::string clashes;
-  if (!options.clashes.empty()) clashes = listClashes(options, poses, a, b, found, earlier, report);
-  const std::optional<io::DistanceReport> measured = reportDistances(options, a, b, distances, report);
+  write(options, input, report.answer, report.seconds.write);
+  const std::string clashes = options.clashes.empty() ? "" : listClashes(options, a, b, earlier, report);
+  const std::optional<io::DistanceReport> measured = reportDistances(options, a, b, report);
   if (measured) report.distances = io::distanceJson(*measured);
   if (options.report) cli::writeReport(*options.report, report);
   summarise(options, report, clashes, measured);
   return 0;
+}
+
+int collide(const Options& options)
+{
+  options.files.requireApart();
+  cli::CollisionReport report;
+  report.warnings = options.warnings;
+  Question& question = report.question = options.question;
+  if (!options.trajectory.empty()) question.path = io::readPoses(options.trajectory, &report.warnings);
+  check(options, question);
+  const std::optional<io::ClashList> earlier = readEarlier(options, report.warnings);
+
+  const Scan input = loadInput(options, report.seconds.load);
+  report.coordinate_system = input.facts.coordinate_system;
+  Shape scan = cli::shapeOf(options, input, report.seconds.load, report.warnings);
+  if (!scan.surface() && (options.keep == Keep::flagged || options.distances))
+    marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
+  const io::Obstacle obstacle =
+      cli::loadObstacle(options.obstacle, {question.surface_tolerance, question.vertices_only},
+                        question.clearance.value_or(0.0), report.seconds.load, options.columns.of(options.obstacle));
+  return cli::named([&] { return tell(options, input, scan, obstacle, earlier, report); }, question,
+                    options.names_of_poses);
 }
 
 } // namespace

@@ -11,8 +11,10 @@
 #include <vtkFloatArray.h>
 #include <vtkPoints.h>
 
+#include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace pcl_bsh::vtk {
 namespace {
@@ -20,7 +22,7 @@ namespace {
 /// Triangles of all cells, and the cell of each.
 struct CellTriangles {
   std::vector<Triangle> triangles;
-  std::vector<vtkIdType> cells;
+  std::vector<std::uint32_t> cells;
 };
 
 /// Visits each cell in the order in which vtkPolyData numbers them: vertices, lines, polygons, strips.
@@ -84,7 +86,7 @@ CellTriangles trianglesOf(vtkPolyData& data, const PointsView& view)
     default:
       for (std::size_t i = 0; i + 2 < n; ++i) found.triangles.push_back({records[i], records[i + 1], records[i + 2]});
     }
-    found.cells.resize(found.triangles.size(), cell);
+    found.cells.resize(found.triangles.size(), static_cast<std::uint32_t>(cell));
   });
   return found;
 }
@@ -118,15 +120,13 @@ bool isSurface(vtkPolyData& data)
   return data.GetNumberOfLines() + data.GetNumberOfPolys() + data.GetNumberOfStrips() > 0;
 }
 
-bool KeptHierarchy::isOf(const PointsView& view, bool copied, std::uint64_t checksum, double tolerance)
+bool KeptShape::isOf(const PointsView& view, bool copied, std::uint64_t checksum, double tolerance)
 {
   // A hierarchy of points looks into their memory: where that is the caller's, the same numbers elsewhere are others.
   const bool same_memory = view.data == points_.data || (copied && copied_) || tolerance >= 0.0;
   const bool same_points = view.count == points_.count && view.scalar == points_.scalar && same_memory;
-  if (hierarchy_ && same_points && checksum == checksum_ && tolerance == tolerance_) return true;
-  hierarchy_.reset();
-  cover_.reset();
-  cell_of_triangle_.clear();
+  if (shape_ && same_points && checksum == checksum_ && tolerance == tolerance_) return true;
+  shape_ = Shape();
   points_ = view;
   copied_ = copied;
   checksum_ = checksum;
@@ -134,36 +134,33 @@ bool KeptHierarchy::isOf(const PointsView& view, bool copied, std::uint64_t chec
   return false;
 }
 
-const SphereHierarchy& KeptHierarchy::build(const PointsView& view, unsigned threads)
+Shape& KeptShape::keep(Shape shape)
 {
-  HierarchyOptions options;
-  options.threads = threads;
-  hierarchy_ = std::make_unique<SphereHierarchy>(view, options);
-  ++built_;
-  return *hierarchy_;
+  shape_ = std::move(shape);
+  ++made_;
+  return shape_;
 }
 
-const SphereHierarchy& KeptHierarchy::ofPoints(vtkPolyData& data, unsigned threads)
+Shape& KeptShape::ofPoints(vtkPolyData& data)
 {
   bool copied = false;
   const PointsView view = viewOf(data, copied);
-  return isOf(view, copied, checksumOf(view), -1.0) ? *hierarchy_ : build(view, threads);
+  return isOf(view, copied, checksumOf(view), -1.0) ? shape_ : keep({name_, view});
 }
 
-const SphereHierarchy& KeptHierarchy::ofSurface(vtkPolyData& data, double tolerance, unsigned threads,
-                                                const std::function<bool(double)>& progress)
+Shape& KeptShape::ofSurface(vtkPolyData& data, double tolerance, const std::function<bool(double)>& progress)
 {
   if (!(tolerance >= 0.0)) throw InvalidInput(Input::surface, "tolerance", "is negative or no number", "give a length");
   bool copied = false;
   const PointsView view = viewOf(data, copied);
-  if (isOf(view, copied, mixed(checksumOf(view), checksumOfCells(data)), tolerance)) return *hierarchy_;
-  CellTriangles cells = trianglesOf(data, view);
+  if (isOf(view, copied, mixed(checksumOf(view), checksumOfCells(data)), tolerance)) return shape_;
+  const CellTriangles cells = trianglesOf(data, view);
   SurfaceRequest request;
   request.tolerance = tolerance;
   request.progress = progress;
-  cover_ = std::make_shared<SurfaceCover>(coverSurface(view, cells.triangles, request));
-  cell_of_triangle_ = std::move(cells.cells);
-  return build(cover_->view(), threads);
+  const auto cover = std::make_shared<SurfaceCover>(coverSurface(view, cells.triangles, request));
+  for (std::uint32_t& part : cover->triangles) part = cells.cells[part];
+  return keep({name_, std::shared_ptr<const SurfaceCover>(cover)});
 }
 
 } // namespace pcl_bsh::vtk

@@ -44,8 +44,9 @@ protected:
   vtkBSHCollisionFilter() = default;
   ~vtkBSHCollisionFilter() override = default;
 
-  void Answer(const Question& question, vtkPolyData* output) override;
-  double UsualTolerance() const override { return this->Clearance / 10.0; }
+  void Ask(pcl_bsh::Question& question) const override;
+  void Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, const pcl_bsh::Shape& obstacle,
+            vtkPolyData* output) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
   double Clearance = 0.0;

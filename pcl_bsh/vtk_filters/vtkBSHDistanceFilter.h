@@ -32,8 +32,9 @@ protected:
   vtkBSHDistanceFilter() = default;
   ~vtkBSHDistanceFilter() override = default;
 
-  void Answer(const Question& question, vtkPolyData* output) override;
-  double UsualTolerance() const override { return 0.0; }
+  void Ask(pcl_bsh::Question& question) const override;
+  void Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, const pcl_bsh::Shape& obstacle,
+            vtkPolyData* output) override;
 
   double MaximumDistance = VTK_DOUBLE_MAX;
 

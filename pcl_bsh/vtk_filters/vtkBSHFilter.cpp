@@ -2,8 +2,8 @@
 #include <pcl_bsh/vtk_filters/vtkBSHFilter.h>
 
 #include <pcl_bsh/base/cancelled.h>
-#include <pcl_bsh/question/warnings.h>
-#include <pcl_bsh/vtk_filters/bsh_question.h>
+#include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/vtk_filters/kept_hierarchy.h>
 #include <pcl_bsh/vtk_filters/pose_table.h>
 
 #include <vtkCompositeDataSet.h>
@@ -41,7 +41,7 @@ Data* dataOf(vtkInformationVector& input, const std::string& what, const std::st
 } // namespace
 
 struct vtkBSHFilter::Kept {
-  pcl_bsh::vtk::KeptHierarchy cloud, obstacle;
+  pcl_bsh::vtk::KeptShape cloud{"the cloud"}, obstacle{"the obstacle"};
 };
 
 vtkCxxSetObjectMacro(vtkBSHFilter, Transform, vtkLinearTransform);
@@ -87,7 +87,7 @@ void vtkBSHFilter::SetPosesConnection(vtkAlgorithmOutput* poses)
 
 vtkIdType vtkBSHFilter::GetHierarchiesBuilt()
 {
-  return static_cast<vtkIdType>(this->Inputs->cloud.built() + this->Inputs->obstacle.built());
+  return static_cast<vtkIdType>(this->Inputs->cloud.made() + this->Inputs->obstacle.made());
 }
 
 vtkMTimeType vtkBSHFilter::GetMTime()
@@ -120,16 +120,6 @@ int vtkBSHFilter::RequestUpdateExtent(vtkInformation*, vtkInformationVector** in
   return 1;
 }
 
-void vtkBSHFilter::Warn(const Question& question, const double* clearance)
-{
-  using pcl_bsh::measuredCloud;
-  const pcl_bsh::Question asked{measuredCloud("the cloud", question.cloud),
-                                measuredCloud("the obstacle", question.obstacle, question.kept_obstacle.cover()),
-                                question.poses ? *question.poses : std::vector{question.pose},
-                                clearance ? std::optional(*clearance) : std::nullopt};
-  for (const pcl_bsh::Warning& warning : pcl_bsh::warningsOf(asked)) vtkWarningMacro(<< warning.text);
-}
-
 int vtkBSHFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* const output = vtkPolyData::GetData(outputs);
@@ -152,34 +142,37 @@ int vtkBSHFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vt
       return this->GetAbortExecute() == 0;
     };
     std::vector<std::string> warnings;
-    const Eigen::Isometry3d pose =
-        pcl_bsh::vtk::poseOf(this->Transform ? this->Transform->GetMatrix() : nullptr, warnings);
-    std::optional<std::vector<Eigen::Isometry3d>> poses;
+    pcl_bsh::Question question;
+    question.pose = pcl_bsh::vtk::poseOf(this->Transform ? this->Transform->GetMatrix() : nullptr, warnings);
     if (table) {
-      poses = pcl_bsh::vtk::posesOf(*table, warnings);
-      for (Eigen::Isometry3d& placed : *poses) placed.matrix() = pose.matrix() * placed.matrix();
+      question.path = pcl_bsh::vtk::posesOf(*table, warnings);
+      for (Eigen::Isometry3d& placed : *question.path) placed.matrix() = question.pose.matrix() * placed.matrix();
     }
     for (const std::string& warning : warnings) vtkWarningMacro(<< warning);
+    question.threads = static_cast<unsigned>(this->NumberOfThreads);
+    this->Ask(question);
+    question.wanted.spacings = question.wanted.collisions();
 
-    const auto threads = static_cast<unsigned>(this->NumberOfThreads);
     const bool is_surface = pcl_bsh::vtk::isSurface(*obstacle);
     const double cover_share = is_surface ? 0.3 : 0.0;
-    const auto hierarchyOfObstacle = [&]() -> const pcl_bsh::SphereHierarchy& {
-      if (!is_surface) return this->Inputs->obstacle.ofPoints(*obstacle, threads);
-      const double tolerance = this->SurfaceTolerance == 0.0 ? this->UsualTolerance() : this->SurfaceTolerance;
+    question.progress = [&](double fraction) { return report(cover_share, 1.0, fraction); };
+    const auto shapeOfObstacle = [&]() -> pcl_bsh::Shape& {
+      if (!is_surface) return this->Inputs->obstacle.ofPoints(*obstacle);
+      const double tolerance =
+          this->SurfaceTolerance == 0.0 ? question.clearance.value_or(0.0) / 10.0 : this->SurfaceTolerance;
       if (!(tolerance > 0.0))
         throw std::invalid_argument("the obstacle has faces, and nothing says how exactly to cover them: give a "
                                     "SurfaceTolerance, a length > 0");
-      return this->Inputs->obstacle.ofSurface(*obstacle, tolerance, threads,
+      return this->Inputs->obstacle.ofSurface(*obstacle, tolerance,
                                               [&](double fraction) { return report(0.0, cover_share, fraction); });
     };
-    const pcl_bsh::SphereHierarchy& obstacle_hierarchy = hierarchyOfObstacle();
-    const pcl_bsh::SphereHierarchy& cloud_hierarchy = this->Inputs->cloud.ofPoints(*cloud, threads);
+    pcl_bsh::Shape& other = shapeOfObstacle();
+    pcl_bsh::Shape& points = this->Inputs->cloud.ofPoints(*cloud);
     if (!report(0.0, cover_share, 1.0)) throw pcl_bsh::Cancelled();
     output->ShallowCopy(cloud);
-    this->Answer({cloud_hierarchy, obstacle_hierarchy, this->Inputs->obstacle, is_surface, pose, std::move(poses),
-                  [&](double fraction) { return report(cover_share, 1.0, fraction); }},
-                 output);
+    const pcl_bsh::Answer answer = pcl_bsh::ask(question, points, other);
+    for (const pcl_bsh::Warning& warning : answer.warnings) vtkWarningMacro(<< warning.text);
+    this->Fill(question, answer, other, output);
     this->Failed = false;
     return 1;
   }

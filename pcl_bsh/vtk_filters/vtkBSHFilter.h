@@ -27,6 +27,11 @@
 
 #include <memory>
 
+namespace pcl_bsh {
+class Shape;
+struct Answer;
+struct Question;
+} // namespace pcl_bsh
 class vtkLinearTransform;
 class vtkTable;
 
@@ -79,16 +84,13 @@ protected:
   vtkBSHFilter();
   ~vtkBSHFilter() override;
 
-  struct Question; ///< both inputs as the core sees them (bsh_question.h)
+  /// What is asked; both inputs and the poses are for this class to say.
+  virtual void Ask(pcl_bsh::Question& question) const = 0;
 
   /// Fills the output, which has the cloud's points and arrays. Whatever it throws is told in one line.
-  virtual void Answer(const Question& question, vtkPolyData* output) = 0;
-
-  /// Tells by vtkWarningMacro what users should know beside the answer. @param clearance null: distances were asked for
-  void Warn(const Question& question, const double* clearance);
-
-  /// Of a surface, where SurfaceTolerance is 0; 0: there is none.
-  virtual double UsualTolerance() const = 0;
+  /// @param obstacle names its parts: points, or cells
+  virtual void Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, const pcl_bsh::Shape& obstacle,
+                    vtkPolyData* output) = 0;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputs,

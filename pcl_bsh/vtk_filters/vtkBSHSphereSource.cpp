@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 struct vtkBSHSphereSource::Kept {
-  pcl_bsh::vtk::KeptHierarchy hierarchy;
+  pcl_bsh::vtk::KeptShape shape{"the cloud"};
 };
 
 vtkStandardNewMacro(vtkBSHSphereSource);
@@ -34,7 +34,7 @@ void vtkBSHSphereSource::PrintSelf(ostream& os, vtkIndent indent)
 
 vtkIdType vtkBSHSphereSource::GetHierarchiesBuilt()
 {
-  return static_cast<vtkIdType>(this->Cloud->hierarchy.built());
+  return static_cast<vtkIdType>(this->Cloud->shape.made());
 }
 
 vtkMTimeType vtkBSHSphereSource::GetMTime()
@@ -58,7 +58,7 @@ int vtkBSHSphereSource::RequestData(vtkInformation*, vtkInformationVector** inpu
   try {
     vtkPolyData* const cloud = vtkPolyData::GetData(inputs[0]);
     if (!cloud) throw std::invalid_argument("the input is missing: connect a cloud");
-    const pcl_bsh::SphereHierarchy& hierarchy = this->Cloud->hierarchy.ofPoints(*cloud, 1);
+    const pcl_bsh::SphereHierarchy& hierarchy = this->Cloud->shape.ofPoints(*cloud).hierarchy({}, 1);
     vtkSmartPointer<vtkPolyData> spheres = pcl_bsh::vtk::sphereData(hierarchy, static_cast<unsigned>(this->Level));
     if (this->GenerateGlyphs) spheres = pcl_bsh::vtk::sphereGlyphs(*spheres, this->Resolution);
     output->ShallowCopy(spheres);

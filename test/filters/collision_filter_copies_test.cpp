@@ -120,7 +120,7 @@ TEST_F(CollisionFilterCopies, NoticeAnObstacleThatHasChangedInPlace)
     EXPECT_EQ(kept, expected(points));
     change(*obstacle);
     EXPECT_THAT([&] { filter_.filter(kept); },
-                ThrowsMessage<std::invalid_argument>(HasSubstr("obstacle cloud has changed since setObstacleCloud()")));
+                ThrowsMessage<std::invalid_argument>(HasSubstr("the obstacle: has changed since it was set")));
     EXPECT_EQ(kept, expected(points)) << "as it was";
     filter_.setObstacleCloud(obstacle);
     EXPECT_NO_THROW(filter_.filter(kept));

@@ -401,7 +401,7 @@ TEST_F(CollisionFilterTest, ObstacleThatChangedIsAnError)
   filter_.setObstacleCloud(obstacle);
   filtered();
   obstacle->push_back({1000, 0, 0});
-  EXPECT_THAT([&] { filtered(); }, refusedWith("obstacle cloud has changed since setObstacleCloud()"));
+  EXPECT_THAT([&] { filtered(); }, refusedWith("the obstacle: has changed since it was set"));
   filter_.setObstacleCloud(obstacle);
   EXPECT_EQ(filtered().size(), where(flags_, false, points_).size());
 }
@@ -611,7 +611,7 @@ TEST_F(CollisionFilterTest, BadTrajectoriesAreErrors)
 {
   std::vector<std::uint8_t> flags;
   filter_.setTrajectory({});
-  EXPECT_THAT([&] { filter_.computeFlags(flags); }, refusedWith("trajectory has no pose"));
+  EXPECT_THAT([&] { filter_.computeFlags(flags); }, refusedWith("path: has no pose"));
   Eigen::Isometry3d scaled = pose_;
   scaled.linear() *= 2;
   filter_.setTrajectory({pose_, scaled});

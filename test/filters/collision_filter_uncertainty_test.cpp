@@ -175,7 +175,7 @@ TEST_F(CollisionFilterUncertainty, ObstaclesSigmasMustNotChangeUnseen)
   filter_.setObstacleUncertainty(Uncertainty("intensity", 1.0));
   const std::vector<std::uint8_t> before = flags();
   setSigma(*obstacle_, 5, 0.5f);
-  EXPECT_THAT([&] { flags(); }, refusedWith("obstacle cloud has changed"));
+  EXPECT_THAT([&] { flags(); }, refusedWith("the obstacle: has changed"));
   filter_.setObstacleCloud(obstacle_);
   EXPECT_NE(flags(), before);
 }
@@ -184,20 +184,20 @@ TEST_F(CollisionFilterUncertainty, RefusesWhatIsNoLength)
 {
   filter_.setInputUncertainty(0.01);
   for (const double wrong : {-0.1, nan, infinity, -infinity}) {
-    EXPECT_THAT([&] { filter_.setInputUncertainty(wrong); }, refusedWith("input cloud: uncertainty "));
+    EXPECT_THAT([&] { filter_.setInputUncertainty(wrong); }, refusedWith("the input: uncertainty "));
     EXPECT_THAT([&] { filter_.setObstacleUncertainty(Uncertainty("intensity", wrong)); },
-                refusedWith("obstacle cloud: number of sigmas "));
+                refusedWith("the obstacle: number of sigmas "));
   }
   EXPECT_EQ(filter_.getInputUncertainty().length, 0.01) << "an error changes nothing";
 
   filter_.setInputUncertainty(Uncertainty("sigma", 1.0));
   EXPECT_THAT([&] { flags(); },
-              refusedWith("input cloud: field 'sigma' of its points' sigmas is missing: give a length, or one of its "
+              refusedWith("the input: field 'sigma' of its points' sigmas is missing: give a length, or one of its "
                           "fields: label, x, y, z, intensity"));
   filter_.setInputUncertainty(Uncertainty("intensity", 1.0));
   for (const float wrong : {-0.25f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     setSigma(*input_, 12, wrong);
-    EXPECT_THAT([&] { flags(); }, refusedWith("input cloud: field 'intensity' of point 12 is "));
+    EXPECT_THAT([&] { flags(); }, refusedWith("the input: field 'intensity' of point 12 is "));
   }
   setSigma(*input_, 12, 1e38f);
   EXPECT_NO_THROW(flags());
@@ -256,7 +256,7 @@ TEST_F(CollisionFilterDensity, WhatHasChangedIsRefusedWhateverElseIsSet)
   const float moved = 0.25f;
   std::memcpy(wall_->data.data(), &moved, sizeof moved);
   set_again();
-  EXPECT_THAT([&] { flags(); }, refusedWith("obstacle cloud has changed since setObstacleCloud(): call it again"));
+  EXPECT_THAT([&] { flags(); }, refusedWith("the obstacle: has changed since it was set: set it again"));
   *wall_ = former;
   set_again();
   EXPECT_NO_THROW(flags()) << "as it was";
@@ -264,7 +264,7 @@ TEST_F(CollisionFilterDensity, WhatHasChangedIsRefusedWhateverElseIsSet)
   Points more(900 * 4, Eigen::Vector3d(9, 9, 9));
   *wall_ = *fieldCloud<float>(more);
   set_again();
-  EXPECT_THAT([&] { flags(); }, refusedWith("has changed since setObstacleCloud(): call it again")) << "it has grown";
+  EXPECT_THAT([&] { flags(); }, refusedWith("has changed since it was set: set it again")) << "it has grown";
   filter_.setObstacleCloud(wall_);
   EXPECT_EQ(flags(), std::vector<std::uint8_t>(points_.size(), 0)) << "far away, and all at one place";
 }
@@ -305,13 +305,12 @@ TEST_F(CollisionFilterDensity, Refuses)
 {
   for (const double wrong : {-1.0, nan, infinity}) {
     filter_.setWidestGap(wrong);
-    EXPECT_THAT([&] { flags(); }, refusedWith("widest gap: "));
+    EXPECT_THAT([&] { flags(); }, refusedWith("widest_gap: "));
   }
   filter_.setWidestGap(0.0);
   EXPECT_NO_THROW(flags());
   filter_.setTrajectory({Eigen::Isometry3d::Identity()});
-  EXPECT_THAT([&] { flags(); },
-              refusedWith("density guard: knows flags at one pose, neither paths nor distances: call "));
+  EXPECT_THAT([&] { flags(); }, refusedWith("density: is about which points collide at one pose: leave out the path"));
 }
 
 } // namespace

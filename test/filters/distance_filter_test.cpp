@@ -397,12 +397,12 @@ TEST_F(DistanceFilterTest, RefusesWhatHasNoMeaning)
   for (const auto& [least, most] : std::vector<std::pair<double, double>>{
            {-0.1, 1}, {0.2, 0.1}, {nan, 1}, {0, nan}, {infinity, infinity}, {0, -infinity}}) {
     filter_.setFilterLimits(least, most);
-    refuses("filter limits: from ");
+    refuses("filter_limits: from ");
   }
   filter_.setFilterLimits(0, 1);
   for (const double most : {-1.0, nan}) {
     filter_.setMaxDistance(most);
-    refuses("max distance: ");
+    refuses("max_distance: ");
   }
   filter_.setMaxDistance(1);
   for (const Accuracy& accuracy : {Accuracy::level(1), Accuracy::nodePairs(5), Accuracy::time(0.1)}) {
@@ -425,7 +425,7 @@ TEST_F(DistanceFilterTest, RefusesWhatHasNoMeaning)
   filter_.setObstacleCloud(changing);
   filter_.filter(untouched);
   (*changing)[3].y += 1.0f;
-  EXPECT_THAT([&] { filter_.filter(untouched); }, refusedWith("obstacle cloud has changed"));
+  EXPECT_THAT([&] { filter_.filter(untouched); }, refusedWith("the obstacle: has changed"));
   EXPECT_THAT([&] { filter_.setObstacleCloud(Cloud::Ptr()); }, refusedWith("obstacle cloud is null"));
 
   Filter without;

@@ -280,7 +280,7 @@ TEST(MeshFilter, RefusesWhatIsNoInput)
   refused([&] { filter.filter(kept); }, "call setInputMesh()");
   filter.setInputMesh(crate(), 0.1);
   filter.setDensityGuard(true);
-  refused([&] { filter.filter(kept); }, "density guard");
+  refused([&] { filter.filter(kept); }, "density: is about points");
   filter.setDensityGuard(false);
   filter.setInputUncertainty(Uncertainty("sigma", 1));
   refused([&] { filter.filter(kept); }, "sigma");
@@ -340,7 +340,7 @@ TEST(SurfaceFilter, RefusesWhatIsNoSurface)
   refused(mesh, 0.1, "is not finite");
   DistanceFilter<pcl::PointXYZ> distance;
   EXPECT_THAT([&] { distance.setObstacleSurface(std::shared_ptr<const SurfaceCover>()); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("obstacle surface is null")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("is no surface")));
   // Nothing is near no surface.
   auto nothing = std::make_shared<pcl::PolygonMesh>();
   pcl::toPCLPointCloud2(corners, nothing->cloud);

@@ -171,15 +171,16 @@ TEST(TriangleDistance, MeetingTrianglesAreAtZero)
 {
   const TriangleDistance distance(identity, identity);
   const Triangle3 floor = {{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}};
-  EXPECT_EQ(distance.distance(Triangle3{{{2, 2, -1}, {2, 2, 1}, {9, 9, 5}}}, floor), 0.0);  // pierced by an edge
-  EXPECT_EQ(distance.distance(floor, Triangle3{{{2, 2, -1}, {2, 2, 1}, {9, 9, 5}}}), 0.0);  // piercing
-  EXPECT_EQ(distance.distance(Triangle3{{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}}, floor), 0.0);   // inside, in the plane
-  EXPECT_EQ(distance.distance(floor, Triangle3{{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}}), 0.0);   // around it
-  EXPECT_EQ(distance.distance(Triangle3{{{4, 4, 0}, {9, 9, 0}, {9, 9, 5}}}, floor), 0.0);   // touching an edge
-  EXPECT_EQ(distance.distance(Triangle3{{{8, 0, 0}, {9, 0, 0}, {9, 0, 5}}}, floor), 0.0);   // a corner in common
-  EXPECT_EQ(distance.distance(Triangle3{{{1, 1, -1}, {1, 1, -1}, {1, 1, 1}}}, floor), 0.0); // a segment through it
-  EXPECT_EQ(distance.distance(Triangle3{{{1, 1, 0}, {1, 1, 0}, {1, 1, 0}}}, floor), 0.0);   // a point of it
-  EXPECT_EQ(distance.compare(Triangle3{{{2, 2, 3}, {3, 2, 3}, {2, 3, 4}}}, floor, 3.0), 0); // just as far
+  EXPECT_EQ(distance.distance(Triangle3{{{2, 2, -1}, {2, 2, 1}, {9, 9, 5}}}, floor), 0.0);     // pierced by an edge
+  EXPECT_EQ(distance.distance(floor, Triangle3{{{2, 2, -1}, {2, 2, 1}, {9, 9, 5}}}), 0.0);     // piercing
+  EXPECT_EQ(distance.distance(Triangle3{{{2, 2, -1e-18}, {2, 2, 1}, {3, 3, 1}}}, floor), 0.0); // by next to nothing
+  EXPECT_EQ(distance.distance(Triangle3{{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}}, floor), 0.0);      // inside, in the plane
+  EXPECT_EQ(distance.distance(floor, Triangle3{{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}}), 0.0);      // around it
+  EXPECT_EQ(distance.distance(Triangle3{{{4, 4, 0}, {9, 9, 0}, {9, 9, 5}}}, floor), 0.0);      // touching an edge
+  EXPECT_EQ(distance.distance(Triangle3{{{8, 0, 0}, {9, 0, 0}, {9, 0, 5}}}, floor), 0.0);      // a corner in common
+  EXPECT_EQ(distance.distance(Triangle3{{{1, 1, -1}, {1, 1, -1}, {1, 1, 1}}}, floor), 0.0);    // a segment through it
+  EXPECT_EQ(distance.distance(Triangle3{{{1, 1, 0}, {1, 1, 0}, {1, 1, 0}}}, floor), 0.0);      // a point of it
+  EXPECT_EQ(distance.compare(Triangle3{{{2, 2, 3}, {3, 2, 3}, {2, 3, 4}}}, floor, 3.0), 0);    // just as far
   EXPECT_EQ(distance.compare(Triangle3{{{2, 2, 3}, {3, 2, 3}, {2, 3, 4}}}, floor, std::nextafter(3.0, 0.0)), 1);
 }
 

@@ -90,12 +90,26 @@ TEST(Winding, OfBoxesThroughEdgesAndCorners)
   Random random(601);
   const Soup box = boxOf({0, 0, 0}, {2, 2, 2}), inner = boxOf({1, 1, 1}, {1.5, 1.5, 1.5}),
              other = boxOf({1, 0, 0}, {3, 2, 1});
-  const auto lattice = latticeOf(-1, 7);
+  const auto lattice = latticeOf(-1, 6);
   expectNumbers(box, lattice, identity, identity, random);
   expectNumbers(both(box, inner), lattice, identity, identity, random);          // nested: 2 inside
   expectNumbers(both(box, flipped(inner)), lattice, identity, identity, random); // a hole: 0 inside
   expectNumbers(both(box, other), lattice, identity, identity, random);          // overlapping, sides in one plane
   expectNumbers(both(box, flipped(box)), lattice, identity, identity, random);   // faces doubled: 0 everywhere
+}
+
+/// Rays leave through corners and through edges that lie along each axis, without a second such on the way.
+TEST(Winding, OfAnOctahedron)
+{
+  Random random(606);
+  Soup soup;
+  for (const double x : {-1.0, 1.0})
+    for (const double y : {-1.0, 1.0})
+      for (const double z : {-1.0, 1.0}) {
+        const Point3 a = {x, 0, 0}, b = {0, y, 0}, c = {0, 0, z};
+        soup.push_back(x * y * z > 0 ? Triangle3{a, b, c} : Triangle3{a, c, b});
+      }
+  expectNumbers(soup, latticeOf(-3, 3), identity, identity, random);
 }
 
 TEST(Winding, OfTrianglesWithoutArea)

@@ -81,13 +81,13 @@ enum class Mode { plain, negative, organised, trajectory, swept, threads, subset
 constexpr Mode kModes[] = {Mode::plain, Mode::negative, Mode::organised, Mode::trajectory,
                            Mode::swept, Mode::threads,  Mode::subset};
 
-void ask(ObstacleQuery& query, Mode mode)
+void ask(CollisionSettings& query, Mode mode)
 {
   query.setClearance(kClearance);
   if (mode == Mode::trajectory || mode == Mode::swept) query.setTrajectory(poses());
   if (mode == Mode::swept) query.setSwept(0.01);
 }
-void ask(DistanceQuery& query, Mode)
+void ask(DistanceSettings& query, Mode)
 {
   query.setFilterLimits(0.05, kClearance);
 }

@@ -229,9 +229,9 @@ TEST_F(CollisionStages, DensityIsTheFilters)
     ASSERT_EQ(flagged.data[i * flagged.point_step + flagged.fields.back().offset], flags[i]);
   EXPECT_THAT(result.warnings, testing::Contains(HasSubstr("where the obstacle is not scanned densely enough")));
   EXPECT_THAT(error("filters.bsh_flag", R"("density": true, "trajectory": )" + quoted(track)),
-              EndsWith("/density: is for flags at one pose: leave out the trajectory, or `density`"));
+              HasSubstr("/density: is about which points collide at one pose: leave out the path"));
   EXPECT_THAT(error("filters.bsh_flag", R"("widest_gap": 1)"),
-              EndsWith("/widest_gap: is given, but not `density`: give `density`: true, too"));
+              EndsWith("/widest_gap: is given, but not `density`: give `density`, too"));
 }
 
 TEST_F(CollisionStages, FieldsOfATrajectoryAreKnownBeforehand)
@@ -256,7 +256,7 @@ TEST_F(CollisionStages, RefuseWhatMakesNoSense)
     EXPECT_THAT(error(type, file + along + R"(, "pose": [0, 0, 0, 0, 0, 0])"),
                 EndsWith("/trajectory: and `pose` are both given: give one of them"));
     EXPECT_THAT(error(type, file + R"("swept": 0.1)"),
-                EndsWith("/swept: is given, but nothing moves: give a `trajectory`, too"));
+                EndsWith("/swept: is given, but nothing moves: give a path of poses, too"));
     EXPECT_THAT(error(type, file + along + R"(, "swept": -1)"),
                 HasSubstr("/swept: is -1: give a number of at least 0"));
     EXPECT_THAT(error(type, file + R"("trajectory": "none.txt")"),

@@ -2,6 +2,8 @@
 // The table of stages, and what is written from it.
 #include <pcl_bsh/filters/pipeline/stage_type.h>
 
+#include <pcl_bsh/question/options.h>
+
 #include "io/clouds/samples.h"
 #include "run_stage.h"
 
@@ -32,6 +34,29 @@ TEST(StageType, NamesAreUniqueAndDocumented)
     if (type.name.find("test") != std::string::npos) continue;
     EXPECT_EQ(type.doc.back(), '.') << type.name;
     for (const Option& option : type.options) EXPECT_FALSE(option.doc.empty()) << type.name << ' ' << option.name;
+  }
+}
+
+/// Whoever adds a row to the core's table has an option of these stages.
+TEST(StageType, QuestionsHaveTheOptionsOfTheTable)
+{
+  for (const auto& [name, kind] : {std::pair{"filters.bsh_flag", QuestionKind::collisions},
+                                   {"filters.bsh_collision", QuestionKind::collisions},
+                                   {"writers.clashes", QuestionKind::collisions},
+                                   {"filters.bsh_distance", QuestionKind::distances},
+                                   {"writers.distances", QuestionKind::distances}}) {
+    const StageType* const type = findStageType(name);
+    ASSERT_NE(type, nullptr) << name;
+    for (const QuestionOption& row : questionOptions()) {
+      const Option* const option = type->findOption(row.name_of_stages ? row.name_of_stages : row.name);
+      ASSERT_EQ(option != nullptr, isOf(row.kind, kind)) << name << ' ' << row.name;
+      if (!option) continue;
+      EXPECT_EQ(option->doc, row.doc);
+      EXPECT_EQ(option->unit, row.unit);
+      EXPECT_EQ(option->required, row.required);
+      EXPECT_EQ(option->least, 0.0);
+      EXPECT_EQ(option->above_least, row.range == OptionRange::above_zero);
+    }
   }
 }
 

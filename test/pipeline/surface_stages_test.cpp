@@ -250,7 +250,7 @@ TEST_F(SurfaceInput, IsRefusedWherePointsAreAsked)
   const std::string collide = R"("type": "filters.bsh_collision", "clearance": 0.1, )";
   EXPECT_THAT(refusal(collide + R"("keep_organized": true)"), HasSubstr("keep_organized"));
   EXPECT_THAT(refusal(collide + R"("density": true)"), HasSubstr("density"));
-  EXPECT_THAT(refusal(collide + R"("uncertainty": "x")"), HasSubstr("is a field, which the input, a surface"));
+  EXPECT_THAT(refusal(collide + R"("uncertainty": "x")"), HasSubstr("the input: is a surface, which has no field 'x'"));
   EXPECT_THAT(refusal(collide + R"("surface_tolerance": 1e-17)"), HasSubstr("surface_tolerance"));
 }
 
@@ -265,7 +265,8 @@ TEST_F(SurfaceStages, RefuseWhatCannotBe)
   EXPECT_THAT(refusal(R"("surface_tolerance": 0.1, "vertices_only": true)"), HasSubstr("vertices_only"));
   EXPECT_THAT(refusal(R"("surface_tolerance": 1e-14)"), HasSubstr("is too small for coordinates up to"));
   EXPECT_THAT(refusal(R"("surface_tolerance": 0)"), HasSubstr("surface_tolerance"));
-  EXPECT_THAT(refusal(R"("obstacle_uncertainty": "x")"), HasSubstr("is a field, which the surface crate does not"));
+  EXPECT_THAT(refusal(R"("obstacle_uncertainty": "x")"),
+              HasSubstr("the obstacle: is a surface, which has no field 'x'"));
 }
 
 } // namespace

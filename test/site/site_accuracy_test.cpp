@@ -164,7 +164,7 @@ TEST_F(SiteAccuracy, OfTheProgram)
 
   const std::string tile = files::contentOf(folder / "site200/tiles/tile_000000.pcd");
   for (const auto& [arguments, words] :
-       {std::pair{"--accuracy level=1 --clashes c.json", "clashes need distances"},
+       {std::pair{"--accuracy level=1 --clashes c.json", "decides which points collide, not when and how near"},
         {"--obstacle-out b.pcd", "is the file of OBSTACLE"},
         {"--obstacle-out site200/tiles/tile_000000.pcd", "lies in the folder of SITE"},
         {"--report site200/../site200/site.json", "lies in the folder of SITE"},

@@ -213,7 +213,8 @@ TEST_F(SurfaceSite, RefusesWhatNoSurfaceHas)
   fails("--surface-tolerance 0", 2, "--surface-tolerance");
   fails("--surface-tolerance 1 --vertices-only", 2, "--vertices-only");
   fails("--surface-tolerance 1e-30", 1, "crate.off: ");
-  fails("--obstacle-uncertainty sigma", 1, "crate.off is a surface, which has no field: give a length");
+  fails("--obstacle-uncertainty sigma", 1,
+        "crate.off: is a surface, which has no field 'sigma': give a length, or --vertices-only");
   fails("--obstacle-out marked.pcd", 1, "marked.pcd");
 }
 

@@ -225,7 +225,7 @@ TEST_P(Filters, PathsAreThoseOfBruteForce)
   expectSame(values(*filter->GetOutput(), "collision"), swept.flags);
 
   filter->SetPosesData(nullptr);
-  expectFailure(*filter, "Swept is set, and there are no poses");
+  expectFailure(*filter, "swept: is given, but nothing moves");
   filter->SetSwept(0.0);
   filter->Update(); // and without a path no array of one
   EXPECT_EQ(filter->GetOutput()->GetPointData()->GetArray("first_pose"), nullptr);

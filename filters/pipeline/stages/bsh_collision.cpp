@@ -2,57 +2,50 @@
 // This project's own filter.
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
-#include <pcl_bsh/filters/pipeline/stages/collision_question.h>
 #include <pcl_bsh/filters/pipeline/stages/faces.h>
-#include <pcl_bsh/filters/pipeline/stages/other_cloud.h>
+#include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/filters/pipeline/stages/selection/selecting_stage.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 namespace pcl_bsh::pipeline {
 namespace {
 
-struct BshFlag : Stage, CollisionQuestion {
+struct BshFlag : Stage, QuestionStage {
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    for (std::string& warning : check(inputs[0], trajectory.has_value())) warn(std::move(warning));
-    const TrajectoryResult nothing;
-    return trajectory ? withFields(inputs[0], fieldsOf(nothing)) : withField(inputs[0], collision_field_name, {});
+    Wanted wanted;
+    wanted.flags = true;
+    wanted.contacts = trajectory.has_value();
+    QuestionStage::plan(inputs[0], wanted, *this);
+    return withResults(inputs[0], {});
   }
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
-    if (asksAboutFaces(*inputs[0])) return flaggedFaces(std::move(inputs[0]));
+    TrajectoryResult found = ask(inputs[0], *this).answer.collisions;
+    if (asksAboutFaces(*inputs[0])) return flaggedFaces(std::move(inputs[0]), std::move(found));
     auto output = std::make_shared<StageCloud>();
+    output->cloud = withResults(inputs[0]->cloud, found);
     output->viewpoint = inputs[0]->viewpoint;
     output->las_header = inputs[0]->las_header;
     output->triangles = inputs[0]->triangles;
     output->face_properties = inputs[0]->face_properties;
-    Filter filter;
-    setUp(filter, *this);
-    filter.setInputCloud(pointsOf(inputs[0]));
-    filter.setKeepFlagged(true);
-    filter.filter(output->cloud);
-    if (const std::string warning = undecidedWarning(filter); !warning.empty()) warn(warning);
     return output;
   }
 
 private:
+  pcl::PCLPointCloud2 withResults(const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found) const
+  {
+    return trajectory ? withFields(cloud, fieldsOf(found)) : withField(cloud, collision_field_name, found.flags);
+  }
+
   /// What is found of the triangles becomes properties of theirs; vertices get the gravest of what their triangles
   /// have.
-  StageCloudPtr flaggedFaces(StageCloudPtr&& input)
+  StageCloudPtr flaggedFaces(StageCloudPtr&& input, TrajectoryResult found) const
   {
-    MeshCollisionFilter filter;
-    setUp(filter, *input, *this);
-    TrajectoryResult found;
-    if (trajectory)
-      filter.computeTrajectory(found);
-    else
-      filter.computeFlags(found.flags);
-    if (const std::string warning = undecidedWarning(filter, "triangles"); !warning.empty()) warn(warning);
     const TrajectoryResult of_vertices = ofVertices(*input->triangles, viewOf(input->cloud).count, found);
     const auto output = ownCloud(std::move(input));
-    output->cloud = trajectory ? withFields(output->cloud, fieldsOf(of_vertices))
-                               : withField(output->cloud, collision_field_name, of_vertices.flags);
+    output->cloud = withResults(output->cloud, of_vertices);
     setFaceProperty(*output, collision_field_name, std::move(found.flags));
     if (!trajectory) return output;
     setFaceProperty(*output, distance_field_name, std::move(found.distance));
@@ -62,48 +55,35 @@ private:
   }
 };
 
-struct BshCollision : SelectingStage, CollisionQuestion {
+struct BshCollision : SelectingStage, QuestionStage {
   std::string keep = "free";
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    for (std::string& warning : check(inputs[0], false)) warn(std::move(warning));
+    Wanted wanted;
+    wanted.flags = true;
+    QuestionStage::plan(inputs[0], wanted, *this);
     return inputs[0];
   }
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
-    return asksAboutFaces(*inputs[0]) ? passingFaces(*inputs[0]) : SelectingStage::run(std::move(inputs));
+    if (!asksAboutFaces(*inputs[0])) return SelectingStage::run(std::move(inputs));
+    if (keep_organized)
+      throw OptionError("keep_organized", "is about points, and the input is a surface: leave it out, or give "
+                                          "`vertices_only`: true");
+    std::vector<std::uint8_t> kept = passing(inputs[0]);
+    for (std::uint8_t& passes : kept) passes = (passes != 0) != negative;
+    return keptFaces(*inputs[0], kept);
   }
 
 protected:
   std::vector<std::uint8_t> passing(const StageCloudPtr& cloud) override
   {
-    Filter filter;
-    setUp(filter, *this);
-    filter.setInputCloud(pointsOf(cloud));
-    std::vector<std::uint8_t> flags;
-    filter.computeFlags(flags);
-    if (const std::string warning = undecidedWarning(filter); !warning.empty()) warn(warning);
+    std::vector<std::uint8_t> flags = ask(cloud, *this).answer.collisions.flags;
     const bool colliding = keep == "colliding";
-    for (std::uint8_t& flag : flags) flag = (flag != 0) == colliding; // undecided points are not free
+    for (std::uint8_t& flag : flags) flag = (flag != 0) == colliding; // what is undecided is not free
     return flags;
-  }
-
-private:
-  StageCloudPtr passingFaces(const StageCloud& input)
-  {
-    if (keep_organized)
-      throw OptionError("keep_organized", "is about points, and the input is a surface: leave it out, or give "
-                                          "`vertices_only`: true");
-    MeshCollisionFilter filter;
-    setUp(filter, input, *this);
-    std::vector<std::uint8_t> flags;
-    filter.computeFlags(flags);
-    if (const std::string warning = undecidedWarning(filter, "triangles"); !warning.empty()) warn(warning);
-    const bool colliding = (keep == "colliding") != negative; // undecided triangles are not free
-    for (std::uint8_t& flag : flags) flag = (flag != 0) == colliding;
-    return keptFaces(input, flags);
   }
 };
 
@@ -115,7 +95,7 @@ StageType bshCollision()
       "filters.bsh_collision", "Keeps the points that do not collide with an obstacle, or those that do. "
                                "Exact unless `accuracy` says otherwise, for float64 coordinates too. Of an input "
                                "with faces, it keeps triangles, and the vertices that they use.");
-  withCollisionOptions(description.alias("pcl_bsh::CollisionFilter"))
+  withQuestionOptions(description.alias("pcl_bsh::CollisionFilter"), QuestionKind::collisions)
       .option(&BshCollision::keep, "keep", "the points to keep")
       .choices({"free", "colliding"});
   return withSelectionOptions(description);
@@ -133,7 +113,7 @@ StageType bshFlag()
       "otherwise, for float64 coordinates too. Of an input with faces, triangles are flagged: writers.ply writes the "
       "same "
       "as properties of its faces, and a vertex has the gravest of what its triangles have.");
-  return withCollisionOptions(description);
+  return withQuestionOptions(description, QuestionKind::collisions);
 }
 
 } // namespace pcl_bsh::pipeline

@@ -1,61 +1,54 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How far each point is from another cloud.
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/filters/distance_filter.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
-#include <pcl_bsh/filters/pipeline/stages/distance_question.h>
-#include <pcl_bsh/filters/pipeline/stages/other_cloud.h>
-#include <pcl_bsh/filters/pipeline/stages/selection/exact_limits.h>
+#include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/filters/pipeline/stages/selection/selecting_stage.h>
+
+#include <limits>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
 namespace pcl_bsh::pipeline {
 namespace {
 
-struct BshDistance : Stage, DistanceQuestion, SelectionOptions {
+struct BshDistance : SelectingStage, QuestionStage {
   Limits filter_limits;
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    for (std::string& warning : check()) warn(std::move(warning));
-    if (areCrossed(filter_limits)) throw OptionError("filter_limits", "has a least above its most: exchange them");
-    if (!(limitOf(filter_limits.least, 0.0) >= 0.0) || !(limitOf(filter_limits.most, 0.0) >= 0.0))
-      throw OptionError("filter_limits", "has a limit below 0: give lengths, or null");
-    const std::vector<float> nothing;
-    return withFields(inputs[0], {{distance_field_name, &nothing}});
+    question.limits = {limitOf(filter_limits.least, 0.0),
+                       limitOf(filter_limits.most, std::numeric_limits<double>::infinity())};
+    Wanted wanted;
+    wanted.distances = wanted.within = true;
+    QuestionStage::plan(inputs[0], wanted, *this);
+    return withDistances(inputs[0], {});
   }
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
     requirePoints(*inputs[0]);
-    DistanceFilter<pcl::PCLPointCloud2> filter;
-    filter.setInputCloud(pointsOf(inputs[0]));
-    std::vector<std::string> told;
-    const io::Obstacle other = comparedObstacle(*this, told);
-    for (std::string& line : told) warn(std::move(line));
-    if (other.isSurface())
-      filter.setObstacleSurface(other.cover());
-    else
-      filter.setObstacleCloud(pointsOf(obstacle.cloud));
-    filter.setWarn([this](const std::string& line) { warn(line); });
-    filter.setPose(obstaclePose());
-    filter.setFilterLimits(limitOf(filter_limits.least, 0.0),
-                           limitOf(filter_limits.most, std::numeric_limits<double>::infinity()));
-    const PointDistancesRequest asked = request(*this);
-    filter.setMaxDistance(asked.max_distance);
-    filter.setAccuracy(asked.accuracy);
-    filter.setNumberOfThreads(asked.threads);
-    filter.setProgress(asked.progress);
-    filter.setNegative(negative);
-    filter.setKeepOrganized(keep_organized);
-    filter.setUserFilterValue(filterValue());
-    auto output = std::make_shared<StageCloud>();
-    output->viewpoint = inputs[0]->viewpoint;
-    output->las_header = inputs[0]->las_header;
-    filter.filter(output->cloud);
-    return output;
+    Answer answer = ask(inputs[0], *this).answer;
+    auto measured = std::make_shared<StageCloud>();
+    measured->cloud = withDistances(inputs[0]->cloud, answer.distances.a.distance);
+    measured->viewpoint = inputs[0]->viewpoint;
+    measured->las_header = inputs[0]->las_header;
+    within_ = std::move(answer.within);
+    inputs[0] = std::move(measured);
+    return SelectingStage::run(std::move(inputs));
   }
 
+protected:
+  std::vector<std::uint8_t> passing(const StageCloudPtr& /*cloud*/) override { return std::move(within_); }
+
 private:
+  static pcl::PCLPointCloud2 withDistances(const pcl::PCLPointCloud2& cloud, const std::vector<double>& distances)
+  {
+    const std::vector<float> told(distances.begin(), distances.end());
+    return withFields(cloud, {{distance_field_name, &told}});
+  }
+
   /// As a double, which distances are, too.
   static double limitOf(const Limit& limit, double none)
   {
@@ -70,6 +63,8 @@ private:
         },
         limit);
   }
+
+  std::vector<std::uint8_t> within_;
 };
 
 } // namespace
@@ -81,7 +76,7 @@ StageType bshDistance()
       "Adds a field `distance` (float32): from each point to the nearest point of another cloud; keeps the points "
       "whose "
       "distance is within limits. Exact unless `accuracy` says otherwise, for float64 coordinates too.");
-  withDistanceOptions(description.alias("pcl_bsh::DistanceFilter"))
+  withQuestionOptions(description.alias("pcl_bsh::DistanceFilter"), QuestionKind::distances)
       .option(
           &BshDistance::filter_limits, "filter_limits",
           "[least, most] of the distances that are kept, both inclusive and compared before rounding, in m; null in "

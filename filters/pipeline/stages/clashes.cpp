@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What collides, place by place, as a list.
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
-#include <pcl_bsh/filters/pipeline/stages/collision_question.h>
-#include <pcl_bsh/filters/pipeline/stages/other_cloud.h>
+#include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/clash_report.h>
@@ -10,7 +9,7 @@
 namespace pcl_bsh::pipeline {
 namespace {
 
-struct ClashWriter : Stage, CollisionQuestion {
+struct ClashWriter : Stage, QuestionStage {
   OutputFile filename;
   std::optional<OutputFile> also;
   std::optional<double> cluster_distance;
@@ -20,7 +19,9 @@ struct ClashWriter : Stage, CollisionQuestion {
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    for (std::string& warning : check(inputs[0], true)) warn(std::move(warning));
+    Wanted wanted;
+    wanted.flags = wanted.contacts = wanted.poses = true;
+    QuestionStage::plan(inputs[0], wanted, *this);
     requireWritable("filename", filename);
     if (also) requireWritable("also", *also);
     if (previous) readEarlier();
@@ -30,12 +31,7 @@ struct ClashWriter : Stage, CollisionQuestion {
   StageCloudPtr run(StageClouds&& inputs) override
   {
     requirePoints(*inputs[0]);
-    Filter filter;
-    setUp(filter, *this);
-    filter.setInputCloud(pointsOf(inputs[0]));
-    TrajectoryResult found;
-    filter.computeTrajectory(found);
-    write(viewOf(inputs[0]->cloud), found);
+    write(ask(inputs[0], *this));
     return inputs[0];
   }
 
@@ -55,55 +51,49 @@ private:
   {
     try {
       earlier_ = io::readClashes(previous->path);
-      for (const std::string& warning : io::requireComparable(previous->path, earlier_, question())) warn(warning);
+      for (const std::string& warning : io::requireComparable(previous->path, earlier_, asked())) warn(warning);
     }
     catch (const std::runtime_error& error) {
       throw OptionError("previous", error.what());
     }
   }
 
-  double clusterDistance(const PointsView& scan) const
+  io::ClashQuestion asked() const
   {
-    if (cluster_distance) return *cluster_distance;
-    HierarchyOptions options;
-    options.threads = number_of_threads;
-    return io::clusterDistanceFor(clearance, spacingOf(SphereHierarchy(scan, options)));
-  }
-
-  io::ClashQuestion question() const
-  {
-    const std::optional<double> motion = swept > 0 ? std::optional(swept) : std::nullopt;
     return {input_name,
             obstacle.name,
-            clearance,
-            motion,
-            Accuracy::parse(accuracy),
-            given(uncertainty),
-            given(obstacle_uncertainty)};
+            *question.clearance,
+            question.swept > 0 ? std::optional(question.swept) : std::nullopt,
+            question.accuracy,
+            question.uncertaintyOfInput(),
+            question.uncertaintyOfObstacle()};
   }
 
-  void write(const PointsView& scan, const TrajectoryResult& found)
+  void write(Asked&& found)
   {
-    const double distance = clusterDistance(scan);
-    const PointsView model = comparedObstacle().view();
-    io::ClashReport report{.question = question(),
+    const SphereHierarchy &input = found.inputHierarchy(question), &other = found.obstacleHierarchy(question);
+    const double distance =
+        cluster_distance ? *cluster_distance : io::clusterDistanceFor(*question.clearance, spacingOf(input));
+    const std::vector<Eigen::Isometry3d> poses = question.poses();
+    const TrajectoryResult& collisions = found.answer.collisions;
+    io::ClashReport report{.question = asked(),
                            .cluster_distance = distance,
-                           .clashes = findClashes(scan, found, distance),
-                           .scan = scan,
-                           .model = model,
-                           .poses = poses(),
-                           .found = found,
-                           .survey = {poses(), extentOf(scan)},
+                           .clashes = findClashes(input.view(), collisions, distance),
+                           .scan = input.view(),
+                           .model = other.view(),
+                           .poses = poses,
+                           .found = collisions,
+                           .survey = {poses, extentOf(input.view())},
                            .unit = unit,
-                           .surface = comparedObstacle().isSurface() ? &comparedObstacle() : nullptr};
+                           .surface = found.compared.isSurface() ? &found.compared : nullptr};
     if (previous) {
       TrajectoryRequest motion;
       motion.swept = report.question.swept;
-      motion.threads = number_of_threads;
+      motion.threads = question.threads;
       for (const std::string& warning :
            io::compareWithList(report, previous->path, earlier_, [&](FormerPlaces& former) {
-             former.visit(SphereHierarchy(model), poses(), motion);
-             former.scan(scan);
+             former.visit(other, poses, motion);
+             former.scan(input.view());
            }))
         warn(warning);
     }
@@ -123,11 +113,12 @@ StageType clashWriter()
       "Lists where the input's points collide with an obstacle, place by place, the nearest first: as JSON or CSV for "
       "programs, or as a page for browsers. The query is that of `filters.bsh_flag` with these options; the cloud "
       "passes unchanged.");
-  return withCollisionOptions(description
-                                  .option(&ClashWriter::filename, "filename",
-                                          "the .json, .csv or .html file to write; it appears complete or not at all")
-                                  .required()
-                                  .option(&ClashWriter::also, "also", "another such file, of the same clashes"))
+  return withQuestionOptions(description
+                                 .option(&ClashWriter::filename, "filename",
+                                         "the .json, .csv or .html file to write; it appears complete or not at all")
+                                 .required()
+                                 .option(&ClashWriter::also, "also", "another such file, of the same clashes"),
+                             QuestionKind::collisions)
       .option(&ClashWriter::cluster_distance, "cluster_distance",
               "colliding points farther apart are two clashes; null: computed from clearance and spacing")
       .unit("m")

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Squared distances of triangles as fractions, by which of their features are nearest: in LongNumber, which may be
-// unsure, or in Dyadic, which never is.
+// Squared distances of triangles as fractions, by which of their features are nearest: in RoughNumber and LongNumber,
+// which may be unsure, or in Dyadic, which never is.
 #pragma once
 
 #include <pcl_bsh/geometry/dyadic.h>
 #include <pcl_bsh/geometry/long_number.h>
+#include <pcl_bsh/geometry/rough_number.h>
 #include <pcl_bsh/geometry/triangle/vector3.h>
 
 #include <cstdint>
@@ -12,6 +13,10 @@
 namespace pcl_bsh {
 
 inline int signOf(const LongNumber& x, bool& sure)
+{
+  return x.sign(sure);
+}
+inline int signOf(const RoughNumber& x, bool& sure)
 {
   return x.sign(sure);
 }
@@ -40,6 +45,57 @@ struct FeaturePairs {
   std::uint8_t faces = 0x3f; ///< bit i: corner i of the first, the second's face; bit 3 + j: corner j of the second
 };
 
+/// Two features, of which the insides are nearest to each other. Edge k goes from corner k to the next.
+struct Features {
+  enum Kind : std::uint8_t { meeting, corners, corner_edge, edge_corner, edges, corner_face, face_corner };
+  Kind kind = meeting;
+  std::uint8_t i = 0, j = 0; ///< of the first triangle and of the second; 0 for a face
+};
+
+/// The squared distance of the points, lines and planes that features lie in.
+/// @param a, b the corners of both triangles: called with their number
+template <class Number, class CornerA, class CornerB>
+Fraction<Number> squaredDistance(const Features& features, const CornerA& a, const CornerB& b)
+{
+  using Vector = Vector3<Number>;
+  const std::size_t i = features.i, j = features.j, next_i = (i + 1) % 3, next_j = (j + 1) % 3;
+  const auto to_line = [](const Vector& point, const Vector& start, const Vector& end) -> Fraction<Number> {
+    const Vector edge = end - start, moment = cross(point - start, edge);
+    return {dot(moment, moment), dot(edge, edge)};
+  };
+  const auto to_plane = [](const Vector& point, const Vector& start, const Vector& u,
+                           const Vector& v) -> Fraction<Number> {
+    const Vector normal = cross(u, v);
+    const Number height = dot(normal, point - start);
+    return {height * height, dot(normal, normal)};
+  };
+  switch (features.kind) {
+  case Features::corners: {
+    const Vector between = a(i) - b(j);
+    return {dot(between, between), Number(1.0)};
+  }
+  case Features::corner_edge:
+    return to_line(a(i), b(j), b(next_j));
+  case Features::edge_corner:
+    return to_line(b(j), a(i), a(next_i));
+  case Features::edges: {
+    const Vector start_a = a(i), start_b = b(j);
+    return to_plane(start_a, start_b, a(next_i) - start_a, b(next_j) - start_b);
+  }
+  case Features::corner_face: {
+    const Vector start = b(0);
+    return to_plane(a(i), start, b(1) - start, b(2) - start);
+  }
+  case Features::face_corner: {
+    const Vector start = a(0);
+    return to_plane(b(j), start, a(1) - start, a(2) - start);
+  }
+  case Features::meeting:
+    break;
+  }
+  return {Number(0.0), Number(1.0)};
+}
+
 /// The smallest squared distance of two closed triangles, or of a point, which is corner 0 of the first, and a
 /// triangle.
 ///
@@ -59,7 +115,7 @@ public:
     const Vector normal = normalOf(b_);
     const bool flat = isZero(normal);
     if (!flat && isOver(point, b_, normal)) {
-      offerPlane(point, b_, normal);
+      offer(Features::corner_face, 0, 0);
       return;
     }
     for (std::size_t j = 0; j < 3 && sure_; ++j) // the nearest edge is one that has the point on its outer side
@@ -71,7 +127,7 @@ public:
   {
     const Vector normals[2] = {normalOf(a), normalOf(b)};
     if (pierces(a, b, normals[1]) || (sure_ && pierces(b, a, normals[0]))) {
-      if (sure_) best_ = {}, found_ = true;
+      if (sure_) best_ = {Number(0.0), Number(1.0)}, found_ = true;
       return;
     }
     for (std::size_t k = 0; k < 9 && sure_; ++k)
@@ -81,12 +137,14 @@ public:
       const Corners& face = k < 3 ? b : a;
       const Vector& point = k < 3 ? a[k] : b[k - 3];
       const Vector& normal = normals[k < 3 ? 1 : 0];
-      if (!isZero(normal) && isOver(point, face, normal)) offerPlane(point, face, normal);
+      if (!isZero(normal) && isOver(point, face, normal))
+        k < 3 ? offer(Features::corner_face, k, 0) : offer(Features::face_corner, 0, k - 3);
     }
   }
 
   bool sure() const { return sure_ && found_; }
   const Fraction<Number>& squared() const { return best_; }
+  const Features& features() const { return nearest_; }
 
 private:
   static Vector normalOf(const Corners& t) { return cross(t[1] - t[0], t[2] - t[0]); }
@@ -130,17 +188,14 @@ private:
     return false;
   }
 
-  void offer(const Number& numerator, const Number& denominator)
+  void offer(Features::Kind kind, std::size_t i, std::size_t j)
   {
-    const Fraction<Number> offered{numerator, denominator};
-    if (!found_ || compareFractions(offered, best_, sure_) < 0) best_ = offered;
+    const Features features{kind, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j)};
+    const Fraction<Number> offered = squaredDistance<Number>(
+        features, [this](std::size_t k) -> const Vector& { return a_[k]; },
+        [this](std::size_t k) -> const Vector& { return b_[k]; });
+    if (!found_ || compareFractions(offered, best_, sure_) < 0) best_ = offered, nearest_ = features;
     found_ = true;
-  }
-
-  void offerPlane(const Vector& point, const Corners& t, const Vector& normal)
-  {
-    const Number height = dot(normal, point - t[0]);
-    offer(height * height, dot(normal, normal));
   }
 
   void offerCorners(std::size_t i, std::size_t j)
@@ -148,8 +203,7 @@ private:
     const std::uint32_t bit = 1u << (3 * i + j);
     if ((corners_ & bit) != 0) return;
     corners_ |= bit;
-    const Vector between = a_[i] - b_[j];
-    offer(dot(between, between), Number(1.0));
+    offer(Features::corners, i, j);
   }
 
   /// Corner i of the first and edge j of the second; or the other way round.
@@ -165,8 +219,7 @@ private:
     const Number share = dot(from, edge), whole = dot(edge, edge);
     if (signOf(share, sure_) <= 0) return offer_end(j);
     if (signOf(share - whole, sure_) >= 0) return offer_end(next);
-    const Vector moment = cross(from, edge);
-    offer(dot(moment, moment), whole);
+    of_first ? offer(Features::corner_edge, i, j) : offer(Features::edge_corner, j, i);
   }
 
   void offerEdges(std::size_t i, std::size_t j)
@@ -179,10 +232,7 @@ private:
       const Number on_u = dot(normal, cross(v, w)), on_v = dot(normal, cross(u, w));
       const bool inside = signOf(on_u, sure_) > 0 && signOf(on_u - square, sure_) < 0 && signOf(on_v, sure_) > 0 &&
                           signOf(on_v - square, sure_) < 0;
-      if (inside && sure_) {
-        const Number volume = dot(normal, w);
-        offer(volume * volume, square);
-      }
+      if (inside && sure_) offer(Features::edges, i, j);
       if (inside) return;
     }
     offerEdge(i, j, true);
@@ -195,6 +245,7 @@ private:
   std::array<bool, 3> outer_ = {};
   std::uint32_t corners_ = 0, corner_edges_ = 0;
   Fraction<Number> best_;
+  Features nearest_;
   bool found_ = false, sure_ = true;
 };
 

@@ -8,7 +8,9 @@
 #include <pcl_bsh/geometry/triangle/double_distance.h>
 #include <pcl_bsh/geometry/triangle/nearest_features.h>
 
+#include <algorithm>
 #include <limits>
+#include <type_traits>
 
 namespace pcl_bsh {
 namespace {
@@ -70,47 +72,49 @@ TriangleDistance::TriangleDistance(const Eigen::Isometry3d& pose_a, const Eigen:
 
 // Double ----------------------------------------------------------------------------------------------------------
 
-TriangleDistance::Enclosure TriangleDistance::enclose(const Point3& p, const Triangle3& b) const
+TriangleDistance::Seen TriangleDistance::seen(const Point3& a, const Triangle3& b) const
 {
-  Triangle3 seen; // from the point
-  double error = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const ExactDistance::Difference z = points_.approximate(p, b[i]);
-    seen[i] = {-z.vector[0], -z.vector[1], -z.vector[2]};
-    error = std::max(error, z.error);
+  Seen seen{{}, {}, 0.0};
+  for (std::size_t j = 0; j < 3; ++j) {
+    const ExactDistance::Difference z = points_.approximate(a, b[j]);
+    seen.b[j] = {-z.vector[0], -z.vector[1], -z.vector[2]};
+    seen.error = std::max(seen.error, z.error);
   }
-  if (!isFinite(seen) || !std::isfinite(error)) return {-kAnyLength, kAnyLength};
-  return distanceOfOrigin(flatten<double>(seen, error));
+  return seen;
 }
 
-TriangleDistance::Approximate TriangleDistance::approximate(const Triangle3& a, const Triangle3& b, double reach) const
+/// The corners of b by way of the first of a.
+TriangleDistance::Seen TriangleDistance::seen(const Triangle3& a, const Triangle3& b) const
 {
-  // All seen from the first corner of b: those of b by way of the first of a.
-  Triangle3 seen_a, seen_b;
+  Seen seen{{}, {}, 0.0};
   double error_a = 0.0, error_b = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
     const ExactDistance::Difference z = points_.approximate(a[i], b[0]);
-    seen_a[i] = z.vector;
+    seen.a[i] = z.vector;
     error_a = std::max(error_a, z.error);
   }
-  const double first = error_a;
-  seen_b[0] = {0, 0, 0};
   for (std::size_t j = 1; j < 3; ++j) {
     const ExactDistance::Difference z = points_.approximate(a[0], b[j]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      seen_b[j][k] = seen_a[0][k] - z.vector[k];
-      error_b = std::max(error_b, first + z.error + 2 * kDoubleUnit * std::abs(seen_b[j][k]));
-    }
+    seen.b[j] = seen.a[0] - z.vector;
+    double largest = 0.0;
+    for (const double x : seen.b[j]) largest = std::max(largest, std::abs(x));
+    error_b = std::max(error_b, error_a + z.error + 2 * kDoubleUnit * largest);
   }
-  const double error = error_a + error_b;
-  if (!isFinite(seen_a) || !isFinite(seen_b) || !std::isfinite(error)) return {{-kAnyLength, kAnyLength}, 0x1ff, 0x3f};
-  const DoubleDistance found = distanceOfTriangles(seen_a, seen_b, error, reach);
-  return {found.distance, found.pairs.edges, found.pairs.faces};
+  seen.error = (error_a + error_b) * (1.0 + kDoubleMargin);
+  return seen;
+}
+
+TriangleDistance::Enclosure TriangleDistance::enclose(const Point3& p, const Triangle3& b) const
+{
+  const Seen at = seen(p, b);
+  if (!isFinite(at.b) || !std::isfinite(at.error)) return {-kAnyLength, kAnyLength};
+  return distanceOfOrigin(flatten<double>(at.b, at.error));
 }
 
 TriangleDistance::Enclosure TriangleDistance::enclose(const Triangle3& a, const Triangle3& b) const
 {
-  return approximate(a, b, kAnyLength).distance;
+  const Seen at = seen(a, b);
+  return distanceOfTriangles(at.a, at.b, at.error, kAnyLength).distance;
 }
 
 int TriangleDistance::compare(const Point3& p, const Triangle3& b, double clearance, double radius,
@@ -129,7 +133,8 @@ int TriangleDistance::compare(const Triangle3& a, const Triangle3& b, double cle
 {
   Stages none, &count = orNone(stages, none);
   if (clearance == kAnyLength) return ++count.doubles, -1;
-  const Enclosure found = approximate(a, b, clearance).distance;
+  const Seen at = seen(a, b);
+  const Enclosure found = distanceOfTriangles(at.a, at.b, at.error, clearance).distance;
   if (found.high < clearance) return ++count.doubles, -1;
   if (found.low > clearance) return ++count.doubles, 1;
   return settle(TrianglePair{a, b}, clearance, 0.0, count);
@@ -149,33 +154,70 @@ std::array<Number, 3> TriangleDistance::placed(const Pose& pose, const Point3& p
   return at;
 }
 
-template <class Number>
-NearestFeatures<Number> TriangleDistance::nearest(const PointPair& pair) const
+template <class Number, class Pair>
+NearestFeatures<Number> TriangleDistance::nearest(const Pair& pair) const
 {
-  return {placed<Number>(a_, pair.a),
-          {placed<Number>(b_, pair.b[0]), placed<Number>(b_, pair.b[1]), placed<Number>(b_, pair.b[2])}};
+  const auto corners = [this](const Pose& pose, const Triangle3& t) -> std::array<std::array<Number, 3>, 3> {
+    return {placed<Number>(pose, t[0]), placed<Number>(pose, t[1]), placed<Number>(pose, t[2])};
+  };
+  if constexpr (std::is_same_v<Pair, PointPair>) {
+    return {placed<Number>(a_, pair.a), corners(b_, pair.b)};
+  }
+  else {
+    const Seen at = seen(pair.a, pair.b);
+    return {corners(a_, pair.a), corners(b_, pair.b), distanceOfTriangles(at.a, at.b, at.error, kAnyLength).pairs};
+  }
 }
 
-template <class Number>
-NearestFeatures<Number> TriangleDistance::nearest(const TrianglePair& pair) const
+template <class Number, class Pair>
+Fraction<Number> TriangleDistance::squared(const Pair& pair, const Features& features) const
 {
-  const Approximate found = approximate(pair.a, pair.b, kAnyLength);
-  return {{placed<Number>(a_, pair.a[0]), placed<Number>(a_, pair.a[1]), placed<Number>(a_, pair.a[2])},
-          {placed<Number>(b_, pair.b[0]), placed<Number>(b_, pair.b[1]), placed<Number>(b_, pair.b[2])},
-          {found.edges, found.faces}};
+  const auto corner_a = [&](std::size_t i) {
+    if constexpr (std::is_same_v<Pair, PointPair>)
+      return placed<Number>(a_, pair.a);
+    else
+      return placed<Number>(a_, pair.a[i]);
+  };
+  return squaredDistance<Number>(features, corner_a, [&](std::size_t j) { return placed<Number>(b_, pair.b[j]); });
+}
+
+/// Which features are nearest, by the quickest numbers that are sure.
+template <class Pair>
+Features TriangleDistance::nearestFeatures(const Pair& pair, bool& by_integers) const
+{
+  const Seen at = seen(pair.a, pair.b);
+  if (isFinite(at.a) && isFinite(at.b) && std::isfinite(at.error)) {
+    const auto rough = [&](const Triangle3& t) {
+      std::array<Vector3<RoughNumber>, 3> corners;
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k) corners[i][k] = {t[i][k], at.error};
+      return corners;
+    };
+    if constexpr (std::is_same_v<Pair, PointPair>) {
+      const NearestFeatures<RoughNumber> found(Vector3<RoughNumber>{}, rough(at.b));
+      if (found.sure()) return found.features();
+    }
+    else {
+      const NearestFeatures<RoughNumber> found(rough(at.a), rough(at.b),
+                                               distanceOfTriangles(at.a, at.b, at.error, kAnyLength).pairs);
+      if (found.sure()) return found.features();
+    }
+  }
+  const auto longer = nearest<LongNumber>(pair);
+  if (longer.sure()) return longer.features();
+  by_integers = true;
+  return nearest<Dyadic>(pair).features();
 }
 
 template <class Pair>
 int TriangleDistance::settle(const Pair& pair, double clearance, double radius, Stages& stages) const
 {
-  if (const auto features = nearest<LongNumber>(pair); features.sure()) {
-    bool sure = true;
-    const int side = compareRoot(features.squared(), LongNumber(clearance) + LongNumber(radius), sure);
-    if (sure) return ++stages.long_numbers, side;
-  }
-  bool always = true;
+  bool by_integers = false, sure = true;
+  const Features features = nearestFeatures(pair, by_integers);
+  const int side = compareRoot(squared<LongNumber>(pair, features), LongNumber(clearance) + LongNumber(radius), sure);
+  if (sure) return ++(by_integers ? stages.integers : stages.long_numbers), side;
   ++stages.integers;
-  return compareRoot(nearest<Dyadic>(pair).squared(), Dyadic(clearance) + Dyadic(radius), always);
+  return compareRoot(squared<Dyadic>(pair, features), Dyadic(clearance) + Dyadic(radius), sure);
 }
 
 template <class Pair>
@@ -186,32 +228,28 @@ int TriangleDistance::settleOrder(const Pair& first, const TriangleDistance& oth
   if (x.high < y.low) return ++stages.doubles, -1;
   if (x.low > y.high) return ++stages.doubles, 1;
   if (this == &other && first.a == second.a && first.b == second.b) return ++stages.doubles, 0;
-  const auto long_x = nearest<LongNumber>(first);
-  if (long_x.sure()) {
-    if (const auto long_y = other.nearest<LongNumber>(second); long_y.sure()) {
-      bool sure = true;
-      const int side = compareFractions(long_x.squared(), long_y.squared(), sure);
-      if (sure) return ++stages.long_numbers, side;
-    }
-  }
-  bool always = true;
+  bool by_integers = false, sure = true;
+  const Features of_first = nearestFeatures(first, by_integers);
+  const Features of_second = other.nearestFeatures(second, by_integers);
+  const int side =
+      compareFractions(squared<LongNumber>(first, of_first), other.squared<LongNumber>(second, of_second), sure);
+  if (sure) return ++(by_integers ? stages.integers : stages.long_numbers), side;
   ++stages.integers;
-  return compareFractions(nearest<Dyadic>(first).squared(), other.nearest<Dyadic>(second).squared(), always);
+  return compareFractions(squared<Dyadic>(first, of_first), other.squared<Dyadic>(second, of_second), sure);
 }
 
 template <class Pair>
 double TriangleDistance::rounded(const Pair& pair, Stages& stages) const
 {
-  if (const auto features = nearest<LongNumber>(pair); features.sure()) {
-    const double length = nearestRoot(features.squared());
-    if (!std::isnan(length)) return ++stages.long_numbers, length;
-  }
+  bool by_integers = false;
+  const Features features = nearestFeatures(pair, by_integers);
+  const double length = nearestRoot(squared<LongNumber>(pair, features));
+  if (!std::isnan(length)) return ++(by_integers ? stages.integers : stages.long_numbers), length;
   ++stages.integers;
-  const auto features = nearest<Dyadic>(pair);
-  if (features.squared().numerator.sign() == 0) return 0.0;
+  const Fraction<Dyadic> exact = squared<Dyadic>(pair, features);
+  if (exact.numerator.sign() == 0) return 0.0;
   bool always = true;
-  return nearestDouble(roughRoot(features.squared()),
-                       [&](const Dyadic& x) { return compareRoot(features.squared(), x, always); });
+  return nearestDouble(roughRoot(exact), [&](const Dyadic& x) { return compareRoot(exact, x, always); });
 }
 
 int TriangleDistance::compareDistances(const PointPair& first, const TriangleDistance& other, const PointPair& second,

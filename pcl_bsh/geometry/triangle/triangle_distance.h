@@ -18,20 +18,21 @@
 
 namespace pcl_bsh {
 
-struct FeaturePairs;
+struct Features;
 template <class Number>
 struct Fraction;
 template <class Number>
 class NearestFeatures;
 
 /// Under two fixed poses, a's for what is named first. Const methods may run in several threads at once. Cost: about
-/// 0.1 us for a point, and 0.5 us for a triangle where doubles can vouch for the answer; up to 50 us where nothing but
+/// 0.15 us for a point and 1 us for a triangle where doubles can vouch for the answer; up to 0.1 ms where nothing but
 /// long integers can.
 class PCL_BSH_EXPORT_INTERNAL TriangleDistance {
 public:
   using Enclosure = ExactDistance::Enclosure;
 
-  /// How many answers double arithmetic gave, sums of doubles that know their error, and integers of any length.
+  /// How many answers double arithmetic gave, sums of doubles that know their error, and integers of any length (for
+  /// the distance, or for what is nearest).
   struct Stages {
     std::uint64_t doubles = 0, long_numbers = 0, integers = 0;
   };
@@ -70,20 +71,22 @@ private:
   using Row = std::array<double, 4>; // of a pose: rotation, then translation
   using Pose = std::array<Row, 3>;
 
-  /// What double arithmetic knows of two triangles.
-  struct Approximate {
-    Enclosure distance;
-    std::uint16_t edges; // pairs of features which may be the nearest
-    std::uint8_t faces;
+  /// Two triangles seen from a corner of the second, in double, and how far they may be off together.
+  struct Seen {
+    Triangle3 a, b;
+    double error;
   };
-  Approximate approximate(const Triangle3& a, const Triangle3& b, double reach) const;
+  Seen seen(const Point3& a, const Triangle3& b) const; ///< from the point: a is a[0]
+  Seen seen(const Triangle3& a, const Triangle3& b) const;
 
   template <class Number>
   std::array<Number, 3> placed(const Pose& pose, const Point3& p) const;
-  template <class Number>
-  NearestFeatures<Number> nearest(const PointPair& pair) const;
-  template <class Number>
-  NearestFeatures<Number> nearest(const TrianglePair& pair) const;
+  template <class Number, class Pair>
+  NearestFeatures<Number> nearest(const Pair& pair) const;
+  template <class Number, class Pair>
+  Fraction<Number> squared(const Pair& pair, const Features& features) const;
+  template <class Pair>
+  Features nearestFeatures(const Pair& pair, bool& by_integers) const;
   template <class Pair>
   int settle(const Pair& pair, double clearance, double radius, Stages& stages) const;
   template <class Pair>

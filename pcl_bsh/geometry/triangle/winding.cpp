@@ -9,32 +9,6 @@
 namespace pcl_bsh {
 namespace {
 
-/// Double numbers within a common error, and what is computed of them.
-struct Rough {
-  double value = 0.0, error = 0.0;
-
-  friend Rough operator-(const Rough& x) { return {-x.value, x.error}; }
-  friend Rough operator+(const Rough& x, const Rough& y)
-  {
-    const double sum = x.value + y.value;
-    return {sum, (x.error + y.error + kDoubleUnit * std::abs(sum)) * (1.0 + kDoubleMargin)};
-  }
-  friend Rough operator-(const Rough& x, const Rough& y) { return x + -y; }
-  friend Rough operator*(const Rough& x, const Rough& y)
-  {
-    const double product = x.value * y.value;
-    const double error = std::abs(x.value) * y.error + std::abs(y.value) * x.error + x.error * y.error;
-    return {product, (error + kDoubleUnit * std::abs(product)) * (1.0 + kDoubleMargin) + 0x1p-1000};
-  }
-};
-
-int signOf(const Rough& x, bool& sure)
-{
-  if (std::abs(x.value) > x.error) return x.value > 0.0 ? 1 : -1;
-  if (!(x.value == 0.0 && x.error == 0.0)) sure = false;
-  return 0;
-}
-
 /// Corners seen from the point, the ray's axis first. `sure` is false where a sign was unknown, and the rest then worth
 /// nothing.
 template <class Number>
@@ -61,7 +35,7 @@ Winding::Crossing meet(const std::array<Vector3<Number>, 3>& t, bool& sure)
   const int side = signOf(volume, sure);
   if (!sure) return {};
   if (side == 0) { // in the plane of the triangle, or there is no plane: on it?
-    if constexpr (std::is_same_v<Number, Rough>) {
+    if constexpr (std::is_same_v<Number, RoughNumber>) {
       sure = false;
       return {};
     }
@@ -72,14 +46,11 @@ Winding::Crossing meet(const std::array<Vector3<Number>, 3>& t, bool& sure)
       if (!sure) return {};
     }
   }
-  if (turns[0] == 0 || turns[0] != turns[1] || turns[1] != turns[2]) return {};
-  // The ray meets the plane in front of the point where volume over the normal along the ray is positive; in the plane,
-  // where the step beside it says so.
-  int towards = side;
-  if (towards == 0) towards = -signOf(normal[1], sure);
-  if (towards == 0) towards = -signOf(normal[2], sure);
-  if (!sure || towards * turns[0] <= 0) return {};
-  return {turns[0], false};
+  // Off the triangle, a place in its plane is not beside it either: the ray passes by.
+  if (side == 0 || turns[0] == 0 || turns[0] != turns[1] || turns[1] != turns[2]) return {};
+  // The ray meets the plane in front of the point where the volume has the sign of the normal along the ray, which that
+  // of the turns is.
+  return {side == turns[0] ? turns[0] : 0, false};
 }
 
 } // namespace
@@ -115,7 +86,7 @@ std::array<Number, 3> Winding::seen(const Point3& p, const Point3& q) const
 Winding::Crossing Winding::crossing(const Point3& p, const Triangle3& triangle, Stages* stages) const
 {
   Stages none, &count = stages ? *stages : none;
-  std::array<Vector3<Rough>, 3> rough;
+  std::array<Vector3<RoughNumber>, 3> rough;
   bool sure = true;
   for (std::size_t i = 0; i < 3; ++i) {
     const ExactDistance::Difference z = points_.approximate(p, triangle[i]);

@@ -47,7 +47,6 @@ private:
     return closest;
   }
 
-
   /// Certain ones first.
   std::string headline() const
   {

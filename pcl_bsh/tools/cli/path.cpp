@@ -8,6 +8,7 @@
 #include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include <cmath>
 #include <stdexcept>
 
 namespace pcl_bsh::cli {
@@ -48,7 +49,7 @@ void PathOptions::addTo(CLI::App& app)
                  "the motion between poses counts too: points within D of it collide,\n"
                  "points beyond D + TOL do not; TOL > 0, in the clouds' unit")
       ->type_name("TOL")
-      ->transform(number<double>("give a length > 0"));
+      ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
 }
 
 void PathOptions::requireConsistent(bool has_pose) const

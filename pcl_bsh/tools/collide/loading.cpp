@@ -1,23 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "loading.h"
-#include "surface_input.h"
+
 #include <pcl_bsh/tools/cli/step.h>
 
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/filters/used_vertices.h>
 #include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/search/cloud_view.h>
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace pcl_bsh::cli {
+namespace {
+
+void requireForSurface(const CollideOptions& options)
+{
+  const auto refuse = [&](const std::string& option) {
+    throw std::invalid_argument(option + ": is about points, and " + options.input.string() +
+                                " is a surface: give --vertices-only to ask about its vertices");
+  };
+  if (!options.clashes.empty()) refuse("--clashes");
+  if (options.distances) refuse("--distances");
+  io::requireWritableMesh(options.output);
+}
+
+} // namespace
 
 Scan loadInput(const CollideOptions& options, double& seconds)
 {
   Step step("Loading " + options.input.string());
   Scan scan;
   const io::ColumnNames columns = options.columns.of(options.input);
-  io::Mesh mesh = io::readMesh(options.input, options.surface, &scan.facts, columns, options.threads);
+  const Question& question = options.question;
+  io::Mesh mesh = io::readMesh(options.input, {question.surface_tolerance, question.vertices_only}, &scan.facts,
+                               columns, question.threads);
   scan.cloud = std::move(mesh.vertices);
   scan.triangles = std::move(mesh.triangles);
   const std::string triangles = scan.triangles.empty() ? "" : ", " + counted(scan.triangles.size(), "triangle");
@@ -25,34 +47,59 @@ Scan loadInput(const CollideOptions& options, double& seconds)
   return scan;
 }
 
-std::shared_ptr<const SurfaceCover> coverOf(const CollideOptions& options, const Scan& input, double& seconds,
-                                            std::vector<std::string>& warnings)
+Shape shapeOf(const CollideOptions& options, const Scan& input, double& seconds, std::vector<std::string>& warnings)
 {
-  if (input.triangles.empty()) return nullptr;
+  const std::string name = options.input.string();
+  if (input.triangles.empty()) return {name, viewOf(input.cloud), recordFields(input.cloud.fields)};
   requireForSurface(options);
-  Step step("Covering " + options.input.string());
-  auto cover = std::make_shared<const SurfaceCover>(coverInput(
-      options.input, viewOf(input.cloud), input.triangles, options.surface, options.clearance,
-      [&](double fraction) {
-        step.share(fraction);
-        return true;
-      },
-      warnings));
-  seconds += step.done(counted(cover->centers.size(), "ball"));
-  return cover;
+  Step step("Covering " + name);
+  const auto progress = [&](double fraction) {
+    step.share(fraction);
+    return true;
+  };
+  std::vector<std::string> remarks;
+  try {
+    auto cover = std::make_shared<const SurfaceCover>(
+        io::coverMesh(viewOf(input.cloud), input.triangles, {options.question.surface_tolerance, false, true},
+                      options.question.clearance.value_or(0.0), progress, remarks));
+    for (const std::string& remark : remarks) warnings.push_back(name + ": " + remark);
+    seconds += step.done(counted(cover->centers.size(), "ball"));
+    return {name, std::move(cover)};
+  }
+  catch (const InvalidInput& error) {
+    throw files::FileError(options.input, error.wrong(), error.remedy());
+  }
 }
 
-SphereHierarchy build(const PointsView& points, const std::vector<pcl::PCLPointField>& fields,
-                      const std::filesystem::path& path, const Uncertainty& uncertainty, unsigned threads,
-                      double& seconds)
+const SphereHierarchy& build(Shape& shape, const Uncertainty& uncertainty, unsigned threads, double& seconds)
 {
-  const PointsView view = withUncertainty(points, fields, path.string(), uncertainty);
-  Step step("Sorting " + path.string() + " into voxels");
-  HierarchyOptions options;
-  options.threads = threads;
-  SphereHierarchy hierarchy(view, options);
+  Step step("Sorting " + shape.name() + " into voxels");
+  const SphereHierarchy& hierarchy = shape.hierarchy(uncertainty, threads);
   seconds += step.done(counted(hierarchy.statistics().voxels, "voxel"));
   return hierarchy;
+}
+
+std::size_t writeSurface(const CollideOptions& options, const Scan& input, const TrajectoryResult& found)
+{
+  io::Mesh mesh{input.cloud, input.triangles};
+  std::vector<std::uint8_t> kept(mesh.triangles.size(), 1);
+  if (options.keep != Keep::flagged) {
+    for (std::size_t t = 0; t < kept.size(); ++t) kept[t] = (found.flags[t] != 0) == (options.keep == Keep::colliding);
+    mesh.triangles = keptValues(mesh.triangles, kept);
+    mesh.vertices = selectedRecords(mesh.vertices, keepUsedVertices(viewOf(mesh.vertices).count, mesh.triangles));
+  }
+  const auto flags = keptValues(found.flags, kept);
+  const auto distance = keptValues(found.distance, kept);
+  const auto first = keptValues(found.first_pose, kept), closest = keptValues(found.closest_pose, kept);
+  std::vector<io::FaceField> fields;
+  if (options.keep == Keep::flagged || options.moves()) fields.push_back({collision_field_name, &flags});
+  if (options.moves() && !found.distance.empty()) {
+    fields.push_back({distance_field_name, &distance});
+    fields.push_back({first_pose_field_name, &first});
+    fields.push_back({closest_pose_field_name, &closest});
+  }
+  io::writeMesh(options.output, mesh.vertices, mesh.triangles, fields, input.facts.viewpoint);
+  return mesh.triangles.size();
 }
 
 } // namespace pcl_bsh::cli

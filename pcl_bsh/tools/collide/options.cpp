@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
 
-#include <pcl_bsh/tools/cli/accuracy.h>
 #include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/obstacle.h>
 #include <pcl_bsh/tools/cli/path.h>
-#include <pcl_bsh/tools/cli/uncertainty.h>
+#include <pcl_bsh/tools/cli/question_options.h>
 
 #include <cmath>
+#include <utility>
 
 namespace pcl_bsh::cli {
 namespace {
@@ -35,69 +35,25 @@ Example: how far has each point of a scan moved away from an earlier scan?
 Example: which points of a hall are within 5 cm of a machine's surface, to a millimetre?
   pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05 --surface-tolerance 0.001)";
 
-/// As the options about distances are written.
-struct DistanceTexts {
-  bool asked = false;
-  std::optional<double> most;
-  std::optional<std::filesystem::path> page;
-
-  void addTo(CLI::App& app)
-  {
-    app.add_flag("--distances", asked,
-                 "each point's distance to the nearest point of OBSTACLE: a field\n"
-                 "'distance'; statistics of both directions in --report");
-    app.add_option("--max-distance", most,
-                   "greater distances are not told, but are NaN; less is faster (default: none)")
-        ->type_name("M")
-        ->transform(number<double>("give a length >= 0", [](double d) { return d >= 0; }));
-    app.add_option("--distance-page", page, "page for browsers: statistics, histograms, the farthest places")
-        ->type_name("FILE.html");
-  }
-
-  /// @throws UsageError where they do not fit each other, or what else is asked
-  void read(CollideOptions& options) const
-  {
-    const auto refuse = [](const char* option, const char* wrong) {
-      throw UsageError(std::string(option) + ": " + wrong);
-    };
-    for (const auto& [given, option] :
-         {std::pair{most.has_value(), "--max-distance"}, {page.has_value(), "--distance-page"}}) {
-      if (given && !asked) refuse(option, "no distances are asked for: give --distances");
-    }
-    if (!asked) return;
-    if (options.moves())
-      refuse("--distances",
-             "are of one pose; along a path the output has the smallest within the clearance: leave it out");
-    requireAnswers(options.accuracy, {false, false, true});
-    options.distances.emplace();
-    options.distances->most = most.value_or(options.distances->most);
-    options.distances->page = page;
-  }
-};
-
-void addDensityOptions(CLI::App& app, CollideOptions& options)
-{
-  app.add_flag("--density", options.density,
-               "points that are free of OBSTACLE's points, but within D of its surface in\n"
-               "a hole between them, get 3 in the field 'collision': not scanned\n"
-               "densely enough");
-  app.add_option("--widest-gap", options.widest_gap,
-                 "with --density: what gapes wider in OBSTACLE is an opening, not a\n"
-                 "surface (default: eight spacings of OBSTACLE)")
-      ->type_name("L")
-      ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-}
-
-/// Checks that involve several options.
+/// Checks that involve several options; those of the question are the core's.
 void requireConsistent(const CollideOptions& options)
 {
+  const auto refuse = [](const char* option, const char* wrong) {
+    throw UsageError(std::string(option) + ": " + wrong);
+  };
   if (options.clashes.empty() && (options.cluster_distance > 0 || options.previous))
-    throw UsageError(std::string(options.previous ? "--previous" : "--cluster-distance") +
-                     ": no clash report is written: give --clashes FILE");
-  if (options.density && (options.moves() || !options.clashes.empty()))
-    throw UsageError("--density: is for flags at one pose: leave out the path and --clashes");
-  if (options.widest_gap > 0 && !options.density) throw UsageError("--widest-gap: give --density, too");
-  requireAnswers(options.accuracy, {!options.clashes.empty(), options.swept.has_value(), false});
+    refuse(options.previous ? "--previous" : "--cluster-distance", "no clash report is written: give --clashes FILE");
+  for (const auto& [given, option] : {std::pair{options.question.max_distance.has_value(), "--max-distance"},
+                                      {options.distance_page.has_value(), "--distance-page"}}) {
+    if (given && !options.distances) refuse(option, "no distances are asked for: give --distances");
+  }
+  if (options.distances && options.moves())
+    refuse("--distances",
+           "are of one pose; along a path the output has the smallest within the clearance: leave it out");
+  if (!options.unit.empty() && !options.distances && options.clashes.empty())
+    refuse("--unit", "no report tells it: give --distances or --clashes FILE");
+  if (!options.question.clearance && !options.distances)
+    throw UsageError(std::string("command line: --clearance is required: see ") + collide_program + " --help");
 }
 
 } // namespace
@@ -105,7 +61,9 @@ void requireConsistent(const CollideOptions& options)
 std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
 {
   CollideOptions options;
-  std::string pose, accuracy = "exact";
+  Question& question = options.question;
+  question.threads = 0;
+  std::string pose;
   bool in_place = false;
   PathOptions path;
   CLI::App app("Flags, keeps or removes the points of a cloud that collide with an obstacle.", collide_program);
@@ -113,11 +71,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   app.add_option("INPUT", options.input, "the cloud whose points are tested")->type_name("")->required();
   app.add_option("OBSTACLE", options.obstacle, "cloud or mesh to collide with")->type_name("")->required();
   app.add_option("OUTPUT", options.output, "INPUT's points with all their fields")->type_name("")->required();
-  CLI::Option* const clearance = app.add_option("--clearance", options.clearance,
-                                                "greatest distance that counts as collision, in the clouds' unit\n"
-                                                "(default with --distances: 0)")
-                                     ->type_name("D")
-                                     ->transform(number<double>(give_length));
+  addQuestionOptions(app, question, {"clearance"});
   app.add_option("--pose", pose,
                  "of OBSTACLE in INPUT's frame: x,y,z,roll,pitch,yaw, the angles in\n"
                  "radians (R = Rz(yaw) Ry(pitch) Rx(roll)); or a file of 12 or 16\n"
@@ -131,26 +85,16 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
                  "free: only finite points that do not collide")
       ->type_name("WHICH")
       ->transform(choice<Keep>({{"flagged", Keep::flagged}, {"colliding", Keep::colliding}, {"free", Keep::free}}));
-  app.add_option("--accuracy", accuracy,
-                 "what may be given up for time: exact (default);\n"
-                 "tolerance=LENGTH: pairs up to that much beyond D may count; level=N:\n"
-                 "spheres are opened down to this level; pairs=N or time=SECONDS: each\n"
-                 "query stops there. Points that are undecided then get 2 in the field\n"
-                 "'collision'; along a path, level, pairs and time give no distances and\n"
-                 "no poses")
-      ->type_name("HOW");
-  DistanceTexts distances;
-  distances.addTo(app);
-  UncertaintyOptions uncertainties;
-  uncertainties.addTo(app, "INPUT");
-  addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
+  app.add_flag("--distances", options.distances,
+               "each point's distance to the nearest point of OBSTACLE: a field\n"
+               "'distance'; statistics of both directions in --report");
+  addQuestionOptions(app, question, QuestionKind::any, {"clearance", "swept"});
+  app.add_option("--distance-page", options.distance_page,
+                 "page for browsers: statistics, histograms, the farthest places")
+      ->type_name("FILE.html");
   ColumnOptions columns;
   columns.addTo(app);
-  addDensityOptions(app, options);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
-  app.add_option("--threads", options.threads, "0: all of the machine's (default); any number gives the same result")
-      ->type_name("N")
-      ->transform(number<unsigned>(give_threads));
   app.add_option("--report", options.report, "JSON file for the results and what they cost")->type_name("FILE");
   app.add_option("--clashes", options.clashes,
                  "list of the places that collide, to .json, .csv or .html; may be given\n"
@@ -167,32 +111,29 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
                  "are new, persisting, resolved, or not visited by the path or not scanned\n"
                  "any more")
       ->type_name("FILE");
-  CLI::Option* const unit =
-      app.add_option("--unit", options.unit, "name of the clouds' unit, for reports of distances and clashes")
-          ->type_name("NAME");
+  app.add_option("--unit", options.unit, "name of the clouds' unit, for reports of distances and clashes")
+      ->type_name("NAME");
   if (!understood(app, collide_program, argc, argv)) return std::nullopt;
 
-  options.accuracy = parseAccuracy(accuracy);
-  uncertainties.read(options.input_uncertainty, options.obstacle_uncertainty);
   options.columns = columns.read({options.input, options.obstacle});
   path.requireConsistent(!pose.empty());
-  if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
+  if (!pose.empty()) question.pose = parsePose("--pose", pose, options.warnings);
   options.trajectory = path.file;
-  if (path.isStraight()) options.path = path.straightRun(options.warnings);
-  options.swept = path.swept;
+  if (path.isStraight()) question.path = path.straightRun(options.warnings);
+  options.names_of_poses = path.isStraight() ? std::vector<std::string>{"--from", "--to"}
+                                             : std::vector<std::string>{pose.empty() ? "--trajectory" : "--pose"};
+  question.swept = path.swept.value_or(0.0);
   requireConsistent(options);
-  distances.read(options);
-  if (!unit->empty() && !options.distances && options.clashes.empty())
-    throw UsageError("--unit: no report tells it: give --distances or --clashes FILE");
-  options.asks_collisions = !clearance->empty();
-  if (!options.asks_collisions && !options.distances)
-    throw UsageError(std::string("command line: --clearance is required: see ") + collide_program + " --help");
+  question.wanted.flags = question.wanted.closest = true;
+  question.wanted.contacts = options.tellsContacts() || !options.clashes.empty();
+  question.wanted.poses = question.wanted.contacts && !path.swept; // swept motion is of what lies between poses
+  question.wanted.distances = question.wanted.both_ways = options.distances;
 
   CommandFiles& files = options.files;
   files.reads("INPUT", options.input).reads("OBSTACLE", options.obstacle).readsPose("--pose", pose);
   files.reads("--trajectory", path.file).readsPose("--from", path.from).readsPose("--to", path.to);
   files.reads("--previous", options.previous.value_or("")).writes("OUTPUT", options.output, in_place ? "INPUT" : "");
-  files.writes("--report", options.report.value_or("")).writes("--distance-page", distances.page.value_or(""));
+  files.writes("--report", options.report.value_or("")).writes("--distance-page", options.distance_page.value_or(""));
   for (const std::filesystem::path& list : options.clashes) files.writes("--clashes", list, "--previous"); // updated
   return options;
 }

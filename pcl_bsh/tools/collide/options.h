@@ -4,13 +4,11 @@
 
 #include <pcl_bsh/tools/cli/used_files.h>
 
-#include <pcl_bsh/filters/uncertainty.h>
-#include <pcl_bsh/io/clouds/meshes/obstacle.h>
-#include <pcl_bsh/trajectory/trajectory.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/question/question.h>
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,40 +19,29 @@ inline constexpr auto collide_program = "pcl_bsh_collide";
 
 enum class Keep { flagged, colliding, free };
 
-/// What is asked about the distance of every point.
-struct DistanceOptions {
-  double most = std::numeric_limits<double>::infinity(); ///< greater ones are not told
-  std::optional<std::filesystem::path> page;
-};
-
 struct CollideOptions {
   std::filesystem::path input;
   std::filesystem::path obstacle;
   std::filesystem::path output;
   std::optional<std::filesystem::path> report;
   Keep keep = Keep::flagged;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_input_obstacle
-  std::filesystem::path trajectory;                       ///< a file of such poses, or empty
-  std::vector<Eigen::Isometry3d> path;                    ///< a straight run of them, or empty
-  std::optional<double> swept;
+  Question question;                          ///< its path: a straight run, or that of the trajectory, once it is read
+  std::filesystem::path trajectory;           ///< a file of poses, or empty
   std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;
-  std::optional<DistanceOptions> distances;
+  bool distances = false; ///< of every point
+  std::optional<std::filesystem::path> distance_page;
   std::string unit; ///< of the clouds, for reports; empty: not known
-  double clearance = 0.0;
-  bool asks_collisions = true; ///< a clearance was given
-  unsigned threads = 0;        ///< all of the machine's
-  Accuracy accuracy;
-  Uncertainty input_uncertainty, obstacle_uncertainty;
-  io::SurfaceSettings surface;
   io::ColumnChoice columns;
-  bool density = false;
-  double widest_gap = 0;             ///< 0: as the obstacle's spacing suggests
-  std::vector<std::string> warnings; ///< of the options themselves
-  CommandFiles files;                ///< all that are read or written
+  std::vector<std::string> warnings;       ///< of the options themselves
+  std::vector<std::string> names_of_poses; ///< the options that gave them, as advice() takes these
+  CommandFiles files;                      ///< all that are read or written
 
-  bool moves() const { return !trajectory.empty() || !path.empty(); }
+  bool moves() const { return question.path.has_value() || !trajectory.empty(); }
+
+  /// Whether the output gets distances and poses: not along a path with an accuracy that cannot tell these.
+  bool tellsContacts() const { return moves() && !question.accuracy.stopsEarly(); }
 };
 
 /// The options, checked; none when only help was asked for. @throws UsageError, files::FileError of pose files

@@ -5,6 +5,9 @@
 
 #include <pcl_bsh/io/reports/clash_report.h>
 
+#include <cmath>
+#include <tuple>
+
 namespace pcl_bsh::cli {
 namespace {
 
@@ -24,18 +27,18 @@ nlohmann::ordered_json toJson(const Spacing& spacing)
   return {{"median", spacing.median}, {"nine_of_ten", spacing.wide}, {"sampled_points", spacing.samples}};
 }
 
-nlohmann::ordered_json toJson(const PathReport& path)
+nlohmann::ordered_json pathJson(const Question& question, const TrajectoryResult& found)
 {
   nlohmann::ordered_json json;
-  json["poses"] = path.poses;
-  json["swept"] = path.swept ? nlohmann::ordered_json(*path.swept) : nlohmann::ordered_json();
+  json["poses"] = question.path->size();
+  json["swept"] = question.swept > 0.0 ? nlohmann::ordered_json(question.swept) : nlohmann::ordered_json();
   json["first_contact"] = nullptr;
-  if (path.first_contact) {
-    json["first_contact"] = {{"pose", path.first_contact->pose}, {"fraction", path.first_contact->fraction}};
+  if (found.first_contact) {
+    json["first_contact"] = {{"pose", found.first_contact->pose}, {"fraction", found.first_contact->fraction}};
   }
   json["table"] = nlohmann::ordered_json::array();
-  for (std::size_t k = 0; k < path.table.size(); ++k) {
-    const PoseSummary& pose = path.table[k];
+  for (std::size_t k = 0; k < found.poses.size(); ++k) {
+    const PoseSummary& pose = found.poses[k];
     json["table"].push_back({{"pose", k}, {"colliding", pose.colliding_points}, {"distance", orNull(pose.distance)}});
   }
   return json;
@@ -45,42 +48,44 @@ nlohmann::ordered_json toJson(const PathReport& path)
 
 nlohmann::ordered_json toJson(const CollisionReport& report)
 {
+  const auto& [question, answer] = std::tie(report.question, report.answer);
+  const DistanceResult& closest = answer.closest;
+  const std::size_t colliding = answer.collisions.colliding, undecided = answer.collisions.undecided;
+  const double clearance = question.clearance.value_or(0.0);
   nlohmann::ordered_json json;
   json["input"] = toJson(report.input);
   json["obstacle"] = toJson(report.obstacle);
   json["input_surface"] = report.input_surface ? nlohmann::ordered_json{{"tolerance", *report.input_surface}} : nullptr;
-  json["surface"] = io::surfaceJson(report.surface ? &*report.surface : nullptr, report.besideSurface());
-  json["clearance"] = report.clearance;
-  json["colliding"] = report.colliding;
-  json["undecided"] = report.undecided;
-  json["not_scanned_densely_enough"] = report.sparse;
-  json["free"] = report.input.finite - report.colliding - report.undecided - report.sparse;
-  json["uncertainty"] = {{"input", io::uncertaintyJson(report.input_uncertainty)},
-                         {"obstacle", io::uncertaintyJson(report.obstacle_uncertainty)}};
+  json["surface"] = io::surfaceJson(report.surface ? &*report.surface : nullptr, report.beside());
+  json["clearance"] = clearance;
+  json["colliding"] = colliding;
+  json["undecided"] = undecided;
+  json["not_scanned_densely_enough"] = answer.sparse;
+  json["free"] = report.input.finite - colliding - undecided - answer.sparse;
+  json["uncertainty"] = {{"input", io::uncertaintyJson(question.uncertaintyOfInput())},
+                         {"obstacle", io::uncertaintyJson(question.uncertaintyOfObstacle())}};
   json["distance"] = nullptr;
   json["closest_pair"] = nullptr;
-  if (report.closest.pair) {
-    json["distance"] = report.closest.distance;
-    json["closest_pair"] = {report.closest.pair->a, report.closest.pair->b};
+  if (closest.pair) {
+    json["distance"] = closest.distance;
+    json["closest_pair"] = {closest.pair->a, closest.pair->b};
   }
   json["distance_interval"] = nullptr;
-  if (!report.path) {
-    json["distance_interval"] = {orNull(report.closest.interval.lower), orNull(report.closest.interval.upper)};
-  }
-  json["accuracy"] = report.path && report.path->swept ? "swept" : report.accuracy.text();
-  json["density"] = {{"input", toJson(report.density.input.value_or(Spacing()))},
-                     {"obstacle", report.density.obstacle ? toJson(*report.density.obstacle) : nullptr},
-                     {"blind", report.density.blind()},
-                     {"widest_gap", report.widest_gap > 0 ? nlohmann::ordered_json(report.widest_gap) : nullptr},
-                     {"could_hide_collisions", report.density.couldHide(report.clearance)}};
-  if (report.path) json["path"] = toJson(*report.path);
+  if (!question.path) json["distance_interval"] = {orNull(closest.interval.lower), orNull(closest.interval.upper)};
+  json["accuracy"] = question.swept > 0.0 ? "swept" : question.accuracy.text();
+  json["density"] = {{"input", toJson(answer.density.input.value_or(Spacing()))},
+                     {"obstacle", answer.density.obstacle ? toJson(*answer.density.obstacle) : nullptr},
+                     {"blind", answer.density.blind()},
+                     {"widest_gap", answer.widest_gap > 0 ? nlohmann::ordered_json(answer.widest_gap) : nullptr},
+                     {"could_hide_collisions", answer.density.couldHide(clearance)}};
+  if (question.path) json["path"] = pathJson(question, answer.collisions);
   if (report.distances) json["distances"] = *report.distances;
-  json["work"] = {{"node_pairs", report.work.node_pairs},
-                  {"volumes_carried", report.work.volumes_carried},
-                  {"volumes_built", report.work.volumes_built},
-                  {"leaf_pairs", report.work.leaf_pairs},
-                  {"exact_decisions", report.work.exact_decisions},
-                  {"voxels_built", report.work.voxels_built},
+  json["work"] = {{"node_pairs", answer.work.node_pairs},
+                  {"volumes_carried", answer.work.volumes_carried},
+                  {"volumes_built", answer.work.volumes_built},
+                  {"leaf_pairs", answer.work.leaf_pairs},
+                  {"exact_decisions", answer.work.exact_decisions},
+                  {"voxels_built", answer.work.voxels_built},
                   {"voxels_total", report.voxels_total}};
   json["seconds"] = {{"load", report.seconds.load},       {"build", report.seconds.build},
                      {"query", report.seconds.query},     {"distances", report.seconds.distances},

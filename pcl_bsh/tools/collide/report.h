@@ -2,13 +2,8 @@
 // The results of a comparison of two clouds, and what they cost, for people and for programs.
 #pragma once
 
-#include <pcl_bsh/tools/cli/obstacle.h>
-
-#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
-#include <pcl_bsh/pairs/closest_pair.h>
-#include <pcl_bsh/question/warnings.h>
-#include <pcl_bsh/trajectory/trajectory.h>
+#include <pcl_bsh/question/ask.h>
 
 #include <nlohmann/json.hpp>
 
@@ -26,14 +21,6 @@ struct CloudReport {
   std::size_t finite = 0;
 };
 
-/// What is known only along a path.
-struct PathReport {
-  std::size_t poses = 0;
-  std::optional<double> swept;
-  std::vector<PoseSummary> table;            ///< one per pose; none when swept
-  std::optional<FirstContact> first_contact; ///< swept only
-};
-
 struct Seconds {
   double load = 0;
   double build = 0; ///< sorting into voxels; their trees are built by the query that visits them
@@ -49,29 +36,18 @@ struct CollisionReport {
   std::optional<io::Obstacle> surface; ///< the obstacle, where it is one
   std::optional<double> input_surface; ///< the tolerance, where the input is one: its numbers are those of triangles
   std::string coordinate_system;       ///< of the input, where its file names one; else empty
-  double clearance = 0;
-  Accuracy accuracy;
-  Uncertainty input_uncertainty, obstacle_uncertainty;
-  std::size_t colliding = 0; ///< points of the input
-  std::size_t undecided = 0; ///< likewise
-  std::size_t sparse = 0;    ///< likewise, and not among the undecided
-  double widest_gap = 0;     ///< of the density guard; 0: not guarded
-  DistanceResult closest;    ///< a: the input, b: the obstacle (a point, or a triangle of its surface); along a path
-                             ///< within the clearance only
-  Density density;
-  std::optional<PathReport> path;
+  Question question;
+  Answer answer;
   std::optional<nlohmann::ordered_json> distances; ///< where every point's was asked for
-  Work work;                                       ///< of all queries
   std::size_t voxels_total = 0;
   Seconds seconds;
   std::vector<std::string> warnings;
 
-  /// Whose tolerance comes on top of the surface's.
-  std::string besideSurface() const { return cli::besideSurface(accuracy, path && path->swept); }
+  std::string beside() const { return besideSurface(question.accuracy, question.swept > 0.0); }
 
   bool mayLeaveUndecided() const
   {
-    return accuracy.stopsEarly() || !input_uncertainty.isZero() || !obstacle_uncertainty.isZero();
+    return question.accuracy.stopsEarly() || !question.uncertainty.isZero() || !question.obstacle_uncertainty.isZero();
   }
 };
 

@@ -15,10 +15,12 @@ namespace {
 std::string distanceText(const CollisionReport& report)
 {
   std::ostringstream text;
-  text << report.closest.distance;
-  if (report.accuracy.isExact()) return text.str();
-  if (report.path) return text.str() + " within the tolerance";
-  text << " or less, certainly in [" << report.closest.interval.lower << ", " << report.closest.interval.upper << "]";
+  const DistanceResult& closest = report.answer.closest;
+  const Accuracy& accuracy = report.question.accuracy;
+  text << closest.distance;
+  if (accuracy.isExact()) return text.str();
+  if (report.question.path) return text.str() + " within the tolerance";
+  text << " or less, certainly in [" << closest.interval.lower << ", " << closest.interval.upper << "]";
   return text.str();
 }
 
@@ -44,24 +46,23 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
 {
   warn(collide_program, report.warnings);
   std::ostream& out = options.files.summary();
-  out << report.colliding << " of " << counted(report.input.points, report.input_surface ? "triangle" : "point")
+  const Answer& answer = report.answer;
+  out << answer.collisions.colliding << " of "
+      << counted(report.input.points, report.input_surface ? "triangle" : "point")
       << (report.input.points == 1 ? " collides" : " collide");
-  if (report.mayLeaveUndecided()) out << ", " << report.undecided << " are undecided";
-  if (report.widest_gap > 0) out << ", " << report.sparse << " are not scanned densely enough";
-  if (report.closest.pair) {
+  if (report.mayLeaveUndecided()) out << ", " << answer.collisions.undecided << " are undecided";
+  if (answer.widest_gap > 0) out << ", " << answer.sparse << " are not scanned densely enough";
+  if (const auto& pair = answer.closest.pair) {
     out << "; smallest distance " << distanceText(report) << ", between "
-        << (report.input_surface ? "triangle " : "point ") << report.closest.pair->a << " of the input and "
-        << (report.surface ? report.surface->partName() : "point") << ' ' << report.closest.pair->b
-        << " of the obstacle";
+        << (report.input_surface ? "triangle " : "point ") << pair->a << " of the input and "
+        << (report.surface ? report.surface->partName() : "point") << ' ' << pair->b << " of the obstacle";
   }
-  if (report.path) out << "; " << counted(report.path->poses, "pose");
-  if (report.path && report.path->first_contact) {
-    out << "; first contact at pose "
-        << static_cast<double>(report.path->first_contact->pose) + report.path->first_contact->fraction;
-  }
+  if (report.question.path) out << "; " << counted(report.question.path->size(), "pose");
+  if (const auto& first = answer.collisions.first_contact)
+    out << "; first contact at pose " << static_cast<double>(first->pose) + first->fraction;
   if (!clashes.empty()) out << "; " << clashes;
   if (distances) out << distanceSummary(*distances);
-  if (report.surface) out << "; " << io::promiseOf(*report.surface, report.besideSurface());
+  if (report.surface) out << "; " << io::promiseOf(*report.surface, report.beside());
   out << "; wrote " << options.output.string() << '\n';
 }
 

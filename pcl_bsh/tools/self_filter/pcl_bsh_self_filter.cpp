@@ -16,6 +16,7 @@
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/question/warnings.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <nlohmann/json.hpp>
@@ -119,17 +120,23 @@ pcl::PCLPointCloud2 withoutFlagged(const pcl::PCLPointCloud2& cloud, const Point
   return selectedRecords(cloud, kept);
 }
 
+/// @param once tells each kind of warning once: clouds come in streams
 Json filterCloud(const Options& options, const std::string& name, const JointValues& values, std::size_t frame,
-                 self_filter::SelfFilter& filter)
+                 self_filter::SelfFilter& filter, WarningsOnce& once)
 {
   io::CloudFacts facts;
   const pcl::PCLPointCloud2 cloud = io::readCloud(name, &facts, options.columns.of(name), options.settings.threads);
-  cli::warnOfFile(program, name, facts.remarks);
+  std::vector<std::string> warnings;
+  for (const std::string& remark : facts.remarks) warnings.push_back(name + ": " + remark);
   const PointsView view = viewOf(cloud);
   const Eigen::Isometry3d T_scan_root = filter.robot().poses(values)[frame].inverse();
   const auto start = std::chrono::steady_clock::now();
   std::vector<std::uint8_t> flags = filter.flags(view, T_scan_root, values);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  NamedCloud scan = filter.scan();
+  scan.name = name;
+  addTexts(once.unheard(warningsOf(scan, options.settings.padding)), warnings);
+  cli::warn(program, warnings);
   std::size_t robot = 0, no_returns = 0;
   for (std::uint32_t i = 0; i < view.count; ++i) {
     const bool is_return = !self_filter::isNoReturn(view.point(i));
@@ -144,7 +151,8 @@ Json filterCloud(const Options& options, const std::string& name, const JointVal
           {"points", flags.size()},
           {"robot", robot},
           {"no_returns", no_returns},
-          {"seconds", taken.count()}};
+          {"seconds", taken.count()},
+          {"warnings", warnings}};
 }
 
 /// The meshes that a robot names are read as its URDF is.
@@ -174,8 +182,9 @@ int run(const Options& options)
       {"robot", robot.name},       {"links", robot.links.size()},         {"balls", filter.balls()},
       {"solids", filter.solids()}, {"padding", options.settings.padding}, {"tolerance", options.settings.tolerance},
       {"clouds", Json::array()}};
+  WarningsOnce once;
   for (std::size_t i = 0; i < options.clouds.size(); ++i) {
-    report["clouds"].push_back(filterCloud(options, options.clouds[i], states[i], frame, filter));
+    report["clouds"].push_back(filterCloud(options, options.clouds[i], states[i], frame, filter, once));
     const Json& told = report["clouds"].back();
     options.files.summary() << options.clouds[i] << ": " << told["robot"] << " of "
                             << counted(told["points"].get<std::uint64_t>(), "point is", "points are") << " the robot, "

@@ -70,6 +70,7 @@ const std::vector<std::uint8_t>& SelfFilter::flags(const PointsView& scan, const
     collidingIndices({points}, {part.surfaces, T_scan_link}, request_, hit_);
     for (const std::int32_t record : hit_.a) flags_[static_cast<std::size_t>(record)] = 1;
   }
+  scan_ = namedCloud({}, points);
   return flags_;
 }
 

@@ -13,6 +13,7 @@
 
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/question/named_cloud.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -43,6 +44,9 @@ public:
   const std::vector<std::uint8_t>& flags(const PointsView& scan, const Eigen::Isometry3d& T_scan_root,
                                          const JointValues& values);
 
+  /// What of the last scan matters to who asks about it; without a name.
+  const NamedCloud& scan() const { return scan_; }
+
 private:
   /// A body, and hierarchies of its balls.
   struct Part {
@@ -59,6 +63,7 @@ private:
   std::vector<std::unique_ptr<const Part>> parts_; ///< for each link
   CollidingIndices hit_;
   std::vector<std::uint8_t> flags_;
+  NamedCloud scan_;
 };
 
 /// Whether a sensor says by this point, in its own frame, that nothing came back: it is exactly 0 0 0.

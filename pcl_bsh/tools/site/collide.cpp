@@ -4,6 +4,9 @@
 #include <pcl_bsh/tools/cli/json_output.h>
 #include <pcl_bsh/tools/cli/obstacle.h>
 #include <pcl_bsh/tools/cli/program.h>
+#include <pcl_bsh/tools/cli/question_options.h>
+
+#include <pcl_bsh/question/ask.h>
 
 #include <stdexcept>
 
@@ -58,9 +61,10 @@ public:
   FileObstacle(const ObstacleFile& file, Asking& asking)
   : file_(file),
     surface_(file.surface()),
-    hierarchy_(withUncertainty(file.obstacle.view(), file.obstacle.points().fields, asking.options.obstacle.string(),
-                               asking.options.obstacle_uncertainty),
-               buildingOf(asking.options)),
+    shape_(file.obstacle.shape(asking.options.obstacle.string())),
+    hierarchy_(cli::named([&]() -> const SphereHierarchy& {
+      return shape_.hierarchy(asking.options.obstacle_uncertainty, asking.options.threads);
+    })),
     placed_(hierarchy_, asking.options.pose)
   {
     if (surface_ != nullptr) asking.request.surface = surface_->tolerance();
@@ -70,11 +74,7 @@ public:
 
   const Placed& placed() const { return placed_; }
 
-  NamedCloud named(const Asking& asking) const
-  {
-    const SurfaceCover* const cover = surface_ != nullptr ? surface_->cover().get() : nullptr;
-    return measuredCloud(asking.options.obstacle.string(), hierarchy_, cover);
-  }
+  NamedCloud facts() const { return Shape(shape_).facts(true); }
 
   site::SiteFlags flags(Asking& asking, Step* /*step*/) const
   {
@@ -110,16 +110,10 @@ public:
   void putTilesOf(Json& /*report*/, const site::TilesRead& /*tiles*/) const {}
 
 private:
-  static HierarchyOptions buildingOf(const SiteOptions& options)
-  {
-    HierarchyOptions building;
-    building.threads = options.threads;
-    return building;
-  }
-
   const ObstacleFile& file_;
   const io::Obstacle* surface_;
-  SphereHierarchy hierarchy_;
+  Shape shape_;
+  const SphereHierarchy& hierarchy_;
   Placed placed_;
 };
 
@@ -134,7 +128,7 @@ public:
   }
 
   const site::PlacedSite& placed() const { return placed_; }
-  NamedCloud named(const Asking& /*asking*/) const { return namedSite(site_); }
+  NamedCloud facts() const { return namedSite(site_); }
 
   /// Flags of both sides: each in tiles of its own.
   site::SiteFlags flags(Asking& asking, Step* step) const
@@ -237,7 +231,7 @@ void ask(Asking& asking, const Obstacle& obstacle, Step* step)
     break;
   }
   }
-  asking.told = warningsOf(site, obstacle.named(asking), poses, options);
+  asking.told = warningsOf(site, obstacle.facts(), poses, options);
 }
 
 /// @param keeps set where what is found stays in --out although the run fails

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
 
-#include <pcl_bsh/tools/cli/accuracy.h>
 #include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
-#include <pcl_bsh/tools/cli/obstacle.h>
 #include <pcl_bsh/tools/cli/path.h>
-#include <pcl_bsh/tools/cli/uncertainty.h>
+#include <pcl_bsh/tools/cli/question_options.h>
 
 #include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/site/site.h>
@@ -74,8 +72,8 @@ void requireExport(const SiteOptions& options)
 /// The options of `collide` as they are written.
 struct CollideTexts {
   bool any = false, closest = false, distances = false;
-  std::string pose, accuracy = "exact";
-  UncertaintyOptions uncertainties;
+  std::string pose;
+  Question question; ///< as far as the core's table has its options
   CLI::Option *clearance = nullptr, *max_distance = nullptr;
 
   void addTo(CLI::App& app, SiteOptions& options)
@@ -124,15 +122,9 @@ struct CollideTexts {
            "of a mesh its triangles, as .ply; a new site where OBSTACLE is one; not with --trajectory or --clashes")
         ->type_name("FILE");
     app.add_flag("--resume", options.resume, "goes on with what the same command has left in --out when it was killed");
-    app.add_option(
-           "--accuracy", accuracy,
-           "what may be given up for time: exact (default); tolerance=LENGTH: pairs up to "
-           "that much beyond D may count; level=N: spheres are opened down to this level; pairs=N or "
-           "time=SECONDS: the query of each tile stops there. Points that are undecided then get 2 in the field "
-           "'collision'")
-        ->type_name("HOW");
-    uncertainties.addTo(app, "SITE");
-    addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
+    addQuestionOptions(
+        app, question,
+        {"accuracy", "uncertainty", "obstacle_uncertainty", "sigmas", "surface_tolerance", "vertices_only"});
     app.add_option("--plan", options.plan,
                    "numbers of ranks, as 64,1024: by what the tiles have cost, the report says how long the same "
                    "question takes on so many, and what limits it")
@@ -145,7 +137,7 @@ struct CollideTexts {
   }
 
   /// @throws UsageError where they do not fit each other
-  void read(SiteOptions& options) const
+  void read(SiteOptions& options)
   {
     const bool moves = !options.trajectory.empty();
     if (any + closest + distances + moves > 1)
@@ -157,12 +149,21 @@ struct CollideTexts {
                        : moves || lists ? SiteQuestion::path
                                         : SiteQuestion::flags;
     const bool needs_clearance = !closest && !distances;
-    options.accuracy = parseAccuracy(accuracy);
-    requireAnswers(options.accuracy, {lists, options.swept.has_value(), distances});
+    if (options.swept && !moves) throw UsageError("--swept: goes with --trajectory: add it");
+    if (moves) question.path = {Eigen::Isometry3d::Identity()}; // whatever they are
+    question.swept = options.swept.value_or(0.0);
+    question.wanted.flags = true;
+    question.wanted.contacts = lists;
+    question.wanted.distances = distances;
+    requireAccepted(question);
+    options.accuracy = question.accuracy;
+    options.surface.tolerance = question.surface_tolerance;
+    options.surface.vertices_only = question.vertices_only;
     if (!options.obstacle_out.empty() && (moves || lists || any || closest || distances))
       throw UsageError("--obstacle-out: are flags at one pose: leave out what else is asked");
-    uncertainties.read(options.uncertainty, options.obstacle_uncertainty);
-    if (uncertainties.isGiven() && !needs_clearance)
+    options.uncertainty = question.uncertaintyOfInput();
+    options.obstacle_uncertainty = question.uncertaintyOfObstacle();
+    if (!needs_clearance && !(options.uncertainty.isZero() && options.obstacle_uncertainty.isZero()))
       throw UsageError("--uncertainty: distances are those of the measured places: leave it out");
     if (needs_clearance && clearance->count() == 0) throw UsageError("--clearance: is missing: give a length");
     if (options.report.empty() && options.out.empty() && options.obstacle_out.empty() && !lists)
@@ -180,7 +181,6 @@ struct CollideTexts {
       throw UsageError("--out: --any and --closest find nothing of each point: leave it away");
     if (options.resume && options.out.empty()) throw UsageError("--resume: there is nothing to go on with: add --out");
     if (max_distance->count() > 0 && !distances) throw UsageError("--max-distance: goes with --distances: add it");
-    if (options.swept && !moves) throw UsageError("--swept: goes with --trajectory: add it");
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
     if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
     options.surface.triangles_apart = !options.obstacle_out.empty(); // each has a flag of its own

@@ -121,7 +121,6 @@ ObstacleFile::ObstacleFile(const SiteOptions& options)
   else
     obstacle = io::readObstacle(options.obstacle, options.surface, options.clearance, nullptr, columns, &facts,
                                 options.threads);
-  requireLength(obstacle, options.obstacle, options.obstacle_uncertainty);
   if (options.obstacle_out.empty()) return;
   if (obstacle.isSurface()) {
     io::requireWritableMesh(options.obstacle_out);

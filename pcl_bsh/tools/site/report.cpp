@@ -111,8 +111,8 @@ std::vector<std::string> warningsOf(const site::Site& site, const NamedCloud& ob
                                     const std::vector<Eigen::Isometry3d>& poses, const SiteOptions& options)
 {
   const bool distances = options.question == SiteQuestion::closest || options.question == SiteQuestion::distances;
-  const Question question{namedSite(site), obstacle, poses,
-                          distances ? std::nullopt : std::optional(options.clearance)};
+  const QuestionFacts question{namedSite(site), obstacle, poses,
+                               distances ? std::nullopt : std::optional(options.clearance)};
   std::vector<std::string> told;
   addTexts(warningsOf(question), told);
   return told;

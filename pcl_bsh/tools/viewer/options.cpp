@@ -3,8 +3,8 @@
 
 #include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
-#include <pcl_bsh/tools/cli/obstacle.h>
 #include <pcl_bsh/tools/cli/path.h>
+#include <pcl_bsh/tools/cli/question_options.h>
 
 #include <pcl_bsh/io/poses/pose_text.h>
 #include <pcl_bsh/io/text/parse_number.h>
@@ -221,7 +221,8 @@ std::optional<Options> parseOptions(int argc, char** argv)
                  "greatest distance that counts as collision, in the clouds' unit\n(default for a scene: its own)")
       ->type_name("D")
       ->transform(cli::number<double>(cli::give_length));
-  cli::addSurfaceOptions(app, options.surface.tolerance, options.surface.vertices_only);
+  Question question;
+  cli::addQuestionOptions(app, question, {"surface_tolerance", "vertices_only"});
   cli::ColumnOptions columns;
   columns.addTo(app);
   app.add_option("--color", options.color,
@@ -270,6 +271,8 @@ std::optional<Options> parseOptions(int argc, char** argv)
       ->type_name("N")
       ->transform(cli::number<unsigned>(cli::give_threads));
   if (!cli::understood(app, program, argc, argv)) return std::nullopt;
+  cli::requireAccepted(question);
+  options.surface = {question.surface_tolerance, question.vertices_only};
 
   if (!pose.empty()) {
     if (options.trajectory) throw UsageError("--pose: a model has one pose or a --trajectory: give one of the two");

@@ -165,7 +165,7 @@ TEST_F(CollideSurface, RefusesInOneLine)
   expectRefused(job + "--surface-tolerance 1e-6", 1, "crate.off: tolerance 1e-06 would take some");
   expectRefused(job + "--surface-tolerance 0", 2, "--surface-tolerance: ");
   expectRefused(job + "--surface-tolerance 0.1 --vertices-only", 2, "--vertices-only");
-  expectRefused(job + "--obstacle-uncertainty sigma", 1, "crate.off is a surface, which has no field");
+  expectRefused(job + "--obstacle-uncertainty sigma", 1, "crate.off: is a surface, which has no field");
 }
 
 /// The property `collision` of each face of a .ply that has no other beside its corners.
@@ -224,7 +224,7 @@ TEST_F(CollideSurface, AnInputWithFacesRefusesWhatIsAboutPoints)
                                 "out.ply --distances", "out.ply --clearance 0.1 --uncertainty sigma"}) {
     const Outcome done = collide("crate.off scan.xyz " + job);
     EXPECT_EQ(done.exit_code, 1) << job;
-    EXPECT_THAT(done.err, testing::AnyOf(HasSubstr("give --vertices-only"), HasSubstr("write a .ply file"))) << job;
+    EXPECT_THAT(done.err, testing::AnyOf(HasSubstr("--vertices-only"), HasSubstr("write a .ply file"))) << job;
     EXPECT_FALSE(std::filesystem::exists(folder / "out.ply")) << job;
   }
 }

@@ -2,12 +2,14 @@
 #include "program_run.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/question/options.h>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace pcl_bsh {
@@ -151,10 +153,10 @@ TEST_F(Collide, GuardsAgainstHolesBetweenPoints)
   EXPECT_EQ(report()["density"]["widest_gap"], 8.0);
   expectDone(job + " --density --widest-gap 1.2");
   EXPECT_EQ(flags("out.ply"), (std::vector<int>{1, 0, 0})) << "what gapes wider is an opening";
-  expectFailure(job + " --widest-gap 1", 2, "--widest-gap: give --density, too");
+  expectFailure(job + " --widest-gap 1", 2, "--widest-gap: is given, but not --density: give --density, too");
   expectFailure(job + " --density --widest-gap=-1", 2, "--widest-gap");
   expectFailure(job + " --density --from 0,0,0,0,0,0 --to 1,0,0,0,0,0 --steps 2", 2,
-                "--density: is for flags at one pose: leave out the path and --clashes");
+                "--density: is about which points collide at one pose: leave out the path");
 }
 
 TEST_F(Collide, RefusesUncertaintiesThatAreNone)
@@ -166,7 +168,8 @@ TEST_F(Collide, RefusesUncertaintiesThatAreNone)
   expectFailure(job + "--uncertainty sigma", 1,
                 "input.ply: field 'sigma' of its points' sigmas is missing: give a length, or one of its fields: x, y");
   expectFailure(job + "--uncertainty y --sigmas=-1", 2, "--sigmas");
-  expectFailure(job + "--uncertainty 1 --sigmas 2", 2, "--sigmas: no uncertainty is a field: give the length itself");
+  expectFailure(job + "--uncertainty 1 --sigmas 2", 2,
+                "--sigmas: is given, but no uncertainty is a field: give the length itself");
   folder.write("negative.xyz", "0 0 0 0.5\n1 0 0 -0.5\n");
   expectFailure("{negative.xyz} {obstacle.xyz} {out.ply} --clearance 1 --uncertainty column_4", 1,
                 "negative.xyz: field 'column_4' of point 1 is -0.5: give finite lengths >= 0");
@@ -536,7 +539,7 @@ TEST_F(CollideAccuracy, Refuses)
                   "--accuracy: '" + wrong + "' is none: give exact, tolerance=LENGTH, level=N, pairs=N or time=");
   }
   expectFailure(job + "{out.ply} --clearance 0.3 --accuracy level=1 --clashes {a.csv}", 2,
-                "--accuracy: level=1: clashes need distances: give exact or tolerance=LENGTH");
+                "--accuracy: level=1: decides which points collide, not when and how near");
   expectFailure(job + "{out.ply} --clearance 0.3 --accuracy level=1 --swept 0.1 --from 0,0,0,0,0,0 --to 1,0,0,0,0,0 " +
                     "--steps 2",
                 2, "--accuracy: level=1: swept motion has a tolerance of its own: give exact");
@@ -741,7 +744,7 @@ TEST_F(CollideAlong, Refuses)
   expectFailure(job + "--from 0,0,0,0,0,0 --to 1,0,0,0,0,0 --steps 0", 2, "--steps: 0: give 1 to 10000000");
   expectFailure(job + "--from nan,0,0,0,0,0 --to 1,0,0,0,0,0 --steps 2", 1, "--from: not finite");
   expectFailure(job + "--swept 0.1", 2, "--swept: nothing moves");
-  expectFailure(job + path + "--swept 0", 1, "--swept: ");
+  expectFailure(job + path + "--swept 0", 2, "--swept: ");
   expectFailure(job + path + "--swept much", 2, "--swept: 'much' is not a number");
   expectFailure(job + "--trajectory {none.txt}", 1, "none.txt: no such file");
   folder.write("bad.txt", "0 2 0.2 0 0 0 0 1\n0 4 5 0 0 0 0\n");
@@ -769,6 +772,20 @@ TEST_F(Collide, HelpShowsAnExample)
   const Outcome help = collide("--help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out, HasSubstr("pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05"));
+}
+
+/// Whoever adds a row to the table has an option of the program.
+TEST_F(Collide, HasEachOptionOfAQuestion)
+{
+  const std::string help = collide("--help").out;
+  for (const QuestionOption& row : questionOptions()) {
+    std::string name = row.name;
+    std::replace(name.begin(), name.end(), '_', '-');
+    const std::string option = "--" + name + (row.value[0] == '\0' ? "" : " " + std::string(row.value));
+    EXPECT_THAT(help, HasSubstr(option)) << row.name;
+  }
+  EXPECT_THAT(help, HasSubstr("in the clouds' unit"));
+  EXPECT_THAT(help, Not(HasSubstr("`")));
 }
 
 TEST_F(Collide, RefusesClouds)
@@ -811,9 +828,9 @@ TEST_F(Collide, RefusesOutputs)
 TEST_F(Collide, RefusesClearances)
 {
   const std::string job = "{input.ply} {obstacle.xyz} {out.pcd} --clearance ";
-  expectFailure(job + "-1", 1, "pcl_bsh_collide: --clearance: -1: give a finite length >= 0");
-  expectFailure(job + "nan", 1, "--clearance: nan: ");
-  expectFailure(job + "inf", 1, "--clearance: inf: ");
+  expectFailure(job + "-1", 2, "pcl_bsh_collide: --clearance: -1: give a finite length >= 0");
+  expectFailure(job + "nan", 2, "--clearance: nan: ");
+  expectFailure(job + "inf", 2, "--clearance: inf: ");
   expectFailure(job + "wide", 2, "--clearance: 'wide' is not a number: ");
 }
 

@@ -290,7 +290,8 @@ TEST(SceneProgram, FailsInOneLine)
 TEST(SceneProgram, SamplesAreSound)
 {
   for (const char* sample : {"drift.json", "tunnel.json"}) {
-    const Outcome valid = run("pcl_bsh_scene", std::string(PCL_BSH_SOURCE_DIR) + "/examples/scenes/" + sample + " --validate");
+    const Outcome valid =
+        run("pcl_bsh_scene", std::string(PCL_BSH_SOURCE_DIR) + "/examples/scenes/" + sample + " --validate");
     EXPECT_EQ(valid.exit_code, 0) << valid.err;
   }
 }

@@ -71,6 +71,9 @@ TEST_F(SelfFilterProgram, FlagsItPerFrameWhereTheJointsPutIt)
   EXPECT_EQ(report["clouds"][1]["robot"], 1);
   EXPECT_EQ(report["clouds"][1]["no_returns"], 1);
   EXPECT_EQ(report["padding"], 0.02);
+  EXPECT_EQ(report["clouds"][0]["warnings"], Json({"a.csv: 1 of 4 points is not finite: it is left out"}));
+  EXPECT_TRUE(report["clouds"][1]["warnings"].empty()) << "each kind once: clouds come in streams";
+  EXPECT_EQ(done.err, "pcl_bsh_self_filter: warning: a.csv: 1 of 4 points is not finite: it is left out\n");
   const Outcome piped = filter("ball.urdf a.csv b.csv --states states.csv --out out --report -");
   EXPECT_EQ(Json::parse(piped.out)["clouds"].size(), 2U);
   EXPECT_THAT(piped.err, HasSubstr("b.csv: 1 of "));

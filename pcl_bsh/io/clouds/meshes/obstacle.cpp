@@ -2,11 +2,11 @@
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/file_bytes.h>
-#include <pcl_bsh/io/text/number_text.h>
 #include <pcl_bsh/io/text/small_letters.h>
+#include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <Eigen/Geometry>
@@ -107,13 +107,15 @@ PointsView Obstacle::view() const
   return view;
 }
 
+Shape Obstacle::shape(std::string name) const
+{
+  if (cover_) return {std::move(name), cover_};
+  return {std::move(name), view(), recordFields(points_->fields)};
+}
+
 std::string promiseOf(const Obstacle& surface, const std::string& beside)
 {
-  const std::string tolerance = numberText(surface.tolerance(), std::chars_format::general, 6);
-  return "the obstacle is a surface of " + counted(surface.triangles()->size(), "triangle") + ", to a tolerance of " +
-         tolerance + ": free is farther than the clearance from it for certain, colliding is within the clearance + " +
-         tolerance + ", and a distance is too small by at most " + tolerance +
-         (beside.empty() ? "" : "; the tolerance of " + beside + " comes on top");
+  return promiseOfObstacle(*surface.cover(), beside);
 }
 
 Mesh readMesh(const std::filesystem::path& path, const SurfaceSettings& settings, CloudFacts* facts,

@@ -12,6 +12,7 @@
 
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/question/shape.h>
 #include <pcl_bsh/surface/surface_cover.h>
 
 #include <pcl/PCLPointCloud2.h>
@@ -83,6 +84,9 @@ public:
 
   /// What queries ask: the points, or the balls of the cover. Keeps them alive.
   PointsView view() const;
+
+  /// The same for ask(). @param name that its user knows it by
+  Shape shape(std::string name) const;
 
   /// The point (a record of points()) or the triangle that a record of the view stands for.
   std::uint32_t partOf(std::uint32_t record) const { return cover_ ? cover_->triangles[record] : record; }

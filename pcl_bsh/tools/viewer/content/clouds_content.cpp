@@ -6,10 +6,10 @@
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/filters/surface_distances.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
+#include <pcl_bsh/question/surface_answers.h>
 #include <pcl_bsh/question/warnings.h>
 #include <pcl_bsh/surface/triangle_answers.h>
 
@@ -69,14 +69,17 @@ CloudsContent::CloudsContent(const Options& options) : FieldContent(options), po
   warnOfQuestions();
 }
 
+Shape CloudsContent::shapeOf(std::size_t cloud) const
+{
+  const ViewedCloud& viewed = viewed_clouds_[cloud];
+  return {viewed.file.string(), viewed.hierarchy, viewed.surface ? viewed.surface->cover() : nullptr};
+}
+
 void CloudsContent::warnOfQuestions() const
 {
-  const auto measured = [](const ViewedCloud& cloud) {
-    return measuredCloud(cloud.file.string(), *cloud.hierarchy, cloud.surface ? cloud.surface->cover().get() : nullptr);
-  };
   std::vector<std::string> told;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
-    addTexts(warningsOf({measured(scan()), measured(viewed_clouds_[other]),
+    addTexts(warningsOf({shapeOf(0).facts(true), shapeOf(other).facts(true),
                          other == model_ ? poses_ : std::vector{poseOf(other, 0)}, options_.clearance}),
              told);
   cli::warn(program, told);
@@ -87,42 +90,13 @@ Eigen::Isometry3d CloudsContent::poseOf(std::size_t cloud, std::size_t step) con
   return cloud == model_ ? poses_[step] : Eigen::Isometry3d::Identity();
 }
 
-std::vector<std::uint8_t> CloudsContent::ofScan(std::vector<std::uint8_t>&& flags) const
+Answer CloudsContent::asked(std::size_t other, std::size_t step, Question question) const
 {
-  return scan().hasTriangles() ? triangleVerdicts(*scan().surface->cover(), flags) : std::move(flags);
-}
-
-TrajectoryResult CloudsContent::ofScan(TrajectoryResult&& found) const
-{
-  if (scan().hasTriangles()) return ofTriangles(*scan().surface->cover(), std::move(found));
-  tellOfSurface(found);
-  return std::move(found);
-}
-
-std::vector<double> CloudsContent::ofScan(PointDistances&& found) const
-{
-  tellOfSurface(0.0, found);
-  if (!scan().hasTriangles()) return std::move(found.distance);
-  const std::vector<std::uint32_t> nearest = nearestBalls(*scan().surface->cover(), found.distance);
-  return ofBalls(nearest, found.distance, std::numeric_limits<double>::quiet_NaN());
-}
-
-FlagsRequest CloudsContent::flagsRequest() const
-{
-  FlagsRequest request;
-  request.clearance = options_.clearance.value_or(0.0);
-  request.threads = options_.threads;
-  request.flagged = Side::both;
-  return request;
-}
-
-TrajectoryRequest CloudsContent::along() const
-{
-  TrajectoryRequest request;
-  request.clearance = options_.clearance.value_or(0.0);
-  request.threads = options_.threads;
-  request.flags = false;
-  return request;
+  question.clearance = options_.clearance;
+  question.threads = options_.threads;
+  question.pose = poseOf(other, step);
+  Shape input = shapeOf(0), obstacle = shapeOf(other);
+  return ask(question, input, obstacle);
 }
 
 StepCollisions CloudsContent::collisions(std::size_t step) const
@@ -132,11 +106,13 @@ StepCollisions CloudsContent::collisions(std::size_t step) const
     found.known = true;
     found.flags.resize(viewed_clouds_.size());
     found.flags[0].assign(scan().parts(), 0);
+    Question question;
+    question.wanted.flags = question.wanted.both_ways = true;
     for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
-      FlagsResult flags = collisionFlags(placed(0, step), placed(other, step), flagsRequest());
-      const std::vector<std::uint8_t> of_scan = ofScan(std::move(flags.a));
+      Answer answer = asked(other, step, question);
+      const std::vector<std::uint8_t>& of_scan = answer.collisions.flags;
       for (std::size_t i = 0; i < of_scan.size(); ++i) found.flags[0][i] |= of_scan[i];
-      found.flags[other] = std::move(flags.b);
+      found.flags[other] = std::move(answer.obstacle_flags);
     }
     countVerdicts(found);
   }
@@ -200,13 +176,13 @@ std::vector<float> CloudsContent::distances(std::size_t step) const
 {
   if (!options_.clearance) return FieldContent::distances(step);
   std::vector<float> distances(scan().parts(), std::numeric_limits<float>::quiet_NaN());
-  TrajectoryRequest asked = along();
-  asked.distances = true;
-  asked.clearance = options_.range.value_or(*options_.clearance);
+  Question question; // along a path of one pose, which tells floats
+  question.max_distance = options_.range.value_or(*options_.clearance);
+  question.wanted.distances = true;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
-    const TrajectoryResult found =
-        ofScan(collideAlong(placed(0, step), *viewed_clouds_[other].hierarchy, {poseOf(other, step)}, asked));
-    for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = std::fmin(distances[i], found.distance[i]);
+    question.path = {poseOf(other, step)};
+    const std::vector<float> found = asked(other, step, question).collisions.distance;
+    for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = std::fmin(distances[i], found[i]);
   }
   return distances;
 }
@@ -215,11 +191,11 @@ std::vector<double> CloudsContent::allDistances(std::size_t step) const
 {
   if (options_.clearance) return {};
   if (viewed_clouds_.size() == 1) return FieldContent::allDistances(step);
-  PointDistancesRequest request;
-  request.threads = options_.threads;
+  Question question;
+  question.wanted.distances = true;
   std::vector<double> nearest;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
-    const std::vector<double> found = ofScan(pointDistances(placed(0, step), placed(other, step), request));
+    const std::vector<double> found = asked(other, step, question).distances.a.distance;
     if (nearest.empty()) nearest.assign(found.size(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t i = 0; i < found.size(); ++i) nearest[i] = std::fmin(nearest[i], found[i]);
   }
@@ -233,12 +209,16 @@ std::vector<std::int32_t> CloudsContent::firstPoses() const
       options_.clearance ? std::vector<std::int32_t>(scan().parts(), -1) : FieldContent::firstPoses();
   if (options_.clearance) {
     cli::Step step("Following " + counted(steps(), "pose"));
-    TrajectoryRequest asked = along();
-    asked.first_poses = true;
+    TrajectoryRequest request; // no more than that, and so no Question
+    request.clearance = *options_.clearance;
+    request.threads = options_.threads;
+    request.flags = false;
+    request.first_poses = true;
     for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
       const std::vector<Eigen::Isometry3d> still = {poseOf(other, 0)};
-      const TrajectoryResult found =
-          ofScan(collideAlong(placed(0, 0), *viewed_clouds_[other].hierarchy, other == model_ ? poses_ : still, asked));
+      TrajectoryResult found =
+          collideAlong(placed(0, 0), *viewed_clouds_[other].hierarchy, other == model_ ? poses_ : still, request);
+      if (scan().hasTriangles()) found = ofTriangles(*scan().surface->cover(), std::move(found));
       for (std::size_t i = 0; i < first.size(); ++i) {
         const std::int32_t pose = found.first_pose[i];
         if (pose >= 0 && (first[i] < 0 || pose < first[i])) first[i] = pose;

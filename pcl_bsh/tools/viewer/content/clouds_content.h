@@ -5,7 +5,7 @@
 #include "field_content.h"
 
 #include <pcl_bsh/collide.h>
-#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 namespace pcl_bsh::viewer {
@@ -43,16 +43,13 @@ private:
   {
     return {*viewed_clouds_[cloud].hierarchy, poseOf(cloud, step)};
   }
+  Shape shapeOf(std::size_t cloud) const;
   void warnOfQuestions() const; ///< of the scan and each other cloud
-  FlagsRequest flagsRequest() const;
-  TrajectoryRequest along() const;
+
+  /// Asks the scan and another cloud at a step.
+  Answer asked(std::size_t other, std::size_t step, Question question) const;
   std::optional<ClosestPair> closest(std::size_t step) const;
   std::optional<double> distanceOf(std::uint32_t part, std::size_t step) const;
-
-  // From what a query found of the records of the scan's view to what is told of its parts.
-  std::vector<std::uint8_t> ofScan(std::vector<std::uint8_t>&& flags) const;
-  TrajectoryResult ofScan(TrajectoryResult&& found) const;
-  std::vector<double> ofScan(PointDistances&& found) const;
 
   std::optional<std::size_t> model_;
   std::vector<Eigen::Isometry3d> poses_;

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/question/uncertainty.h>
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/rounding.h>
-
-#include <pcl/common/io.h>
-#include <pcl/type_traits.h>
+#include <pcl_bsh/hierarchy/points_checksum.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,19 +16,18 @@
 namespace pcl_bsh {
 namespace {
 
-using Field = pcl::PCLPointField;
-
 InvalidInput refusal(const std::string& cloud, const std::string& wrong, const std::string& remedy)
 {
   return InvalidInput(Input::uncertainty, cloud, wrong, remedy);
 }
 
-const Field& fieldNamed(const std::string& name, const std::vector<Field>& fields, const std::string& cloud)
+const RecordField& fieldNamed(const std::string& name, const std::vector<RecordField>& fields, const std::string& cloud)
 {
-  const auto found = std::find_if(fields.begin(), fields.end(), [&](const Field& field) { return field.name == name; });
+  const auto found =
+      std::find_if(fields.begin(), fields.end(), [&](const RecordField& field) { return field.name == name; });
   if (found == fields.end()) {
     std::string names;
-    for (const Field& field : fields) names += (names.empty() ? "" : ", ") + field.name;
+    for (const RecordField& field : fields) names += (names.empty() ? "" : ", ") + field.name;
     throw refusal(cloud, "field '" + name + "' of its points' sigmas is missing",
                   "give a length, or one of its fields: " + names);
   }
@@ -49,28 +46,24 @@ double valueAt(const unsigned char* record)
   return static_cast<double>(value);
 }
 
-double valueOf(const unsigned char* record, std::uint8_t datatype)
+/// How a number of a type is read; a type that nobody knows has no bytes.
+struct FieldType {
+  std::size_t bytes = 0;
+  double (*value)(const unsigned char*) = [](const unsigned char*) { return std::numeric_limits<double>::quiet_NaN(); };
+};
+
+FieldType typeOf(const RecordField& field)
 {
-  switch (datatype) {
-  case Field::INT8:
-    return valueAt<std::int8_t>(record);
-  case Field::UINT8:
-    return valueAt<std::uint8_t>(record);
-  case Field::INT16:
-    return valueAt<std::int16_t>(record);
-  case Field::UINT16:
-    return valueAt<std::uint16_t>(record);
-  case Field::INT32:
-    return valueAt<std::int32_t>(record);
-  case Field::UINT32:
-    return valueAt<std::uint32_t>(record);
-  case Field::FLOAT32:
-    return valueAt<float>(record);
-  case Field::FLOAT64:
-    return valueAt<double>(record);
-  default:
-    return std::numeric_limits<double>::quiet_NaN();
-  }
+  static constexpr FieldType types[] = {{},
+                                        {1, valueAt<std::int8_t>},
+                                        {1, valueAt<std::uint8_t>},
+                                        {2, valueAt<std::int16_t>},
+                                        {2, valueAt<std::uint16_t>},
+                                        {4, valueAt<std::int32_t>},
+                                        {4, valueAt<std::uint32_t>},
+                                        {4, valueAt<float>},
+                                        {8, valueAt<double>}};
+  return types[field.datatype < std::size(types) ? field.datatype : 0];
 }
 
 /// No less than the product; infinity where no float is.
@@ -99,7 +92,7 @@ void checkUncertainty(const std::string& cloud, const Uncertainty& uncertainty)
   require("number of sigmas ", uncertainty.sigmas);
 }
 
-PointsView withUncertainty(const PointsView& view, const std::vector<Field>& fields, const std::string& cloud,
+PointsView withUncertainty(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
                            const Uncertainty& uncertainty)
 {
   checkUncertainty(cloud, uncertainty);
@@ -108,17 +101,17 @@ PointsView withUncertainty(const PointsView& view, const std::vector<Field>& fie
     uncertain.uncertainty = uncertainty.length;
     return uncertain;
   }
-  const Field& field = fieldNamed(uncertainty.field, fields, cloud);
+  const RecordField& field = fieldNamed(uncertainty.field, fields, cloud);
   auto owned = std::make_shared<Owned>();
   owned->points = view.owner;
   owned->lengths.resize(view.count);
-  const auto bytes = static_cast<std::size_t>(pcl::getFieldSize(field.datatype));
-  if (view.count > 0 && field.offset + bytes > view.stride)
+  const FieldType type = typeOf(field);
+  if (view.count > 0 && field.offset + type.bytes > view.stride)
     throw refusal(cloud, "field '" + field.name + "' reaches beyond its record", "mend the cloud's fields");
   const auto* record = static_cast<const unsigned char*>(view.data) + field.offset;
   for (std::size_t i = 0; i < view.count; ++i, record += view.stride) {
     if (!isFinite(view.point(static_cast<std::uint32_t>(i)))) continue; // it takes part in nothing
-    const double sigma = valueOf(record, field.datatype);
+    const double sigma = type.value(record);
     const float length = productUpward(sigma, uncertainty.sigmas);
     if (sigma >= 0.0 && std::isfinite(length)) {
       owned->lengths[i] = length;
@@ -132,6 +125,23 @@ PointsView withUncertainty(const PointsView& view, const std::vector<Field>& fie
   uncertain.uncertainties = owned->lengths.data();
   uncertain.owner = std::move(owned);
   return uncertain;
+}
+
+std::uint64_t checksumOf(const PointsView& view, const std::vector<RecordField>& fields, const std::string& name)
+{
+  std::uint64_t sum = 0;
+  for (const RecordField& field : fields) {
+    if (name.empty() || field.name != name) continue;
+    const std::size_t bytes = typeOf(field).bytes;
+    if (field.offset + bytes > view.stride) continue; // it is refused where it is read
+    const auto* record = static_cast<const unsigned char*>(view.data) + field.offset;
+    for (std::size_t i = 0; i < view.count; ++i, record += view.stride) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, record, bytes);
+      sum = mixed(sum, word);
+    }
+  }
+  return sum;
 }
 
 } // namespace pcl_bsh

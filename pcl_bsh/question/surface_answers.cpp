@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/filters/surface_distances.h>
+#include <pcl_bsh/question/surface_answers.h>
 
 #include <pcl_bsh/surface/triangle_answers.h>
 
@@ -76,6 +76,23 @@ TrajectoryResult ofTriangles(const SurfaceCover& cover, TrajectoryResult balls)
   if (!balls.certain_pose.empty()) found.certain_pose = triangleFirstPoses(cover, balls.certain_pose);
   found.first_contact = balls.first_contact;
   found.certain_contact = balls.certain_contact;
+  found.work = balls.work;
+  return found;
+}
+
+PointDistances ofTriangles(const SurfaceCover& cover, PointDistances balls)
+{
+  PointDistances found;
+  const std::vector<std::uint32_t> nearest = nearestBalls(cover, balls.distance);
+  found.distance = ofBalls(nearest, balls.distance, std::numeric_limits<double>::quiet_NaN());
+  found.nearest = ofBalls(nearest, balls.nearest, PointDistances::kNoPoint);
+  found.measured = nearest.size() - static_cast<std::size_t>(std::count(nearest.begin(), nearest.end(), kNoBall));
+  found.undecided = balls.undecided;
+  for (std::uint32_t t = 0; t < found.distance.size(); ++t) {
+    if (!(found.distance[t] > found.greatest) && !(std::isnan(found.greatest) && found.distance[t] >= 0.0)) continue;
+    found.greatest = found.distance[t];
+    found.greatest_pair = PointPair{t, found.nearest[t]};
+  }
   found.work = balls.work;
   return found;
 }

@@ -26,5 +26,8 @@ void tellOfSurface(TrajectoryResult& found);
 /// @throws std::invalid_argument as triangleVerdicts() does
 TrajectoryResult ofTriangles(const SurfaceCover& cover, TrajectoryResult balls);
 
+/// The same of distances, each with its nearest record of the other hierarchy. Intervals are left out.
+PointDistances ofTriangles(const SurfaceCover& cover, PointDistances balls);
+
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/filters/pipeline/stages/question_stage.h>
+#include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/poses/pose_file.h>
+#include <pcl_bsh/io/poses/rigid_pose.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+std::vector<Eigen::Isometry3d> readTrajectory(const InputFile& file, std::vector<std::string>& warnings)
+{
+  try {
+    return io::readPoses(file.path, &warnings);
+  }
+  catch (const files::FileError& error) {
+    throw OptionError("trajectory", error.what());
+  }
+}
+
+/// A matrix of few printed digits stands for its nearest rotation, with a warning. What is farther from rigid stays as
+/// it is, for the query to refuse.
+Eigen::Isometry3d rigidPoseOf(const Pose& pose, std::vector<std::string>& warnings)
+{
+  Eigen::Isometry3d only;
+  only.matrix() = pose.matrix;
+  const io::RigidPose rigid = io::nearestRigid(only);
+  if (rigid.deviation > 0) warnings.push_back("pose: " + io::nearestRotationWarning(rigid.deviation));
+  return rigid.pose;
+}
+
+/// By the fields of a cloud to come: its points are seen when the stage runs.
+void checkField(const char* option, const Uncertainty& uncertainty, const CloudHeader& cloud)
+{
+  try {
+    withUncertainty(PointsView(), cloud.fields, "cloud", uncertainty);
+  }
+  catch (const InvalidInput& error) {
+    throw OptionError(option, error.advice());
+  }
+}
+
+/// What to tell the user of points, or of other parts, that are not decided.
+void warnOfUndecided(const Answer& answer, const Question& question, const char* parts, Stage& stage)
+{
+  const std::size_t undecided = answer.collisions.undecided + answer.sparse;
+  if (undecided == 0) return;
+  const bool is_uncertain = !question.uncertainty.isZero() || !question.obstacle_uncertainty.isZero();
+  const std::string why = answer.sparse > 0 ? ", of which " + std::to_string(answer.sparse) +
+                                                  " where the obstacle is not scanned densely enough"
+                          : is_uncertain ? " where places are as uncertain"
+                                         : " with this accuracy";
+  stage.warn(std::to_string(undecided) + ' ' + parts + " stay undecided" + why + ": they are not taken for free");
+}
+
+/// Makes a surface, or tells why it cannot be. @param subject what it is made of
+template <typename Make>
+auto covered(const Make& make, const std::string& subject)
+{
+  try {
+    return make();
+  }
+  catch (const InvalidInput& error) {
+    if (error.input() == Input::surface && error.value()) throw OptionError("surface_tolerance", error.advice());
+    throw OptionError("obstacle", subject + ": " + error.advice());
+  }
+}
+
+Value valueOf(const Accuracy& accuracy)
+{
+  return accuracy.text();
+}
+Value valueOf(const Uncertainty& uncertainty)
+{
+  return OptionType<LengthOrField>::to({uncertainty.length, uncertainty.field});
+}
+template <typename T>
+Value valueOf(const T& value)
+{
+  return OptionType<T>::to(value);
+}
+
+void assign(Accuracy& accuracy, const Value& value)
+{
+  accuracy = Accuracy::parse(std::get<std::string>(value));
+}
+void assign(Uncertainty& uncertainty, const Value& value)
+{
+  const auto [length, field] = OptionType<LengthOrField>::from(value);
+  uncertainty = field.empty() ? Uncertainty(length) : Uncertainty(field, 1.0);
+}
+template <typename T>
+void assign(T& member, const Value& value)
+{
+  member = OptionType<T>::from(value);
+}
+
+template <typename T>
+constexpr Kind kindOf()
+{
+  if constexpr (std::is_same_v<T, Accuracy>)
+    return Kind::text;
+  else if constexpr (std::is_same_v<T, Uncertainty>)
+    return Kind::length_or_field;
+  else
+    return OptionType<T>::kind;
+}
+
+} // namespace
+
+Option optionOf(const QuestionOption& row, std::function<Question&(Stage&)> question)
+{
+  Option option;
+  option.name = row.name_of_stages ? row.name_of_stages : row.name;
+  option.doc = row.doc;
+  option.unit = row.unit;
+  option.required = row.required;
+  option.least = 0;
+  option.above_least = row.range == OptionRange::above_zero;
+  if (row.most() < std::numeric_limits<double>::max()) option.most = row.most();
+  std::visit(
+      [&](const auto member) {
+        using T = std::decay_t<decltype(std::declval<Question>().*member)>;
+        option.kind = kindOf<T>();
+        option.set = [question, member, name = option.name](Stage& stage, const Value& value) {
+          try {
+            assign(question(stage).*member, value);
+          }
+          catch (const InvalidInput& error) {
+            throw OptionError(name, error.advice());
+          }
+        };
+        option.get = [question, member](const Stage& stage) {
+          return valueOf(question(const_cast<Stage&>(stage)).*member); // NOLINT: which is not changed
+        };
+      },
+      row.member);
+  return option;
+}
+
+void refuse(const InvalidInput& error, const Question& question)
+{
+  std::string name = pcl_bsh::optionOf(error, question);
+  if (name.empty()) throw; // of a catch
+  const QuestionOption* const row = questionOption(name);
+  if (row && row->name_of_stages) name = row->name_of_stages;
+  throw OptionError(name == "path" ? "trajectory" : name, error.advice());
+}
+
+void QuestionStage::plan(const CloudHeader& input, const Wanted& wanted, Stage& stage)
+{
+  if (trajectory && pose) throw OptionError("trajectory", "and `pose` are both given: give one of them");
+  std::vector<std::string> warnings;
+  if (trajectory) question.path = readTrajectory(*trajectory, warnings);
+  if (pose) question.pose = rigidPoseOf(*pose, warnings);
+  question.wanted = wanted;
+  try {
+    check(question);
+  }
+  catch (const InvalidInput& error) {
+    refuse(error, question);
+  }
+  checkField("uncertainty", question.uncertainty, input);
+  checkField("obstacle_uncertainty", question.obstacle_uncertainty, obstacle.header);
+  for (std::string& warning : warnings) stage.warn(std::move(warning));
+}
+
+io::SurfaceSettings QuestionStage::surfaceSettings(bool asked_about) const
+{
+  return {question.surface_tolerance, question.vertices_only, asked_about};
+}
+
+io::Obstacle QuestionStage::compared(Stage& stage) const
+{
+  const io::Obstacle made = covered(
+      [&] {
+        return io::Obstacle({obstacle.cloud, &obstacle.cloud->cloud}, obstacle.cloud->triangles, surfaceSettings(false),
+                            question.clearance.value_or(0.0), [&stage](double) { return !stage.isCancelled(); });
+      },
+      obstacle.name);
+  for (const std::string& remark : made.remarks()) stage.warn("obstacle: " + remark);
+  if (made.isSurface())
+    stage.warn(promiseOfObstacle(*made.cover(), besideSurface(question.accuracy, question.swept > 0.0)));
+  return made;
+}
+
+Shape QuestionStage::inputOf(const StageCloudPtr& input, Stage& stage) const
+{
+  if (!asksAboutFaces(*input)) return {"the input", viewOf(input->cloud), recordFields(input->cloud.fields)};
+  std::vector<std::string> remarks;
+  const auto cover = covered(
+      [&] {
+        return std::make_shared<const SurfaceCover>(io::coverMesh(
+            viewOf(input->cloud), *input->triangles, surfaceSettings(true), question.clearance.value_or(0.0),
+            [&stage](double) { return !stage.isCancelled(); }, remarks));
+      },
+      "input");
+  for (const std::string& remark : remarks) stage.warn("input: " + remark);
+  stage.warn(promiseOfInput(*cover));
+  return {"the input", cover};
+}
+
+QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage) const
+{
+  Question asked = question;
+  asked.wanted.spacings = asked.wanted.collisions();
+  asked.progress = [&stage](double) { return !stage.isCancelled(); };
+  Asked found;
+  found.compared = compared(stage);
+  found.obstacle = found.compared.shape("the obstacle");
+  found.input = inputOf(input, stage);
+  try {
+    found.answer = pcl_bsh::ask(asked, found.input, found.obstacle);
+  }
+  catch (const InvalidInput& error) {
+    refuse(error, question);
+  }
+  for (const Warning& warning : found.answer.warnings) stage.warn(warning.text);
+  warnOfUndecided(found.answer, question, asksAboutFaces(*input) ? "triangles" : "points", stage);
+  return found;
+}
+
+void QuestionStage::requirePoints(const StageCloud& input) const
+{
+  if (asksAboutFaces(input))
+    throw OptionError("vertices_only", "is false, and the input has faces: the stage knows points alone: give true to "
+                                       "ask about its vertices, or read it without faces");
+}
+
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What all filters of this project have in common that know no point type: a question about an obstacle, and its
+// answer.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <pcl/PolygonMesh.h>
+#include <pcl/common/io.h>
+#include <pcl/types.h>
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+template <typename PointT>
+std::vector<RecordField> fieldsOfRecords(const pcl::PointCloud<PointT>&)
+{
+  return recordFields(pcl::getFields<PointT>());
+}
+inline std::vector<RecordField> fieldsOfRecords(const pcl::PCLPointCloud2& cloud)
+{
+  return recordFields(cloud.fields);
+}
+
+/// Covers a mesh of PCL, whose polygons may have any number of corners.
+/// @throws std::invalid_argument when the pointer is null, or as viewOf(), addTriangles() and coverSurface() do
+/// @param polygons_apart for a mesh that is asked about: each ball holds parts of one polygon, and what the cover calls
+///   its triangles are the mesh's polygons
+std::shared_ptr<const SurfaceCover> coverOf(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance,
+                                            bool polygons_apart = false);
+
+/// The settings of a question. A setting without a meaning makes filtering throw. Lengths are in the clouds' own unit.
+class QuestionFilter {
+public:
+  /// All settings at once, also those that have no setter here. `wanted` is for filters to say.
+  void setQuestion(const Question& question) { question_ = question; }
+  const Question& getQuestion() const { return question_; }
+
+  /// The cloud that the input is compared with: pcl::PointCloud of any point type, or pcl::PCLPointCloud2 (float64 at
+  /// full precision). Its hierarchy is built on the first use and kept until the next call of this method; all other
+  /// settings and the input may change meanwhile, the cloud's points must not: every use throws when they have (Shape).
+  /// An empty cloud collides with nothing, and everything is farther from it than any length.
+  /// @throws std::invalid_argument when the pointer is null, or as viewOf() does.
+  template <typename Cloud>
+  void setObstacleCloud(const std::shared_ptr<Cloud>& cloud)
+  {
+    if (!cloud) throw std::invalid_argument("obstacle cloud is null: give an empty cloud if there is no obstacle");
+    obstacle_ = Shape(
+        "the obstacle", [cloud] { return viewOf(*cloud); }, [cloud] { return fieldsOfRecords(*cloud); });
+  }
+
+  /// A surface instead of a cloud: the mesh's polygons. Then free is farther than the clearance from the surface, for
+  /// certain, and colliding is within clearance + tolerance (a tolerance for motion comes on top); a distance d means
+  /// that the true one is in [d, d + tolerance], up to the rounding of d, and limits are compared with d. What a closed
+  /// surface encloses is not part of it. The mesh is covered by balls here and now, and not kept.
+  /// @param tolerance by how much balls may reach beyond the surface, in the clouds' unit; finite and > 0
+  /// @throws std::invalid_argument as coverOf() does
+  void setObstacleSurface(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance)
+  {
+    setObstacleSurface(coverOf(mesh, tolerance));
+  }
+
+  /// The same, of a surface that is covered already: of coverSurface().
+  /// @throws std::invalid_argument when the pointer is null
+  void setObstacleSurface(const std::shared_ptr<const SurfaceCover>& cover)
+  {
+    obstacle_ = Shape("the obstacle", cover);
+  }
+
+  /// Null where the obstacle is a cloud. Its records are those that results name: `triangles` of each says which
+  /// triangle it stands for.
+  const std::shared_ptr<const SurfaceCover>& getObstacleSurface() const { return obstacle_.surface(); }
+
+  /// Pose of the obstacle in the input's frame, T_input_obstacle. Rigid within 1e-6 (default: identity). Takes any of
+  /// Eigen's transforms, and 4x4 matrices as PCL's registration returns them; float or double. Replaces a trajectory.
+  template <typename Scalar, int Mode, int Options>
+  void setPose(const Eigen::Transform<Scalar, 3, Mode, Options>& pose)
+  {
+    setPose(pose.matrix());
+  }
+  template <typename Derived>
+  void setPose(const Eigen::MatrixBase<Derived>& pose)
+  {
+    question_.pose.matrix() = pose.template cast<double>();
+    question_.path.reset();
+  }
+  const Eigen::Isometry3d& getPose() const { return question_.pose; }
+
+  /// How sure the answer has to be: less is faster. Default: exact. Filters say what they do with one that stops early.
+  void setAccuracy(const Accuracy& accuracy) { question_.accuracy = accuracy; }
+  const Accuracy& getAccuracy() const { return question_.accuracy; }
+
+  /// Default 1; 0: all of the machine's. The answer is the same for any number.
+  void setNumberOfThreads(unsigned threads) { question_.threads = threads; }
+  unsigned getNumberOfThreads() const { return question_.threads; }
+
+  /// For distances, and along a trajectory: called now and then, by the thread that filters, with the fraction done in
+  /// [0, 1], ascending. False: stop, filtering throws Cancelled (pcl_bsh/base/cancelled.h). What it throws itself
+  /// comes out of the filter, too. Either way outputs stay as they were.
+  void setProgress(std::function<bool(double)> progress) { question_.progress = std::move(progress); }
+
+  /// Called with each sentence that users should know beside the answer (pcl_bsh/question/warnings.h), of each kind
+  /// once in the filter's life, since clouds come in streams. How far points are apart is measured at the first query
+  /// alone. Default: PCL_WARN.
+  void setWarn(std::function<void(const std::string&)> warn) { warn_ = std::move(warn); }
+
+  /// What the last query cost.
+  const Work& getWork() const { return work_; }
+
+  /// How many points of the input the last query left undecided. 0 unless its accuracy let it stop early, points are
+  /// uncertain, or the density guard is on.
+  std::size_t getUndecidedCount() const { return undecided_; }
+
+  /// How many of them because the obstacle is not scanned densely enough.
+  std::size_t getSparseCount() const { return sparse_; }
+
+protected:
+  QuestionFilter() = default;
+  ~QuestionFilter() = default;
+  QuestionFilter(const QuestionFilter&) = default;
+  QuestionFilter& operator=(const QuestionFilter& other)
+  {
+    return *this = QuestionFilter(other); // moving allocates nothing: all of it, or std::bad_alloc and nothing
+  }
+  QuestionFilter(QuestionFilter&&) = default;
+  QuestionFilter& operator=(QuestionFilter&&) = default;
+
+  /// Asks, and tells what is new. @throws std::invalid_argument when the obstacle is missing, and as ask() does
+  Answer answer(Shape input, const Wanted& wanted);
+
+  /// Points, with the uncertainties of the question. @param fields of their records
+  template <typename Cloud>
+  Shape inputOf(const PointsView& points, const Cloud& cloud) const
+  {
+    const bool by_field = !question_.uncertainty.field.empty();
+    return Shape("the input", points, by_field ? fieldsOfRecords(cloud) : std::vector<RecordField>());
+  }
+
+  Question question_;
+
+private:
+  Shape obstacle_;
+  std::function<void(const std::string&)> warn_; ///< empty: PCL_WARN
+  WarningsOnce warnings_;
+  bool measured_ = false; ///< spacings
+  Work work_;
+  std::size_t undecided_ = 0;
+  std::size_t sparse_ = 0;
+};
+
+/// Parts the input's records, in their order, into those that are kept and the rest, where points that are not finite
+/// always are. `kept` may be the very list that the input is seen through.
+/// @param passes one per record: 1 for those that are kept; if `negative`, those that are not
+/// @param removed may be null
+void partRecords(const PointsView& input, const std::vector<std::uint8_t>& passes, bool negative, pcl::Indices& kept,
+                 pcl::Indices* removed);
+
+/// The settings that filters of collisions add.
+///
+/// Accuracy: no point is called free or colliding that is not, within the tolerance if one was given. What an early
+/// stop leaves undecided is never kept as free: it counts as colliding wherever points are kept or removed, and its
+/// flag is 2. A time is that of the query alone, after both clouds are sorted into voxels. Filtering throws for what
+/// TrajectoryRequest::accuracy says that a trajectory cannot tell.
+class CollisionSettings : public QuestionFilter {
+public:
+  /// Greatest distance at which two points collide; touching counts. Finite and >= 0 (default 0).
+  void setClearance(double clearance) { question_.clearance = clearance; }
+  double getClearance() const { return question_.clearance.value_or(0.0); }
+
+  /// The obstacle moves: its poses in the input's frame, one after another, each rigid as setPose() asks. A point
+  /// collides if it does at any of them. At least one pose. Replaces setPose(), and the other way round.
+  void setTrajectory(const std::vector<Eigen::Isometry3d>& poses) { question_.path = poses; }
+  const std::optional<std::vector<Eigen::Isometry3d>>& getTrajectory() const { return question_.path; }
+
+  /// > 0: points collide with the motion between consecutive poses of the trajectory too (straight for the obstacle's
+  /// origin, the rotation spherically interpolated), to this tolerance: those within clearance do, those beyond
+  /// clearance + tolerance do not. 0 (default): at the poses alone. Finite and >= 0; not at one pose.
+  void setSwept(double tolerance) { question_.swept = tolerance; }
+  double getSwept() const { return question_.swept; }
+
+  /// How far the points of the input, or of the obstacle, may truly be from where they were measured. Then a point
+  /// collides where it does wherever all points truly are, it is free where it cannot collide, and else it is
+  /// undecided: its flag is 2, and it counts as colliding wherever points are kept or removed. Default: not at all.
+  /// @throws std::invalid_argument for numbers that are not finite and >= 0. Filtering throws where a field is missing,
+  ///   or holds such a number for a finite point.
+  void setInputUncertainty(const Uncertainty& uncertainty) { set(question_.uncertainty, "the input", uncertainty); }
+  void setObstacleUncertainty(const Uncertainty& uncertainty)
+  {
+    set(question_.obstacle_uncertainty, "the obstacle", uncertainty);
+  }
+  const Uncertainty& getInputUncertainty() const { return question_.uncertainty; }
+  const Uncertainty& getObstacleUncertainty() const { return question_.obstacle_uncertainty; }
+
+  /// The density guard: a point that is free of all of the obstacle's points, but not of its surface between them, is
+  /// undecided with the reason *not scanned densely enough*: its flag is 3, and it counts as colliding wherever points
+  /// are kept or removed. FlagsRequest::spacings_of_b says what is promised and what not, patchSpacings() how wide the
+  /// holes between the obstacle's points are taken to be. These are measured once for an obstacle. At one pose: along a
+  /// trajectory, filtering throws. A surface has no holes, and nothing to guard. Default: false.
+  void setDensityGuard(bool density_guard) { question_.density = density_guard; }
+  bool getDensityGuard() const { return question_.density; }
+
+  /// What gapes wider in the obstacle is an opening, not a surface. 0 (default): eight times the median distance of its
+  /// points from their nearest neighbours. Where lines of a scan are farther apart than that, give more than what is
+  /// between the lines. Finite and >= 0. Counts with the density guard alone.
+  void setWidestGap(double widest_gap)
+  {
+    question_.widest_gap = widest_gap == 0.0 ? std::nullopt : std::optional(widest_gap);
+  }
+  double getWidestGap() const { return question_.widest_gap.value_or(0.0); }
+
+protected:
+  CollisionSettings() { question_.clearance = 0.0; }
+
+  /// One per record of the input, or per triangle of its surface.
+  std::vector<std::uint8_t> collisionFlags(Shape input);
+
+  /// Everything that is known of each along the trajectory, or at the one pose.
+  TrajectoryResult alongTrajectory(Shape input);
+
+  /// 1: free.
+  std::vector<std::uint8_t> passing(Shape input);
+
+private:
+  static void set(Uncertainty& member, const char* cloud, const Uncertainty& uncertainty);
+};
+
+/// The settings that the filter of distances adds.
+///
+/// Accuracy: exact() or tolerance(), with which a distance is that much greater than the true one at most. Filtering
+/// throws for an accuracy that stops early, because points would be left without a distance.
+class DistanceSettings : public QuestionFilter {
+public:
+  /// The distances of the points that are kept, both ends inclusive and compared exactly. 0 <= least <= most, and most
+  /// may be infinity. Default: 0 and infinity, all finite points.
+  void setFilterLimits(double least, double most) { question_.limits = {least, most}; }
+  void getFilterLimits(double& least, double& most) const
+  {
+    least = question_.limits.least;
+    most = question_.limits.most;
+  }
+
+  /// Greater distances are not told but as NaN; which points are kept does not depend on it. >= 0, inclusive. Default:
+  /// infinity, no limit. A small one is faster.
+  void setMaxDistance(double max_distance) { question_.max_distance = max_distance; }
+  double getMaxDistance() const { return question_.max_distance.value_or(std::numeric_limits<double>::infinity()); }
+
+protected:
+  PointDistances distances(Shape input);
+
+  /// 1: within the limits. @param told null, or gets the distances as floats, one per record: NaN beyond max_distance,
+  /// where the record is not finite, and outside the view's subset
+  std::vector<std::uint8_t> passing(Shape input, std::vector<float>* told = nullptr);
+};
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/question/ask.h>
+
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/question/options.h>
+#include <pcl_bsh/question/surface_answers.h>
+#include <pcl_bsh/surface/triangle_answers.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+/// Compares what was measured with lengths. A record without a distance is farther than all that was asked for. A
+/// distance that equals the length was rounded: the coordinates decide. Within a ball of a surface, distances are 0.
+class Comparison {
+public:
+  Comparison(const PointsView& input, const Placed& obstacle, const PointDistances& found)
+  : input_(input),
+    obstacle_(obstacle.hierarchy().view()),
+    found_(found),
+    exact_(Eigen::Isometry3d::Identity(), obstacle.pose)
+  {
+  }
+
+  /// Sign of the record's distance less the length.
+  int compare(std::uint32_t record, double length) const
+  {
+    const double distance = found_.distance[record];
+    if (std::isnan(distance)) return 1;
+    if (distance != length) return distance < length ? -1 : 1;
+    const std::uint32_t nearest = found_.nearest[record];
+    const int sign = exact_.compare(input_.point(record), obstacle_.point(nearest), length, input_.radius(record),
+                                    obstacle_.radius(nearest));
+    return length == 0.0 ? std::max(sign, 0) : sign;
+  }
+
+private:
+  const DefaultFloatEnvironment environment_;
+  const PointsView& input_;
+  const PointsView& obstacle_;
+  const PointDistances& found_;
+  const ExactDistance exact_;
+};
+
+/// Of all points that collide, that of the smallest distance.
+DistanceResult closestOf(const TrajectoryResult& found)
+{
+  DistanceResult closest;
+  for (std::size_t i = 0; i < found.distance.size(); ++i) {
+    const double distance = static_cast<double>(found.distance[i]);
+    if (!(distance < closest.distance)) continue;
+    closest.distance = distance;
+    closest.pair = PointPair{static_cast<std::uint32_t>(i), found.closest_point[i]};
+  }
+  return closest;
+}
+
+/// One question, of two things that are built.
+class Asking {
+public:
+  Asking(const Question& question, Shape& input, Shape& obstacle)
+  : question_(question),
+    wanted_(question.wanted),
+    input_(input),
+    obstacle_(obstacle),
+    b_(obstacle.hierarchy(question.uncertaintyOfObstacle(), question.threads), question.pose),
+    a_(input.hierarchy(question.uncertaintyOfInput(), question.threads))
+  {
+  }
+
+  Answer answer()
+  {
+    if (wanted_.contacts || wanted_.poses || question_.path)
+      followPath();
+    else if (wanted_.flags)
+      flag();
+    if (wanted_.closest && !closest_is_known_) findClosest();
+    if (wanted_.measures() && !question_.path) measure();
+    warn();
+    return std::move(answer_);
+  }
+
+private:
+  void flag()
+  {
+    FlagsRequest request;
+    request.clearance = question_.clearance.value_or(0.0);
+    request.threads = question_.threads;
+    request.accuracy = question_.accuracy;
+    request.flagged = wanted_.both_ways ? Side::both : Side::a;
+    if (question_.density) request.spacings_of_b = guard();
+    FlagsResult found = collisionFlags(a_, b_, request);
+    answer_.work += found.work;
+    answer_.sparse = found.sparse_a;
+    answer_.obstacle_flags = std::move(found.b);
+    answer_.collisions.flags = std::move(found.a);
+    answer_.collisions.colliding = found.colliding_a;
+    answer_.collisions.undecided = found.undecided_a;
+    if (input_.surface()) answer_.collisions = ofTriangles(*input_.surface(), std::move(answer_.collisions));
+  }
+
+  /// Null where nothing is guarded.
+  const float* guard()
+  {
+    if (obstacle_.surface()) {
+      answer_.warnings.push_back({WarningKind::unguarded, obstacle_.name() +
+                                                              ": is a surface, which has no holes: density guards "
+                                                              "nothing"});
+      return nullptr;
+    }
+    const Shape::Patches& patches = obstacle_.patches(question_.widest_gap, question_.threads);
+    answer_.widest_gap = patches.gap;
+    return patches.spacings.empty() ? nullptr : patches.spacings.data();
+  }
+
+  void followPath()
+  {
+    const bool measures = !wanted_.collisions(); // or nothing is wanted but the closest, which is one of these
+    TrajectoryRequest request;
+    request.clearance = measures && wanted_.distances ? *question_.max_distance : question_.clearance.value_or(0.0);
+    request.accuracy = question_.accuracy;
+    request.flags = !measures;
+    request.distances = request.closest_poses = wanted_.contacts || wanted_.distances;
+    request.first_poses = wanted_.contacts;
+    request.pose_summaries = wanted_.poses && question_.swept == 0.0;
+    if (question_.swept > 0.0) request.swept = question_.swept;
+    request.threads = question_.threads;
+    request.progress = question_.progress;
+    answer_.collisions = collideAlong(a_, b_.hierarchy(), question_.poses(), request);
+    answer_.work += answer_.collisions.work;
+    if (obstacle_.surface()) tellOfSurface(answer_.collisions);
+    if (wanted_.closest) {
+      nameClosest(closestOf(answer_.collisions));
+      answer_.closest.distance = std::max(answer_.closest.distance, 0.0);
+      closest_is_known_ = true;
+    }
+    if (input_.surface()) answer_.collisions = ofTriangles(*input_.surface(), std::move(answer_.collisions));
+  }
+
+  /// However large it is.
+  void findClosest()
+  {
+    DistanceResult found = closestPair(a_, b_, {question_.accuracy});
+    answer_.work += found.work;
+    if (obstacle_.surface()) tellOfSurface(obstacle_.surface()->tolerance, found);
+    if (input_.surface()) tellOfSurface(input_.surface()->tolerance, found);
+    nameClosest(std::move(found));
+  }
+
+  void nameClosest(DistanceResult found)
+  {
+    answer_.closest = std::move(found);
+    if (!answer_.closest.pair) return;
+    PointPair& pair = *answer_.closest.pair;
+    pair = {input_.part(pair.a), obstacle_.part(pair.b)};
+  }
+
+  /// How far to look.
+  double reach() const
+  {
+    const double told = question_.max_distance.value_or(unlimited);
+    if (!wanted_.within) return told;
+    const auto [least, most] = question_.limits;
+    const double of_limits = std::isinf(most) ? least : most;
+    return wanted_.distances ? std::max(told, of_limits) : of_limits;
+  }
+
+  void measure()
+  {
+    PointDistancesRequest request;
+    request.max_distance = reach();
+    request.accuracy = question_.accuracy;
+    request.threads = question_.threads;
+    request.progress = question_.progress;
+    SymmetricDistances& found = answer_.distances;
+    if (wanted_.both_ways)
+      found = symmetricDistances(a_, b_, request);
+    else
+      found.a = pointDistances(a_, b_, request);
+    answer_.work += found.a.work;
+    answer_.work += found.b.work;
+    if (obstacle_.surface()) tellOfSurface(obstacle_.surface()->tolerance, found);
+    if (input_.surface()) tellOfSurface(input_.surface()->tolerance, found);
+    if (wanted_.within) compare(request.max_distance);
+    if (input_.surface()) found.a = ofTriangles(*input_.surface(), std::move(found.a));
+  }
+
+  /// With the limits, then with the greatest distance that is told.
+  void compare(double reach)
+  {
+    PointDistances& found = answer_.distances.a;
+    const PointsView& input = a_.hierarchy().view();
+    const Comparison distance(input, b_, found);
+    const auto [least, most] = question_.limits;
+    answer_.within.assign(input.count, 0);
+    const double told = question_.max_distance.value_or(unlimited);
+    std::vector<std::uint32_t> beyond;
+    for (std::size_t i = 0; i < input.size(); ++i) {
+      const std::uint32_t record = input.record(i);
+      answer_.within[record] = isFinite(input.point(record)) && distance.compare(record, least) >= 0 &&
+                               (std::isinf(most) || distance.compare(record, most) <= 0);
+      if (reach > told && distance.compare(record, told) > 0) beyond.push_back(record);
+    }
+    for (const std::uint32_t record : beyond) found.distance[record] = std::numeric_limits<double>::quiet_NaN();
+  }
+
+  void warn()
+  {
+    QuestionFacts facts{input_.facts(wanted_.spacings), obstacle_.facts(wanted_.spacings), question_.poses(),
+                        question_.clearance};
+    for (const double length :
+         {question_.max_distance.value_or(unlimited), question_.limits.least, question_.limits.most})
+      if (length > 0.0 && length < facts.least_length) facts.least_length = length;
+    answer_.density = {facts.input.spacing, facts.obstacle.spacing};
+    for (Warning& warning : warningsOf(facts)) answer_.warnings.push_back(std::move(warning));
+  }
+
+  const Question& question_;
+  const Wanted& wanted_;
+  Shape& input_;
+  Shape& obstacle_;
+  Placed b_, a_; ///< in this order: what is wrong with the obstacle is told first
+  bool closest_is_known_ = false;
+  Answer answer_;
+};
+
+/// What is about points cannot be asked of surfaces.
+void requireAnswerable(const Question& question, const Shape& input)
+{
+  if (!input.surface()) return;
+  const std::string wrong = "is about points, and " + input.name() + " is a surface";
+  const char* const remedy = "give `vertices_only` to ask about its vertices, or leave it out";
+  if (question.density) throw InvalidOption("density", wrong, remedy);
+  if (question.wanted.within) throw InvalidOption("filter_limits", wrong, remedy);
+  if (!input.surface()->triangles_apart)
+    throw InvalidInput(Input::surface, input.name(), "its balls hold parts of several triangles each",
+                       "cover it with triangles_apart");
+}
+
+} // namespace
+
+Answer ask(const Question& question, Shape& input, Shape& obstacle)
+{
+  checkOptions(question);
+  requireAnswerable(question, input);
+  return Asking(question, input, obstacle).answer();
+}
+
+void check(const Question& question)
+{
+  Question of_nothing = question;
+  of_nothing.uncertainty.field.clear();
+  of_nothing.obstacle_uncertainty.field.clear();
+  of_nothing.sigmas = 1.0;
+  of_nothing.progress = nullptr;
+  of_nothing.wanted.spacings = false;
+  checkOptions(question);
+  Shape input("the input", PointsView()), obstacle("the obstacle", PointsView());
+  ask(of_nothing, input, obstacle);
+}
+
+std::string promiseOfObstacle(const SurfaceCover& surface, const std::string& beside)
+{
+  const std::string tolerance = plainText(surface.tolerance);
+  return "the obstacle is a surface of " + counted(surface.triangle_count, "triangle") + ", to a tolerance of " +
+         tolerance + ": free is farther than the clearance from it for certain, colliding is within the clearance + " +
+         tolerance + ", and a distance is too small by at most " + tolerance +
+         (beside.empty() ? "" : "; the tolerance of " + beside + " comes on top");
+}
+
+std::string promiseOfInput(const SurfaceCover& surface)
+{
+  const std::string tolerance = plainText(surface.tolerance);
+  return "the input is a surface of " + counted(surface.triangle_count, "triangle") + ", to a tolerance of " +
+         tolerance +
+         ": a free triangle is farther than the clearance from the obstacle for certain, a colliding one "
+         "is within the clearance + " +
+         tolerance;
+}
+
+std::string besideSurface(const Accuracy& accuracy, bool swept)
+{
+  if (swept) return "swept motion";
+  return accuracy.isExact() || accuracy.stopsEarly() ? "" : "the accuracy " + accuracy.text();
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/question/options.h>
+
+#include <pcl_bsh/base/plain_text.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+namespace pcl_bsh {
+namespace {
+
+using Kind = QuestionKind;
+using Range = OptionRange;
+using Q = Question;
+
+std::vector<QuestionOption> table()
+{
+  return {
+      {"clearance", &Q::clearance, Kind::collisions, "D", "m", Input::clearance,
+       "greatest distance that counts as collision, touching included", Range::from_zero, true},
+      {"swept", &Q::swept, Kind::collisions, "TOL", "m", Input::swept,
+       "above 0, the motion between the poses of a path counts, too, to this tolerance: what comes within the "
+       "clearance "
+       "collides, what stays beyond clearance + tolerance does not; 0: the poses alone"},
+      {"accuracy", &Q::accuracy, Kind::any, "HOW", "", Input::accuracy,
+       "how sure the answer is; less sure is faster: `exact`; `tolerance=LENGTH`: distances in (clearance, clearance + "
+       "LENGTH] may count, too, and distances are that much too great at most; of collisions also `level=N`, "
+       "`pairs=N`, "
+       "`time=SECONDS`: stops early, and what stays undecided is not free; with swept motion `exact`"},
+      {"uncertainty", &Q::uncertainty, Kind::collisions, "U", "m", Input::uncertainty,
+       "how far the input's points may truly be from where they were measured: a length, or the field that holds each "
+       "point's sigma; a point then collides only if it does wherever the points truly are, it is free if it cannot, "
+       "and else undecided, which is not free; distances are those of the measured places"},
+      {"obstacle_uncertainty", &Q::obstacle_uncertainty, Kind::collisions, "U", "m", Input::uncertainty,
+       "the same for the obstacle's points"},
+      {"sigmas", &Q::sigmas, Kind::collisions, "K", "", Input::uncertainty,
+       "by how many sigmas a point may be off, where an uncertainty is a field"},
+      {"density", &Q::density, Kind::collisions, "", "", Input::density,
+       "a point that is free of the obstacle's points, but within the clearance of the surface in a hole between them, "
+       "is undecided: not scanned densely enough; at one pose"},
+      {"widest_gap", &Q::widest_gap, Kind::collisions, "L", "m", Input::density,
+       "with `density`: what gapes wider in the obstacle is an opening, not a surface; without it, eight times the "
+       "median distance between its neighbouring points, too little where lines of a scan are farther apart",
+       Range::above_zero},
+      {"max_distance", &Q::max_distance, Kind::distances, "M", "m", Input::max_distance,
+       "greater distances are not told, but are NaN; less is faster; without it, no limit",
+       Range::from_zero_to_infinity},
+      {"surface_tolerance", &Q::surface_tolerance, Kind::any, "T", "m", Input::surface,
+       "an obstacle with faces is a surface: what is free is farther than the clearance from it for certain, what "
+       "collides is within clearance + this tolerance, and the true distance is in [d, d + tolerance]; so is an input "
+       "with faces, whose triangles are asked about, and its tolerance comes on top; without it, a tenth of the "
+       "clearance, or of distances a 10,000th of the obstacle's size",
+       Range::above_zero},
+      {"vertices_only", &Q::vertices_only, Kind::any, "", "", Input::surface,
+       "meshes, the obstacle and the input, are their vertices alone"},
+      {"threads", &Q::threads, Kind::any, "N", "", std::nullopt,
+       "0: all of the machine's; the result is the same for any number", Range::from_zero, false, "number_of_threads"},
+  };
+}
+
+Input codeOf(const std::string& name)
+{
+  const QuestionOption* const option = questionOption(name);
+  if (!option) return name == "filter_limits" ? Input::max_distance : Input::trajectory;
+  return option->code.value_or(Input::accuracy); // of how it is computed
+}
+
+/// The number of an option, where it has one.
+std::optional<double> numberOf(const QuestionOption& option, const Question& question)
+{
+  return std::visit(
+      [&](const auto member) -> std::optional<double> {
+        using Value = std::decay_t<decltype(question.*member)>;
+        if constexpr (std::is_same_v<Value, std::optional<double>>)
+          return question.*member;
+        else if constexpr (std::is_same_v<Value, Uncertainty>)
+          return (question.*member).length;
+        else if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, Accuracy>) // which queries check
+          return std::nullopt;
+        else
+          return static_cast<double>(question.*member);
+      },
+      option.member);
+}
+
+} // namespace
+
+double QuestionOption::most() const
+{
+  if (std::holds_alternative<unsigned Question::*>(member)) return 1024.0;
+  return range == OptionRange::from_zero_to_infinity ? std::numeric_limits<double>::infinity()
+                                                     : std::numeric_limits<double>::max();
+}
+
+bool QuestionOption::accepts(double number) const
+{
+  return (range == OptionRange::above_zero ? number > 0.0 : number >= 0.0) && number <= most();
+}
+
+std::string QuestionOption::remedy() const
+{
+  const std::string what = unit[0] == 'm' ? "length" : "number";
+  if (most() == 1024.0) return "give a number from 0 to 1024";
+  return "give a " + std::string(std::isinf(most()) ? "" : "finite ") + what +
+         (range == OptionRange::above_zero ? " > 0" : " >= 0");
+}
+
+const std::vector<QuestionOption>& questionOptions()
+{
+  static const std::vector<QuestionOption> options = table();
+  return options;
+}
+
+const QuestionOption* questionOption(const std::string& name)
+{
+  const auto& all = questionOptions();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const QuestionOption& row) { return row.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+InvalidOption::InvalidOption(const std::string& name, std::string wrong, std::string remedy)
+: InvalidInput(codeOf(name), name, std::move(wrong), std::move(remedy)),
+  option_(name)
+{
+}
+
+std::string optionOf(const InvalidInput& error, const Question& question)
+{
+  if (const auto* const named = dynamic_cast<const InvalidOption*>(&error)) return named->option();
+  std::vector<std::string> names;
+  for (const QuestionOption& option : questionOptions())
+    if (option.code == error.input()) names.emplace_back(option.name);
+  if (names.size() == 1) return names.front();
+  if (error.input() == Input::pose || error.input() == Input::trajectory) return question.path ? "path" : "pose";
+  return {};
+}
+
+void checkOptions(const Question& question)
+{
+  for (const QuestionOption& option : questionOptions()) {
+    const std::optional<double> number = numberOf(option, question);
+    if (number && !option.accepts(*number)) throw InvalidOption(option.name, plainText(*number), option.remedy());
+  }
+  const auto refuse = [](const char* option, const std::string& wrong, const char* remedy) {
+    throw InvalidOption(option, wrong, remedy);
+  };
+  const Wanted& wanted = question.wanted;
+  if (question.path && question.path->empty()) refuse("path", "has no pose", "give one at least");
+  if (question.swept > 0.0 && !question.path)
+    refuse("swept", "is given, but nothing moves", "give a path of poses, too");
+  if (question.accuracy.stopsEarly() && wanted.measures())
+    refuse("accuracy", question.accuracy.text() + ": leaves points without a distance",
+           "give exact or tolerance=LENGTH");
+  if (question.sigmas != 1.0 && question.uncertainty.field.empty() && question.obstacle_uncertainty.field.empty())
+    refuse("sigmas", "is given, but no uncertainty is a field", "give the length itself");
+  if (question.density && (question.path || wanted.contacts || wanted.poses))
+    refuse("density", "is about which points collide at one pose",
+           "leave out the path, the list of clashes, or `density`");
+  if (question.widest_gap && !question.density)
+    refuse("widest_gap", "is given, but not `density`", "give `density`, too");
+  if (question.surface_tolerance && question.vertices_only)
+    refuse("surface_tolerance", "is given, but `vertices_only`, too", "give one of them");
+  if (question.path && (wanted.both_ways || wanted.within))
+    refuse("path", "has no distances but the smallest", "give one pose");
+  if (question.path && wanted.distances && wanted.collisions())
+    refuse("path", "has either collisions or distances", "ask twice");
+  if (question.path && wanted.distances && !question.max_distance)
+    refuse("max_distance", "is without limit", "give a finite one along a path");
+  const auto [least, most] = question.limits;
+  if (!(0.0 <= least && least <= most && std::isfinite(least))) {
+    throw InvalidOption("filter_limits", plainText("from ", least, " to ", most),
+                        "give a finite least >= 0, and a most that is not less");
+  }
+}
+
+} // namespace pcl_bsh

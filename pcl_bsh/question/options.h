@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The options of a question, once: from this table come command lines and their help, options of pipeline stages, their
+// schema and documents, and the checks of all of them.
+#pragma once
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/question/question.h>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// Which questions have an option.
+enum class QuestionKind : std::uint8_t { collisions = 1, distances = 2, any = 3 };
+
+constexpr bool isOf(QuestionKind option, QuestionKind question) noexcept
+{
+  return (static_cast<unsigned>(option) & static_cast<unsigned>(question)) != 0;
+}
+
+/// The member that an option sets; its value in a new Question is the default.
+using OptionMember = std::variant<double Question::*, std::optional<double> Question::*, bool Question::*,
+                                  unsigned Question::*, Accuracy Question::*, Uncertainty Question::*>;
+
+/// Which numbers an option accepts; counts go up to 1024.
+enum class OptionRange : std::uint8_t { from_zero, above_zero, from_zero_to_infinity };
+
+/// A row of the table.
+struct QuestionOption {
+  const char* name; ///< in pipelines and Python; with hyphens after -- on command lines
+  OptionMember member;
+  QuestionKind kind;
+  const char* value;         ///< stands for the value in help texts; empty for a switch
+  const char* unit;          ///< m: a length in the clouds' unit; or empty
+  std::optional<Input> code; ///< of errors; where no other row has it, the core's are about this option
+  const char* doc;           ///< one sentence, without a full stop
+  OptionRange range = OptionRange::from_zero;
+  bool required = false;                ///< of questions of its kind alone
+  const char* name_of_stages = nullptr; ///< where pipelines call it as PCL does
+
+  bool accepts(double number) const;
+  double most() const;        ///< that is accepted
+  std::string remedy() const; ///< what to give instead of a number that is not accepted: "give a finite length >= 0"
+};
+
+/// In the order in which they are told.
+const std::vector<QuestionOption>& questionOptions();
+
+/// By its name; null when there is none.
+const QuestionOption* questionOption(const std::string& name);
+
+/// An error about an option of a question, by the table's name. Options that its text names are in `backticks`.
+class InvalidOption : public InvalidInput {
+public:
+  InvalidOption(const std::string& name, std::string wrong, std::string remedy = {});
+  const std::string& option() const noexcept { return option_; }
+
+private:
+  std::string option_;
+};
+
+/// The option that an error is about, or `pose` or `path`; empty: none.
+std::string optionOf(const InvalidInput& error, const Question& question);
+
+/// Refuses numbers that their options do not accept, and options that do not go together. Poses are for queries to
+/// refuse. @throws InvalidOption
+void checkOptions(const Question& question);
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a user asks of two things, an input and an obstacle, as plain data. ask.h answers it; options.h names its
+// members as users write them.
+//
+//   Question question;
+//   question.pose = T_scan_robot;
+//   question.clearance = 0.05;
+//   question.wanted.flags = true;
+//   const Answer answer = ask(question, scan, robot);
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/question/uncertainty.h>
+
+#include <Eigen/Geometry>
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// Which answers are computed. Of an input that is a surface, all that is said of points is said of its triangles.
+struct Wanted {
+  bool flags = false;     ///< which points of the input collide
+  bool contacts = false;  ///< of each that collides: its smallest distance, the first pose and the closest
+  bool poses = false;     ///< of each pose: how many points collide, and the smallest distance; not of swept motion
+  bool closest = false;   ///< the smallest distance and its pair: with contacts, and along a path, of what collides
+  bool distances = false; ///< of each point of the input to the obstacle; along a path the smallest
+  bool both_ways = false; ///< flags and distances also of the obstacle's points, at one pose
+  bool within = false;    ///< which points of the input have a distance within the limits, at one pose
+  bool spacings = false;  ///< how far points are apart, for the warning of holes: builds a few voxels
+
+  bool collisions() const { return flags || contacts || poses; }
+  bool measures() const { return distances || within; }
+};
+
+/// Both inclusive, and compared exactly.
+struct DistanceLimits {
+  double least = 0.0;
+  double most = std::numeric_limits<double>::infinity();
+};
+
+/// Lengths are in the clouds' own unit. Which values are allowed, options.h says.
+struct Question {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< T_input_obstacle; rigid within 1e-6
+  std::optional<std::vector<Eigen::Isometry3d>> path = {}; ///< instead: such poses, one after another; not empty
+  double swept = 0.0; ///< > 0: the motion between the poses of the path counts, too, to this tolerance
+  std::optional<double> clearance = {}; ///< points collide up to it, inclusive; none: 0, and no warning speaks of it
+  Accuracy accuracy = {};
+  Uncertainty uncertainty = {}, obstacle_uncertainty = {};
+  double sigmas = 1.0;                     ///< times those of both uncertainties, where they are fields
+  bool density = false;                    ///< the density guard (FlagsRequest::spacings_of_b)
+  std::optional<double> widest_gap = {};   ///< of the guard; none: usualGap()
+  std::optional<double> max_distance = {}; ///< greater distances are not told
+  DistanceLimits limits = {};
+  std::optional<double> surface_tolerance = {}; ///< for who makes shapes of meshes; none: usualTolerance()
+  bool vertices_only = false;                   ///< likewise: meshes are their vertices alone
+  unsigned threads = 1;                         ///< 0: all of the machine's
+  Wanted wanted = {};
+
+  /// Of distances, and along a path: called now and then, by the thread that asks, with the fraction done in [0, 1],
+  /// ascending. False: stop, ask() throws Cancelled. What it throws itself comes out of ask().
+  std::function<bool(double)> progress = {};
+
+  std::vector<Eigen::Isometry3d> poses() const { return path ? *path : std::vector{pose}; }
+  Uncertainty uncertaintyOfInput() const { return scaled(uncertainty); }
+  Uncertainty uncertaintyOfObstacle() const { return scaled(obstacle_uncertainty); }
+
+private:
+  Uncertainty scaled(Uncertainty one) const
+  {
+    one.sigmas *= sigmas;
+    return one;
+  }
+};
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/question/shape.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/hierarchy/points_checksum.h>
+#include <pcl_bsh/neighbors/patch_spacings.h>
+
+#include <utility>
+
+namespace pcl_bsh {
+
+Shape::Shape(std::string name, const PointsView& points, std::vector<RecordField> fields)
+: name_(std::move(name)),
+  view_([points] { return points; }),
+  fields_([fields = std::move(fields)] { return fields; })
+{
+}
+
+Shape::Shape(std::string name, std::function<PointsView()> points, std::function<std::vector<RecordField>()> fields)
+: name_(std::move(name)),
+  view_(std::move(points)),
+  fields_(std::move(fields)),
+  watched_(true)
+{
+  view_(); // what cannot be read is refused here, not at the first use
+}
+
+Shape::Shape(std::string name, std::shared_ptr<const SurfaceCover> surface)
+: name_(std::move(name)),
+  surface_(std::move(surface))
+{
+  if (!surface_)
+    throw InvalidInput(Input::surface, name_, "is no surface", "give the cover of no triangles if need be");
+  view_ = [cover = surface_] {
+    PointsView view = cover->view();
+    view.owner = cover;
+    return view;
+  };
+}
+
+Shape::Shape(std::string name, std::shared_ptr<const SphereHierarchy> hierarchy,
+             std::shared_ptr<const SurfaceCover> surface)
+: name_(std::move(name)),
+  surface_(std::move(surface)),
+  hierarchy_(std::move(hierarchy))
+{
+}
+
+const SphereHierarchy& Shape::hierarchy(const Uncertainty& uncertainty, unsigned threads)
+{
+  if (!*this) throw InvalidInput(Input::points, name_.empty() ? "a cloud" : name_, "is missing", "give one");
+  if (!view_ && !uncertainty.isZero())
+    throw InvalidInput(Input::uncertainty, name_, "is built already", "build it of points with uncertainties");
+  if (!view_) return *hierarchy_;
+  if (surface_ && !uncertainty.field.empty()) {
+    throw InvalidInput(Input::uncertainty, name_, "is a surface, which has no field '" + uncertainty.field + "'",
+                       "give a length, or `vertices_only`");
+  }
+  const bool same = hierarchy_ && uncertainty == uncertainty_;
+  if (same && !watched_) return *hierarchy_;
+  const PointsView view = view_();
+  const std::vector<RecordField> fields =
+      uncertainty.field.empty() || !fields_ ? std::vector<RecordField>() : fields_();
+  // The hierarchy points into the points' memory, its spheres hold them as they were, and so do the patches, which
+  // outlive it.
+  const Seen seen{view.data, view.count, watched_ ? checksumOf(view) : 0};
+  const std::uint64_t uncertainties = watched_ ? checksumOf(view, fields, uncertainty.field) : 0;
+  if ((first_seen_ && *first_seen_ != seen) || (same && uncertainties != uncertainties_))
+    throw InvalidInput(Input::points, name_, "has changed since it was set", "set it again");
+  if (same) return *hierarchy_;
+  HierarchyOptions options;
+  options.threads = threads;
+  Uncertainty built_with = uncertainty;
+  hierarchy_ = std::make_shared<SphereHierarchy>(withUncertainty(view, fields, name_, uncertainty), options);
+  uncertainty_ = std::move(built_with);
+  uncertainties_ = uncertainties;
+  first_seen_ = seen;
+  return *hierarchy_;
+}
+
+const Shape::Patches& Shape::patches(const std::optional<double>& gap, unsigned threads)
+{
+  if (patches_ && patches_->asked == gap) return *patches_;
+  Patches measured{gap, gap ? *gap : usualGap(*hierarchy_), {}};
+  if (measured.gap > 0.0) measured.spacings = patchSpacings(*hierarchy_, measured.gap, threads);
+  patches_ = std::make_shared<const Patches>(std::move(measured));
+  return *patches_;
+}
+
+NamedCloud Shape::facts(bool spacing)
+{
+  NamedCloud facts = namedCloud(name_, *hierarchy_, surface_.get());
+  if (spacing && !surface_ && !spacing_) spacing_ = spacingOf(*hierarchy_);
+  if (spacing) facts.spacing = spacing_;
+  return facts;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One of the two things of a question: points or a surface, by the name that its user knows it by, and what is kept of
+// it from one question to the next.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/question/named_cloud.h>
+#include <pcl_bsh/question/uncertainty.h>
+#include <pcl_bsh/surface/surface_cover.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// A copy shares what is built: two threads may ask about two copies. The records of its hierarchy are those of the
+/// points; of a surface, pieces that part() knows.
+class Shape {
+public:
+  Shape() = default; ///< nothing yet
+
+  /// Points that do not change. @param fields of their records, for uncertainties
+  Shape(std::string name, const PointsView& points, std::vector<RecordField> fields = {});
+
+  /// Points which their owner may change, though it must not: every question compares a checksum of their coordinates
+  /// and uncertainties, which takes some 20 instructions a point, a tenth or less of what building takes.
+  /// @param points and @param fields are called for each question, and keep alive what they tell of
+  /// @throws what `points` does
+  Shape(std::string name, std::function<PointsView()> points, std::function<std::vector<RecordField>()> fields);
+
+  /// A surface. @throws InvalidInput when the pointer is null
+  Shape(std::string name, std::shared_ptr<const SurfaceCover> surface);
+
+  /// What is built already: uncertainties are those of its points. @param surface null, or what its points cover
+  Shape(std::string name, std::shared_ptr<const SphereHierarchy> hierarchy,
+        std::shared_ptr<const SurfaceCover> surface = nullptr);
+
+  explicit operator bool() const noexcept { return view_ || hierarchy_; } ///< whether it is something
+  const std::string& name() const noexcept { return name_; }
+
+  /// Null where it is points.
+  const std::shared_ptr<const SurfaceCover>& surface() const noexcept { return surface_; }
+
+  /// What a record of the hierarchy is to users: the point, or the triangle (of covers that others have renumbered,
+  /// what they put there).
+  std::uint32_t part(std::uint32_t record) const { return surface_ ? surface_->triangles[record] : record; }
+
+  /// Built on the first use, and anew for another uncertainty. @param threads that build it
+  /// @throws InvalidInput when it is nothing, its points have changed, or its uncertainties are not what
+  ///   withUncertainty() asks for
+  const SphereHierarchy& hierarchy(const Uncertainty& uncertainty, unsigned threads);
+
+  /// How wide the holes beside each record are taken to be, and what gapes wider.
+  struct Patches {
+    std::optional<double> asked; ///< none: usualGap()
+    double gap = 0.0;            ///< > 0, or 0 where there are no two places
+    std::vector<float> spacings; ///< patchSpacings(), one per record; empty where the gap is 0
+  };
+
+  /// Measured once for points and a gap. @pre hierarchy() was called. @param gap > 0; none: usualGap()
+  const Patches& patches(const std::optional<double>& gap, unsigned threads);
+
+  /// What is to be known of it beside an answer. @pre hierarchy() was called
+  /// @param spacing how far its points are apart, too: measured once
+  NamedCloud facts(bool spacing);
+
+private:
+  /// Memory, and a checksum of its points.
+  struct Seen {
+    const void* data;
+    std::size_t count;
+    std::uint64_t points;
+    bool operator!=(const Seen& other) const
+    {
+      return data != other.data || count != other.count || points != other.points;
+    }
+  };
+
+  std::string name_;
+  std::function<PointsView()> view_; ///< empty: the hierarchy was given
+  std::function<std::vector<RecordField>()> fields_;
+  bool watched_ = false;
+  std::shared_ptr<const SurfaceCover> surface_;
+  std::shared_ptr<const SphereHierarchy> hierarchy_;
+  Uncertainty uncertainty_;                ///< that the hierarchy was built with
+  std::uint64_t uncertainties_ = 0;        ///< checksum of its field
+  std::optional<Seen> first_seen_;         ///< what was there at the first use
+  std::shared_ptr<const Patches> patches_; ///< once they are asked for
+  std::optional<Spacing> spacing_;
+};
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The options of questions, as command lines have them: by the core's table.
+#pragma once
+
+#include "program.h"
+
+#include <pcl_bsh/question/options.h>
+
+#include <CLI/CLI.hpp>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+/// --name-of-an-option.
+std::string asOption(const std::string& name);
+
+/// Lines of at most `width` characters, but for longer words.
+std::string wrapped(const std::string& text, std::size_t width = 72);
+
+/// Adds the options with these names; what the question has is their default.
+void addQuestionOptions(CLI::App& app, Question& question, const std::vector<std::string>& names);
+
+/// Those of a kind of question, but for some that a program tells in its own way.
+void addQuestionOptions(CLI::App& app, Question& question, QuestionKind kind, const std::vector<std::string>& without);
+
+/// @throws UsageError quoting the text when it is no accuracy
+Accuracy parseAccuracy(const std::string& text);
+
+/// What the core refuses, by the names that command lines have.
+/// @param names_of_poses the options that give poses: of the first pose, then of those that follow
+std::string advice(const InvalidInput& error, const Question& question, const std::vector<std::string>& names_of_poses);
+
+/// What `build` returns. @throws std::invalid_argument for what the core refuses, with command lines' names
+template <typename Build>
+decltype(auto) named(const Build& build, const Question& question = {},
+                     const std::vector<std::string>& names_of_poses = {"--pose"})
+{
+  try {
+    return build();
+  }
+  catch (const InvalidInput& error) {
+    throw std::invalid_argument(advice(error, question, names_of_poses));
+  }
+}
+
+/// Refuses what ask() would refuse whatever the clouds. @throws UsageError; std::invalid_argument for poses
+void requireAccepted(const Question& question, const std::vector<std::string>& names_of_poses = {"--pose"});
+
+} // namespace pcl_bsh::cli

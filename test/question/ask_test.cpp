@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// ask() against the queries that it asks, called directly.
+#include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/question/options.h>
+
+#include "support/random_clouds.h"
+
+#include <pcl_bsh/collide.h>
+#include <pcl_bsh/neighbors/patch_spacings.h>
+#include <pcl_bsh/surface/triangle_answers.h>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Points {
+  Points(std::uint64_t seed, std::size_t count, double scale) : random(seed)
+  {
+    places = test::makePoints(test::Shape::uniform, count, scale, random);
+    places[3][1] = std::numeric_limits<double>::quiet_NaN();
+  }
+  PointsView view() const { return viewOf(places[0].data(), places.size()); }
+  Shape shape(const std::string& name) const { return {name, view()}; }
+
+  test::Random random;
+  std::vector<Point3> places;
+};
+
+Eigen::Isometry3d somePose(double x = 0.2)
+{
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, -1).normalized()));
+  pose.translation() = Eigen::Vector3d(x, -0.1, 0.05);
+  return pose;
+}
+
+FlagsRequest within(double clearance)
+{
+  FlagsRequest request;
+  request.clearance = clearance;
+  return request;
+}
+
+class Ask : public testing::Test {
+protected:
+  Ask()
+  {
+    question.pose = somePose();
+    question.clearance = 0.1;
+  }
+
+  Answer answer() { return ask(question, input, obstacle); }
+
+  std::vector<Eigen::Isometry3d> somePath() const { return {somePose(-1), somePose(-0.4), somePose(0.3)}; }
+
+  TrajectoryRequest along() const
+  {
+    TrajectoryRequest request;
+    request.clearance = *question.clearance;
+    request.distances = request.first_poses = request.closest_poses = true;
+    return request;
+  }
+
+  const Points scan{1, 1500, 1.0}, robot{2, 400, 0.5};
+  const SphereHierarchy a{scan.view()}, b{robot.view()};
+  Shape input = scan.shape("a"), obstacle = robot.shape("b");
+  Question question;
+};
+
+TEST_F(Ask, NothingIsComputedThatNobodyWants)
+{
+  const Answer found = answer();
+  EXPECT_THAT(found.collisions.flags, IsEmpty());
+  EXPECT_THAT(found.distances.a.distance, IsEmpty());
+  EXPECT_FALSE(found.closest.pair);
+  EXPECT_EQ(found.work.node_pairs, 0u);
+}
+
+TEST_F(Ask, FlagsAtOnePose)
+{
+  question.wanted.flags = true;
+  const FlagsResult expected = collisionFlags({a}, {b, question.pose}, within(*question.clearance));
+  const Answer found = answer();
+  EXPECT_EQ(found.collisions.flags, expected.a);
+  EXPECT_EQ(found.collisions.colliding, expected.colliding_a);
+  EXPECT_GT(expected.colliding_a, 50u);
+  EXPECT_EQ(found.work.node_pairs, expected.work.node_pairs);
+  EXPECT_THAT(found.obstacle_flags, IsEmpty());
+  question.wanted.both_ways = true;
+  FlagsRequest both = within(*question.clearance);
+  both.flagged = Side::both;
+  EXPECT_EQ(answer().obstacle_flags, collisionFlags({a}, {b, question.pose}, both).b);
+}
+
+TEST_F(Ask, UncertaintiesAndTheirSigmas)
+{
+  question.wanted.flags = true;
+  question.uncertainty = 0.03;
+  question.obstacle_uncertainty = 0.01;
+  PointsView uncertain = scan.view(), other = robot.view();
+  uncertain.uncertainty = 0.03;
+  other.uncertainty = 0.01;
+  const FlagsResult expected = collisionFlags({SphereHierarchy(uncertain)}, {SphereHierarchy(other), question.pose},
+                                              within(*question.clearance));
+  const Answer found = answer();
+  EXPECT_EQ(found.collisions.flags, expected.a);
+  EXPECT_EQ(found.collisions.undecided, expected.undecided_a);
+  EXPECT_GT(expected.undecided_a, 50u);
+
+  struct Record {
+    double x, y, z;
+    float sigma;
+  };
+  std::vector<Record> records;
+  for (const Point3& p : scan.places) records.push_back({p[0], p[1], p[2], 0.015f});
+  const PointsView view = viewOf(&records[0].x, records.size(), sizeof(Record));
+  input = Shape("a", view, {{"sigma", offsetof(Record, sigma), 7, 1}});
+  question.uncertainty = Uncertainty("sigma", 1.0);
+  question.sigmas = 2.0;
+  question.obstacle_uncertainty = 0.01;
+  const std::vector<float> twice(records.size(), 0.03f);
+  uncertain.uncertainty = 0.0;
+  uncertain.uncertainties = twice.data();
+  EXPECT_EQ(
+      answer().collisions.flags,
+      collisionFlags({SphereHierarchy(uncertain)}, {SphereHierarchy(other), question.pose}, within(*question.clearance))
+          .a);
+}
+
+TEST_F(Ask, DensityGuard)
+{
+  question.wanted.flags = true;
+  question.density = true;
+  for (const std::optional<double> gap : {std::optional<double>(), std::optional(0.05), std::optional(0.3)}) {
+    question.widest_gap = gap;
+    const double widest = gap.value_or(usualGap(b));
+    const std::vector<float> spacings = patchSpacings(b, widest);
+    FlagsRequest request;
+    request.clearance = *question.clearance;
+    request.spacings_of_b = spacings.data();
+    const FlagsResult expected = collisionFlags({a}, {b, question.pose}, request);
+    const Answer found = answer();
+    EXPECT_EQ(found.collisions.flags, expected.a);
+    EXPECT_EQ(found.sparse, expected.sparse_a);
+    EXPECT_EQ(found.widest_gap, widest);
+  }
+}
+
+TEST_F(Ask, AlongAPath)
+{
+  question.path = somePath();
+  question.wanted.flags = question.wanted.contacts = question.wanted.poses = question.wanted.closest = true;
+  for (const double swept : {0.0, 0.02}) {
+    question.swept = swept;
+    TrajectoryRequest request = along();
+    request.pose_summaries = swept == 0.0;
+    if (swept > 0.0) request.swept = swept;
+    const TrajectoryResult expected = collideAlong({a}, b, *question.path, request);
+    const Answer found = answer();
+    EXPECT_EQ(found.collisions.flags, expected.flags);
+    EXPECT_EQ(found.collisions.first_pose, expected.first_pose);
+    EXPECT_EQ(found.collisions.closest_pose, expected.closest_pose);
+    EXPECT_EQ(found.collisions.closest_point, expected.closest_point);
+    EXPECT_EQ(found.collisions.poses.size(), swept == 0.0 ? 3u : 0u);
+    ASSERT_TRUE(found.closest.pair);
+    const std::uint32_t nearest = found.closest.pair->a;
+    EXPECT_EQ(found.closest.distance, static_cast<double>(expected.distance[nearest]));
+    EXPECT_EQ(found.closest.pair->b, expected.closest_point[nearest]);
+    for (const float distance : expected.distance) EXPECT_FALSE(static_cast<double>(distance) < found.closest.distance);
+  }
+}
+
+TEST_F(Ask, DistancesAlongAPath)
+{
+  question.path = somePath();
+  question.clearance.reset();
+  question.max_distance = 0.2;
+  question.wanted.distances = true;
+  TrajectoryRequest request;
+  request.clearance = 0.2;
+  request.flags = false;
+  request.distances = request.closest_poses = true;
+  const TrajectoryResult expected = collideAlong({a}, b, *question.path, request);
+  const Answer found = answer();
+  EXPECT_EQ(found.collisions.closest_pose, expected.closest_pose);
+  EXPECT_THAT(found.collisions.flags, IsEmpty());
+  question.max_distance.reset();
+  EXPECT_THROW(answer(), InvalidOption);
+}
+
+TEST_F(Ask, TheClosestPairHoweverFar)
+{
+  question.wanted.closest = true;
+  question.pose.translation().x() = 20;
+  const DistanceResult expected = closestPair({a}, {b, question.pose});
+  const Answer found = answer();
+  EXPECT_EQ(found.closest.distance, expected.distance);
+  EXPECT_TRUE(found.closest.pair == expected.pair);
+  EXPECT_EQ(found.closest.interval.lower, expected.interval.lower);
+}
+
+TEST_F(Ask, DistancesAndLimits)
+{
+  question.wanted.distances = question.wanted.both_ways = true;
+  const SymmetricDistances expected = symmetricDistances({a}, {b, question.pose});
+  EXPECT_EQ(answer().distances.hausdorff_pair, expected.hausdorff_pair);
+  EXPECT_EQ(answer().distances.b.nearest, expected.b.nearest);
+
+  question.wanted = {};
+  question.wanted.distances = question.wanted.within = true;
+  question.max_distance = 0.15;
+  question.limits = {0.1, 0.4};
+  const Answer found = answer();
+  for (std::size_t i = 0; i < scan.places.size(); ++i) {
+    const double distance = expected.a.distance[i];
+    ASSERT_EQ(found.within[i], distance >= 0.1 && distance <= 0.4) << i;
+    if (distance <= 0.15) {
+      ASSERT_EQ(found.distances.a.distance[i], distance) << i;
+    }
+    else {
+      ASSERT_TRUE(std::isnan(found.distances.a.distance[i])) << i;
+    }
+  }
+}
+
+/// A square of two triangles as obstacle, then as input.
+TEST_F(Ask, Surfaces)
+{
+  const std::vector<Point3> corners = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  SurfaceRequest request;
+  request.tolerance = 0.01;
+  request.triangles_apart = true;
+  const auto square = std::make_shared<const SurfaceCover>(
+      coverSurface(viewOf(corners[0].data(), corners.size()), {{0, 1, 2}, {0, 2, 3}}, request));
+  const SphereHierarchy balls(square->view());
+  question.pose = Eigen::Isometry3d::Identity();
+  question.wanted.flags = question.wanted.closest = true;
+  obstacle = Shape("square", square);
+  Answer found = answer();
+  EXPECT_EQ(found.collisions.flags, collisionFlags({a}, {balls}, within(0.1)).a);
+  EXPECT_LT(found.closest.pair->b, 2u) << "a triangle";
+  EXPECT_GE(found.closest.distance, 0.0);
+  EXPECT_GE(found.closest.interval.upper, found.closest.distance + 0.01);
+
+  input = Shape("square", square);
+  obstacle = robot.shape("b");
+  question.pose.translation() = Eigen::Vector3d(1.2, 0.2, 0.2);
+  found = answer();
+  const FlagsResult expected = collisionFlags({balls}, {b, question.pose}, within(0.1));
+  EXPECT_EQ(found.collisions.flags, triangleVerdicts(*square, expected.a));
+  EXPECT_LT(found.closest.pair->a, 2u);
+  question.wanted.contacts = true;
+  found = answer();
+  EXPECT_EQ(found.collisions.first_pose.size(), 2u);
+  question.wanted = {};
+  question.wanted.distances = true;
+  found = answer();
+  ASSERT_EQ(found.distances.a.distance.size(), 2u);
+  const PointDistances of_balls = pointDistances({balls}, {b, question.pose});
+  double least = infinity;
+  for (const double distance : of_balls.distance) least = std::min(least, std::max(distance, 0.0));
+  EXPECT_EQ(std::min(found.distances.a.distance[0], found.distances.a.distance[1]), least);
+}
+
+TEST_F(Ask, SurfacesRefuseWhatIsAboutPoints)
+{
+  const std::vector<Point3> corners = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}};
+  SurfaceRequest request;
+  request.tolerance = 0.1;
+  const auto cover = [&](bool apart) {
+    request.triangles_apart = apart;
+    return std::make_shared<const SurfaceCover>(
+        coverSurface(viewOf(corners[0].data(), corners.size()), {{0, 1, 2}}, request));
+  };
+  const auto refusal = [&] {
+    try {
+      answer();
+    }
+    catch (const InvalidInput& error) {
+      return optionOf(error, question) + "|" + error.what();
+    }
+    return std::string();
+  };
+  question.wanted.flags = true;
+  input = Shape("crate.off", cover(false));
+  EXPECT_THAT(refusal(), HasSubstr("crate.off: its balls hold parts of several triangles each"));
+  input = Shape("crate.off", cover(true));
+  EXPECT_EQ(refusal(), "");
+  question.density = true;
+  EXPECT_THAT(refusal(), HasSubstr("density|density: is about points, and crate.off is a surface"));
+  question.density = false;
+  question.uncertainty = Uncertainty("sigma", 1.0);
+  EXPECT_THAT(refusal(), HasSubstr("crate.off: is a surface, which has no field 'sigma': give a length"));
+  question.uncertainty = 0.0;
+  question.wanted.within = true;
+  EXPECT_THAT(refusal(), HasSubstr("filter_limits|filter_limits: is about points"));
+  input = scan.shape("a");
+  obstacle = Shape("crate.off", cover(false));
+  question.wanted.within = false;
+  question.density = true;
+  EXPECT_EQ(answer().warnings.at(0).text, "crate.off: is a surface, which has no holes: density guards nothing");
+}
+
+TEST_F(Ask, WarnsAsTheFactsDo)
+{
+  question.wanted.flags = question.wanted.spacings = true;
+  question.clearance = 0.001;
+  Answer found = answer();
+  ASSERT_EQ(found.warnings.size(), 3u);
+  EXPECT_EQ(found.warnings[0].text, "a: 1 of 1500 points is not finite: it is left out");
+  EXPECT_THAT(found.warnings[2].text, HasSubstr("apart in a and "));
+  EXPECT_EQ(found.density.input->median, spacingOf(a).median);
+  question.pose.translation().x() = 1e6;
+  EXPECT_THAT(answer().warnings.at(2).text, HasSubstr("the boxes of a and of b"));
+  obstacle = Shape("none", PointsView());
+  EXPECT_THAT(answer().warnings.at(1).text, HasSubstr("none: has no finite point: nothing collides with it"));
+  question.clearance.reset();
+  question.wanted = {};
+  question.wanted.distances = true;
+  EXPECT_THAT(answer().warnings.at(1).text, HasSubstr("none: has no finite point: nothing has a distance from it"));
+}
+
+/// Distances are compared with their limits, as collisions are with the clearance.
+TEST_F(Ask, WarnsOfCoarseCoordinatesForLimits)
+{
+  std::vector<float> far;
+  for (int i = 0; i < 60; ++i) far.push_back(500000.0f + static_cast<float>(i));
+  const PointsView view = viewOf(far.data(), 20);
+  input = Shape("utm", view);
+  obstacle = Shape("utm", view);
+  question = {};
+  question.wanted.distances = question.wanted.within = true;
+  EXPECT_THAT(answer().warnings, IsEmpty());
+  question.limits = {0.0, 0.1};
+  ASSERT_EQ(answer().warnings.size(), 1u) << "of both the same";
+  EXPECT_THAT(answer().warnings[0].text, HasSubstr("lie 0.03125 apart, coarse for a limit of 0.1"));
+  question.limits = {};
+  question.max_distance = 0.2;
+  EXPECT_THAT(answer().warnings.at(0).text, HasSubstr("coarse for a limit of 0.2"));
+}
+
+TEST_F(Ask, CheckRefusesBeforeAnythingIsThere)
+{
+  const auto option = [&] {
+    try {
+      check(question);
+    }
+    catch (const InvalidInput& error) {
+      return optionOf(error, question);
+    }
+    return std::string();
+  };
+  question.wanted.flags = true;
+  EXPECT_EQ(option(), "");
+  question.accuracy = Accuracy::tolerance(-1);
+  EXPECT_EQ(option(), "accuracy");
+  question.accuracy = Accuracy::level(1);
+  question.path = somePath();
+  EXPECT_EQ(option(), "");
+  question.wanted.contacts = true;
+  EXPECT_EQ(option(), "accuracy");
+  question.accuracy = {};
+  question.uncertainty = Uncertainty("of nothing", 1.0);
+  EXPECT_EQ(option(), "") << "fields are known with the clouds";
+  question.path->at(1).linear() *= 2;
+  EXPECT_EQ(option(), "path");
+  question.path.reset();
+  question.pose.linear() *= 2;
+  EXPECT_EQ(option(), "pose");
+}
+
+TEST_F(Ask, CanBeCancelled)
+{
+  question.wanted.distances = true;
+  question.progress = [](double) { return false; };
+  EXPECT_THROW(answer(), Cancelled);
+  question.progress = nullptr;
+  EXPECT_EQ(answer().distances.a.nearest, pointDistances({a}, {b, question.pose}).nearest);
+}
+
+} // namespace
+} // namespace pcl_bsh

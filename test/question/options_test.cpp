@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/question/options.h>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The option that is refused, and why.
+std::string refusalOf(const Question& question)
+{
+  try {
+    checkOptions(question);
+  }
+  catch (const InvalidOption& error) {
+    EXPECT_EQ(optionOf(error, question), error.option());
+    return error.what();
+  }
+  return {};
+}
+
+/// Sets the number of an option; false where it has none.
+bool setNumber(const QuestionOption& row, Question& question, double number)
+{
+  return std::visit(
+      [&](const auto member) {
+        using Value = std::decay_t<decltype(question.*member)>;
+        if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>> ||
+                      std::is_same_v<Value, Uncertainty>) {
+          question.*member = number;
+          return true;
+        }
+        else {
+          return false;
+        }
+      },
+      row.member);
+}
+
+/// So that no other rule is broken.
+Question consistent()
+{
+  Question question;
+  question.path = {Eigen::Isometry3d::Identity()};
+  question.uncertainty = Uncertainty("sigma", 1.0);
+  return question;
+}
+
+TEST(QuestionOptions, HaveNamesOfTheirOwnAndOneSentence)
+{
+  std::set<std::string> names;
+  for (const QuestionOption& row : questionOptions()) {
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_EQ(questionOption(row.name), &row);
+    EXPECT_EQ(std::string(row.name).find_first_not_of("abcdefghijklmnopqrstuvwxyz_"), std::string::npos) << row.name;
+    const std::string doc = row.doc;
+    EXPECT_GT(doc.size(), 20u) << row.name;
+    EXPECT_NE(doc.back(), '.') << row.name;
+    EXPECT_EQ(doc.find('\n'), std::string::npos) << row.name;
+    EXPECT_EQ(doc.find(". "), std::string::npos) << row.name << ": one sentence";
+    EXPECT_FALSE(std::isupper(static_cast<unsigned char>(doc[0]))) << row.name;
+    EXPECT_EQ(row.value[0] == '\0', std::holds_alternative<bool Question::*>(row.member)) << row.name;
+  }
+  EXPECT_EQ(questionOption("none"), nullptr);
+}
+
+TEST(QuestionOptions, DefaultsAreAccepted)
+{
+  EXPECT_EQ(refusalOf(Question()), "");
+  EXPECT_EQ(refusalOf(consistent()), "");
+}
+
+TEST(QuestionOptions, EachRefusesWhatIsOutsideItsLimits)
+{
+  int numbers = 0;
+  for (const QuestionOption& row : questionOptions()) {
+    Question question = consistent();
+    if (!setNumber(row, question, 1.0)) continue;
+    ++numbers;
+    question.density = std::string(row.name) == "widest_gap";
+    if (question.density) question.path.reset();
+    EXPECT_EQ(refusalOf(question), "") << row.name;
+    for (const double wrong : {-1.0, std::nan(""), -infinity}) {
+      setNumber(row, question, wrong);
+      EXPECT_THAT(refusalOf(question), testing::StartsWith(std::string(row.name) + ": ")) << wrong;
+      EXPECT_THAT(refusalOf(question), HasSubstr(": " + row.remedy())) << wrong;
+    }
+    setNumber(row, question, 0.0);
+    EXPECT_EQ(refusalOf(question).empty(), row.range != OptionRange::above_zero) << row.name;
+    setNumber(row, question, infinity);
+    EXPECT_EQ(refusalOf(question).empty(), row.range == OptionRange::from_zero_to_infinity) << row.name;
+  }
+  EXPECT_GE(numbers, 7);
+  Question question;
+  question.threads = 1025;
+  EXPECT_EQ(refusalOf(question), "threads: 1025: give a number from 0 to 1024");
+}
+
+TEST(QuestionOptions, RefuseWhatDoesNotGoTogether)
+{
+  const auto refusal = [](const auto& change) {
+    Question question;
+    question.wanted.flags = true;
+    change(question);
+    return refusalOf(question);
+  };
+  const std::vector<Eigen::Isometry3d> path = {Eigen::Isometry3d::Identity()};
+  EXPECT_THAT(refusal([](Question& q) { q.path.emplace(); }), HasSubstr("path: has no pose"));
+  EXPECT_THAT(refusal([](Question& q) { q.swept = 1; }), HasSubstr("swept: is given, but nothing moves"));
+  EXPECT_THAT(refusal([](Question& q) { q.sigmas = 2; }), HasSubstr("sigmas: is given, but no uncertainty is a field"));
+  EXPECT_THAT(refusal([](Question& q) { q.widest_gap = 2; }), HasSubstr("widest_gap: is given, but not `density`"));
+  EXPECT_THAT(refusal([&](Question& q) { q.density = true, q.path = path; }), HasSubstr("density: is about which"));
+  EXPECT_THAT(refusal([](Question& q) { q.density = q.wanted.contacts = true; }), HasSubstr("density: is about which"));
+  EXPECT_THAT(refusal([](Question& q) { q.surface_tolerance = 1, q.vertices_only = true; }),
+              HasSubstr("surface_tolerance: is given, but `vertices_only`, too"));
+  EXPECT_THAT(refusal([](Question& q) { q.accuracy = Accuracy::level(1), q.wanted.distances = true; }),
+              HasSubstr("accuracy: level=1: leaves points without a distance: give exact or tolerance=LENGTH"));
+  EXPECT_THAT(refusal([&](Question& q) { q.path = path, q.wanted.both_ways = true; }), HasSubstr("path: has no"));
+  EXPECT_THAT(refusal([](Question& q) { q.limits = {2, 1}; }), HasSubstr("filter_limits: from 2 to 1: give"));
+  EXPECT_THAT(refusal([](Question& q) {
+                q.limits = {infinity, infinity};
+              }),
+              HasSubstr("filter_limits: from inf to inf"));
+}
+
+TEST(QuestionOptions, AreKnownByTheCodesOfTheCore)
+{
+  const Question question;
+  const auto named = [&](Input input) { return optionOf(InvalidInput(input, "something", "is wrong"), question); };
+  EXPECT_EQ(named(Input::clearance), "clearance");
+  EXPECT_EQ(named(Input::swept), "swept");
+  EXPECT_EQ(named(Input::accuracy), "accuracy");
+  EXPECT_EQ(named(Input::max_distance), "max_distance");
+  EXPECT_EQ(named(Input::pose), "pose");
+  EXPECT_EQ(named(Input::uncertainty), "") << "of whom?";
+  EXPECT_EQ(named(Input::points), "");
+}
+
+} // namespace
+} // namespace pcl_bsh

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/question/shape.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/neighbors/patch_spacings.h>
+
+#include <gmock/gmock.h>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+struct Record {
+  float x, y, z, sigma;
+};
+
+class WatchedShape : public testing::Test {
+protected:
+  WatchedShape()
+  {
+    for (int i = 0; i < 400; ++i)
+      records.push_back({static_cast<float>(i % 20), static_cast<float>(i / 20), 0.0f, 0.1f});
+    shape = Shape(
+        "floor", [this] { return viewOf(&records[0].x, records.size(), sizeof(Record)); },
+        [] {
+          return std::vector<RecordField>{{"sigma", offsetof(Record, sigma), 7, 1}};
+        });
+  }
+
+  const SphereHierarchy& hierarchy(const Uncertainty& uncertainty = {}) { return shape.hierarchy(uncertainty, 1); }
+
+  void expectChanged(const Uncertainty& uncertainty = {})
+  {
+    EXPECT_THAT([&] { hierarchy(uncertainty); },
+                ThrowsMessage<InvalidInput>(HasSubstr("floor: has changed since it was set: set it again")));
+  }
+
+  std::vector<Record> records;
+  Shape shape;
+};
+
+TEST_F(WatchedShape, IsBuiltOnceForAnUncertainty)
+{
+  const SphereHierarchy* const first = &hierarchy();
+  EXPECT_EQ(&hierarchy(), first);
+  Shape copy = shape;
+  EXPECT_EQ(&copy.hierarchy({}, 1), first) << "shared";
+  EXPECT_EQ(hierarchy(0.25).view().uncertainty, 0.25);
+  EXPECT_EQ(hierarchy(Uncertainty("sigma", 2.0)).view().uncertainties[3], 0.2f);
+  EXPECT_EQ(&copy.hierarchy({}, 1), first);
+}
+
+TEST_F(WatchedShape, RefusesPointsThatHaveChanged)
+{
+  hierarchy();
+  records[7].y += 1.0f;
+  expectChanged();
+  expectChanged(0.5);
+  records[7].y -= 1.0f;
+  EXPECT_NO_THROW(hierarchy());
+  records[7].sigma = 1.0f;
+  EXPECT_NO_THROW(hierarchy()) << "nobody has asked for it";
+  hierarchy(Uncertainty("sigma", 1.0));
+  records[7].sigma = 2.0f;
+  expectChanged(Uncertainty("sigma", 1.0));
+}
+
+TEST_F(WatchedShape, MeasuresOnce)
+{
+  const SphereHierarchy& built = hierarchy();
+  const Shape::Patches* const usual = &shape.patches({}, 1);
+  EXPECT_EQ(usual->gap, usualGap(built));
+  EXPECT_EQ(usual->spacings, patchSpacings(built, usual->gap));
+  EXPECT_EQ(&shape.patches({}, 1), usual);
+  EXPECT_EQ(shape.patches(0.5, 1).gap, 0.5);
+  EXPECT_FALSE(shape.facts(false).spacing);
+  EXPECT_EQ(shape.facts(true).spacing->median, 1.0);
+}
+
+TEST(Shape, ThatIsNothing)
+{
+  Shape nothing;
+  EXPECT_FALSE(nothing);
+  EXPECT_THROW(nothing.hierarchy({}, 1), InvalidInput);
+  EXPECT_THROW(Shape("crate", std::shared_ptr<const SurfaceCover>()), InvalidInput);
+  EXPECT_TRUE(Shape("empty", PointsView()));
+}
+
+TEST(Shape, ThatIsBuiltAlready)
+{
+  const std::vector<float> xyz = {0, 0, 0, 1, 0, 0};
+  const auto built = std::make_shared<const SphereHierarchy>(viewOf(xyz.data(), 2));
+  Shape shape("pair", built);
+  EXPECT_EQ(&shape.hierarchy({}, 1), built.get());
+  EXPECT_THROW(shape.hierarchy(0.1, 1), InvalidInput) << "they are those of its points";
+  EXPECT_EQ(shape.part(1), 1u);
+  EXPECT_EQ(shape.facts(false).points, 2u);
+}
+
+} // namespace
+} // namespace pcl_bsh
