@@ -25,11 +25,13 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
+/// The fields of a cloud's records.
 template <typename PointT>
 std::vector<RecordField> fieldsOfRecords(const pcl::PointCloud<PointT>&)
 {
   return recordFields(pcl::getFields<PointT>());
 }
+/// The same of a cloud whose fields are known at run time only.
 inline std::vector<RecordField> fieldsOfRecords(const pcl::PCLPointCloud2& cloud)
 {
   return recordFields(cloud.fields);

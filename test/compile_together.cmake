@@ -56,7 +56,8 @@ function(pcl_bsh_group_tests objects)
   foreach(file IN LISTS ARGN)
     pcl_bsh_read_names("${file}")
     cmake_path(RELATIVE_PATH file BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" OUTPUT_VARIABLE path)
-    if("${text_${file}}" MATCHES "foreach_target") # which includes the file again: alone
+    # Alone: what includes itself again, and what reads PCL's headers in another way.
+    if("${text_${file}}" MATCHES "foreach_target|PCL_NO_PRECOMPILE")
       list(APPEND compiled "${path}.o")
       continue()
     endif()

@@ -8,7 +8,7 @@
 #define PCL_BSH_DISTANCES_ROUNDED_LENGTHS_INL_H_
 #endif
 
-#include <pcl_bsh/geometry/rounded_length.h>
+#include <pcl_bsh/geometry/exact/rounded_length.h>
 #include <pcl_bsh/simd/point_lanes-inl.h>
 
 #include <Eigen/Geometry>

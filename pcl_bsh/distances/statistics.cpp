@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/distances/statistics.h>
 
-#include <pcl_bsh/geometry/compensated_sum.h>
+#include <pcl_bsh/geometry/exact/compensated_sum.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,11 +3,11 @@
 // when the coordinate differences are doubles, integers of any length.
 #include <pcl_bsh/geometry/exact_distance.h>
 
-#include <pcl_bsh/geometry/compensated_sum.h>
-#include <pcl_bsh/geometry/dyadic.h>
-#include <pcl_bsh/geometry/expansion.h>
-#include <pcl_bsh/geometry/nearest_double.h>
-#include <pcl_bsh/geometry/rounded_length.h>
+#include <pcl_bsh/geometry/exact/compensated_sum.h>
+#include <pcl_bsh/geometry/exact/dyadic.h>
+#include <pcl_bsh/geometry/exact/expansion.h>
+#include <pcl_bsh/geometry/exact/nearest_double.h>
+#include <pcl_bsh/geometry/exact/rounded_length.h>
 
 #include <limits>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/relative_frame.h>
 
-#include <pcl_bsh/geometry/compensated_sum.h>
+#include <pcl_bsh/geometry/exact/compensated_sum.h>
 #include <pcl_bsh/geometry/rounding.h>
 
 #include <algorithm>

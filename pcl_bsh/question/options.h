@@ -17,6 +17,7 @@ namespace pcl_bsh {
 /// Which questions have an option.
 enum class QuestionKind : std::uint8_t { collisions = 1, distances = 2, any = 3 };
 
+/// Whether an option is one of a question.
 constexpr bool isOf(QuestionKind option, QuestionKind question) noexcept
 {
   return (static_cast<unsigned>(option) & static_cast<unsigned>(question)) != 0;
@@ -42,8 +43,8 @@ struct QuestionOption {
   bool required = false;                ///< of questions of its kind alone
   const char* name_of_stages = nullptr; ///< where pipelines call it as PCL does
 
-  bool accepts(double number) const;
-  double most() const;        ///< that is accepted
+  bool accepts(double number) const; ///< whether it is in range
+  double most() const;               ///< that is accepted
   std::string remedy() const; ///< what to give instead of a number that is not accepted: "give a finite length >= 0"
 };
 
@@ -57,7 +58,7 @@ const QuestionOption* questionOption(const std::string& name);
 class InvalidOption : public InvalidInput {
 public:
   InvalidOption(const std::string& name, std::string wrong, std::string remedy = {});
-  const std::string& option() const noexcept { return option_; }
+  const std::string& option() const noexcept { return option_; } ///< its name
 
 private:
   std::string option_;

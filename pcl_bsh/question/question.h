@@ -34,8 +34,8 @@ struct Wanted {
   bool within = false;    ///< which points of the input have a distance within the limits, at one pose
   bool spacings = false;  ///< how far points are apart, for the warning of holes: builds a few voxels
 
-  bool collisions() const { return flags || contacts || poses; }
-  bool measures() const { return distances || within; }
+  bool collisions() const { return flags || contacts || poses; } ///< whether a clearance counts
+  bool measures() const { return distances || within; }          ///< whether all distances do
 };
 
 /// Both inclusive, and compared exactly.
@@ -66,9 +66,10 @@ struct Question {
   /// ascending. False: stop, ask() throws Cancelled. What it throws itself comes out of ask().
   std::function<bool(double)> progress = {};
 
+  /// Of the path, or the only one.
   std::vector<Eigen::Isometry3d> poses() const { return path ? *path : std::vector{pose}; }
-  Uncertainty uncertaintyOfInput() const { return scaled(uncertainty); }
-  Uncertainty uncertaintyOfObstacle() const { return scaled(obstacle_uncertainty); }
+  Uncertainty uncertaintyOfInput() const { return scaled(uncertainty); }             ///< with `sigmas`
+  Uncertainty uncertaintyOfObstacle() const { return scaled(obstacle_uncertainty); } ///< likewise
 
 private:
   Uncertainty scaled(Uncertainty one) const

@@ -42,7 +42,7 @@ public:
         std::shared_ptr<const SurfaceCover> surface = nullptr);
 
   explicit operator bool() const noexcept { return view_ || hierarchy_; } ///< whether it is something
-  const std::string& name() const noexcept { return name_; }
+  const std::string& name() const noexcept { return name_; }              ///< as its user knows it
 
   /// Null where it is points.
   const std::shared_ptr<const SurfaceCover>& surface() const noexcept { return surface_; }

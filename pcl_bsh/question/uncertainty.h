@@ -54,6 +54,7 @@ struct Uncertainty {
   double sigmas = 1.0;
 
   bool isZero() const { return field.empty() && length == 0.0; } ///< points are where they were measured
+  /// Whether both say the same.
   bool operator==(const Uncertainty& other) const
   {
     return length == other.length && field == other.field && sigmas == other.sigmas;

@@ -281,9 +281,9 @@ int collide(const Options& options)
   Shape scan = cli::shapeOf(options, input, report.seconds.load, report.warnings);
   if (!scan.surface() && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
-  const io::Obstacle obstacle =
-      cli::loadObstacle(options.obstacle, {question.surface_tolerance, question.vertices_only},
-                        question.clearance.value_or(0.0), report.seconds.load, options.columns.of(options.obstacle));
+  const io::Obstacle obstacle = cli::loadObstacle(
+      options.obstacle, {question.surface_tolerance, question.vertices_only}, question.clearance.value_or(0.0),
+      report.seconds.load, options.columns.of(options.obstacle), nullptr, question.threads);
   return cli::named([&] { return tell(options, input, scan, obstacle, earlier, report); }, question,
                     options.names_of_poses);
 }

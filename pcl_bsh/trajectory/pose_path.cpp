@@ -3,7 +3,7 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
-#include <pcl_bsh/geometry/compensated_sum.h>
+#include <pcl_bsh/geometry/exact/compensated_sum.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/question/ask.h>
-#include <pcl_bsh/vtk_filters/kept_hierarchy.h>
+#include <pcl_bsh/vtk_filters/kept_shape.h>
 #include <pcl_bsh/vtk_filters/pose_table.h>
 
 #include <vtkCompositeDataSet.h>

@@ -2,7 +2,7 @@
 #include <pcl_bsh/vtk_filters/vtkBSHSphereSource.h>
 
 #include <pcl_bsh/vtk/hierarchy_data.h>
-#include <pcl_bsh/vtk_filters/kept_hierarchy.h>
+#include <pcl_bsh/vtk_filters/kept_shape.h>
 
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>

@@ -2,7 +2,7 @@
 // Attacks on the bounds of distances, on every instruction set: a search climbs towards the worst rounding. Lengths are
 // judged by binary numbers of 1200 bits, which hold the squares of these numbers exactly.
 #include <pcl_bsh/distances/bound_margin.h>
-#include <pcl_bsh/geometry/rounded_length.h>
+#include <pcl_bsh/geometry/exact/rounded_length.h>
 
 #include "kernels.h"
 #include "support/attack.h"

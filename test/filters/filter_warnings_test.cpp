@@ -126,6 +126,23 @@ TEST_F(FilterWarnings, FramesThatNeverMeet)
   EXPECT_EQ(told.lines[1], "the obstacle: has no finite point: nothing has a distance from it");
 }
 
+/// As collisions compare them with the clearance.
+TEST_F(FilterWarnings, CoordinatesThatAreCoarseForLimits)
+{
+  DistanceFilter<pcl::PointXYZ> distances;
+  const Told<DistanceFilter<pcl::PointXYZ>> told(distances);
+  distances.setInputCloud(floorAt(1 << 23));
+  distances.setObstacleCloud(floorAt(1 << 23));
+  Points kept;
+  distances.filter(kept);
+  EXPECT_THAT(told.lines, IsEmpty()) << "no length is compared with";
+  distances.setFilterLimits(0.0, 5.0);
+  distances.filter(kept);
+  EXPECT_THAT(told.lines,
+              ElementsAre(HasSubstr("the input: its float32 coordinates lie 1 apart, coarse for a limit of 5"),
+                          HasSubstr("the obstacle: its float32 coordinates")));
+}
+
 /// Of the corners of a mesh, whose balls have double coordinates, and which has no holes.
 TEST_F(FilterWarnings, OfSurfaces)
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Attacks that climb towards the worst case of each bound, judged in exact arithmetic, on every instruction set. Each
 // says what fraction of the bound it reached: 1 would be the bound itself.
-#include <pcl_bsh/geometry/compensated_sum.h>
-#include <pcl_bsh/geometry/dyadic.h>
+#include <pcl_bsh/geometry/exact/compensated_sum.h>
+#include <pcl_bsh/geometry/exact/dyadic.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/given_sphere.h>
 #include <pcl_bsh/geometry/point_frame.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/squared_distance.h>
 
-#include <pcl_bsh/geometry/dyadic.h>
+#include <pcl_bsh/geometry/exact/dyadic.h>
 
 #include "support/random.h"
 

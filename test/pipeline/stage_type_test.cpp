@@ -7,6 +7,7 @@
 #include "io/clouds/samples.h"
 #include "run_stage.h"
 
+#include <limits>
 #include <set>
 
 namespace pcl_bsh::pipeline {
@@ -54,8 +55,9 @@ TEST(StageType, QuestionsHaveTheOptionsOfTheTable)
       EXPECT_EQ(option->doc, row.doc);
       EXPECT_EQ(option->unit, row.unit);
       EXPECT_EQ(option->required, row.required);
-      EXPECT_EQ(option->least, 0.0);
-      EXPECT_EQ(option->above_least, row.range == OptionRange::above_zero);
+      const bool counts = option->kind != Kind::boolean && option->kind != Kind::text;
+      EXPECT_EQ(option->least, counts ? 0.0 : -std::numeric_limits<double>::infinity());
+      EXPECT_EQ(option->above_least, counts && row.range == OptionRange::above_zero);
     }
   }
 }

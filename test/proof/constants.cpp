@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The constants that the code uses, as Gappa reads numbers: "name value" in each line.
 #include <pcl_bsh/distances/bound_margin.h>
+#include <pcl_bsh/geometry/exact/rounded_length.h>
 #include <pcl_bsh/geometry/local_frame.h>
-#include <pcl_bsh/geometry/rounded_length.h>
 #include <pcl_bsh/geometry/triangle/flat_triangle.h>
 #include <pcl_bsh/simd/roundings.h>
 

@@ -123,9 +123,6 @@ Option optionOf(const QuestionOption& row, std::function<Question&(Stage&)> ques
   option.doc = row.doc;
   option.unit = row.unit;
   option.required = row.required;
-  option.least = 0;
-  option.above_least = row.range == OptionRange::above_zero;
-  if (row.most() < std::numeric_limits<double>::max()) option.most = row.most();
   std::visit(
       [&](const auto member) {
         using T = std::decay_t<decltype(std::declval<Question>().*member)>;
@@ -143,6 +140,10 @@ Option optionOf(const QuestionOption& row, std::function<Question&(Stage&)> ques
         };
       },
       row.member);
+  if (option.kind == Kind::boolean || option.kind == Kind::text) return option;
+  option.least = 0;
+  option.above_least = row.range == OptionRange::above_zero;
+  if (row.most() < std::numeric_limits<double>::max()) option.most = row.most();
   return option;
 }
 

@@ -3,9 +3,9 @@
 // which may be unsure, or in Dyadic, which never is.
 #pragma once
 
-#include <pcl_bsh/geometry/dyadic.h>
-#include <pcl_bsh/geometry/long_number.h>
-#include <pcl_bsh/geometry/rough_number.h>
+#include <pcl_bsh/geometry/exact/dyadic.h>
+#include <pcl_bsh/geometry/exact/long_number.h>
+#include <pcl_bsh/geometry/exact/rough_number.h>
 #include <pcl_bsh/geometry/triangle/vector3.h>
 
 #include <cstdint>

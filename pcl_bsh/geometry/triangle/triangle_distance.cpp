@@ -3,8 +3,8 @@
 // the digits that know their error, and the same in integers of any length.
 #include <pcl_bsh/geometry/triangle/triangle_distance.h>
 
-#include <pcl_bsh/geometry/nearest_double.h>
-#include <pcl_bsh/geometry/rounded_length.h>
+#include <pcl_bsh/geometry/exact/nearest_double.h>
+#include <pcl_bsh/geometry/exact/rounded_length.h>
 #include <pcl_bsh/geometry/triangle/double_distance.h>
 #include <pcl_bsh/geometry/triangle/nearest_features.h>
 

@@ -50,7 +50,7 @@ std::vector<PoseSummary> summedOverAllRanks(const std::vector<PoseSummary>& own)
 {
   const std::vector<PoseSummary> all = gatheredFromAllRanks(own);
   std::vector<PoseSummary> sum(own.size());
-  for (std::size_t i = 0; i < all.size(); ++i) addSummary(sum[i % own.size()], all[i]);
+  for (std::size_t i = 0; i < all.size(); ++i) sum[i % own.size()] += all[i];
   return sum;
 }
 

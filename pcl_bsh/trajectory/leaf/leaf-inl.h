@@ -16,7 +16,9 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
 inline constexpr double kLeafStray = 0.01; ///< of a leaf's radius: an interval that strays farther is divided
-inline constexpr float kFewPoses = 4;      ///< as quickly looked at one by one as all together
+/// The same where distances count: by what arcs stray, pairs are too much alike to be told apart on them.
+inline constexpr double kMeasuredStray = 0.003;
+inline constexpr float kFewPoses = 4; ///< as quickly looked at one by one as all together
 
 /// Compares leaves of the scan with what they may meet of the model.
 class LeafWalk {
@@ -43,7 +45,8 @@ public:
   {
     const std::uint32_t all = firstBits(points.count);
     if ((all & ~results_.settled[slot]) == 0 || results_.witness) return false;
-    const double limit = path_.is_swept ? path_.stray : kLeafStray * node.r[lane] * voxel_frame_.frame.unit;
+    const double share = query_.everything() ? kMeasuredStray : kLeafStray;
+    const double limit = path_.is_swept ? path_.stray : share * node.r[lane] * voxel_frame_.frame.unit;
     if (motion.interval->divided() && (path_.is_swept ? motion.line_stray : motion.stray) > limit) {
       return compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->left), candidates, bound) &&
              compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->right), candidates, bound);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/pcd/pcd.h>
+#include <pcl_bsh/io/clouds/pcl_names.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/text/number_text.h>
 
@@ -11,8 +12,6 @@
 namespace pcl_bsh::io {
 
 namespace {
-
-using Fields = std::vector<pcl::PCLPointField>;
 
 constexpr std::string_view first_line = "# .PCD v0.7 - Point Cloud Data file format";
 

@@ -2,7 +2,7 @@
 // The double nearest to a number that can be compared, but not written down.
 #pragma once
 
-#include <pcl_bsh/geometry/dyadic.h>
+#include <pcl_bsh/geometry/exact/dyadic.h>
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/vtk_filters/kept_hierarchy.h>
+#include <pcl_bsh/vtk_filters/kept_shape.h>
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/hierarchy/points_checksum.h>
