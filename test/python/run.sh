@@ -8,4 +8,4 @@ if ! "$1" -c "import pytest" 2>/dev/null; then
   exit 77
 fi
 export PYTHONPATH="$2" PYTHONDONTWRITEBYTECODE=1
-exec "$1" -m pytest -q -p no:cacheprovider --rootdir "$(dirname "$0")" -ra "$(dirname "$0")"
+exec "$1" -m pytest -q --disable-warnings -p no:cacheprovider --rootdir "$(dirname "$0")" -ra "$(dirname "$0")"
