@@ -17,6 +17,8 @@ namespace pcl_bsh {
 /// The type of coordinates.
 enum class Scalar : std::uint8_t { float32, float64 };
 
+struct TrianglesView;
+
 /// A read-only view of `count` records. Records need not be aligned. The memory must stay unchanged while anything that
 /// was built on it is in use, since exact decisions return to the original coordinates. It must outlive that, or
 /// `owner` must keep it alive: a hierarchy holds its view, and with it the owner.
@@ -35,6 +37,9 @@ struct PointsView {
   /// give verdicts then say what is so wherever the points truly are; distances are those of the measured places.
   double uncertainty = 0.0;
   const float* uncertainties = nullptr; ///< optional, one per record, added to `uncertainty`; finite and >= 0
+
+  /// Optional: what the records are, of which points and radii say balls that hold them (triangles_view.h).
+  const TrianglesView* triangles = nullptr;
 
   /// How many points the view names (a subset counts its indices).
   std::size_t size() const noexcept { return indices ? index_count : count; }

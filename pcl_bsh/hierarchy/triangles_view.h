@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The caller's triangles, seen in place: a view of vertices, and three of its records for each triangle.
+//
+//   TrianglesView machine{viewOf(vertices_xyz, n), corners, m};   // corners: 3 m numbers of vertices
+//   SphereHierarchy obstacle(viewOf(machine));                    // of triangles: queries answer for all of each
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/hierarchy/points_view.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// A read-only view of `count` triangles. The memory must stay unchanged, and there, as that of PointsView must.
+struct TrianglesView {
+  PointsView vertices;                            ///< all of its records; neither a subset nor radii nor uncertainties
+  const std::uint32_t* corners = nullptr;         ///< of triangle 0: three records of `vertices`
+  std::size_t count = 0;                          ///< triangles; at most 2^31 - 1
+  std::size_t stride = 3 * sizeof(std::uint32_t); ///< bytes from one triangle's corners to the next one's
+
+  /// The records of its corners. @pre triangle < count
+  std::array<std::uint32_t, 3> cornersOf(std::uint32_t triangle) const noexcept
+  {
+    std::array<std::uint32_t, 3> records;
+    std::memcpy(records.data(), reinterpret_cast<const unsigned char*>(corners) + stride * triangle, sizeof records);
+    return records;
+  }
+
+  /// The places of its corners, as given. Closed: a segment where they lie on one line, a point where they coincide.
+  std::array<Point3, 3> triangle(std::uint32_t triangle) const noexcept
+  {
+    const auto [a, b, c] = cornersOf(triangle);
+    return {vertices.point(a), vertices.point(b), vertices.point(c)};
+  }
+};
+
+/// The triangles as records of a cloud. Record i is triangle i; its point and its radius are those of a ball that holds
+/// it, which trees are built of, and queries decide by the triangle itself. A triangle with a corner that is not finite
+/// is no part of it, as a point that is not finite. The balls, 16 bytes a triangle (28 of float64 vertices), are owned
+/// by the view that is returned, and so is a copy of `triangles`.
+/// @throws InvalidInput (Input::surface) naming the triangle and the value: corners that are null or not in the view,
+///   too many triangles, a stride below three numbers, vertices with radii, uncertainties of their own or a subset, a
+///   triangle too large for a float32 radius; as checkView() does of the vertices
+PointsView viewOf(const TrianglesView& triangles);
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/hierarchy/triangles_view.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using Corners = std::vector<std::uint32_t>;
+
+template <class Coordinate>
+TrianglesView trianglesOf(const std::vector<Coordinate>& xyz, const Corners& corners)
+{
+  TrianglesView view;
+  view.vertices = viewOf(xyz.data(), xyz.size() / 3);
+  view.corners = corners.data();
+  view.count = corners.size() / 3;
+  return view;
+}
+
+/// Whether the ball of each triangle holds its corners, in exact arithmetic.
+void expectHeld(const PointsView& balls)
+{
+  const ExactDistance distance(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity());
+  for (std::uint32_t i = 0; i < balls.count; ++i)
+    for (const Point3& corner : balls.triangles->triangle(i))
+      EXPECT_LE(distance.compare(balls.point(i), corner, balls.radius(i)), 0) << "triangle " << i;
+}
+
+/// Soups whose triangles are of many sizes and shapes, needles, segments and points among them.
+template <class Coordinate>
+std::vector<Coordinate> soup(std::size_t triangles, double scale, double offset)
+{
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<Coordinate> xyz;
+  for (std::size_t i = 0; i < triangles; ++i) {
+    const double size = scale * std::pow(10.0, 3.0 * unit(random));
+    const double thin = i % 3 == 0 ? 1e-5 : i % 7 == 0 ? 0.0 : 1.0;
+    double at[3], along[3];
+    for (std::size_t k = 0; k < 3; ++k) at[k] = offset + 10.0 * scale * unit(random), along[k] = size * unit(random);
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      for (std::size_t k = 0; k < 3; ++k)
+        xyz.push_back(
+            static_cast<Coordinate>(at[k] + static_cast<double>(corner) * along[k] + thin * size * unit(random)));
+  }
+  return xyz;
+}
+
+Corners inTurn(std::size_t vertices)
+{
+  Corners corners(vertices);
+  for (std::size_t i = 0; i < vertices; ++i) corners[i] = static_cast<std::uint32_t>(i);
+  return corners;
+}
+
+TEST(TrianglesView, BallsHoldTheirTriangles)
+{
+  for (const double offset : {0.0, 4.5e5}) {
+    const std::vector<float> single = soup<float>(3000, 1.0, offset);
+    expectHeld(viewOf(trianglesOf(single, inTurn(single.size() / 3))));
+    const std::vector<double> twofold = soup<double>(3000, 1.0, offset);
+    expectHeld(viewOf(trianglesOf(twofold, inTurn(twofold.size() / 3))));
+  }
+  const std::vector<double> small = soup<double>(500, 1e-200, 0.0), large = soup<double>(500, 1e32, 0.0);
+  expectHeld(viewOf(trianglesOf(small, inTurn(small.size() / 3))));
+  expectHeld(viewOf(trianglesOf(large, inTurn(large.size() / 3))));
+}
+
+TEST(TrianglesView, BallsAreTheSmallest)
+{
+  // Equilateral, right, obtuse, a segment, a point: the radius is that of the circumcircle, or half the longest side.
+  const std::vector<double> xyz = {0, 0, 0, 2, 0, 0, 1, std::sqrt(3.0),
+                                   0, 0, 0, 0, 4, 0, 0, 0,
+                                   3, 0, 0, 0, 0, 6, 0, 0,
+                                   2, 1, 0, 0, 0, 0, 8, 0,
+                                   0, 5, 0, 0, 7, 7, 7, 7,
+                                   7, 7, 7, 7, 7};
+  const Corners corners = inTurn(15);
+  const PointsView balls = viewOf(trianglesOf(xyz, corners));
+  const double expected[5] = {2 / std::sqrt(3.0), 2.5, 3.0, 4.0, 0.0};
+  for (std::uint32_t i = 0; i < 5; ++i) EXPECT_NEAR(balls.radius(i), expected[i], 1e-6) << i;
+  expectHeld(balls);
+}
+
+TEST(TrianglesView, ReadsCornersInPlace)
+{
+  const std::vector<float> xyz = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const Corners corners = {9, 0, 1, 2, 9, 1, 2, 3}; // four numbers each, of which the first is none of ours
+  TrianglesView view = trianglesOf(xyz, corners);
+  view.corners = corners.data() + 1;
+  view.count = 2;
+  view.stride = 4 * sizeof(std::uint32_t);
+  EXPECT_EQ(view.cornersOf(1), (std::array<std::uint32_t, 3>{1, 2, 3}));
+  EXPECT_EQ(view.triangle(1)[2], (Point3{0, 0, 1}));
+}
+
+TEST(TrianglesView, LeavesOutWhatIsNotFinite)
+{
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float> xyz = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, nan, 1};
+  const Corners corners = {0, 1, 2, 1, 2, 3};
+  const SphereHierarchy hierarchy(viewOf(trianglesOf(xyz, corners)));
+  EXPECT_EQ(hierarchy.size(), 1u);
+  EXPECT_TRUE(hierarchy.validate().none());
+}
+
+TEST(TrianglesView, LivesAsLongAsTheHierarchy)
+{
+  const std::vector<float> xyz = soup<float>(5000, 1.0, 0.0);
+  const Corners corners = inTurn(xyz.size() / 3);
+  const SphereHierarchy hierarchy = [&] { return SphereHierarchy(viewOf(trianglesOf(xyz, corners))); }();
+  EXPECT_EQ(hierarchy.view().triangles->count, 5000u);
+  const HierarchyDefects defects = hierarchy.validate();
+  EXPECT_TRUE(defects.none()) << defects.lines.front();
+}
+
+TEST(TrianglesView, RefusesWhatCannotBeRead)
+{
+  const std::vector<float> xyz = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const Corners corners = {0, 1, 3};
+  const auto messageOf = [](const TrianglesView& view) -> std::string {
+    try {
+      viewOf(view);
+    }
+    catch (const InvalidInput& error) {
+      return error.input() == Input::surface ? error.what() : "another input";
+    }
+    return "taken";
+  };
+  TrianglesView view = trianglesOf(xyz, corners);
+  EXPECT_EQ(messageOf(view), "triangles: triangle 0 names vertex 3 of 3");
+  view.corners = nullptr;
+  EXPECT_EQ(messageOf(view), "triangles: corners are null, of 1 triangle");
+  const Corners two = {0, 1, 2, 2, 1, 0};
+  view = trianglesOf(xyz, two);
+  view.stride = 8;
+  EXPECT_EQ(messageOf(view), "triangles: a stride of 8 bytes puts triangles over each other: give the bytes from one "
+                             "triangle's corners to the next one's");
+  view = trianglesOf(xyz, two);
+  const float radius[3] = {0, 0, 0};
+  view.vertices.radii = radius;
+  EXPECT_NE(messageOf(view).find("give all of them, without"), std::string::npos);
+  const std::vector<double> huge = {-1e300, 0, 0, 1e300, 0, 0, 0, 1e300, 0};
+  EXPECT_NE(messageOf(trianglesOf(huge, two)).find("triangle 0 is too large for a float32 radius"), std::string::npos);
+}
+
+} // namespace
+} // namespace pcl_bsh
