@@ -12,6 +12,7 @@
 
 #include <cstring>
 #include <stdexcept>
+#include <type_traits>
 
 namespace pcl_bsh {
 namespace {
@@ -28,7 +29,10 @@ decltype(auto) withValues(const NewField& field, const Use& use)
 template <typename Value>
 constexpr std::uint8_t datatypeOf(const std::vector<Value>&)
 {
-  return pcl::traits::asEnum_v<Value>;
+  if constexpr (std::is_enum_v<Value>)
+    return pcl::traits::asEnum_v<std::underlying_type_t<Value>>;
+  else
+    return pcl::traits::asEnum_v<Value>;
 }
 
 void requireSame(const Field& field, std::uint8_t datatype, const pcl::PCLPointCloud2& cloud)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/query/result.h>
 
 #include <pcl/PCLPointCloud2.h>
 
@@ -25,10 +26,12 @@ inline constexpr const char* distance_field_name = "distance";
 inline constexpr const char* first_pose_field_name = "first_pose";
 inline constexpr const char* closest_pose_field_name = "closest_pose";
 
-/// One value per point: UINT8, INT32 or FLOAT32. The values are borrowed.
+/// One value per point: UINT8 (verdicts, too), INT32 or FLOAT32. The values are borrowed.
 struct NewField {
   std::string name;
-  std::variant<const std::vector<std::uint8_t>*, const std::vector<std::int32_t>*, const std::vector<float>*> values;
+  std::variant<const std::vector<Verdict>*, const std::vector<std::uint8_t>*, const std::vector<std::int32_t>*,
+               const std::vector<float>*>
+      values;
 };
 
 /// A copy of the cloud with more fields at the end of each record; every other byte is kept. A field of the same name
@@ -37,9 +40,9 @@ struct NewField {
 ///   the number of points, a field of that name but of another type
 pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vector<NewField>& fields);
 
-/// The same with one UINT8 field.
+/// The same with one field of verdicts.
 inline pcl::PCLPointCloud2 withField(const pcl::PCLPointCloud2& cloud, const std::string& name,
-                                     const std::vector<std::uint8_t>& values)
+                                     const std::vector<Verdict>& values)
 {
   return withFields(cloud, {{name, &values}});
 }

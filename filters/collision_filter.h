@@ -36,11 +36,10 @@ public:
   /// @param extract_removed_indices keep what getRemovedIndices() returns
   explicit CollisionFilterBase(bool extract_removed_indices = false);
 
-  /// One flag per point of the whole input cloud, 1 = collides (also after setNegative(true)), 2 = undecided (only
-  /// where setAccuracy() lets a query stop early, or where points are uncertain), 3 = not scanned densely enough
-  /// (setDensityGuard()); 0 for points outside setIndices() and for points that are not finite. Throws as filter()
-  /// does.
-  void computeFlags(std::vector<std::uint8_t>& flags);
+  /// One verdict per point of the whole input cloud, colliding also after setNegative(true); undecided only where
+  /// setAccuracy() lets a query stop early, or where points are uncertain; sparse only with setDensityGuard(); free for
+  /// points outside setIndices() and for points that are not finite. Throws as filter() does.
+  void computeFlags(std::vector<Verdict>& flags);
 
   /// More along the trajectory (or at the one pose) than flags: for each colliding point of the whole input cloud its
   /// smallest distance, the first pose and the closest; a summary of each pose, unless swept. Throws as filter() does.

@@ -52,7 +52,7 @@ Shape MeshCollisionFilter::inputShape() const
   return {"the input", cover_};
 }
 
-void MeshCollisionFilter::computeFlags(std::vector<std::uint8_t>& flags)
+void MeshCollisionFilter::computeFlags(std::vector<Verdict>& flags)
 {
   flags = collisionFlags(inputShape());
 }
@@ -66,12 +66,12 @@ void MeshCollisionFilter::filter(pcl::PolygonMesh& output)
 {
   if (cover_ && !mesh_)
     throw std::invalid_argument("input mesh is missing: a cover has no polygons to keep: call setInputMesh()");
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   computeFlags(flags);
   pcl::PolygonMesh kept;
   kept.header = mesh_->header;
   for (std::size_t p = 0; p < flags.size(); ++p)
-    if ((flags[p] != 0) == negative_) kept.polygons.push_back(mesh_->polygons.at(p));
+    if ((flags[p] != Verdict::free) == negative_) kept.polygons.push_back(mesh_->polygons.at(p));
   const pcl::Indices vertices = keepUsedVertices(
       viewOf(mesh_->cloud).count, kept.polygons, [](pcl::Vertices & polygon) -> auto& { return polygon.vertices; });
   kept.cloud = selectedRecords(mesh_->cloud, vertices);

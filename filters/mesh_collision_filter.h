@@ -46,10 +46,9 @@ public:
   void setNegative(bool negative) { negative_ = negative; }
   bool getNegative() const { return negative_; }
 
-  /// One flag per polygon of the input: 1 = collides, 2 = undecided, 0 = free. A polygon of fewer than three corners
-  /// has no surface: it is free.
+  /// One verdict per polygon of the input. A polygon of fewer than three corners has no surface: it is free.
   /// @throws std::invalid_argument when input or obstacle is missing, or a setting is not what its declaration asks for
-  void computeFlags(std::vector<std::uint8_t>& flags);
+  void computeFlags(std::vector<Verdict>& flags);
 
   /// More along the trajectory, or at the one pose: for each colliding polygon its smallest distance, the first pose
   /// and the closest. Summaries of poses stay empty. Throws as computeFlags() does.

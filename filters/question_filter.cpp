@@ -80,7 +80,7 @@ void CollisionSettings::set(Uncertainty& member, const char* cloud, const Uncert
   member = std::move(copy);
 }
 
-std::vector<std::uint8_t> CollisionSettings::collisionFlags(Shape input)
+std::vector<Verdict> CollisionSettings::collisionFlags(Shape input)
 {
   Wanted wanted;
   wanted.flags = true;
@@ -96,9 +96,7 @@ TrajectoryResult CollisionSettings::alongTrajectory(Shape input)
 
 std::vector<std::uint8_t> CollisionSettings::passing(Shape input)
 {
-  std::vector<std::uint8_t> flags = collisionFlags(std::move(input));
-  for (std::uint8_t& flag : flags) flag = flag == 0;
-  return flags;
+  return maskOf(collisionFlags(std::move(input)), true);
 }
 
 PointDistances DistanceSettings::distances(Shape input)

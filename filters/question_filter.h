@@ -227,7 +227,7 @@ protected:
   CollisionSettings() { question_.clearance = 0.0; }
 
   /// One per record of the input, or per triangle of its surface.
-  std::vector<std::uint8_t> collisionFlags(Shape input);
+  std::vector<Verdict> collisionFlags(Shape input);
 
   /// Everything that is known of each along the trajectory, or at the one pose.
   TrajectoryResult alongTrajectory(Shape input);

@@ -13,7 +13,7 @@ CollisionFilterBase<PointT>::CollisionFilterBase(bool extract_removed_indices)
 }
 
 template <typename PointT>
-void CollisionFilterBase<PointT>::computeFlags(std::vector<std::uint8_t>& flags)
+void CollisionFilterBase<PointT>::computeFlags(std::vector<Verdict>& flags)
 {
   flags = this->collisionFlags(this->inputShape());
 }

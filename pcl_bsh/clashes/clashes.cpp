@@ -68,7 +68,7 @@ void add(Clash& clash, std::uint32_t record, const Point3& point, const Trajecto
 {
   clash.records.push_back(record);
   ++clash.points;
-  if (found.flags[record] == 1) ++clash.certain_points;
+  if (found.flags[record] == Verdict::colliding) ++clash.certain_points;
   for (std::size_t k = 0; k < 3; ++k) {
     const double coordinate = point[k] + 0.0; // of -0 and 0 the latter, so that boxes tell no order of points
     clash.low[k] = std::min(clash.low[k], coordinate);
@@ -121,7 +121,7 @@ std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& f
   check(scan, found, cluster_distance);
   std::vector<std::int32_t> colliding;
   for (std::size_t i = 0; i < scan.count; ++i) {
-    if (found.flags[i] != 0) colliding.push_back(static_cast<std::int32_t>(i));
+    if (found.flags[i] != Verdict::free) colliding.push_back(static_cast<std::int32_t>(i));
   }
   PointsView subset = scan;
   subset.indices = colliding.data();

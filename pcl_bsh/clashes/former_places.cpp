@@ -86,7 +86,7 @@ void FormerPlaces::Places::findNear(const SphereHierarchy& model, const std::vec
   const SphereHierarchy points(viewOf(at.front().data(), at.size()));
   const TrajectoryResult found = collideAlong({points}, model, poses, request);
   for (std::size_t i = 0; i < left.size(); ++i)
-    if (found.flags[i] != 0) near(left[i]);
+    if (found.flags[i] != Verdict::free) near(left[i]);
 }
 
 void FormerPlaces::visit(const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,

@@ -214,10 +214,10 @@ Clusters numbered(DisjointSets sets, const PointsView& view, const Work& work)
 {
   Clusters result;
   result.work = work;
-  result.of.assign(view.count, Clusters::kNone);
+  result.of.assign(view.count, kNothing);
   for (const std::uint32_t record : finiteRecords(view)) {
     std::int32_t& root = result.of[sets.find(record)]; // the smallest of its set: comes first
-    if (root == Clusters::kNone) {
+    if (root == kNothing) {
       root = static_cast<std::int32_t>(result.sizes.size());
       result.sizes.push_back(0);
     }

@@ -14,9 +14,8 @@ namespace pcl_bsh {
 
 /// The clusters of a cloud, numbered from 0.
 struct Clusters {
-  static constexpr std::int32_t kNone = -1;
-
-  std::vector<std::int32_t> of; ///< one per record of the view: number of its cluster; kNone: not a finite point of it
+  std::vector<std::int32_t>
+      of; ///< one per record of the view: number of its cluster; kNothing: not a finite point of it
   std::vector<std::size_t> sizes; ///< points of each cluster
   Work work;
 };

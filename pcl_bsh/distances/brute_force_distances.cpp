@@ -16,7 +16,7 @@ PointDistances pointDistances(const Placed& a, const Placed& b, const PointDista
   const ExactDistance distance(a.pose, b.pose);
   PointDistances result;
   result.distance.assign(a.hierarchy().view().count, std::numeric_limits<double>::quiet_NaN());
-  result.nearest.assign(a.hierarchy().view().count, PointDistances::kNoPoint);
+  result.nearest.assign(a.hierarchy().view().count, kNothing);
   const std::vector<FinitePoint> others = finitePoints(b.hierarchy().view());
   for (const FinitePoint& p : finitePoints(a.hierarchy().view())) {
     const FinitePoint* nearest = nullptr;

@@ -283,7 +283,7 @@ private:
   void write(std::uint32_t i, const Found& found, std::uint32_t begin, std::uint32_t end)
   {
     double distance = kNotKnown;
-    std::uint32_t nearest = PointDistances::kNoPoint;
+    std::uint32_t nearest = kNothing;
     Interval interval{max_, kInfinity};
     if (found.voxel) {
       const bool is_known = lengths_only_ && max_ == kInfinity && !std::isnan(lengths_[i]);

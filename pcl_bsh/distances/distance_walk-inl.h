@@ -326,7 +326,7 @@ private:
   /// Farther than max_distance.
   void setBeyond(std::uint32_t record)
   {
-    sheet_.set(record, std::numeric_limits<double>::quiet_NaN(), PointDistances::kNoPoint, {max_, kInfinity});
+    sheet_.set(record, std::numeric_limits<double>::quiet_NaN(), kNothing, {max_, kInfinity});
   }
 
   void leave(std::uint32_t begin, std::uint32_t end, const std::vector<NearSphere>& list, float cut)

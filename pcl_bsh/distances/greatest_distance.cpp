@@ -15,7 +15,7 @@ std::optional<PointPair> greatestOf(const Placed& a, const Placed& b, const Poin
   std::optional<PointPair> greatest;
   const PointPairs pairs(a, b, 0.0);
   for (std::uint32_t i = 0; i < result.nearest.size(); ++i) {
-    if (result.nearest[i] == PointDistances::kNoPoint) continue;
+    if (result.nearest[i] == kNothing) continue;
     const PointPair pair{i, result.nearest[i]};
     if (greatest) {
       // Rounding keeps the order: only of equal doubles one may be the greater.
@@ -40,7 +40,7 @@ PointPair swapped(const PointPair& pair)
 void findGreatest(const Placed& a, const Placed& b, PointDistances& result)
 {
   result.measured = 0;
-  for (const std::uint32_t nearest : result.nearest) result.measured += nearest != PointDistances::kNoPoint;
+  for (const std::uint32_t nearest : result.nearest) result.measured += nearest != kNothing;
   result.greatest_pair =
       greatestOf(a, b, result, [](const PointPair&, const PointPair&) { return false; }); // the first is the smallest
   result.greatest =

@@ -59,7 +59,7 @@ void clear(PointDistances& result, const Placed& a, const PointDistancesRequest&
   result = PointDistances(); // should something throw
   const SphereHierarchy& cloud = a.hierarchy();
   fresh.distance.assign(cloud.view().count, kNoDistance);
-  fresh.nearest.assign(cloud.view().count, PointDistances::kNoPoint);
+  fresh.nearest.assign(cloud.view().count, kNothing);
   fresh.interval.clear();
   if (!request.accuracy.isExact()) {
     fresh.interval.assign(cloud.view().count, {kNoDistance, kNoDistance});
@@ -136,8 +136,7 @@ void finish(const Placed& a, const Placed& b, const PointDistancesRequest& reque
       if (!std::isnan(interval.lower)) interval = {request.max_distance, kInfinity};
   findGreatest(a, b, result);
   for (std::size_t i = 0; i < result.interval.size(); ++i)
-    if (result.nearest[i] == PointDistances::kNoPoint && result.interval[i].lower < request.max_distance)
-      ++result.undecided;
+    if (result.nearest[i] == kNothing && result.interval[i].lower < request.max_distance) ++result.undecided;
 }
 
 std::size_t stepsOf(const Placed& a, const StopRule& rule)

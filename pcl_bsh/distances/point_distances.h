@@ -44,12 +44,10 @@ struct PointDistancesRequest {
 
 /// Vectors have one entry per record of the view of a.
 struct PointDistances {
-  static constexpr std::uint32_t kNoPoint = 0xffffffffu; ///< among `nearest`: no record
-
   /// To the nearest point of b, in the clouds' unit, rounded to the nearest double. NaN: no point of b within
   /// max_distance, undecided, or no point of a (its record is not finite, or outside the view's subset).
   std::vector<double> distance;
-  std::vector<std::uint32_t> nearest; ///< that point's record, of several the smallest; kNoPoint where NaN
+  std::vector<std::uint32_t> nearest; ///< that point's record, of several the smallest; kNothing where NaN
   /// Holds each point's distance for certain, whether within max_distance or not; from max_distance to infinity where
   /// it is proven to be farther than that, and NaN where the record is no point. Empty when the accuracy is exact, for
   /// then the doubles beside `distance` do the same.

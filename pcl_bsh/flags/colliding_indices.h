@@ -15,7 +15,8 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Records of the views, ascending: those whose flag in FlagsResult would be 1 or 2. Empty where not asked for.
+/// Records of the views, ascending: those that would collide, or be undecided, in FlagsResult. Empty where not asked
+/// for.
 struct CollidingIndices {
   std::vector<std::int32_t> a;           ///< points of a that collide
   std::vector<std::int32_t> b;           ///< likewise of b

@@ -14,7 +14,7 @@ namespace {
 /// Writes verdicts into an array in which all points are free, or all undecided, at first.
 class FlagArray final : public FlagSink {
 public:
-  FlagArray(const SphereHierarchy::Storage& cloud, std::uint32_t voxel, std::uint8_t* flags, bool marked)
+  FlagArray(const SphereHierarchy::Storage& cloud, std::uint32_t voxel, Verdict* flags, bool marked)
   : cloud_(cloud),
     voxel_(voxel),
     flags_(flags),
@@ -41,43 +41,41 @@ private:
   {
     if (finding == Finding::colliding) {
       visit([this](std::uint32_t record) {
-        colliding += flags_[record] != flagOf(Verdict::colliding);
-        flags_[record] = flagOf(Verdict::colliding);
+        colliding += flags_[record] != Verdict::colliding;
+        flags_[record] = Verdict::colliding;
       });
     }
     else if (finding == Finding::possible) {
       visit([this](std::uint32_t record) {
-        if (flags_[record] != flagOf(Verdict::colliding)) flags_[record] = flagOf(Verdict::undecided);
+        if (flags_[record] != Verdict::colliding) flags_[record] = Verdict::undecided;
       });
     }
     else if ((finding == Finding::free) == marked_) {
-      const std::uint8_t flag = flagOf(marked_ ? Verdict::free : Verdict::undecided);
+      const Verdict flag = marked_ ? Verdict::free : Verdict::undecided;
       visit([this, flag](std::uint32_t record) { flags_[record] = flag; });
     }
   }
 
   const SphereHierarchy::Storage& cloud_;
   const std::uint32_t voxel_;
-  std::uint8_t* const flags_;
+  Verdict* const flags_;
   const bool marked_;
 };
 
 /// The array of one cloud.
 class FlagSheet {
 public:
-  explicit FlagSheet(std::vector<std::uint8_t>& flags) : flags_(flags) {}
+  explicit FlagSheet(std::vector<Verdict>& flags) : flags_(flags) {}
 
   void begin(const FlagQuery& query, const std::vector<FlaggedPlace>& places, bool marked)
   {
     const SphereHierarchy& cloud = query.a.hierarchy();
     marked_ = marked;
-    flags_.assign(
-        cloud.view().count,
-        flagOf(marked && cloud.size() == cloud.view().count && !places.empty() ? Verdict::undecided : Verdict::free));
+    flags_.assign(cloud.view().count,
+                  marked && cloud.size() == cloud.view().count && !places.empty() ? Verdict::undecided : Verdict::free);
     if (!marked || cloud.size() == cloud.view().count) return;
     for (const FlaggedPlace& place : places) // the hierarchy does not hold all records
-      cloud.storage().forEachRecord(place.voxel,
-                                    [this](std::uint32_t record) { flags_[record] = flagOf(Verdict::undecided); });
+      cloud.storage().forEachRecord(place.voxel, [this](std::uint32_t record) { flags_[record] = Verdict::undecided; });
   }
 
   FlaggedVoxel walk(const FlagQuery& query, const StopRule& rule, const FlaggedPlace& place)
@@ -92,13 +90,10 @@ public:
 
   std::size_t colliding() const { return colliding_.load(std::memory_order_relaxed); }
 
-  std::size_t undecided() const
-  {
-    return static_cast<std::size_t>(std::count(flags_.begin(), flags_.end(), flagOf(Verdict::undecided)));
-  }
+  std::size_t undecided() const { return countOf(flags_, Verdict::undecided); }
 
 private:
-  std::vector<std::uint8_t>& flags_;
+  std::vector<Verdict>& flags_;
   std::atomic<std::size_t> colliding_{0};
   bool marked_ = false;
 };
@@ -122,9 +117,9 @@ void guardDensity(const Placed& a, const Placed& b, FlagsRequest request, FlagsR
   FlagsResult covered;
   flagPlaces(a, b, request, Places::covered, covered);
   for (std::size_t i = 0; i < found.a.size(); ++i) {
-    if (found.a[i] != flagOf(Verdict::free) || covered.a[i] == flagOf(Verdict::free)) continue;
-    const bool sparse = covered.a[i] == flagOf(Verdict::colliding);
-    found.a[i] = flagOf(sparse ? Verdict::sparse : Verdict::undecided);
+    if (found.a[i] != Verdict::free || covered.a[i] == Verdict::free) continue;
+    const bool sparse = covered.a[i] == Verdict::colliding;
+    found.a[i] = sparse ? Verdict::sparse : Verdict::undecided;
     ++(sparse ? found.sparse_a : found.undecided_a);
   }
   found.work += covered.work;

@@ -37,11 +37,10 @@ struct FlagsRequest {
 
 /// What collisionFlags() found.
 struct FlagsResult {
-  /// One per record of a's view, a Verdict as a number: 0 free, 1 collides, 2 undecided, the latter only when the
-  /// request's accuracy lets the walk stop early, or where points have uncertainties; 3 sparse, with a density guard.
-  /// Empty when not asked for.
-  std::vector<std::uint8_t> a;
-  std::vector<std::uint8_t> b; ///< likewise for b
+  /// One per record of a's view: undecided only when the request's accuracy lets the walk stop early, or where points
+  /// have uncertainties; sparse only with a density guard. Empty when not asked for.
+  std::vector<Verdict> a;
+  std::vector<Verdict> b; ///< likewise for b
   std::size_t colliding_a = 0;
   std::size_t colliding_b = 0;
   std::size_t undecided_a = 0;

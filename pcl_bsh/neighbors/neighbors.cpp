@@ -52,7 +52,7 @@ void fetch(const NeighborLists& found, std::size_t i, bool soon)
   hwy::Prefetch(soon ? static_cast<const void*>(found.squared_distances[i].data()) : &found.squared_distances[i]);
 }
 
-constexpr auto kNothing = [](std::size_t, bool) {};
+constexpr auto kUnasked = [](std::size_t, bool) {};
 
 } // namespace
 
@@ -114,7 +114,7 @@ std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const Po
   checkRadius(radius);
   checkView("queries", queries);
   std::vector<std::uint8_t> flags(queries.size());
-  forEachQuery(cloud.storage(), queries, threads, kNothing, [&](std::size_t i, const Point3& query) {
+  forEachQuery(cloud.storage(), queries, threads, kUnasked, [&](std::size_t i, const Point3& query) {
     Work work;
     flags[i] = isFinite(query) && findAny(cloud.storage(), query, radius, work) ? 1 : 0;
   });
@@ -127,7 +127,7 @@ std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsV
   if (!balls.radii) throw InvalidInput(Input::radius, "balls", "the view has no radii", "give one per record");
   for (std::size_t i = 0; i < balls.size(); ++i) checkRadius(balls.radius(balls.record(i)));
   std::vector<std::uint8_t> flags(balls.size());
-  forEachQuery(cloud.storage(), balls, threads, kNothing, [&](std::size_t i, const Point3& center) {
+  forEachQuery(cloud.storage(), balls, threads, kUnasked, [&](std::size_t i, const Point3& center) {
     Work work;
     flags[i] = isFinite(center) && findAny(cloud.storage(), center, balls.radius(balls.record(i)), work) ? 1 : 0;
   });

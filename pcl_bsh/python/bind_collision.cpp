@@ -140,9 +140,6 @@ bool isNotBoth(py::handle side)
 using OneSide = As<"Literal['a', 'b']", isNotBoth>;
 using BothSides = As<"Literal['both']">;
 
-template <class Value>
-using Two = std::pair<py::array_t<Value>, py::array_t<Value>>;
-
 Side sideOf(const std::string& text)
 {
   if (text == "a") return Side::a;
@@ -156,7 +153,7 @@ template <class Sides, class Value>
 auto arraysOf(std::vector<Value>&& a, std::vector<Value>&& b, Side side)
 {
   if constexpr (std::is_same_v<Sides, BothSides>)
-    return Two<Value>(arrayFrom(std::move(a)), arrayFrom(std::move(b)));
+    return std::pair(arrayFrom(std::move(a)), arrayFrom(std::move(b)));
   else
     return arrayFrom(std::move(side == Side::a ? a : b));
 }
@@ -240,7 +237,7 @@ auto row(std::uint32_t PointPair::*of)
 std::string textOf(const AnyResult& result)
 {
   const char* const names[] = {"FREE", "COLLIDING", "UNDECIDED", "SPARSE"};
-  std::string text = std::string("AnyCollision(") + names[flagOf(result.verdict)];
+  std::string text = std::string("AnyCollision(") + names[static_cast<std::size_t>(result.verdict)];
   if (result.witness) text += ", witness " + std::string(py::str(py::cast(tupleOf(*result.witness))));
   return text + ")";
 }

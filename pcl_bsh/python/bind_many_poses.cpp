@@ -115,8 +115,7 @@ closestAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, const Array
   const auto report = progressOf(progress);
   DistancesAtPoses found = answered({"a", placed, "b", b, list, std::nullopt},
                                     [&] { return closestPairAtPoses(placed, b, list, request, report); });
-  constexpr std::uint32_t kNoPoint = 0xffffffffu;
-  found.pairs.resize(list.size(), {kNoPoint, kNoPoint});
+  found.pairs.resize(list.size(), {kNothing, kNothing});
   return {arrayFrom(std::move(found.distances)), arrayFrom(found.pairs)};
 }
 

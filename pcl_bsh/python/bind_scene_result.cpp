@@ -58,7 +58,7 @@ py::dict dictOf(const ContactPair& pair)
 
 py::dict dictOf(const FlaggedPart& part)
 {
-  const py::array_t<std::uint8_t> flags(static_cast<py::ssize_t>(part.flags.size()), part.flags.data());
+  const py::array_t<std::uint8_t> flags(static_cast<py::ssize_t>(part.flags.size()), bytesOf(part.flags));
   return py::dict("object"_a = part.object, "part"_a = part.part, "colliding"_a = part.colliding,
                   "undecided"_a = part.undecided, "flags"_a = flags);
 }

@@ -138,7 +138,8 @@ auto contact(std::optional<FirstContact> TrajectoryResult::*of)
 template <class T, class Asked>
 auto columnWhere(std::vector<T> TrajectoryResult::*values, Asked asked)
 {
-  return [values, asked](const py::object& self) -> std::optional<py::array_t<T>> {
+  using Array = decltype(arrayIn(py::object(), std::vector<T>()));
+  return [values, asked](const py::object& self) -> std::optional<Array> {
     const auto& run = self.cast<const TrajectoryRun&>();
     if (!std::invoke(asked, run.request)) return std::nullopt;
     return arrayIn(self, run.result.*values);

@@ -5,8 +5,12 @@
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/query/work.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
+#include <vector>
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
@@ -14,11 +18,60 @@ namespace pcl_bsh {
 /// Sparse: undecided, because the other cloud is not scanned densely enough there; only where a request asks for that.
 enum class Verdict : std::uint8_t { free, colliding, undecided, sparse };
 
-/// As it stands among flags.
-constexpr std::uint8_t flagOf(Verdict verdict) noexcept
+/// Of two verdicts: colliding before undecided before sparse before free.
+constexpr Verdict graver(Verdict one, Verdict other) noexcept
 {
-  return static_cast<std::uint8_t>(verdict);
+  if (one == Verdict::free || other == Verdict::free) return one == Verdict::free ? other : one;
+  return one < other ? one : other;
 }
+
+inline std::size_t countOf(const std::vector<Verdict>& verdicts, Verdict verdict)
+{
+  return static_cast<std::size_t>(std::count(verdicts.begin(), verdicts.end(), verdict));
+}
+
+/// 1 for each verdict that is free, or, with `free` false, for each that is not; 0 for the others.
+inline std::vector<std::uint8_t> maskOf(const std::vector<Verdict>& verdicts, bool free)
+{
+  std::vector<std::uint8_t> mask(verdicts.size());
+  std::transform(verdicts.begin(), verdicts.end(), mask.begin(),
+                 [free](Verdict verdict) { return (verdict == Verdict::free) == free ? 1 : 0; });
+  return mask;
+}
+
+/// Verdicts as fields of files and arrays of other libraries have them: a byte each, 0 free, 1 colliding, 2 undecided,
+/// 3 sparse. In the memory of the verdicts.
+inline const std::uint8_t* bytesOf(const std::vector<Verdict>& verdicts) noexcept
+{
+  return reinterpret_cast<const std::uint8_t*>(verdicts.data());
+}
+
+/// The same in memory of their own.
+inline std::vector<std::uint8_t> numbersOf(const std::vector<Verdict>& verdicts)
+{
+  return {bytesOf(verdicts), bytesOf(verdicts) + verdicts.size()};
+}
+
+/// Among the numbers of an array: that there is none. -1 where they are signed, else the greatest there is.
+struct Nothing {
+  template <class Number, class = std::enable_if_t<std::is_integral_v<Number> && !std::is_same_v<Number, bool>>>
+  constexpr operator Number() const noexcept
+  {
+    return static_cast<Number>(-1);
+  }
+  template <class Number>
+  friend constexpr bool operator==(Number number, Nothing) noexcept
+  {
+    return number == static_cast<Number>(-1);
+  }
+  template <class Number>
+  friend constexpr bool operator!=(Number number, Nothing) noexcept
+  {
+    return number != static_cast<Number>(-1);
+  }
+};
+/// How results say so, of records, poses, clusters and balls. Of a single value that may be none, std::optional does.
+inline constexpr Nothing kNothing;
 
 /// One point of each cloud, as record numbers of the clouds' views.
 struct PointPair {

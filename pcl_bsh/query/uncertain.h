@@ -7,7 +7,6 @@
 #include <pcl_bsh/query/reach.h>
 #include <pcl_bsh/query/result.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -35,21 +34,16 @@ inline Accuracy halfOf(Accuracy accuracy)
   return accuracy;
 }
 
-inline std::size_t countOf(const std::vector<std::uint8_t>& verdicts, Verdict verdict)
-{
-  return static_cast<std::size_t>(std::count(verdicts.begin(), verdicts.end(), flagOf(verdict)));
-}
-
 /// Points that may collide are undecided, unless they do for certain.
 /// @param flags of what may collide, then the verdicts. @param certain of what does
-inline void withhold(std::vector<std::uint8_t>& flags, const std::vector<std::uint8_t>& certain, std::size_t& colliding,
+inline void withhold(std::vector<Verdict>& flags, const std::vector<Verdict>& certain, std::size_t& colliding,
                      std::size_t& undecided)
 {
   colliding = undecided = 0;
   for (std::size_t i = 0; i < flags.size(); ++i) {
-    if (flags[i] == flagOf(Verdict::free)) continue;
-    const bool collides = certain[i] == flagOf(Verdict::colliding);
-    flags[i] = flagOf(collides ? Verdict::colliding : Verdict::undecided);
+    if (flags[i] == Verdict::free) continue;
+    const bool collides = certain[i] == Verdict::colliding;
+    flags[i] = collides ? Verdict::colliding : Verdict::undecided;
     ++(collides ? colliding : undecided);
   }
 }

@@ -25,11 +25,6 @@ void widen(double tolerance, Interval& interval)
   interval.upper = std::nextafter(interval.upper + tolerance, std::numeric_limits<double>::infinity());
 }
 
-std::size_t count(const std::vector<std::uint8_t>& flags, Verdict verdict)
-{
-  return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flagOf(verdict)));
-}
-
 } // namespace
 
 void tellOfSurface(double tolerance, DistanceResult& found)
@@ -62,15 +57,15 @@ TrajectoryResult ofTriangles(const SurfaceCover& cover, TrajectoryResult balls)
 {
   TrajectoryResult found;
   if (!balls.flags.empty()) found.flags = triangleVerdicts(cover, balls.flags);
-  found.colliding = count(found.flags, Verdict::colliding);
-  found.undecided = count(found.flags, Verdict::undecided);
+  found.colliding = countOf(found.flags, Verdict::colliding);
+  found.undecided = countOf(found.flags, Verdict::undecided);
   if (!balls.distance.empty()) {
     const std::vector<std::uint32_t> nearest = nearestBalls(cover, balls.distance, balls.closest_pose);
     found.distance = ofBalls(nearest, balls.distance, std::numeric_limits<float>::quiet_NaN());
     for (float& distance : found.distance) raise(distance);
-    if (!balls.closest_pose.empty()) found.closest_pose = ofBalls(nearest, balls.closest_pose, -1);
+    if (!balls.closest_pose.empty()) found.closest_pose = ofBalls(nearest, balls.closest_pose, std::int32_t{kNothing});
     if (!balls.closest_point.empty())
-      found.closest_point = ofBalls(nearest, balls.closest_point, TrajectoryResult::kNoPoint);
+      found.closest_point = ofBalls(nearest, balls.closest_point, std::uint32_t{kNothing});
   }
   if (!balls.first_pose.empty()) found.first_pose = triangleFirstPoses(cover, balls.first_pose);
   if (!balls.certain_pose.empty()) found.certain_pose = triangleFirstPoses(cover, balls.certain_pose);
@@ -85,8 +80,8 @@ PointDistances ofTriangles(const SurfaceCover& cover, PointDistances balls)
   PointDistances found;
   const std::vector<std::uint32_t> nearest = nearestBalls(cover, balls.distance);
   found.distance = ofBalls(nearest, balls.distance, std::numeric_limits<double>::quiet_NaN());
-  found.nearest = ofBalls(nearest, balls.nearest, PointDistances::kNoPoint);
-  found.measured = nearest.size() - static_cast<std::size_t>(std::count(nearest.begin(), nearest.end(), kNoBall));
+  found.nearest = ofBalls(nearest, balls.nearest, std::uint32_t{kNothing});
+  found.measured = nearest.size() - static_cast<std::size_t>(std::count(nearest.begin(), nearest.end(), kNothing));
   found.undecided = balls.undecided;
   for (std::uint32_t t = 0; t < found.distance.size(); ++t) {
     if (!(found.distance[t] > found.greatest) && !(std::isnan(found.greatest) && found.distance[t] >= 0.0)) continue;

@@ -41,12 +41,6 @@ void forEachPair(const Placed& a, const Placed& b, double clearance, const Visit
   }
 }
 
-/// Raises what is known of a point by what is known of a pair.
-void raise(std::uint8_t& flag, Verdict verdict)
-{
-  if (verdict == Verdict::colliding || flag == flagOf(Verdict::free)) flag = flagOf(verdict);
-}
-
 } // namespace
 
 AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request)
@@ -65,16 +59,15 @@ AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& reque
 }
 
 /// Free points of a that may be within the clearance of a patch of b's surface.
-void guardDensity(const Placed& a, const Placed& b, const FlagsRequest& request, std::vector<std::uint8_t>& flags)
+void guardDensity(const Placed& a, const Placed& b, const FlagsRequest& request, std::vector<Verdict>& flags)
 {
   const ExactDistance distance(a.pose, b.pose);
   const PointsView &of_a = a.hierarchy().view(), &of_b = b.hierarchy().view();
   const PairReach reach(of_a, of_b, request.clearance, Places::covered, {request.spacings_of_b, of_b.count});
   for (const FinitePoint& p : finitePoints(of_a))
     for (const FinitePoint& q : finitePoints(of_b))
-      if (flags[p.record] == flagOf(Verdict::free) &&
-          distance.compare(p.point, q.point, reach.of({p.record, q.record})) <= 0)
-        flags[p.record] = flagOf(Verdict::sparse);
+      if (flags[p.record] == Verdict::free && distance.compare(p.point, q.point, reach.of({p.record, q.record})) <= 0)
+        flags[p.record] = Verdict::sparse;
 }
 
 FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request)
@@ -82,30 +75,27 @@ FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest&
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   FlagsResult result;
-  std::vector<std::uint8_t> flags_a(a.hierarchy().view().count);
-  std::vector<std::uint8_t> flags_b(b.hierarchy().view().count);
+  std::vector<Verdict> flags_a(a.hierarchy().view().count);
+  std::vector<Verdict> flags_b(b.hierarchy().view().count);
   forEachPair(a, b, request.clearance, [&](const FinitePoint& p, const FinitePoint& q, Verdict verdict) {
     ++result.work.exact_decisions;
-    raise(flags_a[p.record], verdict);
-    raise(flags_b[q.record], verdict);
+    flags_a[p.record] = graver(flags_a[p.record], verdict);
+    flags_b[q.record] = graver(flags_b[q.record], verdict);
     return true;
   });
   const auto asked = [&](Side side) {
     return (static_cast<unsigned>(request.flagged) & static_cast<unsigned>(side)) != 0;
   };
-  const auto count = [](const std::vector<std::uint8_t>& flags, Verdict verdict) {
-    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flagOf(verdict)));
-  };
   if (asked(Side::a)) {
     if (request.spacings_of_b) guardDensity(a, b, request, flags_a);
-    result.sparse_a = count(flags_a, Verdict::sparse);
-    result.colliding_a = count(flags_a, Verdict::colliding);
-    result.undecided_a = count(flags_a, Verdict::undecided);
+    result.sparse_a = countOf(flags_a, Verdict::sparse);
+    result.colliding_a = countOf(flags_a, Verdict::colliding);
+    result.undecided_a = countOf(flags_a, Verdict::undecided);
     result.a = std::move(flags_a);
   }
   if (asked(Side::b)) {
-    result.colliding_b = count(flags_b, Verdict::colliding);
-    result.undecided_b = count(flags_b, Verdict::undecided);
+    result.colliding_b = countOf(flags_b, Verdict::colliding);
+    result.undecided_b = countOf(flags_b, Verdict::undecided);
     result.b = std::move(flags_b);
   }
   return result;
@@ -138,7 +128,7 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
   AnyAtPoses result;
   for (std::size_t i = 0; i < T_world_b.size(); ++i) {
     const AnyResult found = brute_force::anyCollision(a, {b, T_world_b[i]}, request);
-    result.verdicts.push_back(flagOf(found.verdict));
+    result.verdicts.push_back(found.verdict);
     result.colliding += found.verdict == Verdict::colliding;
     result.undecided += found.verdict == Verdict::undecided;
     result.work += found.work;

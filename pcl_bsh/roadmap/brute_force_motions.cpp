@@ -52,7 +52,7 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
   check(scan, poses, motions, request);
   const DefaultFloatEnvironment environment;
   AnyOnMotions result;
-  result.verdicts.assign(motions.size(), flagOf(Verdict::free));
+  result.verdicts.assign(motions.size(), Verdict::free);
   if (scan.hierarchy().empty() || model.empty()) return result;
   const MotionsQuery query(scan, model, request);
   std::vector<std::uint32_t> used;
@@ -67,7 +67,7 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
     };
     if (!collides(uncertain ? Places::possible : Places::measured)) continue;
     const bool certain = !uncertain || collides(Places::certain);
-    result.verdicts[m] = flagOf(certain ? Verdict::colliding : Verdict::undecided);
+    result.verdicts[m] = certain ? Verdict::colliding : Verdict::undecided;
     ++(certain ? result.colliding : result.undecided);
   }
   return result;

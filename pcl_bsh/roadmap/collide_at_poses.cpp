@@ -73,7 +73,7 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
   checkAtPoses(a, T_world_b, request.accuracy, request.threads);
   const DefaultFloatEnvironment environment;
   AnyAtPoses result;
-  result.verdicts.assign(T_world_b.size(), flagOf(Verdict::free));
+  result.verdicts.assign(T_world_b.size(), Verdict::free);
   if (a.hierarchy().empty() || b.empty() || T_world_b.size() == 0) return result;
   if (!request.accuracy.isExact()) {
     AnyRequest single = request;
@@ -81,7 +81,7 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
     Progress progress(report);
     result.work = forEachPose(T_world_b, request.threads, progress, [&](std::size_t i, const Eigen::Isometry3d& pose) {
       const AnyResult found = anyCollision(a, {b, pose}, single);
-      result.verdicts[i] = flagOf(found.verdict);
+      result.verdicts[i] = found.verdict;
       return found.work;
     });
   }

@@ -26,9 +26,9 @@ namespace pcl_bsh {
 
 /// What anyCollisionAtPoses() found.
 struct AnyAtPoses {
-  /// One per pose, a Verdict as a number: 0 free, 1 colliding, 2 undecided; the latter only where points have
-  /// uncertainties: some pair may be within the clearance, but none is wherever its points truly are.
-  std::vector<std::uint8_t> verdicts;
+  /// One per pose; undecided only where points have uncertainties: some pair may be within the clearance, but none is
+  /// wherever its points truly are.
+  std::vector<Verdict> verdicts;
   std::size_t colliding = 0; ///< poses that are
   std::size_t undecided = 0;
   Work work;

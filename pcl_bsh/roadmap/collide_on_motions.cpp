@@ -121,13 +121,6 @@ private:
   std::vector<RigidMotion> motions_;
 };
 
-/// The verdict of a motion from those at its poses: certainty counts more than a possibility.
-std::uint8_t worse(std::uint8_t one, std::uint8_t other)
-{
-  if (one == flagOf(Verdict::colliding) || other == flagOf(Verdict::colliding)) return flagOf(Verdict::colliding);
-  return std::max(one, other);
-}
-
 } // namespace
 
 MotionsQuery::MotionsQuery(const Placed& scan_at, const SphereHierarchy& model_of, const MotionsRequest& asked)
@@ -163,7 +156,7 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
   check(scan, poses, motions, request);
   const DefaultFloatEnvironment environment;
   AnyOnMotions result;
-  result.verdicts.assign(motions.size(), flagOf(Verdict::free));
+  result.verdicts.assign(motions.size(), Verdict::free);
   if (scan.hierarchy().empty() || model.empty() || motions.empty()) return result;
   const MotionsQuery query(scan, model, request);
   result.work.volumes_built += countChildren(query.boxes.storage.top);
@@ -186,7 +179,7 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
   });
   result.work += found.work;
   for (std::size_t m = 0; m < motions.size(); ++m)
-    result.verdicts[m] = worse(found.verdicts[place[motions[m].from]], found.verdicts[place[motions[m].to]]);
+    result.verdicts[m] = graver(found.verdicts[place[motions[m].from]], found.verdicts[place[motions[m].to]]);
 
   const BodyBall body(model);
   result.work += giveVerdicts(

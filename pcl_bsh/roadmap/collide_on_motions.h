@@ -52,9 +52,8 @@ struct MotionsRequest {
 
 /// What anyCollisionOnMotions() found.
 struct AnyOnMotions {
-  /// One per motion, a Verdict as a number: 0 free, 1 colliding, 2 undecided; the latter only where points have
-  /// uncertainties.
-  std::vector<std::uint8_t> verdicts;
+  /// One per motion; undecided only where points have uncertainties.
+  std::vector<Verdict> verdicts;
   std::size_t colliding = 0; ///< motions that are
   std::size_t undecided = 0;
   Work work;

@@ -128,8 +128,8 @@ struct FlaggedPart {
   ObjectId object = 0;
   std::uint32_t part = 0;
   std::size_t colliding = 0;
-  std::size_t undecided = 0;       ///< 0 unless the scene's accuracy lets a query stop early, or points are uncertain
-  std::vector<std::uint8_t> flags; ///< one per record of the part's view, as in FlagsResult
+  std::size_t undecided = 0;  ///< 0 unless the scene's accuracy lets a query stop early, or points are uncertain
+  std::vector<Verdict> flags; ///< one per record of the part's view, as in FlagsResult
 };
 
 /// Parts of one object, part_a < part_b.

@@ -27,7 +27,7 @@ public:
     poses_(poses),
     is_swept_(request.swept.has_value())
   {
-    joined_.flags.assign(scan.count, flagOf(Verdict::free));
+    joined_.flags.assign(scan.count, Verdict::free);
     if (!request.distances) return;
     joined_.distance.assign(scan.count, std::numeric_limits<float>::quiet_NaN());
     joined_.first_pose.assign(scan.count, -1);
@@ -56,14 +56,14 @@ public:
   TrajectoryResult& result(std::vector<MetPoint>& met)
   {
     if (!joined_.distance.empty()) {
-      joined_.closest_point.assign(scan_.count, TrajectoryResult::kNoPoint);
+      joined_.closest_point.assign(scan_.count, kNothing);
       for (const auto& [i, nearest] : nearest_) {
         joined_.closest_point[i] = static_cast<std::uint32_t>(met.size());
         met.push_back(nearest);
       }
     }
-    joined_.colliding = countOf(Verdict::colliding, joined_.flags);
-    joined_.undecided = countOf(Verdict::undecided, joined_.flags);
+    joined_.colliding = countOf(joined_.flags, Verdict::colliding);
+    joined_.undecided = countOf(joined_.flags, Verdict::undecided);
     return joined_;
   }
 

@@ -105,15 +105,16 @@ SiteFlags flagsOf(const PlacedSite& asked, const Other& b, Side flagged, const S
   wanted.flagged = of_b ? Side::both : Side::a;
   refuse(asked.pose, b, [&](const Placed& x, const Placed& y) { pcl_bsh::collisionFlags(x, y, wanted); });
   if constexpr (std::is_same_v<Other, Placed>)
-    if (of_b) result.b.assign(b.hierarchy().view().count, 0);
+    if (of_b) result.b.assign(b.hierarchy().view().count, Verdict::free);
   Comparison<Other> comparison(asked, b, request);
-  const auto append_b = [](const std::vector<std::uint8_t>& flags, std::vector<double>& numbers) {
+  const auto append_b = [](const std::vector<Verdict>& flags, std::vector<double>& numbers) {
     for (std::size_t i = 0; i < flags.size(); ++i)
-      if (flags[i] != 0) numbers.insert(numbers.end(), {static_cast<double>(i), static_cast<double>(flags[i])});
+      if (flags[i] != Verdict::free)
+        numbers.insert(numbers.end(), {static_cast<double>(i), static_cast<double>(flags[i])});
   };
   const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& a) {
     FlagsResult all, found;
-    all.a.assign(a.hierarchy().view().count, flagOf(Verdict::free));
+    all.a.assign(a.hierarchy().view().count, Verdict::free);
     comparison.compareWithOther(
         tile, [&] { return request.clearance; },
         [&](const pcl::PCLPointCloud2&, const Placed& other) {
@@ -122,8 +123,8 @@ SiteFlags flagsOf(const PlacedSite& asked, const Other& b, Side flagged, const S
           all.work += found.work;
         });
     all.b = std::move(found.b); // of a cloud, of which there is one
-    all.colliding_a = countOf(Verdict::colliding, all.a);
-    all.undecided_a = countOf(Verdict::undecided, all.a);
+    all.colliding_a = countOf(all.a, Verdict::colliding);
+    all.undecided_a = countOf(all.a, Verdict::undecided);
     if (sink) sink(tile, cloud, all);
     std::vector<double> numbers = {static_cast<double>(all.colliding_a), static_cast<double>(all.undecided_a)};
     if (of_b) append_b(all.b, numbers);
@@ -131,8 +132,8 @@ SiteFlags flagsOf(const PlacedSite& asked, const Other& b, Side flagged, const S
   };
   const auto add_flags = [&](const std::vector<double>& numbers, std::size_t begin) {
     for (std::size_t k = begin; k < numbers.size(); k += 2) {
-      std::uint8_t& flag = result.b[static_cast<std::size_t>(numbers[k])];
-      flag = surer(flag, static_cast<std::uint8_t>(numbers[k + 1]));
+      Verdict& flag = result.b[static_cast<std::size_t>(numbers[k])];
+      flag = graver(flag, static_cast<Verdict>(numbers[k + 1]));
     }
   };
   const auto add = [&](const std::vector<double>& numbers) {
@@ -149,8 +150,8 @@ SiteFlags flagsOf(const PlacedSite& asked, const Other& b, Side flagged, const S
     append_b(result.b, own);
     add_flags(gatheredFromAllRanks(own), 0);
   }
-  result.colliding_b = countOf(Verdict::colliding, result.b);
-  result.undecided_b = countOf(Verdict::undecided, result.b);
+  result.colliding_b = countOf(result.b, Verdict::colliding);
+  result.undecided_b = countOf(result.b, Verdict::undecided);
   return result;
 }
 

@@ -114,7 +114,7 @@ struct SiteAny {
 struct SiteFlags {
   std::uint64_t colliding = 0; ///< points of the site
   std::uint64_t undecided = 0;
-  std::vector<std::uint8_t> b; ///< one per record of b's view, where asked for: as FlagsResult has them
+  std::vector<Verdict> b; ///< one per record of b's view, where asked for: as FlagsResult has them
   std::uint64_t colliding_b = 0;
   std::uint64_t undecided_b = 0;
   TilesRead tiles, tiles_b;

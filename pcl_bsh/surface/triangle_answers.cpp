@@ -4,9 +4,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/query/result.h>
 
-#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -28,14 +26,11 @@ void requireOnePerBall(const SurfaceCover& cover, const char* what, std::size_t 
                      "give those of a query about this cover, all of them");
 }
 
-/// A triangle is what the first of these verdicts is that a ball of it has.
-constexpr std::array<Verdict, 4> kGravest = {Verdict::colliding, Verdict::undecided, Verdict::sparse, Verdict::free};
-
-std::size_t rankOf(std::uint8_t flag, std::size_t ball)
+void requireVerdict(Verdict verdict, std::size_t ball)
 {
-  for (std::size_t rank = 0; rank < kGravest.size(); ++rank)
-    if (flag == flagOf(kGravest[rank])) return rank;
-  throw InvalidInput(Input::result, "verdicts", plainText(int{flag}, " of ball ", ball, " is no verdict"))
+  if (verdict <= Verdict::sparse) return;
+  throw InvalidInput(Input::result, "verdicts",
+                     plainText(static_cast<int>(verdict), " of ball ", ball, " is no verdict"))
       .withIndex(ball);
 }
 
@@ -49,25 +44,26 @@ std::vector<std::uint32_t> nearestOf(const SurfaceCover& cover, const std::vecto
   const auto measure = [&](std::uint32_t ball) {
     return std::tuple(distances[ball], closest_poses.empty() ? 0 : closest_poses[ball]);
   };
-  std::vector<std::uint32_t> nearest(cover.triangle_count, kNoBall);
+  std::vector<std::uint32_t> nearest(cover.triangle_count, kNothing);
   for (std::uint32_t ball = 0; ball < distances.size(); ++ball) {
     std::uint32_t& best = nearest[cover.triangles[ball]];
     if (std::isnan(distances[ball])) continue;
-    if (best == kNoBall || measure(ball) < measure(best)) best = ball;
+    if (best == kNothing || measure(ball) < measure(best)) best = ball;
   }
   return nearest;
 }
 
 } // namespace
 
-std::vector<std::uint8_t> triangleVerdicts(const SurfaceCover& cover, const std::vector<std::uint8_t>& ball_verdicts)
+std::vector<Verdict> triangleVerdicts(const SurfaceCover& cover, const std::vector<Verdict>& ball_verdicts)
 {
   requireApart(cover);
   requireOnePerBall(cover, "verdicts", ball_verdicts.size());
-  std::vector<std::uint8_t> verdicts(cover.triangle_count, flagOf(Verdict::free));
+  std::vector<Verdict> verdicts(cover.triangle_count, Verdict::free);
   for (std::size_t ball = 0; ball < ball_verdicts.size(); ++ball) {
-    std::uint8_t& verdict = verdicts[cover.triangles[ball]];
-    if (rankOf(ball_verdicts[ball], ball) < rankOf(verdict, ball)) verdict = ball_verdicts[ball];
+    requireVerdict(ball_verdicts[ball], ball);
+    Verdict& verdict = verdicts[cover.triangles[ball]];
+    verdict = graver(verdict, ball_verdicts[ball]);
   }
   return verdicts;
 }

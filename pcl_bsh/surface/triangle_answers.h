@@ -6,7 +6,7 @@
 //   request.triangles_apart = true;
 //   SurfaceCover part = coverSurface(viewOf(vertices_xyz, n), triangles, request);
 //   FlagsResult hit = collisionFlags({SphereHierarchy(part.view())}, {robot}, {0.02});
-//   std::vector<std::uint8_t> verdicts = triangleVerdicts(part, hit.a);
+//   std::vector<Verdict> verdicts = triangleVerdicts(part, hit.a);
 //
 // Of a triangle and a cloud of points (or the balls of another surface's cover),
 //   free       means farther apart than the clearance, for certain;
@@ -15,6 +15,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/query/result.h>
 #include <pcl_bsh/surface/surface_cover.h>
 
 #include <cstddef>
@@ -24,18 +25,16 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-inline constexpr std::uint32_t kNoBall = 0xffffffffu; ///< among balls: a triangle has none
-
-/// One Verdict per triangle, as a number. It collides if one of its balls does; else it is undecided if one is, sparse
+/// One per triangle. It collides if one of its balls does; else it is undecided if one is, sparse
 /// if one is, and free.
 /// @param ball_verdicts one per ball of the cover, as FlagsResult and TrajectoryResult have them
 /// @throws std::invalid_argument (Input::surface) when the cover's balls hold parts of several triangles each
 ///   (SurfaceRequest::triangles_apart); (Input::result) when there is not one value per ball, or one is no Verdict.
 ///   The functions below throw likewise.
-std::vector<std::uint8_t> triangleVerdicts(const SurfaceCover& cover, const std::vector<std::uint8_t>& ball_verdicts);
+std::vector<Verdict> triangleVerdicts(const SurfaceCover& cover, const std::vector<Verdict>& ball_verdicts);
 
 /// Per triangle the ball of its smallest distance, of several that of the smallest pose, then of the smallest number.
-/// kNoBall where no ball has a distance. Whatever was found out about that ball (its distance, the pose, the nearest
+/// kNothing where no ball has a distance. Whatever was found out about that ball (its distance, the pose, the nearest
 /// point) holds of the triangle.
 /// @param distances one per ball; NaN: none
 /// @param closest_poses one per ball, or empty
@@ -44,9 +43,9 @@ std::vector<std::uint32_t> nearestBalls(const SurfaceCover& cover, const std::ve
 std::vector<std::uint32_t> nearestBalls(const SurfaceCover& cover, const std::vector<float>& distances,
                                         const std::vector<std::int32_t>& closest_poses = {});
 
-/// Per triangle the first pose at which one of its balls collides; -1 where none does. At no earlier pose is the
-/// triangle within the clearance.
-/// @param first_poses one per ball; -1: none
+/// Per triangle the first pose at which one of its balls collides; kNothing (-1) where none does. At no earlier pose is
+/// the triangle within the clearance.
+/// @param first_poses one per ball; kNothing: none
 std::vector<std::int32_t> triangleFirstPoses(const SurfaceCover& cover, const std::vector<std::int32_t>& first_poses);
 
 /// Per triangle the value of its ball. @param none where it has none
@@ -55,7 +54,7 @@ std::vector<Value> ofBalls(const std::vector<std::uint32_t>& balls, const std::v
 {
   std::vector<Value> chosen;
   chosen.reserve(balls.size());
-  for (const std::uint32_t ball : balls) chosen.push_back(ball == kNoBall ? none : values.at(ball));
+  for (const std::uint32_t ball : balls) chosen.push_back(ball == kNothing ? none : values.at(ball));
   return chosen;
 }
 

@@ -61,12 +61,13 @@ std::vector<NewField> newFields(const Options& options, const TrajectoryResult& 
 
 /// The input's points that are wanted, as one row.
 pcl::PCLPointCloud2 select(const pcl::PCLPointCloud2& cloud, const PointsView& view,
-                           const std::vector<std::uint8_t>& collides, Keep keep)
+                           const std::vector<Verdict>& collides, Keep keep)
 {
   pcl::Indices kept;
   for (std::size_t i = 0; i < view.count; ++i) {
     const bool finite = isFinite(view.point(static_cast<std::uint32_t>(i)));
-    if (keep == Keep::colliding ? collides[i] == 0 : (collides[i] != 0 || !finite)) continue;
+    const bool free = collides[i] == Verdict::free;
+    if (keep == Keep::colliding ? free : !free || !finite) continue;
     kept.push_back(static_cast<pcl::index_t>(i));
   }
   return selectedRecords(cloud, kept);

@@ -73,7 +73,7 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
     }
     if (first < 0) continue;
     ++(certain < 0 ? result.undecided : result.colliding);
-    if (request.flags) result.flags[p.record] = flagOf(certain < 0 ? Verdict::undecided : Verdict::colliding);
+    if (request.flags) result.flags[p.record] = certain < 0 ? Verdict::undecided : Verdict::colliding;
     if (request.first_poses && uncertain) result.certain_pose[p.record] = certain;
     if (request.first_poses) result.first_pose[p.record] = first;
     if (request.distances) result.distance[p.record] = static_cast<float>(of_point.distance->gap(of_point.pair));

@@ -61,11 +61,11 @@ TrajectoryResult allFree(const TrajectoryRequest& request, std::size_t records, 
 {
   const auto sized = [records](bool asked) { return asked ? records : 0; };
   TrajectoryResult result;
-  result.flags.assign(sized(request.flags), 0);
+  result.flags.assign(sized(request.flags), Verdict::free);
   result.distance.assign(sized(request.distances), std::numeric_limits<float>::quiet_NaN());
-  result.first_pose.assign(sized(request.first_poses), -1);
-  result.closest_pose.assign(sized(request.closest_poses), -1);
-  result.closest_point.assign(sized(request.distances || request.closest_poses), TrajectoryResult::kNoPoint);
+  result.first_pose.assign(sized(request.first_poses), kNothing);
+  result.closest_pose.assign(sized(request.closest_poses), kNothing);
+  result.closest_point.assign(sized(request.distances || request.closest_poses), kNothing);
   if (request.pose_summaries) result.poses.resize(poses);
   return result;
 }

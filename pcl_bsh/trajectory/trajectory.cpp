@@ -49,9 +49,9 @@ FirstContact instantOf(const PosePath& path, double time)
   return {pose.given, std::min(fraction, 1.0 - kDoubleUnit)};
 }
 
-void markUndecided(const SphereHierarchy& scan, std::uint32_t voxel, std::vector<std::uint8_t>& flags)
+void markUndecided(const SphereHierarchy& scan, std::uint32_t voxel, std::vector<Verdict>& flags)
 {
-  scan.storage().forEachRecord(voxel, [&](std::uint32_t i) { flags[i] = flagOf(Verdict::undecided); });
+  scan.storage().forEachRecord(voxel, [&](std::uint32_t i) { flags[i] = Verdict::undecided; });
 }
 
 void countFlags(TrajectoryResult& result)
@@ -153,7 +153,7 @@ TrajectoryResult walkUncertain(const Placed& scan, const SphereHierarchy& model,
   withholdPoses(result.poses, certain->poses);
   result.certain_pose = certain->first_pose;
   for (std::size_t i = 0; i < result.certain_pose.size(); ++i)
-    if (result.flags[i] != flagOf(Verdict::colliding)) result.certain_pose[i] = -1;
+    if (result.flags[i] != Verdict::colliding) result.certain_pose[i] = -1;
   result.certain_contact = certain->first_contact;
   result.work += certain->work;
   if (!asked.flags) result.flags.clear();

@@ -98,20 +98,18 @@ struct FirstContact {
 /// When swept, a distance is within half the tolerance of the smallest during the motion, and a pose's number k stands
 /// for the motion from pose k to pose k + 1.
 struct TrajectoryResult {
-  static constexpr std::uint32_t kNoPoint = 0xffffffffu; ///< among closest_point: no record
-
-  std::vector<std::uint8_t> flags;        ///< 1 = collides, 2 = undecided, where the accuracy lets the walk stop early,
-                                          ///< or places are uncertain
-  std::size_t colliding = 0;              ///< points that collide; 0 when nothing is asked for
-  std::size_t undecided = 0;              ///< points that are
-  std::vector<float> distance;            ///< less the radii; the float nearest to the distance in double; NaN: free
-  std::vector<std::int32_t> first_pose;   ///< -1 where free
-  std::vector<std::int32_t> closest_pose; ///< -1 where free
+  std::vector<Verdict> flags;               ///< undecided only where the accuracy lets the walk stop early, or places
+                                            ///< are uncertain
+  std::size_t colliding = 0;                ///< points that collide; 0 when nothing is asked for
+  std::size_t undecided = 0;                ///< points that are
+  std::vector<float> distance;              ///< less the radii; the float nearest to the distance in double; NaN: free
+  std::vector<std::int32_t> first_pose;     ///< kNothing (-1) where free
+  std::vector<std::int32_t> closest_pose;   ///< likewise
   std::vector<std::uint32_t> closest_point; ///< with distances or closest_poses: the record of the model that realises
                                             ///< the distance at the closest pose, of several the smallest;
-                                            ///< kNoPoint where free
+                                            ///< kNothing where free
   std::vector<std::int32_t> certain_pose;   ///< with first_poses, where points are uncertain: the first pose at which a
-                                            ///< point collides for certain; -1 where at none
+                                            ///< point collides for certain; kNothing where at none
   std::vector<PoseSummary> poses;           ///< one per pose
   /// Swept: no pair comes within the clearance before; at it, one is within clearance + tolerance. Empty when free.
   std::optional<FirstContact> first_contact;

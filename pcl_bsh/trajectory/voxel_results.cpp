@@ -56,7 +56,7 @@ void VoxelResults::finish(const Voxel& voxel)
     for (std::uint32_t p = i; p < end; ++p) {
       const std::uint32_t record = voxel.records()[p];
       ++colliding;
-      if (request.flags) result.flags[record] = 1;
+      if (request.flags) result.flags[record] = Verdict::colliding;
       if (request.first_poses) result.first_pose[record] = givenPose(first[i]);
       if (request.distances) result.distance[record] = distance;
       if (request.closest_poses) result.closest_pose[record] = givenPose(best[i].time);
@@ -86,9 +86,9 @@ bool VoxelResults::decide(const Voxel& voxel, bool unsure)
 
   bool left = false;
   for (std::uint32_t p = 0; p < voxel.count; ++p) {
-    std::uint8_t& flag = query_.result.flags[voxel.records()[p]];
-    if (flag != flagOf(Verdict::undecided)) continue; // as an earlier pass found
-    flag = flagOf(verdicts_[p]);
+    Verdict& flag = query_.result.flags[voxel.records()[p]];
+    if (flag != Verdict::undecided) continue; // as an earlier pass found
+    flag = verdicts_[p];
     left = left || verdicts_[p] == Verdict::undecided;
   }
   return left;
@@ -128,7 +128,7 @@ bool VoxelResults::collide(PointPair at, std::uint32_t k)
 void VoxelResults::consider(NearestPoint& nearest, PointPair pair, std::uint32_t k)
 {
   ++work.exact_decisions;
-  if (nearest.record != TrajectoryResult::kNoPoint) {
+  if (nearest.record != kNothing) {
     const auto best_pose = static_cast<std::uint32_t>(nearest.time);
     const int sign = exactAt(k).compareGaps(posed(pair), exactAt(best_pose), posed({pair.a, nearest.record}));
     if (sign > 0 || (sign == 0 && (k > best_pose || (k == best_pose && pair.b >= nearest.record)))) return;

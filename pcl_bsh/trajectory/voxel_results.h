@@ -12,7 +12,7 @@ namespace pcl_bsh {
 struct NearestPoint {
   double time = 0.0; ///< pose of the path; swept: plus the fraction of the motion to the next
   double gap = std::numeric_limits<double>::infinity(); ///< swept: the distance
-  std::uint32_t record = TrajectoryResult::kNoPoint;
+  std::uint32_t record = kNothing;
   float limit = std::numeric_limits<float>::infinity(); ///< a larger squared distance is none better
   float reach = std::numeric_limits<float>::infinity(); ///< the same, as a distance
 };

@@ -101,7 +101,7 @@ private:
     if (rule_.mayStop()) answer.undecided = voxel_ ? results_.decide(*voxel_, unsure) : unsure;
     if (rule_.mayStop() && !voxel_ && !unsure)
       query_.scan.hierarchy().storage().forEachRecord(
-          index_, [this](std::uint32_t i) { query_.result.flags[i] = flagOf(Verdict::free); });
+          index_, [this](std::uint32_t i) { query_.result.flags[i] = Verdict::free; });
     answer.work = results_.work;
     return answer;
   }

@@ -44,7 +44,7 @@ void vtkBSHCollisionFilter::Fill(const pcl_bsh::Question& question, const pcl_bs
     addPointArray<vtkIntArray>(*output, "first_pose", found.first_pose);
     addPointArray<vtkIntArray>(*output, "closest_pose", found.closest_pose);
   }
-  addPointArray<vtkUnsignedCharArray>(*output, "collision", found.flags);
+  addPointArray<vtkUnsignedCharArray>(*output, "collision", [&](std::size_t i) { return bytesOf(found.flags)[i]; });
   output->GetPointData()->SetActiveScalars("collision");
   this->NumberOfCollidingPoints = static_cast<vtkIdType>(found.colliding);
 }

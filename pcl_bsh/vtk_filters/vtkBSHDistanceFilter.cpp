@@ -36,7 +36,7 @@ void vtkBSHDistanceFilter::Fill(const pcl_bsh::Question& question, const pcl_bsh
     addPointArray<vtkDoubleArray>(*output, "distance", found.distance);
     addPointArray<vtkIdTypeArray>(*output, "nearest", [&](std::size_t i) -> vtkIdType {
       const std::uint32_t record = found.nearest[i];
-      return record == pcl_bsh::PointDistances::kNoPoint ? -1 : static_cast<vtkIdType>(obstacle.part(record));
+      return record == pcl_bsh::kNothing ? -1 : static_cast<vtkIdType>(obstacle.part(record));
     });
   }
   output->GetPointData()->SetActiveScalars("distance");

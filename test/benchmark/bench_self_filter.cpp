@@ -41,11 +41,10 @@ void measure(const self_filter::Robot& robot, const std::vector<Frame>& frames, 
     for (const Frame& frame : frames) {
       const PointsView view = viewOf(frame.image.xyz.data(), frame.image.is_robot.size());
       const Stopwatch watch;
-      const std::vector<std::uint8_t>& flags =
-          filter.flags(view, robot.poses(frame.values)[camera].inverse(), frame.values);
+      const std::vector<Verdict>& flags = filter.flags(view, robot.poses(frame.values)[camera].inverse(), frame.values);
       times.push_back(1e3 * watch.seconds());
       points += static_cast<double>(flags.size());
-      cut += static_cast<double>(std::count(flags.begin(), flags.end(), 1));
+      cut += static_cast<double>(std::count(flags.begin(), flags.end(), Verdict::colliding));
       seen += static_cast<double>(std::count(frame.image.is_robot.begin(), frame.image.is_robot.end(), 1));
     }
   table.add({text(padding), text(tolerance), std::to_string(filter.balls()), text(covered), text(100 * seen / points),

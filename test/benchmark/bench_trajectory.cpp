@@ -65,7 +65,7 @@ void runOurs(const PathScene& scene, unsigned threads, Result& result)
   request.threads = threads;
   pcl_bsh::TrajectoryResult found = collideAlong({scan}, model, scene.poses, request);
   result.add(build_seconds, query.seconds(), peak.bytes());
-  result.flags = std::move(found.flags);
+  result.flags = numbersOf(found.flags);
 }
 
 void runPeer(const std::string& name, const PathScene& scene, const std::vector<RigidPose>& poses, std::size_t stride,

@@ -42,7 +42,7 @@ public:
     const Stopwatch query;
     FlagsResult result = collisionFlags({a}, {b}, request);
     const double query_seconds = query.seconds();
-    return {build_seconds, query_seconds, std::move(result.a), describe(result.work), build_faults};
+    return {build_seconds, query_seconds, numbersOf(result.a), describe(result.work), build_faults};
   }
 
   FlagsRun runAny(double d) override

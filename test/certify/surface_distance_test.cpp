@@ -25,6 +25,7 @@
 
 #ifdef PCL_BSH_PROGRAM_DIR
 #include "support/temporary_folder.h"
+#include "support/verdicts.h"
 #endif
 
 namespace pcl_bsh {
@@ -98,14 +99,14 @@ void expectTrueVerdicts(test::TestMesh mesh, std::uint64_t seed)
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const Kernel::FT squared = tree.squared_distance(exact(scan[i]));
     if (squared <= least) {
-      ASSERT_EQ(flags.a[i], 1) << i;
+      ASSERT_EQ(flags.a[i], Verdict::colliding) << i;
       ++close;
     }
     else if (squared <= most) {
       ++between;
     }
     else {
-      ASSERT_EQ(flags.a[i], 0) << i;
+      ASSERT_EQ(flags.a[i], Verdict::free) << i;
     }
   }
   EXPECT_GT(between, 0);

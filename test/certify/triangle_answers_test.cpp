@@ -2,6 +2,7 @@
 // Verdicts, distances and first poses of triangles against CGAL's exact distances between triangles and points, and
 // between triangles.
 #include "../surface/meshes.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/flags/collision_flags.h>
@@ -89,14 +90,14 @@ Counts expectTrue(const SurfaceCover& cover, const SphereHierarchy& other, doubl
   Counts counts;
   for (std::size_t t = 0; t < squared.size(); ++t) {
     if (squared[t] <= CGAL::square(Number(clearance))) {
-      EXPECT_EQ(verdicts[t], 1) << t;
+      EXPECT_EQ(verdicts[t], Verdict::colliding) << t;
       ++counts.colliding;
     }
     else if (squared[t] <= CGAL::square(Number(clearance) + slack)) {
       ++counts.between;
     }
     else {
-      EXPECT_EQ(verdicts[t], 0) << t;
+      EXPECT_EQ(verdicts[t], Verdict::free) << t;
       ++counts.free;
     }
     // The distance was rounded to a double.
@@ -180,8 +181,8 @@ TEST(TriangleAnswers, AreTrueAlongAPath)
     const Number within = CGAL::square(Number(request.clearance)),
                  beyond = CGAL::square(Number(request.clearance) + cover.tolerance);
     for (std::size_t t = 0; t < part.triangles.size(); ++t) {
-      EXPECT_EQ(verdicts[t] == 1, first[t] >= 0) << t;
-      EXPECT_EQ(verdicts[t] == 1, closest[t] >= 0) << t;
+      EXPECT_EQ(verdicts[t] == Verdict::colliding, first[t] >= 0) << t;
+      EXPECT_EQ(verdicts[t] == Verdict::colliding, closest[t] >= 0) << t;
       std::size_t best = 0;
       for (std::size_t k = 0; k < poses.size(); ++k) {
         if (squared[k][t] < squared[best][t]) best = k;

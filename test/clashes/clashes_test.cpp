@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/verdicts.h"
+
 #include <pcl_bsh/clashes/clashes.h>
 
 #include <gtest/gtest.h>
@@ -21,11 +23,11 @@ struct Scan {
   {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const bool collides = !std::isnan(points[i].distance);
-      found.flags.push_back(collides);
+      found.flags.push_back(test::verdictIf(collides));
       found.distance.push_back(points[i].distance);
       found.first_pose.push_back(collides ? points[i].first : -1);
       found.closest_pose.push_back(collides ? points[i].closest : -1);
-      found.closest_point.push_back(collides ? static_cast<std::uint32_t>(100 + i) : TrajectoryResult::kNoPoint);
+      found.closest_point.push_back(collides ? static_cast<std::uint32_t>(100 + i) : kNothing);
     }
   }
 
@@ -180,11 +182,11 @@ TEST(Clashes, ManyOfOneCellAreNumbered)
   EXPECT_EQ(clashes.back().id, "C0_0_0#20000");
 }
 
-/// Flags of 2: whether they collide depends on where the points truly are.
+/// Undecided: whether they collide depends on where the points truly are.
 TEST(Clashes, CertainOnesComeBeforeThoseThatCollidePerhaps)
 {
   Scan scan({{0, 0, 0, 0.1f}, {50, 0, 0, 0.3f}, {50, 0.5f, 0, 0.2f}, {90, 0, 0, 0.25f}});
-  scan.found.flags = {2, 1, 2, 2};
+  scan.found.flags = test::verdictsOf({2, 1, 2, 2});
   const std::vector<Clash> clashes = scan.clashes();
   ASSERT_EQ(clashes.size(), 3u);
   EXPECT_EQ(clashes[0].low, (Point3{50, 0, 0}));

@@ -150,7 +150,7 @@ TEST_F(FarPlaces, HoldPointsWithoutADistance)
   EXPECT_EQ(places[1].records.size(), 3u);
   for (const FarPlace& place : places) {
     EXPECT_EQ(place.distance, infinity);
-    EXPECT_EQ(place.nearest, PointDistances::kNoPoint);
+    EXPECT_EQ(place.nearest, kNothing);
   }
   EXPECT_EQ(places[0].point, 404u);
 }

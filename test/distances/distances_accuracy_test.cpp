@@ -41,18 +41,18 @@ protected:
     std::size_t undecided = 0;
     for (std::size_t i = 0; i < all.distance.size(); ++i) {
       const Interval& interval = found.interval[i];
-      if (all.nearest[i] == PointDistances::kNoPoint) { // no point, or nothing there
+      if (all.nearest[i] == kNothing) { // no point, or nothing there
         EXPECT_TRUE(std::isnan(interval.lower) || interval.upper == kInfinity);
         continue;
       }
       EXPECT_LE(interval.lower, all.distance[i]) << i;
       EXPECT_GE(interval.upper, all.distance[i]) << i;
-      if (found.nearest[i] != PointDistances::kNoPoint) {
+      if (found.nearest[i] != kNothing) {
         EXPECT_EQ(found.nearest[i], truth.nearest[i]);
         EXPECT_EQ(found.distance[i], truth.distance[i]);
       }
       else if (interval.lower >= max) {
-        EXPECT_EQ(truth.nearest[i], PointDistances::kNoPoint) << i;
+        EXPECT_EQ(truth.nearest[i], kNothing) << i;
       }
       else {
         ++undecided;

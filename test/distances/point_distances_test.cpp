@@ -120,7 +120,7 @@ TEST(PointDistances, AreNoneWhereACloudIsEmpty)
   request.accuracy = Accuracy::level(1);
   const PointDistances found = pointDistances(full, empty, request);
   EXPECT_EQ(found.measured + found.undecided, 0u);
-  EXPECT_EQ(found.nearest, (std::vector<std::uint32_t>{PointDistances::kNoPoint, PointDistances::kNoPoint}));
+  EXPECT_EQ(found.nearest, (std::vector<std::uint32_t>{kNothing, kNothing}));
   EXPECT_EQ(found.interval[0].lower, kInfinity);
   EXPECT_TRUE(std::isnan(found.interval[1].lower));
   EXPECT_TRUE(std::isnan(symmetricDistances(full, empty).hausdorff));

@@ -20,7 +20,7 @@ void expect(const char* name, const float (&p)[3], const float (&q)[3], double c
   pcl_bsh::FlagsRequest request;
   request.clearance = clearance;
   const bool any = pcl_bsh::anyCollision({a}, {b}, {clearance, {}}).verdict == pcl_bsh::Verdict::colliding;
-  const bool flag = pcl_bsh::collisionFlags({a}, {b}, request).a[0] == 1;
+  const bool flag = pcl_bsh::collisionFlags({a}, {b}, request).a[0] == pcl_bsh::Verdict::colliding;
   const double closest = pcl_bsh::closestPair({a}, {b}).distance;
   // As text: under -ffast-math a denormal compares equal to zero.
   char got[40], wanted[40];

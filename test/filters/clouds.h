@@ -2,6 +2,8 @@
 // Clouds for the filter tests, and the answer of a plain double loop to compare with.
 #pragma once
 
+#include "support/verdicts.h"
+
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/point_cloud.h>
 #include <pcl/types.h>
@@ -43,23 +45,25 @@ inline Eigen::Isometry3d somePose()
   return pose;
 }
 
-/// One flag per point of a: 1 if a point of b, posed, is within the clearance. Comparisons with NaN are false.
-inline std::vector<std::uint8_t> doubleLoop(const Points& a, const Points& b, const Eigen::Isometry3d& pose,
-                                            double clearance)
+/// One verdict per point of a: it collides if a point of b, posed, is within the clearance. Comparisons with NaN are
+/// false.
+inline std::vector<Verdict> doubleLoop(const Points& a, const Points& b, const Eigen::Isometry3d& pose,
+                                       double clearance)
 {
-  std::vector<std::uint8_t> flags(a.size(), 0);
+  std::vector<Verdict> flags(a.size(), Verdict::free);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    for (std::size_t j = 0; j < b.size() && !flags[i]; ++j) flags[i] = (a[i] - pose * b[j]).norm() <= clearance;
+    for (std::size_t j = 0; j < b.size() && flags[i] == Verdict::free; ++j)
+      flags[i] = test::verdictIf((a[i] - pose * b[j]).norm() <= clearance);
   }
   return flags;
 }
 
-/// The finite points whose flag is the one wanted.
-inline pcl::Indices where(const std::vector<std::uint8_t>& flags, bool wanted, const Points& points)
+/// The finite points that are not free, or those that are.
+inline pcl::Indices where(const std::vector<Verdict>& flags, bool wanted, const Points& points)
 {
   pcl::Indices indices;
   for (std::size_t i = 0; i < flags.size(); ++i) {
-    if (points[i].allFinite() && (flags[i] != 0) == wanted) indices.push_back(static_cast<pcl::index_t>(i));
+    if (points[i].allFinite() && (flags[i] != Verdict::free) == wanted) indices.push_back(static_cast<pcl::index_t>(i));
   }
   return indices;
 }

@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/collision_field.h>
 
 #include "clouds.h"
+#include "support/verdicts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ auto refusedWith(const std::string& text)
 TEST(CollisionField, IsAddedAtTheEndOfEachRecord)
 {
   const pcl::PCLPointCloud2 cloud = threePoints();
-  const pcl::PCLPointCloud2 result = withField(cloud, "collision", {1, 0, 1});
+  const pcl::PCLPointCloud2 result = withField(cloud, "collision", test::verdictsOf({1, 0, 1}));
 
   ASSERT_EQ(result.fields.size(), cloud.fields.size() + 1);
   EXPECT_EQ(result.fields.back().name, "collision");
@@ -80,7 +81,7 @@ TEST(CollisionField, KeepsRowsAndDensity)
   cloud.height = 3;
   cloud.row_step = cloud.point_step;
   cloud.is_dense = 1;
-  const pcl::PCLPointCloud2 result = withField(cloud, "collision", {0, 0, 1});
+  const pcl::PCLPointCloud2 result = withField(cloud, "collision", test::verdictsOf({0, 0, 1}));
   EXPECT_EQ(result.height, 3u);
   EXPECT_EQ(result.row_step, result.point_step);
   EXPECT_EQ(result.is_dense, 1);
@@ -88,9 +89,9 @@ TEST(CollisionField, KeepsRowsAndDensity)
 
 TEST(CollisionField, NewValuesReplaceOldOnes)
 {
-  const pcl::PCLPointCloud2 once = withField(threePoints(), "collision", {1, 0, 1});
-  const pcl::PCLPointCloud2 twice = withField(once, "collision", {0, 1, 1});
-  EXPECT_EQ(twice.data, withField(threePoints(), "collision", {0, 1, 1}).data);
+  const pcl::PCLPointCloud2 once = withField(threePoints(), "collision", test::verdictsOf({1, 0, 1}));
+  const pcl::PCLPointCloud2 twice = withField(once, "collision", test::verdictsOf({0, 1, 1}));
+  EXPECT_EQ(twice.data, withField(threePoints(), "collision", test::verdictsOf({0, 1, 1})).data);
   EXPECT_EQ(twice.fields.size(), once.fields.size());
 }
 
@@ -98,19 +99,23 @@ TEST(CollisionField, RefusesAFieldOfAnotherType)
 {
   EXPECT_THAT(
       [] {
-        withField(threePoints(), "intensity", {1, 0, 1});
+        withField(threePoints(), "intensity", test::verdictsOf({1, 0, 1}));
       },
       refusedWith("field 'intensity' exists already and is not one UINT8 per point"));
-  pcl::PCLPointCloud2 cloud = withField(threePoints(), "collision", {1, 0, 1});
+  pcl::PCLPointCloud2 cloud = withField(threePoints(), "collision", test::verdictsOf({1, 0, 1}));
   cloud.fields.back().offset = cloud.point_step;
-  EXPECT_THAT([&] { withField(cloud, "collision", {1, 0, 1}); }, refusedWith("field 'collision' exists already"));
+  EXPECT_THAT(
+      [&] {
+        withField(cloud, "collision", test::verdictsOf({1, 0, 1}));
+      },
+      refusedWith("field 'collision' exists already"));
 }
 
 TEST(CollisionField, RefusesAnotherNumberOfValues)
 {
   EXPECT_THAT(
       [] {
-        withField(threePoints(), "collision", {1, 0});
+        withField(threePoints(), "collision", test::verdictsOf({1, 0}));
       },
       refusedWith("field 'collision' has 2 values: the cloud has 3 points"));
 }

@@ -5,6 +5,7 @@
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "clouds.h"
+#include "support/verdicts.h"
 
 #include <pcl/point_types.h>
 
@@ -184,9 +185,9 @@ TEST_F(CollisionFilterCopies, StopAlongATrajectory)
     });
     filter_.filter(output);
     EXPECT_GT(last, 0);
-    std::vector<std::uint8_t> flags = doubleLoop(points, obstacle_, Eigen::Isometry3d::Identity(), clearance);
-    const std::vector<std::uint8_t> posed = doubleLoop(points, obstacle_, somePose(), clearance);
-    for (std::size_t i = 0; i < flags.size(); ++i) flags[i] |= posed[i];
+    std::vector<Verdict> flags = doubleLoop(points, obstacle_, Eigen::Isometry3d::Identity(), clearance);
+    const std::vector<Verdict> posed = doubleLoop(points, obstacle_, somePose(), clearance);
+    for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = graver(flags[i], posed[i]);
     EXPECT_EQ(output.size(), where(flags, false, points).size());
   }
 }

@@ -3,6 +3,7 @@
 #include <pcl_bsh/filters/collision_filter.h>
 
 #include "shared_scans.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 #include <nanoflann.hpp>
@@ -36,25 +37,25 @@ Matrix coordinates(const Cloud& cloud, const Eigen::Vector3d& offset)
   return result;
 }
 
-/// One flag per point of a: is the nearest point of b within the clearance? All of b is finite.
-std::vector<std::uint8_t> nearestWithin(const Matrix& a, const Matrix& b, double clearance)
+/// One verdict per point of a: is the nearest point of b within the clearance? All of b is finite.
+std::vector<Verdict> nearestWithin(const Matrix& a, const Matrix& b, double clearance)
 {
   const nanoflann::KDTreeEigenMatrixAdaptor<Matrix> tree(3, std::cref(b));
-  std::vector<std::uint8_t> flags(static_cast<std::size_t>(a.rows()), 0);
+  std::vector<Verdict> flags(static_cast<std::size_t>(a.rows()), Verdict::free);
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
     const Eigen::Vector3d query = a.row(i);
     if (!query.allFinite()) continue;
     Eigen::Index nearest = 0;
     double squared = 0;
     tree.query(query.data(), 1, &nearest, &squared);
-    flags[static_cast<std::size_t>(i)] = std::sqrt(squared) <= clearance;
+    flags[static_cast<std::size_t>(i)] = test::verdictIf(std::sqrt(squared) <= clearance);
   }
   return flags;
 }
 
-std::ptrdiff_t ones(const std::vector<std::uint8_t>& flags)
+std::ptrdiff_t ones(const std::vector<Verdict>& flags)
 {
-  return std::count(flags.begin(), flags.end(), 1);
+  return std::count(flags.begin(), flags.end(), Verdict::colliding);
 }
 
 class CollisionFilterData : public testing::Test {
@@ -81,12 +82,12 @@ TEST_F(CollisionFilterData, PandaArmOnTheTable)
   filter.setObstacleCloud(arm);
   filter.setPose(pose);
   filter.setClearance(clearance);
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter.computeFlags(flags);
 
   const Matrix points = coordinates(*scene, Eigen::Vector3d::Zero());
   const Matrix obstacle = (pose * coordinates(*arm, Eigen::Vector3d::Zero()).transpose()).transpose();
-  const std::vector<std::uint8_t> expected = nearestWithin(points, obstacle, clearance);
+  const std::vector<Verdict> expected = nearestWithin(points, obstacle, clearance);
   ASSERT_GT(ones(expected), 1000);
   EXPECT_EQ(flags, expected);
 
@@ -109,7 +110,7 @@ TEST_F(CollisionFilterData, Float64TerrainAgainstItsFloat32Twin)
   filter.setInputCloud(precise);
   filter.setObstacleCloud(rounded);
   filter.setClearance(clearance);
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter.computeFlags(flags);
 
   const Eigen::Vector3d corner(515000, 1981000, 0);

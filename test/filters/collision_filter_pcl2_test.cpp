@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/collision_filter.h>
 
 #include "clouds.h"
+#include "support/verdicts.h"
 
 #include <pcl/conversions.h>
 #include <pcl/filters/voxel_grid.h>
@@ -75,7 +76,7 @@ protected:
     }
   }
 
-  void expectFlagged(const Cloud& output, const std::vector<std::uint8_t>& flags) const
+  void expectFlagged(const Cloud& output, const std::vector<Verdict>& flags) const
   {
     const Cloud& input = *original_;
     ASSERT_EQ(output.width * output.height, flags.size());
@@ -84,7 +85,7 @@ protected:
     EXPECT_EQ(output.fields.back().datatype, pcl::PCLPointField::UINT8);
     for (std::size_t i = 0; i < flags.size(); ++i) {
       auto expected = record(input, i);
-      expected.push_back(flags[i]);
+      expected.push_back(static_cast<std::uint8_t>(flags[i]));
       EXPECT_EQ(record(output, i), expected) << i;
     }
   }
@@ -92,7 +93,7 @@ protected:
   const Points points_ = withNonFinite(randomPoints(700, 1));
   const Points obstacle_ = randomPoints(600, 2);
   const Eigen::Isometry3d pose_ = somePose();
-  std::vector<std::uint8_t> flags_;
+  std::vector<Verdict> flags_;
   const Cloud::ConstPtr original_ = fieldCloud<float>(points_);
   Cloud::Ptr input_;
   Filter filter_{true};
@@ -154,9 +155,9 @@ TEST_F(CollisionFilterPcl2Test, TrajectoryAddsItsFields)
 TEST_F(CollisionFilterPcl2Test, UndecidedPointsHaveAFlagOfTheirOwn)
 {
   filter_.setAccuracy(Accuracy::nodePairs(300));
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter_.computeFlags(flags);
-  const auto undecided = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 2));
+  const auto undecided = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), Verdict::undecided));
   EXPECT_GT(undecided, 0u);
   EXPECT_EQ(filter_.getUndecidedCount(), undecided);
   expectRecords(filtered(), *original_, where(flags, false, points_));
@@ -277,7 +278,7 @@ TEST_F(CollisionFilterPcl2Test, KeepFlaggedInPlaceAndAgain)
   expectFlagged(*input_, flags_);
   filter_.setClearance(0.0);
   filter_.filter(*input_);
-  expectFlagged(*input_, std::vector<std::uint8_t>(points_.size(), 0));
+  expectFlagged(*input_, std::vector<Verdict>(points_.size(), Verdict::free));
 }
 
 TEST_F(CollisionFilterPcl2Test, KeepFlaggedKeepsPointsOutsideTheIndices)
@@ -286,8 +287,8 @@ TEST_F(CollisionFilterPcl2Test, KeepFlaggedKeepsPointsOutsideTheIndices)
   const auto indices = std::make_shared<pcl::Indices>(where(flags_, true, points_));
   indices->resize(indices->size() / 2);
   filter_.setIndices(indices);
-  std::vector<std::uint8_t> expected(points_.size(), 0);
-  for (const pcl::index_t i : *indices) expected[static_cast<std::size_t>(i)] = 1;
+  std::vector<Verdict> expected(points_.size(), Verdict::free);
+  for (const pcl::index_t i : *indices) expected[static_cast<std::size_t>(i)] = Verdict::colliding;
   expectFlagged(filtered(), expected);
 }
 
@@ -321,7 +322,7 @@ TEST(CollisionFilterUtm, Float64IsNotRounded)
 TEST(CollisionFilterUtm, WarnsOnceOfFloatsTooCoarseForTheClearance)
 {
   const auto said = [](Filter& filter) {
-    std::vector<std::uint8_t> flags;
+    std::vector<Verdict> flags;
     testing::internal::CaptureStderr();
     testing::internal::CaptureStdout(); // PCL's console may use either
     filter.computeFlags(flags);

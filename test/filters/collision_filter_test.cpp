@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/collision_filter.h>
 
 #include "clouds.h"
+#include "support/verdicts.h"
 
 #include <pcl/filters/voxel_grid.h>
 #include <pcl/impl/point_types.hpp>
@@ -79,7 +80,7 @@ protected:
   Points points_ = randomPoints(700, 1);
   const Points obstacle_ = randomPoints(600, 2);
   const Eigen::Isometry3d pose_ = somePose();
-  std::vector<std::uint8_t> flags_;
+  std::vector<Verdict> flags_;
   Cloud::Ptr original_ = typedCloud<pcl::PointXYZI>(points_);
   Cloud::Ptr input_;
   Filter filter_{true};
@@ -135,7 +136,7 @@ TEST_F(CollisionFilterTest, RemovedIndicesAreTheRest)
 
 TEST_F(CollisionFilterTest, FlagsKnowNoPolarity)
 {
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   for (const bool negative : {false, true}) {
     filter_.setNegative(negative);
     filter_.computeFlags(flags);
@@ -177,12 +178,12 @@ TEST_F(CollisionFilterTest, IndicesAreTheOnlyPoints)
                [this](pcl::index_t i) { return i != 7 && !flags_[static_cast<std::size_t>(i)]; });
   EXPECT_EQ(filtered(), expected);
 
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter_.computeFlags(flags);
   ASSERT_EQ(flags.size(), points_.size());
   for (std::size_t i = 0; i < flags.size(); ++i) {
     const bool listed = std::count(indices->begin(), indices->end(), static_cast<pcl::index_t>(i)) > 0;
-    EXPECT_EQ(flags[i], listed ? flags_[i] : 0) << i;
+    EXPECT_EQ(flags[i], listed ? flags_[i] : Verdict::free) << i;
   }
 }
 
@@ -206,9 +207,9 @@ TEST_F(CollisionFilterTest, EmptyIndicesNameNoPoint)
   filter_.setIndices(std::make_shared<pcl::Indices>());
   EXPECT_THAT(filtered(), IsEmpty());
   EXPECT_THAT(*filter_.getRemovedIndices(), IsEmpty());
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter_.computeFlags(flags);
-  EXPECT_EQ(flags, std::vector<std::uint8_t>(points_.size(), 0));
+  EXPECT_EQ(flags, std::vector<Verdict>(points_.size(), Verdict::free));
 }
 
 TEST_F(CollisionFilterTest, ResultMayReplaceTheIndices)
@@ -249,7 +250,7 @@ TEST_F(CollisionFilterTest, EmptyInput)
   Cloud output = *original_;
   filter_.filter(output);
   EXPECT_TRUE(output.empty());
-  std::vector<std::uint8_t> flags(3);
+  std::vector<Verdict> flags(3);
   filter_.computeFlags(flags);
   EXPECT_THAT(flags, IsEmpty());
 }
@@ -267,7 +268,7 @@ TEST_F(CollisionFilterTest, MissingCloudsAreErrors)
 {
   Cloud output = *original_;
   pcl::Indices indices;
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
 
   Filter no_obstacle;
   no_obstacle.setInputCloud(input_);
@@ -438,19 +439,19 @@ TEST_F(CollisionFilterTest, ThreadsChangeNothing)
 TEST_F(CollisionFilterTest, UndecidedPointsAreNeverKeptAsFree)
 {
   EXPECT_TRUE(filter_.getAccuracy().isExact());
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   std::size_t undecided = 0;
   for (const char* setting : {"exact", "level=0", "level=1", "level=2", "level=9", "pairs=0", "pairs=300", "time=0"}) {
     SCOPED_TRACE(setting);
     filter_.setAccuracy(Accuracy::parse(setting));
     filter_.computeFlags(flags);
     ASSERT_EQ(flags.size(), flags_.size());
-    std::vector<std::uint8_t> colliding_side;
+    std::vector<Verdict> colliding_side;
     std::size_t counted = 0;
     for (std::size_t i = 0; i < flags.size(); ++i) {
-      counted += flags[i] == 2;
-      EXPECT_TRUE(flags[i] == 2 || flags[i] == flags_[i]) << i;
-      colliding_side.push_back(flags[i] != 0);
+      counted += flags[i] == Verdict::undecided;
+      EXPECT_TRUE(flags[i] == Verdict::undecided || flags[i] == flags_[i]) << i;
+      colliding_side.push_back(test::verdictIf(flags[i] != Verdict::free));
     }
     EXPECT_EQ(filter_.getUndecidedCount(), counted);
     undecided += counted;
@@ -482,8 +483,8 @@ TEST_F(CollisionFilterTest, ToleranceDecidesEveryPoint)
 {
   const double tolerance = 0.02;
   filter_.setAccuracy(Accuracy::tolerance(tolerance));
-  const std::vector<std::uint8_t> most = doubleLoop(points_, obstacle_, pose_, clearance + tolerance);
-  std::vector<std::uint8_t> flags;
+  const std::vector<Verdict> most = doubleLoop(points_, obstacle_, pose_, clearance + tolerance);
+  std::vector<Verdict> flags;
   filter_.computeFlags(flags);
   for (std::size_t i = 0; i < flags.size(); ++i) {
     EXPECT_GE(flags[i], flags_[i]) << i;
@@ -494,7 +495,7 @@ TEST_F(CollisionFilterTest, ToleranceDecidesEveryPoint)
 
 TEST_F(CollisionFilterTest, AccuracyThatMakesNoSenseIsAnError)
 {
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   for (const double wrong : {-1.0, static_cast<double>(nan)}) {
     filter_.setAccuracy(Accuracy::tolerance(wrong));
     EXPECT_THAT([&] { filter_.computeFlags(flags); }, refusedWith("accuracy: tolerance="));
@@ -527,12 +528,12 @@ TEST_F(CollisionFilterTest, TrajectoryCollidesAtAnyOfItsPoses)
       if (nearest < distance[i]) distance[i] = nearest, closest[i] = static_cast<std::int32_t>(k);
     }
   }
-  std::vector<std::uint8_t> expected;
-  for (const std::int32_t k : first) expected.push_back(k >= 0);
+  std::vector<Verdict> expected;
+  for (const std::int32_t k : first) expected.push_back(test::verdictIf(k >= 0));
   ASSERT_NE(expected, flags_) << "one pose is not enough";
 
   filter_.setTrajectory(poses);
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter_.computeFlags(flags);
   EXPECT_EQ(flags, expected);
   EXPECT_EQ(filtered(), where(expected, false, points_));
@@ -556,14 +557,15 @@ TEST_F(CollisionFilterTest, TrajectoryCollidesAtAnyOfItsPoses)
 TEST_F(CollisionFilterTest, AccuracyAlongATrajectory)
 {
   filter_.setTrajectory(somePath(pose_));
-  std::vector<std::uint8_t> exact, flags;
+  std::vector<Verdict> exact, flags;
   filter_.computeFlags(exact);
   filter_.setAccuracy(Accuracy::level(0));
   filter_.computeFlags(flags);
-  const auto undecided = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 2));
+  const auto undecided = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), Verdict::undecided));
   EXPECT_GT(undecided, 0u);
   EXPECT_EQ(filter_.getUndecidedCount(), undecided);
-  for (std::size_t i = 0; i < flags.size(); ++i) EXPECT_TRUE(flags[i] == 2 || flags[i] == exact[i]) << i;
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    EXPECT_TRUE(flags[i] == Verdict::undecided || flags[i] == exact[i]) << i;
   EXPECT_EQ(filtered(), where(flags, false, points_));
 
   TrajectoryResult along;
@@ -581,7 +583,7 @@ TEST_F(CollisionFilterTest, PoseAndTrajectoryReplaceEachOther)
   filter_.setTrajectory(somePath(pose_));
   filter_.setPose(pose_);
   EXPECT_FALSE(filter_.getTrajectory());
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter_.computeFlags(flags);
   EXPECT_EQ(flags, flags_);
   filter_.setPose(Eigen::Isometry3d(Eigen::Translation3d(9, 9, 9)));
@@ -596,20 +598,20 @@ TEST_F(CollisionFilterTest, SweptFindsWhatLiesBetweenPoses)
   filter_.setInputCloud(typedCloud<pcl::PointXYZI>({{0.5, 0, 0}, {0.5, 0.2, 0}}));
   filter_.setObstacleCloud(typedCloud<pcl::PointXYZ>({{0, 0, 0}}));
   filter_.setTrajectory({Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(1, 0, 0))});
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter_.computeFlags(flags);
-  EXPECT_EQ(flags, (std::vector<std::uint8_t>{0, 0}));
+  EXPECT_EQ(flags, test::verdictsOf({0, 0}));
   filter_.setSwept(0.01);
   filter_.computeFlags(flags);
-  EXPECT_EQ(flags, (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_EQ(flags, test::verdictsOf({1, 0}));
   filter_.setSwept(0);
   filter_.computeFlags(flags);
-  EXPECT_EQ(flags, (std::vector<std::uint8_t>{0, 0}));
+  EXPECT_EQ(flags, test::verdictsOf({0, 0}));
 }
 
 TEST_F(CollisionFilterTest, BadTrajectoriesAreErrors)
 {
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter_.setTrajectory({});
   EXPECT_THAT([&] { filter_.computeFlags(flags); }, refusedWith("path: has no pose"));
   Eigen::Isometry3d scaled = pose_;

@@ -6,6 +6,7 @@
 #include <pcl_bsh/roadmap/brute_force.h>
 
 #include "clouds.h"
+#include "support/verdicts.h"
 
 #include <pcl/point_types.h>
 
@@ -64,7 +65,7 @@ protected:
   }
 
   /// What brute force says of the same views. @param sigmas of the input's points, whose own sigmas count
-  std::vector<std::uint8_t> expected(double sigmas, double of_obstacle) const
+  std::vector<Verdict> expected(double sigmas, double of_obstacle) const
   {
     std::vector<float> own;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -82,16 +83,11 @@ protected:
     return brute_force::collisionFlags({of_a}, {of_b, pose_}, request).a;
   }
 
-  std::vector<std::uint8_t> flags()
+  std::vector<Verdict> flags()
   {
-    std::vector<std::uint8_t> found;
+    std::vector<Verdict> found;
     filter_.computeFlags(found);
     return found;
-  }
-
-  static std::size_t count(const std::vector<std::uint8_t>& flags, std::uint8_t flag)
-  {
-    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flag));
   }
 
   Points points_ = randomPoints(700, 1);
@@ -105,19 +101,19 @@ TEST_F(CollisionFilterUncertainty, FlagsAreThoseOfBruteForce)
 {
   filter_.setInputUncertainty(Uncertainty("intensity", 2.5));
   filter_.setObstacleUncertainty(0.007);
-  const std::vector<std::uint8_t> wanted = expected(2.5, 0.007), found = flags();
-  ASSERT_GT(count(wanted, 0), 50U);
-  ASSERT_GT(count(wanted, 1), 50U);
-  ASSERT_GT(count(wanted, 2), 50U);
+  const std::vector<Verdict> wanted = expected(2.5, 0.007), found = flags();
+  ASSERT_GT(countOf(wanted, Verdict::free), 50U);
+  ASSERT_GT(countOf(wanted, Verdict::colliding), 50U);
+  ASSERT_GT(countOf(wanted, Verdict::undecided), 50U);
   EXPECT_EQ(found, wanted);
-  EXPECT_EQ(filter_.getUndecidedCount(), count(wanted, 2));
+  EXPECT_EQ(filter_.getUndecidedCount(), countOf(wanted, Verdict::undecided));
 }
 
 TEST_F(CollisionFilterUncertainty, WhatIsUndecidedIsNotFree)
 {
   filter_.setInputUncertainty(0.01);
-  const std::vector<std::uint8_t> found = flags();
-  ASSERT_GT(count(found, 2), 50U);
+  const std::vector<Verdict> found = flags();
+  ASSERT_GT(countOf(found, Verdict::undecided), 50U);
   pcl::Indices kept;
   filter_.filter(kept);
   EXPECT_EQ(kept, where(found, false, points_)) << "free ones alone";
@@ -128,7 +124,7 @@ TEST_F(CollisionFilterUncertainty, WhatIsUndecidedIsNotFree)
   Cloud flagged;
   filter_.filter(flagged);
   for (std::size_t i = 0; i < found.size(); ++i)
-    ASSERT_EQ(flagged.data[i * flagged.point_step + flagged.fields.back().offset], found[i]);
+    ASSERT_EQ(flagged.data[i * flagged.point_step + flagged.fields.back().offset], bytesOf(found)[i]);
 }
 
 TEST_F(CollisionFilterUncertainty, TypedCloudsHaveFieldsToo)
@@ -139,22 +135,22 @@ TEST_F(CollisionFilterUncertainty, TypedCloudsHaveFieldsToo)
   filter.setInputCloud(typed);
   setUp(filter);
   filter.setInputUncertainty(Uncertainty("intensity", 1.0));
-  std::vector<std::uint8_t> found;
+  std::vector<Verdict> found;
   filter.computeFlags(found);
   EXPECT_EQ(found, expected(1.0, 0.0));
 
   const auto some = std::make_shared<pcl::Indices>(pcl::Indices{3, 5, 8, 7, 600});
   filter.setIndices(some);
-  std::vector<std::uint8_t> of_some;
+  std::vector<Verdict> of_some;
   filter.computeFlags(of_some);
   for (std::size_t i = 0; i < found.size(); ++i)
-    EXPECT_EQ(of_some[i], std::find(some->begin(), some->end(), i) == some->end() ? 0 : found[i]) << i;
+    EXPECT_EQ(of_some[i], std::find(some->begin(), some->end(), i) == some->end() ? Verdict::free : found[i]) << i;
 }
 
 TEST_F(CollisionFilterUncertainty, EverySettingCountsAtItsNextUse)
 {
-  const std::vector<std::uint8_t> measured = flags();
-  EXPECT_EQ(count(measured, 2), 0U);
+  const std::vector<Verdict> measured = flags();
+  EXPECT_EQ(countOf(measured, Verdict::undecided), 0U);
   filter_.setObstacleUncertainty(0.007);
   filter_.setInputUncertainty(Uncertainty("intensity", 1.0));
   EXPECT_EQ(flags(), expected(1.0, 0.007)) << "the obstacle's hierarchy was built without";
@@ -165,7 +161,7 @@ TEST_F(CollisionFilterUncertainty, EverySettingCountsAtItsNextUse)
   CollisionFilter<Cloud> copy(filter_);
   filter_.setInputUncertainty({});
   EXPECT_EQ(flags(), measured);
-  std::vector<std::uint8_t> found;
+  std::vector<Verdict> found;
   copy.computeFlags(found);
   EXPECT_EQ(found, expected(3.0, 0.0));
 }
@@ -173,7 +169,7 @@ TEST_F(CollisionFilterUncertainty, EverySettingCountsAtItsNextUse)
 TEST_F(CollisionFilterUncertainty, ObstaclesSigmasMustNotChangeUnseen)
 {
   filter_.setObstacleUncertainty(Uncertainty("intensity", 1.0));
-  const std::vector<std::uint8_t> before = flags();
+  const std::vector<Verdict> before = flags();
   setSigma(*obstacle_, 5, 0.5f);
   EXPECT_THAT([&] { flags(); }, refusedWith("the obstacle: has changed"));
   filter_.setObstacleCloud(obstacle_);
@@ -230,9 +226,9 @@ protected:
     filter_.setWidestGap(1.0);
   }
 
-  std::vector<std::uint8_t> flags()
+  std::vector<Verdict> flags()
   {
-    std::vector<std::uint8_t> found;
+    std::vector<Verdict> found;
     filter_.computeFlags(found);
     return found;
   }
@@ -266,37 +262,38 @@ TEST_F(CollisionFilterDensity, WhatHasChangedIsRefusedWhateverElseIsSet)
   set_again();
   EXPECT_THAT([&] { flags(); }, refusedWith("has changed since it was set: set it again")) << "it has grown";
   filter_.setObstacleCloud(wall_);
-  EXPECT_EQ(flags(), std::vector<std::uint8_t>(points_.size(), 0)) << "far away, and all at one place";
+  EXPECT_EQ(flags(), std::vector<Verdict>(points_.size(), Verdict::free)) << "far away, and all at one place";
 }
 
 TEST_F(CollisionFilterDensity, HolesBetweenLinesAreNotFree)
 {
-  const std::vector<std::uint8_t> guarded = flags();
-  EXPECT_EQ(filter_.getSparseCount(), std::size_t(std::count(guarded.begin(), guarded.end(), 3)));
+  const std::vector<Verdict> guarded = flags();
+  EXPECT_EQ(filter_.getSparseCount(), countOf(guarded, Verdict::sparse));
   EXPECT_EQ(filter_.getUndecidedCount(), filter_.getSparseCount());
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (points_[i].z() <= 0.1) {
-      EXPECT_NE(guarded[i], 0) << "within the clearance of the wall";
+      EXPECT_NE(guarded[i], Verdict::free) << "within the clearance of the wall";
     }
     if (points_[i].z() == 0.5) {
-      EXPECT_EQ(guarded[i], 0) << "farther than the clearance and half of a hole";
+      EXPECT_EQ(guarded[i], Verdict::free) << "farther than the clearance and half of a hole";
     }
   }
   pcl::Indices kept;
   filter_.filter(kept);
   EXPECT_EQ(kept, where(guarded, false, points_)) << "free ones alone";
   filter_.setDensityGuard(false);
-  const std::vector<std::uint8_t> plain = flags();
+  const std::vector<Verdict> plain = flags();
   EXPECT_EQ(filter_.getSparseCount(), 0U);
-  for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_EQ(plain[i], guarded[i] == 3 ? 0 : guarded[i]);
+  for (std::size_t i = 0; i < plain.size(); ++i)
+    EXPECT_EQ(plain[i], guarded[i] == Verdict::sparse ? Verdict::free : guarded[i]);
   EXPECT_NE(plain, guarded);
 }
 
 TEST_F(CollisionFilterDensity, WhatGapesWiderIsAnOpening)
 {
   filter_.setWidestGap(0.25);
-  const std::vector<std::uint8_t> narrow = flags();
-  EXPECT_EQ(std::count(narrow.begin(), narrow.end(), 3), 0);
+  const std::vector<Verdict> narrow = flags();
+  EXPECT_EQ(std::count(narrow.begin(), narrow.end(), Verdict::sparse), 0);
   filter_.setWidestGap(1.0);
   EXPECT_NE(flags(), narrow);
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the filters tell of a question beside its answer.
+#include "support/verdicts.h"
+
 #include <pcl_bsh/filters/collision_filter.h>
 #include <pcl_bsh/filters/distance_filter.h>
 #include <pcl_bsh/filters/mesh_collision_filter.h>
@@ -54,7 +56,7 @@ protected:
 
   CollisionFilter<pcl::PointXYZ> filter_;
   Told<CollisionFilter<pcl::PointXYZ>> told_{filter_};
-  std::vector<std::uint8_t> flags_;
+  std::vector<Verdict> flags_;
 };
 
 TEST_F(FilterWarnings, NoneWhereAllIsInOrder)

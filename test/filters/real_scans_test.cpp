@@ -8,6 +8,7 @@
 #include "shared_scans.h"
 #include "support/kd_tree.h"
 #include "support/question.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -155,15 +156,15 @@ TEST_F(RealScans, Float64TerrainAgainstItsFloat32Twin)
 }
 
 /// Flags of PCL's side of things: the filter of clouds with run-time fields.
-std::vector<std::uint8_t> flagsByFilter(const pcl::PCLPointCloud2& input, const pcl::PCLPointCloud2& obstacle,
-                                        const Eigen::Isometry3d& pose, double clearance)
+std::vector<Verdict> flagsByFilter(const pcl::PCLPointCloud2& input, const pcl::PCLPointCloud2& obstacle,
+                                   const Eigen::Isometry3d& pose, double clearance)
 {
   CollisionFilter<pcl::PCLPointCloud2> filter;
   filter.setInputCloud(std::make_shared<pcl::PCLPointCloud2>(input));
   filter.setObstacleCloud(std::make_shared<pcl::PCLPointCloud2>(obstacle));
   filter.setPose(pose);
   filter.setClearance(clearance);
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter.computeFlags(flags);
   return flags;
 }
@@ -185,7 +186,7 @@ TEST_F(RealScans, GeoreferencedTerrainIsExactInFloat64AndOnlyThere)
     const FlagsResult flags = collisionFlags({precise.hierarchy}, {precise.hierarchy, lifted}, within(clearance));
     EXPECT_TRUE(flags.a == expected);
     EXPECT_TRUE(flagsByFilter(precise.cloud, precise.cloud, lifted, clearance) == expected);
-    const bool any = std::find(expected.begin(), expected.end(), 1) != expected.end();
+    const bool any = std::find(expected.begin(), expected.end(), Verdict::colliding) != expected.end();
     EXPECT_EQ(anyCollision({precise.hierarchy}, {precise.hierarchy, lifted}, within(clearance)).verdict,
               any ? Verdict::colliding : Verdict::free);
     const auto of_floats = flagsByFilter(rounded.cloud, rounded.cloud, lifted, clearance);
@@ -216,7 +217,7 @@ void expectDistances(const Scan& a, const Eigen::Isometry3d& pose_a, const Scan&
   for (std::uint32_t i = 0; i < a.view().count; i += static_cast<std::uint32_t>(step)) {
     const Eigen::Vector3d query = test::KdTree::moved(a.view(), i, pose_a);
     if (!query.allFinite()) {
-      ASSERT_EQ(found.nearest[i], PointDistances::kNoPoint);
+      ASSERT_EQ(found.nearest[i], kNothing);
       continue;
     }
     const auto pairWith = [&](std::uint32_t j) { return ExactDistance::Pair{a.view().point(i), b.view().point(j)}; };
@@ -227,7 +228,7 @@ void expectDistances(const Scan& a, const Eigen::Isometry3d& pose_a, const Scan&
       return false;
     });
     if (distance.compare(a.view().point(i), b.view().point(nearest), max_distance) > 0) {
-      ASSERT_EQ(found.nearest[i], PointDistances::kNoPoint) << "record " << i;
+      ASSERT_EQ(found.nearest[i], kNothing) << "record " << i;
       continue;
     }
     ASSERT_EQ(found.nearest[i], nearest) << "record " << i;

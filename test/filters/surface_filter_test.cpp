@@ -5,6 +5,7 @@
 #include <pcl_bsh/filters/mesh_collision_filter.h>
 
 #include "clouds.h"
+#include "support/verdicts.h"
 
 #include <pcl/PolygonMesh.h>
 #include <pcl/conversions.h>
@@ -67,18 +68,18 @@ TEST(SurfaceFilter, FlagsWhatIsNearTheFaces)
   filter.setInputCloud(scan);
   filter.setObstacleSurface(crate(), tolerance);
   filter.setClearance(clearance);
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter.computeFlags(flags);
   int between = 0;
   for (std::size_t i = 0; i < scan->size(); ++i) {
     const double distance = distanceToCrate((*scan)[i]);
     if (distance <= clearance) {
-      ASSERT_EQ(flags[i], 1) << i;
+      ASSERT_EQ(flags[i], Verdict::colliding) << i;
     }
     if (distance > clearance + tolerance) {
-      ASSERT_EQ(flags[i], 0) << i;
+      ASSERT_EQ(flags[i], Verdict::free) << i;
     }
-    if (distance > clearance && flags[i] == 1) ++between;
+    if (distance > clearance && flags[i] == Verdict::colliding) ++between;
   }
   EXPECT_GT(between, 5);
   ASSERT_NE(filter.getObstacleSurface(), nullptr);
@@ -86,14 +87,14 @@ TEST(SurfaceFilter, FlagsWhatIsNearTheFaces)
 
   // Each copy keeps it; a cloud replaces it.
   CollisionFilter<pcl::PointXYZ> copy(filter);
-  std::vector<std::uint8_t> again;
+  std::vector<Verdict> again;
   copy.computeFlags(again);
   EXPECT_EQ(again, flags);
   auto corners = std::make_shared<pcl::PCLPointCloud2>(crate()->cloud);
   filter.setObstacleCloud(corners);
   EXPECT_EQ(filter.getObstacleSurface(), nullptr);
   filter.computeFlags(flags);
-  EXPECT_LT(std::count(flags.begin(), flags.end(), 1), 40);
+  EXPECT_LT(std::count(flags.begin(), flags.end(), Verdict::colliding), 40);
 }
 
 TEST(SurfaceFilter, FollowsAPathAndNamesTriangles)
@@ -114,7 +115,7 @@ TEST(SurfaceFilter, FollowsAPathAndNamesTriangles)
   filter.setTrajectory(poses);
   TrajectoryResult result;
   filter.computeTrajectory(result);
-  EXPECT_THAT(result.flags, ElementsAre(1, 1));
+  EXPECT_EQ(result.flags, test::verdictsOf({1, 1}));
   EXPECT_THAT(result.first_pose, ElementsAre(3, 1));
   EXPECT_GE(result.distance[0], 0.04f);
   EXPECT_LE(result.distance[0], 0.0501f);
@@ -184,7 +185,7 @@ TEST(MeshFilter, FlagsPolygonsAndKeepsThem)
   filter.setInputMesh(mesh, tolerance);
   filter.setObstacleSurface(crate(), tolerance);
   filter.setClearance(clearance);
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter.computeFlags(flags);
   ASSERT_EQ(flags.size(), 300u);
   TrajectoryResult found;
@@ -201,12 +202,12 @@ TEST(MeshFilter, FlagsPolygonsAndKeepsThem)
         least = std::min(least, distanceToCrate({q.x(), q.y(), q.z()}));
       }
     if (least <= clearance) {
-      ASSERT_EQ(flags[p], 1) << p;
+      ASSERT_EQ(flags[p], Verdict::colliding) << p;
     }
     if (least > clearance + 2 * tolerance + 4 * step) {
-      ASSERT_EQ(flags[p], 0) << p;
+      ASSERT_EQ(flags[p], Verdict::free) << p;
     }
-    colliding += flags[p];
+    colliding += flags[p] == Verdict::colliding;
   }
   EXPECT_GT(colliding, 20u);
   EXPECT_LT(colliding, 280u);
@@ -220,7 +221,7 @@ TEST(MeshFilter, FlagsPolygonsAndKeepsThem)
     pcl::fromPCLPointCloud2(kept.cloud, left);
     std::size_t next = 0;
     for (std::size_t p = 0; p < flags.size(); ++p) {
-      if ((flags[p] != 0) != negative) continue;
+      if ((flags[p] != Verdict::free) != negative) continue;
       const pcl::Vertices& polygon = kept.polygons[next++];
       for (std::size_t k = 0; k < 4; ++k)
         EXPECT_EQ(left[static_cast<std::size_t>(polygon.vertices[k])].x, corners[4 * p + k].x);
@@ -238,9 +239,9 @@ TEST(MeshFilter, AMeshThatHasChangedIsNotAskedAbout)
   filter.setInputMesh(mesh, 0.1);
   filter.setObstacleCloud(one_side);
   filter.setClearance(0.05);
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter.computeFlags(flags);
-  EXPECT_THAT(flags, ElementsAre(0, 1, 0, 0, 0, 0));
+  EXPECT_EQ(flags, test::verdictsOf({0, 1, 0, 0, 0, 0}));
   filter.filter(*mesh); // writes over its input
   EXPECT_EQ(mesh->polygons.size(), 5u);
   const auto refused = [](const auto& call) {
@@ -254,7 +255,7 @@ TEST(MeshFilter, AMeshThatHasChangedIsNotAskedAbout)
   EXPECT_EQ(mesh->polygons.size(), 5u);
   filter.setInputMesh(mesh, 0.1);
   filter.computeFlags(flags);
-  EXPECT_THAT(flags, ElementsAre(0, 0, 0, 0, 0));
+  EXPECT_EQ(flags, test::verdictsOf({0, 0, 0, 0, 0}));
   std::swap(mesh->polygons[0].vertices[0], mesh->polygons[0].vertices[1]); // vertices alone stay
   refused([&] { filter.computeFlags(flags); });
   std::swap(mesh->polygons[0].vertices[0], mesh->polygons[0].vertices[1]);
@@ -264,7 +265,7 @@ TEST(MeshFilter, AMeshThatHasChangedIsNotAskedAbout)
 TEST(MeshFilter, RefusesWhatIsNoInput)
 {
   MeshCollisionFilter filter;
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   pcl::PolygonMesh kept;
   const auto refused = [](const auto& call, const std::string& text) {
     EXPECT_THAT(call, ThrowsMessage<std::invalid_argument>(HasSubstr(text)));
@@ -298,7 +299,7 @@ TEST(SurfaceFilter, HasNoHolesToGuard)
   filter.setInputCloud(scan);
   filter.setObstacleSurface(crate(), 0.05);
   filter.setClearance(0.1);
-  std::vector<std::uint8_t> plain, guarded;
+  std::vector<Verdict> plain, guarded;
   filter.computeFlags(plain);
   filter.setDensityGuard(true);
   filter.computeFlags(guarded);
@@ -310,10 +311,10 @@ TEST(SurfaceFilter, HasNoHolesToGuard)
   for (std::size_t i = 0; i < plain.size(); ++i) {
     const double distance = distanceToCrate((*scan)[i]);
     if (distance <= 0.09) {
-      ASSERT_EQ(guarded[i], 1);
+      ASSERT_EQ(guarded[i], Verdict::colliding);
     }
     if (distance <= 0.11) {
-      ASSERT_NE(guarded[i], 0);
+      ASSERT_NE(guarded[i], Verdict::free);
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -23,11 +24,11 @@ FlagsRequest within(double clearance, Side flagged = Side::both, const Accuracy&
   return {clearance, flagged, threads, accuracy};
 }
 
-std::vector<std::int32_t> recordsOf(const std::vector<std::uint8_t>& flags, Verdict verdict)
+std::vector<std::int32_t> recordsOf(const std::vector<Verdict>& flags, Verdict verdict)
 {
   std::vector<std::int32_t> records;
   for (std::size_t i = 0; i < flags.size(); ++i)
-    if (flags[i] == flagOf(verdict)) records.push_back(static_cast<std::int32_t>(i));
+    if (flags[i] == verdict) records.push_back(static_cast<std::int32_t>(i));
   return records;
 }
 

@@ -5,6 +5,7 @@
 #include "support/facing_sheets.h"
 #include "support/kd_tree.h"
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 #include "support/work_counts.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,7 @@
 namespace pcl_bsh {
 namespace {
 
-using Flags = std::vector<std::uint8_t>;
+using Flags = std::vector<Verdict>;
 using test::Cloud;
 using test::FacingSheets;
 using test::Random;
@@ -45,7 +46,7 @@ FlagsRequest within(double clearance, Side flagged = Side::a, unsigned threads =
 std::size_t ones(const Flags& flags)
 {
   std::size_t count = 0;
-  for (const std::uint8_t flag : flags) count += flag;
+  for (const Verdict flag : flags) count += flag == Verdict::colliding;
   return count;
 }
 
@@ -154,7 +155,7 @@ TEST(CollisionFlags, BadPointsNeitherCollideNorHideOthers) // H12, H13
     expectSameAsBruteForce({queries, target, identity, identity, .0105, "line"});
     expectSameAsBruteForce({target, queries, identity, identity, .0105, "line"});
   }
-  EXPECT_EQ(flagsOf(Cloud({{nan, 0, 0}, {0, infinity, 0}, {0, 0, 0}}), queries, 1), (Flags{0, 0, 1}));
+  EXPECT_EQ(flagsOf(Cloud({{nan, 0, 0}, {0, infinity, 0}, {0, 0, 0}}), queries, 1), test::verdictsOf({0, 0, 1}));
   EXPECT_EQ(ones(flagsOf(queries, line([](int) { return true; }), 1e30)), 0u);
 }
 
@@ -162,12 +163,12 @@ TEST(CollisionFlags, EmptyClouds)
 {
   const Cloud none({}), two({{0, 0, 0}, {1, 1, 1}});
   EXPECT_TRUE(flagsOf(none, two, 1).empty());
-  EXPECT_EQ(flagsOf(two, none, 1), (Flags{0, 0}));
+  EXPECT_EQ(flagsOf(two, none, 1), test::verdictsOf({0, 0}));
   EXPECT_TRUE(flagsOf(none, none, 1).empty());
   Cloud empty_subset = two;
   empty_subset.restrictTo({});
-  EXPECT_EQ(flagsOf(empty_subset, two, 1), (Flags{0, 0}));
-  EXPECT_EQ(flagsOf(two, empty_subset, 1), (Flags{0, 0}));
+  EXPECT_EQ(flagsOf(empty_subset, two, 1), test::verdictsOf({0, 0}));
+  EXPECT_EQ(flagsOf(two, empty_subset, 1), test::verdictsOf({0, 0}));
 }
 
 TEST(CollisionFlags, RecordNamedTwiceCountsOnce)
@@ -177,7 +178,7 @@ TEST(CollisionFlags, RecordNamedTwiceCountsOnce)
   const Cloud origin({{0, 0, 0}});
   const SphereHierarchy a(twice.view()), b(origin.view());
   const FlagsResult result = collisionFlags({a}, {b}, within(1, Side::both));
-  EXPECT_EQ(result.a, (Flags{0, 1, 0}));
+  EXPECT_EQ(result.a, test::verdictsOf({0, 1, 0}));
   EXPECT_EQ(result.colliding_a, 1u);
 }
 
@@ -189,8 +190,8 @@ TEST(CollisionFlags, BallsReachWhereTheirCentersDoNot)
   for (const double clearance : {std::nextafter(1.0, 0.0), 1.0, std::nextafter(1.5, 0.0), 1.5}) {
     expectSameAsBruteForce({a, b, identity, identity, clearance, "balls " + std::to_string(clearance)});
   }
-  EXPECT_EQ(flagsOf(a, b, 1), (Flags{1, 0}));
-  EXPECT_EQ(flagsOf(b, a, 1), (Flags{1}));
+  EXPECT_EQ(flagsOf(a, b, 1), test::verdictsOf({1, 0}));
+  EXPECT_EQ(flagsOf(b, a, 1), test::verdictsOf({1}));
 }
 
 TEST(CollisionFlags, BallsOfDifferentSizeInOnePlace)
@@ -278,8 +279,8 @@ TEST(CollisionFlags, SameInAnyFloatingPointEnvironmentOfTheCaller) // H25
   _mm_setcsr(before | flush_to_zero | denormals_are_zero);
   const Flags touching = flagsOf(a, b, 5.1e-40), apart = flagsOf(a, b, 4.9e-40);
   _mm_setcsr(before);
-  EXPECT_EQ(touching, (Flags{1}));
-  EXPECT_EQ(apart, (Flags{0}));
+  EXPECT_EQ(touching, test::verdictsOf({1}));
+  EXPECT_EQ(apart, test::verdictsOf({0}));
 #endif
 }
 

@@ -7,6 +7,7 @@
 #include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 #include "support/work_counts.h"
 
 #include <gtest/gtest.h>
@@ -68,14 +69,14 @@ std::size_t expectFlags(const Cloud& a, const Cloud& b, const Eigen::Isometry3d&
 {
   const SphereHierarchy ha(a.view(), options), hb(b.view(), options), again(a.view(), options);
   const Placed at_a(ha, pose_a), at_b(hb, pose_b);
-  const std::vector<std::uint8_t> expected = brute_force::collisionFlags(at_a, at_b, within(clearance)).a;
+  const std::vector<Verdict> expected = brute_force::collisionFlags(at_a, at_b, within(clearance)).a;
   EXPECT_EQ(collisionFlags(at_a, at_b, within(clearance)).a, expected) << what << ", first";
   const std::size_t without_tree = ha.statistics().voxels - ha.statistics().voxels_built;
   EXPECT_EQ(collisionFlags(at_a, at_b, within(clearance)).a, expected) << what << ", second";
   EXPECT_EQ(collisionFlags(at_a, at_b, within(clearance)).a, expected) << what << ", third";
   const std::vector<std::int32_t> listed = collidingIndices({again, pose_a}, at_b, within(clearance)).a;
-  std::vector<std::uint8_t> flags(expected.size(), flagOf(Verdict::free));
-  for (const std::int32_t record : listed) flags[static_cast<std::size_t>(record)] = flagOf(Verdict::colliding);
+  std::vector<Verdict> flags(expected.size(), Verdict::free);
+  for (const std::int32_t record : listed) flags[static_cast<std::size_t>(record)] = Verdict::colliding;
   EXPECT_EQ(flags, expected) << what << ", listed";
   EXPECT_TRUE(ha.validate().none()) << what;
   return without_tree;
@@ -279,7 +280,7 @@ TEST(FlagRuns, OfBothCloudsAtOnce)
   Random random(77);
   const Cloud a(scan(true, 0.2, random)), b(scan(false, 0.2, random));
   const Eigen::Isometry3d pose(Eigen::Translation3d(12, 10, 3));
-  std::vector<std::uint8_t> expected_a, expected_b;
+  std::vector<Verdict> expected_a, expected_b;
   for (int round = 0; round < 15; ++round) {
     const SphereHierarchy ha(a.view(), withEdge(8)), hb(b.view(), withEdge(8));
     FlagsResult of_a, of_b;

@@ -6,6 +6,7 @@
 #include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -133,7 +134,7 @@ TEST(OwnUncertainties, AtTheEdgesOfPairs)
     if (HasFatalFailure()) return;
     EXPECT_TRUE(a.validate().none());
     EXPECT_TRUE(b.validate().none());
-    for (const std::uint8_t flag : collisionFlags({a}, {b, edge.pose}, request).a) ++flags[flag];
+    for (const Verdict flag : collisionFlags({a}, {b, edge.pose}, request).a) ++flags[test::numberOf(flag)];
   }
   for (const std::size_t count : flags) EXPECT_GT(count, 1000u);
 }
@@ -153,7 +154,7 @@ TEST(OwnUncertainties, FollowWhatChanges)
       b.buildAll();
       expectBruteForce(a, {b, edge.pose}, request);
       if (HasFatalFailure()) return;
-      for (const std::uint8_t flag : collisionFlags({a}, {b, edge.pose}, request).b) ++flags[flag];
+      for (const Verdict flag : collisionFlags({a}, {b, edge.pose}, request).b) ++flags[test::numberOf(flag)];
       Cloud& cloud = change % 2 == 0 ? edge.a : edge.b;
       SphereHierarchy& hierarchy = change % 2 == 0 ? a : b;
       cloud.setUncertainties(0.0, lengths(edge.random.pick(kSpreads), cloud.view().count, 1.0, edge.random));
@@ -186,7 +187,7 @@ TEST(OwnUncertainties, LessThanExactClaimsNothingFalse)
       request.accuracy = accuracy;
       const FlagsResult found = collisionFlags({a}, {b, edge.pose}, request);
       for (std::size_t i = 0; i < found.a.size(); ++i) {
-        if (found.a[i] != flagOf(Verdict::undecided)) {
+        if (found.a[i] != Verdict::undecided) {
           ASSERT_EQ(found.a[i], truth.a[i]) << accuracy.text() << ", point " << i;
         }
         ++(found.a[i] == truth.a[i] ? decided : withheld);

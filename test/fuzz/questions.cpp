@@ -19,6 +19,7 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <type_traits>
 
 namespace pcl_bsh::fuzz {
 namespace {
@@ -76,17 +77,17 @@ bool collides(const Placed& a, const Placed& b, PointPair pair, double clearance
 }
 
 /// Flags of a query that may stop early, or tell apart what is within a tolerance at will.
-void requireFlags(const std::vector<std::uint8_t>& flags, const std::vector<std::uint8_t>& within,
-                  const std::vector<std::uint8_t>& within_tolerance, const Accuracy& accuracy, const char* what)
+void requireFlags(const std::vector<Verdict>& flags, const std::vector<Verdict>& within,
+                  const std::vector<Verdict>& within_tolerance, const Accuracy& accuracy, const char* what)
 {
   require(flags.size() == within.size(), what);
   for (std::size_t i = 0; i < flags.size(); ++i) {
-    if (flags[i] == 2)
+    if (flags[i] == Verdict::undecided)
       require(accuracy.stopsEarly(), what);
-    else if (flags[i] == 1)
-      require(within_tolerance[i] == 1, what);
+    else if (flags[i] == Verdict::colliding)
+      require(within_tolerance[i] == Verdict::colliding, what);
     else
-      require(flags[i] == 0 && within[i] == 0, what);
+      require(flags[i] == Verdict::free && within[i] == Verdict::free, what);
   }
 }
 
@@ -235,10 +236,9 @@ void Questions::askFlags(const Placed& a, const Placed& b, const test::Question&
   const FlagsResult tolerated = brute_force::collisionFlags(a, b, wider);
   requireFlags(flags_.a, expected.a, tolerated.a, request.accuracy, "flags of a: not what the accuracy grants");
   requireFlags(flags_.b, expected.b, tolerated.b, request.accuracy, "flags of b: not what the accuracy grants");
-  const auto count = [](const std::vector<std::uint8_t>& flags, int value) {
-    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), value));
-  };
-  require(flags_.undecided_a == count(flags_.a, 2) && flags_.undecided_b == count(flags_.b, 2), "flags: undecided");
+  require(flags_.undecided_a == countOf(flags_.a, Verdict::undecided) &&
+              flags_.undecided_b == countOf(flags_.b, Verdict::undecided),
+          "flags: undecided");
 }
 
 void Questions::askClosest(const Placed& a, const Placed& b, const test::Question& request)
@@ -400,8 +400,14 @@ void Questions::askAlong(const Placed& a, const Placed& b, double unit, Random& 
          << (request.flags ? " flags" : "") << (request.distances ? " distances" : "")
          << (request.first_poses ? " first_poses" : "") << (request.closest_poses ? " closest_poses" : "")
          << (request.pose_summaries ? " pose_summaries" : "") << ", " << request.threads << " threads";
+    const auto shown = [](auto value) {
+      if constexpr (std::is_enum_v<decltype(value)>)
+        return static_cast<int>(value);
+      else
+        return value;
+    };
     for (std::size_t i = 0; asked && i < std::min(x.size(), y.size()); ++i)
-      if (x[i] != y[i]) text << "; point " << i << ": " << x[i] << " instead of " << y[i];
+      if (x[i] != y[i]) text << "; point " << i << ": " << shown(x[i]) << " instead of " << shown(y[i]);
     throw Finding(text.str());
   };
   same(found.flags, expected.flags, request.flags, "along: flags differ");
@@ -436,7 +442,7 @@ void Questions::askAlong(const Placed& a, const Placed& b, double unit, Random& 
     swept.pose_summaries = false;
     swept.flags = true;
     swept.swept = unit / 64;
-    std::vector<std::uint8_t> flags;
+    std::vector<Verdict> flags;
     try {
       flags = collideAlong(a, b.hierarchy(), poses, swept).flags;
     }
@@ -454,7 +460,7 @@ void Questions::askAlong(const Placed& a, const Placed& b, double unit, Random& 
   std::sort(clashing.begin(), clashing.end());
   std::vector<std::uint32_t> colliding;
   for (std::uint32_t i = 0; i < expected.flags.size(); ++i)
-    if (expected.flags[i] == 1) colliding.push_back(i);
+    if (expected.flags[i] == Verdict::colliding) colliding.push_back(i);
   require(clashing == colliding, "clashes: do not hold the colliding points once each");
   std::vector<std::int32_t> subset(colliding.begin(), colliding.end());
   subset.push_back(0); // so that there is an address

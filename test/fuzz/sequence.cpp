@@ -50,8 +50,8 @@ public:
   void compare()
   {
     const SceneResult found = scene_.query();
-    std::vector<std::vector<std::uint8_t>> flags(size());
-    for (ObjectId i = 0; i < size(); ++i) flags[i].assign(clouds_[cloud_of_[i]].view().count, 0);
+    std::vector<std::vector<Verdict>> flags(size());
+    for (ObjectId i = 0; i < size(); ++i) flags[i].assign(clouds_[cloud_of_[i]].view().count, Verdict::free);
     std::size_t colliding = 0, near = 0, touching = 0;
     test::Question request;
     request.clearance = clearance_;
@@ -65,8 +65,8 @@ public:
         require((any != found.any.end()) == (expected.colliding_a > 0), "scene: another verdict");
         colliding += expected.colliding_a > 0 ? 1 : 0;
         if (any != found.any.end()) requireColliding(a, b, any->witness);
-        for (std::size_t k = 0; k < expected.a.size(); ++k) flags[i][k] |= expected.a[k];
-        for (std::size_t k = 0; k < expected.b.size(); ++k) flags[j][k] |= expected.b[k];
+        for (std::size_t k = 0; k < expected.a.size(); ++k) flags[i][k] = graver(flags[i][k], expected.a[k]);
+        for (std::size_t k = 0; k < expected.b.size(); ++k) flags[j][k] = graver(flags[j][k], expected.b[k]);
 
         const DistanceResult closest = brute_force::closestPair(a, b);
         const double within = *scene_.options().effects.distance;
@@ -92,7 +92,7 @@ public:
     for (ObjectId i = 0; i < size(); ++i) {
       const auto part = std::find_if(found.flags.begin(), found.flags.end(),
                                      [&](const FlaggedPart& flagged) { return flagged.object == i; });
-      const bool hit = std::count(flags[i].begin(), flags[i].end(), 1) > 0;
+      const bool hit = countOf(flags[i], Verdict::colliding) > 0;
       require((part != found.flags.end()) == hit, "scene: flags of another object");
       if (hit) require(part->flags == flags[i], "scene: other flags");
     }

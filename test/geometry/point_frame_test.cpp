@@ -4,6 +4,7 @@
 #include <pcl_bsh/geometry/exact_distance.h>
 
 #include "support/random.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 

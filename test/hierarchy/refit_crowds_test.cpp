@@ -3,6 +3,7 @@
 #include <pcl_bsh/hierarchy/storage.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/roadmap/brute_force.h>

@@ -6,6 +6,7 @@
 #include <pcl_bsh/neighbors/neighbors.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 

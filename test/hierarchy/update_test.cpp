@@ -2,6 +2,7 @@
 #include <pcl_bsh/hierarchy/update.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/roadmap/brute_force.h>

@@ -4,6 +4,7 @@
 #include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gmock/gmock.h>
 

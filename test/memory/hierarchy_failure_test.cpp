@@ -4,6 +4,7 @@
 
 #include "clouds.h"
 #include "support/every_allocation.h"
+#include "support/verdicts.h"
 
 #include <gmock/gmock.h>
 

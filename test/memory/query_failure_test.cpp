@@ -15,6 +15,7 @@
 #include "clouds.h"
 #include "support/every_allocation.h"
 #include "support/question.h"
+#include "support/verdicts.h"
 
 #include <bit>
 #include <tuple>

@@ -3,6 +3,7 @@
 
 #include "clouds.h"
 #include "support/every_allocation.h"
+#include "support/verdicts.h"
 
 #include <tuple>
 

@@ -7,6 +7,7 @@
 #include "../filters/clouds.h"
 #include "contents.h"
 #include "support/every_allocation.h"
+#include "support/verdicts.h"
 
 #include <pcl/console/print.h>
 #include <pcl/point_types.h>
@@ -67,12 +68,12 @@ std::vector<Eigen::Isometry3d> poses()
 }
 
 /// Whether the points collide at any of the poses, by a double loop.
-std::vector<std::uint8_t> truth(const std::vector<Eigen::Isometry3d>& at)
+std::vector<Verdict> truth(const std::vector<Eigen::Isometry3d>& at)
 {
-  std::vector<std::uint8_t> flags(scan().size(), 0);
+  std::vector<Verdict> flags(scan().size(), Verdict::free);
   for (const Eigen::Isometry3d& pose : at) {
-    const std::vector<std::uint8_t> one = doubleLoop(scan(), obstacle(), pose, kClearance);
-    for (std::size_t i = 0; i < flags.size(); ++i) flags[i] |= one[i];
+    const std::vector<Verdict> one = doubleLoop(scan(), obstacle(), pose, kClearance);
+    for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = graver(flags[i], one[i]);
   }
   return flags;
 }
@@ -236,7 +237,7 @@ TEST_F(FilterAllocationFailure, InPlace)
 TEST_F(FilterAllocationFailure, IntoIndices)
 {
   for (const Mode mode : {Mode::plain, Mode::negative, Mode::trajectory}) {
-    const std::vector<std::uint8_t> flags =
+    const std::vector<Verdict> flags =
         truth(mode == Mode::trajectory ? poses() : std::vector{Eigen::Isometry3d::Identity()});
     const pcl::Indices expected = where(flags, mode == Mode::negative, scan());
     ASSERT_FALSE(expected.empty());
@@ -263,7 +264,7 @@ TEST_F(FilterAllocationFailure, OfFlagsAndTrajectories)
   for (const Mode mode : {Mode::plain, Mode::trajectory, Mode::swept})
     failEachAllocation([mode] { return std::make_unique<CloudSubject>(scanCloud(), mode); },
                        [](const auto& subject) {
-                         std::vector<std::uint8_t> flags{7};
+                         std::vector<Verdict> flags{Verdict::sparse};
                          subject->filter.computeFlags(flags);
                          TrajectoryResult result;
                          subject->filter.computeTrajectory(result);

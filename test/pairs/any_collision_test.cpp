@@ -4,6 +4,7 @@
 
 #include "support/facing_sheets.h"
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 #include "support/work_counts.h"
 
 #include <gmock/gmock.h>

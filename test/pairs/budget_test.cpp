@@ -6,6 +6,7 @@
 
 #include "support/journeys.h"
 #include "support/question.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +26,7 @@ using test::Random;
 using test::Scene;
 using test::Shape;
 
-constexpr std::uint8_t kUndecided = 2;
+constexpr Verdict kUndecided = Verdict::undecided;
 
 test::Question asking(const Accuracy& accuracy, double clearance, Side flagged = Side::both)
 {
@@ -108,8 +109,8 @@ TEST(Budget, LargerOnesKeepWhatSmallerOnesDecide)
          budget = budget < 20000 ? budget * 5 / 4 + 1 : budget * 2) {
       const FlagsResult found =
           collisionFlags(placed_a, placed_b, asking(Accuracy::nodePairs(budget), scene.clearance));
-      const auto expectKept = [&](const std::vector<std::uint8_t>& now, const std::vector<std::uint8_t>& then,
-                                  const std::vector<std::uint8_t>& right) {
+      const auto expectKept = [&](const std::vector<Verdict>& now, const std::vector<Verdict>& then,
+                                  const std::vector<Verdict>& right) {
         for (std::size_t i = 0; i < now.size(); ++i) {
           ASSERT_TRUE(now[i] == right[i] || now[i] == kUndecided) << "point " << i << ", budget " << budget;
           ASSERT_TRUE(then[i] == kUndecided || now[i] == then[i]) << "point " << i << ", budget " << budget;
@@ -146,10 +147,10 @@ TEST(Budget, APathThatCannotBeMadeInTimeLeavesAllUndecided)
   TrajectoryRequest request = flagsOnly(0.1);
   request.accuracy = Accuracy::time(0.0);
   const TrajectoryResult nothing = collideAlong({far.scan}, far.model, far.poses, request);
-  EXPECT_EQ(nothing.flags, std::vector<std::uint8_t>(2, kUndecided));
+  EXPECT_EQ(nothing.flags, std::vector<Verdict>(2, kUndecided));
   EXPECT_EQ(nothing.undecided, 2u);
   request.accuracy = Accuracy::time(3600);
-  EXPECT_EQ(collideAlong({far.scan}, far.model, far.poses, request).flags, std::vector<std::uint8_t>(2, 0));
+  EXPECT_EQ(collideAlong({far.scan}, far.model, far.poses, request).flags, std::vector<Verdict>(2, Verdict::free));
 }
 
 TEST(TrajectoryProgress, IsReportedWhileNothingIsNear)

@@ -4,6 +4,7 @@
 #include <pcl_bsh/pairs/contacts.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 

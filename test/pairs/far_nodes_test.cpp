@@ -9,6 +9,7 @@
 #include "support/adversarial_clouds.h"
 #include "support/climb.h"
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 

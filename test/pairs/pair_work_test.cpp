@@ -6,6 +6,7 @@
 
 #include "support/adversarial_clouds.h"
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -123,8 +124,8 @@ TEST(PairWork, FlagsWithManyCandidatesAreThoseOfSearchesForNeighbors)
     std::size_t most = 0;
     for (const double beyond : {-1.5 * rough, -0.5 * rough, 0.0, 2e-6}) {
       const FlagsResult flags = collisionFlags(of_a, of_b, {10 + beyond, Side::both, 1, {}});
-      EXPECT_EQ(flags.a, flagAnyInRadius(of_b, a.view(), 10 + beyond)) << rough << ", " << beyond;
-      EXPECT_EQ(flags.b, flagAnyInRadius(of_a, b.view(), 10 + beyond)) << rough << ", " << beyond;
+      EXPECT_EQ(numbersOf(flags.a), flagAnyInRadius(of_b, a.view(), 10 + beyond)) << rough << ", " << beyond;
+      EXPECT_EQ(numbersOf(flags.b), flagAnyInRadius(of_a, b.view(), 10 + beyond)) << rough << ", " << beyond;
       most = std::max(most, flags.colliding_a);
     }
     EXPECT_GT(most, 0u);

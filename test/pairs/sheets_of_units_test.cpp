@@ -6,6 +6,7 @@
 #include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 

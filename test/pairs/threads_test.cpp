@@ -5,6 +5,7 @@
 #include <pcl_bsh/traversal/shared_stack.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 #include "support/work_counts.h"
 
 #include <gtest/gtest.h>

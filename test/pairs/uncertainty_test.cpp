@@ -9,6 +9,7 @@
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 #include "support/work_counts.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -92,8 +93,8 @@ TEST(Uncertainty, BothEdgesToTheLastBit)
               const Verdict expected =
                   verdictOf(judge(cloud_a.view(), cloud_b.view(), Eigen::Vector3d::Zero(), clearance));
               ASSERT_EQ(anyCollision({a}, {b}, {clearance, {}}).verdict, expected) << distance;
-              ASSERT_EQ(collisionFlags({a}, {b}, within(clearance, Side::a)).a[0], flagOf(expected)) << distance;
-              ++verdicts[flagOf(expected)];
+              ASSERT_EQ(collisionFlags({a}, {b}, within(clearance, Side::a)).a[0], expected) << distance;
+              ++verdicts[test::numberOf(expected)];
             }
   for (const std::size_t count : verdicts) EXPECT_GT(count, 100u);
 }
@@ -121,10 +122,10 @@ TEST(Uncertainty, SameAsBruteForceForAnyThreads)
       const CollidingIndices lists = collidingIndices(placed_a, placed_b, within(scene.clearance, Side::both, threads));
       ASSERT_EQ(lists.a.size(), all.colliding_a);
       ASSERT_EQ(lists.undecided_b.size(), all.undecided_b);
-      for (const std::int32_t i : lists.undecided_a) ASSERT_EQ(all.a[static_cast<std::size_t>(i)], 2);
+      for (const std::int32_t i : lists.undecided_a) ASSERT_EQ(all.a[static_cast<std::size_t>(i)], Verdict::undecided);
     }
-    ++verdicts[flagOf(brute.verdict)];
-    for (const std::uint8_t flag : all.a) ++flags[flag];
+    ++verdicts[test::numberOf(brute.verdict)];
+    for (const Verdict flag : all.a) ++flags[test::numberOf(flag)];
   }
   for (const std::size_t count : verdicts) EXPECT_GT(count, 30u);
   for (const std::size_t count : flags) EXPECT_GT(count, 500u);
@@ -148,7 +149,7 @@ TEST(Uncertainty, LessThanExactClaimsNothingFalse)
       }
       const FlagsResult found = collisionFlags(placed_a, placed_b, within(scene.clearance, Side::a, 1, accuracy));
       for (std::size_t i = 0; i < all.a.size(); ++i) {
-        if (found.a[i] == flagOf(Verdict::undecided)) continue;
+        if (found.a[i] == Verdict::undecided) continue;
         ASSERT_EQ(found.a[i], all.a[i]) << i;
         ++decided;
       }
@@ -161,7 +162,7 @@ TEST(Uncertainty, LessThanExactClaimsNothingFalse)
         collisionFlags(placed_a, placed_b, within(scene.clearance, Side::a, 1, Accuracy::tolerance(tolerance)));
     for (std::size_t i = 0; i < all.a.size(); ++i) {
       ASSERT_TRUE(loose.a[i] == all.a[i] || loose.a[i] == wider.a[i] ||
-                  (all.a[i] == flagOf(Verdict::free) && loose.a[i] == flagOf(Verdict::undecided)))
+                  (all.a[i] == Verdict::free && loose.a[i] == Verdict::undecided))
           << scene.name << i;
     }
   }
@@ -279,7 +280,7 @@ TEST(Uncertainty, OfManyLeavesAtOnce)
       ASSERT_EQ(found.a, expected.a) << clearance;
       ASSERT_EQ(found.b, expected.b) << clearance;
       ASSERT_EQ(found.undecided_a, expected.undecided_a) << clearance;
-      for (const std::uint8_t flag : found.a) ++flags[flag];
+      for (const Verdict flag : found.a) ++flags[test::numberOf(flag)];
     }
   }
   for (const std::size_t count : flags) EXPECT_GT(count, 100u);
@@ -329,7 +330,7 @@ TEST(Uncertainty, AtManyPoses)
       EXPECT_EQ(found.colliding, expected.colliding);
       EXPECT_EQ(found.undecided, expected.undecided);
       EXPECT_TRUE(done == 1.0 || a.empty() || b.empty());
-      for (const std::uint8_t verdict : found.verdicts) ++verdicts[verdict];
+      for (const Verdict verdict : found.verdicts) ++verdicts[test::numberOf(verdict)];
     }
   }
   for (const std::size_t count : verdicts) EXPECT_GT(count, 100u);
@@ -356,7 +357,7 @@ TEST(Uncertainty, ATraceTellsBothSearches)
       EXPECT_TRUE(std::none_of(trace.a.begin(), trace.a.end(),
                                [](const TracedSphere& sphere) { return sphere.fate == SphereFate::kept; }));
     }
-    ++verdicts[flagOf(any.verdict)];
+    ++verdicts[test::numberOf(any.verdict)];
   }
   for (const std::size_t count : verdicts) EXPECT_GT(count, 5u);
 }
@@ -393,13 +394,14 @@ TEST(DensityGuard, SameAsBruteForce)
       ASSERT_EQ(found.undecided_a, truth.undecided_a);
       ASSERT_EQ(found.colliding_a, truth.colliding_a);
       for (std::size_t i = 0; i < found.a.size(); ++i) {
-        ASSERT_EQ(found.a[i] == 3 ? 0 : found.a[i], without.a[i]) << "only free points become sparse";
+        ASSERT_EQ(found.a[i] == Verdict::sparse ? Verdict::free : found.a[i], without.a[i])
+            << "only free points become sparse";
       }
-      for (const std::uint8_t flag : found.a) ++flags[flag];
+      for (const Verdict flag : found.a) ++flags[test::numberOf(flag)];
       request.accuracy = Accuracy::nodePairs(60);
       const FlagsResult early = collisionFlags(placed_a, placed_b, request);
       for (std::size_t i = 0; i < early.a.size(); ++i) {
-        if (early.a[i] != 2 && early.a[i] != 3) {
+        if (early.a[i] != Verdict::undecided && early.a[i] != Verdict::sparse) {
           ASSERT_EQ(early.a[i], truth.a[i]) << i;
         }
       }
@@ -416,7 +418,7 @@ TEST(DensityGuard, TiesAreSparse)
   for (const float spacing : {1.5f, std::nextafter(1.5f, 0.0f), std::nextafter(1.5f, 9.0f)}) {
     const std::vector<float> spacings = {spacing, 0.0f};
     request.spacings_of_b = spacings.data();
-    EXPECT_EQ(collisionFlags({a}, {b}, request).a[0], flagOf(spacing < 1.5f ? Verdict::free : Verdict::sparse));
+    EXPECT_EQ(collisionFlags({a}, {b}, request).a[0], (spacing < 1.5f ? Verdict::free : Verdict::sparse));
   }
 }
 

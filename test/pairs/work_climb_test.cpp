@@ -6,6 +6,7 @@
 
 #include "support/adversarial_clouds.h"
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 

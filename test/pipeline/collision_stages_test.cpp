@@ -3,6 +3,7 @@
 #include "../filters/clouds.h"
 #include "io/clouds/samples.h"
 #include "run_stage.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/filters/collision_filter.h>
@@ -132,9 +133,9 @@ TEST_F(CollisionStages, SelectAlongATrajectory)
 TEST_F(CollisionStages, SweptFindsMoreThanPosesAlone)
 {
   const auto colliding = [&](double swept) {
-    std::vector<std::uint8_t> flags;
+    std::vector<Verdict> flags;
     filter(swept).computeFlags(flags);
-    return std::count(flags.begin(), flags.end(), std::uint8_t{1});
+    return std::count(flags.begin(), flags.end(), Verdict::colliding);
   };
   EXPECT_LT(colliding(0), colliding(0.01));
 }
@@ -146,19 +147,19 @@ TEST_F(CollisionStages, AccuracyIsTheFilters)
     auto direct = filter();
     direct.setPose(Eigen::Isometry3d::Identity());
     direct.setAccuracy(Accuracy::parse(accuracy));
-    std::vector<std::uint8_t> flags;
+    std::vector<Verdict> flags;
     direct.computeFlags(flags);
-    const auto undecided = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), std::uint8_t{2}));
+    const auto undecided = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), Verdict::undecided));
     EXPECT_EQ(undecided > 0, direct.getAccuracy().stopsEarly()) << accuracy;
 
     const std::string options = at_pose + '"' + accuracy + '"';
     const PipelineResult result = runStage(scan, stage("filters.bsh_flag", options), model);
     const pcl::PCLPointCloud2& flagged = result.clouds.begin()->second->cloud;
     for (std::size_t i = 0; i < flags.size(); ++i) {
-      ASSERT_EQ(flagged.data[i * flagged.point_step + flagged.fields.back().offset], flags[i]) << accuracy;
+      ASSERT_EQ(flagged.data[i * flagged.point_step + flagged.fields.back().offset], bytesOf(flags)[i]) << accuracy;
     }
     EXPECT_EQ(linesWith("stay undecided", result), undecided > 0 ? 1 : 0);
-    const auto free = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), std::uint8_t{0}));
+    const auto free = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), Verdict::free));
     const PipelineResult kept = runStage(scan, stage("filters.bsh_collision", options), model);
     EXPECT_EQ(kept.clouds.begin()->second->cloud.width, free) << accuracy << ": what is undecided is not free";
     EXPECT_EQ(linesWith("stay undecided", kept), undecided > 0 ? 1 : 0);
@@ -176,22 +177,21 @@ TEST_F(CollisionStages, UncertaintyIsTheFilters)
     if (along.empty()) direct.setPose(Eigen::Isometry3d::Identity());
     direct.setInputUncertainty(0.01);
     direct.setObstacleUncertainty(0.005);
-    std::vector<std::uint8_t> flags;
+    std::vector<Verdict> flags;
     direct.computeFlags(flags);
-    const auto count = [&](std::uint8_t flag) {
-      return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flag));
-    };
-    ASSERT_GT(count(1), 0U);
-    ASSERT_GT(count(2), 0U);
+    ASSERT_GT(countOf(flags, Verdict::colliding), 0U);
+    ASSERT_GT(countOf(flags, Verdict::undecided), 0U);
     const std::string options = R"("clearance": 0.03, "uncertainty": 0.01, "obstacle_uncertainty": 0.005)" + along;
     const PipelineResult result = runStage(scan, stage("filters.bsh_flag", options), model);
     const pcl::PCLPointCloud2& flagged = result.clouds.begin()->second->cloud;
     const pcl::PCLPointField* const field = findField(flagged, "collision");
     ASSERT_NE(field, nullptr);
     for (std::size_t i = 0; i < flags.size(); ++i)
-      ASSERT_EQ(flagged.data[i * flagged.point_step + field->offset], flags[i]) << along;
-    EXPECT_THAT(result.warnings, testing::Contains(HasSubstr(std::to_string(count(2)) + " points stay undecided")));
-    EXPECT_EQ(outputOf(scan, stage("filters.bsh_collision", options), model)->cloud.width, count(0));
+      ASSERT_EQ(flagged.data[i * flagged.point_step + field->offset], bytesOf(flags)[i]) << along;
+    EXPECT_THAT(result.warnings, testing::Contains(HasSubstr(std::to_string(countOf(flags, Verdict::undecided)) +
+                                                             " points stay undecided")));
+    EXPECT_EQ(outputOf(scan, stage("filters.bsh_collision", options), model)->cloud.width,
+              countOf(flags, Verdict::free));
   }
 }
 
@@ -219,14 +219,14 @@ TEST_F(CollisionStages, DensityIsTheFilters)
   direct.setPose(Eigen::Isometry3d::Identity());
   direct.setDensityGuard(true);
   direct.setWidestGap(0.1);
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   direct.computeFlags(flags);
   ASSERT_GT(direct.getSparseCount(), 0U);
   const std::string options = R"("clearance": 0.03, "density": true, "widest_gap": 0.1)";
   const PipelineResult result = runStage(scan, stage("filters.bsh_flag", options), model);
   const pcl::PCLPointCloud2& flagged = result.clouds.begin()->second->cloud;
   for (std::size_t i = 0; i < flags.size(); ++i)
-    ASSERT_EQ(flagged.data[i * flagged.point_step + flagged.fields.back().offset], flags[i]);
+    ASSERT_EQ(flagged.data[i * flagged.point_step + flagged.fields.back().offset], bytesOf(flags)[i]);
   EXPECT_THAT(result.warnings, testing::Contains(HasSubstr("where the obstacle is not scanned densely enough")));
   EXPECT_THAT(error("filters.bsh_flag", R"("density": true, "trajectory": )" + quoted(track)),
               HasSubstr("/density: is about which points collide at one pose: leave out the path"));
@@ -320,14 +320,14 @@ TEST_F(CollisionStages, PrintedMatricesStandForTheirRotations)
   auto direct = filter();
   direct.setPose(pose);
   direct.setClearance(0.1);
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   direct.computeFlags(flags);
   const PipelineResult result = runStage(scan, stage("filters.bsh_flag", options), model);
   const pcl::PCLPointCloud2& flagged = result.clouds.begin()->second->cloud;
   std::size_t other = 0, colliding = 0;
   for (std::size_t i = 0; i < flags.size(); ++i) {
-    other += flagged.data[i * flagged.point_step + flagged.fields.back().offset] != flags[i] ? 1 : 0;
-    colliding += flags[i];
+    other += flagged.data[i * flagged.point_step + flagged.fields.back().offset] != bytesOf(flags)[i] ? 1 : 0;
+    colliding += flags[i] == Verdict::colliding;
   }
   EXPECT_GT(colliding, 20U);
   EXPECT_LE(other, colliding / 20) << "a turn by some 1e-5";

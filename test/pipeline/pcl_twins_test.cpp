@@ -2,6 +2,7 @@
 // Each stage gives what the PCL class of its name gives when called directly.
 #include "../filters/clouds.h"
 #include "run_stage.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/filters/collision_filter.h>
 
@@ -181,14 +182,15 @@ TEST(PclTwins, BshCollision)
                        expected);
     }
   }
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter.computeFlags(flags);
   const StageCloudPtr flagged = outputOf(stageCloud(*cloud), R"({"type": "filters.bsh_flag", "obstacle": "other",
       "clearance": 0.8, "pose": [0, 0, 0, 0, 0, 1]})",
                                          stageCloud(*obstacle));
   ASSERT_EQ(flagged->cloud.fields.back().name, "collision");
   for (std::size_t i = 0; i < flags.size(); ++i) {
-    EXPECT_EQ(flagged->cloud.data[i * flagged->cloud.point_step + flagged->cloud.fields.back().offset], flags[i]);
+    EXPECT_EQ(flagged->cloud.data[i * flagged->cloud.point_step + flagged->cloud.fields.back().offset],
+              bytesOf(flags)[i]);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "support/question.h"
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -24,9 +25,9 @@ using test::Scene;
 using test::Shape;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr auto kFree = static_cast<std::uint8_t>(Verdict::free);
-constexpr auto kColliding = static_cast<std::uint8_t>(Verdict::colliding);
-constexpr auto kUndecided = static_cast<std::uint8_t>(Verdict::undecided);
+constexpr Verdict kFree = Verdict::free;
+constexpr Verdict kColliding = Verdict::colliding;
+constexpr Verdict kUndecided = Verdict::undecided;
 
 /// A scene, its hierarchies, and what is true of it.
 class Truth {
@@ -70,7 +71,7 @@ void expectHolds(const Interval& interval, double truth)
   EXPECT_GE(interval.upper, truth);
 }
 
-void expectNoneWrong(const std::vector<std::uint8_t>& flags, const std::vector<std::uint8_t>& truth, std::size_t marked)
+void expectNoneWrong(const std::vector<Verdict>& flags, const std::vector<Verdict>& truth, std::size_t marked)
 {
   ASSERT_EQ(flags.size(), truth.size());
   std::size_t undecided = 0;
@@ -363,7 +364,7 @@ TEST(Accuracy, EmptyCloudsCollideWithNothingAtAnySetting)
     test::Question request;
     request.accuracy = Accuracy::parse(text);
     EXPECT_EQ(anyCollision({empty}, {point}, request).verdict, Verdict::free) << text;
-    EXPECT_EQ(collisionFlags({point}, {empty}, request).a, std::vector<std::uint8_t>{kFree}) << text;
+    EXPECT_EQ(collisionFlags({point}, {empty}, request).a, std::vector<Verdict>{kFree}) << text;
     const DistanceResult distance = closestPair({point}, {empty}, request);
     EXPECT_EQ(distance.distance, infinity) << text;
     EXPECT_FALSE(distance.pair) << text;

@@ -4,6 +4,7 @@
 #include <pcl_bsh/neighbors/neighbors.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gmock/gmock.h>
 

@@ -6,6 +6,7 @@
 #include "support/question.h"
 #include "support/random_clouds.h"
 #include "support/simd_target.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -28,9 +29,9 @@ public:
   {
     add(pair ? std::uint64_t{pair->a} << 32 | pair->b : ~std::uint64_t{0});
   }
-  void add(const std::vector<std::uint8_t>& flags)
+  void add(const std::vector<Verdict>& flags)
   {
-    for (const std::uint8_t flag : flags) add(std::uint64_t{flag});
+    for (const Verdict flag : flags) add(static_cast<std::uint64_t>(flag));
   }
 
   std::uint64_t value() const { return value_; }

@@ -11,6 +11,7 @@
 #include "support/question.h"
 #include "support/random_clouds.h"
 #include "support/simd_target.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -295,7 +296,7 @@ TEST(HardCaseSeries, H27FineVoxelsOverAWideCloud)
   fine.voxel_edge = .01;
   const Cloud a({{0, 0, 0}, {1000, 1000, 1000}, {.5, 0, 0}}), b({{.5, 0, 0}});
   const SphereHierarchy ha(a.view(), fine), hb(b.view(), fine);
-  EXPECT_EQ(collisionFlags({ha}, {hb}, within(.25, 1)).a, (std::vector<std::uint8_t>{0, 0, 1}));
+  EXPECT_EQ(collisionFlags({ha}, {hb}, within(.25, 1)).a, test::verdictsOf({0, 0, 1}));
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 
 #include "support/question.h"
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 #include <pthread.h>

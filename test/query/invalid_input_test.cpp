@@ -10,6 +10,7 @@
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "support/question.h"
+#include "support/verdicts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

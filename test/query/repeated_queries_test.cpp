@@ -8,6 +8,7 @@
 
 #include "support/allocations.h"
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 

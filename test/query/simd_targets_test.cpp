@@ -6,6 +6,7 @@
 #include "support/question.h"
 #include "support/random_clouds.h"
 #include "support/simd_target.h"
+#include "support/verdicts.h"
 #include "support/work_counts.h"
 
 #include <gtest/gtest.h>

@@ -9,6 +9,7 @@
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 #include "support/work_counts.h"
 
 #include <gmock/gmock.h>

@@ -4,6 +4,7 @@
 #include <pcl_bsh/question/options.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>

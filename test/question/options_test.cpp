@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/verdicts.h"
+
 #include <pcl_bsh/question/options.h>
 
 #include <gmock/gmock.h>

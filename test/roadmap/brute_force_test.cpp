@@ -4,6 +4,7 @@
 
 #include "support/question.h"
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,7 @@
 namespace pcl_bsh {
 namespace {
 
-using Flags = std::vector<std::uint8_t>;
+using Flags = std::vector<Verdict>;
 using test::Cloud;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -39,17 +40,17 @@ protected:
 TEST_F(BruteForce, FlagsTheSideAskedFor)
 {
   const FlagsResult of_a = brute_force::collisionFlags(pa_, pb_, within(5));
-  EXPECT_EQ(of_a.a, (Flags{0, 0, 1, 1, 1}));
+  EXPECT_EQ(of_a.a, test::verdictsOf({0, 0, 1, 1, 1}));
   EXPECT_TRUE(of_a.b.empty());
   EXPECT_EQ(of_a.colliding_a, 3u);
   EXPECT_EQ(of_a.colliding_b, 0u);
   const FlagsResult of_b = brute_force::collisionFlags(pa_, pb_, within(0, Side::b));
   EXPECT_TRUE(of_b.a.empty());
-  EXPECT_EQ(of_b.b, (Flags{0, 1, 0, 0}));
+  EXPECT_EQ(of_b.b, test::verdictsOf({0, 1, 0, 0}));
   EXPECT_EQ(of_b.colliding_b, 1u);
   const FlagsResult of_both = brute_force::collisionFlags(pa_, pb_, within(5, Side::both));
   EXPECT_EQ(of_both.a, of_a.a);
-  EXPECT_EQ(of_both.b, (Flags{1, 1, 0, 1}));
+  EXPECT_EQ(of_both.b, test::verdictsOf({1, 1, 0, 1}));
   EXPECT_EQ(of_both.work.exact_decisions, 12u);
 }
 
@@ -83,8 +84,8 @@ TEST_F(BruteForce, RadiiAddToTheClearanceAndShortenTheDistance)
   Cloud b({{0, 0, 0}});
   b.setRadii({0.5f});
   const SphereHierarchy ha(a.view()), hb(b.view());
-  EXPECT_EQ(brute_force::collisionFlags({ha}, {hb}, within(3)).a, (Flags{1, 1}));
-  EXPECT_EQ(brute_force::collisionFlags({ha}, {hb}, within(std::nextafter(3.0, 0.0))).a, (Flags{1, 0}));
+  EXPECT_EQ(brute_force::collisionFlags({ha}, {hb}, within(3)).a, test::verdictsOf({1, 1}));
+  EXPECT_EQ(brute_force::collisionFlags({ha}, {hb}, within(std::nextafter(3.0, 0.0))).a, test::verdictsOf({1, 0}));
   const DistanceResult result = brute_force::closestPair({ha}, {hb});
   EXPECT_EQ(result.distance, -0.5);
   EXPECT_EQ(result.pair, (PointPair{0, 0}));
@@ -100,7 +101,7 @@ TEST_F(BruteForce, NothingIsInfinitelyFar)
     EXPECT_FALSE(result.pair);
   }
   EXPECT_EQ(brute_force::anyCollision({nothing}, pb_, within(1e300)).verdict, Verdict::free);
-  EXPECT_EQ(brute_force::collisionFlags({nothing}, pb_, within(1e300)).a, (Flags{0, 0}));
+  EXPECT_EQ(brute_force::collisionFlags({nothing}, pb_, within(1e300)).a, test::verdictsOf({0, 0}));
 }
 
 TEST_F(BruteForce, AnswersAlikeWhateverTheRoundingMode)

@@ -7,6 +7,7 @@
 #include <pcl_bsh/roadmap/pose_order.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 #include "support/work_counts.h"
 
 #include <gmock/gmock.h>
@@ -53,7 +54,7 @@ void expectSingleAnswers(const Scene& scene, const Poses& poses, double clearanc
     std::size_t colliding = 0;
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const AnyResult single = anyCollision(placed, {b, poses[i]}, {clearance, accuracy});
-      ASSERT_EQ(any.verdicts[i], flagOf(single.verdict)) << i << ", " << accuracy.text();
+      ASSERT_EQ(any.verdicts[i], single.verdict) << i << ", " << accuracy.text();
       colliding += single.verdict == Verdict::colliding;
       const DistanceResult nearest = closestPair(placed, {b, poses[i]}, {accuracy});
       ASSERT_EQ(closest.distances[i], nearest.distance) << i;
@@ -140,7 +141,7 @@ TEST(AtPoses, TenThousandInAnyOrderByAnyNumberOfThreads)
     const AnyAtPoses one = anyCollisionAtPoses({bodies.a}, bodies.b, bodies.poses, request);
     for (std::size_t i = 0; i < bodies.poses.size(); i += 7) {
       const AnyResult single = anyCollision({bodies.a}, {bodies.b, bodies.poses[i]}, request);
-      ASSERT_EQ(one.verdicts[i], flagOf(single.verdict)) << i;
+      ASSERT_EQ(one.verdicts[i], single.verdict) << i;
     }
     if (spread > 0.001) {
       EXPECT_GT(one.colliding, 500u);
@@ -205,7 +206,7 @@ TEST(AtPoses, StrangersCostNoMoreThanSingleQueries)
     Work alone;
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const AnyResult single = anyCollision({bodies.a}, {bodies.b, poses[i]}, request);
-      ASSERT_EQ(together.verdicts[i], flagOf(single.verdict)) << i;
+      ASSERT_EQ(together.verdicts[i], single.verdict) << i;
       alone += single.work;
     }
     EXPECT_LT(static_cast<double>(together.work.node_pairs), 1.02 * static_cast<double>(alone.node_pairs));
@@ -254,7 +255,7 @@ TEST(AtPoses, TakesAnyListAndEmptyOnes)
   EXPECT_TRUE(anyCollisionAtPoses({a}, a, Poses()).verdicts.empty());
   EXPECT_TRUE(closestPairAtPoses({a}, a, Poses()).distances.empty());
   EXPECT_EQ(anyCollisionAtPoses({a}, empty, Shelf(), request).colliding, 0u);
-  EXPECT_EQ(anyCollisionAtPoses({empty}, a, Shelf(), request).verdicts, std::vector<std::uint8_t>(50, 0));
+  EXPECT_EQ(anyCollisionAtPoses({empty}, a, Shelf(), request).verdicts, std::vector<Verdict>(50, Verdict::free));
   EXPECT_TRUE(closestPairAtPoses({a}, empty, Shelf()).pairs.empty());
   EXPECT_EQ(closestPairAtPoses({a}, empty, Shelf()).distances[49], std::numeric_limits<double>::infinity());
 }

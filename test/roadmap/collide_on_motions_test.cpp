@@ -7,6 +7,7 @@
 #include <pcl_bsh/roadmap/pose_order.h>
 
 #include "support/journeys.h"
+#include "support/verdicts.h"
 #include "support/work_counts.h"
 
 #include <gmock/gmock.h>
@@ -31,15 +32,15 @@ using test::Scene;
 using Motions = std::vector<PoseMotion>;
 
 /// The verdict of one motion by itself, in the direction that both directions have.
-std::uint8_t verdictAlone(const Placed& scan, const SphereHierarchy& model, const Eigen::Isometry3d& one,
-                          const Eigen::Isometry3d& other, const MotionsRequest& request)
+Verdict verdictAlone(const Placed& scan, const SphereHierarchy& model, const Eigen::Isometry3d& one,
+                     const Eigen::Isometry3d& other, const MotionsRequest& request)
 {
   const RigidMotion motion = motionBetween(one, other, request.pivot);
   TrajectoryRequest alone = flagsOnly(request.clearance);
   alone.swept = request.tolerance;
   alone.pivot = request.pivot;
   const TrajectoryResult found = collideAlong(scan, model, {motion.from(), motion.to()}, alone);
-  return flagOf(found.colliding > 0 ? Verdict::colliding : found.undecided > 0 ? Verdict::undecided : Verdict::free);
+  return found.colliding > 0 ? Verdict::colliding : found.undecided > 0 ? Verdict::undecided : Verdict::free;
 }
 
 /// What the definition says at many instants of a motion, in exact arithmetic at each.
@@ -171,7 +172,7 @@ TEST(OnMotions, EachIsThatOfTheMotionAloneForRandomCloudsAndThreads)
       const Eigen::Isometry3d &from = asked.poses[asked.motions[m].from], &to = asked.poses[asked.motions[m].to];
       ASSERT_EQ(found.verdicts[m], verdictAlone(scan, b, from, to, asked.request)) << "motion " << m;
       ASSERT_EQ(motionBetween(from, to, {0, 0, 0}).from().matrix(), motionBetween(to, from, {0, 0, 0}).from().matrix());
-      count += found.verdicts[m];
+      count += found.verdicts[m] == Verdict::colliding;
     }
     EXPECT_EQ(found.colliding, count);
     colliding += count;
@@ -207,7 +208,7 @@ TEST(OnMotions, OfUncertainPointsEachIsThatOfTheMotionAlone)
     for (std::size_t m = 0; m < asked.motions.size(); ++m) {
       const Eigen::Isometry3d &from = asked.poses[asked.motions[m].from], &to = asked.poses[asked.motions[m].to];
       ASSERT_EQ(found.verdicts[m], verdictAlone(scan, b, from, to, asked.request)) << "motion " << m;
-      ++counts[found.verdicts[m]];
+      ++counts[test::numberOf(found.verdicts[m])];
     }
     EXPECT_EQ(found.colliding, counts[1]);
     EXPECT_EQ(found.undecided, counts[2]);
@@ -239,7 +240,7 @@ TEST(OnMotions, OfUncertainPointsBothEdgesHold)
     const AnyOnMotions brute = brute_force::anyCollisionOnMotions({scan}, model, poses, {{0, 1}, {1, 0}}, request);
     EXPECT_EQ(found.verdicts, brute.verdicts) << distance;
     EXPECT_EQ(found.verdicts[0], found.verdicts[1]);
-    return static_cast<Verdict>(found.verdicts[0]);
+    return found.verdicts[0];
   };
   EXPECT_EQ(pass(0.125), Verdict::colliding);
   EXPECT_EQ(pass(0.125 + 1.1e-6), Verdict::undecided);
@@ -249,7 +250,7 @@ TEST(OnMotions, OfUncertainPointsBothEdgesHold)
   const auto rest = [&](double distance) {
     const Poses poses = {at(0, distance, 0)};
     request.tolerance = 1e-12;
-    return static_cast<Verdict>(anyCollisionOnMotions({scan}, model, poses, {{0, 0}}, request).verdicts[0]);
+    return anyCollisionOnMotions({scan}, model, poses, {{0, 0}}, request).verdicts[0];
   };
   EXPECT_EQ(rest(0.125), Verdict::colliding);
   EXPECT_EQ(rest(0.875), Verdict::undecided);
@@ -270,9 +271,9 @@ TEST(OnMotions, HoldsAtEachInstantAsBruteForceDoes)
       const RigidMotion motion =
           motionBetween(asked.poses[asked.motions[m].from], asked.poses[asked.motions[m].to], asked.request.pivot);
       const Instants truth = lookAt(scan, scene.a, scene.b, motion, asked.request, 40);
-      for (const std::uint8_t verdict : {found.verdicts[m], brute.verdicts[m]}) {
-        EXPECT_GE(verdict, truth.collides ? 1 : 0) << "motion " << m;
-        EXPECT_LE(verdict, truth.nears ? 1 : 0) << "motion " << m;
+      for (const Verdict verdict : {found.verdicts[m], brute.verdicts[m]}) {
+        EXPECT_GE(verdict, test::verdictIf(truth.collides)) << "motion " << m;
+        EXPECT_LE(verdict, test::verdictIf(truth.nears)) << "motion " << m;
       }
     }
   }
@@ -374,7 +375,7 @@ TEST(OnMotions, FindsWhatIsMetAtOneInstantOnly)
     const Cloud post({{i / 100.0, 0, 0}}, {Scalar::float64, 0, 0});
     const SphereHierarchy scan(post.view());
     EXPECT_EQ(anyCollisionOnMotions({scan}, model, poses, {{0, 1}, {1, 0}, {0, 2}, {0, 0}}, request).verdicts,
-              (std::vector<std::uint8_t>{1, 1, 1, 0}));
+              test::verdictsOf({1, 1, 1, 0}));
     const Cloud beside_cloud({{i / 100.0, 0x1p-20 + 0x1p-23, 0}}, {Scalar::float64, 0, 0});
     const SphereHierarchy beside(beside_cloud.view());
     EXPECT_EQ(anyCollisionOnMotions({beside}, model, poses, {{0, 1}, {1, 0}}, request).colliding, 0u);
@@ -435,7 +436,7 @@ TEST(OnMotions, GrazesAreRightInBatches)
     const Cloud scan_cloud({{post[0], post[1], post[2]}}, {Scalar::float64, 0, 0});
     const SphereHierarchy scan(scan_cloud.view());
     const AnyOnMotions found = anyCollisionOnMotions({scan}, model, poses, motions, request);
-    EXPECT_EQ(found.verdicts[m], 1) << trial;
+    EXPECT_EQ(found.verdicts[m], Verdict::colliding) << trial;
     for (std::size_t i = 0; i < motions.size(); ++i)
       ASSERT_EQ(found.verdicts[i], verdictAlone({scan}, model, poses[motions[i].from], poses[motions[i].to], request));
   }
@@ -476,9 +477,9 @@ TEST(OnMotions, EmptyListsAndClouds)
   request.tolerance = 0.1;
   EXPECT_TRUE(anyCollisionOnMotions({a}, a, Poses(), {}, request).verdicts.empty());
   EXPECT_TRUE(anyCollisionOnMotions({a}, a, Poses{identity}, {}, request).verdicts.empty());
-  EXPECT_EQ(anyCollisionOnMotions({a}, empty, Poses{identity}, {{0, 0}}, request).verdicts[0], 0);
-  EXPECT_EQ(anyCollisionOnMotions({empty}, a, Poses{identity}, {{0, 0}}, request).verdicts[0], 0);
-  EXPECT_EQ(anyCollisionOnMotions({a}, a, Poses{identity}, {{0, 0}}, request).verdicts[0], 1);
+  EXPECT_EQ(anyCollisionOnMotions({a}, empty, Poses{identity}, {{0, 0}}, request).verdicts[0], Verdict::free);
+  EXPECT_EQ(anyCollisionOnMotions({empty}, a, Poses{identity}, {{0, 0}}, request).verdicts[0], Verdict::free);
+  EXPECT_EQ(anyCollisionOnMotions({a}, a, Poses{identity}, {{0, 0}}, request).verdicts[0], Verdict::colliding);
 }
 
 template <class Call>

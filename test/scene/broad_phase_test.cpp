@@ -3,6 +3,7 @@
 #include <pcl_bsh/scene/scene.h>
 
 #include "random_world.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 

@@ -9,6 +9,7 @@
 
 #include "scene_worlds.h"
 #include "support/question.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -170,11 +171,11 @@ inline void expectAnyAsBruteForce(const RandomWorld& world, const pcl_bsh::Scene
 
 inline void expectFlagsAsBruteForce(const RandomWorld& world, const pcl_bsh::Scene& scene, const SceneResult& result)
 {
-  std::map<IdPair, std::vector<std::uint8_t>> expected, found;
-  const auto merge = [](std::vector<std::uint8_t>& into, const std::vector<std::uint8_t>& flags) {
+  std::map<IdPair, std::vector<Verdict>> expected, found;
+  const auto merge = [](std::vector<Verdict>& into, const std::vector<Verdict>& flags) {
     into.resize(flags.size());
     for (std::size_t i = 0; i < flags.size(); ++i)
-      if (into[i] != flagOf(Verdict::colliding) && flags[i] != flagOf(Verdict::free)) into[i] = flags[i];
+      if (into[i] != Verdict::colliding && flags[i] != Verdict::free) into[i] = flags[i];
   };
   eachPartPair(world, scene, [&](ObjectId a, ObjectId b, std::uint32_t i, std::uint32_t j, double clearance) {
     const FlagsResult flags = brute_force::collisionFlags(placed(scene, a, i), placed(scene, b, j), within(clearance));

@@ -4,6 +4,7 @@
 #include <pcl_bsh/scene/scene.h>
 
 #include "random_world.h"
+#include "support/verdicts.h"
 #include "watched_motion.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +59,7 @@ std::string answerOf(const SceneResult& result, Effect effect)
   const auto flags = [&](const std::vector<FlaggedPart>& list) {
     for (const FlaggedPart& part : list) {
       text += std::to_string(part.object) + "." + std::to_string(part.part) + " ";
-      for (const std::uint8_t flag : part.flags) text += static_cast<char>('0' + flag);
+      for (const Verdict flag : part.flags) text += static_cast<char>('0' + test::numberOf(flag));
     }
   };
   if (effect == Effect::any)

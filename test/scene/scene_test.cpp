@@ -6,6 +6,7 @@
 #include "random_world.h"
 #include "scene_worlds.h"
 #include "support/allocations.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -96,22 +97,25 @@ std::size_t expectNoneWrong(const SceneResult& result, const SceneResult& truth)
   for (const PartKey& key : so) EXPECT_EQ(said.count(key) + left.count(key), 1u);
   open += left.size();
 
-  std::map<IdPair, std::vector<std::uint8_t>> flags;
+  std::map<IdPair, std::vector<Verdict>> flags;
   for (const FlaggedPart& part : result.flags) {
     flags[{part.object, part.part}] = part.flags;
-    EXPECT_EQ(part.colliding, static_cast<std::size_t>(std::count(part.flags.begin(), part.flags.end(), 1)));
-    EXPECT_EQ(part.undecided, static_cast<std::size_t>(std::count(part.flags.begin(), part.flags.end(), 2)));
+    EXPECT_EQ(part.colliding,
+              static_cast<std::size_t>(std::count(part.flags.begin(), part.flags.end(), Verdict::colliding)));
+    EXPECT_EQ(part.undecided,
+              static_cast<std::size_t>(std::count(part.flags.begin(), part.flags.end(), Verdict::undecided)));
     open += part.undecided;
   }
   for (const FlaggedPart& part : truth.flags) {
     EXPECT_EQ(flags.count({part.object, part.part}), 1u);
-    std::vector<std::uint8_t>& found = flags[{part.object, part.part}];
+    std::vector<Verdict>& found = flags[{part.object, part.part}];
     found.resize(part.flags.size());
-    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_TRUE(found[i] == 2 || found[i] == part.flags[i]);
+    for (std::size_t i = 0; i < found.size(); ++i)
+      EXPECT_TRUE(found[i] == Verdict::undecided || found[i] == part.flags[i]);
     flags.erase({part.object, part.part});
   }
   for (const auto& entry : flags) // of parts where nothing collides
-    EXPECT_EQ(std::count(entry.second.begin(), entry.second.end(), 1), 0);
+    EXPECT_EQ(countOf(entry.second, Verdict::colliding), 0u);
 
   std::map<IdPair, Interval> intervals;
   for (const DistantPair& pair : result.distance) intervals[{pair.a, pair.b}] = pair.interval;
@@ -554,7 +558,7 @@ TEST(Scene, FirstContactIsNeverLateAndSweptPointsAreAllFound)
     }
     const Eigen::Vector3d center = 0.5 * (low + high);
     double first = infinity, nearest_at_contact = infinity;
-    std::vector<std::uint8_t> swept(40, 0), maybe(40, 0);
+    std::vector<Verdict> swept(40, Verdict::free), maybe(40, Verdict::free);
     const auto poseOf = [&](double s) {
       Eigen::Isometry3d pose = start;
       const Eigen::Quaterniond q(start.linear()), r(end.linear());
@@ -571,8 +575,8 @@ TEST(Scene, FirstContactIsNeverLateAndSweptPointsAreAllFound)
       const FlagsResult wide =
           brute_force::collisionFlags({*a, poseOf(s)}, {*b, other}, within(options.clearance + 0.1));
       for (std::size_t k = 0; k < 40; ++k) {
-        swept[k] |= flags.a[k];
-        maybe[k] |= wide.a[k];
+        swept[k] = graver(swept[k], flags.a[k]);
+        maybe[k] = graver(maybe[k], wide.a[k]);
       }
     }
     const double fraction = result.first_contact.empty() ? infinity : result.first_contact[0].fraction;
@@ -584,9 +588,9 @@ TEST(Scene, FirstContactIsNeverLateAndSweptPointsAreAllFound)
     const auto flagged = std::find_if(result.swept.begin(), result.swept.end(),
                                       [](const FlaggedPart& part) { return part.object == 0; });
     for (std::size_t k = 0; k < 40; ++k) {
-      const bool is = flagged != result.swept.end() && flagged->flags[k] == 1;
-      EXPECT_TRUE(is || swept[k] == 0) << k;
-      EXPECT_TRUE(!is || maybe[k] == 1) << k;
+      const bool is = flagged != result.swept.end() && flagged->flags[k] == Verdict::colliding;
+      EXPECT_TRUE(is || swept[k] == Verdict::free) << k;
+      EXPECT_TRUE(!is || maybe[k] == Verdict::colliding) << k;
     }
     EXPECT_EQ(flagged == result.swept.end(), result.first_contact.empty());
   }

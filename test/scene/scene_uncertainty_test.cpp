@@ -3,6 +3,7 @@
 #include <pcl_bsh/scene/scene.h>
 
 #include "random_world.h"
+#include "support/verdicts.h"
 #include "watched_motion.h"
 
 #include <gtest/gtest.h>
@@ -102,7 +103,7 @@ TEST(SceneUncertainty, BothEdgesToTheLastBit)
     const SceneResult result = TwoPoints(distance, effects).scene->query();
     const std::size_t colliding = result.any.size(), undecided = result.undecided.size();
     std::size_t flags = 0;
-    for (const FlaggedPart& part : result.flags) flags += part.flags[0];
+    for (const FlaggedPart& part : result.flags) flags += test::numberOf(part.flags[0]);
     EXPECT_EQ(flags, 2 * colliding + 4 * undecided) << distance;
     return colliding > 0 ? Verdict::colliding : undecided > 0 ? Verdict::undecided : Verdict::free;
   };

@@ -249,7 +249,7 @@ private:
     }
     for (const auto& [key, flags] : flags_)
       for (std::size_t r = 0; r < flags.size(); ++r)
-        if (flags[r] != 0 && !near_[key].count(static_cast<std::uint32_t>(r)))
+        if (flags[r] != Verdict::free && !near_[key].count(static_cast<std::uint32_t>(r)))
           return "point " + std::to_string(r) + " of object " + std::to_string(key.first) + " is swept, but never near";
     for (const bool certain : {false, true})
       for (const PartFirstContact& contact : certain ? result.certain_contact : result.first_contact) {
@@ -284,7 +284,7 @@ private:
     };
     const auto flagOfPoint = [&](const PartKey& key, std::uint32_t record) {
       const auto found = flags_.find(key);
-      return found == flags_.end() ? std::uint8_t{0} : found->second[record];
+      return found == flags_.end() ? Verdict::free : found->second[record];
     };
     const std::string names = "objects " + std::to_string(a.first) + " and " + std::to_string(b.first);
     for (std::size_t i = 0; i < at_a.places.size(); ++i)
@@ -297,10 +297,12 @@ private:
         }
         if (distance > reach + 1e-9 || !possible.holds(exact, pair)) continue;
         if (!told(result.first_contact)) return names + " meet before they are said to";
-        if (flagOfPoint(a, pair.a) == 0 || flagOfPoint(b, pair.b) == 0) return names + " meet: a point is not flagged";
+        if (flagOfPoint(a, pair.a) == Verdict::free || flagOfPoint(b, pair.b) == Verdict::free)
+          return names + " meet: a point is not flagged";
         if (!surely.holds(exact, pair)) continue;
         if (!told(result.certain_contact)) return names + " surely meet before they are said to";
-        if (flagOfPoint(a, pair.a) != 1 || flagOfPoint(b, pair.b) != 1) return names + " surely meet: an open flag";
+        if (flagOfPoint(a, pair.a) != Verdict::colliding || flagOfPoint(b, pair.b) != Verdict::colliding)
+          return names + " surely meet: an open flag";
       }
     return {};
   }
@@ -343,7 +345,7 @@ private:
   std::vector<PairRule> group_rules_;
   std::map<ObjectId, Leg> legs_;
   std::map<PartKey, Leg> part_legs_;
-  std::map<PartKey, std::vector<std::uint8_t>> flags_;
+  std::map<PartKey, std::vector<Verdict>> flags_;
   std::map<PartKey, std::map<std::uint32_t, bool>> near_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Questions about a site have the answers of one hierarchy over all its points, whatever the tiles and the ranks.
 #include "float64_cloud.h"
+#include "support/verdicts.h"
 #include "tools/programs/program_run.h"
 #include "two_ranks.h"
 
@@ -111,13 +112,13 @@ protected:
       Answers found;
       const SiteFlags of_site =
           collisionFlags(site, b, Side::both, request, [&](const Tile&, const Cloud& cloud, const FlagsResult& result) {
-            for (std::uint32_t i = 0; i < cloud.width; ++i) found[name(cloud, i)] = {double(result.a[i])};
+            for (std::uint32_t i = 0; i < cloud.width; ++i) found[name(cloud, i)] = {static_cast<double>(result.a[i])};
           });
       EXPECT_EQ(of_site.colliding, flags.colliding_a);
       EXPECT_EQ(of_site.b, flags.b);
       EXPECT_LE(of_site.tiles.read, of_site.tiles.needed);
       for (std::size_t i = 0; i < scene.a.size(); ++i)
-        EXPECT_EQ(found.count(nameOf(i)) != 0 ? found[nameOf(i)][0] : 0, flags.a[i]) << i;
+        EXPECT_EQ(found.count(nameOf(i)) != 0 ? found[nameOf(i)][0] : 0, static_cast<double>(flags.a[i])) << i;
 
       const DistanceResult nearest = pcl_bsh::closestPair({all}, b);
       const SiteClosest of_closest = closestPair(site, b, request);
@@ -155,7 +156,7 @@ protected:
       const SitePassage of_path = collideAlong(
           site, other, poses, request, [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
             for (std::uint32_t i = 0; i < cloud.width; ++i) {
-              if (result.flags[i] == 0) continue;
+              if (result.flags[i] == Verdict::free) continue;
               found[name(cloud, i)] = {double{result.distance[i]}, double(result.first_pose[i]),
                                        double(result.closest_pose[i])};
             }
@@ -163,7 +164,7 @@ protected:
       EXPECT_EQ(of_path.colliding, path.colliding);
       EXPECT_EQ(found.size(), path.colliding);
       for (std::size_t i = 0; i < scene.a.size(); ++i) {
-        if (path.flags[i] == 0) continue;
+        if (path.flags[i] == Verdict::free) continue;
         EXPECT_EQ(found[nameOf(i)], (std::vector<double>{double{path.distance[i]}, double(path.first_pose[i]),
                                                          double(path.closest_pose[i])}))
             << i;
@@ -249,7 +250,7 @@ void expectSamePassage(const std::vector<Point3>& points, const SphereHierarchy&
             for (std::uint32_t i = 0; i < cloud.width; ++i) {
               const auto p = static_cast<std::uint32_t>(io::valueOf(cloud, i, "record"));
               ASSERT_EQ(result.flags[i], path.flags[p]) << p;
-              if (path.flags[p] == 0) continue;
+              if (path.flags[p] == Verdict::free) continue;
               ++seen;
               EXPECT_EQ(result.distance[i], path.distance[p]) << p;
               EXPECT_EQ(result.first_pose[i], path.first_pose[p]) << p;

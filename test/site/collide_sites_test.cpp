@@ -2,6 +2,7 @@
 // Questions about two sites have the answers of one hierarchy over all points of each, whatever the tiles and the
 // ranks.
 #include "float64_cloud.h"
+#include "support/verdicts.h"
 #include "tools/programs/program_run.h"
 #include "two_ranks.h"
 
@@ -110,9 +111,9 @@ protected:
       request.uncertainty.length = uncertainty_a;
       EXPECT_EQ(anyCollision(site, placed, request).verdict, any.verdict);
 
-      const auto expectFlags = [&](const auto& query, const Points& points, const std::vector<std::uint8_t>& right,
+      const auto expectFlags = [&](const auto& query, const Points& points, const std::vector<Verdict>& right,
                                    std::size_t colliding, std::size_t undecided) {
-        std::vector<std::uint8_t> found(points.size(), 0);
+        std::vector<Verdict> found(points.size(), Verdict::free);
         const SiteFlags of_sites =
             query(site, placed, request, [&](const Tile&, const Cloud& cloud, const FlagsResult& result) {
               for (std::uint32_t i = 0; i < cloud.width; ++i) found[placeOf(cloud, i, points)] = result.a[i];
@@ -213,7 +214,7 @@ void CollideSites::expectSamePassage(const Points& a, const Points& b, const std
     request.uncertainty.length = uncertainty;
     request.pose_summaries = true;
     TrajectoryResult found = right;
-    std::fill(found.flags.begin(), found.flags.end(), 0);
+    std::fill(found.flags.begin(), found.flags.end(), Verdict::free);
     std::fill(found.distance.begin(), found.distance.end(), std::numeric_limits<float>::quiet_NaN());
     std::fill(found.first_pose.begin(), found.first_pose.end(), -1);
     std::fill(found.closest_pose.begin(), found.closest_pose.end(), -1);
@@ -297,10 +298,10 @@ TEST_F(CollideSites, AlongAPathOfSweptMotion)
   TrajectoryRequest wanted;
   wanted.clearance = request.clearance;
   wanted.swept = 1e-4; // as good as exact here
-  const std::vector<std::uint8_t> least = pcl_bsh::collideAlong({all_a}, all_b, poses, wanted).flags;
+  const std::vector<Verdict> least = pcl_bsh::collideAlong({all_a}, all_b, poses, wanted).flags;
   wanted.clearance += *request.swept;
-  const std::vector<std::uint8_t> most = pcl_bsh::collideAlong({all_a}, all_b, poses, wanted).flags;
-  std::vector<std::uint8_t> found(a.size(), 0);
+  const std::vector<Verdict> most = pcl_bsh::collideAlong({all_a}, all_b, poses, wanted).flags;
+  std::vector<Verdict> found(a.size(), Verdict::free);
   const SitePassage passage = collideAlong(site, other, {}, poses, request,
                                            [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
                                              for (std::uint32_t i = 0; i < cloud.width; ++i)
@@ -470,7 +471,8 @@ TEST_F(SitePairProgram, WritesWhatCollidesAlongAPath)
   wanted.clearance = 0.05;
   wanted.distances = wanted.first_poses = wanted.closest_poses = true;
   const TrajectoryResult right = pcl_bsh::collideAlong({of_a}, of_b, poses, wanted);
-  EXPECT_EQ(valuesOf("found", "collision", a), std::vector<double>(right.flags.begin(), right.flags.end()));
+  EXPECT_EQ(valuesOf("found", "collision", a),
+            std::vector<double>(bytesOf(right.flags), bytesOf(right.flags) + right.flags.size()));
   EXPECT_EQ(valuesOf("found", "first_pose", a), std::vector<double>(right.first_pose.begin(), right.first_pose.end()));
   EXPECT_EQ(valuesOf("found", "closest_pose", a),
             std::vector<double>(right.closest_pose.begin(), right.closest_pose.end()));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sites of results: the same tiles, with what a question has found of each point.
 #include "io/clouds/samples.h"
+#include "support/verdicts.h"
 #include "tools/programs/process.h"
 #include "tools/programs/program_run.h"
 

@@ -2,6 +2,7 @@
 // A question to a site that was killed goes on with the tiles that it has answered, and says what it would have said.
 #include "float64_cloud.h"
 #include "support/in_a_fork.h"
+#include "support/verdicts.h"
 #include "tools/programs/process.h"
 #include "tools/programs/program_run.h"
 #include "two_ranks.h"

@@ -2,6 +2,7 @@
 // What an accuracy promises of one cloud holds of a site, whatever its tiles; and what the program tells and writes.
 #include "float64_cloud.h"
 #include "io/clouds/samples.h"
+#include "support/verdicts.h"
 #include "tools/programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
@@ -82,7 +83,7 @@ TEST_F(SiteAccuracy, KeepsItsPromises)
       request.accuracy = Accuracy::parse(text);
       const bool exact = request.accuracy.isExact(), stops = request.accuracy.stopsEarly();
 
-      std::vector<std::uint8_t> flags(a.size(), 0), along(a.size(), 0);
+      std::vector<Verdict> flags(a.size(), Verdict::free), along(a.size(), Verdict::free);
       const SiteFlags found = collisionFlags(
           site, other, Side::both, request,
           [&](const Tile&, const Cloud& cloud, const FlagsResult& result) { put(flags, cloud, result.a); });
@@ -90,24 +91,26 @@ TEST_F(SiteAccuracy, KeepsItsPromises)
           site, other, {Eigen::Isometry3d::Identity()}, request,
           [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) { put(along, cloud, result.flags); });
       EXPECT_EQ(std::isnan(passage.distance), stops || passage.colliding == 0);
-      const auto expectKept = [&](const std::vector<std::uint8_t>& said, const std::vector<std::uint8_t>& collides,
-                                  const std::vector<std::uint8_t>& nearly) {
+      const auto expectKept = [&](const std::vector<Verdict>& said, const std::vector<Verdict>& collides,
+                                  const std::vector<Verdict>& nearly) {
         for (std::size_t i = 0; i < said.size(); ++i) {
-          ASSERT_LE(said[i], stops ? 2 : 1);
-          if (said[i] == 0) {
-            EXPECT_EQ(collides[i], 0) << i;
+          ASSERT_LE(said[i], stops ? Verdict::undecided : Verdict::colliding);
+          if (said[i] == Verdict::free) {
+            EXPECT_EQ(collides[i], Verdict::free) << i;
           }
-          if (said[i] == 1) {
-            EXPECT_EQ(exact || stops ? collides[i] : nearly[i], 1) << i;
+          if (said[i] == Verdict::colliding) {
+            EXPECT_EQ(exact || stops ? collides[i] : nearly[i], Verdict::colliding) << i;
           }
-          left_undecided += said[i] == 2 ? 1 : 0;
+          left_undecided += said[i] == Verdict::undecided ? 1 : 0;
         }
       };
       expectKept(flags, truth.a, wider.a);
       expectKept(along, truth.a, wider.a);
       expectKept(found.b, truth.b, wider.b);
-      EXPECT_EQ(found.undecided, static_cast<std::uint64_t>(std::count(flags.begin(), flags.end(), 2)));
-      EXPECT_EQ(found.undecided_b, static_cast<std::uint64_t>(std::count(found.b.begin(), found.b.end(), 2)));
+      EXPECT_EQ(found.undecided,
+                static_cast<std::uint64_t>(std::count(flags.begin(), flags.end(), Verdict::undecided)));
+      EXPECT_EQ(found.undecided_b,
+                static_cast<std::uint64_t>(std::count(found.b.begin(), found.b.end(), Verdict::undecided)));
 
       const Verdict verdict = anyCollision(site, other, request).verdict;
       EXPECT_TRUE(verdict == Verdict::colliding || (stops && verdict == Verdict::undecided));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Verdicts about points whose places are uncertain: those of one hierarchy, whatever the tiles and the ranks.
+#include "support/verdicts.h"
 #include "tools/programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
@@ -107,7 +108,7 @@ TEST_F(UncertainSite, VerdictsAreThoseOfMemory)
           wanted.clearance = 0.3;
           wanted.flagged = Side::both;
           const FlagsResult expected = pcl_bsh::collisionFlags({a}, {b, pose}, wanted);
-          std::vector<std::uint8_t> flags(scan.width, 0);
+          std::vector<Verdict> flags(scan.width, Verdict::free);
           const SiteFlags found = collisionFlags(site, {b, pose}, Side::both, request,
                                                  [&](const Tile&, const Cloud& cloud, const FlagsResult& result) {
                                                    for (std::uint32_t i = 0; i < cloud.width; ++i)
@@ -144,7 +145,7 @@ TEST_F(UncertainSite, CollidingWinsOverUndecided)
     const Site site = makeSite({folder / "scan.pcd"}, folder / (side < 0 ? "left" : "right"), options);
     ASSERT_EQ(site.tiles.size(), 3U);
     const SiteFlags found = collisionFlags(site, {b}, Side::both, request);
-    EXPECT_EQ(found.b, std::vector<std::uint8_t>{1});
+    EXPECT_EQ(found.b, test::verdictsOf({1}));
     EXPECT_EQ(found.colliding_b, 1U);
     EXPECT_EQ(found.undecided_b, 0U);
     EXPECT_EQ(found.undecided, 2U);
@@ -169,7 +170,7 @@ TEST_F(UncertainSite, PathsAreThoseOfMemory)
         request.clearance = 0.3;
         request.swept = swept;
         request.uncertainty = of_site;
-        std::vector<std::uint8_t> flags(scan.width, 0);
+        std::vector<Verdict> flags(scan.width, Verdict::free);
         std::vector<std::int32_t> first(scan.width, -1), certain(scan.width, -1);
         const SitePassage found =
             collideAlong(site, b, poses, request, [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
@@ -251,7 +252,7 @@ TEST_F(UncertainSite, APathThatIsOnlyUndecidedHasADistance)
     float distance = std::numeric_limits<float>::infinity();
     std::int32_t first = 1000;
     for (std::uint32_t i = 0; i < scan.width; ++i) {
-      if (expected.flags[i] == 0) continue;
+      if (expected.flags[i] == Verdict::free) continue;
       distance = std::min(distance, expected.distance[i]);
       first = std::min(first, expected.first_pose[i]);
     }

@@ -5,6 +5,7 @@
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,8 @@
 // sure.
 #pragma once
 
+#include "support/verdicts.h"
+
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 
@@ -86,13 +88,13 @@ private:
 };
 
 /// What collisionFlags() should say of a. For clearances well above the rounding of the world's coordinates.
-inline std::vector<std::uint8_t> flagsByKdTree(const PointsView& a, const Eigen::Isometry3d& pose_a,
-                                               const PointsView& b, const Eigen::Isometry3d& pose_b, double clearance)
+inline std::vector<Verdict> flagsByKdTree(const PointsView& a, const Eigen::Isometry3d& pose_a, const PointsView& b,
+                                          const Eigen::Isometry3d& pose_b, double clearance)
 {
   constexpr double band = 1e-6;
   const KdTree tree(b, pose_b);
   const ExactDistance distance(pose_a, pose_b);
-  std::vector<std::uint8_t> flags(a.count, 0);
+  std::vector<Verdict> flags(a.count, Verdict::free);
   for (std::size_t i = 0; i < a.size(); ++i) {
     const std::uint32_t record = a.record(i);
     const Eigen::Vector3d query = KdTree::moved(a, record, pose_a);
@@ -102,9 +104,9 @@ inline std::vector<std::uint8_t> flagsByKdTree(const PointsView& a, const Eigen:
       return distance.compare(a.point(record), b.point(other), clearance) <= 0;
     };
     if (nearest <= clearance * (1 - band))
-      flags[record] = 1;
+      flags[record] = Verdict::colliding;
     else if (nearest <= clearance * (1 + band))
-      flags[record] = tree.anyWithin(query, clearance * (1 + 2 * band), collides);
+      flags[record] = verdictIf(tree.anyWithin(query, clearance * (1 + 2 * band), collides));
   }
   return flags;
 }

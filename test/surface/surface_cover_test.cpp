@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "meshes.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/base/invalid_input.h>
@@ -275,14 +276,14 @@ TEST(CoverSurface, MakesQueriesAnswerForTheSurface)
       distance = std::min(distance,
                           distanceTo(p, wide(box.vertices[t[0]]), wide(box.vertices[t[1]]), wide(box.vertices[t[2]])));
     if (distance <= clearance) {
-      ASSERT_EQ(flags.a[i], 1) << i;
+      ASSERT_EQ(flags.a[i], Verdict::colliding) << i;
       ++near;
     }
     else if (distance <= clearance + tolerance) {
       ++between;
     }
     else {
-      ASSERT_EQ(flags.a[i], 0) << i;
+      ASSERT_EQ(flags.a[i], Verdict::free) << i;
     }
   }
   EXPECT_GT(near, 1000);

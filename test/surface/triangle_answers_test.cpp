@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "meshes.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/query/result.h>
@@ -31,18 +32,18 @@ SurfaceCover sixBalls()
 
 TEST(TriangleAnswers, TakeTheGravestVerdict)
 {
-  EXPECT_THAT(triangleVerdicts(sixBalls(), {0, 2, 3, 0, 0, 1}), ElementsAre(1, 3, 0, 0));
-  EXPECT_THAT(triangleVerdicts(sixBalls(), {3, 2, 1, 2, 3, 0}), ElementsAre(2, 1, 0, 3));
+  EXPECT_EQ(triangleVerdicts(sixBalls(), test::verdictsOf({0, 2, 3, 0, 0, 1})), test::verdictsOf({1, 3, 0, 0}));
+  EXPECT_EQ(triangleVerdicts(sixBalls(), test::verdictsOf({3, 2, 1, 2, 3, 0})), test::verdictsOf({2, 1, 0, 3}));
 }
 
 TEST(TriangleAnswers, TakeTheNearestBallThenTheFirstPoseThenTheFirstBall)
 {
   const SurfaceCover cover = sixBalls();
   EXPECT_THAT(nearestBalls(cover, std::vector<double>{0.5, 0.25, 2, kNoDistance, kNoDistance, 0.25}),
-              ElementsAre(1u, 2u, kNoBall, kNoBall));
+              ElementsAre(1u, 2u, kNothing, kNothing));
   EXPECT_THAT(nearestBalls(cover, std::vector<float>{0.5f, 0.25f, 2, -1, 3, 0.25f}, {0, 7, 1, 1, 1, 6}),
-              ElementsAre(5u, 3u, kNoBall, 4u));
-  EXPECT_THAT(ofBalls<int>({5, kNoBall, 0}, {10, 11, 12, 13, 14, 15}, -1), ElementsAre(15, -1, 10));
+              ElementsAre(5u, 3u, kNothing, 4u));
+  EXPECT_THAT(ofBalls<int>({5, kNothing, 0}, {10, 11, 12, 13, 14, 15}, -1), ElementsAre(15, -1, 10));
 }
 
 TEST(TriangleAnswers, TakeTheFirstPose)
@@ -62,12 +63,12 @@ TEST(TriangleAnswers, RefuseWhatIsNotAboutTriangles)
     }
     return Input::points;
   };
-  EXPECT_EQ(inputOf([&] { triangleVerdicts(cover, {0, 0, 0}); }), Input::result);
-  EXPECT_EQ(inputOf([&] { triangleVerdicts(cover, {0, 0, 0, 0, 4, 0}); }), Input::result);
+  EXPECT_EQ(inputOf([&] { triangleVerdicts(cover, test::verdictsOf({0, 0, 0})); }), Input::result);
+  EXPECT_EQ(inputOf([&] { triangleVerdicts(cover, test::verdictsOf({0, 0, 0, 0, 4, 0})); }), Input::result);
   EXPECT_EQ(inputOf([&] { triangleFirstPoses(cover, {}); }), Input::result);
   EXPECT_EQ(inputOf([&] { nearestBalls(cover, std::vector<float>(6), {0}); }), Input::result);
   cover.triangles_apart = false;
-  EXPECT_EQ(inputOf([&] { triangleVerdicts(cover, std::vector<std::uint8_t>(6)); }), Input::surface);
+  EXPECT_EQ(inputOf([&] { triangleVerdicts(cover, std::vector<Verdict>(6)); }), Input::surface);
   EXPECT_EQ(inputOf([&] { triangleFirstPoses(cover, std::vector<std::int32_t>(6)); }), Input::surface);
   EXPECT_EQ(inputOf([&] { nearestBalls(cover, std::vector<double>(6)); }), Input::surface);
 }
@@ -80,7 +81,7 @@ TEST(TriangleAnswers, EveryTriangleHasABall)
   request.triangles_apart = true;
   const SurfaceCover cover = coverSurface(mesh.view(), mesh.triangles, request);
   EXPECT_EQ(cover.triangle_count, 200u);
-  EXPECT_THAT(nearestBalls(cover, std::vector<double>(cover.centers.size())), testing::Each(testing::Ne(kNoBall)));
+  EXPECT_THAT(nearestBalls(cover, std::vector<double>(cover.centers.size())), testing::Each(testing::Ne(kNothing)));
 }
 
 } // namespace

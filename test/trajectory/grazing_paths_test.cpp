@@ -5,6 +5,7 @@
 
 #include "support/allocations.h"
 #include "support/journeys.h"
+#include "support/verdicts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

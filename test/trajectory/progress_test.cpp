@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a caller's callback throws is the caller's, and harms nothing.
+#include "support/verdicts.h"
+
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <gtest/gtest.h>

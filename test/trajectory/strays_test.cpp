@@ -4,6 +4,7 @@
 
 #include "support/journeys.h"
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -105,7 +106,7 @@ TEST(Strays, OfAClearanceThatExceedsTheirDistance)
   EXPECT_FALSE(findStrays(of_scan, of_model, poses, 1.5e5).has_value());
   const TrajectoryResult found = collideAlong(of_scan, of_model, poses, everything(1.5e5));
   expectSame(found, brute_force::collideAlong(of_scan, of_model, poses, everything(1.5e5)));
-  EXPECT_EQ(found.flags[7], 1);
+  EXPECT_EQ(found.flags[7], Verdict::colliding);
 }
 
 /// As far apart as they are, lengths below 1e-162 have squares that vanish.
@@ -125,7 +126,7 @@ TEST(Strays, OfTheSmallestNumbers)
     EXPECT_FALSE(findStrays(of_scan, of_model, poses, scale).has_value());
     const TrajectoryResult found = collideAlong(of_scan, of_model, poses, flagsOnly(scale));
     expectSame(found, brute_force::collideAlong(of_scan, of_model, poses, flagsOnly(scale)));
-    EXPECT_EQ(found.flags[7], 1);
+    EXPECT_EQ(found.flags[7], Verdict::colliding);
   }
 }
 
@@ -145,10 +146,10 @@ TEST(Strays, AreCountedWhereUndecided)
     request.pose_summaries = sums;
     const TrajectoryResult found = collideAlong(of_scan, of_model, poses, request);
     expectSame(found, brute_force::collideAlong(of_scan, of_model, poses, request));
-    EXPECT_EQ(found.flags[7], flagOf(Verdict::undecided));
-    EXPECT_EQ(found.flags[27], flagOf(Verdict::colliding));
+    EXPECT_EQ(found.flags[7], Verdict::undecided);
+    EXPECT_EQ(found.flags[27], Verdict::colliding);
     const auto count = [&](Verdict verdict) {
-      return static_cast<std::size_t>(std::count(found.flags.begin(), found.flags.end(), flagOf(verdict)));
+      return static_cast<std::size_t>(std::count(found.flags.begin(), found.flags.end(), verdict));
     };
     EXPECT_EQ(found.undecided, count(Verdict::undecided));
     EXPECT_EQ(found.colliding, count(Verdict::colliding));
@@ -185,9 +186,9 @@ TEST(Strays, StayWhereMotionIsSwept)
     between.back().translation().x() = 0.4 * static_cast<double>(k) / steps;
   }
   TrajectoryRequest request = test::flagsOnly(clearance);
-  const std::vector<std::uint8_t> surely = brute_force::collideAlong(of_scan, of_model, between, request).flags;
+  const std::vector<Verdict> surely = brute_force::collideAlong(of_scan, of_model, between, request).flags;
   request.clearance = clearance + tolerance + 0.2 / steps;
-  const std::vector<std::uint8_t> perhaps = brute_force::collideAlong(of_scan, of_model, between, request).flags;
+  const std::vector<Verdict> perhaps = brute_force::collideAlong(of_scan, of_model, between, request).flags;
   request = test::flagsOnly(clearance);
   request.swept = tolerance;
   const TrajectoryResult swept = collideAlong(of_scan, of_model, poses, request);
@@ -209,13 +210,13 @@ TEST(Strays, StayWhereTheSearchStopsEarly)
   const SphereHierarchy of_scan(scan.view()), of_model(model.view());
   const Poses poses = ahead(3, 0.2);
   TrajectoryRequest request = test::flagsOnly(0.1);
-  const std::vector<std::uint8_t> truth = brute_force::collideAlong(of_scan, of_model, poses, request).flags;
+  const std::vector<Verdict> truth = brute_force::collideAlong(of_scan, of_model, poses, request).flags;
   for (const Accuracy& accuracy : {Accuracy::level(0), Accuracy::level(2), Accuracy::level(100), Accuracy::nodePairs(0),
                                    Accuracy::nodePairs(300), Accuracy::nodePairs(std::uint64_t{1} << 50)}) {
     request.accuracy = accuracy;
-    const std::vector<std::uint8_t> flags = collideAlong(of_scan, of_model, poses, request).flags;
+    const std::vector<Verdict> flags = collideAlong(of_scan, of_model, poses, request).flags;
     for (std::size_t i = 0; i < truth.size(); ++i)
-      EXPECT_TRUE(flags[i] == flagOf(Verdict::undecided) || flags[i] == truth[i]) << i;
+      EXPECT_TRUE(flags[i] == Verdict::undecided || flags[i] == truth[i]) << i;
     if (accuracy.value > 1000) {
       EXPECT_EQ(flags, truth);
     }
@@ -233,8 +234,8 @@ TEST(Strays, OfASubset)
   const Poses poses = ahead(3, 0.2);
   const TrajectoryResult found = collideAlong(of_scan, of_model, poses, everything(0.3));
   expectSame(found, brute_force::collideAlong(of_scan, of_model, poses, everything(0.3)));
-  EXPECT_EQ(found.flags[7], 1);
-  EXPECT_EQ(found.flags[27], 1);
+  EXPECT_EQ(found.flags[7], Verdict::colliding);
+  EXPECT_EQ(found.flags[27], Verdict::colliding);
 
   // The model's own stray is no point of its subset.
   const std::vector<std::int32_t> others = {0, 1, 2, 3, 30, 31, 40, 80, 81, 149};

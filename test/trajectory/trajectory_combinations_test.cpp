@@ -3,6 +3,7 @@
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "support/journeys.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -256,11 +257,11 @@ TEST(TrajectoryCombinations, KeepTheirPromiseWithinATolerance)
           ASSERT_LE(least.flags[i], found.flags[i]);
           ASSERT_LE(found.flags[i], most.flags[i]);
         }
-        if (request.first_poses && least.flags[i] != 0) {
+        if (request.first_poses && least.flags[i] != Verdict::free) {
           ASSERT_LE(most.first_pose[i], found.first_pose[i]);
           ASSERT_LE(found.first_pose[i], least.first_pose[i]);
         }
-        if (least.flags[i] == 0) continue;
+        if (least.flags[i] == Verdict::free) continue;
         if (request.distances) {
           ASSERT_EQ(found.distance[i], least.distance[i]);
         }

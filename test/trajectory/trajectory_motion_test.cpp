@@ -3,6 +3,7 @@
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "support/journeys.h"
+#include "support/verdicts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -150,7 +151,7 @@ bool expectTrueAtEachInstant(const Run& run, std::size_t* between_bounds = nullp
   catch (const std::invalid_argument&) {
     return true;
   }
-  const std::vector<std::uint8_t> at_poses = collideAlong(placed, model, run.poses, flagsOnly(run.clearance)).flags;
+  const std::vector<Verdict> at_poses = collideAlong(placed, model, run.poses, flagsOnly(run.clearance)).flags;
   const Real rounding = 1e-17L * run.size;
   const double end = static_cast<double>(run.poses.size() - 1);
   const double contact = found.first_contact
@@ -170,7 +171,7 @@ bool expectTrueAtEachInstant(const Run& run, std::size_t* between_bounds = nullp
     for (std::size_t p = 0; p < distances.size(); ++p) {
       least[p] = std::min(least[p], distances[p]);
       if (distances[p] > run.clearance - rounding) continue;
-      EXPECT_EQ(found.flags[p], 1) << "point " << p << " collides at " << time;
+      EXPECT_EQ(found.flags[p], Verdict::colliding) << "point " << p << " collides at " << time;
       EXPECT_LE(contact, time + 1e-15 * (end + 1.0)) << "point " << p;
       EXPECT_LE(found.first_pose[p], time) << "point " << p;
     }
@@ -181,7 +182,7 @@ bool expectTrueAtEachInstant(const Run& run, std::size_t* between_bounds = nullp
     }));
   for (std::size_t p = 0; p < least.size(); ++p) {
     EXPECT_LE(at_poses[p], found.flags[p]) << "point " << p << " collides at a pose";
-    if (found.flags[p] == 0) continue;
+    if (found.flags[p] == Verdict::free) continue;
     EXPECT_LE(least[p], run.clearance + run.tolerance + step / 2 + rounding) << "point " << p;
     EXPECT_LE(std::abs(found.distance[p] - least[p]),
               run.tolerance / 2 + step / 2 + 1e-7 * std::abs(least[p]) + rounding);
@@ -379,13 +380,11 @@ TEST(TrajectoryMotion, TurnsTheShorterWayOrRefuses)
   TrajectoryRequest request = flagsOnly(0.1);
   request.swept = 0.01;
   for (const double less : {1e-9, 1e-3, 0.5}) { // than half a turn: by y; more than half a turn: by -y
-    EXPECT_THAT(collideAlong({scan}, model, {identity, turned(M_PI - less)}, request).flags,
-                testing::ElementsAre(1, 0));
-    EXPECT_THAT(collideAlong({scan}, model, {identity, turned(M_PI + less)}, request).flags,
-                testing::ElementsAre(0, 1));
+    EXPECT_EQ(collideAlong({scan}, model, {identity, turned(M_PI - less)}, request).flags, test::verdictsOf({1, 0}));
+    EXPECT_EQ(collideAlong({scan}, model, {identity, turned(M_PI + less)}, request).flags, test::verdictsOf({0, 1}));
     EXPECT_THAT(collideAlong({scan}, model, {identity, turned(2 * M_PI - less)}, request).flags.size(), 2u);
   }
-  EXPECT_THAT(collideAlong({scan}, model, {identity, turned(2 * M_PI)}, request).flags, testing::ElementsAre(0, 0));
+  EXPECT_EQ(collideAlong({scan}, model, {identity, turned(2 * M_PI)}, request).flags, test::verdictsOf({0, 0}));
   Eigen::Isometry3d half = identity;
   half.linear().diagonal() = Eigen::Vector3d(-1, -1, 1);
   for (const Poses& poses : {Poses{identity, half}, Poses{half, identity}, Poses{identity, turned(M_PI)}}) {

@@ -2,6 +2,7 @@
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "support/journeys.h"
+#include "support/verdicts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -149,7 +150,7 @@ void expectTrueToSamples(const Journey& run, double tolerance, const Point3& piv
   EXPECT_EQ(std::isfinite(contact), result.colliding > 0);
   for (std::uint32_t p = 0; p < result.flags.size(); ++p) {
     SCOPED_TRACE("point " + std::to_string(p));
-    if (result.flags[p] == 0) {
+    if (result.flags[p] == Verdict::free) {
       EXPECT_GT(samples.smallest[p], clearance - rounding);
       EXPECT_TRUE(std::isnan(result.distance[p]));
       EXPECT_EQ(result.first_pose[p], -1);
@@ -441,11 +442,11 @@ TEST(Trajectory, MorePosesHitNoLess)
   const Corridor corridor;
   const SphereHierarchy scan(corridor.walls.view()), model(corridor.cart.view());
   const Poses poses = alongCorridor(2, 58, 65);
-  std::vector<std::uint8_t> denser;
+  std::vector<Verdict> denser;
   for (const std::size_t step : {1u, 2u, 4u, 64u}) {
     Poses some;
     for (std::size_t k = 0; k < poses.size(); k += step) some.push_back(poses[k]);
-    const std::vector<std::uint8_t> flags = collideAlong({scan}, model, some, flagsOnly(0.1)).flags;
+    const std::vector<Verdict> flags = collideAlong({scan}, model, some, flagsOnly(0.1)).flags;
     for (std::size_t p = 0; p < denser.size(); ++p) EXPECT_LE(flags[p], denser[p]);
     denser = flags;
   }
@@ -654,27 +655,27 @@ struct TrueJourney {
 };
 
 /// None wrong, and counted; `before` holds what coarser settings decided, and takes what this one does.
-std::size_t expectNoneWrong(const TrueJourney& journey, const Accuracy& accuracy, std::vector<std::uint8_t>* before)
+std::size_t expectNoneWrong(const TrueJourney& journey, const Accuracy& accuracy, std::vector<Verdict>* before)
 {
   SCOPED_TRACE(journey.run.name + " at " + accuracy.text());
   const TrajectoryResult result = journey.flagsAt(accuracy);
-  const std::vector<std::uint8_t>& flags = result.flags;
+  const std::vector<Verdict>& flags = result.flags;
   EXPECT_EQ(flags.size(), journey.truth.flags.size());
   for (std::size_t i = 0; i < flags.size(); ++i) {
-    EXPECT_TRUE(flags[i] == 2 || flags[i] == journey.truth.flags[i]) << "point " << i;
-    if (before && (*before)[i] != 2) {
+    EXPECT_TRUE(flags[i] == Verdict::undecided || flags[i] == journey.truth.flags[i]) << "point " << i;
+    if (before && (*before)[i] != Verdict::undecided) {
       EXPECT_EQ(flags[i], (*before)[i]) << "point " << i << " was decided";
     }
   }
-  EXPECT_EQ(result.colliding, static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1)));
-  EXPECT_EQ(result.undecided, static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 2)));
+  EXPECT_EQ(result.colliding, static_cast<std::size_t>(std::count(flags.begin(), flags.end(), Verdict::colliding)));
+  EXPECT_EQ(result.undecided, static_cast<std::size_t>(std::count(flags.begin(), flags.end(), Verdict::undecided)));
   if (before) *before = flags;
   return result.undecided;
 }
 
 void expectNarrowing(const TrueJourney& journey, const std::vector<Accuracy>& settings, std::size_t& undecided)
 {
-  std::vector<std::uint8_t> flags(journey.truth.flags.size(), 2);
+  std::vector<Verdict> flags(journey.truth.flags.size(), Verdict::undecided);
   for (const Accuracy& accuracy : settings) undecided += expectNoneWrong(journey, accuracy, &flags);
   EXPECT_EQ(flags, journey.truth.flags) << journey.run.name;
 }
@@ -728,9 +729,9 @@ TEST(TrajectoryAccuracy, ToleranceErrsOnlyWithinIt)
           ASSERT_LE(result->flags[i], most.flags[i]) << i;
         }
         earlier += flags.flags[i] != truth.flags[i];
-        if (all.flags[i] == 0) continue;
+        if (all.flags[i] == Verdict::free) continue;
         ASSERT_GE(all.first_pose[i], most.first_pose[i]);
-        if (truth.flags[i] != 0) {
+        if (truth.flags[i] != Verdict::free) {
           ASSERT_LE(all.first_pose[i], truth.first_pose[i]);
           ASSERT_EQ(all.distance[i], truth.distance[i]) << i;
           ASSERT_EQ(all.closest_pose[i], truth.closest_pose[i]) << i;
@@ -892,12 +893,12 @@ TEST(TrajectorySwept, ShrinksToTheTruthWithTheTolerance)
   const Corridor corridor;
   const Poses poses = alongCorridor(2, 58, 30);
   const SphereHierarchy scan(corridor.walls.view()), model(corridor.cart.view());
-  std::vector<std::uint8_t> wider = std::vector<std::uint8_t>(corridor.walls.view().count, 1);
-  const std::vector<std::uint8_t> at_poses = collideAlong({scan}, model, poses, flagsOnly(0.1)).flags;
+  std::vector<Verdict> wider = std::vector<Verdict>(corridor.walls.view().count, Verdict::colliding);
+  const std::vector<Verdict> at_poses = collideAlong({scan}, model, poses, flagsOnly(0.1)).flags;
   for (const double tolerance : {0.16, 0.01, 0.000625}) { // each a sixteenth of the one before
     TrajectoryRequest request = flagsOnly(0.1);
     request.swept = tolerance;
-    const std::vector<std::uint8_t> flags = collideAlong({scan}, model, poses, request).flags;
+    const std::vector<Verdict> flags = collideAlong({scan}, model, poses, request).flags;
     for (std::size_t p = 0; p < flags.size(); ++p) {
       EXPECT_LE(at_poses[p], flags[p]);
       EXPECT_LE(flags[p], wider[p]);

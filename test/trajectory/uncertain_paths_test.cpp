@@ -5,6 +5,7 @@
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "support/journeys.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -72,7 +73,7 @@ TEST(UncertainPaths, SameAsBruteForceWhateverIsAsked)
     request.flags = false;
     EXPECT_TRUE(collideAlong(placed, model, run.poses, request).flags.empty());
     if (::testing::Test::HasFailure()) return;
-    for (const std::uint8_t flag : truth.flags) ++flags[flag];
+    for (const Verdict flag : truth.flags) ++flags[test::numberOf(flag)];
     for (std::size_t i = 0; i < truth.certain_pose.size(); ++i) later += truth.certain_pose[i] > truth.first_pose[i];
   }
   for (const std::size_t count : flags) EXPECT_GT(count, 500u);
@@ -122,7 +123,7 @@ TEST(UncertainPaths, WholeNodesByLengthsOfTheirOwn)
       const TrajectoryResult found = collideAlong({scan}, model, poses, request);
       expectSame(found, brute_force::collideAlong({scan}, model, poses, request));
       ASSERT_FALSE(::testing::Test::HasFailure());
-      for (const std::uint8_t flag : found.flags) ++flags[flag];
+      for (const Verdict flag : found.flags) ++flags[test::numberOf(flag)];
     }
   }
   for (const std::size_t count : flags) EXPECT_GT(count, 100u);
@@ -148,7 +149,7 @@ TEST(UncertainPaths, BothEdgesToTheLastBit)
               const TrajectoryResult found = collideAlong({scan}, model, poses, everything(clearance));
               expectSame(found, brute_force::collideAlong({scan}, model, poses, everything(clearance)));
               ASSERT_FALSE(::testing::Test::HasFailure()) << distance;
-              ++verdicts[found.flags[0]];
+              ++verdicts[test::numberOf(found.flags[0])];
             }
   for (const std::size_t count : verdicts) EXPECT_GT(count, 30u);
 }
@@ -183,7 +184,10 @@ TEST(UncertainPaths, AreTwoPlainQueries)
       request.clearance = clearance;
       found = collideAlong({uncertain, run.scene.pose_a}, other, run.poses, request);
       for (std::size_t i = 0; i < found.flags.size(); ++i)
-        ASSERT_EQ(found.flags[i], certain.flags[i] != 0 ? 1 : possible.flags[i] != 0 ? 2 : 0) << i;
+        ASSERT_EQ(found.flags[i], certain.flags[i] != Verdict::free    ? Verdict::colliding
+                                  : possible.flags[i] != Verdict::free ? Verdict::undecided
+                                                                       : Verdict::free)
+            << i;
       EXPECT_EQ(test::bitsOf(found.distance), test::bitsOf(possible.distance));
       EXPECT_EQ(found.first_pose, possible.first_pose);
       EXPECT_EQ(found.closest_point, possible.closest_point);
@@ -224,24 +228,24 @@ TEST(UncertainPaths, SweptMotionHoldsAtEveryInstant)
     for (int i = 0; i <= 60; ++i) instants.push_back(poseBetween(ends[0], ends[1], i / 60.0));
     const TrajectoryResult at_instants = brute_force::collideAlong({scan}, model, instants, flagsOnly(0.25));
     for (std::size_t i = 0; i < found.flags.size(); ++i) {
-      if (at_instants.flags[i] != 0) {
-        ASSERT_NE(found.flags[i], 0) << seed << ' ' << i << ": may collide at an instant";
+      if (at_instants.flags[i] != Verdict::free) {
+        ASSERT_NE(found.flags[i], Verdict::free) << seed << ' ' << i << ": may collide at an instant";
       }
-      if (at_instants.flags[i] == 1) {
-        ASSERT_EQ(found.flags[i], 1) << seed << ' ' << i << ": surely collides at one";
+      if (at_instants.flags[i] == Verdict::colliding) {
+        ASSERT_EQ(found.flags[i], Verdict::colliding) << seed << ' ' << i << ": surely collides at one";
       }
-      ++flags[found.flags[i]];
+      ++flags[test::numberOf(found.flags[i])];
     }
     // And it claims no more than the tolerance allows, where the instants are dense against it.
     Poses dense;
     for (int i = 0; i <= 2000; ++i) dense.push_back(poseBetween(ends[0], ends[1], i / 2000.0));
     const TrajectoryResult wider = collideAlong({scan}, model, dense, flagsOnly(0.25 + 0.004 + 0.002));
     for (std::size_t i = 0; i < found.flags.size(); ++i) {
-      if (found.flags[i] == 1) {
-        ASSERT_EQ(wider.flags[i], 1) << seed << ' ' << i;
+      if (found.flags[i] == Verdict::colliding) {
+        ASSERT_EQ(wider.flags[i], Verdict::colliding) << seed << ' ' << i;
       }
-      if (found.flags[i] == 2) {
-        ASSERT_NE(wider.flags[i], 0) << seed << ' ' << i;
+      if (found.flags[i] == Verdict::undecided) {
+        ASSERT_NE(wider.flags[i], Verdict::free) << seed << ' ' << i;
       }
     }
   }
@@ -264,8 +268,8 @@ TEST(UncertainPaths, LessThanExactClaimsNothingFalse)
       const TrajectoryResult found = collideAlong(placed, model, run.poses, request);
       std::size_t undecided = 0;
       for (std::size_t i = 0; i < truth.flags.size(); ++i) {
-        undecided += found.flags[i] == flagOf(Verdict::undecided);
-        if (found.flags[i] == flagOf(Verdict::undecided)) continue;
+        undecided += found.flags[i] == Verdict::undecided;
+        if (found.flags[i] == Verdict::undecided) continue;
         ASSERT_EQ(found.flags[i], truth.flags[i]) << i;
         ++decided;
       }

@@ -9,6 +9,7 @@
 #include <pcl_bsh/vtk_filters/vtkBSHSphereSource.h>
 
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gmock/gmock.h>
 
@@ -259,7 +260,7 @@ TEST_P(Filters, DistancesAreThoseOfTheCore)
     expectSame(values(*filter->GetOutput(), "distance"), wanted.distance);
     const std::vector<double> nearest = values(*filter->GetOutput(), "nearest");
     for (std::size_t i = 0; i < nearest.size(); ++i)
-      EXPECT_EQ(nearest[i], wanted.nearest[i] == PointDistances::kNoPoint ? -1.0 : wanted.nearest[i]);
+      EXPECT_EQ(nearest[i], wanted.nearest[i] == kNothing ? -1.0 : wanted.nearest[i]);
   }
 }
 

@@ -46,7 +46,7 @@ private:
     const TrajectoryResult of_vertices = ofVertices(*input->triangles, viewOf(input->cloud).count, found);
     const auto output = ownCloud(std::move(input));
     output->cloud = withResults(output->cloud, of_vertices);
-    setFaceProperty(*output, collision_field_name, std::move(found.flags));
+    setFaceProperty(*output, collision_field_name, numbersOf(found.flags));
     if (!trajectory) return output;
     setFaceProperty(*output, distance_field_name, std::move(found.distance));
     setFaceProperty(*output, first_pose_field_name, std::move(found.first_pose));
@@ -80,10 +80,7 @@ struct BshCollision : SelectingStage, QuestionStage {
 protected:
   std::vector<std::uint8_t> passing(const StageCloudPtr& cloud) override
   {
-    std::vector<std::uint8_t> flags = ask(cloud, *this).answer.collisions.flags;
-    const bool colliding = keep == "colliding";
-    for (std::uint8_t& flag : flags) flag = (flag != 0) == colliding; // what is undecided is not free
-    return flags;
+    return maskOf(ask(cloud, *this).answer.collisions.flags, keep == "free"); // what is undecided is not free
   }
 };
 

@@ -10,21 +10,12 @@
 #include <tuple>
 
 namespace pcl_bsh::pipeline {
-namespace {
-
-/// 1, 2 and 3 from the gravest on; 0 is free.
-bool isGraver(std::uint8_t flag, std::uint8_t than)
-{
-  return flag != flagOf(Verdict::free) && (than == flagOf(Verdict::free) || flag < than);
-}
-
-} // namespace
 
 TrajectoryResult ofVertices(const std::vector<Triangle>& triangles, std::size_t vertices,
                             const TrajectoryResult& of_triangles)
 {
   TrajectoryResult found;
-  found.flags.resize(vertices, flagOf(Verdict::free));
+  found.flags.resize(vertices, Verdict::free);
   const bool measured = !of_triangles.distance.empty();
   if (measured) {
     found.distance.resize(vertices, std::numeric_limits<float>::quiet_NaN());
@@ -32,9 +23,8 @@ TrajectoryResult ofVertices(const std::vector<Triangle>& triangles, std::size_t 
     found.closest_pose.resize(vertices, -1);
   }
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const std::uint8_t flag = of_triangles.flags[t];
     for (const std::uint32_t vertex : triangles[t]) {
-      if (isGraver(flag, found.flags[vertex])) found.flags[vertex] = flag;
+      found.flags[vertex] = graver(found.flags[vertex], of_triangles.flags[t]);
       if (!measured || of_triangles.first_pose[t] < 0) continue;
       std::int32_t& first = found.first_pose[vertex];
       const bool is_first = first < 0;

@@ -238,7 +238,7 @@ private:
       const Eigen::Vector3d at = from.placeOf(place.point);
       double size = 0;
       for (std::size_t k = 0; k < 3; ++k) size = std::max(size, place.high[k] - place.low[k]);
-      const bool known = place.nearest != PointDistances::kNoPoint;
+      const bool known = place.nearest != kNothing;
       rows.push_back(Object{{"rank", std::to_string(i + 1)},
                             {"at", coordinate(at.x()) + ", " + coordinate(at.y()) + ", " + coordinate(at.z())},
                             {"distance", distanceText(place.distance)},

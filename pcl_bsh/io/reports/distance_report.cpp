@@ -56,7 +56,7 @@ Json toJson(const DistanceQuestion& question, const DistanceSide& side, bool is_
   for (std::size_t i = 0; i < std::min(side.places.size(), most_far_places); ++i) {
     const FarPlace& place = side.places[i];
     const Eigen::Vector3d at = side.placeOf(place.point);
-    const bool known = place.nearest != PointDistances::kNoPoint;
+    const bool known = place.nearest != kNothing;
     json["places"].push_back({{"points", place.records.size()},
                               {"distance", lengthJson(place.distance)},
                               {is_input ? "point" : question.partName(), part(place.point, is_input)},

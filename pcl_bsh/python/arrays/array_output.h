@@ -21,14 +21,27 @@ namespace pcl_bsh::python {
 
 namespace py = pybind11;
 
-/// An array that owns what the vector held.
-template <class T>
-py::array_t<T> arrayFrom(std::vector<T>&& values)
+/// An array that owns what the vector held. @param numbersIn from the vector to its first number
+template <class Number, class T>
+py::array_t<Number> arrayOwning(std::vector<T>&& values, const Number* (*numbersIn)(const std::vector<T>&))
 {
   auto owned = std::make_unique<std::vector<T>>(std::move(values));
   const std::vector<T>& held = *owned;
   const py::capsule free(owned.release(), [](void* memory) { delete static_cast<std::vector<T>*>(memory); });
-  return py::array_t<T>(static_cast<py::ssize_t>(held.size()), held.data(), free);
+  return py::array_t<Number>(static_cast<py::ssize_t>(held.size()), numbersIn(held), free);
+}
+
+template <class T>
+py::array_t<T> arrayFrom(std::vector<T>&& values)
+{
+  return arrayOwning<T, T>(std::move(values), [](const std::vector<T>& held) { return held.data(); });
+}
+
+/// Verdicts are bytes.
+inline py::array_t<std::uint8_t> arrayFrom(std::vector<Verdict>&& verdicts)
+{
+  return arrayOwning<std::uint8_t, Verdict>(std::move(verdicts),
+                                            [](const std::vector<Verdict>& held) { return bytesOf(held); });
 }
 
 /// A read-only array of any shape in the memory of an object, which it keeps alive.
@@ -44,6 +57,11 @@ template <class T>
 py::array_t<T> arrayIn(const py::handle& object, const std::vector<T>& values)
 {
   return arrayIn(object, values.data(), {static_cast<py::ssize_t>(values.size())});
+}
+
+inline py::array_t<std::uint8_t> arrayIn(const py::handle& object, const std::vector<Verdict>& verdicts)
+{
+  return arrayIn(object, bytesOf(verdicts), {static_cast<py::ssize_t>(verdicts.size())});
 }
 
 /// A read-only property: the array of one of the object's vectors.

@@ -9,29 +9,28 @@
 namespace pcl_bsh {
 namespace {
 
-bool isNotFree(std::uint8_t flag)
+bool isNotFree(Verdict flag)
 {
-  return flag != flagOf(Verdict::free);
+  return flag != Verdict::free;
 }
 
 /// The flags of one pair of parts.
 struct PairFlags {
   PartPair parts;
-  std::vector<std::uint8_t> a, b;
+  std::vector<Verdict> a, b;
 };
 
 /// Those of each part, where any of its points is flagged.
 std::vector<FlaggedPart> mergedFlags(const std::vector<Body>& bodies, const std::vector<std::vector<PairFlags>>& found)
 {
   std::map<std::pair<ObjectId, std::uint32_t>, FlaggedPart> parts;
-  const auto merge = [&](ObjectId object, std::uint32_t part, const std::vector<std::uint8_t>& flags) {
+  const auto merge = [&](ObjectId object, std::uint32_t part, const std::vector<Verdict>& flags) {
     if (std::none_of(flags.begin(), flags.end(), isNotFree)) return;
     FlaggedPart& target = parts[{object, part}];
     target.object = object;
     target.part = part;
     target.flags.resize(bodies[object].object.parts[part].hierarchy->view().count);
-    for (std::size_t i = 0; i < flags.size(); ++i)
-      if (isNotFree(flags[i]) && target.flags[i] != flagOf(Verdict::colliding)) target.flags[i] = flags[i];
+    for (std::size_t i = 0; i < flags.size(); ++i) target.flags[i] = graver(target.flags[i], flags[i]);
   };
   for (const auto& of_pair : found)
     for (const PairFlags& flags : of_pair) {
@@ -53,7 +52,7 @@ void flagSwept(const SweptPart& a, const SweptPart& b, double clearance, double 
   const bool uncertain = areUncertain({a.hierarchy}, {b.hierarchy});
   flagContacts(a, b, clearance, tolerance, uncertain ? Places::possible : Places::measured, flags.a, flags.b, work);
   if (!uncertain || std::none_of(flags.a.begin(), flags.a.end(), isNotFree)) return;
-  std::vector<std::uint8_t> certain_a(flags.a.size()), certain_b(flags.b.size());
+  std::vector<Verdict> certain_a(flags.a.size()), certain_b(flags.b.size());
   flagContacts(a, b, clearance, tolerance, Places::certain, certain_a, certain_b, work);
   std::size_t colliding = 0, undecided = 0; // counted once all pairs are known
   withhold(flags.a, certain_a, colliding, undecided);
@@ -83,8 +82,8 @@ void Scene::State::findSwept(EffectCost& spent)
   std::vector<std::vector<PairFlags>> found(grid.pairs().size());
   eachSweptPair(spent,
                 [&](std::size_t k, BroadPair& pair, const PartPair& parts, const SweptPart& a, const SweptPart& b) {
-                  PairFlags flags{parts, std::vector<std::uint8_t>(a.hierarchy.view().count, 0),
-                                  std::vector<std::uint8_t>(b.hierarchy.view().count, 0)};
+                  PairFlags flags{parts, std::vector<Verdict>(a.hierarchy.view().count),
+                                  std::vector<Verdict>(b.hierarchy.view().count)};
                   flagSwept(a, b, pair.clearance, options.tolerance, flags, pair.memory.work);
                   if (std::any_of(flags.a.begin(), flags.a.end(), isNotFree)) found[k].push_back(std::move(flags));
                 });

@@ -43,7 +43,7 @@ public:
     return earliest;
   }
 
-  void flag(std::vector<std::uint8_t>& flags_a, std::vector<std::uint8_t>& flags_b)
+  void flag(std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b)
   {
     flags_a_ = &flags_a;
     flags_b_ = &flags_b;
@@ -136,23 +136,23 @@ private:
   void flagPairs(const PairsWithin& found, double begin, double end)
   {
     for (const PointPair pair : found.pairs) {
-      std::uint8_t &flag_a = (*flags_a_)[pair.a], &flag_b = (*flags_b_)[pair.b];
-      if (flag_a != 0 && flag_b != 0) continue;
+      Verdict &flag_a = (*flags_a_)[pair.a], &flag_b = (*flags_b_)[pair.b];
+      if (flag_a != Verdict::free && flag_b != Verdict::free) continue;
       const std::optional<ContactZone> near = zone(pair);
       if (!near) continue;
       const Eigen::Vector3d p = a_.point(pair.a), q = b_.point(pair.b);
       const double now = (a_.motion.at(begin) * p - b_.motion.at(begin) * q).norm();
-      if (now <= near->inner() || timeOfContact(a_.motion, p, b_.motion, q, *near, begin, end)) flag_a = flag_b = 1;
+      if (now <= near->inner() || timeOfContact(a_.motion, p, b_.motion, q, *near, begin, end))
+        flag_a = flag_b = Verdict::colliding;
     }
   }
 
   /// Adds the verdicts at a pose.
-  void take(const std::vector<std::uint8_t>& verdicts, std::vector<std::uint8_t>& flags) const
+  void take(const std::vector<Verdict>& verdicts, std::vector<Verdict>& flags) const
   {
     for (std::size_t i = 0; i < verdicts.size(); ++i)
-      if (verdicts[i] == flagOf(Verdict::colliding) ||
-          (verdicts[i] == flagOf(Verdict::undecided) && places_ == Places::possible))
-        flags[i] = 1;
+      if (verdicts[i] == Verdict::colliding || (verdicts[i] == Verdict::undecided && places_ == Places::possible))
+        flags[i] = Verdict::colliding;
   }
 
   const SweptPart &a_, &b_;
@@ -162,7 +162,7 @@ private:
   const double farthest_; ///< any pair's reach, less its radii
   const double tolerance_, angle_;
   Work& work_;
-  std::vector<std::uint8_t>*flags_a_ = nullptr, *flags_b_ = nullptr;
+  std::vector<Verdict>*flags_a_ = nullptr, *flags_b_ = nullptr;
 };
 
 } // namespace
@@ -180,7 +180,7 @@ std::optional<PairContact> firstContactOf(const SweptPart& a, const SweptPart& b
 }
 
 void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, Places places,
-                  std::vector<std::uint8_t>& flags_a, std::vector<std::uint8_t>& flags_b, Work& work)
+                  std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b, Work& work)
 {
   Sweep(a, b, clearance, tolerance, places, work).flag(flags_a, flags_b);
 }

@@ -51,6 +51,6 @@ std::optional<PairContact> firstContactOf(const SweptPart& a, const SweptPart& b
 /// Flags, one per record, the points that, where `places` says they are, collide with one of the other part at some s
 /// in [0, 1], and none that is farther than clearance + tolerance at all of them.
 void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, Places places,
-                  std::vector<std::uint8_t>& flags_a, std::vector<std::uint8_t>& flags_b, Work& work);
+                  std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b, Work& work);
 
 } // namespace pcl_bsh

@@ -17,22 +17,11 @@ namespace pcl_bsh::site {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Of what two tiles say of one point: one that collides with a tile collides, and is free only if it is of all.
-inline std::uint8_t surer(std::uint8_t a, std::uint8_t b)
+/// Adds to the flags of points what another tile says of them: one that collides with a tile collides, and is free only
+/// if it is of all.
+inline void join(std::vector<Verdict>& flags, const std::vector<Verdict>& of_other)
 {
-  const auto collides = flagOf(Verdict::colliding);
-  return a == collides || b == collides ? collides : std::max(a, b);
-}
-
-/// Adds to the flags of points what another tile says of them.
-inline void join(std::vector<std::uint8_t>& flags, const std::vector<std::uint8_t>& of_other)
-{
-  std::transform(flags.begin(), flags.end(), of_other.begin(), flags.begin(), surer);
-}
-
-inline std::size_t countOf(Verdict verdict, const std::vector<std::uint8_t>& flags)
-{
-  return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), flagOf(verdict)));
+  std::transform(flags.begin(), flags.end(), of_other.begin(), flags.begin(), graver);
 }
 
 /// What a query is asked of each tile.

@@ -55,8 +55,8 @@ void JoinedPoses::count(const std::vector<std::size_t>& poses,
                         const std::function<SphereHierarchy(std::size_t)>& model_of)
 {
   const auto wanted = wantedOf<FlagsRequest>(request_);
-  std::vector<std::vector<std::uint8_t>> flags(poses.size());
-  for (auto& of_pose : flags) of_pose.assign(scan_.view().count, flagOf(Verdict::free));
+  std::vector<std::vector<Verdict>> flags(poses.size());
+  for (auto& of_pose : flags) of_pose.assign(scan_.view().count, Verdict::free);
   FlagsResult found;
   for (std::size_t m = 0; m < meets_.size(); ++m) {
     if (std::none_of(poses.begin(), poses.end(), [&](std::size_t k) { return meets_[m][k]; })) continue;
@@ -68,8 +68,8 @@ void JoinedPoses::count(const std::vector<std::size_t>& poses,
     }
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    sum_[poses[i]].colliding_points = countOf(Verdict::colliding, flags[i]);
-    sum_[poses[i]].undecided_points = countOf(Verdict::undecided, flags[i]);
+    sum_[poses[i]].colliding_points = countOf(flags[i], Verdict::colliding);
+    sum_[poses[i]].undecided_points = countOf(flags[i], Verdict::undecided);
   }
 }
 

@@ -114,7 +114,7 @@ std::vector<double> PassageSum::numbersOf(const Tile& tile, const pcl::PCLPointC
 {
   double nearest = infinity, earliest = infinity;
   for (std::size_t i = 0; i < found.distance.size(); ++i) {
-    if (found.flags[i] == 0) continue;
+    if (found.flags[i] == Verdict::free) continue;
     nearest = std::min(nearest, double{found.distance[i]});
     earliest = std::min(earliest, static_cast<double>(found.first_pose[i]));
   }

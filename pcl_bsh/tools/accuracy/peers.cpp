@@ -58,7 +58,7 @@ Point3 middleOf(const PointsView& view)
 
 /// What one way of asking PCL found at one pose.
 struct Answer {
-  std::vector<std::uint8_t> flags; ///< per finite point of a; empty: not asked
+  std::vector<Verdict> flags; ///< per finite point of a; empty: not asked
   double distance = infinity;
 };
 
@@ -236,9 +236,9 @@ private:
       const int count =
           tree.radiusSearch(moved(asking[i], motion), subject_.clearance, found, squared, a_asks_ ? 1 : 0);
       if (a_asks_)
-        answer.flags[i] = count > 0 ? 1 : 0;
+        answer.flags[i] = count > 0 ? Verdict::colliding : Verdict::free;
       else
-        for (const pcl::index_t index : found) answer.flags[static_cast<std::size_t>(index)] = 1;
+        for (const pcl::index_t index : found) answer.flags[static_cast<std::size_t>(index)] = Verdict::colliding;
     }
     return answer;
   }
@@ -254,12 +254,12 @@ private:
       const pcl::PointXYZ point = moved(asking[i], motion);
       if (!tree.isVoxelOccupiedAtPoint(point)) continue;
       if (a_asks_) {
-        answer.flags[i] = 1;
+        answer.flags[i] = Verdict::colliding;
         continue;
       }
       found.clear();
       tree.voxelSearch(point, found);
-      for (const pcl::index_t index : found) answer.flags[static_cast<std::size_t>(index)] = 1;
+      for (const pcl::index_t index : found) answer.flags[static_cast<std::size_t>(index)] = Verdict::colliding;
     }
     return answer;
   }
@@ -280,7 +280,7 @@ private:
   Finite a_, b_;
   bool a_asks_; ///< the smaller cloud asks a tree of the larger, which is the faster way round
   std::string knob_, setting_;
-  std::vector<std::vector<std::uint8_t>> truths_;
+  std::vector<std::vector<Verdict>> truths_;
   std::vector<double> distances_;
   std::vector<Measurement> measurements_;
 };

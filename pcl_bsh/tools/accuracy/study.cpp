@@ -37,7 +37,7 @@ const char* knobOf(const Accuracy& accuracy)
 /// The true results at a pose, to judge the others by.
 struct Truth {
   Verdict any;
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   double distance;
 };
 
@@ -69,8 +69,7 @@ public:
   std::size_t colliding() const
   {
     std::size_t count = 0;
-    for (const Truth& truth : truths_)
-      count += static_cast<std::size_t>(std::count(truth.flags.begin(), truth.flags.end(), std::uint8_t{1}));
+    for (const Truth& truth : truths_) count += countOf(truth.flags, Verdict::colliding);
     return count;
   }
 
@@ -112,7 +111,7 @@ public:
         answers += static_cast<double>(a_.size());
         undecided += static_cast<double>(result.undecided_a);
         for (std::size_t k = 0; k < result.a.size(); ++k)
-          m.wrong += result.a[k] != static_cast<std::uint8_t>(Verdict::undecided) && result.a[k] != truth.flags[k];
+          m.wrong += result.a[k] != Verdict::undecided && result.a[k] != truth.flags[k];
         m.work += result.work;
       }
       else {

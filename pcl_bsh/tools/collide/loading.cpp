@@ -84,11 +84,11 @@ std::size_t writeSurface(const CollideOptions& options, const Scan& input, const
   io::Mesh mesh{input.cloud, input.triangles};
   std::vector<std::uint8_t> kept(mesh.triangles.size(), 1);
   if (options.keep != Keep::flagged) {
-    for (std::size_t t = 0; t < kept.size(); ++t) kept[t] = (found.flags[t] != 0) == (options.keep == Keep::colliding);
+    kept = maskOf(found.flags, options.keep != Keep::colliding);
     mesh.triangles = keptValues(mesh.triangles, kept);
     mesh.vertices = selectedRecords(mesh.vertices, keepUsedVertices(viewOf(mesh.vertices).count, mesh.triangles));
   }
-  const auto flags = keptValues(found.flags, kept);
+  const auto flags = keptValues(numbersOf(found.flags), kept);
   const auto distance = keptValues(found.distance, kept);
   const auto first = keptValues(found.first_pose, kept), closest = keptValues(found.closest_pose, kept);
   std::vector<io::FaceField> fields;

@@ -112,11 +112,11 @@ void check(Options& options)
 
 /// The cloud without the points that are flagged, and without those that have no coordinates.
 pcl::PCLPointCloud2 withoutFlagged(const pcl::PCLPointCloud2& cloud, const PointsView& view,
-                                   const std::vector<std::uint8_t>& flags)
+                                   const std::vector<Verdict>& flags)
 {
   pcl::Indices kept;
   for (std::uint32_t i = 0; i < view.count; ++i)
-    if (flags[i] == 0 && isFinite(view.point(i))) kept.push_back(static_cast<pcl::index_t>(i));
+    if (flags[i] == Verdict::free && isFinite(view.point(i))) kept.push_back(static_cast<pcl::index_t>(i));
   return selectedRecords(cloud, kept);
 }
 
@@ -131,7 +131,7 @@ Json filterCloud(const Options& options, const std::string& name, const JointVal
   const PointsView view = viewOf(cloud);
   const Eigen::Isometry3d T_scan_root = filter.robot().poses(values)[frame].inverse();
   const auto start = std::chrono::steady_clock::now();
-  std::vector<std::uint8_t> flags = filter.flags(view, T_scan_root, values);
+  std::vector<Verdict> flags = filter.flags(view, T_scan_root, values);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   NamedCloud scan = filter.scan();
   scan.name = name;
@@ -140,9 +140,9 @@ Json filterCloud(const Options& options, const std::string& name, const JointVal
   std::size_t robot = 0, no_returns = 0;
   for (std::uint32_t i = 0; i < view.count; ++i) {
     const bool is_return = !self_filter::isNoReturn(view.point(i));
-    robot += is_return ? flags[i] : 0;
+    robot += is_return && flags[i] == Verdict::colliding ? 1 : 0;
     no_returns += is_return ? 0 : 1;
-    if (!is_return) flags[i] = 1;
+    if (!is_return) flags[i] = Verdict::colliding;
   }
   io::writeCloud(outputOf(options, name),
                  options.flag ? withField(cloud, collision_field_name, flags) : withoutFlagged(cloud, view, flags),

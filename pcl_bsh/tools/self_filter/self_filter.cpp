@@ -47,28 +47,28 @@ void SelfFilter::flagSolids(const SphereHierarchy& points, const Part& part, con
   collidingIndices({points}, {part.enclosing, T_scan_link}, request_, hit_);
   const Eigen::Isometry3d T_link_scan = T_scan_link.inverse();
   for (const std::int32_t record : hit_.a) {
-    std::uint8_t& flag = flags_[static_cast<std::size_t>(record)];
-    if (flag != 0) continue;
+    Verdict& flag = flags_[static_cast<std::size_t>(record)];
+    if (flag != Verdict::free) continue;
     const Point3 p = points.view().point(static_cast<std::uint32_t>(record));
     const Eigen::Vector3d seen(p[0], p[1], p[2]);
     const double rounding = 0x1p-48 * (seen.lpNorm<1>() + T_link_scan.translation().lpNorm<1>());
-    flag = part.body.hasWithin(request_.clearance + rounding, T_link_scan * seen) ? 1 : 0;
+    if (part.body.hasWithin(request_.clearance + rounding, T_link_scan * seen)) flag = Verdict::colliding;
   }
 }
 
-const std::vector<std::uint8_t>& SelfFilter::flags(const PointsView& scan, const Eigen::Isometry3d& T_scan_root,
-                                                   const JointValues& values)
+const std::vector<Verdict>& SelfFilter::flags(const PointsView& scan, const Eigen::Isometry3d& T_scan_root,
+                                              const JointValues& values)
 {
   robot_.requireValues(values);
   const std::vector<Eigen::Isometry3d> poses = robot_.poses(values);
   const SphereHierarchy points(scan);
-  flags_.assign(scan.count, 0);
+  flags_.assign(scan.count, Verdict::free);
   for (std::size_t link = 0; link < parts_.size(); ++link) {
     const Part& part = *parts_[link];
     const Eigen::Isometry3d T_scan_link = T_scan_root * poses[link];
     flagSolids(points, part, T_scan_link);
     collidingIndices({points}, {part.surfaces, T_scan_link}, request_, hit_);
-    for (const std::int32_t record : hit_.a) flags_[static_cast<std::size_t>(record)] = 1;
+    for (const std::int32_t record : hit_.a) flags_[static_cast<std::size_t>(record)] = Verdict::colliding;
   }
   scan_ = namedCloud({}, points);
   return flags_;

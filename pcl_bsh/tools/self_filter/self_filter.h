@@ -2,7 +2,7 @@
 // Which points of a scan are the robot that scans?
 //
 //   SelfFilter filter(readRobot("arm.urdf"), {});
-//   const std::vector<std::uint8_t>& mine = filter.flags(viewOf(cloud), T_cloud_root, {{"elbow", 0.7}});
+//   const std::vector<Verdict>& mine = filter.flags(viewOf(cloud), T_cloud_root, {{"elbow", 0.7}});
 //
 // A point that is not flagged is farther than the padding from the robot, for certain; one that is flagged is within
 // padding + tolerance. Boxes, cylinders and spheres are solid: what lies in them is flagged. Meshes are surfaces.
@@ -38,11 +38,11 @@ public:
   std::size_t balls() const;  ///< that cover meshes, of all links
   std::size_t solids() const; ///< of all links
 
-  /// One per record of the scan: 1 where it is the robot. Valid until the next call.
+  /// One per record of the scan: colliding where it is the robot, else free. Valid until the next call.
   /// @param T_scan_root where the robot's root is in the scan's frame
   /// @throws std::runtime_error as Robot::requireValues() does; std::invalid_argument as SphereHierarchy does
-  const std::vector<std::uint8_t>& flags(const PointsView& scan, const Eigen::Isometry3d& T_scan_root,
-                                         const JointValues& values);
+  const std::vector<Verdict>& flags(const PointsView& scan, const Eigen::Isometry3d& T_scan_root,
+                                    const JointValues& values);
 
   /// What of the last scan matters to who asks about it; without a name.
   const NamedCloud& scan() const { return scan_; }
@@ -62,7 +62,7 @@ private:
   FlagsRequest request_;
   std::vector<std::unique_ptr<const Part>> parts_; ///< for each link
   CollidingIndices hit_;
-  std::vector<std::uint8_t> flags_;
+  std::vector<Verdict> flags_;
   NamedCloud scan_;
 };
 

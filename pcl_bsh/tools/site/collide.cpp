@@ -85,10 +85,9 @@ public:
     putCounts(asking.report, "", found.colliding, found.undecided);
     putCounts(asking.report, "_of_obstacle", nullptr, nullptr);
     if (!of_both) return found;
-    const std::vector<std::uint8_t> flags = file_.flagsOfParts(found.b);
+    const std::vector<Verdict> flags = file_.flagsOfParts(found.b);
     file_.write(flags, asking.options);
-    const auto counted = [&](Verdict verdict) { return std::count(flags.begin(), flags.end(), flagOf(verdict)); };
-    putCounts(asking.report, "_of_obstacle", counted(Verdict::colliding), counted(Verdict::undecided));
+    putCounts(asking.report, "_of_obstacle", countOf(flags, Verdict::colliding), countOf(flags, Verdict::undecided));
     return found;
   }
 

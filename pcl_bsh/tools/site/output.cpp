@@ -131,20 +131,23 @@ ObstacleFile::ObstacleFile(const SiteOptions& options)
   }
 }
 
-std::vector<std::uint8_t> ObstacleFile::flagsOfParts(const std::vector<std::uint8_t>& flags) const
+std::vector<Verdict> ObstacleFile::flagsOfParts(const std::vector<Verdict>& flags) const
 {
   return obstacle.isSurface() ? triangleVerdicts(*obstacle.cover(), flags) : flags;
 }
 
-void ObstacleFile::write(const std::vector<std::uint8_t>& flags, const SiteOptions& options) const
+void ObstacleFile::write(const std::vector<Verdict>& flags, const SiteOptions& options) const
 {
   if (options.obstacle_out.empty() || site::rankHere() != 0) return;
-  if (obstacle.isSurface())
-    io::writeMesh(options.obstacle_out, obstacle.points(), *obstacle.triangles(), {{collision_field_name, &flags}},
+  if (obstacle.isSurface()) {
+    const std::vector<std::uint8_t> values = numbersOf(flags);
+    io::writeMesh(options.obstacle_out, obstacle.points(), *obstacle.triangles(), {{collision_field_name, &values}},
                   facts.viewpoint);
-  else
+  }
+  else {
     io::writeCloud(options.obstacle_out, withField(obstacle.points(), collision_field_name, flags), facts.viewpoint,
                    facts.las);
+  }
 }
 
 std::vector<std::string> droppedBy(const site::ResultSite& out, const std::string& option,

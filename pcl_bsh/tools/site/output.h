@@ -27,10 +27,10 @@ struct ObstacleFile {
 
   /// From flags of the records of its view to those of its points or triangles.
   /// @pre of a surface, its triangles are apart
-  std::vector<std::uint8_t> flagsOfParts(const std::vector<std::uint8_t>& flags) const;
+  std::vector<Verdict> flagsOfParts(const std::vector<Verdict>& flags) const;
 
   /// Writes its points or triangles with these flags, where they are asked for: on the first rank.
-  void write(const std::vector<std::uint8_t>& flags, const SiteOptions& options) const;
+  void write(const std::vector<Verdict>& flags, const SiteOptions& options) const;
 
   io::Obstacle obstacle;
   io::CloudFacts facts; ///< of its file

@@ -25,11 +25,11 @@ void addValues(const ViewedCloud& viewed, vtkPolyData& data, const std::string& 
 
 /// A cloud with all that is known of its points, or a surface with that of its triangles, in its own frame.
 vtkSmartPointer<vtkPolyData> known(const ViewedCloud& viewed, const CloudActor& cloud,
-                                   const std::vector<std::uint8_t>& flags)
+                                   const std::vector<Verdict>& flags)
 {
   auto data = vtkSmartPointer<vtkPolyData>::New();
   data->ShallowCopy(cloud.leftOut() > 0 ? &cloud.all() : &cloud.data()); // a picture may leave points out, a file not
-  if (!flags.empty()) addValues(viewed, *data, "collision", flags);
+  if (!flags.empty()) addValues(viewed, *data, "collision", numbersOf(flags));
   return data;
 }
 

@@ -238,13 +238,13 @@ std::string RenderView::describePart(const ViewContent& content, std::size_t clo
   std::ostringstream text;
   text << viewed.partName() << ' ' << part << " of " << viewed.name << std::setprecision(9) << ": " << p[0] << ", "
        << p[1] << ", " << p[2];
-  const std::vector<std::uint8_t>& flags = collisions.flags[cloud];
-  const std::uint8_t flag = flags.empty() ? flagOf(Verdict::free) : flags[part];
+  const std::vector<Verdict>& flags = collisions.flags[cloud];
+  const Verdict flag = flags.empty() ? Verdict::free : flags[part];
   if (collisions.known)
-    text << (flag == flagOf(Verdict::free)        ? "; free"
-             : flag == flagOf(Verdict::undecided) ? "; undecided"
-             : flag == flagOf(Verdict::sparse)    ? "; not scanned densely enough"
-                                                  : "; collides");
+    text << (flag == Verdict::free        ? "; free"
+             : flag == Verdict::undecided ? "; undecided"
+             : flag == Verdict::sparse    ? "; not scanned densely enough"
+                                          : "; collides");
   return text.str() + content.details(cloud, part, step_);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "las_sample.h"
 #include "samples.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/selected_records.h>
@@ -314,7 +315,7 @@ TEST(Las, ExtraBytesDescribedBehindThePoints)
   const Las las = readText(sample.text());
   EXPECT_EQ(las.cloud.fields.back().name, "late");
   EXPECT_EQ(difference(rewritten(sample.text()), sample.text()), "");
-  const Las more = readText(written(withField(las.cloud, "collision", {1, 0, 1}), &las.header));
+  const Las more = readText(written(withField(las.cloud, "collision", test::verdictsOf({1, 0, 1})), &las.header));
   EXPECT_EQ(namesOf(more.cloud), namesOf(las.cloud) + " collision");
   EXPECT_EQ(valueOf(more.cloud, 2, "late"), valueOf(las.cloud, 2, "late"));
 }

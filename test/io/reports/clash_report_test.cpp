@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/clouds/samples.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/io/json/json_reader.h>
 #include <pcl_bsh/io/reports/clash_report.h>
@@ -368,7 +369,7 @@ TEST_F(ClashReports, RefusesListsThatNoRunWrites)
 TEST_F(ClashReports, CertainAndPerhapsAreToldApart)
 {
   twoClashes();
-  for (const std::size_t i : {31U, 32U, 33U}) found.flags[i] = 2;
+  for (const std::size_t i : {31U, 32U, 33U}) found.flags[i] = Verdict::undecided;
   found.colliding = 1;
   found.undecided = 3;
   ClashReport list = report();

@@ -7,6 +7,7 @@
 #include <pcl_bsh/search/cloud_view.h>
 
 #include "io/clouds/samples.h"
+#include "support/verdicts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // pcl_bsh_collide with obstacles that have faces. test/certify holds its verdicts against exact distances.
 #include "program_run.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
 

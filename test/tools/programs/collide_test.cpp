@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "program_run.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/question/options.h>

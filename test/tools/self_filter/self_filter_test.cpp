@@ -2,6 +2,7 @@
 #include <pcl_bsh/tools/self_filter/self_filter.h>
 
 #include "io/clouds/samples.h"
+#include "support/verdicts.h"
 #include <pcl_bsh/tools/self_filter/made_robot.h>
 #include <pcl_bsh/tools/self_filter/surface.h>
 
@@ -109,7 +110,7 @@ TEST_F(SelfFilterTest, FlagsWhatIsWithinThePaddingOfALink)
       const Vector3d seen = T_scan_root * p;
       scan.insert(scan.end(), {seen.x(), seen.y(), seen.z()});
     }
-    const std::vector<std::uint8_t>& flags = filter.flags(viewOf(scan.data(), points.size()), T_scan_root, values);
+    const std::vector<Verdict>& flags = filter.flags(viewOf(scan.data(), points.size()), T_scan_root, values);
     ASSERT_EQ(flags.size(), points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       double distance = std::numeric_limits<double>::infinity();
@@ -117,12 +118,12 @@ TEST_F(SelfFilterTest, FlagsWhatIsWithinThePaddingOfALink)
         distance = std::min(distance, shape.distanceFrom(poses[link].inverse() * points[i]));
       constexpr double rounding = 1e-12;
       if (distance <= settings.padding - rounding) {
-        EXPECT_EQ(flags[i], 1) << distance;
+        EXPECT_EQ(flags[i], Verdict::colliding) << distance;
       }
       if (distance > settings.padding + settings.tolerance + rounding) {
-        EXPECT_EQ(flags[i], 0) << distance;
+        EXPECT_EQ(flags[i], Verdict::free) << distance;
       }
-      flagged += flags[i];
+      flagged += flags[i] == Verdict::colliding;
       between += distance > settings.padding && distance < settings.padding + settings.tolerance;
     }
   }
@@ -137,15 +138,15 @@ TEST_F(SelfFilterTest, CutsOutWhatTheCameraSeesOfTheRobot)
   const JointValues values = madeJointValues(1, 3);
   const DepthImage image = seenBy(robot, values, 160);
   const Eigen::Isometry3d T_camera_root = robot.poses(values)[robot.linkNamed("camera")].inverse();
-  const std::vector<std::uint8_t>& flags =
+  const std::vector<Verdict>& flags =
       filter.flags(viewOf(image.xyz.data(), image.xyz.size() / 3), T_camera_root, values);
   const auto seen = std::count(image.is_robot.begin(), image.is_robot.end(), 1);
-  const auto cut = std::count(flags.begin(), flags.end(), 1);
+  const auto cut = std::count(flags.begin(), flags.end(), Verdict::colliding);
   EXPECT_GT(seen, 500);
   EXPECT_LT(cut, 2 * seen);
   for (std::size_t i = 0; i < flags.size(); ++i) {
     if (image.is_robot[i]) {
-      EXPECT_EQ(flags[i], 1) << i;
+      EXPECT_EQ(flags[i], Verdict::colliding) << i;
     }
   }
 }
@@ -164,8 +165,7 @@ TEST_F(SelfFilterTest, AnswersAlikeForAnyNumberOfThreadsAndFrameBefore)
 class SelfFilterOfOneBody : public testing::Test {
 protected:
   /// Flags of points of a scan in the robot's own frame.
-  static std::vector<std::uint8_t> flags(const Shape& shape, const Settings& settings,
-                                         const std::vector<Vector3d>& points)
+  static std::vector<Verdict> flags(const Shape& shape, const Settings& settings, const std::vector<Vector3d>& points)
   {
     Robot robot;
     robot.links.resize(1);
@@ -184,7 +184,8 @@ TEST_F(SelfFilterOfOneBody, CutsOutWhatLiesInsideOfEachSolid)
   for (const Shape& shape : {Shape{Box{{2, 3, 4}}, pose}, Shape{Cylinder{1, 3}, pose}, Shape{Sphere{1.5}, pose}}) {
     std::vector<Vector3d> points;
     for (double along = -0.75; along <= 0.75; along += 0.125) points.push_back(pose * Vector3d(0.2, along, 0.3));
-    for (const std::uint8_t flag : flags(shape, {0.02, 0.005, 1}, points)) EXPECT_EQ(flag, 1) << shape.form.index();
+    for (const Verdict flag : flags(shape, {0.02, 0.005, 1}, points))
+      EXPECT_EQ(flag, Verdict::colliding) << shape.form.index();
   }
 }
 
@@ -194,7 +195,7 @@ TEST_F(SelfFilterOfOneBody, RoundsEdgesByThePadding)
   const double along = padding / std::sqrt(3.0), in_plane = padding / std::sqrt(2.0);
   const auto just = [&](const Shape& shape, const Vector3d& from, const Vector3d& step) {
     const std::vector<Vector3d> points = {pose * (from + (1 - least) * step), pose * (from + (1 + least) * step)};
-    EXPECT_EQ(flags(shape, {padding, 0.001, 1}, points), (std::vector<std::uint8_t>{1, 0}))
+    EXPECT_EQ(flags(shape, {padding, 0.001, 1}, points), pcl_bsh::test::verdictsOf({1, 0}))
         << shape.form.index() << ": " << (from + step).transpose();
   };
   const Shape box{Box{{2, 3, 4}}, pose}, tube{Cylinder{1, 3}, pose}, ball{Sphere{1.5}, pose};
@@ -218,7 +219,7 @@ TEST_F(SelfFilterOfOneBody, KeepsWhatLiesInsideOfAMesh)
   writeMadeRobot(folder.path());
   const std::vector<Vector3d> points = {pose * Vector3d(0, 0, 0.1), pose * Vector3d(0.12, 0, 0.1)};
   EXPECT_EQ(flags({MeshFile{folder / "meshes/turret.stl"}, pose}, {0.02, 0.005, 1}, points),
-            (std::vector<std::uint8_t>{0, 1}));
+            pcl_bsh::test::verdictsOf({0, 1}));
 }
 
 TEST(SelfFilterOfNothing, IsAnError)

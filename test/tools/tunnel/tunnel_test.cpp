@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/verdicts.h"
+
 #include <pcl_bsh/tools/tunnel/tunnel.h>
 
 #include <pcl_bsh/collide.h>
@@ -91,11 +93,11 @@ TEST(TunnelPassage, BendsShowCollisionsThatTheCrossSectionDoesNot)
   const SphereHierarchy scan(viewOf(run.scan)), wagon(viewOf(run.wagon));
   FlagsRequest request;
   request.clearance = clearance;
-  std::vector<std::uint8_t> collides(run.scan.size(), 0);
+  std::vector<Verdict> collides(run.scan.size(), Verdict::free);
   for (const Eigen::Isometry3d& pose : run.poses) {
     const FlagsResult here = collisionFlags({scan}, {wagon, pose}, request);
     if (here.colliding_a == 0) continue;
-    for (std::size_t i = 0; i < collides.size(); ++i) collides[i] |= here.a[i];
+    for (std::size_t i = 0; i < collides.size(); ++i) collides[i] = graver(collides[i], here.a[i]);
   }
 
   const Track track;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What pictures show, pixel by pixel; without a display.
 #include "pixels.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/tools/viewer/content/clouds_content.h>
 
@@ -284,7 +285,7 @@ TEST_F(Picture, ExportsReadBack)
   for (const char* name : {"index", "collision", "distance", "first_pose", "intensity"})
     ASSERT_NE(values->GetArray(name), nullptr) << name;
   for (vtkIdType i = 0; i < reader->GetOutput()->GetNumberOfPoints(); ++i) {
-    const bool collides = found.flags[0][static_cast<std::size_t>(i)] != 0;
+    const bool collides = found.flags[0][static_cast<std::size_t>(i)] != Verdict::free;
     ASSERT_EQ(values->GetArray("collision")->GetTuple1(i), collides);
     ASSERT_EQ(values->GetArray("first_pose")->GetTuple1(i), collides ? 0 : -1);
     if (collides)

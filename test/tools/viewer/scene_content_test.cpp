@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scenes: where objects are at each step, what collides there, and that the picture says so.
 #include "pixels.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/tools/viewer/content/scene_content.h>
 #include <pcl_bsh/tools/viewer/viewer.h>
@@ -50,8 +51,8 @@ protected:
     request.flagged = Side::both;
     const FlagsResult flags = collisionFlags({*content.viewedClouds()[0].hierarchy, content.poseOf(0, step)},
                                              {*content.viewedClouds()[1].hierarchy, content.poseOf(1, step)}, request);
-    return static_cast<std::size_t>(std::count(flags.a.begin(), flags.a.end(), 1) +
-                                    std::count(flags.b.begin(), flags.b.end(), 1));
+    return static_cast<std::size_t>(std::count(flags.a.begin(), flags.a.end(), Verdict::colliding) +
+                                    std::count(flags.b.begin(), flags.b.end(), Verdict::colliding));
   }
 };
 

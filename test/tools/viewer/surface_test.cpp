@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clouds with faces are drawn as surfaces, and what collides of them is coloured.
 #include "pixels.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/tools/viewer/content/clouds_content.h>
 
@@ -82,7 +83,7 @@ TEST_F(SurfaceViewTest, WhatCollidesOfItStandsOut)
   const PointsView& balls = content.viewedClouds()[1].points();
   ASSERT_EQ(found.flags[1].size(), balls.count);
   for (std::uint32_t i = 0; i < balls.count; ++i)
-    if (found.flags[1][i] == 1)
+    if (found.flags[1][i] == Verdict::colliding)
       ASSERT_LE(balls.point(i)[2], 0.05 + balls.radius(i)) << i;
     else
       ASSERT_GT(balls.point(i)[2], 0.001) << i;
@@ -96,14 +97,14 @@ TEST_F(SurfaceViewTest, TrianglesOfTheFirstCloudCollide)
 {
   const CloudsContent content(asked());
   const StepCollisions found = content.collisions(0);
-  std::vector<std::uint8_t> expected(12, 0);
-  expected[touched] = 1;
+  std::vector<Verdict> expected(12, Verdict::free);
+  expected[touched] = Verdict::colliding;
   EXPECT_EQ(found.flags[0], expected);
   EXPECT_EQ(found.colliding, 1u);
   EXPECT_THAT(content.heading(found, 0), HasSubstr("crate.off: 12 triangles, 1 collides"));
   Options corners = asked();
   corners.surface.vertices_only = true;
-  EXPECT_THAT(CloudsContent(corners).collisions(0).flags[0], Each(0));
+  EXPECT_THAT(CloudsContent(corners).collisions(0).flags[0], Each(Verdict::free));
   EXPECT_EQ(CloudsContent(corners).collisions(0).flags[0].size(), 8u);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The window, driven by events as a mouse and a keyboard make them.
 #include "pixels.h"
+#include "support/verdicts.h"
 
 #include <pcl_bsh/tools/viewer/content/clouds_content.h>
 #include <pcl_bsh/tools/viewer/viewer.h>

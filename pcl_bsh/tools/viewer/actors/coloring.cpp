@@ -85,16 +85,16 @@ void paintValues(CloudActor& cloud, ValueBar& bar, const ViewContent& content, c
 }
 
 /// Of what is not free.
-Color colorOfFlag(std::uint8_t flag)
+Color colorOfFlag(Verdict flag)
 {
-  if (flag == flagOf(Verdict::undecided)) return undecided_color;
-  return flag == flagOf(Verdict::sparse) ? sparse_color : colliding_color;
+  if (flag == Verdict::undecided) return undecided_color;
+  return flag == Verdict::sparse ? sparse_color : colliding_color;
 }
 
 /// Marks the points that have a value.
 /// @param colliding per part, drawn in the colour of collisions; empty: none
 void markValues(CloudActor& cloud, ValueBar& bar, const ViewContent& content, const Values& shown,
-                const ColorRange& own_range, const std::vector<std::uint8_t>& colliding = {})
+                const ColorRange& own_range, const std::vector<Verdict>& colliding = {})
 {
   const ColorRange* const shared = sharedRange(content);
   const ColorRange range = shared ? *shared : own_range;
@@ -104,7 +104,7 @@ void markValues(CloudActor& cloud, ValueBar& bar, const ViewContent& content, co
   for (const float value : shown.values) known.push_back(std::isfinite(value) ? 1 : 0);
   std::vector<Color> colors = colorsOf(shown, *table);
   for (std::size_t i = 0; i < colliding.size(); ++i)
-    if (colliding[i] != 0) colors[i] = colorOfFlag(colliding[i]);
+    if (colliding[i] != Verdict::free) colors[i] = colorOfFlag(colliding[i]);
   cloud.mark(known, colors);
   if (shared) return;
   if (std::find(known.begin(), known.end(), 1) != known.end())
@@ -114,11 +114,11 @@ void markValues(CloudActor& cloud, ValueBar& bar, const ViewContent& content, co
 }
 
 /// The colours of what is not free, one per part.
-std::vector<Color> colorsOfVerdicts(const std::vector<std::uint8_t>& flags)
+std::vector<Color> colorsOfVerdicts(const std::vector<Verdict>& flags)
 {
   std::vector<Color> colors;
   colors.reserve(flags.size());
-  for (const std::uint8_t flag : flags) colors.push_back(colorOfFlag(flag));
+  for (const Verdict flag : flags) colors.push_back(colorOfFlag(flag));
   return colors;
 }
 
@@ -229,11 +229,11 @@ void mark(CloudActors clouds, ValueBar& bar, const ViewContent& content, const S
   }
   else {
     if (coloring == Coloring::collision) requireCollisions(collisions, "collision");
-    const std::vector<std::uint8_t>& flags = collisions.flags[0];
-    clouds[0]->mark(flags,
+    const std::vector<Verdict>& flags = collisions.flags[0];
+    clouds[0]->mark(maskOf(flags, false),
                     collisions.undecided + collisions.sparse > 0 ? colorsOfVerdicts(flags) : std::vector<Color>());
   }
-  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i]->mark(collisions.flags[i]);
+  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i]->mark(maskOf(collisions.flags[i], false));
 }
 
 } // namespace pcl_bsh::viewer

@@ -105,13 +105,13 @@ StepCollisions CloudsContent::collisions(std::size_t step) const
   if (options_.clearance) {
     found.known = true;
     found.flags.resize(viewed_clouds_.size());
-    found.flags[0].assign(scan().parts(), 0);
+    found.flags[0].assign(scan().parts(), Verdict::free);
     Question question;
     question.wanted.flags = question.wanted.both_ways = true;
     for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
       Answer answer = asked(other, step, question);
-      const std::vector<std::uint8_t>& of_scan = answer.collisions.flags;
-      for (std::size_t i = 0; i < of_scan.size(); ++i) found.flags[0][i] |= of_scan[i];
+      const std::vector<Verdict>& of_scan = answer.collisions.flags;
+      for (std::size_t i = 0; i < of_scan.size(); ++i) found.flags[0][i] = graver(found.flags[0][i], of_scan[i]);
       found.flags[other] = std::move(answer.obstacle_flags);
     }
     countVerdicts(found);

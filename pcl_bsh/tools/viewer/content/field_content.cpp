@@ -14,7 +14,7 @@ namespace {
 Verdict verdictOf(float value)
 {
   for (const Verdict verdict : {Verdict::free, Verdict::undecided, Verdict::sparse})
-    if (value == static_cast<float>(flagOf(verdict))) return verdict;
+    if (value == static_cast<float>(verdict)) return verdict;
   return Verdict::colliding;
 }
 
@@ -22,12 +22,9 @@ Verdict verdictOf(float value)
 
 void countVerdicts(StepCollisions& found)
 {
-  const auto count = [&](Verdict verdict) {
-    return static_cast<std::size_t>(std::count(found.flags[0].begin(), found.flags[0].end(), flagOf(verdict)));
-  };
-  found.colliding = count(Verdict::colliding);
-  found.undecided = count(Verdict::undecided);
-  found.sparse = count(Verdict::sparse);
+  found.colliding = countOf(found.flags[0], Verdict::colliding);
+  found.undecided = countOf(found.flags[0], Verdict::undecided);
+  found.sparse = countOf(found.flags[0], Verdict::sparse);
 }
 
 StepCollisions FieldContent::collisions(std::size_t /*step*/) const
@@ -37,7 +34,7 @@ StepCollisions FieldContent::collisions(std::size_t /*step*/) const
   const auto field = scan().result(collision_field_name);
   if (!field) return found;
   found.known = true;
-  for (const float value : *field) found.flags[0].push_back(flagOf(verdictOf(value)));
+  for (const float value : *field) found.flags[0].push_back(verdictOf(value));
   countVerdicts(found);
   return found;
 }

@@ -25,11 +25,11 @@ struct ClosestPair {
 
 /// What collides at one step.
 struct StepCollisions {
-  bool known = false;                           ///< whether a query ran or a field says it
-  std::vector<std::vector<std::uint8_t>> flags; ///< of each viewed cloud, 1 = collides, per part; empty: none do
-  std::size_t colliding = 0;                    ///< parts of the scan, or points of all clouds of a scene
-  std::size_t undecided = 0;                    ///< likewise
-  std::size_t sparse = 0;                       ///< likewise, not scanned densely enough
+  bool known = false;                      ///< whether a query ran or a field says it
+  std::vector<std::vector<Verdict>> flags; ///< of each viewed cloud, per part; empty: all are free
+  std::size_t colliding = 0;               ///< parts of the scan, or points of all clouds of a scene
+  std::size_t undecided = 0;               ///< likewise
+  std::size_t sparse = 0;                  ///< likewise, not scanned densely enough
   std::optional<ClosestPair> closest;
 };
 
