@@ -115,11 +115,18 @@ private:
     uniteCoincident(a, node_a.points(pair.a.lane));
     uniteCoincident(b, node_b.points(pair.b.lane));
     const DistanceBand band = leaves.frame.band(reach());
-    eachPairNotBeyond(leaves.points, leaves.near, b, band.miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
+    const auto found = [&](std::uint32_t i, std::uint32_t j, bool surely) {
       const std::uint32_t p = a.record(i), q = b.record(j);
-      if (sets_.find(p) != sets_.find(q) && (squared <= band.hit || withinDistance({p, q}))) sets_.unite(p, q);
+      if (sets_.find(p) != sets_.find(q) && (surely || withinDistance({p, q}))) sets_.unite(p, q);
       return false;
-    });
+    };
+    if (pairs_.ofTriangles())
+      eachBallPairNear(leaves.frame, leaves.points, leaves.near, a, b, reach(), pairs_.surelyOfBalls(),
+                       [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
+    else
+      eachPairNotBeyond(leaves.points, leaves.near, b, band.miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
+        return found(i, j, squared <= band.hit);
+      });
   }
 
   /// Of a place that more points share than a leaf compares, one point answers.
@@ -132,8 +139,7 @@ private:
   bool withinDistance(PointPair pair)
   {
     ++walk_.work.exact_decisions;
-    const ExactDistance::Pair posed = pairs_.posed(pair);
-    return pairs_.distance.compare(posed.p, posed.q, reach()) <= 0;
+    return pairs_.distance.compare(pair, RecordDistance::Sum{reach()}) <= 0;
   }
 
   std::uint8_t& united(const Lane& lane)
@@ -244,13 +250,13 @@ Clusters brute_force::euclideanClusters(const SphereHierarchy& cloud, double dis
   const DefaultFloatEnvironment environment;
   const PointsView& view = cloud.view();
   const std::vector<std::uint32_t> records = finiteRecords(view);
-  const ExactDistance exact(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity());
+  const RecordDistance exact(view, Eigen::Isometry3d::Identity(), view, Eigen::Isometry3d::Identity());
   DisjointSets sets(view.count);
   Work work;
   for (std::size_t i = 0; i < records.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       ++work.exact_decisions;
-      if (exact.compare(view.point(records[i]), view.point(records[j]), distance) <= 0) {
+      if (exact.compare({records[i], records[j]}, RecordDistance::Sum{distance}) <= 0) {
         sets.unite(records[i], records[j]);
       }
     }

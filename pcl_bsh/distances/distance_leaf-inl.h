@@ -55,8 +55,9 @@ public:
     leaf_ = {&voxel, visit.node->begin[lane], visit.node->comparedPoints(lane)};
     ++stamp_;
     std::uint32_t undecided = firstBits(leaf_.count);
-    const bool by_float = largest_radius_ > 0.0 ? findNearest<true>(visit, lane, near, undecided)
-                                                : findNearest<false>(visit, lane, near, undecided);
+    const bool by_float = query_.pairs.ofTriangles() ? false
+                          : largest_radius_ > 0.0    ? findNearest<true>(visit, lane, near, undecided)
+                                                     : findNearest<false>(visit, lane, near, undecided);
     if (by_float && query_.exceeds(limit_, unit_)) return;
     for (std::uint32_t i = 0; i < leaf_.count; ++i) {
       Found& found = found_[i];
@@ -203,10 +204,12 @@ private:
 
   Point3 given(std::uint32_t i) const { return leaf_.voxel->point(view_a_, leaf_.begin + i); }
 
-  ExactDistance::Pair posed(std::uint32_t i, const Found& found) const
+  RecordDistance::Pair posed(std::uint32_t i, const Found& found) const
   {
-    return {given(i), found.voxel->point(view_b_, found.point), leaf_.radius(i),
-            found.voxel->radii ? double{found.voxel->radii[found.point]} : 0.0};
+    if (query_.pairs.ofTriangles()) return query_.pairs.posed({leaf_.record(i), recordOf(found)});
+    return {ExactDistance::Pair{given(i), found.voxel->point(view_b_, found.point), leaf_.radius(i),
+                                found.voxel->radii ? double{found.voxel->radii[found.point]} : 0.0},
+            {}};
   }
 
   /// The nearest to one point in exact arithmetic, of several the smallest record.
@@ -215,12 +218,12 @@ private:
   {
     Found best = by_float ? named(i, near) : Found();
     const double own_radius = leaf_.radius(i);
-    ExactDistance::Pair best_pair;
+    RecordDistance::Pair best_pair;
     double most = double{cut} * unit_; // of the distance
-    const auto take = [&](const Found& found, const ExactDistance::Pair& pair) {
+    const auto take = [&](const Found& found, const RecordDistance::Pair& pair) {
       best = found;
       best_pair = pair;
-      const double radii = pair.radius_p + pair.radius_q, far = query_.pairs.distance.enclose(pair.p, pair.q).high;
+      const double radii = pair.radius_p + pair.radius_q, far = query_.pairs.distance.enclose(pair).high;
       most = std::min(most, far - radii + kFewDoubleRoundings * (far + radii));
     };
     if (best.voxel) take(best, posed(i, best));
@@ -243,7 +246,7 @@ private:
       for (std::uint32_t bits = firstBits(other.count) & ~above(squared, miss); bits != 0; bits &= bits - 1) {
         const Found found{other.voxel, other.begin + static_cast<std::uint32_t>(std::countr_zero(bits))};
         if (found.voxel == best.voxel && found.point == best.point) continue;
-        const ExactDistance::Pair pair = posed(i, found);
+        const RecordDistance::Pair pair = posed(i, found);
         if (best.voxel) {
           ++work_.exact_decisions;
           const int sign = query_.pairs.distance.compareGaps(pair, best_pair);
@@ -260,12 +263,12 @@ private:
   static std::uint32_t recordOf(const Found& found) { return found.voxel->records()[found.point]; }
 
   /// Whether the nearest point is within max_distance.
-  bool isWithin(const Found& found, const ExactDistance::Pair& pair)
+  bool isWithin(const Found& found, const RecordDistance::Pair& pair)
   {
     if (max_ == kInfinity || found.most - pair.radius_p < max_ * (1.0 - kDoubleMargin)) return true;
     if (found.least - pair.radius_p > max_ * (1.0 + kDoubleMargin)) return false;
     ++work_.exact_decisions;
-    return query_.pairs.distance.compare(pair.p, pair.q, max_, pair.radius_p, pair.radius_q) <= 0;
+    return query_.pairs.distance.compare(pair, max_) <= 0;
   }
 
   /// The distances of all that were found, where poses are translations and points have no radii.
@@ -287,7 +290,7 @@ private:
     Interval interval{max_, kInfinity};
     if (found.voxel) {
       const bool is_known = lengths_only_ && max_ == kInfinity && !std::isnan(lengths_[i]);
-      const ExactDistance::Pair pair = is_known ? ExactDistance::Pair() : posed(i, found);
+      const RecordDistance::Pair pair = is_known ? RecordDistance::Pair() : posed(i, found);
       if (is_known || isWithin(found, pair)) {
         nearest = recordOf(found);
         distance = lengths_only_ ? lengths_[i] : kNotKnown;
@@ -304,8 +307,8 @@ private:
   {
     double lower = std::nextafter(distance, -kInfinity);
     if (query_.tolerance > 0.0) lower = std::nextafter(lower - query_.tolerance, -kInfinity);
-    if (!query_.pairs.haveRadii()) lower = std::max(lower, 0.0);
-    return {lower, distance == 0.0 && !query_.pairs.haveRadii() ? 0.0 : std::nextafter(distance, kInfinity)};
+    if (!query_.pairs.mayOverlap()) lower = std::max(lower, 0.0);
+    return {lower, distance == 0.0 && !query_.pairs.mayOverlap() ? 0.0 : std::nextafter(distance, kInfinity)};
   }
 
   const DistancesQuery& query_;

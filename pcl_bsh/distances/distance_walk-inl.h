@@ -70,7 +70,7 @@ public:
       outdoing_ = Outdoing(extentBelow(root) * b_.frame(kAboveVoxels).unit / unit_ * stretch * stretch, least);
     radius_unit_ = a_.frame(voxel).unit / unit_ / stretch;
     scratch_.roots.clear();
-    const float least = query_.pairs.haveRadii() ? -std::numeric_limits<float>::infinity() : 0.0f;
+    const float least = query_.pairs.mayOverlap() ? -std::numeric_limits<float>::infinity() : 0.0f;
     for (std::uint16_t lane = 0; lane < root.count; ++lane) scratch_.roots.push_back({{&root, lane, 0, kAbove}, least});
     descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, scratch_.roots, cut, 0);
   }
@@ -191,7 +191,7 @@ private:
       ++found.work.exact_decisions;
       if (!other.isKnown()) other = givenSphereOf(b_.storage.view, *obstacle.voxel, *row.sphere.node, row.sphere.lane);
       const GivenSphere sphere = givenSphereOf(a_.storage.view, *a_voxel_, *visit.node, lane);
-      const ExactDistance::Enclosure between = query_.pairs.distance.enclose(sphere.center, other.center);
+      const ExactDistance::Enclosure between = query_.pairs.distance.ofPoints().enclose(sphere.center, other.center);
       const double radii = (sphere.radius + other.radius) * (1.0 + 2 * kPoseStretch);
       const double lower = (between.low - radii - kFewDoubleRoundings * (between.high + radii)) / unit_;
       const double upper = (between.high + radii) * (1.0 + kFewDoubleRoundings) / unit_;

@@ -146,7 +146,8 @@ inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, s
     ++work.leaf_pairs;
     const LeafRange other = candidate.leaf(*obstacle.voxel);
     eachBallPairNear(obstacle.frame, points, open, leaf, other, query.pairs.reach.length(),
-                     query.surePairs().reach.least, [&](std::uint32_t i, std::uint32_t j, float squared, bool surely) {
+                     query.surePairs().surelyOfBalls(),
+                     [&](std::uint32_t i, std::uint32_t j, float squared, bool surely) {
                        if ((hit >> i & 1) != 0) return false;
                        const PointPair pair{leaf.record(i), other.record(j)};
                        if (surely || query.surePairs().collide(obstacle.frame, squared, pair, work)) {

@@ -127,8 +127,9 @@ public:
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
       const RelativeFrame& frame = obstacles[i].frame;
       const OwnUncertainties* const of_b = ownUncertainties(b.storage, reached[i]);
-      reaches_.emplace_back(frame.error, frame.skew(), obstacles[i].voxel->frame.unit, of_pairs.leastInCommon(),
-                            of_pairs.mostInCommon(), of_b ? static_cast<double>(of_b->most) : 0.0,
+      reaches_.emplace_back(frame.error + b.storage.view.off_middle / obstacles[i].voxel->frame.unit, frame.skew(),
+                            obstacles[i].voxel->frame.unit, of_pairs.leastInCommon(), of_pairs.mostInCommon(),
+                            of_b ? static_cast<double>(of_b->most) : 0.0,
                             frame.pruneReach(query_.pairs.reach.length()));
       reaches_.back().of_b = of_b;
     }

@@ -35,7 +35,7 @@ public:
     spheres_(scratch.spheres),
     reached_(scratch.reached),
     uncertain_(query, scratch.uncertain),
-    separation_(pairs_.distance, a_, b_, found.work)
+    separation_(pairs_.distance.ofPoints(), a_, b_, found.work)
   {
     obstacles_.clear();
     spheres_.clear();
@@ -59,8 +59,9 @@ public:
       for (std::uint32_t lane = 0; lane < root.count; ++lane)
         spheres_.push_back({&root, static_cast<std::uint16_t>(lane), 1, static_cast<std::uint32_t>(obstacles_.size())});
       obstacles_.push_back({&b_.storage.voxels[other], frame, frame.pruneReach(reach_),
-                            frame.acceptReach(query_.surePairs().reach.least), frame.acceptReach(query_.surely.hit),
-                            frame.bluntRadius(), query_.surely.band(frame), query_.acceptance.band(frame)});
+                            frame.acceptReach(query_.surePairs().reach.least - b_.storage.view.off_middle),
+                            frame.acceptReach(query_.surely.hit), frame.bluntRadius(), query_.surely.band(frame),
+                            query_.acceptance.band(frame)});
     }
     // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
     if (mayUseKnownSlabs() && &a_.storage != &b_.storage &&

@@ -40,6 +40,7 @@ struct PointsView {
 
   /// Optional: what the records are, of which points and radii say balls that hold them (triangles_view.h).
   const TrianglesView* triangles = nullptr;
+  double off_middle = 0.0; ///< how far such a point may be from its triangle, by rounding
 
   /// How many points the view names (a subset counts its indices).
   std::size_t size() const noexcept { return indices ? index_count : count; }
@@ -72,6 +73,9 @@ struct PointsView {
   {
     return radii ? radii[record] : 0.0;
   } ///< 0 where points have none
+
+  /// How far a record reaches beyond its point or its triangle: that of a triangle's ball is none of its own.
+  double ownRadius(std::uint32_t record) const noexcept { return triangles ? 0.0 : radius(record); }
 
   bool isUncertain() const noexcept { return uncertainty > 0.0 || uncertainties; } ///< queries tell verdicts apart
 

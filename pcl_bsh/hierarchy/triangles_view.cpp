@@ -81,6 +81,11 @@ Coordinate rounded(double x)
     return x;
 }
 
+/// How far a middle may be from its triangle, as a share of the largest coordinate: a sum of corners, whose weights add
+/// up to 1 within a few roundings, on each axis, then rounded to a coordinate.
+template <class Coordinate>
+inline constexpr double kOffMiddle = 2 * ((std::is_same_v<Coordinate, float> ? kFloatUnit : 0.0) + 16 * kDoubleUnit);
+
 /// The balls of all triangles, and what their view refers to.
 template <class Coordinate>
 struct Balls {
@@ -96,6 +101,7 @@ PointsView ballsOf(const TrianglesView& triangles, Scalar scalar)
   balls->triangles = triangles;
   balls->centers.resize(triangles.count);
   balls->radii.resize(triangles.count);
+  double largest = 0.0;
   for (std::size_t i = 0; i < triangles.count; ++i) {
     const std::array<Point3, 3> corners = triangles.triangle(static_cast<std::uint32_t>(i));
     std::array<Coordinate, 3>& center = balls->centers[i];
@@ -107,7 +113,10 @@ PointsView ballsOf(const TrianglesView& triangles, Scalar scalar)
     for (std::size_t k = 0; k < 3; ++k) center[k] = rounded<Coordinate>(middle[k]);
     const Point3 stored = {double{center[0]}, double{center[1]}, double{center[2]}};
     double radius = 0.0;
-    for (const Point3& corner : corners) radius = std::max(radius, apart(stored, corner));
+    for (const Point3& corner : corners) {
+      radius = std::max(radius, apart(stored, corner));
+      for (const double x : corner) largest = std::max(largest, std::abs(x));
+    }
     balls->radii[i] = roundUp(radius * (1.0 + kFewDoubleRoundings));
     if (!std::isfinite(balls->radii[i]))
       throw InvalidInput(Input::surface, kName, "triangle " + std::to_string(i) + " is too large for a float32 radius",
@@ -123,6 +132,8 @@ PointsView ballsOf(const TrianglesView& triangles, Scalar scalar)
   view.radii = balls->radii.data();
   view.uncertainty = triangles.vertices.uncertainty;
   view.triangles = &balls->triangles;
+  constexpr double vanishing = std::numeric_limits<Coordinate>::denorm_min();
+  view.off_middle = kOffMiddle<Coordinate> * largest + 4 * vanishing;
   view.owner = std::move(balls);
   return view;
 }

@@ -5,6 +5,7 @@
 #include <pcl_bsh/hierarchy/build/morton.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <cmath>
 
@@ -113,7 +114,8 @@ private:
       const std::uint32_t record = voxel.records()[k];
       if (record < first || s_.view.point(record) != s_.view.point(first) ||
           s_.view.radius(record) != s_.view.radius(first) ||
-          s_.view.ownUncertainty(record) != s_.view.ownUncertainty(first))
+          s_.view.ownUncertainty(record) != s_.view.ownUncertainty(first) ||
+          (s_.view.triangles && s_.view.triangles->triangle(record) != s_.view.triangles->triangle(first)))
         return false;
     }
     return true;

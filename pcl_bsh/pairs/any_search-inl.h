@@ -120,7 +120,7 @@ public:
       return witness_.has_value();
     };
     if (pairs_.haveRadii()) {
-      eachBallPairNear(leaves.frame, leaves.points, leaves.near, leaves.a, leaves.b, reach(), pairs_.reach.least,
+      eachBallPairNear(leaves.frame, leaves.points, leaves.near, leaves.a, leaves.b, reach(), pairs_.surelyOfBalls(),
                        [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
     }
     else {

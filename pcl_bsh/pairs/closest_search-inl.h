@@ -135,11 +135,11 @@ private:
   }
 
   /// Without radii no distance is below 0, so that pairs at 0 are settled by their record numbers.
-  float lowestKey() const { return pairs_.haveRadii() ? -std::numeric_limits<float>::infinity() : 0.0f; }
+  float lowestKey() const { return pairs_.mayOverlap() ? -std::numeric_limits<float>::infinity() : 0.0f; }
 
   void consider(PointPair candidate)
   {
-    const ExactDistance::Pair posed = pairs_.posed(candidate);
+    const RecordDistance::Pair posed = pairs_.posed(candidate);
     ++walk_.work.exact_decisions;
     if (best_.pair) {
       const int sign = pairs_.distance.compareGaps(posed, pairs_.posed(*best_.pair));
@@ -152,8 +152,7 @@ private:
     }
     best_.pair = candidate;
     best_.gap = pairs_.distance.gap(posed);
-    const bool zero =
-        best_.gap == 0.0 && pairs_.distance.compare(posed.p, posed.q, 0.0, -posed.radius_p, -posed.radius_q) == 0;
+    const bool zero = best_.gap == 0.0 && pairs_.distance.compare(posed, 0.0) == 0;
     best_.high = zero ? 0.0 : std::nextafter(best_.gap, kInfinity);
     best_.to_beat = tolerance_ > 0.0 ? std::nextafter(best_.high - tolerance_, -kInfinity) : best_.high;
     others_.tell(best_, pairs_);

@@ -73,7 +73,7 @@ public:
       return !going;
     };
     if (pairs_.haveRadii()) {
-      eachBallPairNear(leaves.frame, leaves.points, leaves.near, a, b, sink_.reach(), pairs_.reach.least,
+      eachBallPairNear(leaves.frame, leaves.points, leaves.near, a, b, sink_.reach(), pairs_.surelyOfBalls(),
                        [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
     }
     else {

@@ -183,7 +183,7 @@ private:
     pair_lower_ = pair_ && gap == gap_ ? std::min(pair_lower_, gap_lower) : gap_lower;
     pair_ = candidate;
     gap_ = gap;
-    upper_ = gap == 0.0 && !pairs_.haveRadii() ? 0.0 : std::nextafter(gap, kInfinity);
+    upper_ = gap == 0.0 && !pairs_.mayOverlap() ? 0.0 : std::nextafter(gap, kInfinity);
     if (clearance_ && upper_ > *clearance_ && gap <= *clearance_ && pairs_.collide(candidate, walk_.work))
       upper_ = *clearance_;
   }
@@ -195,7 +195,7 @@ private:
     for (const Open& open : open_) undecided = std::min(undecided, open.lower);
     finding.distance.upper = upper_;
     finding.distance.lower = std::min({undecided, pair_lower_, clearance_.value_or(kInfinity)});
-    if (!pairs_.haveRadii()) finding.distance.lower = std::max(finding.distance.lower, 0.0);
+    if (!pairs_.mayOverlap()) finding.distance.lower = std::max(finding.distance.lower, 0.0);
     finding.pair = pair_;
     if (clearance_) {
       finding.verdict = isSettled() ? Verdict::colliding : undecided > *clearance_ ? Verdict::free : Verdict::undecided;

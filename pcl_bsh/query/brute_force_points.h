@@ -9,7 +9,7 @@
 
 namespace pcl_bsh::brute_force {
 
-/// A point that takes part in collisions.
+/// A point that takes part in collisions; of a triangle, the middle of its ball.
 struct FinitePoint {
   std::uint32_t record;
   Point3 point;
@@ -26,7 +26,7 @@ inline std::vector<FinitePoint> finitePoints(const PointsView& view)
     const std::uint32_t record = view.record(i);
     const Point3 point = view.point(record);
     const bool finite = std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });
-    if (finite) points.push_back({record, point, view.radius(record), view.ownUncertainty(record)});
+    if (finite) points.push_back({record, point, view.ownRadius(record), view.ownUncertainty(record)});
   }
   std::sort(points.begin(), points.end(),
             [](const FinitePoint& x, const FinitePoint& y) { return x.record < y.record; });

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/query/reach.h>
+#include <pcl_bsh/query/record_distance.h>
 #include <pcl_bsh/query/result.h>
 
 #include <cmath>
@@ -12,8 +12,8 @@
 
 namespace pcl_bsh {
 
-/// How far apart the points of a pair may be measured, radii included, to be within the clearance at the places that
-/// are asked about.
+/// How far apart the points, or triangles, of a pair may be measured, radii included, to be within the clearance at the
+/// places that are asked about.
 class PairReach {
 public:
   PairReach(const PointsView& a, const PointsView& b, double clearance, Places places,
@@ -31,12 +31,10 @@ public:
   /// Whether it is the same for all pairs, but for their radii.
   bool isOne() const { return areMeasured() || !(a_.uncertainties || b_.uncertainties || patches_.spacings); }
 
-  /// Whether a pair is within it. @param distance between points of a and of b
-  bool holds(const ExactDistance& distance, PointPair pair) const
+  /// Whether a pair is within it. @param distance between records of a and of b
+  bool holds(const RecordDistance& distance, PointPair pair) const
   {
-    const Point3 p = a_.point(pair.a), q = b_.point(pair.b);
-    if (!areMeasured()) return distance.compare(p, q, of(pair)) <= 0;
-    return distance.compare(p, q, clearance_, a_.radius(pair.a), b_.radius(pair.b)) <= 0;
+    return (areMeasured() ? distance.compare(pair, clearance_) : distance.compare(pair, of(pair))) <= 0;
   }
 
   /// Without what points of a pair have of their own: between which lengths it is, at most, for all places.
@@ -59,12 +57,12 @@ public:
   }
 
   /// Before rounding.
-  ExactDistance::Sum of(PointPair pair) const
+  RecordDistance::Sum of(PointPair pair) const
   {
     const double sign = areMeasured() ? 0.0 : places_ == Places::certain ? -1.0 : 1.0;
     return {clearance_,
-            a_.radius(pair.a),
-            b_.radius(pair.b),
+            a_.ownRadius(pair.a),
+            b_.ownRadius(pair.b),
             sign * a_.uncertainty,
             sign * b_.uncertainty,
             sign * a_.ownUncertainty(pair.a),

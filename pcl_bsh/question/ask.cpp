@@ -5,7 +5,7 @@
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/query/record_distance.h>
 #include <pcl_bsh/question/options.h>
 #include <pcl_bsh/question/surface_answers.h>
 #include <pcl_bsh/surface/triangle_answers.h>
@@ -25,10 +25,9 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 class Comparison {
 public:
   Comparison(const PointsView& input, const Placed& obstacle, const PointDistances& found)
-  : input_(input),
-    obstacle_(obstacle.hierarchy().view()),
+  : obstacle_(obstacle.hierarchy().view()),
     found_(found),
-    exact_(Eigen::Isometry3d::Identity(), obstacle.pose)
+    exact_(input, Eigen::Isometry3d::Identity(), obstacle_, obstacle.pose)
   {
   }
 
@@ -39,17 +38,15 @@ public:
     if (std::isnan(distance)) return 1;
     if (distance != length) return distance < length ? -1 : 1;
     const std::uint32_t nearest = found_.nearest[record];
-    const int sign = exact_.compare(input_.point(record), obstacle_.point(nearest), length, input_.radius(record),
-                                    obstacle_.radius(nearest));
+    const int sign = exact_.compare({record, nearest}, length);
     return length == 0.0 ? std::max(sign, 0) : sign;
   }
 
 private:
   const DefaultFloatEnvironment environment_;
-  const PointsView& input_;
   const PointsView& obstacle_;
   const PointDistances& found_;
-  const ExactDistance exact_;
+  const RecordDistance exact_;
 };
 
 /// Of all points that collide, that of the smallest distance.

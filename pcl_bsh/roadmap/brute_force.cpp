@@ -3,7 +3,6 @@
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/flags/check_request.h>
-#include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/pairs/check_request.h>
 #include <pcl_bsh/query/brute_force_points.h>
 #include <pcl_bsh/query/pair_reach.h>
@@ -20,21 +19,21 @@ namespace {
 template <class Visit>
 void forEachPair(const Placed& a, const Placed& b, double clearance, const Visit& visit)
 {
-  const ExactDistance distance(a.pose, b.pose);
+  const RecordDistance distance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose);
   const double of_a = a.hierarchy().view().uncertainty, of_b = b.hierarchy().view().uncertainty;
   const bool uncertain = areUncertain(a, b);
   const std::vector<FinitePoint> obstacles = finitePoints(b.hierarchy().view());
   for (const FinitePoint& p : finitePoints(a.hierarchy().view())) {
     for (const FinitePoint& q : obstacles) {
       const auto collide = [&](double sign) {
-        return distance.compare(p.point, q.point,
-                                {clearance, p.radius, q.radius, sign * of_a, sign * of_b, sign * p.uncertainty,
-                                 sign * q.uncertainty}) <= 0;
+        const RecordDistance::Sum reach = {
+            clearance, p.radius, q.radius, sign * of_a, sign * of_b, sign * p.uncertainty, sign * q.uncertainty};
+        return distance.compare({p.record, q.record}, reach) <= 0;
       };
       Verdict verdict = Verdict::free;
       if (uncertain)
         verdict = collide(-1.0) ? Verdict::colliding : collide(1.0) ? Verdict::undecided : Verdict::free;
-      else if (distance.compare(p.point, q.point, clearance, p.radius, q.radius) <= 0)
+      else if (distance.compare({p.record, q.record}, clearance) <= 0)
         verdict = Verdict::colliding;
       if (!visit(p, q, verdict)) return;
     }
@@ -61,12 +60,12 @@ AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& reque
 /// Free points of a that may be within the clearance of a patch of b's surface.
 void guardDensity(const Placed& a, const Placed& b, const FlagsRequest& request, std::vector<Verdict>& flags)
 {
-  const ExactDistance distance(a.pose, b.pose);
+  const RecordDistance distance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose);
   const PointsView &of_a = a.hierarchy().view(), &of_b = b.hierarchy().view();
   const PairReach reach(of_a, of_b, request.clearance, Places::covered, {request.spacings_of_b, of_b.count});
   for (const FinitePoint& p : finitePoints(of_a))
     for (const FinitePoint& q : finitePoints(of_b))
-      if (flags[p.record] == Verdict::free && distance.compare(p.point, q.point, reach.of({p.record, q.record})) <= 0)
+      if (flags[p.record] == Verdict::free && reach.holds(distance, {p.record, q.record}))
         flags[p.record] = Verdict::sparse;
 }
 
@@ -105,14 +104,14 @@ DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceReque
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
-  const ExactDistance distance(a.pose, b.pose);
+  const RecordDistance distance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose);
   const std::vector<FinitePoint> obstacles = finitePoints(b.hierarchy().view());
   DistanceResult result;
-  ExactDistance::Pair closest;
+  RecordDistance::Pair closest;
   for (const FinitePoint& p : finitePoints(a.hierarchy().view())) {
     for (const FinitePoint& q : obstacles) {
       ++result.work.exact_decisions;
-      const ExactDistance::Pair pair{p.point, q.point, p.radius, q.radius};
+      const RecordDistance::Pair pair = distance.pair({p.record, q.record});
       if (result.pair && distance.compareGaps(pair, closest) >= 0) continue;
       closest = pair;
       result.pair = PointPair{p.record, q.record};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/float_environment.h>
-#include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/query/brute_force_points.h>
 #include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/roadmap/motions_query.h>
@@ -34,7 +33,9 @@ bool collideOn(const MotionsQuery& query, const RigidMotion& motion, Places plac
   const auto collides = [&](const FinitePoint& p, const FinitePoint& q) {
     ++work.exact_decisions;
     for (const Eigen::Isometry3d& pose : ends)
-      if (path.of_pairs.holds(ExactDistance(query.scan.pose, pose), {p.record, q.record})) return true;
+      if (path.of_pairs.holds(RecordDistance(query.scan.hierarchy().view(), query.scan.pose, query.model.view(), pose),
+                              {p.record, q.record}))
+        return true;
     for (std::uint32_t k = 0; k + 1 < path.path.poses.size(); ++k)
       if (comeNear(path, k, p, q)) return true;
     return false;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/query/brute_force_points.h>
 #include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/query/uncertain.h>
@@ -13,16 +12,14 @@ namespace {
 
 /// The smallest distance that a point, or a pose, has seen so far.
 struct Closest {
-  const ExactDistance* distance = nullptr;
-  ExactDistance::Pair pair;
+  const RecordDistance* distance = nullptr;
+  PointPair pair;
   std::size_t pose = 0;
-  std::uint32_t record = 0;
 
-  void consider(const ExactDistance& at, std::size_t k, const FinitePoint& p, const FinitePoint& q)
+  void consider(const RecordDistance& at, std::size_t k, PointPair other)
   {
-    const ExactDistance::Pair posed{p.point, q.point, p.radius, q.radius};
-    if (distance && at.compareGaps(posed, *distance, pair) >= 0) return;
-    *this = {&at, posed, k, q.record};
+    if (distance && at.compareGaps(other, *distance, pair) >= 0) return;
+    *this = {&at, other, k};
   }
 };
 
@@ -36,9 +33,10 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
     throw InvalidInput(Input::swept, "brute_force::collideAlong", "knows poses only, not what is between");
   const DefaultFloatEnvironment environment;
   const std::vector<FinitePoint> points = finitePoints(scan.hierarchy().view()), obstacles = finitePoints(model.view());
-  std::vector<ExactDistance> distances;
+  std::vector<RecordDistance> distances;
   distances.reserve(model_poses.size());
-  for (const Eigen::Isometry3d& pose : model_poses) distances.emplace_back(scan.pose, pose);
+  for (const Eigen::Isometry3d& pose : model_poses)
+    distances.emplace_back(scan.hierarchy().view(), scan.pose, model.view(), pose);
 
   if (!asksForAnything(request)) return {};
   TrajectoryResult result = allFree(request, scan.hierarchy().view().count, model_poses.size());
@@ -58,11 +56,11 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
       for (const FinitePoint& q : obstacles) {
         ++result.work.exact_decisions;
         const PointPair pair{p.record, q.record};
-        if (distances[k].compare(p.point, q.point, possible.of(pair)) > 0) continue;
-        const bool collides = !uncertain || distances[k].compare(p.point, q.point, surely.of(pair)) <= 0;
+        if (!possible.holds(distances[k], pair)) continue;
+        const bool collides = !uncertain || surely.holds(distances[k], pair);
         if (collides || verdict == Verdict::free) verdict = collides ? Verdict::colliding : Verdict::undecided;
-        of_point.consider(distances[k], k, p, q);
-        of_poses[k].consider(distances[k], k, p, q);
+        of_point.consider(distances[k], k, pair);
+        of_poses[k].consider(distances[k], k, pair);
       }
       if (verdict == Verdict::free) continue;
       const bool collides = verdict == Verdict::colliding;
@@ -78,7 +76,7 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
     if (request.first_poses) result.first_pose[p.record] = first;
     if (request.distances) result.distance[p.record] = static_cast<float>(of_point.distance->gap(of_point.pair));
     if (request.closest_poses) result.closest_pose[p.record] = static_cast<std::int32_t>(of_point.pose);
-    if (!result.closest_point.empty()) result.closest_point[p.record] = of_point.record;
+    if (!result.closest_point.empty()) result.closest_point[p.record] = of_point.pair.b;
   }
   for (std::size_t k = 0; k < result.poses.size(); ++k) {
     PoseSummary& summary = result.poses[k];

@@ -17,7 +17,8 @@ public:
   : results_(results),
     point_(point),
     model_(query.model.storage()),
-    distance_(query.scan.pose, query.given[query.path.poses[point.pose].given]),
+    distance_(query.scan.hierarchy().view(), query.scan.pose, query.model.view(),
+              query.given[query.path.poses[point.pose].given]),
     sphere_{query.scan.hierarchy().view().point(point.record), query.scan.hierarchy().view().radius(point.record)},
     reach_(query.between.most)
   {
@@ -35,12 +36,12 @@ public:
     std::size_t count = 0;
     for (std::uint32_t i = 0; i < node.count; ++i) {
       const GivenSphere sphere = sphereOf(voxel, node, i);
-      children[count++] = {distance_.enclose(sphere_.center, sphere.center).low - sphere.radius, i, sphere};
+      children[count++] = {distance_.ofPoints().enclose(sphere_.center, sphere.center).low - sphere.radius, i, sphere};
     }
     results_.work.node_pairs += count;
     std::sort(children.begin(), children.begin() + count, [](const Near& x, const Near& y) { return x.low < y.low; });
     for (std::size_t i = 0; i < count && !isDone(); ++i)
-      if (!areApart(distance_, sphere_, children[i].sphere, reach_)) open(voxel, node, children[i].child);
+      if (!areApart(distance_.ofPoints(), sphere_, children[i].sphere, reach_)) open(voxel, node, children[i].child);
   }
 
   /// What lies below one of its children.
@@ -71,15 +72,13 @@ private:
     ++results_.work.leaf_pairs;
     const std::uint32_t end = node.begin[child] + node.comparedPoints(child);
     for (std::uint32_t i = node.begin[child]; i < end && !isDone(); ++i) {
-      const std::uint32_t other = voxel.records()[i];
-      const ExactDistance::Pair pair{sphere_.center, model_.view.point(other), sphere_.radius,
-                                     model_.view.radius(other)};
-      if (met.collides && distance_.compare(pair.p, pair.q, reach_, pair.radius_p, pair.radius_q) > 0) continue;
-      if (!results_.collide({point_.record, other}, point_.pose)) continue;
+      const PointPair pair{point_.record, voxel.records()[i]};
+      if (met.collides && distance_.compare(pair, reach_) > 0) continue;
+      if (!results_.collide(pair, point_.pose)) continue;
       met.collides = true;
       if (!asksForNearest()) return;
-      if (point_.best) results_.consider(*point_.best, {point_.record, other}, point_.pose);
-      if (point_.for_pose) results_.considerPose({point_.record, other}, point_.pose);
+      if (point_.best) results_.consider(*point_.best, pair, point_.pose);
+      if (point_.for_pose) results_.considerPose(pair, point_.pose);
       met.gap = std::min(met.gap, distance_.gap(pair));
       reach_ = std::min(reach_, std::nextafter(met.gap, std::numeric_limits<double>::infinity()));
     }
@@ -88,7 +87,7 @@ private:
   VoxelResults& results_;
   const PointAtPose point_;
   const SphereHierarchy::Storage& model_;
-  const ExactDistance distance_;
+  const RecordDistance distance_;
   const GivenSphere sphere_; ///< the point
   double reach_;             ///< what is farther, less radii, does not collide, or is not the nearest
 };

@@ -130,7 +130,7 @@ TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& m
 
 double TrajectoryQuery::nearEnough(PointPair pair) const
 {
-  const ExactDistance::Sum terms = of_pairs.of(pair);
+  const RecordDistance::Sum terms = of_pairs.of(pair);
   if (of_pairs.areMeasured()) return reach - radii + (terms[1] + terms[2]);
   const double within = std::accumulate(terms.begin(), terms.end(), 0.0);
   return within < 0.0 ? within : within + *request.swept / 2;

@@ -2,7 +2,6 @@
 // What all voxels of the scan share on a trajectory, and where their answers go.
 #pragma once
 
-#include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/relative_frame.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/pair_reach.h>

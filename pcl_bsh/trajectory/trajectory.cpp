@@ -29,8 +29,8 @@ void summarize(const TrajectoryQuery& query, TrajectoryResult& result)
     if (summary.colliding) {
       const PointPair pair = query.nearest_at_pose[k].pair;
       const PointsView &a = query.scan.hierarchy().view(), &b = query.model.view();
-      summary.distance = ExactDistance(query.scan.pose, query.given[poses[k].given])
-                             .gap({a.point(pair.a), b.point(pair.b), a.radius(pair.a), b.radius(pair.b)});
+      const RecordDistance distance(a, query.scan.pose, b, query.given[poses[k].given]);
+      summary.distance = distance.gap(pair);
     }
     const std::size_t next = k + 1 < poses.size() ? poses[k + 1].given : result.poses.size();
     std::fill(result.poses.begin() + poses[k].given, result.poses.begin() + static_cast<std::ptrdiff_t>(next), summary);

@@ -101,28 +101,21 @@ void VoxelResults::mergePoses() const
     query_.pose_counts[k] += pose_counts_[i];
     NearestAtPose& nearest = query_.nearest_at_pose[k];
     if (nearest_at_pose_[i].found &&
-        (!nearest.found || exactAt(k).compareGaps(posed(nearest_at_pose_[i].pair), posed(nearest.pair)) < 0))
+        (!nearest.found || exactAt(k).compareGaps(nearest_at_pose_[i].pair, nearest.pair) < 0))
       nearest = nearest_at_pose_[i];
   }
 }
 
-ExactDistance VoxelResults::exactAt(std::uint32_t k) const
+RecordDistance VoxelResults::exactAt(std::uint32_t k) const
 {
-  return ExactDistance(query_.scan.pose, query_.given[query_.path.poses[k].given]);
-}
-
-ExactDistance::Pair VoxelResults::posed(PointPair pair) const
-{
-  const PointsView &a = query_.scan.hierarchy().view(), &b = query_.model.view();
-  return {a.point(pair.a), b.point(pair.b), a.radius(pair.a), b.radius(pair.b)};
+  return {query_.scan.hierarchy().view(), query_.scan.pose, query_.model.view(),
+          query_.given[query_.path.poses[k].given]};
 }
 
 bool VoxelResults::collide(PointPair at, std::uint32_t k)
 {
   ++work.exact_decisions;
-  const ExactDistance::Pair pair = posed(at);
-  if (!query_.of_pairs.areMeasured()) return exactAt(k).compare(pair.p, pair.q, query_.of_pairs.of(at)) <= 0;
-  return exactAt(k).compare(pair.p, pair.q, query_.request.clearance, pair.radius_p, pair.radius_q) <= 0;
+  return query_.of_pairs.holds(exactAt(k), at);
 }
 
 void VoxelResults::consider(NearestPoint& nearest, PointPair pair, std::uint32_t k)
@@ -130,7 +123,7 @@ void VoxelResults::consider(NearestPoint& nearest, PointPair pair, std::uint32_t
   ++work.exact_decisions;
   if (nearest.record != kNothing) {
     const auto best_pose = static_cast<std::uint32_t>(nearest.time);
-    const int sign = exactAt(k).compareGaps(posed(pair), exactAt(best_pose), posed({pair.a, nearest.record}));
+    const int sign = exactAt(k).compareGaps(pair, exactAt(best_pose), {pair.a, nearest.record});
     if (sign > 0 || (sign == 0 && (k > best_pose || (k == best_pose && pair.b >= nearest.record)))) return;
   }
   nearest.time = k;
@@ -141,7 +134,7 @@ void VoxelResults::considerPose(PointPair pair, std::uint32_t k)
 {
   NearestAtPose& nearest = nearest_at_pose_[k - first_pose_];
   ++work.exact_decisions;
-  if (nearest.found && exactAt(k).compareGaps(posed(pair), posed(nearest.pair)) >= 0) return;
+  if (nearest.found && exactAt(k).compareGaps(pair, nearest.pair) >= 0) return;
   nearest = {pair, true};
 }
 
@@ -161,7 +154,7 @@ float VoxelResults::distanceOf(std::uint32_t record, const NearestPoint& nearest
 {
   return roundToFloat(query_.path.is_swept
                           ? nearest.gap
-                          : exactAt(static_cast<std::uint32_t>(nearest.time)).gap(posed({record, nearest.record})));
+                          : exactAt(static_cast<std::uint32_t>(nearest.time)).gap(PointPair{record, nearest.record}));
 }
 
 } // namespace pcl_bsh

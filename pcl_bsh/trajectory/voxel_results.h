@@ -81,8 +81,7 @@ private:
     float reach = std::numeric_limits<float>::infinity();
   };
 
-  ExactDistance exactAt(std::uint32_t k) const;
-  ExactDistance::Pair posed(PointPair pair) const;
+  RecordDistance exactAt(std::uint32_t k) const;
   std::int32_t givenPose(double time) const;
   float distanceOf(std::uint32_t record, const NearestPoint& nearest) const;
   void mergePoses() const; // with the query locked

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/traversal/space.h>
+
+#include <limits>
 
 namespace pcl_bsh {
 
@@ -13,13 +14,13 @@ inline Reach reachBetween(const Placed& a, const Placed& b, double clearance, Pl
   return {clearance, a.hierarchy().storage().uncertainty, b.hierarchy().storage().uncertainty, places, patches_of_b};
 }
 
-/// Decides pairs of points by the coordinates as given, in exact arithmetic.
+/// Decides pairs of records by the coordinates as given, in exact arithmetic.
 class PointPairs {
 public:
   PointPairs(const Placed& a, const Placed& b, double clearance, Places places = Places::measured,
              const PatchSpacings& patches_of_b = {})
   : reach(reachBetween(a, b, clearance, places, patches_of_b)),
-    distance(a.pose, b.pose),
+    distance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose),
     a_(a.hierarchy().view()),
     b_(b.hierarchy().view()),
     of_pairs_(a_, b_, clearance, places, patches_of_b)
@@ -33,11 +34,11 @@ public:
     return of_pairs_.holds(distance, pair);
   }
 
-  /// The same of a pair whose squared float distance in a frame is known. Where pairs have reaches of their own, it
-  /// decides most of them.
+  /// The same of a pair whose squared float distance in a frame is known. Where pairs of points have reaches of their
+  /// own, it decides most of them.
   bool collide(const RelativeFrame& frame, float squared, PointPair pair, Work& work) const
   {
-    if (!of_pairs_.isOne()) {
+    if (!of_pairs_.isOne() && !ofTriangles()) {
       const auto [least, most] = of_pairs_.around(pair);
       if (most < 0.0 || squared > frame.band(most).miss) return false;
       if (least > 0.0 && squared <= frame.band(least).hit) return true;
@@ -45,25 +46,29 @@ public:
     return collide(pair, work);
   }
 
-  ExactDistance::Pair posed(PointPair pair) const
-  {
-    return {a_.point(pair.a), b_.point(pair.b), a_.radius(pair.a), b_.radius(pair.b)};
-  }
+  RecordDistance::Pair posed(PointPair pair) const { return distance.pair(pair); }
 
   double gap(PointPair pair) const { return distance.gap(posed(pair)); }
 
   /// Whether the gap of a pair is less than this.
-  bool isNearer(PointPair pair, double gap) const
-  {
-    return distance.compare(a_.point(pair.a), b_.point(pair.b), gap, a_.radius(pair.a), b_.radius(pair.b)) < 0;
-  }
+  bool isNearer(PointPair pair, double gap) const { return distance.compare(pair, gap) < 0; }
 
+  /// Whether the trees are of balls, in place of points.
   bool haveRadii() const { return a_.radii || b_.radii; }
+
+  /// Whether the balls are no more than what holds triangles: then their gaps are bounds from below, and no more.
+  bool ofTriangles() const { return distance.ofTriangles(); }
+
+  /// Whether gaps may be below 0.
+  bool mayOverlap() const { return (a_.radii && !a_.triangles) || (b_.radii && !b_.triangles); }
+
+  /// What balls nearer than this collide for certain: Reach::least, or nothing.
+  double surelyOfBalls() const { return ofTriangles() ? -std::numeric_limits<double>::infinity() : reach.least; }
 
   const PairReach& ofPairs() const { return of_pairs_; }
 
   const Reach reach; ///< of all pairs
-  const ExactDistance distance;
+  const RecordDistance distance;
 
 private:
   const PointsView& a_;

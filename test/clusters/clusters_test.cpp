@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/clusters/clusters.h>
 
+#include "support/meshes.h"
 #include "support/random_clouds.h"
 
 #include <gtest/gtest.h>
@@ -41,6 +42,21 @@ TEST(Clusters, SameAsBruteForce)
       }
     }
   }
+}
+
+TEST(Clusters, SameAsBruteForceOfTriangles)
+{
+  test::Random random(12);
+  for (const test::MeshKind kind : test::kMeshKinds)
+    for (const std::size_t count : {1u, 17u, 120u}) {
+      SCOPED_TRACE("mesh " + std::to_string(static_cast<int>(kind)) + ", " + std::to_string(count) + " triangles");
+      test::Mesh mesh = test::makeMesh(kind, count, 8.0, random);
+      Cloud cloud(mesh.vertices);
+      cloud.setTriangles(mesh.corners);
+      const SphereHierarchy hierarchy(cloud.view());
+      for (const double distance : {0.0, 0.01, std::nextafter(1.0, 0.0), 1.0, 3.0})
+        expectSameAsBruteForce(hierarchy, distance);
+    }
 }
 
 TEST(Clusters, StepsOfExactlyTheDistanceJoin)

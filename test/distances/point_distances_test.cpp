@@ -5,6 +5,7 @@
 
 #include "expect_distances.h"
 #include "support/adversarial_clouds.h"
+#include "support/meshes.h"
 #include "support/random_clouds.h"
 #include "support/work_counts.h"
 
@@ -44,6 +45,21 @@ TEST(PointDistances, OfRandomClouds)
     const Placed a(ha, scene.pose_a), b(hb, scene.pose_b);
     for (const double max : {kInfinity, scene.clearance}) {
       test::expectSame(pointDistances(a, b, within(max)), brute_force::pointDistances(a, b, within(max)));
+      if (testing::Test::HasFailure()) return;
+    }
+  }
+}
+
+TEST(PointDistances, OfTriangles)
+{
+  for (std::uint64_t seed = 0; seed < 240; ++seed) {
+    const Scene scene = test::anyMeshScene(seed, 60);
+    SCOPED_TRACE(scene.name);
+    const HierarchyOptions options = optionsFor(scene, seed);
+    const SphereHierarchy ha(scene.a.view(), options), hb(scene.b.view(), options);
+    const Placed a(ha, scene.pose_a), b(hb, scene.pose_b);
+    for (const double max : {kInfinity, scene.clearance}) {
+      test::expectSame(pointDistances(a, b, within(max, 1 + seed % 2)), brute_force::pointDistances(a, b, within(max)));
       if (testing::Test::HasFailure()) return;
     }
   }

@@ -4,6 +4,7 @@
 
 #include "support/facing_sheets.h"
 #include "support/kd_tree.h"
+#include "support/meshes.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"
 #include "support/work_counts.h"
@@ -101,6 +102,12 @@ TEST(CollisionFlags, SameAsBruteForceOnLargerClouds)
 {
   for (std::uint64_t seed = 1000; seed < 1030; ++seed) expectSameAsBruteForce(test::anyScene(seed, 1000));
   for (std::uint64_t seed = 2000; seed < 2004; ++seed) expectSameAsBruteForce(test::anyScene(seed, 3000));
+}
+
+TEST(CollisionFlags, SameAsBruteForceOfTriangles)
+{
+  for (std::uint64_t seed = 0; seed < 300; ++seed) expectSameAsBruteForce(test::anyMeshScene(seed, 60));
+  for (std::uint64_t seed = 300; seed < 306; ++seed) expectSameAsBruteForce(test::anyMeshScene(seed, 400));
 }
 
 TEST(CollisionFlags, SameAsBruteForceOnGridsWithTies) // H5, H5b, H5c

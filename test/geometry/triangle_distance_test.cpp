@@ -220,15 +220,67 @@ TEST(TriangleDistance, ComparesDistancesAsTheDefinitionDoes)
       const Rational x = test::squaredDistance(posed(pose, p), posed(pose, b));
       const Rational y = test::squaredDistance(posed(other, q), posed(other, c));
       ties += x == y;
-      EXPECT_EQ(first.compareDistances({p, b}, second, {q, c}, &stages), signOf(x - y));
+      EXPECT_EQ(first.compareGaps({p, b}, second, {q, c}, &stages), signOf(x - y));
       const Triangle3 a = test::triangleOf(shape, 1.0, random);
       const Rational z = test::squaredDistance(posed(pose, a), posed(pose, b));
       const Rational w = test::squaredDistance(posed(other, a), posed(other, c));
       ties += z == w;
-      EXPECT_EQ(first.compareDistances({a, b}, second, {a, c}, &stages), signOf(z - w));
+      EXPECT_EQ(first.compareGaps({a, b}, second, {a, c}, &stages), signOf(z - w));
     }
   report("comparisons of distances", stages);
   EXPECT_GT(ties, 100);
+}
+
+/// Sign of the root of x less the root of y less d.
+int signOfRoots(const Rational& x, const Rational& y, const Rational& d)
+{
+  if (d < 0) return -signOfRoots(y, x, -d);
+  // x against (d + sqrt(y))^2 = d^2 + y + 2 d sqrt(y)
+  const Rational left = x - d * d - y, squared = 4 * d * d * y;
+  return left <= 0 ? (left == 0 && squared == 0 ? 0 : -1) : signOf(left * left - squared);
+}
+
+TEST(TriangleDistance, TakesBallsAndSumsAsTheDefinitionDoes)
+{
+  Random random(305);
+  int ties = 0, below = 0;
+  for (const Shape shape : test::kShapes)
+    for (int i = 0; i < 60; ++i) {
+      const Isometry3d pose = poseOf(i % 3, random), other = poseOf(i % 2, random);
+      const TriangleDistance first(pose, pose), second(other, other);
+      const double sizes[] = {0.0, std::ldexp(random.integer(0, 8), -10), random.uniform(0, 2)};
+      const TriangleDistance::PointPair x{test::cornerOf(shape, 1.0, random), test::triangleOf(shape, 1.0, random),
+                                          random.pick(sizes)};
+      TriangleDistance::PointPair y{test::cornerOf(shape, 1.0, random), test::triangleOf(shape, 1.0, random),
+                                    random.pick(sizes)};
+      if (i % 4 == 0) y.a = x.a, y.b = {x.b[1], x.b[2], x.b[0]};
+      if (i % 8 == 0) y.radius = x.radius;
+      const Rational of_x = test::squaredDistance(posed(pose, x.a), posed(pose, x.b));
+      const Rational of_y = test::squaredDistance(posed(other, y.a), posed(other, y.b));
+      const int sign = signOfRoots(of_x, of_y, Rational(x.radius) - Rational(y.radius));
+      ties += sign == 0;
+      EXPECT_EQ(first.compareGaps(x, second, y), sign);
+      EXPECT_EQ(second.compareGaps(y, first, x), -sign);
+
+      const double gap = first.gap(x);
+      below += gap < 0.0;
+      const auto sideOf = [&](const Rational& length) { return signOfRoots(of_x, 0, Rational(x.radius) + length); };
+      if (gap == 0.0) {
+        EXPECT_EQ(sideOf(0), 0);
+      }
+      EXPECT_LE(sideOf((Rational(gap) + Rational(std::nextafter(gap, infinity))) / 2), 0);
+      EXPECT_GE(sideOf((Rational(gap) + Rational(std::nextafter(gap, -infinity))) / 2), 0);
+      for (const double sum : {gap, std::nextafter(gap, 9.0), std::nextafter(gap, -9.0), random.uniform(-1, 1)}) {
+        const double part = random.uniform(-1, 1), tiny = std::ldexp(random.integer(-1, 1), -80);
+        const ExactDistance::Sum reach = {sum, part, tiny, 0.0, -part};
+        EXPECT_EQ(first.compare(x, reach), sideOf(Rational(sum) + Rational(tiny)));
+        const ExactDistance::Sum with_radius = {sum, x.radius, tiny};
+        EXPECT_EQ(first.compare(TriangleDistance::PointPair{x.a, x.b}, with_radius),
+                  sideOf(Rational(sum) + Rational(tiny)));
+      }
+    }
+  EXPECT_GT(ties, 10);
+  EXPECT_GT(below, 50);
 }
 
 /// What a mesh and a scan near it ask: clearances that have nothing to do with the distances.

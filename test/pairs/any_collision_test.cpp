@@ -3,6 +3,7 @@
 #include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/facing_sheets.h"
+#include "support/meshes.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"
 #include "support/work_counts.h"
@@ -45,11 +46,7 @@ void expectSameAsBruteForce(const Scene& scene, double clearance)
   ASSERT_EQ(result.witness.has_value(), result.verdict == Verdict::colliding);
   if (!result.witness) return;
   EXPECT_EQ(result.witness, anyCollision(placed_a, placed_b, within(clearance)).witness) << "asked again";
-  const PointsView va = scene.a.view(), vb = scene.b.view();
-  const auto [p, q] = *result.witness;
-  EXPECT_LE(ExactDistance(scene.pose_a, scene.pose_b)
-                .compare(va.point(p), vb.point(q), clearance, va.radius(p), vb.radius(q)),
-            0);
+  EXPECT_LE(RecordDistance(a.view(), scene.pose_a, b.view(), scene.pose_b).compare(*result.witness, clearance), 0);
 }
 
 /// At the scene's clearance, and where the answer turns: at the smallest distance, give or take the last bit.
@@ -81,6 +78,12 @@ TEST(AnyCollision, SameAsBruteForceOnLargerClouds)
 {
   for (std::uint64_t seed = 1000; seed < 1030; ++seed) expectSameAsBruteForce(test::anyScene(seed, 1000));
   for (std::uint64_t seed = 2000; seed < 2004; ++seed) expectSameAsBruteForce(test::anyScene(seed, 3000));
+}
+
+TEST(AnyCollision, SameAsBruteForceOfTriangles)
+{
+  for (std::uint64_t seed = 0; seed < 300; ++seed) expectSameAsBruteForce(test::anyMeshScene(seed, 60));
+  for (std::uint64_t seed = 300; seed < 306; ++seed) expectSameAsBruteForce(test::anyMeshScene(seed, 400));
 }
 
 TEST(AnyCollision, EmptyCloudsCollideWithNothing) // H14

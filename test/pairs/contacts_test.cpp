@@ -3,6 +3,7 @@
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/pairs/contacts.h>
 
+#include "support/meshes.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"
 
@@ -38,17 +39,13 @@ std::vector<std::uint32_t> finiteRecords(const PointsView& view)
 std::vector<PointPair> oracle(const Scene& scene)
 {
   const PointsView a = scene.a.view(), b = scene.b.view();
-  const ExactDistance distance(scene.pose_a, scene.pose_b);
+  const RecordDistance distance(a, scene.pose_a, b, scene.pose_b);
   std::vector<PointPair> pairs;
   for (const std::uint32_t i : finiteRecords(a))
     for (const std::uint32_t j : finiteRecords(b))
-      if (distance.compare(a.point(i), b.point(j), scene.clearance, a.radius(i), b.radius(j)) <= 0)
-        pairs.push_back({i, j});
-  const auto posed = [&](PointPair pair) {
-    return ExactDistance::Pair{a.point(pair.a), b.point(pair.b), a.radius(pair.a), b.radius(pair.b)};
-  };
+      if (distance.compare({i, j}, scene.clearance) <= 0) pairs.push_back({i, j});
   std::sort(pairs.begin(), pairs.end(), [&](PointPair l, PointPair r) {
-    const int sign = distance.compareGaps(posed(l), posed(r));
+    const int sign = distance.compareGaps(l, r);
     return sign != 0 ? sign < 0 : l < r;
   });
   return pairs;
@@ -60,7 +57,7 @@ void expectSameAsOracle(const Scene& scene)
   const std::vector<PointPair> expected = oracle(scene);
   const SphereHierarchy a(scene.a.view()), b(scene.b.view());
   const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
-  const ExactDistance distance(scene.pose_a, scene.pose_b);
+  const RecordDistance distance(a.view(), scene.pose_a, b.view(), scene.pose_b);
   for (const std::size_t most : {std::size_t{0}, std::size_t{1}, std::size_t{7}, expected.size(), ~std::size_t{0}}) {
     const ContactsResult result = nearestContacts(placed_a, placed_b, within(scene.clearance, most));
     ASSERT_EQ(result.contacts.size(), std::min(most, expected.size()));
@@ -68,9 +65,7 @@ void expectSameAsOracle(const Scene& scene)
     for (std::size_t i = 0; i < result.contacts.size(); ++i) {
       const Contact& contact = result.contacts[i];
       ASSERT_EQ(contact.pair, expected[i]) << i << " of " << most;
-      const Point3 p = a.view().point(contact.pair.a), q = b.view().point(contact.pair.b);
-      ASSERT_EQ(contact.distance,
-                distance.gap({p, q, a.view().radius(contact.pair.a), b.view().radius(contact.pair.b)}));
+      ASSERT_EQ(contact.distance, distance.gap(contact.pair));
       const double norm = contact.normal.norm();
       ASSERT_TRUE(norm == 0.0 || std::abs(norm - 1.0) < 1e-9) << norm;
     }
@@ -91,6 +86,12 @@ TEST(Contacts, SameAsComparingAllPairs)
 {
   for (std::uint64_t seed = 0; seed < 300; ++seed) expectSameAsOracle(test::anyScene(seed, 60));
   for (std::uint64_t seed = 1000; seed < 1010; ++seed) expectSameAsOracle(test::anyScene(seed, 300));
+}
+
+TEST(Contacts, SameAsComparingAllPairsOfTriangles)
+{
+  for (std::uint64_t seed = 0; seed < 200; ++seed) expectSameAsOracle(test::anyMeshScene(seed, 50));
+  for (std::uint64_t seed = 1000; seed < 1003; ++seed) expectSameAsOracle(test::anyMeshScene(seed, 200));
 }
 
 TEST(Contacts, CrowdedPlacesCountEveryPoint)

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include "random.h"
 
@@ -118,12 +119,20 @@ public:
     uncertainties_ = std::move(own);
   }
 
+  /// Makes its records vertices, and triangles of three of them each the records.
+  void setTriangles(std::vector<std::uint32_t> corners)
+  {
+    corners_ = std::move(corners);
+    of_triangles_ = true;
+  }
+
   /// Valid until the cloud changes or goes.
   PointsView view() const
   {
     PointsView view = view_;
     view.data = bytes_.data();
-    view.radii = radii_.empty() ? nullptr : radii_.data();
+    if (of_triangles_) view = viewOf(TrianglesView{view, corners_.data(), corners_.size() / 3});
+    if (!radii_.empty()) view.radii = radii_.data();
     view.uncertainties = uncertainties_.empty() ? nullptr : uncertainties_.data();
     static constexpr std::int32_t none = 0;
     if (subset_) view.indices = indices_.empty() ? &none : indices_.data();
@@ -136,7 +145,8 @@ private:
   std::vector<unsigned char> bytes_;
   std::vector<std::int32_t> indices_;
   std::vector<float> radii_, uncertainties_;
-  bool subset_ = false;
+  std::vector<std::uint32_t> corners_;
+  bool subset_ = false, of_triangles_ = false;
 };
 
 /// One length of all, one for each record, or both; of the size of the clearance, or so that ties are likely.

@@ -57,6 +57,33 @@ double roughRoot(const Fraction<Dyadic>& squared)
   return std::ldexp(std::sqrt(std::ldexp(n.mantissa / d.mantissa, odd)), (exponent - odd) / 2);
 }
 
+/// The same less a length. @pre they differ
+double roughRootLess(const Fraction<Dyadic>& squared, double length)
+{
+  if (length == 0.0) return roughRoot(squared);
+  // As a quotient, so that the only cancellation happens in exact arithmetic: both over the denominator's root.
+  const Dyadic square = Dyadic(length) * Dyadic(length);
+  const Dyadic left = squared.numerator - squared.denominator * square;
+  const bool is_less = left.sign() < 0;
+  const double root = roughRoot({is_less ? -left : left, squared.denominator});
+  const double sum = roughRoot(squared) + length;
+  return (is_less ? -root : root) / sum * root;
+}
+
+/// Sign of sqrt(x) + shift - sqrt(y).
+int compareShiftedRoots(const Fraction<Dyadic>& x, const Dyadic& shift, const Fraction<Dyadic>& y)
+{
+  bool always = true;
+  if (shift.sign() == 0) return compareFractions(x, y, always);
+  if (shift.sign() < 0) return -compareShiftedRoots(y, -shift, x);
+  // Both sides are >= 0, so their squares compare alike, here times both denominators.
+  const Dyadic both = x.denominator * y.denominator, square = shift * shift;
+  const Dyadic rational = x.numerator * y.denominator + square * both - y.numerator * x.denominator;
+  const Dyadic irrational_squared = Dyadic(4.0) * square * x.numerator * y.denominator * both;
+  return rational.sign() >= 0 ? (rational + irrational_squared).sign()
+                              : (irrational_squared - rational * rational).sign();
+}
+
 } // namespace
 
 TriangleDistance::TriangleDistance(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b)
@@ -117,27 +144,51 @@ TriangleDistance::Enclosure TriangleDistance::enclose(const Triangle3& a, const 
   return distanceOfTriangles(at.a, at.b, at.error, kAnyLength).distance;
 }
 
+/// In double, of a distance that is compared with a sum: eight additions at most, rounded relative to what they add up.
+template <class Pair>
+int TriangleDistance::compareByStages(const Pair& pair, const ExactDistance::Sum& reach, Stages& stages) const
+{
+  double sum = pair.radius, magnitude = std::abs(pair.radius);
+  for (const double term : reach) {
+    sum += term;
+    magnitude += std::abs(term);
+  }
+  if (reach[0] == kAnyLength) return ++stages.doubles, -1;
+  Enclosure found;
+  if constexpr (std::is_same_v<Pair, PointPair>) {
+    found = enclose(pair.a, pair.b);
+  }
+  else {
+    const Seen at = seen(pair.a, pair.b);
+    found = distanceOfTriangles(at.a, at.b, at.error, sum).distance;
+  }
+  const double rounding = 2 * kFewDoubleRoundings * magnitude;
+  if (found.high < sum - rounding) return ++stages.doubles, -1;
+  if (found.low > sum + rounding) return ++stages.doubles, 1;
+  return settle(pair, reach, stages);
+}
+
+int TriangleDistance::compare(const PointPair& pair, const ExactDistance::Sum& reach, Stages* stages) const
+{
+  Stages none;
+  return compareByStages(pair, reach, orNone(stages, none));
+}
+
+int TriangleDistance::compare(const TrianglePair& pair, const ExactDistance::Sum& reach, Stages* stages) const
+{
+  Stages none;
+  return compareByStages(pair, reach, orNone(stages, none));
+}
+
 int TriangleDistance::compare(const Point3& p, const Triangle3& b, double clearance, double radius,
                               Stages* stages) const
 {
-  Stages none, &count = orNone(stages, none);
-  const double reach = clearance + radius;
-  const double rounding = kFewDoubleRoundings * (std::abs(clearance) + std::abs(radius));
-  const Enclosure found = enclose(p, b);
-  if (found.high < reach - rounding || clearance == kAnyLength) return ++count.doubles, -1;
-  if (found.low > reach + rounding) return ++count.doubles, 1;
-  return settle(PointPair{p, b}, clearance, radius, count);
+  return compare(PointPair{p, b, radius}, {clearance}, stages);
 }
 
 int TriangleDistance::compare(const Triangle3& a, const Triangle3& b, double clearance, Stages* stages) const
 {
-  Stages none, &count = orNone(stages, none);
-  if (clearance == kAnyLength) return ++count.doubles, -1;
-  const Seen at = seen(a, b);
-  const Enclosure found = distanceOfTriangles(at.a, at.b, at.error, clearance).distance;
-  if (found.high < clearance) return ++count.doubles, -1;
-  if (found.low > clearance) return ++count.doubles, 1;
-  return settle(TrianglePair{a, b}, clearance, 0.0, count);
+  return compare(TrianglePair{a, b}, {clearance}, stages);
 }
 
 // Longer numbers --------------------------------------------------------------------------------------------------
@@ -210,14 +261,19 @@ Features TriangleDistance::nearestFeatures(const Pair& pair, bool& by_integers) 
 }
 
 template <class Pair>
-int TriangleDistance::settle(const Pair& pair, double clearance, double radius, Stages& stages) const
+int TriangleDistance::settle(const Pair& pair, const ExactDistance::Sum& reach, Stages& stages) const
 {
+  const auto sumOf = [&](auto sum) {
+    for (const double term : reach)
+      if (term != 0.0) sum += decltype(sum)(term);
+    return sum;
+  };
   bool by_integers = false, sure = true;
   const Features features = nearestFeatures(pair, by_integers);
-  const int side = compareRoot(squared<LongNumber>(pair, features), LongNumber(clearance) + LongNumber(radius), sure);
+  const int side = compareRoot(squared<LongNumber>(pair, features), sumOf(LongNumber(pair.radius)), sure);
   if (sure) return ++(by_integers ? stages.integers : stages.long_numbers), side;
   ++stages.integers;
-  return compareRoot(squared<Dyadic>(pair, features), Dyadic(clearance) + Dyadic(radius), sure);
+  return compareRoot(squared<Dyadic>(pair, features), sumOf(Dyadic(pair.radius)), sure);
 }
 
 template <class Pair>
@@ -225,17 +281,23 @@ int TriangleDistance::settleOrder(const Pair& first, const TriangleDistance& oth
                                   Stages& stages) const
 {
   const Enclosure x = enclose(first.a, first.b), y = other.enclose(second.a, second.b);
-  if (x.high < y.low) return ++stages.doubles, -1;
-  if (x.low > y.high) return ++stages.doubles, 1;
-  if (this == &other && first.a == second.a && first.b == second.b) return ++stages.doubles, 0;
+  const double slack =
+      first.radius == second.radius ? 0.0 : 2 * kFewDoubleRoundings * (x.high + y.high + first.radius + second.radius);
+  const double shift = second.radius - first.radius;
+  if (x.high + shift + slack < y.low) return ++stages.doubles, -1;
+  if (x.low + shift - slack > y.high) return ++stages.doubles, 1;
+  if (this == &other && first.a == second.a && first.b == second.b && shift == 0.0) return ++stages.doubles, 0;
   bool by_integers = false, sure = true;
   const Features of_first = nearestFeatures(first, by_integers);
   const Features of_second = other.nearestFeatures(second, by_integers);
-  const int side =
-      compareFractions(squared<LongNumber>(first, of_first), other.squared<LongNumber>(second, of_second), sure);
-  if (sure) return ++(by_integers ? stages.integers : stages.long_numbers), side;
+  if (first.radius == second.radius) {
+    const int side =
+        compareFractions(squared<LongNumber>(first, of_first), other.squared<LongNumber>(second, of_second), sure);
+    if (sure) return ++(by_integers ? stages.integers : stages.long_numbers), side;
+  }
   ++stages.integers;
-  return compareFractions(squared<Dyadic>(first, of_first), other.squared<Dyadic>(second, of_second), sure);
+  return compareShiftedRoots(squared<Dyadic>(first, of_first), Dyadic(second.radius) - Dyadic(first.radius),
+                             other.squared<Dyadic>(second, of_second));
 }
 
 template <class Pair>
@@ -243,24 +305,28 @@ double TriangleDistance::rounded(const Pair& pair, Stages& stages) const
 {
   bool by_integers = false;
   const Features features = nearestFeatures(pair, by_integers);
-  const double length = nearestRoot(squared<LongNumber>(pair, features));
-  if (!std::isnan(length)) return ++(by_integers ? stages.integers : stages.long_numbers), length;
+  if (pair.radius == 0.0) {
+    const double length = nearestRoot(squared<LongNumber>(pair, features));
+    if (!std::isnan(length)) return ++(by_integers ? stages.integers : stages.long_numbers), length;
+  }
   ++stages.integers;
   const Fraction<Dyadic> exact = squared<Dyadic>(pair, features);
-  if (exact.numerator.sign() == 0) return 0.0;
+  const Dyadic radius(pair.radius);
   bool always = true;
-  return nearestDouble(roughRoot(exact), [&](const Dyadic& x) { return compareRoot(exact, x, always); });
+  if (compareRoot(exact, radius, always) == 0) return 0.0;
+  return nearestDouble(roughRootLess(exact, pair.radius),
+                       [&](const Dyadic& x) { return compareRoot(exact, radius + x, always); });
 }
 
-int TriangleDistance::compareDistances(const PointPair& first, const TriangleDistance& other, const PointPair& second,
-                                       Stages* stages) const
+int TriangleDistance::compareGaps(const PointPair& first, const TriangleDistance& other, const PointPair& second,
+                                  Stages* stages) const
 {
   Stages none;
   return settleOrder(first, other, second, orNone(stages, none));
 }
 
-int TriangleDistance::compareDistances(const TrianglePair& first, const TriangleDistance& other,
-                                       const TrianglePair& second, Stages* stages) const
+int TriangleDistance::compareGaps(const TrianglePair& first, const TriangleDistance& other, const TrianglePair& second,
+                                  Stages* stages) const
 {
   Stages none;
   return settleOrder(first, other, second, orNone(stages, none));
@@ -268,14 +334,24 @@ int TriangleDistance::compareDistances(const TrianglePair& first, const Triangle
 
 double TriangleDistance::distance(const Point3& p, const Triangle3& b, Stages* stages) const
 {
-  Stages none;
-  return rounded(PointPair{p, b}, orNone(stages, none));
+  return gap(PointPair{p, b}, stages);
 }
 
 double TriangleDistance::distance(const Triangle3& a, const Triangle3& b, Stages* stages) const
 {
+  return gap(TrianglePair{a, b}, stages);
+}
+
+double TriangleDistance::gap(const PointPair& pair, Stages* stages) const
+{
   Stages none;
-  return rounded(TrianglePair{a, b}, orNone(stages, none));
+  return rounded(pair, orNone(stages, none));
+}
+
+double TriangleDistance::gap(const TrianglePair& pair, Stages* stages) const
+{
+  Stages none;
+  return rounded(pair, orNone(stages, none));
 }
 
 } // namespace pcl_bsh

@@ -52,20 +52,31 @@ public:
   struct PointPair {
     Point3 a;
     Triangle3 b;
+    double radius = 0.0; ///< of the point: of a ball
   };
   struct TrianglePair {
     Triangle3 a, b;
+    double radius = 0.0;
   };
 
-  /// Sign of the distance of the first less that of the second under the poses of `other`.
-  int compareDistances(const PointPair& first, const TriangleDistance& other, const PointPair& second,
-                       Stages* stages = nullptr) const;
-  int compareDistances(const TrianglePair& first, const TriangleDistance& other, const TrianglePair& second,
-                       Stages* stages = nullptr) const;
+  /// Sign of the pair's gap, which is the distance less the radius, less the sum of the terms of `reach`.
+  /// @param reach finite; its first term may be infinite, too
+  int compare(const PointPair& pair, const ExactDistance::Sum& reach, Stages* stages = nullptr) const;
+  int compare(const TrianglePair& pair, const ExactDistance::Sum& reach, Stages* stages = nullptr) const;
+
+  /// Sign of the gap of the first less that of the second under the poses of `other`.
+  int compareGaps(const PointPair& first, const TriangleDistance& other, const PointPair& second,
+                  Stages* stages = nullptr) const;
+  int compareGaps(const TrianglePair& first, const TriangleDistance& other, const TrianglePair& second,
+                  Stages* stages = nullptr) const;
 
   /// The distance, rounded to the nearest double (ties to even; infinity beyond the largest).
   double distance(const Point3& p, const Triangle3& b, Stages* stages = nullptr) const;
   double distance(const Triangle3& a, const Triangle3& b, Stages* stages = nullptr) const;
+
+  /// The same less the radius.
+  double gap(const PointPair& pair, Stages* stages = nullptr) const;
+  double gap(const TrianglePair& pair, Stages* stages = nullptr) const;
 
 private:
   using Row = std::array<double, 4>; // of a pose: rotation, then translation
@@ -88,7 +99,9 @@ private:
   template <class Pair>
   Features nearestFeatures(const Pair& pair, bool& by_integers) const;
   template <class Pair>
-  int settle(const Pair& pair, double clearance, double radius, Stages& stages) const;
+  int compareByStages(const Pair& pair, const ExactDistance::Sum& reach, Stages& stages) const;
+  template <class Pair>
+  int settle(const Pair& pair, const ExactDistance::Sum& reach, Stages& stages) const;
   template <class Pair>
   int settleOrder(const Pair& first, const TriangleDistance& other, const Pair& second, Stages& stages) const;
   template <class Pair>

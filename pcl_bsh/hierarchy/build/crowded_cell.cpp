@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/build/crowded_cell.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <algorithm>
 #include <array>
@@ -13,7 +14,8 @@ namespace {
 /// exactly, so that fewer points than a leaf could hold cost less.
 constexpr std::uint32_t kFewPoints = 4;
 
-/// Points with the same coordinates, radius and uncertainty: [first, first + count) of the points sorted by place.
+/// Points with the same coordinates, radius and uncertainty, or the same triangle: [first, first + count) of the points
+/// sorted by place.
 struct Place {
   Point3 point;
   double radius, uncertainty;
@@ -36,7 +38,13 @@ public:
       const std::uint32_t record = points[i].record;
       given.push_back({view.point(record), view.radius(record), view.ownUncertainty(record), points[i]});
     }
-    const auto before = [](const Given& l, const Given& r) {
+    const TrianglesView* const triangles = view.triangles; // the balls of several may be one
+    const auto before = [triangles](const Given& l, const Given& r) {
+      const auto of_l = std::tie(l.point, l.radius, l.uncertainty), of_r = std::tie(r.point, r.radius, r.uncertainty);
+      if (triangles && of_l == of_r) {
+        const auto corners_l = triangles->triangle(l.stored.record), corners_r = triangles->triangle(r.stored.record);
+        if (corners_l != corners_r) return corners_l < corners_r;
+      }
       return std::tie(l.point, l.radius, l.uncertainty, l.stored.record) <
              std::tie(r.point, r.radius, r.uncertainty, r.stored.record);
     };
@@ -44,7 +52,9 @@ public:
     if (!std::is_sorted(given.begin(), given.end(), before)) std::sort(given.begin(), given.end(), before);
     for (std::uint32_t i = 0; i < count; ++i) {
       if (i > 0 && given[i].point == places_.back().point && given[i].radius == places_.back().radius &&
-          given[i].uncertainty == places_.back().uncertainty)
+          given[i].uncertainty == places_.back().uncertainty &&
+          (!triangles ||
+           triangles->triangle(given[i].stored.record) == triangles->triangle(given[i - 1].stored.record)))
         ++places_.back().count;
       else
         places_.push_back({given[i].point, given[i].radius, given[i].uncertainty, i, 1});

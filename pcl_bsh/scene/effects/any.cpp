@@ -17,8 +17,9 @@ constexpr double kAhead = 4.0;    // steps of the present speed that a wider que
 bool collides(const Placed& a, const Placed& b, PointPair pair, double clearance, Work& work)
 {
   ++work.exact_decisions;
-  const PairReach reach(a.hierarchy().view(), b.hierarchy().view(), clearance, certainPlaces(a, b));
-  return reach.holds(ExactDistance(a.pose, b.pose), pair);
+  const PointsView &of_a = a.hierarchy().view(), &of_b = b.hierarchy().view();
+  const PairReach reach(of_a, of_b, clearance, certainPlaces(a, b));
+  return reach.holds(RecordDistance(of_a, a.pose, of_b, b.pose), pair);
 }
 
 } // namespace

@@ -215,12 +215,12 @@ bool Mover::collectFrom(ObjectId other, double clearance, double length, std::si
         crowded_ = other;
         return false;
       }
-      const ExactDistance exact(mine.pose, others.pose);
       const PointsView &a = mine.hierarchy().view(), &b = others.hierarchy().view();
+      const RecordDistance exact(a, mine.pose, b, others.pose);
       const PairReach reach_of_pairs(a, b, clearance, places);
       for (const PointPair pair : found.pairs) {
         const Point3 p = a.point(pair.a), q = b.point(pair.b);
-        const ExactDistance::Sum terms = reach_of_pairs.of(pair);
+        const RecordDistance::Sum terms = reach_of_pairs.of(pair);
         Encounter e{pair, i, other, j, std::accumulate(terms.begin(), terms.end(), 0.0), clearance, {}};
         e.apart = mine.pose * Eigen::Vector3d(p[0], p[1], p[2]) - others.pose * Eigen::Vector3d(q[0], q[1], q[2]);
         if (e.apart.norm() <= e.reach + 0.125 * tolerance_) {
@@ -244,8 +244,8 @@ bool Mover::accept(const Eigen::Isometry3d& target)
   state_.setPose(object_, target);
   for (std::size_t i = 0; i < encounters_.size();) {
     const Encounter& first = encounters_[i];
-    const ExactDistance exact(body_.world[first.part], worldOf(first));
     const SphereHierarchy &a = *body_.object.parts[first.part].hierarchy, &b = hierarchyOf(first);
+    const RecordDistance exact(a.view(), body_.world[first.part], b.view(), worldOf(first));
     const PairReach reach_of_pairs(a.view(), b.view(), first.clearance, possiblePlaces({a}, {b}));
     for (; i < encounters_.size(); ++i) {
       const Encounter& e = encounters_[i];

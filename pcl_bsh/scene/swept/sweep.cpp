@@ -86,7 +86,7 @@ private:
   /// covers that.
   std::optional<ContactZone> zone(PointPair pair) const
   {
-    const ExactDistance::Sum terms = reach_of_pairs_.of(pair);
+    const RecordDistance::Sum terms = reach_of_pairs_.of(pair);
     const double reach = std::accumulate(terms.begin(), terms.end(), 0.0);
     if (reach < -0.25 * tolerance_) return std::nullopt;
     return ContactZone{std::max(0.0, reach), tolerance_};

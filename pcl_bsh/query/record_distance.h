@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Distances between posed records of two clouds, whatever these are: points, balls, or triangles.
+//
+//   RecordDistance distance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose);
+//   bool collide = distance.compare({i, j}, clearance) <= 0;
+//
+// What ExactDistance is to points and TriangleDistance to triangles. Expects the DefaultFloatEnvironment.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/triangle/triangle_distance.h>
+#include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/query/result.h>
+
+#include <Eigen/Geometry>
+
+#include <optional>
+
+namespace pcl_bsh {
+
+/// Of records under two fixed poses. A gap is the distance less the radii of points; triangles have none, and are at 0
+/// where they meet. Const methods may run in several threads at once. The views must outlive this.
+class PCL_BSH_EXPORT_INTERNAL RecordDistance {
+public:
+  using Enclosure = ExactDistance::Enclosure;
+  using Sum = ExactDistance::Sum;
+
+  /// Two records, read from their views. Of triangles, the points are those of their balls.
+  struct Pair : ExactDistance::Pair {
+    Pair() = default;
+    Pair(const ExactDistance::Pair& points, PointPair of) : ExactDistance::Pair(points), records(of) {}
+
+    PointPair records;
+  };
+
+  RecordDistance(const PointsView& a, const Eigen::Isometry3d& pose_a, const PointsView& b,
+                 const Eigen::Isometry3d& pose_b)
+  : a_(&a),
+    b_(&b),
+    points_(pose_a, pose_b)
+  {
+    if (!a.triangles && !b.triangles) return;
+    if (b.triangles)
+      triangles_.emplace(pose_a, pose_b);
+    else
+      triangles_.emplace(pose_b, pose_a); // the point is named first
+  }
+
+  Pair pair(PointPair records) const
+  {
+    return {ExactDistance::Pair{a_->point(records.a), b_->point(records.b), a_->ownRadius(records.a),
+                                b_->ownRadius(records.b)},
+            records};
+  }
+
+  /// Whether one of the clouds is of triangles.
+  bool ofTriangles() const { return triangles_.has_value(); }
+
+  /// Of places: centres of nodes, say.
+  const ExactDistance& ofPoints() const { return points_; }
+
+  /// Sign of the pair's gap less the clearance: it collides when the answer is <= 0.
+  int compare(PointPair records, double clearance) const
+  {
+    if (triangles_) return compareTriangles(records, clearance);
+    return points_.compare(a_->point(records.a), b_->point(records.b), clearance, a_->radius(records.a),
+                           b_->radius(records.b));
+  }
+  int compare(const Pair& pair, double clearance) const
+  {
+    if (triangles_) return compareTriangles(pair.records, clearance);
+    return points_.compare(pair.p, pair.q, clearance, pair.radius_p, pair.radius_q);
+  }
+
+  /// Sign of the distance, radii not subtracted, less the sum of the terms of `reach`. @pre finite terms
+  int compare(PointPair records, const Sum& reach) const
+  {
+    if (triangles_) return compareTriangles(records, reach);
+    return points_.compare(a_->point(records.a), b_->point(records.b), reach);
+  }
+
+  /// Bounds of the distance, radii not subtracted, as far as double arithmetic can tell; both infinite where it cannot.
+  Enclosure enclose(const Pair& pair) const
+  {
+    return triangles_ ? encloseTriangles(pair.records) : points_.enclose(pair.p, pair.q);
+  }
+
+  /// Sign of gap(first) - gap(second), before rounding.
+  int compareGaps(const Pair& first, const Pair& second) const { return compareGaps(first, *this, second); }
+
+  /// Sign of gap(first) - other.gap(second), before rounding. @param other of the same clouds, at other poses
+  int compareGaps(const Pair& first, const RecordDistance& other, const Pair& second) const
+  {
+    if (triangles_) return compareTriangleGaps(first, other, second);
+    return points_.compareGaps(first, other.points_, second);
+  }
+
+  int compareGaps(PointPair first, PointPair second) const { return compareGaps(pair(first), pair(second)); }
+  int compareGaps(PointPair first, const RecordDistance& other, PointPair second) const
+  {
+    return compareGaps(pair(first), other, other.pair(second));
+  }
+
+  /// Rounded to the nearest double (ties to even; infinity beyond the largest).
+  double gap(const Pair& pair) const { return triangles_ ? gapOfTriangles(pair.records) : points_.gap(pair); }
+  double gap(PointPair records) const { return gap(pair(records)); }
+
+private:
+  template <class Visit>
+  auto withTriangles(PointPair records, const Visit& visit) const;
+  int compareTriangles(PointPair records, double clearance) const;
+  int compareTriangles(PointPair records, const Sum& reach) const;
+  Enclosure encloseTriangles(PointPair records) const;
+  int compareTriangleGaps(const Pair& first, const RecordDistance& other, const Pair& second) const;
+  double gapOfTriangles(PointPair records) const;
+
+  const PointsView* a_;
+  const PointsView* b_;
+  ExactDistance points_;
+  std::optional<TriangleDistance> triangles_; ///< where a cloud is of triangles; a point comes first
+};
+
+} // namespace pcl_bsh
