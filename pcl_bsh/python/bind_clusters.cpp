@@ -3,8 +3,8 @@
 #include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/python/arrays/array_output.h>
+#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/threads/callback.h>
 
 #include <pybind11/stl.h>
 
@@ -81,20 +81,18 @@ void bindClusters(py::module_& module)
       .def("__repr__", [](const Clusters& found) { return "Clusters(" + std::to_string(found.sizes.size()) + ")"; });
   module.def(
       "euclidean_clusters",
-      [](const SphereHierarchy& cloud, double distance) {
-        return unlocked([&] { return euclideanClusters(cloud, distance); });
-      },
+      [](const Cloud& cloud, double distance) { return unlocked([&] { return euclideanClusters(cloud, distance); }); },
       kClusters, "cloud"_a, "distance"_a);
   module.def(
       "spacing_of",
-      [](const SphereHierarchy& cloud) {
+      [](const Cloud& cloud) {
         const Spacing spacing = unlocked([&] { return spacingOf(cloud); });
         return py::dict("samples"_a = spacing.samples, "median"_a = spacing.median, "wide"_a = spacing.wide);
       },
       kSpacing, "cloud"_a);
   module.def(
       "patch_spacings",
-      [](const SphereHierarchy& cloud, std::optional<double> widest_gap, unsigned threads) {
+      [](const Cloud& cloud, std::optional<double> widest_gap, unsigned threads) {
         return arrayFrom(
             unlocked([&] { return patchSpacings(cloud, widest_gap ? *widest_gap : usualGap(cloud), threads); }));
       },

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/flags/colliding_indices.h>
-#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
-#include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
+#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/question_warnings.h>
 #include <pcl_bsh/python/typed.h>
 
 #include <string>
@@ -25,14 +23,12 @@ Parameters
 ----------
 a, b : SphereHierarchy
 clearance : float, default 0
-    In the clouds' unit; inclusive.
 pose_a, pose_b : array_like, (4, 4) or (3, 4), optional
     Rigid transforms from the cloud to the world.
 side : {"a", "b", "both"}
     Whose points are flagged.
 accuracy : Accuracy or str, default exact
 threads : int, default 1
-    0: all of the machine's.
 spacings_of_b : ndarray of float32, (records of b,), optional
     How far the samples of b's surface are apart (`patch_spacings`): what is free of points, but not of a patch of this
     width, is `Verdict.SPARSE`.
@@ -128,7 +124,7 @@ Examples
 >>> a = pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
 >>> b = pcl_bsh.SphereHierarchy(np.array([[0.0, 30, 40], [0, 3, 4]]))
 >>> pair = pcl_bsh.closest_pair(a, b)
->>> pair.distance, pair.a, pair.b
+>>> pair.distance, asked.a, asked.b
 (5.0, 0, 1)
 )";
 
@@ -158,39 +154,41 @@ auto arraysOf(std::vector<Value>&& a, std::vector<Value>&& b, Side side)
     return arrayFrom(std::move(side == Side::a ? a : b));
 }
 
-FlagsRequest flagsRequest(double clearance, const py::object& side, const py::object& accuracy, unsigned threads)
-{
-  FlagsRequest request;
-  request.clearance = clearance;
-  request.flagged = sideOf(side.cast<std::string>());
-  request.threads = threads;
-  request.accuracy = accuracyOf(accuracy);
-  return request;
-}
-
 template <class Sides>
-auto collisionFlagsOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance, const PoseLike& pose_a,
-                      const PoseLike& pose_b, const Sides& side, const AccuracyLike& accuracy, unsigned threads,
+auto collisionFlagsOf(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a, const PoseLike& pose_b,
+                      const Sides& side, const AccuracyLike& accuracy, unsigned threads,
                       const As<"Optional[npt.NDArray[np.float32]]">& spacings_of_b)
 {
-  const TwoPlaced pair(a, pose_a, b, pose_b);
-  FlagsRequest request = flagsRequest(clearance, side, accuracy, threads);
-  py::array_t<float> spacings;
+  Asked asked(a, pose_a, b, pose_b);
+  const Side flagged = sideOf(side.template cast<std::string>());
+  Question& question = asked.question;
+  question.clearance = clearance;
+  question.accuracy = accuracyOf(accuracy);
+  question.threads = threads;
+  question.wanted.flags = flagged != Side::b;
+  question.wanted.obstacle_flags = flagged != Side::a;
+  question.wanted.spacings = true;
   if (!spacings_of_b.is_none()) {
-    spacings = floatsOf("spacings_of_b", spacings_of_b, viewNow(b).count);
-    request.spacings_of_b = spacings.data();
+    const py::array_t<float> spacings = floatsOf("spacings_of_b", spacings_of_b, viewNow(b).count);
+    asked.obstacle.setPatches({spacings.data(), spacings.data() + spacings.size()});
+    question.density = true;
   }
-  FlagsResult found = answered(pair.asked(clearance, true), [&] { return collisionFlags(pair.a, pair.b, request); });
-  return arraysOf<Sides>(std::move(found.a), std::move(found.b), request.flagged);
+  Answer found = asked.answer();
+  return arraysOf<Sides>(std::move(found.collisions.flags), std::move(found.obstacle_flags), flagged);
 }
 
 template <class Sides>
-auto collidingIndicesOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance, const PoseLike& pose_a,
+auto collidingIndicesOf(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a,
                         const PoseLike& pose_b, const Sides& side, const AccuracyLike& accuracy, unsigned threads)
 {
-  const TwoPlaced pair(a, pose_a, b, pose_b);
-  const FlagsRequest request = flagsRequest(clearance, side, accuracy, threads);
-  CollidingIndices found = answered(pair.asked(clearance), [&] { return collidingIndices(pair.a, pair.b, request); });
+  Asked asked(a, pose_a, b, pose_b);
+  asked.question.clearance = clearance;
+  FlagsRequest request;
+  request.clearance = clearance;
+  request.flagged = sideOf(side.template cast<std::string>());
+  request.accuracy = accuracyOf(accuracy);
+  request.threads = threads;
+  CollidingIndices found = asked.answer([&] { return collidingIndices(asked.a, asked.b, request); });
   const std::size_t undecided = found.undecided_a.size() + found.undecided_b.size();
   if (undecided > 0)
     throw InvalidInput(Input::accuracy, "colliding_indices",
@@ -199,15 +197,15 @@ auto collidingIndicesOf(const SphereHierarchy& a, const SphereHierarchy& b, doub
   return arraysOf<Sides>(std::move(found.a), std::move(found.b), request.flagged);
 }
 
-AnyResult anyCollisionOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance, const PoseLike& pose_a,
+AnyResult anyCollisionOf(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a,
                          const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads)
 {
-  const TwoPlaced pair(a, pose_a, b, pose_b);
+  Asked asked(a, pose_a, b, pose_b);
   AnyRequest request;
-  request.clearance = clearance;
+  asked.question.clearance = request.clearance = clearance;
   request.accuracy = accuracyOf(accuracy);
   request.threads = threads;
-  return answered(pair.asked(clearance), [&] { return anyCollision(pair.a, pair.b, request); });
+  return asked.answer([&] { return anyCollision(asked.a, asked.b, request); });
 }
 
 bool isColliding(const AnyResult& result)
@@ -218,14 +216,14 @@ bool isColliding(const AnyResult& result)
   return result.verdict == Verdict::colliding;
 }
 
-DistanceResult closestPairOf(const SphereHierarchy& a, const SphereHierarchy& b, const PoseLike& pose_a,
-                             const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads)
+DistanceResult closestPairOf(const Cloud& a, const Cloud& b, const PoseLike& pose_a, const PoseLike& pose_b,
+                             const AccuracyLike& accuracy, unsigned threads)
 {
-  const TwoPlaced pair(a, pose_a, b, pose_b);
+  Asked asked(a, pose_a, b, pose_b);
   DistanceRequest request;
   request.accuracy = accuracyOf(accuracy);
   request.threads = threads;
-  return answered(pair.asked(std::nullopt), [&] { return closestPair(pair.a, pair.b, request); });
+  return asked.answer([&] { return closestPair(asked.a, asked.b, request); });
 }
 
 /// A property for one of the pair's rows.

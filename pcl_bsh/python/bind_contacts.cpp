@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/pairs/contacts.h>
-#include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
+#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/question_warnings.h>
 
 #include <pybind11/stl.h>
 
@@ -21,7 +20,6 @@ Parameters
 ----------
 a, b : SphereHierarchy
 clearance : float, default 0
-    In the clouds' unit; inclusive.
 most : int, optional
     Only so many, the nearest ones. There may be as many as points of a times points of b.
 pose_a, pose_b : array_like, (4, 4) or (3, 4), optional
@@ -76,13 +74,14 @@ ContactsRequest requestOf(double clearance, const std::optional<std::size_t>& mo
   return request;
 }
 
-Contacts contactsOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance,
-                    std::optional<std::size_t> most, const PoseLike& pose_a, const PoseLike& pose_b)
+Contacts contactsOf(const Cloud& a, const Cloud& b, double clearance, std::optional<std::size_t> most,
+                    const PoseLike& pose_a, const PoseLike& pose_b)
 {
-  const TwoPlaced pair(a, pose_a, b, pose_b);
+  Asked asked(a, pose_a, b, pose_b);
   const ContactsRequest request = requestOf(clearance, most);
-  return answered(pair.asked(clearance), [&] {
-    const ContactsResult found = nearestContacts(pair.a, pair.b, request);
+  asked.question.clearance = clearance;
+  return asked.answer([&] {
+    const ContactsResult found = nearestContacts(asked.a, asked.b, request);
     Contacts columns;
     columns.complete = found.complete;
     columns.work = found.work;
@@ -96,13 +95,14 @@ Contacts contactsOf(const SphereHierarchy& a, const SphereHierarchy& b, double c
   });
 }
 
-py::array_t<std::uint32_t> pairsWithinOf(const SphereHierarchy& a, const SphereHierarchy& b, double clearance,
+py::array_t<std::uint32_t> pairsWithinOf(const Cloud& a, const Cloud& b, double clearance,
                                          std::optional<std::size_t> most, const PoseLike& pose_a,
                                          const PoseLike& pose_b)
 {
-  const TwoPlaced pair(a, pose_a, b, pose_b);
+  Asked asked(a, pose_a, b, pose_b);
   const ContactsRequest request = requestOf(clearance, most);
-  const PairsWithin found = answered(pair.asked(clearance), [&] { return pairsWithin(pair.a, pair.b, request); });
+  asked.question.clearance = clearance;
+  const PairsWithin found = asked.answer([&] { return pairsWithin(asked.a, asked.b, request); });
   if (!found.complete)
     throw py::value_error("pairs_within: there are more than " + counted(request.most, "pair") +
                           ": ask contacts() for the nearest, or for more");

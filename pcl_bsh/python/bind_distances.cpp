@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/distances/point_distances.h>
-#include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
+#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/question_warnings.h>
-#include <pcl_bsh/python/threads/callback.h>
 
 #include <pybind11/stl.h>
 
@@ -21,13 +19,11 @@ Parameters
 ----------
 a, b : SphereHierarchy
 max_distance : float, optional
-    Points of a that have no point of b within it get no distance; inclusive. None: no limit.
 pose_a, pose_b : array_like, (4, 4) or (3, 4), optional
     Rigid transforms from the cloud to the world.
 accuracy : Accuracy or str, default exact
     A tolerance, or a budget: then `interval` has what is certain of each point.
 threads : int, default 1
-    0: all of the machine's.
 progress : callable, optional
     Called now and then with the fraction done; by returning False it stops the query, which raises `Cancelled`.
 
@@ -90,42 +86,39 @@ Examples
 (2.0, (0, 1))
 )";
 
-PointDistancesRequest requestOf(std::optional<double> max_distance, const AccuracyLike& accuracy, unsigned threads,
-                                const ProgressLike& progress)
+SymmetricDistances distancesOf(Asked&& asked, bool both_ways, std::optional<double> max_distance,
+                               const AccuracyLike& accuracy, unsigned threads, const ProgressLike& progress)
 {
-  PointDistancesRequest request;
-  if (max_distance) request.max_distance = *max_distance;
-  request.accuracy = accuracyOf(accuracy);
-  request.threads = threads;
-  request.progress = progressOf(progress);
-  return request;
+  Question& question = asked.question;
+  question.max_distance = max_distance;
+  question.accuracy = accuracyOf(accuracy);
+  question.threads = threads;
+  question.progress = progressOf(progress);
+  question.wanted.distances = question.wanted.intervals = true;
+  question.wanted.both_ways = both_ways;
+  return asked.answer().distances;
 }
 
-PointDistances pointDistancesOf(const SphereHierarchy& a, const SphereHierarchy& b, std::optional<double> max_distance,
+PointDistances pointDistancesOf(const Cloud& a, const Cloud& b, std::optional<double> max_distance,
                                 const PoseLike& pose_a, const PoseLike& pose_b, const AccuracyLike& accuracy,
                                 unsigned threads, const ProgressLike& progress)
 {
-  const TwoPlaced pair(a, pose_a, b, pose_b);
-  const PointDistancesRequest request = requestOf(max_distance, accuracy, threads, progress);
-  return answered(pair.asked(std::nullopt), [&] { return pointDistances(pair.a, pair.b, request); });
+  return distancesOf({a, pose_a, b, pose_b}, false, max_distance, accuracy, threads, progress).a;
 }
 
-SymmetricDistances symmetricDistancesOf(const SphereHierarchy& a, const SphereHierarchy& b,
-                                        std::optional<double> max_distance, const PoseLike& pose_a,
-                                        const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads,
-                                        const ProgressLike& progress)
+SymmetricDistances symmetricDistancesOf(const Cloud& a, const Cloud& b, std::optional<double> max_distance,
+                                        const PoseLike& pose_a, const PoseLike& pose_b, const AccuracyLike& accuracy,
+                                        unsigned threads, const ProgressLike& progress)
 {
-  const TwoPlaced pair(a, pose_a, b, pose_b);
-  const PointDistancesRequest request = requestOf(max_distance, accuracy, threads, progress);
-  return answered(pair.asked(std::nullopt), [&] { return symmetricDistances(pair.a, pair.b, request); });
+  return distancesOf({a, pose_a, b, pose_b}, true, max_distance, accuracy, threads, progress);
 }
 
-HausdorffDistance hausdorffDistanceOf(const SphereHierarchy& a, const SphereHierarchy& b, const PoseLike& pose_a,
-                                      const PoseLike& pose_b, unsigned threads, const ProgressLike& progress)
+HausdorffDistance hausdorffDistanceOf(const Cloud& a, const Cloud& b, const PoseLike& pose_a, const PoseLike& pose_b,
+                                      unsigned threads, const ProgressLike& progress)
 {
-  const TwoPlaced pair(a, pose_a, b, pose_b);
+  Asked asked(a, pose_a, b, pose_b);
   const HausdorffRequest request{threads, progressOf(progress)};
-  return answered(pair.asked(std::nullopt), [&] { return hausdorffDistance(pair.a, pair.b, request); });
+  return asked.answer([&] { return hausdorffDistance(asked.a, asked.b, request); });
 }
 
 std::optional<py::array_t<double>> intervalArray(const py::object& self)

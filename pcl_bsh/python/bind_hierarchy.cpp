@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
+#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/threads/callback.h>
 
 #include <pybind11/stl.h>
 
@@ -126,7 +125,7 @@ int traverse(PyObject* self, visitproc visit, void* arg)
   if (!held.holder_constructed() || changesBegun() > 0) return 0;
   // A scene may have it, too. New holders are made with the interpreter's lock, so none comes while the collector
   // works.
-  const auto& hierarchy = held.holder<std::shared_ptr<SphereHierarchy>>();
+  const auto& hierarchy = held.holder<std::shared_ptr<Cloud>>();
   if (hierarchy.use_count() != 1) return 0;
   const KeptArrays* const kept = arraysOf(hierarchy->view());
   return kept ? kept->traverse(visit, arg) : 0;
@@ -144,12 +143,12 @@ void setUpCollection(PyHeapTypeObject* heap_type)
   };
 }
 
-std::size_t sizeOf(const SphereHierarchy& hierarchy)
+std::size_t sizeOf(const Cloud& hierarchy)
 {
   return unlocked([&] { return hierarchy.size(); });
 }
 
-std::string textOf(const SphereHierarchy& hierarchy)
+std::string textOf(const Cloud& hierarchy)
 {
   const PointsView view = viewNow(hierarchy);
   const std::size_t finite = sizeOf(hierarchy);
@@ -161,7 +160,7 @@ std::string textOf(const SphereHierarchy& hierarchy)
   return text + ")";
 }
 
-py::dict statisticsOf(const SphereHierarchy& hierarchy)
+py::dict statisticsOf(const Cloud& hierarchy)
 {
   const HierarchyStatistics statistics = unlocked([&] { return hierarchy.statistics(); });
   return py::dict("points"_a = statistics.points, "voxels"_a = statistics.voxels,
@@ -172,33 +171,34 @@ py::dict statisticsOf(const SphereHierarchy& hierarchy)
                   "mean_leaf_radius"_a = statistics.mean_leaf_radius);
 }
 
-py::dict refit(SphereHierarchy& hierarchy, const ArrayLike& xyz, const OptionalArray& radii,
-               const OptionalArray& uncertainties, bool copy, double most_growth)
+py::dict refit(Cloud& hierarchy, const ArrayLike& xyz, const OptionalArray& radii, const OptionalArray& uncertainties,
+               bool copy, double most_growth)
 {
   return dictOf(whileNoneComputes(
       [&] {
+        hierarchy.forget();
         return movedView(hierarchy.view(), {xyz, radii, py::none(), 0.0, uncertainties, copy});
       },
       [&](const MovedView& moved) { return hierarchy.refit(moved.now, most_growth); }));
 }
 
-std::shared_ptr<SphereHierarchy> make(const ArrayLike& xyz, const OptionalArray& radii, const OptionalArray& indices,
-                                      double uncertainty, const OptionalArray& uncertainties, bool copy,
-                                      double voxel_edge, unsigned threads)
+std::shared_ptr<Cloud> make(const ArrayLike& xyz, const OptionalArray& radii, const OptionalArray& indices,
+                            double uncertainty, const OptionalArray& uncertainties, bool copy, double voxel_edge,
+                            unsigned threads)
 {
   const PointsView view = viewOfPoints("points", {xyz, radii, indices, uncertainty, uncertainties, copy});
   HierarchyOptions options;
   options.voxel_edge = voxel_edge;
   options.threads = threads;
-  return unlocked([&] { return std::make_shared<SphereHierarchy>(view, options); });
+  return unlocked([&] { return std::make_shared<Cloud>(view, options); });
 }
 
 } // namespace
 
 void bindHierarchy(py::module_& module)
 {
-  py::class_<SphereHierarchy, std::shared_ptr<SphereHierarchy>>(module, "SphereHierarchy", kHierarchy,
-                                                                py::custom_type_setup(&setUpCollection))
+  py::class_<Cloud, std::shared_ptr<Cloud>>(module, "SphereHierarchy", kHierarchy,
+                                            py::custom_type_setup(&setUpCollection))
       .def(py::init(&make), "xyz"_a, py::kw_only(), "radii"_a = py::none(), "indices"_a = py::none(),
            "uncertainty"_a = 0.0, "uncertainties"_a = py::none(), "copy"_a = false, "voxel_edge"_a = 0.0,
            "threads"_a = 1)
@@ -206,7 +206,7 @@ void bindHierarchy(py::module_& module)
       .def("__repr__", &textOf)
       .def_property_readonly(
           "array",
-          [](const SphereHierarchy& hierarchy) -> std::optional<py::array> {
+          [](const Cloud& hierarchy) -> std::optional<py::array> {
             const PointsView view = viewNow(hierarchy);
             const KeptArrays* kept = arraysOf(view);
             if (!kept) return std::nullopt;
@@ -215,28 +215,26 @@ void bindHierarchy(py::module_& module)
           "The array that it reads; None for the cover of a surface.")
       .def_property_readonly(
           "in_place",
-          [](const SphereHierarchy& hierarchy) {
+          [](const Cloud& hierarchy) {
             const PointsView view = viewNow(hierarchy);
             const KeptArrays* kept = arraysOf(view);
             return kept && kept->in_place;
           },
           "Whether it reads the caller's own memory.")
       .def_property_readonly(
-          "records", [](const SphereHierarchy& hierarchy) { return viewNow(hierarchy).count; },
+          "records", [](const Cloud& hierarchy) { return viewNow(hierarchy).count; },
           "Rows of the array: the length of arrays with a value for each point.")
       .def_property_readonly(
           "coordinate_spacing",
-          [](const SphereHierarchy& hierarchy) { return unlocked([&] { return hierarchy.coordinateSpacing(); }); },
+          [](const Cloud& hierarchy) { return unlocked([&] { return hierarchy.coordinateSpacing(); }); },
           "The distance of neighbouring float32 numbers at the largest coordinate; 0 of float64.")
       .def(
-          "build_all",
-          [](const SphereHierarchy& hierarchy, unsigned threads) { unlocked([&] { hierarchy.buildAll(threads); }); },
+          "build_all", [](const Cloud& hierarchy, unsigned threads) { unlocked([&] { hierarchy.buildAll(threads); }); },
           "threads"_a = 1, "Builds every sphere now. threads=0: all of the machine's.")
       .def("refit", &refit, kRefit, "xyz"_a, py::kw_only(), "radii"_a = py::none(), "uncertainties"_a = py::none(),
            "copy"_a = false, "most_growth"_a = 1.5)
       .def(
-          "validate",
-          [](const SphereHierarchy& hierarchy) { return unlocked([&] { return hierarchy.validate(); }).lines; },
+          "validate", [](const Cloud& hierarchy) { return unlocked([&] { return hierarchy.validate(); }).lines; },
           "Checks in exact arithmetic that every sphere holds its points; a list of defects, empty where there is "
           "none.")
       .def("statistics", &statisticsOf,

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
+#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/question_warnings.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
 
@@ -20,12 +19,10 @@ a, b : SphereHierarchy
 poses : array_like, (m, 4, 4) or (m, 3, 4)
     Of b in the world.
 clearance : float, default 0
-    In the clouds' unit; inclusive.
 pose_a : array_like, (4, 4) or (3, 4), optional
 accuracy : Accuracy or str, default exact
     None that stops early.
 threads : int, default 1
-    0: all of the machine's.
 progress : callable, optional
     Called now and then with the fraction done; False stops the query, which raises `Cancelled`.
 
@@ -88,55 +85,53 @@ Examples
 array([0, 1], dtype=uint8)
 )";
 
-py::array_t<std::uint8_t> anyAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, const ArrayLike& poses,
-                                       double clearance, const PoseLike& pose_a, const AccuracyLike& accuracy,
-                                       unsigned threads, const ProgressLike& progress)
+py::array_t<std::uint8_t> anyAtPosesOf(const Cloud& a, const Cloud& b, const ArrayLike& poses, double clearance,
+                                       const PoseLike& pose_a, const AccuracyLike& accuracy, unsigned threads,
+                                       const ProgressLike& progress)
 {
-  const Placed placed(a, poseOf("pose_a", pose_a));
-  const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
+  Asked asked("a", a, pose_a, "b", b);
+  const auto& list = asked.question.path.emplace(posesOf("poses", poses));
   AnyRequest request;
-  request.clearance = clearance;
+  asked.question.clearance = request.clearance = clearance;
   request.accuracy = accuracyOf(accuracy);
   request.threads = threads;
   const auto report = progressOf(progress);
-  AnyAtPoses found = answered({"a", placed, "b", b, list, clearance},
-                              [&] { return anyCollisionAtPoses(placed, b, list, request, report); });
+  AnyAtPoses found = asked.answer([&] { return anyCollisionAtPoses(asked.a, b, list, request, report); });
   return arrayFrom(std::move(found.verdicts));
 }
 
-std::pair<py::array_t<double>, py::array_t<std::uint32_t>>
-closestAtPosesOf(const SphereHierarchy& a, const SphereHierarchy& b, const ArrayLike& poses, const PoseLike& pose_a,
-                 unsigned threads, const ProgressLike& progress)
+std::pair<py::array_t<double>, py::array_t<std::uint32_t>> closestAtPosesOf(const Cloud& a, const Cloud& b,
+                                                                            const ArrayLike& poses,
+                                                                            const PoseLike& pose_a, unsigned threads,
+                                                                            const ProgressLike& progress)
 {
-  const Placed placed(a, poseOf("pose_a", pose_a));
-  const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
+  Asked asked("a", a, pose_a, "b", b);
+  const auto& list = asked.question.path.emplace(posesOf("poses", poses));
   DistanceRequest request;
   request.threads = threads;
   const auto report = progressOf(progress);
-  DistancesAtPoses found = answered({"a", placed, "b", b, list, std::nullopt},
-                                    [&] { return closestPairAtPoses(placed, b, list, request, report); });
+  DistancesAtPoses found = asked.answer([&] { return closestPairAtPoses(asked.a, b, list, request, report); });
   found.pairs.resize(list.size(), {kNothing, kNothing});
   return {arrayFrom(std::move(found.distances)), arrayFrom(found.pairs)};
 }
 
-py::array_t<std::uint8_t> onMotionsOf(const SphereHierarchy& scan, const SphereHierarchy& model, const ArrayLike& poses,
+py::array_t<std::uint8_t> onMotionsOf(const Cloud& scan, const Cloud& model, const ArrayLike& poses,
                                       const ArrayLike& motions, double clearance, double tolerance,
                                       const PoseLike& pose_scan, const OptionalArray& pivot, unsigned threads,
                                       const ProgressLike& progress)
 {
-  const Placed placed(scan, poseOf("pose_scan", pose_scan));
-  const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
+  Asked asked("scan", scan, pose_scan, "model", model);
+  const auto& list = asked.question.path.emplace(posesOf("poses", poses));
   const std::vector<std::uint32_t> ends = recordsOf("motions", motions, 2);
   std::vector<PoseMotion> edges;
   for (std::size_t i = 0; i + 1 < ends.size(); i += 2) edges.push_back({ends[i], ends[i + 1]});
   MotionsRequest request;
-  request.clearance = clearance;
+  asked.question.clearance = request.clearance = clearance;
   request.tolerance = tolerance;
   if (!pivot.is_none()) request.pivot = point3Of("pivot", pivot);
   request.threads = threads;
   request.progress = progressOf(progress);
-  AnyOnMotions found = answered({"scan", placed, "model", model, list, clearance},
-                                [&] { return anyCollisionOnMotions(placed, model, list, edges, request); });
+  AnyOnMotions found = asked.answer([&] { return anyCollisionOnMotions(asked.a, model, list, edges, request); });
   return arrayFrom(std::move(found.verdicts));
 }
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/neighbors/neighbors.h>
-#include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
+#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/threads/callback.h>
 
 #include <string>
 #include <type_traits>
@@ -27,7 +26,6 @@ most : int, default 0
 sorted : bool, default True
     By distance, equal distances by row; else in any order, but always the same one.
 threads : int, default 1
-    0: all of the machine's.
 
 Returns
 -------
@@ -129,7 +127,7 @@ As<"Any"> foundOf(const Points& queries, Search&& search)
 }
 
 template <class Queries>
-auto radiusSearchOf(const SphereHierarchy& cloud, const Queries& queries, double radius, std::size_t most, bool sorted,
+auto radiusSearchOf(const Cloud& cloud, const Queries& queries, double radius, std::size_t most, bool sorted,
                     unsigned threads)
 {
   return foundOf(queries, [&](const auto& at, auto& found) {
@@ -141,7 +139,7 @@ auto radiusSearchOf(const SphereHierarchy& cloud, const Queries& queries, double
 }
 
 template <class Queries>
-auto nearestSearchOf(const SphereHierarchy& cloud, const Queries& queries, std::size_t k, unsigned threads)
+auto nearestSearchOf(const Cloud& cloud, const Queries& queries, std::size_t k, unsigned threads)
 {
   return foundOf(queries, [&](const auto& at, auto& found) {
     if constexpr (std::is_same_v<Queries, Point>)
@@ -151,13 +149,13 @@ auto nearestSearchOf(const SphereHierarchy& cloud, const Queries& queries, std::
   });
 }
 
-bool anyAboutPoint(const SphereHierarchy& cloud, const Point& queries, double radius, unsigned /*threads*/)
+bool anyAboutPoint(const Cloud& cloud, const Point& queries, double radius, unsigned /*threads*/)
 {
   const Point3 query = point3Of("queries", queries);
   return unlocked([&] { return anyInRadius(cloud, query, radius); });
 }
 
-As<"Any"> anyAboutEach(const SphereHierarchy& cloud, const Points& queries, double radius, unsigned threads)
+As<"Any"> anyAboutEach(const Cloud& cloud, const Points& queries, double radius, unsigned threads)
 {
   py::array kept;
   const PointsView view = viewForCall("queries", queries, kept);
@@ -203,7 +201,7 @@ void bindNeighbors(py::module_& module)
   define("any_in_radius", &anyAboutPoint, &anyAboutEach, kAny, radius, rest);
   module.def(
       "box_search",
-      [](const SphereHierarchy& cloud, const ArrayLike& low, const ArrayLike& high) {
+      [](const Cloud& cloud, const ArrayLike& low, const ArrayLike& high) {
         const Point3 least = point3Of("low", low), most = point3Of("high", high);
         std::vector<std::int32_t> indices;
         unlocked([&] { return boxSearch(cloud, least, most, indices); });

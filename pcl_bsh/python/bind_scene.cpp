@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
+#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/question_warnings.h>
 #include <pcl_bsh/question/scene_warnings.h>
 #include <pcl_bsh/scene/scene.h>
 
@@ -104,7 +103,7 @@ SceneResult resultOf(SharedScene& shared, Ask&& ask)
       objects.push_back({object.name, object.fixed, {}, object.pose, object.motion});
       for (const ScenePart& part : object.parts) {
         const std::string name = object.parts.size() == 1 ? object.name : object.name + "." + part.name;
-        clouds.emplace(name, factsOf(name, *part.hierarchy, true));
+        clouds.emplace(name, static_cast<const Cloud&>(*part.hierarchy).named(name).facts(true));
         objects.back().parts.push_back({name, part.pose});
       }
     }
@@ -165,8 +164,8 @@ Motion motionOf(const MotionLike& motion)
 /// A hierarchy, or parts: (name, hierarchy) or (name, hierarchy, pose) each.
 std::vector<ScenePart> partsOf(const std::string& name, const CloudLike& cloud)
 {
-  if (py::isinstance<SphereHierarchy>(cloud))
-    return {{name, cloud.cast<std::shared_ptr<SphereHierarchy>>(), Eigen::Isometry3d::Identity()}};
+  if (py::isinstance<Cloud>(cloud))
+    return {{name, cloud.cast<std::shared_ptr<Cloud>>(), Eigen::Isometry3d::Identity()}};
   std::vector<ScenePart> parts;
   for (const py::handle item : cloud) {
     const auto part = item.cast<py::tuple>();
@@ -174,8 +173,7 @@ std::vector<ScenePart> partsOf(const std::string& name, const CloudLike& cloud)
       throw InvalidInput(Input::scene, name, "has a part of " + counted(part.size(), "value"),
                          "give (name, hierarchy) or (name, hierarchy, pose)");
     const py::object pose = part.size() == 3 ? py::object(part[2]) : py::none();
-    parts.push_back(
-        {part[0].cast<std::string>(), part[1].cast<std::shared_ptr<SphereHierarchy>>(), poseOf(name, pose)});
+    parts.push_back({part[0].cast<std::string>(), part[1].cast<std::shared_ptr<Cloud>>(), poseOf(name, pose)});
   }
   return parts;
 }
@@ -311,8 +309,9 @@ void bindScene(py::module_& module)
             return dictOf(whileNoneComputes(
                 [&] {
                   requirePart(s.scene, id, part);
-                  const PointsView& before = s.scene[id].parts[part].hierarchy->view();
-                  return movedView(before, {xyz, radii, py::none(), 0.0, uncertainties, copy});
+                  Cloud& cloud = static_cast<Cloud&>(*s.scene[id].parts[part].hierarchy);
+                  cloud.forget();
+                  return movedView(cloud.view(), {xyz, radii, py::none(), 0.0, uncertainties, copy});
                 },
                 [&](const MovedView& moved) { return s.scene.deform(id, part, moved.now); }));
           },

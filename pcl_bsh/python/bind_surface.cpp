@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
+#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/threads/callback.h>
 #include <pcl_bsh/surface/surface_cover.h>
 
 #include <string>
@@ -65,7 +64,7 @@ std::shared_ptr<SurfaceCover> coverOf(const ArrayLike& vertices, const ArrayLike
   return unlocked([&] { return std::make_shared<SurfaceCover>(coverSurface(view, list, request)); });
 }
 
-std::shared_ptr<SphereHierarchy> hierarchyOf(const std::shared_ptr<SurfaceCover>& cover, unsigned threads)
+std::shared_ptr<Cloud> hierarchyOf(const std::shared_ptr<SurfaceCover>& cover, unsigned threads)
 {
   auto owner = std::make_shared<KeptCover>();
   owner->cover = cover;
@@ -73,7 +72,7 @@ std::shared_ptr<SphereHierarchy> hierarchyOf(const std::shared_ptr<SurfaceCover>
   view.owner = std::shared_ptr<const void>(owner, static_cast<const Owner*>(owner.get()));
   HierarchyOptions options;
   options.threads = threads;
-  return unlocked([&] { return std::make_shared<SphereHierarchy>(view, options); });
+  return unlocked([&] { return std::make_shared<Cloud>(view, options); });
 }
 
 } // namespace

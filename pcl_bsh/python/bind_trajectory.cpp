@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
+#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/question_warnings.h>
-#include <pcl_bsh/python/threads/callback.h>
 
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -34,19 +32,15 @@ scan, model : SphereHierarchy
 poses : array_like, (m, 4, 4) or (m, 3, 4)
     Of the model in the world: rigid transforms.
 clearance : float, default 0
-    In the clouds' unit; inclusive.
 pose_scan : array_like, (4, 4) or (3, 4), optional
     Of the scan in the world.
 flags, distances, first_poses, closest_poses, pose_summaries : bool
     What to compute; arrays that are not asked for are None.
 swept : float, optional
-    The motion between poses counts, too, to this tolerance: free is farther than the clearance during the whole motion,
-    colliding comes within clearance + swept.
 pivot : array_like, (3,), optional
     Swept: the point of the model that moves in straight lines; default its origin.
 accuracy : Accuracy or str, default exact
 threads : int, default 1
-    0: all of the machine's.
 progress : callable, optional
     Called now and then with the fraction done; by returning False it stops the query, which raises `Cancelled`.
 
@@ -89,14 +83,16 @@ ValueError
     Between poses that are half a turn apart: both directions are as short.
 )";
 
-TrajectoryRun collideAlongOf(const SphereHierarchy& scan, const SphereHierarchy& model, const ArrayLike& poses,
-                             double clearance, const PoseLike& pose_scan, bool flags, bool distances, bool first_poses,
+TrajectoryRun collideAlongOf(const Cloud& scan, const Cloud& model, const ArrayLike& poses, double clearance,
+                             const PoseLike& pose_scan, bool flags, bool distances, bool first_poses,
                              bool closest_poses, bool pose_summaries, std::optional<double> swept,
                              const OptionalArray& pivot, const AccuracyLike& accuracy, unsigned threads,
                              const ProgressLike& progress)
 {
-  const Placed placed(scan, poseOf("pose_scan", pose_scan));
-  const std::vector<Eigen::Isometry3d> list = posesOf("poses", poses);
+  Asked asked("scan", scan, pose_scan, "model", model);
+  const auto& list = asked.question.path.emplace(posesOf("poses", poses));
+  asked.question.clearance = clearance;
+  asked.question.wanted.spacings = true;
   TrajectoryRun run;
   TrajectoryRequest& request = run.request;
   request.clearance = clearance;
@@ -106,12 +102,11 @@ TrajectoryRun collideAlongOf(const SphereHierarchy& scan, const SphereHierarchy&
   request.first_poses = first_poses;
   request.closest_poses = closest_poses;
   request.pose_summaries = pose_summaries;
-  request.swept = swept;
+  if (swept != 0.0) request.swept = swept;
   if (!pivot.is_none()) request.pivot = point3Of("pivot", pivot);
   request.threads = threads;
   request.progress = progressOf(progress);
-  run.result = answered({"scan", placed, "model", model, list, clearance, true},
-                        [&] { return collideAlong(placed, model, list, request); });
+  run.result = asked.answer([&] { return collideAlong(asked.a, model, list, request); });
   request.progress = nullptr; // it refers to an argument of this call
   return run;
 }
@@ -214,7 +209,7 @@ void bindClashes(py::module_& module)
       });
   module.def(
       "find_clashes",
-      [](const SphereHierarchy& scan, const TrajectoryRun& run, double cluster_distance) {
+      [](const Cloud& scan, const TrajectoryRun& run, double cluster_distance) {
         return unlocked([&] { return findClashes(scan.view(), run.result, cluster_distance); });
       },
       kFindClashes, "scan"_a, "run"_a, "cluster_distance"_a);

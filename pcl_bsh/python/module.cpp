@@ -2,10 +2,13 @@
 // The extension module of the Python package pcl_bsh; package/pcl_bsh/__init__.py shows its names.
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/threads/computing.h>
+#include <pcl_bsh/question/options.h>
 #include <pcl_bsh/version.h>
 
+#include <cctype>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -48,6 +51,30 @@ std::string plainDocstring(std::string_view doc)
   return withoutTypes(doc.substr(0, line)) + "\n--\n\n" + std::string(doc.substr(text));
 }
 
+/// What a question's option says, as the paragraph below a parameter's name.
+std::string sentenceOf(const QuestionOption& option)
+{
+  std::string text = std::string(option.doc) + (option.unit[0] == 'm' ? "; in the clouds' unit." : ".");
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  const py::object fill = py::module_::import("textwrap").attr("fill");
+  return py::str(fill(text, "width"_a = 116, "initial_indent"_a = "    ", "subsequent_indent"_a = "    "));
+}
+
+/// Parameters without a description are options of questions.
+std::string described(const std::string& doc)
+{
+  std::istringstream lines(doc);
+  std::string text, line;
+  const QuestionOption* option = nullptr; // of the last line
+  while (std::getline(lines, line)) {
+    if (option && line.rfind("    ", 0) != 0) text += sentenceOf(*option) + '\n';
+    const std::size_t colon = line.find(" : ");
+    option = colon == line.npos ? nullptr : questionOption(line.substr(0, colon));
+    text += line + '\n';
+  }
+  return text;
+}
+
 /// Of the functions of a module, or of a class.
 void hideTypes(const py::object& scope)
 {
@@ -59,7 +86,7 @@ void hideTypes(const py::object& scope)
     if (!PyCapsule_CheckExact(PyCFunction_GET_SELF(function.ptr()))) continue; // Python's own
     PyMethodDef& definition = *reinterpret_cast<PyCFunctionObject*>(function.ptr())->m_ml;
     if (!definition.ml_doc || std::strstr(definition.ml_doc, "\n--\n")) continue;
-    const std::string doc = plainDocstring(definition.ml_doc);
+    const std::string doc = described(plainDocstring(definition.ml_doc));
     std::free(const_cast<char*>(definition.ml_doc)); // as pybind11 does in the end
     definition.ml_doc = strdup(doc.c_str());
   }

@@ -22,12 +22,12 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// Compares what was measured with lengths. A record without a distance is farther than all that was asked for. A
 /// distance that equals the length was rounded: the coordinates decide. Within a ball of a surface, distances are 0.
-class Comparison {
+class MeasuredDistances {
 public:
-  Comparison(const PointsView& input, const Placed& obstacle, const PointDistances& found)
+  MeasuredDistances(const Placed& input, const Placed& obstacle, const PointDistances& found)
   : obstacle_(obstacle.hierarchy().view()),
     found_(found),
-    exact_(input, Eigen::Isometry3d::Identity(), obstacle_, obstacle.pose)
+    exact_(input.hierarchy().view(), input.pose, obstacle_, obstacle.pose)
   {
   }
 
@@ -71,15 +71,15 @@ public:
     input_(input),
     obstacle_(obstacle),
     b_(obstacle.hierarchy(question.uncertaintyOfObstacle(), question.threads), question.pose),
-    a_(input.hierarchy(question.uncertaintyOfInput(), question.threads))
+    a_(input.hierarchy(question.uncertaintyOfInput(), question.threads), question.pose_of_input)
   {
   }
 
   Answer answer()
   {
-    if (wanted_.contacts || wanted_.poses || question_.path)
+    if (wanted_.contacts || wanted_.poses || wanted_.first_poses || question_.path)
       followPath();
-    else if (wanted_.flags)
+    else if (wanted_.flags || wanted_.obstacle_flags)
       flag();
     if (wanted_.closest && !closest_is_known_) findClosest();
     if (wanted_.measures() && !question_.path) measure();
@@ -94,7 +94,7 @@ private:
     request.clearance = question_.clearance.value_or(0.0);
     request.threads = question_.threads;
     request.accuracy = question_.accuracy;
-    request.flagged = wanted_.both_ways ? Side::both : Side::a;
+    request.flagged = !wanted_.flags ? Side::b : wanted_.obstacle_flags ? Side::both : Side::a;
     if (question_.density) request.spacings_of_b = guard();
     FlagsResult found = collisionFlags(a_, b_, request);
     answer_.work += found.work;
@@ -103,7 +103,8 @@ private:
     answer_.collisions.flags = std::move(found.a);
     answer_.collisions.colliding = found.colliding_a;
     answer_.collisions.undecided = found.undecided_a;
-    if (input_.surface()) answer_.collisions = ofTriangles(*input_.surface(), std::move(answer_.collisions));
+    if (wanted_.flags && input_.surface())
+      answer_.collisions = ofTriangles(*input_.surface(), std::move(answer_.collisions));
   }
 
   /// Null where nothing is guarded.
@@ -126,11 +127,11 @@ private:
     TrajectoryRequest request;
     request.clearance = measures && wanted_.distances ? *question_.max_distance : question_.clearance.value_or(0.0);
     request.accuracy = question_.accuracy;
-    request.flags = !measures;
+    request.flags = wanted_.flags || wanted_.contacts || wanted_.poses;
     request.distances = request.closest_poses = wanted_.contacts || wanted_.distances;
-    request.first_poses = wanted_.contacts;
+    request.first_poses = wanted_.contacts || wanted_.first_poses;
     request.pose_summaries = wanted_.poses && question_.swept == 0.0;
-    if (question_.swept > 0.0) request.swept = question_.swept;
+    request.swept = question_.sweptTolerance();
     request.threads = question_.threads;
     request.progress = question_.progress;
     answer_.collisions = collideAlong(a_, b_.hierarchy(), question_.poses(), request);
@@ -159,6 +160,7 @@ private:
     answer_.closest = std::move(found);
     if (!answer_.closest.pair) return;
     PointPair& pair = *answer_.closest.pair;
+    answer_.closest_places = {a_.hierarchy().view().point(pair.a), b_.hierarchy().view().point(pair.b)};
     pair = {input_.part(pair.a), obstacle_.part(pair.b)};
   }
 
@@ -197,7 +199,7 @@ private:
   {
     PointDistances& found = answer_.distances.a;
     const PointsView& input = a_.hierarchy().view();
-    const Comparison distance(input, b_, found);
+    const MeasuredDistances distance(a_, b_, found);
     const auto [least, most] = question_.limits;
     answer_.within.assign(input.count, 0);
     const double told = question_.max_distance.value_or(unlimited);
@@ -213,13 +215,9 @@ private:
 
   void warn()
   {
-    QuestionFacts facts{input_.facts(wanted_.spacings), obstacle_.facts(wanted_.spacings), question_.poses(),
-                        question_.clearance};
-    for (const double length :
-         {question_.max_distance.value_or(unlimited), question_.limits.least, question_.limits.most})
-      if (length > 0.0 && length < facts.least_length) facts.least_length = length;
-    answer_.density = {facts.input.spacing, facts.obstacle.spacing};
-    for (Warning& warning : warningsOf(facts)) answer_.warnings.push_back(std::move(warning));
+    const NamedCloud input = input_.facts(wanted_.spacings), obstacle = obstacle_.facts(wanted_.spacings);
+    answer_.density = {input.spacing, obstacle.spacing};
+    for (Warning& warning : warningsOf(question_, input, obstacle)) answer_.warnings.push_back(std::move(warning));
   }
 
   const Question& question_;

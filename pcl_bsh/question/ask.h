@@ -11,6 +11,7 @@
 #include <pcl_bsh/question/warnings.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -27,14 +28,15 @@ struct Answer {
   /// Shape::part() knows), poses, and how many points collide or are undecided; at one pose alike. Along a path,
   /// distances are in `distance` and `closest_pose`, too.
   TrajectoryResult collisions;
-  std::size_t sparse = 0;              ///< points that are undecided for want of density, not among `undecided`
-  DistanceResult closest;              ///< its pair: part() of the input's record and of the obstacle's
-  SymmetricDistances distances;        ///< `nearest` is a record of the other hierarchy; NaN beyond max_distance
-  std::vector<Verdict> obstacle_flags; ///< with both_ways, of the records of the obstacle's hierarchy
-  std::vector<std::uint8_t> within;    ///< 1: within the limits
-  double widest_gap = 0.0;             ///< of the density guard; 0: it guarded nothing
-  Density density;                     ///< where spacings are wanted
-  Work work;                           ///< of all queries
+  std::size_t sparse = 0;                 ///< points that are undecided for want of density, not among `undecided`
+  DistanceResult closest;                 ///< its pair: part() of the input's record and of the obstacle's
+  std::array<Point3, 2> closest_places{}; ///< of that pair, each in its own frame; of a surface, a ball's middle
+  SymmetricDistances distances;           ///< `nearest` is a record of the other hierarchy; NaN beyond max_distance
+  std::vector<Verdict> obstacle_flags;    ///< where wanted, of the records of the obstacle's hierarchy
+  std::vector<std::uint8_t> within;       ///< 1: within the limits
+  double widest_gap = 0.0;                ///< of the density guard; 0: it guarded nothing
+  Density density;                        ///< where spacings are wanted
+  Work work;                              ///< of all queries
   std::vector<Warning> warnings;
 };
 

@@ -151,19 +151,19 @@ void checkOptions(const Question& question)
   if (question.path && question.path->empty()) refuse("path", "has no pose", "give one at least");
   if (question.swept > 0.0 && !question.path)
     refuse("swept", "is given, but nothing moves", "give a path of poses, too");
-  if (question.accuracy.stopsEarly() && wanted.measures())
+  if (question.accuracy.stopsEarly() && wanted.measures() && !wanted.intervals)
     refuse("accuracy", question.accuracy.text() + ": leaves points without a distance",
            "give exact or tolerance=LENGTH");
   if (question.sigmas != 1.0 && question.uncertainty.field.empty() && question.obstacle_uncertainty.field.empty())
     refuse("sigmas", "is given, but no uncertainty is a field", "give the length itself");
-  if (question.density && (question.path || wanted.contacts || wanted.poses))
+  if (question.density && (question.path || wanted.contacts || wanted.poses || wanted.first_poses))
     refuse("density", "is about which points collide at one pose",
            "leave out the path, the list of clashes, or `density`");
   if (question.widest_gap && !question.density)
     refuse("widest_gap", "is given, but not `density`", "give `density`, too");
   if (question.surface_tolerance && question.vertices_only)
     refuse("surface_tolerance", "is given, but `vertices_only`, too", "give one of them");
-  if (question.path && (wanted.both_ways || wanted.within))
+  if (question.path && (wanted.obstacle_flags || wanted.both_ways || wanted.within))
     refuse("path", "has no distances but the smallest", "give one pose");
   if (question.path && wanted.distances && wanted.collisions())
     refuse("path", "has either collisions or distances", "ask twice");

@@ -25,17 +25,23 @@ namespace pcl_bsh {
 
 /// Which answers are computed. Of an input that is a surface, all that is said of points is said of its triangles.
 struct Wanted {
-  bool flags = false;     ///< which points of the input collide
-  bool contacts = false;  ///< of each that collides: its smallest distance, the first pose and the closest
-  bool poses = false;     ///< of each pose: how many points collide, and the smallest distance; not of swept motion
-  bool closest = false;   ///< the smallest distance and its pair: with contacts, and along a path, of what collides
-  bool distances = false; ///< of each point of the input to the obstacle; along a path the smallest
-  bool both_ways = false; ///< flags and distances also of the obstacle's points, at one pose
-  bool within = false;    ///< which points of the input have a distance within the limits, at one pose
-  bool spacings = false;  ///< how far points are apart, for the warning of holes: builds a few voxels
+  bool flags = false;          ///< which points of the input collide
+  bool obstacle_flags = false; ///< which points of the obstacle do, at one pose
+  bool contacts = false;       ///< of each that collides: its smallest distance, the first pose and the closest
+  bool poses = false;       ///< of each pose: how many points collide, and the smallest distance; not of swept motion
+  bool first_poses = false; ///< of each that collides: the first pose alone
+  bool closest = false;     ///< the smallest distance and its pair: with contacts, and along a path, of what collides
+  bool distances = false;   ///< of each point of the input to the obstacle; along a path the smallest
+  bool both_ways = false;   ///< distances also of the obstacle's points, at one pose
+  bool within = false;      ///< which points of the input have a distance within the limits, at one pose
+  bool intervals = false;   ///< distances that an early stop leaves open are answers, too: their intervals tell
+  bool spacings = false;    ///< how far points are apart, for the warning of holes: builds a few voxels
 
-  bool collisions() const { return flags || contacts || poses; } ///< whether a clearance counts
-  bool measures() const { return distances || within; }          ///< whether all distances do
+  bool collisions() const
+  {
+    return flags || obstacle_flags || contacts || poses || first_poses;
+  }                                                     ///< whether a clearance counts
+  bool measures() const { return distances || within; } ///< whether all distances do
 };
 
 /// Both inclusive, and compared exactly.
@@ -46,7 +52,9 @@ struct DistanceLimits {
 
 /// Lengths are in the clouds' own unit. Which values are allowed, options.h says.
 struct Question {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< T_input_obstacle; rigid within 1e-6
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_input_obstacle; rigid within 1e-6
+  /// T_world_input, where `pose` and `path` are those of the obstacle in a world: no product of poses is rounded.
+  Eigen::Isometry3d pose_of_input = Eigen::Isometry3d::Identity();
   std::optional<std::vector<Eigen::Isometry3d>> path = {}; ///< instead: such poses, one after another; not empty
   double swept = 0.0; ///< > 0: the motion between the poses of the path counts, too, to this tolerance
   std::optional<double> clearance = {}; ///< points collide up to it, inclusive; none: 0, and no warning speaks of it
@@ -68,6 +76,8 @@ struct Question {
 
   /// Of the path, or the only one.
   std::vector<Eigen::Isometry3d> poses() const { return path ? *path : std::vector{pose}; }
+  /// None: the poses alone.
+  std::optional<double> sweptTolerance() const { return swept > 0.0 ? std::optional(swept) : std::nullopt; }
   Uncertainty uncertaintyOfInput() const { return scaled(uncertainty); }             ///< with `sigmas`
   Uncertainty uncertaintyOfObstacle() const { return scaled(obstacle_uncertainty); } ///< likewise
 

@@ -87,12 +87,26 @@ const Shape::Patches& Shape::patches(const std::optional<double>& gap, unsigned 
   return *patches_;
 }
 
-NamedCloud Shape::facts(bool spacing)
+void Shape::setPatches(std::vector<float> spacings)
+{
+  patches_ = std::make_shared<const Patches>(Patches{std::nullopt, 0.0, std::move(spacings)});
+}
+
+NamedCloud Shape::facts(bool spacing) const
 {
   NamedCloud facts = namedCloud(name_, *hierarchy_, surface_.get());
-  if (spacing && !surface_ && !spacing_) spacing_ = spacingOf(*hierarchy_);
-  if (spacing) facts.spacing = spacing_;
+  if (!spacing || surface_ || hierarchy_->view().radii) return facts;
+  const std::lock_guard lock(measured_->one_at_a_time);
+  if (!measured_->spacing) measured_->spacing = spacingOf(*hierarchy_);
+  facts.spacing = measured_->spacing;
   return facts;
+}
+
+Shape Shape::named(std::string name) const
+{
+  Shape same = *this;
+  same.name_ = std::move(name);
+  return same;
 }
 
 } // namespace pcl_bsh

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +48,9 @@ public:
   /// Null where it is points.
   const std::shared_ptr<const SurfaceCover>& surface() const noexcept { return surface_; }
 
+  /// The same by another name.
+  Shape named(std::string name) const;
+
   /// What a record of the hierarchy is to users: the point, or the triangle (of covers that others have renumbered,
   /// what they put there).
   std::uint32_t part(std::uint32_t record) const { return surface_ ? surface_->triangles[record] : record; }
@@ -66,9 +70,13 @@ public:
   /// Measured once for points and a gap. @pre hierarchy() was called. @param gap > 0; none: usualGap()
   const Patches& patches(const std::optional<double>& gap, unsigned threads);
 
+  /// Patches that its owner has measured, for question without a gap. @param spacings one per record
+  void setPatches(std::vector<float> spacings);
+
   /// What is to be known of it beside an answer. @pre hierarchy() was called
-  /// @param spacing how far its points are apart, too: measured once
-  NamedCloud facts(bool spacing);
+  /// @param spacing how far its points are apart, too: measured once, for all copies; not of balls, which are taken for
+  ///   those of a surface
+  NamedCloud facts(bool spacing) const;
 
 private:
   /// Memory, and a checksum of its points.
@@ -92,7 +100,11 @@ private:
   std::uint64_t uncertainties_ = 0;        ///< checksum of its field
   std::optional<Seen> first_seen_;         ///< what was there at the first use
   std::shared_ptr<const Patches> patches_; ///< once they are asked for
-  std::optional<Spacing> spacing_;
+  struct Measured {
+    std::mutex one_at_a_time;
+    std::optional<Spacing> spacing;
+  };
+  std::shared_ptr<Measured> measured_ = std::make_shared<Measured>();
 };
 
 } // namespace pcl_bsh

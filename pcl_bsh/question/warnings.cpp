@@ -104,9 +104,15 @@ std::optional<Warning> warningOfFrames(const std::string& a, const Eigen::Aligne
                            b, " to that of ", a)};
 }
 
-std::vector<Warning> warningsOf(const QuestionFacts& facts)
+std::vector<Warning> warningsOf(const Question& question, const NamedCloud& input, const NamedCloud& obstacle)
 {
-  const auto& [input, obstacle, poses, clearance, least_length] = facts;
+  const std::optional<double>& clearance = question.clearance;
+  double least_length = std::numeric_limits<double>::infinity();
+  for (const double length :
+       {question.max_distance.value_or(least_length), question.limits.least, question.limits.most})
+    if (length > 0.0 && length < least_length) least_length = length;
+  std::vector<Eigen::Isometry3d> poses = question.poses();
+  for (Eigen::Isometry3d& pose : poses) pose = question.pose_of_input.inverse() * pose;
   std::vector<Warning> warnings = warningsOf(input, clearance, least_length);
   for (Warning& warning : warningsOf(obstacle, clearance, least_length)) append(warnings, std::move(warning));
   if (auto far =

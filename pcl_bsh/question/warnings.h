@@ -2,14 +2,15 @@
 // What a question's answer does not say by itself, as each program, filter and package tells it: the conditions and the
 // sentences stand here alone.
 //
-//   const QuestionFacts facts{measuredCloud("hall.ply", hall), measuredCloud("robot.pcd", robot), poses, 0.05};
-//   for (const Warning& warning : warningsOf(facts)) tell(warning.text);
+//   for (const Warning& warning : warningsOf(question, measuredCloud("hall.ply", hall), namedCloud("robot", robot)))
+//     tell(warning.text);
 //
 // ask() (ask.h) has them in its answer.
 #pragma once
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/question/named_cloud.h>
+#include <pcl_bsh/question/question.h>
 
 #include <Eigen/Geometry>
 
@@ -21,15 +22,6 @@
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
-
-/// What of a question warnings depend on. Lengths are in the clouds' own unit.
-struct QuestionFacts {
-  NamedCloud input, obstacle;
-  std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()}; ///< T_input_obstacle, one after another
-  std::optional<double> clearance = {}; ///< that points collide within; none: distances are asked for
-  double least_length =
-      std::numeric_limits<double>::infinity(); ///< without a clearance, that distances are compared with
-};
 
 /// How wide the holes between points are that a collision may hide in.
 struct Density {
@@ -59,10 +51,12 @@ struct Warning {
   std::string text;
 };
 
-/// All that is to be told of a question. A sentence about two clouds of one name that would be told twice is told once.
-std::vector<Warning> warningsOf(const QuestionFacts& facts);
+/// All that is to be told of a question, of clouds wherever they are. A sentence about two clouds of one name that
+/// would be told twice is told once.
+std::vector<Warning> warningsOf(const Question& question, const NamedCloud& input, const NamedCloud& obstacle);
 
 /// Of one cloud by itself: empty, not finite, loose vertices, coarse.
+/// @param least_length without a clearance, that distances are compared with
 std::vector<Warning> warningsOf(const NamedCloud& cloud, std::optional<double> clearance,
                                 double least_length = std::numeric_limits<double>::infinity());
 

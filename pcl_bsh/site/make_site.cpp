@@ -97,7 +97,7 @@ private:
       if (const auto remarks = stream->remarks(); options_.remark && !remarks.empty())
         options_.remark(clouds_[i], remarks);
       fields.push_back(packed(stream->header()));
-      site_.sources.push_back({clouds_[i].string(), stream->size(), fields.back()});
+      site_.sources.push_back({clouds_[i].string(), stream->size(), fields.back(), stream->coordinateSystem()});
       site_.points += stream->size();
     }
     site_.fields = united(fields, clouds_);

@@ -30,7 +30,8 @@ inline constexpr const char* overview_file_name = "overview.pcd";
 inline constexpr const char* tiles_folder_name = "tiles";
 inline constexpr const char* source_field_name = "source";
 inline constexpr const char* record_field_name = "record";
-inline constexpr int site_version = 2; ///< of the folder's format; version 1, which is read, too, knows no `greatest`
+/// Of the folder's format. Versions 1 and 2 are read, too: they know no `coordinate_system`, 1 no `greatest`.
+inline constexpr int site_version = 3;
 
 /// Both corners inclusive, in the clouds' unit.
 struct Bounds {
@@ -70,6 +71,7 @@ struct Source {
   std::uint64_t points = 0;
   /// That it had, side by side, without padding; but for those that hold what a question has found (result_site.h).
   std::vector<pcl::PCLPointField> fields;
+  std::string coordinate_system = {}; ///< as the file named it; empty: it did not
 };
 
 /// A part of a site: one file.
@@ -98,6 +100,9 @@ struct Site {
 /// @throws std::runtime_error: a folder that is no site or is not complete, another version, a document that the schema
 ///   does not allow, numbers of points that disagree, a tile's file that is missing or lies outside the folder
 Site readSite(const std::filesystem::path& folder);
+
+/// The coordinate systems that the site's sources name, each once, with "; " between them; empty where none is named.
+std::string coordinateSystemOf(const Site& site);
 
 /// The site as the text of its site.json.
 std::string siteText(const Site& site);

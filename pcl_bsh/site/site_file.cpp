@@ -10,6 +10,7 @@
 
 #include <site.schema.json.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -113,6 +114,7 @@ Source readSourceEntry(const JsonReader& json)
   source.file = json.at("file").text();
   io::readCount(json, "points", source.points);
   source.fields = readFields(json.at("fields"));
+  io::read(json, "coordinate_system", source.coordinate_system);
   return source;
 }
 
@@ -179,6 +181,18 @@ Site readSite(const fs::path& folder)
   return site;
 }
 
+std::string coordinateSystemOf(const Site& site)
+{
+  std::vector<std::string> names;
+  for (const Source& source : site.sources) {
+    const std::string& name = source.coordinate_system;
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : "; ") + name;
+  return text;
+}
+
 std::string siteText(const Site& site)
 {
   Json json = {{"version", site_version}, {"points", site.points}};
@@ -187,6 +201,7 @@ std::string siteText(const Site& site)
   json["sources"] = Json::array();
   for (const Source& source : site.sources) {
     json["sources"].push_back({{"file", source.file}, {"points", source.points}, {"fields", toJson(source.fields)}});
+    if (!source.coordinate_system.empty()) json["sources"].back()["coordinate_system"] = source.coordinate_system;
   }
   json["tiles"] = Json::array();
   for (const Tile& tile : site.tiles) {

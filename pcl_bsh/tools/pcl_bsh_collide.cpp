@@ -132,14 +132,7 @@ void answer(Shape& input, Shape& obstacle, cli::CollisionReport& report)
 
 io::ClashQuestion clashQuestion(const Options& options)
 {
-  const Question& asked = options.question;
-  return {options.input.string(),
-          options.obstacle.string(),
-          asked.clearance.value_or(0.0),
-          asked.swept > 0.0 ? std::optional(asked.swept) : std::nullopt,
-          asked.accuracy,
-          asked.uncertaintyOfInput(),
-          asked.uncertaintyOfObstacle()};
+  return io::clashQuestion(options.input.string(), options.obstacle.string(), options.question);
 }
 
 /// @return how many there are

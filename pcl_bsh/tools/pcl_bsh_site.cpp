@@ -77,7 +77,7 @@ int make(const Options& options)
   wanted.memory = options.memory;
   wanted.tile_points = options.tile_points;
   wanted.threads = options.make_threads;
-  wanted.vertices_only = options.surface.vertices_only;
+  wanted.vertices_only = options.question.vertices_only;
   wanted.columns = [&](const std::filesystem::path& file) { return options.columns.of(file); };
   wanted.remark = [](const std::filesystem::path& file, const std::vector<std::string>& remarks) {
     cli::warnOfFile(cli::site_program, file, remarks);

@@ -25,14 +25,15 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Points collide up to this distance, inclusive, in the clouds' unit; finite and >= 0. Default 0.
+  /// Greatest distance that counts as collision, touching included; in the clouds' unit, finite and >= 0. Default 0.
   vtkSetMacro(Clearance, double);
   vtkGetMacro(Clearance, double);
   ///@}
 
   ///@{
-  /// > 0: the motion between consecutive poses counts too, to this tolerance: what is free stays farther than the
-  /// clearance, what collides comes within clearance + tolerance. 0 (default): the poses alone. Needs poses.
+  /// Above 0, the motion between the poses of a path counts, too, to this tolerance: what comes within the clearance
+  /// collides, what stays beyond clearance + tolerance does not; 0: the poses alone. In the clouds' unit; needs poses.
+  /// Default 0.
   vtkSetMacro(Swept, double);
   vtkGetMacro(Swept, double);
   ///@}

@@ -22,8 +22,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Points farther than this from the obstacle get no distance; inclusive, >= 0, in the clouds' unit. VTK_DOUBLE_MAX
-  /// (default) or infinity: no limit.
+  /// Greater distances are not told, but are NaN; less is faster; without it, no limit: VTK_DOUBLE_MAX (default) or
+  /// infinity. In the clouds' unit, >= 0.
   vtkSetMacro(MaximumDistance, double);
   vtkGetMacro(MaximumDistance, double);
   ///@}

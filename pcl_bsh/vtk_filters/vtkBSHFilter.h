@@ -69,7 +69,7 @@ public:
   ///@}
 
   ///@{
-  /// Default 1; 0: all of the machine's. The answer is the same for any number.
+  /// 0: all of the machine's; the result is the same for any number. Default 1.
   vtkSetClampMacro(NumberOfThreads, int, 0, VTK_INT_MAX);
   vtkGetMacro(NumberOfThreads, int);
   ///@}

@@ -97,6 +97,24 @@ TEST_F(FileFields, TheSensorsPlaceIsKept)
   EXPECT_NEAR(viewpoint[6], std::sqrt(0.5), 1e-15);
 }
 
+TEST_F(FileFields, ReportsNameTheCoordinateSystem)
+{
+  io::LasSample sample(4, 6);
+  sample.records = {io::LasSample::record("LASF_Projection", 2112, "PROJCS[\"ETRS89 / UTM 32N\"]")};
+  sample.addPoints(30);
+  folder.write("a.las", sample.text());
+  const std::string obstacle = R"("obstacle": ")" + folder.write("robot.xyz", "0 0 0\n").string() + '"';
+  const auto stage = [&](const std::string& type, const std::string& file) {
+    return R"({"type": ")" + type + R"(", "filename": ")" + (folder / file).string() + R"(", )" + obstacle;
+  };
+  run("a.las",
+      stage("writers.clashes", "clashes.json") + R"(, "clearance": 1}, )" +
+          stage("writers.distances", "distances.json") + "}",
+      "b.las");
+  for (const char* report : {"clashes.json", "distances.json"})
+    EXPECT_EQ(nlohmann::json::parse(contentOf(folder / report))["coordinate_system"], "ETRS89 / UTM 32N") << report;
+}
+
 /// Scale, offset, records and waveforms travel with the points through every kind of stage.
 TEST_F(FileFields, HeadersOfLasGoFromReaderToWriter)
 {

@@ -38,6 +38,20 @@ def test_all_have_docstrings_whose_examples_run():
     assert runner.tries > 80 and runner.failures == 0, "".join(said)
 
 
+def test_options_of_questions_have_the_words_of_all_faces():
+    def words(function):
+        return " ".join(function.__doc__.split())
+
+    for function in (pcl_bsh.collision_flags, pcl_bsh.contacts, pcl_bsh.collide_along, pcl_bsh.any_collision_on_motions):
+        assert ("clearance : float, default 0 Greatest distance that counts as collision, touching included; "
+                "in the clouds' unit. ") in words(function)
+    assert "max_distance : float, optional Greater distances are not told, but are NaN; " in words(pcl_bsh.point_distances)
+    assert "swept : float, optional Above 0, the motion between the poses of a path counts" in words(pcl_bsh.collide_along)
+    threads = "0: all of the machine's; the result is the same for any number."
+    assert f"threads : int, default 1 {threads} progress" in words(pcl_bsh.collide_along)
+    assert words(pcl_bsh.point_distances).count("A tolerance, or a budget") == 1  # which says more than the table
+
+
 def test_signatures_are_those_of_the_docstrings():
     for name in pcl_bsh.__all__:
         value = getattr(pcl_bsh, name)

@@ -264,6 +264,11 @@ def test_warnings_say_what_answers_do_not():
     for _ in range(2):  # measured once
         (holes,) = flags(a, b, 1.0)
         assert holes.startswith("points lie 1 apart in a and 1 in b: surfaces may touch")
+    lattice = pcl_bsh.SphereHierarchy(floor.copy())
+    assert flags(lattice, lattice, 1.5) == []
+    lattice.refit(floor * np.float32(3))  # measured anew
+    (holes,) = flags(lattice, lattice, 1.5)
+    assert holes.startswith("points lie 3 apart in a and 3 in b: surfaces may touch")
     assert flags(a, nothing, 2.0) == ["b: has no finite point: nothing collides with it"]
     assert flags(some, b, 2.0) == ["a: 1 of 400 points is not finite: it is left out"]
     (apart,) = flags(a, b, 2.0, pose_b=far)

@@ -98,10 +98,13 @@ TEST_F(Ask, FlagsAtOnePose)
   EXPECT_GT(expected.colliding_a, 50u);
   EXPECT_EQ(found.work.node_pairs, expected.work.node_pairs);
   EXPECT_THAT(found.obstacle_flags, IsEmpty());
-  question.wanted.both_ways = true;
+  question.wanted.obstacle_flags = true;
   FlagsRequest both = within(*question.clearance);
   both.flagged = Side::both;
   EXPECT_EQ(answer().obstacle_flags, collisionFlags({a}, {b, question.pose}, both).b);
+  question.wanted.flags = false;
+  EXPECT_EQ(answer().obstacle_flags, collisionFlags({a}, {b, question.pose}, both).b);
+  EXPECT_THAT(answer().collisions.flags, IsEmpty());
 }
 
 TEST_F(Ask, UncertaintiesAndTheirSigmas)
@@ -207,8 +210,10 @@ TEST_F(Ask, TheClosestPairHoweverFar)
   const DistanceResult expected = closestPair({a}, {b, question.pose});
   const Answer found = answer();
   EXPECT_EQ(found.closest.distance, expected.distance);
-  EXPECT_TRUE(found.closest.pair == expected.pair);
+  ASSERT_TRUE(found.closest.pair == expected.pair);
   EXPECT_EQ(found.closest.interval.lower, expected.interval.lower);
+  EXPECT_EQ(found.closest_places[0], scan.places[expected.pair->a]);
+  EXPECT_EQ(found.closest_places[1], robot.places[expected.pair->b]);
 }
 
 TEST_F(Ask, DistancesAndLimits)
@@ -233,6 +238,55 @@ TEST_F(Ask, DistancesAndLimits)
       ASSERT_TRUE(std::isnan(found.distances.a.distance[i])) << i;
     }
   }
+}
+
+/// Where nobody needs all of them, they cost less.
+TEST_F(Ask, FirstPosesAlone)
+{
+  question.path = somePath();
+  question.wanted.first_poses = true;
+  const Answer found = answer();
+  EXPECT_EQ(found.collisions.first_pose, collideAlong({a}, b, *question.path, along()).first_pose);
+  EXPECT_THAT(found.collisions.distance, IsEmpty());
+  EXPECT_THAT(found.collisions.flags, IsEmpty());
+}
+
+/// The product of the poses would be rounded: a point that touches would be free, or the other way round.
+TEST_F(Ask, PosesInAWorldAreThoseOfTheQuery)
+{
+  question.pose_of_input = somePose(0.7);
+  question.wanted.flags = question.wanted.obstacle_flags = true;
+  question.wanted.distances = question.wanted.within = true;
+  const Placed input_there(a, question.pose_of_input), obstacle_there(b, question.pose);
+  const PointDistances distances = pointDistances(input_there, obstacle_there);
+  question.limits.most = question.clearance.emplace(distances.distance[0]); // touches
+  const Answer found = answer();
+  FlagsRequest request = within(*question.clearance);
+  request.flagged = Side::both;
+  const FlagsResult expected = collisionFlags(input_there, obstacle_there, request);
+  EXPECT_EQ(found.collisions.flags, expected.a);
+  EXPECT_EQ(found.obstacle_flags, expected.b);
+  EXPECT_EQ(found.distances.a.nearest, distances.nearest);
+  EXPECT_EQ(found.within, expected.a);
+  question.wanted = {};
+  question.wanted.flags = true;
+  question.path = somePath();
+  EXPECT_EQ(answer().collisions.flags, collideAlong(input_there, b, somePath(), along()).flags);
+}
+
+TEST_F(Ask, DistancesThatStopEarly)
+{
+  question.wanted.distances = true;
+  question.accuracy = Accuracy::level(1);
+  EXPECT_THROW(answer(), InvalidOption);
+  question.wanted.intervals = true;
+  PointDistancesRequest request;
+  request.accuracy = question.accuracy;
+  const PointDistances expected = pointDistances({a}, {b, question.pose}, request);
+  const Answer found = answer();
+  EXPECT_GT(expected.undecided, 0u);
+  EXPECT_EQ(found.distances.a.undecided, expected.undecided);
+  EXPECT_EQ(found.distances.a.interval.size(), scan.places.size());
 }
 
 /// A square of two triangles as obstacle, then as input.

@@ -5,11 +5,14 @@
 
 #include <gmock/gmock.h>
 
+#include <cctype>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <set>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -129,11 +132,42 @@ TEST(QuestionOptions, RefuseWhatDoesNotGoTogether)
   EXPECT_THAT(refusal([](Question& q) { q.accuracy = Accuracy::level(1), q.wanted.distances = true; }),
               HasSubstr("accuracy: level=1: leaves points without a distance: give exact or tolerance=LENGTH"));
   EXPECT_THAT(refusal([&](Question& q) { q.path = path, q.wanted.both_ways = true; }), HasSubstr("path: has no"));
+  EXPECT_THAT(refusal([&](Question& q) { q.path = path, q.wanted.obstacle_flags = true; }), HasSubstr("path: has no"));
   EXPECT_THAT(refusal([](Question& q) { q.limits = {2, 1}; }), HasSubstr("filter_limits: from 2 to 1: give"));
   EXPECT_THAT(refusal([](Question& q) {
                 q.limits = {infinity, infinity};
               }),
               HasSubstr("filter_limits: from inf to inf"));
+}
+
+std::string inSmallLetters(std::string text)
+{
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// A file's text on one line, in small letters, without the beginnings of comments.
+std::string wordsOf(const std::string& file)
+{
+  std::ifstream in(PCL_BSH_SOURCE_DIR "/pcl_bsh/" + file);
+  std::string text, word;
+  while (in >> word)
+    if (word != "///") text += word + ' ';
+  return inSmallLetters(text);
+}
+
+/// But for the tolerance of a surface: VTK's cloud is points, whatever its cells.
+TEST(QuestionOptions, HaveTheSameWordsInVtkAndParaView)
+{
+  const std::string panels = wordsOf("paraview/BoundingSphereHierarchies/bounding_sphere_hierarchies.xml");
+  for (const auto& [option, header] : {std::pair{"clearance", "CollisionFilter"},
+                                       {"swept", "CollisionFilter"},
+                                       {"max_distance", "DistanceFilter"},
+                                       {"threads", "Filter"}}) {
+    const std::string doc = inSmallLetters(questionOption(option)->doc);
+    EXPECT_THAT(panels, HasSubstr(doc)) << option;
+    EXPECT_THAT(wordsOf(std::string("vtk_filters/vtkBSH") + header + ".h"), HasSubstr(doc)) << option;
+  }
 }
 
 TEST(QuestionOptions, AreKnownByTheCodesOfTheCore)

@@ -103,5 +103,25 @@ TEST(Shape, ThatIsBuiltAlready)
   EXPECT_EQ(shape.facts(false).points, 2u);
 }
 
+TEST(Shape, CopiesMeasureSpacingsOnce)
+{
+  std::vector<float> xyz = {0, 0, 0, 1, 0, 0}, wider = {0, 0, 0, 3, 0, 0};
+  const auto built = std::make_shared<SphereHierarchy>(viewOf(xyz.data(), 2));
+  const Shape shape("pair", built), copy = shape.named("the same");
+  EXPECT_EQ(copy.name(), "the same");
+  EXPECT_EQ(copy.facts(true).spacing->median, 1.0);
+  built->refit(viewOf(wider.data(), 2)); // which would be seen by who measures again
+  EXPECT_EQ(shape.facts(true).spacing->median, 1.0);
+  EXPECT_EQ(Shape("pair", built).facts(true).spacing->median, 3.0);
+}
+
+TEST(Shape, BallsHaveNoSpacings)
+{
+  const std::vector<float> xyz = {0, 0, 0, 1, 0, 0}, radii = {0.1f, 0.2f};
+  PointsView balls = viewOf(xyz.data(), 2);
+  balls.radii = radii.data();
+  EXPECT_FALSE(Shape("balls", std::make_shared<SphereHierarchy>(balls)).facts(true).spacing);
+}
+
 } // namespace
 } // namespace pcl_bsh

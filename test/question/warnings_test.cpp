@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,20 +55,29 @@ Eigen::Isometry3d at(double x)
   return pose;
 }
 
+Question question(const std::vector<Eigen::Isometry3d>& poses, std::optional<double> clearance)
+{
+  Question question;
+  question.path = poses;
+  question.clearance = clearance;
+  return question;
+}
+
 TEST(Warnings, NoneOfCloudsThatAreInOrder)
 {
   const Cloud a(plane(12)), b(plane(12, 3));
-  EXPECT_THAT(warningsOf({a.named("a", true), b.named("b", true), {at(0)}, 2.0}), IsEmpty());
-  EXPECT_THAT(warningsOf({a.named("a"), b.named("b"), {at(0)}, 0.5}), IsEmpty()) << "nobody has measured spacings";
+  EXPECT_THAT(warningsOf(question({at(0)}, 2.0), a.named("a", true), b.named("b", true)), IsEmpty());
+  EXPECT_THAT(warningsOf(question({at(0)}, 0.5), a.named("a"), b.named("b")), IsEmpty())
+      << "nobody has measured spacings";
 }
 
 TEST(Warnings, EmptyClouds)
 {
   const Cloud a(plane(3)), nothing({}), no_numbers({nan, 0, 0, 0, nan, 0});
   for (const Cloud* empty : {&nothing, &no_numbers}) {
-    EXPECT_THAT(textsOf(warningsOf({a.named("a"), empty->named("b"), {at(0)}, 0.5})),
+    EXPECT_THAT(textsOf(warningsOf(question({at(0)}, 0.5), a.named("a"), empty->named("b"))),
                 ElementsAre("b: has no finite point: nothing collides with it"));
-    EXPECT_THAT(textsOf(warningsOf({empty->named("a"), a.named("b"), {at(0)}, {}})),
+    EXPECT_THAT(textsOf(warningsOf(question({at(0)}, {}), empty->named("a"), a.named("b"))),
                 ElementsAre("a: has no finite point: nothing has a distance from it"));
   }
 }
@@ -75,7 +85,7 @@ TEST(Warnings, EmptyClouds)
 TEST(Warnings, PointsThatAreNotFinite)
 {
   const Cloud one({0, 0, 0, nan, 0, 0}), two({0, 0, 0, nan, 0, 0, 1, 0, nan});
-  EXPECT_THAT(textsOf(warningsOf({one.named("a"), two.named("b"), {at(0)}, 0.5})),
+  EXPECT_THAT(textsOf(warningsOf(question({at(0)}, 0.5), one.named("a"), two.named("b"))),
               ElementsAre("a: 1 of 2 points is not finite: it is left out",
                           "b: 2 of 3 points are not finite: they are left out"));
 }
@@ -85,7 +95,7 @@ TEST(Warnings, CoarseCoordinates)
 {
   const Cloud far(plane(12, 500000)), near(plane(12));
   const auto told = [&](double clearance) {
-    return textsOf(warningsOf({far.named("a"), near.named("b"), {at(500000)}, clearance}));
+    return textsOf(warningsOf(question({at(500000)}, clearance), far.named("a"), near.named("b")));
   };
   EXPECT_THAT(told(0.3), ElementsAre(HasSubstr("a: its float32 coordinates lie 0.03125 apart, coarse for a clearance "
                                                "of 0.3: ")));
@@ -109,12 +119,12 @@ TEST(Warnings, SurfacesHaveCornersAndNoHoles)
   EXPECT_FALSE(surface.spacing);
 
   const Cloud scan(plane(12));
-  EXPECT_THAT(textsOf(warningsOf({scan.named("scan", true), surface, {at(-500000)}, 0.25})),
+  EXPECT_THAT(textsOf(warningsOf(question({at(-500000)}, 0.25), scan.named("scan", true), surface)),
               ElementsAre("mesh: 1 of its vertices belongs to no face: it is no part of the surface that is compared",
                           HasSubstr("mesh: its float32 coordinates"),
                           "points lie 1 apart in scan: what was scanned may touch the surface of mesh with no point "
                           "within the clearance of 0.25: scan more densely, or give a clearance of 0.707107 at least"));
-  EXPECT_THAT(warningsOf({surface, surface, {at(0)}, 0.5}), testing::SizeIs(1)) << "of the loose vertex";
+  EXPECT_THAT(warningsOf(question({at(0)}, 0.5), surface, surface), testing::SizeIs(1)) << "of the loose vertex";
 
   const std::vector<double> wide(corners.begin(), corners.end());
   EXPECT_EQ(coverSurface(viewOf(wide.data(), 3), {{0, 1, 2}}, {1.0, false, nullptr}).coordinate_spacing, 0.0);
@@ -124,7 +134,7 @@ TEST(Warnings, HolesBetweenPoints)
 {
   const Cloud a(plane(12)), b(plane(12, 3)), few(plane(9));
   const auto told = [&](const Cloud& first, const Cloud& second, double clearance) {
-    return textsOf(warningsOf({first.named("a", true), second.named("b", true), {at(0)}, clearance}));
+    return textsOf(warningsOf(question({at(0)}, clearance), first.named("a", true), second.named("b", true)));
   };
   EXPECT_THAT(told(a, b, 1.4), ElementsAre("points lie 1 apart in a and 1 in b: surfaces may touch with no two points "
                                            "within the clearance of 1.4: scan more densely, or give a clearance of "
@@ -138,7 +148,7 @@ TEST(Warnings, OneCloudTwiceIsToldOnce)
   std::vector<float> xyz = plane(12, 500000);
   xyz.insert(xyz.end(), {nan, 0, 0});
   const Cloud a(xyz);
-  EXPECT_THAT(textsOf(warningsOf({a.named("a", true), a.named("a", true), {at(0)}, 0.25})),
+  EXPECT_THAT(textsOf(warningsOf(question({at(0)}, 0.25), a.named("a", true), a.named("a", true))),
               ElementsAre(HasSubstr("a: 1 of 145 points"), HasSubstr("a: its float32 coordinates"),
                           HasSubstr("points lie 1 apart in a: surfaces may touch")));
   std::vector<std::string> texts = {"b"};
@@ -151,7 +161,7 @@ TEST(Warnings, FramesThatNeverMeet)
 {
   const Cloud tunnel(plane(31)), wagon(plane(4));
   const auto told = [&](const std::vector<Eigen::Isometry3d>& poses) {
-    return textsOf(warningsOf({tunnel.named("tunnel"), wagon.named("wagon"), poses, 0.05}));
+    return textsOf(warningsOf(question(poses, 0.05), tunnel.named("tunnel"), wagon.named("wagon")));
   };
   EXPECT_THAT(
       told({at(5e6), at(5e6 + 10)}),
@@ -162,9 +172,23 @@ TEST(Warnings, FramesThatNeverMeet)
   EXPECT_THAT(told({at(-300), at(-400)}), IsEmpty()) << "within ten diagonals";
   EXPECT_THAT(told({at(-1000)}), testing::SizeIs(1));
   const Cloud place({0, 0, 0});
-  EXPECT_THAT(warningsOf({place.named("a"), place.named("b"), {at(7)}, 0.5}), IsEmpty()) << "places have no size";
-  EXPECT_THAT(warningsOf({tunnel.named("a"), wagon.named("b"), {at(1000)}, 5000.0}), IsEmpty()) << "it may collide";
-  EXPECT_THAT(warningsOf({tunnel.named("a"), wagon.named("b"), {at(1000)}, {}}), testing::SizeIs(1)) << "distances";
+  EXPECT_THAT(warningsOf(question({at(7)}, 0.5), place.named("a"), place.named("b")), IsEmpty())
+      << "places have no size";
+  EXPECT_THAT(warningsOf(question({at(1000)}, 5000.0), tunnel.named("a"), wagon.named("b")), IsEmpty())
+      << "it may collide";
+  EXPECT_THAT(warningsOf(question({at(1000)}, {}), tunnel.named("a"), wagon.named("b")), testing::SizeIs(1))
+      << "distances";
+}
+
+/// Both stand far from the origin of a world.
+TEST(Warnings, PosesOfTheInputCount)
+{
+  const Cloud tunnel(plane(31)), wagon(plane(4));
+  Question far = question({at(5e6)}, 0.05);
+  far.pose_of_input = at(5e6);
+  EXPECT_THAT(warningsOf(far, tunnel.named("tunnel"), wagon.named("wagon")), IsEmpty());
+  far.pose_of_input = at(-5e6);
+  EXPECT_THAT(warningsOf(far, tunnel.named("tunnel"), wagon.named("wagon")), testing::SizeIs(1));
 }
 
 TEST(Warnings, BoxesAlongAPathHoldTurnedPoints)
@@ -191,7 +215,7 @@ TEST(Warnings, StreamsHearEachKindOnce)
   const Cloud a(plane(3)), nothing({}), gaps({0, 0, 0, nan, 0, 0});
   WarningsOnce once;
   const auto told = [&](const Cloud& input, const Cloud& obstacle) {
-    return textsOf(once.unheard(warningsOf({input.named("a"), obstacle.named("b"), {at(0)}, 0.5})));
+    return textsOf(once.unheard(warningsOf(question({at(0)}, 0.5), input.named("a"), obstacle.named("b"))));
   };
   EXPECT_THAT(told(a, a), IsEmpty());
   EXPECT_THAT(told(gaps, gaps), testing::SizeIs(2)) << "of both clouds of one question";

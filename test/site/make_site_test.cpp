@@ -155,6 +155,25 @@ TEST(MakeSite, ReadsLazOnAsManyThreadsAsAreAskedFor)
   if (threadCount(2) == 2) expectOtherThreads(true, [&] { make_on(2); });
 }
 
+TEST(MakeSite, KeepsTheCoordinateSystemsOfItsSources)
+{
+  const files::TemporaryFolder folder;
+  std::vector<fs::path> files = {folder / "c.pcd"};
+  writeBinary(files[0], unevenCloud(10, 2));
+  for (const std::string name : {"A + heights", "B", "A + heights"}) {
+    io::LasSample sample(4, 6);
+    sample.records = {io::LasSample::record("LASF_Projection", 2112, "PROJCS[\"" + name + "\"]")};
+    sample.addPoints(5);
+    files.push_back(folder.write(std::to_string(files.size()) + ".las", sample.text()));
+  }
+  makeSite(files, folder / "site");
+  const Site site = readSite(folder / "site");
+  ASSERT_EQ(site.sources.size(), 4U);
+  EXPECT_EQ(site.sources[0].coordinate_system, "");
+  EXPECT_EQ(site.sources[1].coordinate_system, "A + heights");
+  EXPECT_EQ(coordinateSystemOf(site), "A + heights; B") << "each once";
+}
+
 TEST(MakeSite, DrawsAnOverviewEvenly)
 {
   const files::TemporaryFolder folder;

@@ -470,9 +470,12 @@ TEST_F(ResumedSite, SaysWhatIsThrownAway)
 
   const Site other = makeSite({folder / "body.pcd"}, folder / "other");
   const Outcome of_obstacle =
-      run("pcl_bsh_site", "collide site other --clearance 0.3 --obstacle-out out", folder.path());
+      run("pcl_bsh_site", "collide site other --clearance 0.3 --obstacle-out out --report r.json", folder.path());
   EXPECT_EQ(of_obstacle.exit_code, 0);
-  EXPECT_THAT(of_obstacle.err, HasSubstr("--obstacle-out: out: what an earlier run had found of 4 "));
+  const std::string thrown_away = "--obstacle-out: out: what an earlier run had found of 4 ";
+  EXPECT_THAT(of_obstacle.err, HasSubstr(thrown_away));
+  EXPECT_THAT(Json::parse(files::contentOf(folder / "r.json"))["warnings"][0].get<std::string>(),
+              HasSubstr(thrown_away));
 }
 
 TEST_F(ResumedSite, IsRefusedWhereNothingCanBeKept)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The clashes of a site are those of one cloud of all its points, whatever the tiles and the ranks.
 #include "float64_cloud.h"
+#include "io/clouds/las_sample.h"
 #include "tools/programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
@@ -403,6 +404,22 @@ TEST_F(SiteClashList, OfThePrograms_SayWhatIsNotKnown)
     EXPECT_EQ(statusesOf("empty " + obstacle + alike + "poses.txt"),
               (std::map<std::string, std::size_t>{{"not_scanned", of_site["clashes"].size()}}));
   }
+}
+
+TEST_F(SiteClashList, OfThePrograms_NameTheCoordinateSystem)
+{
+  io::LasSample sample(4, 6);
+  sample.records = {io::LasSample::record("LASF_Projection", 2112, "PROJCS[\"ETRS89 / UTM 32N\"]")};
+  sample.addPoints(5);
+  makeSite({folder.write("a.las", sample.text())}, folder / "site", {});
+  const Outcome done = run("pcl_bsh_site",
+                           "collide site a.las --clearance 0.1 --clashes list.json --clashes list.csv --clashes "
+                           "list.html",
+                           folder.path());
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(Json::parse(files::contentOf(folder / "list.json"))["coordinate_system"], "ETRS89 / UTM 32N");
+  for (const char* list : {"list.csv", "list.html"})
+    EXPECT_THAT(files::contentOf(folder / list), HasSubstr("ETRS89 / UTM 32N"));
 }
 
 TEST_F(SiteClashList, OfThePrograms_AreRefused)

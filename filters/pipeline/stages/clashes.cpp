@@ -2,6 +2,7 @@
 // What collides, place by place, as a list.
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
+#include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/clash_report.h>
@@ -31,7 +32,7 @@ struct ClashWriter : Stage, QuestionStage {
   StageCloudPtr run(StageClouds&& inputs) override
   {
     requirePoints(*inputs[0]);
-    write(ask(inputs[0], *this));
+    write(ask(inputs[0], *this), io::coordinateSystemOf(inputs[0]->las_header));
     return inputs[0];
   }
 
@@ -58,18 +59,9 @@ private:
     }
   }
 
-  io::ClashQuestion asked() const
-  {
-    return {input_name,
-            obstacle.name,
-            *question.clearance,
-            question.swept > 0 ? std::optional(question.swept) : std::nullopt,
-            question.accuracy,
-            question.uncertaintyOfInput(),
-            question.uncertaintyOfObstacle()};
-  }
+  io::ClashQuestion asked() const { return io::clashQuestion(input_name, obstacle.name, question); }
 
-  void write(Asked&& found)
+  void write(Asked&& found, const std::string& coordinate_system)
   {
     const SphereHierarchy &input = found.inputHierarchy(question), &other = found.obstacleHierarchy(question);
     const double distance =
@@ -85,6 +77,7 @@ private:
                            .found = collisions,
                            .survey = {poses, extentOf(input.view())},
                            .unit = unit,
+                           .coordinate_system = coordinate_system,
                            .surface = found.compared.isSurface() ? &found.compared : nullptr};
     if (previous) {
       TrajectoryRequest motion;

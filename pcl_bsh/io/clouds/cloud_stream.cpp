@@ -27,6 +27,7 @@ public:
   const pcl::PCLPointCloud2& header() const override { return reader_.cloudHeader(); }
   std::uint64_t size() const override { return reader_.size(); }
   std::vector<std::string> remarks() const override { return remarksOn(reader_.block(), fs::file_size(path_)); }
+  std::string coordinateSystem() const override { return coordinateSystemOf(reader_.header()); }
   std::size_t read(std::uint8_t* records, std::size_t most) override
   {
     try {

@@ -36,6 +36,9 @@ public:
   /// What users should know of how the file is read, a line each, without its name.
   virtual std::vector<std::string> remarks() const { return {}; }
 
+  /// As a .las names it; empty where it does not.
+  virtual std::string coordinateSystem() const { return {}; }
+
   /// Leaves out the next points. @throws files::FileError
   virtual void skip(std::uint64_t points);
 };

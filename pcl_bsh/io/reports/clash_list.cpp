@@ -11,6 +11,7 @@
 #include <cstring>
 #include <limits>
 #include <set>
+#include <utility>
 
 namespace pcl_bsh::io {
 namespace {
@@ -171,6 +172,12 @@ std::string checksumOf(const std::vector<Eigen::Isometry3d>& poses)
 }
 
 } // namespace
+
+ClashQuestion clashQuestion(std::string input, std::string obstacle, const Question& question)
+{
+  return {std::move(input),  std::move(obstacle),           question.clearance.value_or(0.0), question.sweptTolerance(),
+          question.accuracy, question.uncertaintyOfInput(), question.uncertaintyOfObstacle()};
+}
 
 std::string uncertaintyText(const Uncertainty& uncertainty)
 {

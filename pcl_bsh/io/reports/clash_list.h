@@ -3,8 +3,8 @@
 #pragma once
 
 #include <pcl_bsh/clashes/clashes.h>
-#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/io/json/json_document.h>
+#include <pcl_bsh/question/question.h>
 
 #include <Eigen/Geometry>
 
@@ -27,6 +27,9 @@ struct ClashQuestion {
   /// Whether clashes may be uncertain.
   bool isUncertain() const { return !input_uncertainty.isZero() || !obstacle_uncertainty.isZero(); }
 };
+
+/// What a user's question is to a list. @param input and @param obstacle file names
+ClashQuestion clashQuestion(std::string input, std::string obstacle, const Question& question);
 
 /// A length, or `K x field NAME`.
 std::string uncertaintyText(const Uncertainty& uncertainty);

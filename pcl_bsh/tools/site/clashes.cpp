@@ -12,8 +12,7 @@ namespace {
 
 io::ClashQuestion questionOf(const SiteOptions& options)
 {
-  return {options.site.string(), options.obstacle.string(), options.clearance,           options.swept,
-          options.accuracy,      options.uncertainty,       options.obstacle_uncertainty};
+  return io::clashQuestion(options.site.string(), options.obstacle.string(), options.question);
 }
 
 std::optional<Extent> extentOf(const std::optional<site::Bounds>& bounds)
@@ -32,8 +31,8 @@ SiteClashList::SiteClashList(const site::Site& site, const SiteOptions& options)
   }
   Spacing spacing;
   spacing.median = site::spacingOf(site);
-  distance_ =
-      options.cluster_distance > 0 ? options.cluster_distance : io::clusterDistanceFor(options.clearance, spacing);
+  distance_ = options.cluster_distance > 0 ? options.cluster_distance
+                                           : io::clusterDistanceFor(*options.question.clearance, spacing);
   finder_.emplace(site, distance_);
   if (!options.previous) return;
   earlier_ = io::readClashes(*options.previous);
@@ -44,7 +43,7 @@ void SiteClashList::addTo(site::SiteRequest& request)
 {
   if (!isWanted()) return;
   request.clashes = &*finder_;
-  request.pose_summaries = !options_.swept;
+  request.pose_summaries = !request.swept;
 }
 
 void SiteClashList::finish(const SphereHierarchy& obstacle, const io::Obstacle* surface,
@@ -100,6 +99,7 @@ void SiteClashList::write(site::SiteClashes clashes, const PointsView& model, co
                        .found = of_places,
                        .survey = {poses, extentOf(site_.bounds)},
                        .unit = options_.unit,
+                       .coordinate_system = site::coordinateSystemOf(site_),
                        .surface = surface,
                        .source_of =
                            [&](std::uint32_t i) {
@@ -119,8 +119,8 @@ void SiteClashList::write(site::SiteClashes clashes, const PointsView& model, co
 void SiteClashList::compare(io::ClashReport& list, const Visit& visit)
 {
   TrajectoryRequest motion;
-  motion.swept = options_.swept;
-  motion.threads = options_.threads;
+  motion.swept = options_.question.sweptTolerance();
+  motion.threads = options_.question.threads;
   warnings_ = io::compareWithList(list, *options_.previous, earlier_, [&](FormerPlaces& former) {
     visit(former, motion);
     for (const site::Tile& tile : site_.tiles)

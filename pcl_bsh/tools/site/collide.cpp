@@ -24,7 +24,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <iostream>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,14 +40,14 @@ namespace {
 /// A question about a site, and the answer, which is the same on all ranks.
 struct Asking {
   const site::Site& site;
-  const Poses& poses;
+  const std::vector<Eigen::Isometry3d>& poses;
   const SiteOptions& options;
   SiteOutput& out;
   SiteClashList& clashes;
+  std::function<void(const std::vector<std::string>&)> warn;
   site::SiteRequest request;
   Json report;
-  site::TilesRead tiles;
-  std::vector<std::string> told; ///< what users should know of the question
+  site::TilesRead tiles = {};
 };
 
 /// The number of points that collide, or are undecided, of the one or of the other.
@@ -63,20 +65,21 @@ public:
     surface_(file.surface()),
     shape_(file.obstacle.shape(asking.options.obstacle.string())),
     hierarchy_(cli::named([&]() -> const SphereHierarchy& {
-      return shape_.hierarchy(asking.options.obstacle_uncertainty, asking.options.threads);
+      const Question& question = asking.options.question;
+      return shape_.hierarchy(question.uncertaintyOfObstacle(), question.threads);
     })),
-    placed_(hierarchy_, asking.options.pose)
+    placed_(hierarchy_, asking.options.question.pose)
   {
     if (surface_ != nullptr) asking.request.surface = surface_->tolerance();
-    asking.report["surface"] =
-        io::surfaceJson(surface_, besideSurface(asking.options.accuracy, asking.options.swept.has_value()));
+    const Question& question = asking.options.question;
+    asking.report["surface"] = io::surfaceJson(surface_, besideSurface(question.accuracy, question.swept > 0.0));
   }
 
   const Placed& placed() const { return placed_; }
 
-  NamedCloud facts() const { return Shape(shape_).facts(true); }
+  NamedCloud facts() const { return shape_.facts(true); }
 
-  site::SiteFlags flags(Asking& asking, Step* /*step*/) const
+  site::SiteFlags flags(Asking& asking) const
   {
     // Which triangles collide is known where each has balls of its own.
     const bool of_both = surface_ == nullptr || surface_->cover()->triangles_apart;
@@ -121,7 +124,7 @@ class SiteObstacle {
 public:
   explicit SiteObstacle(Asking& asking)
   : site_(site::readSite(asking.options.obstacle)),
-    placed_{site_, asking.options.pose, asking.options.obstacle_uncertainty}
+    placed_{site_, asking.options.question.pose, asking.options.question.uncertaintyOfObstacle()}
   {
     asking.report["points_of_obstacle"] = site_.points;
   }
@@ -130,7 +133,7 @@ public:
   NamedCloud facts() const { return namedSite(site_); }
 
   /// Flags of both sides: each in tiles of its own.
-  site::SiteFlags flags(Asking& asking, Step* step) const
+  site::SiteFlags flags(Asking& asking) const
   {
     const SiteOptions& options = asking.options;
     std::optional<site::ResultSite> obstacle_out;
@@ -141,8 +144,7 @@ public:
                              {options.obstacle_out, site::spaceWanted(site_, options.obstacle_out, fields)}});
       }
       obstacle_out.emplace(site_, options.obstacle_out, fields);
-      const auto lines = droppedBy(*obstacle_out, "--obstacle-out", options.obstacle_out, site_, fields);
-      if (step != nullptr) warn(site_program, lines);
+      asking.warn(droppedBy(*obstacle_out, "--obstacle-out", options.obstacle_out, site_, fields));
     }
     const site::SiteFlags found = site::collisionFlags(asking.site, placed_, asking.request, asking.out.flags());
     putCounts(asking.report, "", found.colliding, found.undecided);
@@ -180,17 +182,18 @@ private:
   site::PlacedSite placed_;
 };
 
+/// @return what users should know of the question
 template <typename Obstacle>
-void ask(Asking& asking, const Obstacle& obstacle, Step* step)
+std::vector<std::string> ask(Asking& asking, const Obstacle& obstacle)
 {
-  const auto& [site, poses, options, out, clashes, request, unused, tiles, told] = asking;
-  Json& report = asking.report;
+  auto& [site, poses, options, out, clashes, warn, request, report, tiles] = asking;
+  const Question& question = options.question;
   const auto put_tiles = [&](const auto& found) {
     asking.tiles = found.tiles;
     putTiles(report, "tiles", found.tiles);
     obstacle.putTilesOf(report, found.tiles_b);
   };
-  switch (options.question) {
+  switch (options.kind) {
   case SiteQuestion::any: {
     const site::SiteAny found = site::anyCollision(site, obstacle.placed(), request);
     report["collides"] = found.verdict == Verdict::colliding;
@@ -199,7 +202,7 @@ void ask(Asking& asking, const Obstacle& obstacle, Step* step)
     break;
   }
   case SiteQuestion::flags:
-    put_tiles(obstacle.flags(asking, step));
+    put_tiles(obstacle.flags(asking));
     break;
   case SiteQuestion::closest: {
     const site::SiteClosest found = site::closestPair(site, obstacle.placed(), request);
@@ -213,28 +216,30 @@ void ask(Asking& asking, const Obstacle& obstacle, Step* step)
     break;
   }
   case SiteQuestion::distances: {
-    const site::SiteDistances found =
-        site::pointDistances(site, obstacle.placed(), options.max_distance, request, out.distances());
-    report["max_distance"] = orNull(options.max_distance);
+    const double most = question.max_distance.value_or(std::numeric_limits<double>::infinity());
+    const site::SiteDistances found = site::pointDistances(site, obstacle.placed(), most, request, out.distances());
+    report["max_distance"] = orNull(most);
     report["measured"] = found.measured;
     report["greatest"] = orNull(found.greatest);
     put_tiles(found);
     break;
   }
   case SiteQuestion::path: {
-    asking.clashes.addTo(asking.request);
+    clashes.addTo(request);
     const site::SitePassage found = obstacle.along(asking);
-    putPassage(report, found, poses.size(), options);
+    putPassage(report, found, question);
     if (clashes.isWanted()) obstacle.finish(asking, found);
     put_tiles(found);
     break;
   }
   }
-  asking.told = warningsOf(site, obstacle.facts(), poses, options);
+  std::vector<std::string> told;
+  addTexts(warningsOf(question, namedSite(site), obstacle.facts()), told);
+  return told;
 }
 
 /// @param keeps set where what is found stays in --out although the run fails
-int answer(const SiteOptions& options, bool& keeps)
+int answer(SiteOptions options, bool& keeps)
 {
   const auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
@@ -257,23 +262,22 @@ int answer(const SiteOptions& options, bool& keeps)
     warn_of(warningsOf(file->obstacle, options.obstacle));
   }
   std::vector<std::string> of_poses;
-  const Poses poses = options.trajectory.empty() ? Poses{options.pose} : io::readPoses(options.trajectory, &of_poses);
+  if (!options.trajectory.empty()) options.question.path = io::readPoses(options.trajectory, &of_poses);
+  const std::vector<Eigen::Isometry3d> poses = options.question.poses();
   warn_of(of_poses);
-  SiteOutput output(site, file ? &*file : nullptr, poses, clashes.clusterDistance(), options);
+  SiteOutput output(site, file ? &*file : nullptr, clashes.clusterDistance(), options);
   warn_of(output.warnings());
   keeps = output.answers() != nullptr;
   std::optional<Step> shown;
   if (tells) shown.emplace("Asking about tiles");
   Step* const step = tells ? &*shown : nullptr;
-  Asking asking{site, poses, options, output, clashes, requestOf(options, step), beginReport(site, options), {}, {}};
+  Asking asking{site, poses, options, output, clashes, warn_of, requestOf(options, step), beginReport(site, options)};
   asking.request.answers = output.answers();
-  if (file)
-    ask(asking, FileObstacle(*file, asking), step);
-  else
-    ask(asking, SiteObstacle(asking), step);
+  const std::vector<std::string> told =
+      file ? ask(asking, FileObstacle(*file, asking)) : ask(asking, SiteObstacle(asking));
   Json& report = asking.report;
   if (tells) shown->done(counted(report["tiles"]["read"].get<std::uint64_t>(), "tile") + " read");
-  warn_of(asking.told);
+  warn_of(told);
   if (clashes.isWanted()) warn_of(clashes.warnings());
   MeasuredRun run;
   run.tiles = std::move(asking.tiles.costs);

@@ -73,8 +73,6 @@ void requireExport(const SiteOptions& options)
 struct CollideTexts {
   bool any = false, closest = false, distances = false;
   std::string pose;
-  Question question; ///< as far as the core's table has its options
-  CLI::Option *clearance = nullptr, *max_distance = nullptr;
 
   void addTo(CLI::App& app, SiteOptions& options)
   {
@@ -85,16 +83,9 @@ struct CollideTexts {
     app.add_option("--report", options.report, "JSON file for the answer; -: standard output")->type_name("FILE");
     app.add_option("--out", options.out, "new site with what was found of each point, as fields more of the same tiles")
         ->type_name("SITE");
-    clearance = app.add_option("--clearance", options.clearance,
-                               "greatest distance that counts as collision, in the clouds' unit")
-                    ->type_name("D")
-                    ->transform(number<double>(give_length));
     app.add_option("--pose", pose, "of OBSTACLE in SITE's frame: x,y,z,roll,pitch,yaw or a file")->type_name("POSE");
     app.add_option("--trajectory", options.trajectory, "poses of OBSTACLE, one a line, instead of --pose")
         ->type_name("FILE");
-    app.add_option("--swept", options.swept, "of --trajectory: the motion between poses counts, to this tolerance")
-        ->type_name("TOL")
-        ->transform(number<double>("give a length > 0", [](double d) { return d > 0; }));
     app.add_option("--clashes", options.clashes,
                    "list of the places that collide, to .json, .csv or .html; may be given more than once")
         ->type_name("FILE")
@@ -113,27 +104,21 @@ struct CollideTexts {
     app.add_flag("--any", any, "only whether any point collides");
     app.add_flag("--closest", closest, "the smallest distance, and the points that have it");
     app.add_flag("--distances", distances, "how many points have a distance, and the greatest");
-    max_distance = app.add_option("--max-distance", options.max_distance, "of --distances: greater ones do not count")
-                       ->type_name("M")
-                       ->transform(number<double>("give a length >= 0", [](double d) { return d >= 0; }));
     app.add_option(
            "--obstacle-out", options.obstacle_out,
            "OBSTACLE's points with all their fields, and which of them collide with SITE in a field 'collision'; "
            "of a mesh its triangles, as .ply; a new site where OBSTACLE is one; not with --trajectory or --clashes")
         ->type_name("FILE");
     app.add_flag("--resume", options.resume, "goes on with what the same command has left in --out when it was killed");
-    addQuestionOptions(
-        app, question,
-        {"accuracy", "uncertainty", "obstacle_uncertainty", "sigmas", "surface_tolerance", "vertices_only"});
+    addQuestionOptions(app, options.question,
+                       {"clearance", "swept", "accuracy", "uncertainty", "obstacle_uncertainty", "sigmas",
+                        "max_distance", "surface_tolerance", "vertices_only", "threads"});
     app.add_option("--plan", options.plan,
                    "numbers of ranks, as 64,1024: by what the tiles have cost, the report says how long the same "
                    "question takes on so many, and what limits it")
         ->type_name("N,...")
         ->delimiter(',')
         ->check(CLI::Range(1u, 1000000u));
-    app.add_option("--threads", options.threads, "of each process (default: 1); 0: all of the machine's")
-        ->type_name("N")
-        ->transform(number<unsigned>(give_threads));
   }
 
   /// @throws UsageError where they do not fit each other
@@ -143,29 +128,24 @@ struct CollideTexts {
     if (any + closest + distances + moves > 1)
       throw UsageError("--any, --closest, --distances, --trajectory: more than one is given: give one");
     const bool lists = !options.clashes.empty();
-    options.question = any              ? SiteQuestion::any
-                       : closest        ? SiteQuestion::closest
-                       : distances      ? SiteQuestion::distances
-                       : moves || lists ? SiteQuestion::path
-                                        : SiteQuestion::flags;
+    options.kind = any              ? SiteQuestion::any
+                   : closest        ? SiteQuestion::closest
+                   : distances      ? SiteQuestion::distances
+                   : moves || lists ? SiteQuestion::path
+                                    : SiteQuestion::flags;
+    Question& question = options.question;
     const bool needs_clearance = !closest && !distances;
-    if (options.swept && !moves) throw UsageError("--swept: goes with --trajectory: add it");
+    if (!needs_clearance) question.clearance.reset();
     if (moves) question.path = {Eigen::Isometry3d::Identity()}; // whatever they are
-    question.swept = options.swept.value_or(0.0);
-    question.wanted.flags = true;
+    question.wanted.flags = needs_clearance;
     question.wanted.contacts = lists;
     question.wanted.distances = distances;
     requireAccepted(question);
-    options.accuracy = question.accuracy;
-    options.surface.tolerance = question.surface_tolerance;
-    options.surface.vertices_only = question.vertices_only;
     if (!options.obstacle_out.empty() && (moves || lists || any || closest || distances))
       throw UsageError("--obstacle-out: are flags at one pose: leave out what else is asked");
-    options.uncertainty = question.uncertaintyOfInput();
-    options.obstacle_uncertainty = question.uncertaintyOfObstacle();
-    if (!needs_clearance && !(options.uncertainty.isZero() && options.obstacle_uncertainty.isZero()))
+    if (!needs_clearance && !(question.uncertainty.isZero() && question.obstacle_uncertainty.isZero()))
       throw UsageError("--uncertainty: distances are those of the measured places: leave it out");
-    if (needs_clearance && clearance->count() == 0) throw UsageError("--clearance: is missing: give a length");
+    if (needs_clearance && !question.clearance) throw UsageError("--clearance: is missing: give a length");
     if (options.report.empty() && options.out.empty() && options.obstacle_out.empty() && !lists)
       throw UsageError("--report, --out, --obstacle-out, --clashes: none is given: give one or more of them");
     if (lists && (any || closest || distances))
@@ -180,10 +160,9 @@ struct CollideTexts {
     if (!options.out.empty() && (any || closest))
       throw UsageError("--out: --any and --closest find nothing of each point: leave it away");
     if (options.resume && options.out.empty()) throw UsageError("--resume: there is nothing to go on with: add --out");
-    if (max_distance->count() > 0 && !distances) throw UsageError("--max-distance: goes with --distances: add it");
+    if (question.max_distance && !distances) throw UsageError("--max-distance: goes with --distances: add it");
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
-    if (!pose.empty()) options.pose = parsePose("--pose", pose, options.warnings);
-    options.surface.triangles_apart = !options.obstacle_out.empty(); // each has a flag of its own
+    if (!pose.empty()) question.pose = parsePose("--pose", pose, options.warnings);
     const bool two_sites = options.obstacleIsSite();
     const auto require_outside_sites = [&](const char* option, const std::filesystem::path& file) {
       requireOutside(options.site, "SITE", option, file);
@@ -235,7 +214,7 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
   make->add_option("--tile-points", options.tile_points, "points of a tile at most, as 500K or 4M (default: 4M)")
       ->type_name("N")
       ->transform(amount(1000, 1, "give 1 or more"));
-  make->add_flag("--vertices-only", options.surface.vertices_only, "clouds with faces are their vertices alone");
+  addQuestionOptions(*make, options.question, {"vertices_only"});
   make->add_option("--threads", options.make_threads, "that read .laz; 0: all of the machine's (default)")
       ->type_name("N")
       ->transform(number<unsigned>(give_threads));

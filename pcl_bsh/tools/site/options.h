@@ -4,16 +4,11 @@
 
 #include <pcl_bsh/tools/cli/used_files.h>
 
-#include <pcl_bsh/filters/uncertainty.h>
-#include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/text/column_names.h>
-#include <pcl_bsh/query/accuracy.h>
-
-#include <Eigen/Geometry>
+#include <pcl_bsh/question/question.h>
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,14 +30,15 @@ struct SiteOptions {
       out; ///< of `write`: a .pcd or .pvtp file, or a folder for the sources; of `collide`: a site, or none
   std::uint64_t memory = std::uint64_t{2} << 30;
   std::uint64_t tile_points = 4'000'000;
-  io::SurfaceSettings surface; ///< of `make`, whether meshes are their vertices; of `collide`, of the obstacle
-
   bool json = false; ///< of `info` and `validate`: what they tell
 
   // of `collide`
   /// Whether the obstacle is a site, too: a folder.
   bool obstacleIsSite() const { return std::filesystem::is_directory(obstacle); }
-  SiteQuestion question = SiteQuestion::flags;
+  SiteQuestion kind = SiteQuestion::flags;
+  /// What is asked; its path is that of `trajectory`, once it is read, its threads are those of each process. Of
+  /// `make`, whether meshes are their vertices.
+  Question question;
   std::filesystem::path obstacle, trajectory, report;
   std::filesystem::path obstacle_out;         ///< the obstacle with its flags, a cloud or a site as it, or none
   std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
@@ -50,13 +46,7 @@ struct SiteOptions {
   std::optional<std::filesystem::path> previous;
   std::string unit;    ///< of the clouds, for the clash report; empty: not known
   bool resume = false; ///< go on with what the same question has left in `out`
-  double clearance = 0.0;
-  Accuracy accuracy;
-  Uncertainty uncertainty, obstacle_uncertainty;
-  std::optional<double> swept;
-  double max_distance = std::numeric_limits<double>::infinity();
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  unsigned threads = 1, make_threads = 0;
+  unsigned make_threads = 0;
   std::vector<unsigned> plan; ///< numbers of ranks whose time is predicted
   std::vector<std::string> warnings;
   io::ColumnChoice columns; ///< of `make` and `collide`

@@ -24,7 +24,7 @@ using Type = pcl::PCLPointField;
 /// As pcl_bsh_collide: distances and poses are of paths, where nothing stops early.
 bool tellsPoses(const SiteOptions& options)
 {
-  return !options.trajectory.empty() && !options.accuracy.stopsEarly();
+  return !options.trajectory.empty() && !options.question.accuracy.stopsEarly();
 }
 
 /// The fields that each question answers with, as those of pcl_bsh_collide.
@@ -34,7 +34,7 @@ std::vector<site::ResultField> resultFields(const SiteOptions& options)
                           distance = {distance_field_name, Type::FLOAT32, std::numeric_limits<double>::quiet_NaN()},
                           first = {first_pose_field_name, Type::INT32, -1.0},
                           closest = {closest_pose_field_name, Type::INT32, -1.0};
-  switch (options.question) {
+  switch (options.kind) {
   case SiteQuestion::flags:
     return {collision};
   case SiteQuestion::distances:
@@ -80,18 +80,24 @@ nlohmann::json obstacleText(const ObstacleFile* given, const SiteOptions& option
 }
 
 /// All that the answer depends on, as a text.
-std::string questionOf(const site::Site& site, const ObstacleFile* obstacle, const Poses& poses,
-                       double cluster_distance, const SiteOptions& options)
+std::string questionOf(const site::Site& site, const ObstacleFile* obstacle, double cluster_distance,
+                       const SiteOptions& options)
 {
-  nlohmann::json question = {{"site", site::siteText(site)},         {"question", options.question},
-                             {"clearance", options.clearance},       {"accuracy", options.accuracy.text()},
-                             {"max_distance", options.max_distance}, {"swept", options.swept.value_or(-1.0)},
-                             {"clusters", cluster_distance},         {"obstacle", obstacleText(obstacle, options)},
+  const Question& asked = options.question;
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  nlohmann::json question = {{"site", site::siteText(site)},
+                             {"question", options.kind},
+                             {"clearance", asked.clearance.value_or(0.0)},
+                             {"accuracy", asked.accuracy.text()},
+                             {"max_distance", asked.max_distance.value_or(unlimited)},
+                             {"swept", asked.sweptTolerance().value_or(-1.0)},
+                             {"clusters", cluster_distance},
+                             {"obstacle", obstacleText(obstacle, options)},
                              {"poses", nlohmann::json::array()}};
   question["numbers"] = 3; // what of a tile is kept
-  for (const Uncertainty* of : {&options.uncertainty, &options.obstacle_uncertainty})
-    question["uncertainty"].push_back({of->field, of->length, of->sigmas});
-  for (const Eigen::Isometry3d& pose : poses)
+  for (const Uncertainty& of : {asked.uncertaintyOfInput(), asked.uncertaintyOfObstacle()})
+    question["uncertainty"].push_back({of.field, of.length, of.sigmas});
+  for (const Eigen::Isometry3d& pose : asked.poses())
     question["poses"].push_back(std::vector<double>(pose.data(), pose.data() + 16));
   const auto bytes = nlohmann::json::to_cbor(question);
   return {bytes.begin(), bytes.end()};
@@ -115,12 +121,14 @@ ObstacleFile::ObstacleFile(const SiteOptions& options)
 {
   double seconds = 0.0;
   const io::ColumnNames columns = options.columns.of(options.obstacle);
+  const Question& question = options.question;
+  const io::SurfaceSettings surface = {question.surface_tolerance, question.vertices_only,
+                                       !options.obstacle_out.empty()}; // each triangle has a flag of its own
+  const double clearance = question.clearance.value_or(0.0);
   if (site::rankHere() == 0)
-    obstacle =
-        loadObstacle(options.obstacle, options.surface, options.clearance, seconds, columns, &facts, options.threads);
+    obstacle = loadObstacle(options.obstacle, surface, clearance, seconds, columns, &facts, question.threads);
   else
-    obstacle = io::readObstacle(options.obstacle, options.surface, options.clearance, nullptr, columns, &facts,
-                                options.threads);
+    obstacle = io::readObstacle(options.obstacle, surface, clearance, nullptr, columns, &facts, question.threads);
   if (options.obstacle_out.empty()) return;
   if (obstacle.isSurface()) {
     io::requireWritableMesh(options.obstacle_out);
@@ -170,15 +178,15 @@ std::vector<std::string> droppedBy(const site::ResultSite& out, const std::strin
   return lines;
 }
 
-SiteOutput::SiteOutput(const site::Site& site, const ObstacleFile* obstacle, const Poses& poses,
-                       double cluster_distance, const SiteOptions& options)
+SiteOutput::SiteOutput(const site::Site& site, const ObstacleFile* obstacle, double cluster_distance,
+                       const SiteOptions& options)
 : options_(options)
 {
   if (options.out.empty()) return;
   setWhatStays(what_stays);
   const std::vector<site::ResultField> fields = resultFields(options);
   out_.emplace(site, options.out, fields,
-               site::Continuation{questionOf(site, obstacle, poses, cluster_distance, options), options.resume});
+               site::Continuation{questionOf(site, obstacle, cluster_distance, options), options.resume});
   warnings_ = droppedBy(*out_, "--out", options.out, site, fields);
 }
 

@@ -39,9 +39,6 @@ struct ObstacleFile {
 /// Of a run with --out that ends before it has answered.
 inline constexpr auto what_stays = "what was found stays, and the same command with --resume goes on";
 
-/// Where the obstacle is asked about.
-using Poses = std::vector<Eigen::Isometry3d>;
-
 /// The field of flags at one pose.
 site::ResultField collisionField();
 
@@ -58,8 +55,7 @@ public:
   /// @param obstacle null where that is a site, too
   /// @param cluster_distance of the lists of clashes; 0 where none is wanted
   /// @throws files::FileError for a folder that cannot be one
-  SiteOutput(const site::Site& site, const ObstacleFile* obstacle, const Poses& poses, double cluster_distance,
-             const SiteOptions& options);
+  SiteOutput(const site::Site& site, const ObstacleFile* obstacle, double cluster_distance, const SiteOptions& options);
 
   /// What users should know before the question is answered, a line each.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }

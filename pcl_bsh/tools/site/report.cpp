@@ -3,7 +3,6 @@
 #include "report.h"
 
 #include <pcl_bsh/geometry/coordinate_spacing.h>
-#include <pcl_bsh/question/warnings.h>
 #include <pcl_bsh/site/site_clashes.h>
 
 #include <cmath>
@@ -13,12 +12,13 @@ namespace pcl_bsh::cli {
 site::SiteRequest requestOf(const SiteOptions& options, Step* step)
 {
   site::SiteRequest request;
-  request.clearance = options.clearance;
-  request.threads = options.threads;
+  const Question& question = options.question;
+  request.clearance = question.clearance.value_or(0.0);
+  request.threads = question.threads;
   request.memory = options.memory;
-  request.accuracy = options.accuracy;
-  request.uncertainty = options.uncertainty;
-  request.swept = options.swept;
+  request.accuracy = question.accuracy;
+  request.uncertainty = question.uncertaintyOfInput();
+  request.swept = question.sweptTolerance();
   if (step != nullptr) {
     request.progress = [step](std::uint64_t done, std::uint64_t all) {
       step->share(static_cast<double>(done) / static_cast<double>(all));
@@ -31,9 +31,8 @@ site::SiteRequest requestOf(const SiteOptions& options, Step* step)
 Json beginReport(const site::Site& site, const SiteOptions& options)
 {
   Json report = {{"site", options.site.string()}, {"obstacle", options.obstacle.string()}, {"points", site.points}};
-  const bool has_clearance = options.question != SiteQuestion::closest && options.question != SiteQuestion::distances;
-  if (has_clearance) report["clearance"] = options.clearance;
-  report["accuracy"] = options.accuracy.text();
+  if (options.question.clearance) report["clearance"] = *options.question.clearance;
+  report["accuracy"] = options.question.accuracy.text();
   return report;
 }
 
@@ -47,14 +46,14 @@ void putTiles(Json& report, const char* key, const site::TilesRead& tiles)
   report[key] = {{"all", tiles.tiles}, {"needed", tiles.needed}, {"read", tiles.read}};
 }
 
-void putPassage(Json& report, const site::SitePassage& found, std::size_t poses, const SiteOptions& options)
+void putPassage(Json& report, const site::SitePassage& found, const Question& question)
 {
-  report["poses"] = poses;
+  report["poses"] = question.poses().size();
   report["colliding"] = found.colliding;
   report["undecided"] = found.undecided;
   report["distance"] = orNull(double{found.distance});
   report["first_pose"] = found.first_pose < 0 ? Json(nullptr) : Json(found.first_pose);
-  if (options.swept) report["swept"] = *options.swept;
+  if (question.swept > 0.0) report["swept"] = question.swept;
   const auto put_contact = [&](const char* key, const std::optional<FirstContact>& contact) {
     if (contact) report[key] = {{"pose", contact->pose}, {"fraction", contact->fraction}};
   };
@@ -105,17 +104,6 @@ NamedCloud namedSite(const site::Site& site)
         float32Spacing(cloud.box.min().cwiseAbs().cwiseMax(cloud.box.max().cwiseAbs()).maxCoeff());
   }
   return cloud;
-}
-
-std::vector<std::string> warningsOf(const site::Site& site, const NamedCloud& obstacle,
-                                    const std::vector<Eigen::Isometry3d>& poses, const SiteOptions& options)
-{
-  const bool distances = options.question == SiteQuestion::closest || options.question == SiteQuestion::distances;
-  const QuestionFacts question{namedSite(site), obstacle, poses,
-                               distances ? std::nullopt : std::optional(options.clearance)};
-  std::vector<std::string> told;
-  addTexts(warningsOf(question), told);
-  return told;
 }
 
 } // namespace pcl_bsh::cli

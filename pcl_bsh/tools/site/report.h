@@ -28,8 +28,8 @@ Json orNull(double number);
 /// @param key of the report
 void putTiles(Json& report, const char* key, const site::TilesRead& tiles);
 
-/// What a site meets along a path of so many poses.
-void putPassage(Json& report, const site::SitePassage& found, std::size_t poses, const SiteOptions& options);
+/// What a site meets along a path.
+void putPassage(Json& report, const site::SitePassage& found, const Question& question);
 
 /// A point of a site, by its name.
 Json named(const site::Site& site, const site::SitePoint& point);
@@ -39,10 +39,5 @@ void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun
 
 /// What site.json says of it; no tile is read.
 NamedCloud namedSite(const site::Site& site);
-
-/// What is to be told of a question.
-/// @param obstacle as measuredCloud() or namedSite() has it. @param poses of it
-std::vector<std::string> warningsOf(const site::Site& site, const NamedCloud& obstacle,
-                                    const std::vector<Eigen::Isometry3d>& poses, const SiteOptions& options);
 
 } // namespace pcl_bsh::cli

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/io/clouds/las/header.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,10 @@ namespace pcl_bsh::io {
 /// the header's global encoding chooses between where both are there. In ASCII, with '?' for other letters. Empty where
 /// there is none, or it is damaged.
 std::string coordinateSystemOf(const LasHeader& header);
+inline std::string coordinateSystemOf(const std::shared_ptr<const LasHeader>& header) ///< null: empty
+{
+  return header ? coordinateSystemOf(*header) : std::string();
+}
 
 /// How many records behind the points the header does not count, if any.
 std::vector<std::string> remarksOn(const LasBlock& block, std::uint64_t file_bytes);

@@ -9,9 +9,7 @@
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
-#include <pcl_bsh/question/surface_answers.h>
 #include <pcl_bsh/question/warnings.h>
-#include <pcl_bsh/surface/triangle_answers.h>
 
 #include <algorithm>
 #include <cmath>
@@ -78,16 +76,23 @@ Shape CloudsContent::shapeOf(std::size_t cloud) const
 void CloudsContent::warnOfQuestions() const
 {
   std::vector<std::string> told;
-  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
-    addTexts(warningsOf({shapeOf(0).facts(true), shapeOf(other).facts(true),
-                         other == model_ ? poses_ : std::vector{poseOf(other, 0)}, options_.clearance}),
-             told);
+  Question question;
+  question.clearance = options_.clearance;
+  for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
+    question.path = pathOf(other);
+    addTexts(warningsOf(question, shapeOf(0).facts(true), shapeOf(other).facts(true)), told);
+  }
   cli::warn(program, told);
 }
 
 Eigen::Isometry3d CloudsContent::poseOf(std::size_t cloud, std::size_t step) const
 {
   return cloud == model_ ? poses_[step] : Eigen::Isometry3d::Identity();
+}
+
+std::vector<Eigen::Isometry3d> CloudsContent::pathOf(std::size_t cloud) const
+{
+  return cloud == model_ ? poses_ : std::vector{poseOf(cloud, 0)};
 }
 
 Answer CloudsContent::asked(std::size_t other, std::size_t step, Question question) const
@@ -107,7 +112,7 @@ StepCollisions CloudsContent::collisions(std::size_t step) const
     found.flags.resize(viewed_clouds_.size());
     found.flags[0].assign(scan().parts(), Verdict::free);
     Question question;
-    question.wanted.flags = question.wanted.both_ways = true;
+    question.wanted.flags = question.wanted.obstacle_flags = true;
     for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
       Answer answer = asked(other, step, question);
       const std::vector<Verdict>& of_scan = answer.collisions.flags;
@@ -123,13 +128,14 @@ StepCollisions CloudsContent::collisions(std::size_t step) const
 std::optional<ClosestPair> CloudsContent::closest(std::size_t step) const
 {
   std::optional<ClosestPair> nearest;
+  Question question;
+  question.wanted.closest = true;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
-    DistanceResult found = closestPair(placed(0, step), placed(other, step));
-    tellOfSurface(0.0, found);
-    if (!found.pair || (nearest && nearest->distance <= found.distance)) continue;
-    const Point3 a = scan().points().point(found.pair->a), b = viewed_clouds_[other].points().point(found.pair->b);
-    nearest = {Eigen::Vector3d(a[0], a[1], a[2]), poseOf(other, step) * Eigen::Vector3d(b[0], b[1], b[2]),
-               found.distance};
+    const Answer found = asked(other, step, question);
+    const double distance = found.closest.distance;
+    if (!found.closest.pair || (nearest && nearest->distance <= distance)) continue;
+    const auto& [a, b] = found.closest_places;
+    nearest = {Eigen::Vector3d::Map(a.data()), poseOf(other, step) * Eigen::Vector3d::Map(b.data()), distance};
   }
   return nearest;
 }
@@ -209,20 +215,13 @@ std::vector<std::int32_t> CloudsContent::firstPoses() const
       options_.clearance ? std::vector<std::int32_t>(scan().parts(), -1) : FieldContent::firstPoses();
   if (options_.clearance) {
     cli::Step step("Following " + counted(steps(), "pose"));
-    TrajectoryRequest request; // no more than that, and so no Question
-    request.clearance = *options_.clearance;
-    request.threads = options_.threads;
-    request.flags = false;
-    request.first_poses = true;
+    Question question;
+    question.wanted.first_poses = true;
     for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
-      const std::vector<Eigen::Isometry3d> still = {poseOf(other, 0)};
-      TrajectoryResult found =
-          collideAlong(placed(0, 0), *viewed_clouds_[other].hierarchy, other == model_ ? poses_ : still, request);
-      if (scan().hasTriangles()) found = ofTriangles(*scan().surface->cover(), std::move(found));
-      for (std::size_t i = 0; i < first.size(); ++i) {
-        const std::int32_t pose = found.first_pose[i];
-        if (pose >= 0 && (first[i] < 0 || pose < first[i])) first[i] = pose;
-      }
+      question.path = pathOf(other);
+      const std::vector<std::int32_t> found = asked(other, 0, question).collisions.first_pose;
+      for (std::size_t i = 0; i < first.size(); ++i)
+        if (found[i] >= 0 && (first[i] < 0 || found[i] < first[i])) first[i] = found[i];
     }
     step.done(counted(steps(), "pose"));
   }

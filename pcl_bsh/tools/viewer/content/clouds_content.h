@@ -44,7 +44,8 @@ private:
     return {*viewed_clouds_[cloud].hierarchy, poseOf(cloud, step)};
   }
   Shape shapeOf(std::size_t cloud) const;
-  void warnOfQuestions() const; ///< of the scan and each other cloud
+  std::vector<Eigen::Isometry3d> pathOf(std::size_t cloud) const; ///< all its poses, one after another
+  void warnOfQuestions() const;                                   ///< of the scan and each other cloud
 
   /// Asks the scan and another cloud at a step.
   Answer asked(std::size_t other, std::size_t step, Question question) const;

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/python/asked.h>
+
+namespace pcl_bsh::python {
+
+Asked::Asked(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b, const Cloud& cloud_b)
+: a(cloud_a, poseOf(std::string("pose_") + name_a, pose_a)),
+  b(cloud_b),
+  input(cloud_a.named(name_a)),
+  obstacle(cloud_b.named(name_b))
+{
+  question.pose_of_input = a.pose;
+}
+
+Asked::Asked(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b, const PoseLike& pose_b)
+: Asked("a", cloud_a, pose_a, "b", cloud_b)
+{
+  question.pose = b.pose = poseOf("pose_b", pose_b);
+}
+
+Answer Asked::answer()
+{
+  Answer found = unlocked([&] { return ask(question, input, obstacle); });
+  warn(found.warnings);
+  return found;
+}
+
+void Asked::warn(const std::vector<Warning>& warnings)
+{
+  for (const Warning& warning : warnings) python::warn(warning.text);
+}
+
+void warn(const std::string& text)
+{
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+} // namespace pcl_bsh::python

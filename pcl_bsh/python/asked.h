@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Python's clouds, what is asked of two of them, and what the answer does not say by itself, as Python's warnings.
+#pragma once
+
+#include <pcl_bsh/python/arrays/array_input.h>
+#include <pcl_bsh/python/threads/callback.h>
+#include <pcl_bsh/question/ask.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh::python {
+
+/// Python's SphereHierarchy, and what is kept of it from one question to the next.
+class Cloud : public SphereHierarchy {
+public:
+  using SphereHierarchy::SphereHierarchy;
+  Cloud(Cloud&&) = delete;
+
+  /// By the name of an argument.
+  Shape named(std::string name) const { return shape_.named(std::move(name)); }
+
+  /// Its points are about to move: what was measured of them counts no more. While none computes, with the
+  /// interpreter's lock.
+  void forget() { shape_ = Shape("", itself()); }
+
+private:
+  std::shared_ptr<const SphereHierarchy> itself() const { return {std::shared_ptr<const void>(), this}; }
+  Shape shape_{"", itself()};
+};
+
+/// Two clouds by the names of arguments, where they are in the world, and what is asked. A planner asks about the same
+/// clouds thousands of times: how far their points are apart is measured once.
+struct Asked {
+  /// The second cloud is where the question says.
+  Asked(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b, const Cloud& cloud_b);
+
+  /// The arguments a, pose_a, b and pose_b.
+  Asked(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b, const PoseLike& pose_b);
+
+  /// What ask() answers, computed without the interpreter's lock; its warnings are told.
+  Answer answer();
+
+  /// The same of a query that no question has.
+  template <class Query>
+  auto answer(Query&& query)
+  {
+    std::vector<Warning> warnings;
+    auto found = unlocked([&] {
+      auto answer = query();
+      const bool spacings = question.wanted.spacings;
+      warnings = warningsOf(question, input.facts(spacings), obstacle.facts(spacings));
+      return answer;
+    });
+    warn(warnings);
+    return found;
+  }
+
+  Placed a, b;
+  Shape input, obstacle;
+  Question question;
+
+private:
+  static void warn(const std::vector<Warning>& warnings);
+};
+
+/// By warnings.warn(), which tells each sentence once for a line of Python, unless its filters say otherwise.
+void warn(const std::string& text);
+
+} // namespace pcl_bsh::python
