@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/mesh_collision_filter.h>
 
-#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/filters/gathered_result.h>
 #include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/filters/used_vertices.h>
 #include <pcl_bsh/hierarchy/points_checksum.h>
 
+#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -25,47 +26,56 @@ std::uint64_t checksumOf(const pcl::PolygonMesh& mesh)
 
 } // namespace
 
-void MeshCollisionFilter::setInputMesh(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance)
+void MeshCollisionFilter::setInputMesh(const pcl::PolygonMesh::ConstPtr& mesh)
 {
   if (!mesh) throw std::invalid_argument("input mesh is null: give a mesh without polygons if there is none");
-  cover_ = coverOf(mesh, tolerance, true);
+  std::vector<std::uint32_t> polygons = trianglesOf(*mesh).polygons;
+  triangles_ = viewOf(mesh);
+  polygons_ = std::move(polygons);
   mesh_ = mesh;
   checksum_ = checksumOf(*mesh);
 }
 
-void MeshCollisionFilter::setInputSurface(const std::shared_ptr<const SurfaceCover>& cover)
+void MeshCollisionFilter::setInputSurface(const TrianglesView& triangles)
 {
-  if (!cover) throw std::invalid_argument("input surface is null: give the cover of no triangles if there is none");
-  if (!cover->triangles_apart) {
-    throw InvalidInput(Input::surface, "input surface", "its balls hold parts of several triangles each",
-                       "cover it with triangles_apart");
-  }
-  cover_ = cover;
+  triangles_ = viewOf(triangles);
   mesh_.reset();
 }
 
 Shape MeshCollisionFilter::inputShape() const
 {
-  if (!cover_) throw std::invalid_argument("input mesh is missing: call setInputMesh() before filtering");
+  if (!triangles_) throw std::invalid_argument("input mesh is missing: call setInputMesh() before filtering");
   if (mesh_ && checksumOf(*mesh_) != checksum_)
     throw std::invalid_argument("input mesh has changed since setInputMesh(): call it again");
-  return {"the input", cover_};
+  return {"the input", *triangles_};
+}
+
+TrajectoryResult MeshCollisionFilter::ofPolygons(TrajectoryResult found)
+{
+  if (!mesh_) return found;
+  TrajectoryResult gathered = gatheredResult(found, mesh_->polygons.size(),
+                                             [&](std::size_t t) { return std::array<std::size_t, 1>{polygons_[t]}; });
+  undecided_ = gathered.undecided;
+  return gathered;
 }
 
 void MeshCollisionFilter::computeFlags(std::vector<Verdict>& flags)
 {
-  flags = collisionFlags(inputShape());
+  TrajectoryResult found;
+  found.flags = collisionFlags(inputShape());
+  flags = ofPolygons(std::move(found)).flags;
 }
 
 void MeshCollisionFilter::computeTrajectory(TrajectoryResult& result)
 {
-  result = alongTrajectory(inputShape());
+  result = ofPolygons(alongTrajectory(inputShape()));
 }
 
 void MeshCollisionFilter::filter(pcl::PolygonMesh& output)
 {
-  if (cover_ && !mesh_)
-    throw std::invalid_argument("input mesh is missing: a cover has no polygons to keep: call setInputMesh()");
+  if (triangles_ && !mesh_)
+    throw std::invalid_argument(
+        "input mesh is missing: a list of triangles is no mesh to keep of: call setInputMesh()");
   std::vector<Verdict> flags;
   computeFlags(flags);
   pcl::PolygonMesh kept;

@@ -2,13 +2,12 @@
 // A filter that removes the polygons of a mesh that collide with an obstacle, keeps only those, or flags them.
 //
 //   pcl_bsh::MeshCollisionFilter filter;
-//   filter.setInputMesh(machine, 0.002);  // a pcl::PolygonMesh, to 2 mm
-//   filter.setObstacleCloud(scan);        // or setObstacleSurface()
+//   filter.setInputMesh(machine);   // a pcl::PolygonMesh
+//   filter.setObstacleCloud(scan);  // or setObstacleSurface()
 //   filter.setClearance(0.05);
-//   filter.filter(free);                  // the machine without the polygons that come near the scan
+//   filter.filter(free);            // the machine without the polygons that come near the scan
 //
-// Of a polygon, free means farther from the obstacle than the clearance, for certain; colliding means within clearance
-// + tolerance. Where the obstacle is a surface too, its tolerance comes on top.
+// A polygon collides where any point of it does.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -17,7 +16,7 @@
 #include <pcl/PolygonMesh.h>
 
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -25,22 +24,17 @@ namespace pcl_bsh {
 
 /// The obstacle, its pose and all other settings are those of CollisionFilter (CollisionSettings). The counts of
 /// undecided points are those of undecided polygons. A density guard is refused, and so is an uncertainty of the input
-/// that is a field: both are about points. What a closed mesh encloses is not part of it.
+/// that is a field: both are about points. What a closed mesh encloses is no part of it.
 class MeshCollisionFilter : public CollisionSettings {
 public:
-  /// The mesh that is asked about. It is covered by balls here and now; its vertices and polygons must not change:
-  /// every use throws when they have, after a filter() that wrote over it, too.
-  /// @param tolerance by how much balls may reach beyond the surface, in the mesh's unit; finite and > 0
-  /// @throws std::invalid_argument when the pointer is null, or as coverOf() does; then the former input stays
-  void setInputMesh(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance);
+  /// The mesh that is asked about. Its vertices and polygons must not change: every use throws when they have, after a
+  /// filter() that wrote over it, too.
+  /// @throws std::invalid_argument when the pointer is null, or as viewOf() does; then the former input stays
+  void setInputMesh(const pcl::PolygonMesh::ConstPtr& mesh);
 
-  /// A surface that is covered already, with SurfaceRequest::triangles_apart: its triangles are asked about. filter()
-  /// needs a mesh, and throws.
-  /// @throws std::invalid_argument when the pointer is null, or triangles are not apart
-  void setInputSurface(const std::shared_ptr<const SurfaceCover>& cover);
-
-  /// The cover whose balls stand for the input; of a mesh, `triangles` are its polygons.
-  const std::shared_ptr<const SurfaceCover>& getInputSurface() const { return cover_; }
+  /// Triangles wherever they are, each a polygon. They must not change. filter() needs a mesh, and throws.
+  /// @throws std::invalid_argument as viewOf() does
+  void setInputSurface(const TrianglesView& triangles);
 
   /// false (default): filter() keeps the polygons that do not collide; true: those that do, or are undecided.
   void setNegative(bool negative) { negative_ = negative; }
@@ -60,10 +54,12 @@ public:
 
 private:
   Shape inputShape() const;
+  TrajectoryResult ofPolygons(TrajectoryResult found);
 
-  std::shared_ptr<const SurfaceCover> cover_;
+  std::optional<PointsView> triangles_;
+  std::vector<std::uint32_t> polygons_; ///< of the mesh, of each triangle
   pcl::PolygonMesh::ConstPtr mesh_;
-  std::uint64_t checksum_ = 0; ///< of the mesh when it was covered
+  std::uint64_t checksum_ = 0; ///< of the mesh when it was set
   bool negative_ = false;
 };
 

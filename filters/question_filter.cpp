@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/question_filter.h>
 
-#include <pcl_bsh/surface/polygon_triangles.h>
+#include <pcl_bsh/hierarchy/polygon_triangles.h>
 
 #include <pcl/console/print.h>
 
@@ -9,31 +9,27 @@
 
 namespace pcl_bsh {
 
-std::shared_ptr<const SurfaceCover> coverOf(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance,
-                                            bool polygons_apart)
+MeshTriangles trianglesOf(const pcl::PolygonMesh& mesh)
 {
-  if (!mesh) throw std::invalid_argument("obstacle surface is null: give a mesh without polygons if there is none");
-  const PointsView vertices = viewOf(mesh->cloud);
-  std::vector<Triangle> triangles;
-  triangles.reserve(mesh->polygons.size());
-  std::vector<std::uint32_t> polygon_of; // a triangle
+  const PointsView vertices = viewOf(mesh.cloud);
+  MeshTriangles found;
+  found.triangles.reserve(mesh.polygons.size());
   std::vector<std::uint32_t> corners;
-  for (const pcl::Vertices& polygon : mesh->polygons) {
-    corners.clear(); // a negative index becomes one that is not there
-    for (const pcl::index_t vertex : polygon.vertices) corners.push_back(static_cast<std::uint32_t>(vertex));
-    addTriangles(vertices, corners.data(), corners.size(), triangles);
-    if (polygons_apart)
-      polygon_of.resize(triangles.size(), static_cast<std::uint32_t>(&polygon - mesh->polygons.data()));
+  for (std::size_t p = 0; p < mesh.polygons.size(); ++p) {
+    const pcl::Indices& polygon = mesh.polygons[p].vertices;
+    corners.assign(polygon.begin(), polygon.end()); // a negative index becomes one that is not there
+    addTriangles(vertices, corners.data(), corners.size(), found.triangles);
+    found.polygons.resize(found.triangles.size(), static_cast<std::uint32_t>(p));
   }
-  SurfaceRequest request;
-  request.tolerance = tolerance;
-  request.triangles_apart = polygons_apart;
-  auto cover = std::make_shared<SurfaceCover>(coverSurface(vertices, triangles, request));
-  if (polygons_apart) {
-    for (std::uint32_t& part : cover->triangles) part = polygon_of[part];
-    cover->triangle_count = mesh->polygons.size();
-  }
-  return cover;
+  return found;
+}
+
+PointsView viewOf(const pcl::PolygonMesh::ConstPtr& mesh)
+{
+  if (!mesh) throw std::invalid_argument("surface is null: give a mesh without polygons if there is none");
+  PointsView vertices = viewOf(mesh->cloud);
+  vertices.owner = mesh;
+  return viewOf(trianglesOf(vertices, std::make_shared<const std::vector<Triangle>>(trianglesOf(*mesh).triangles)));
 }
 
 Answer QuestionFilter::answer(Shape input, const Wanted& wanted)

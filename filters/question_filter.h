@@ -5,6 +5,7 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -37,12 +38,18 @@ inline std::vector<RecordField> fieldsOfRecords(const pcl::PCLPointCloud2& cloud
   return recordFields(cloud.fields);
 }
 
-/// Covers a mesh of PCL, whose polygons may have any number of corners.
-/// @throws std::invalid_argument when the pointer is null, or as viewOf(), addTriangles() and coverSurface() do
-/// @param polygons_apart for a mesh that is asked about: each ball holds parts of one polygon, and what the cover calls
-///   its triangles are the mesh's polygons
-std::shared_ptr<const SurfaceCover> coverOf(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance,
-                                            bool polygons_apart = false);
+/// The triangles that a mesh's polygons are cut into (addTriangles()): as records of a mesh, results name these.
+struct MeshTriangles {
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> polygons; ///< which polygon each is a part of
+};
+
+/// Of polygons of any number of corners. @throws std::invalid_argument as addTriangles() does
+MeshTriangles trianglesOf(const pcl::PolygonMesh& mesh);
+
+/// A mesh of PCL as a cloud of its triangles, which keeps it alive.
+/// @throws std::invalid_argument when the pointer is null, or as trianglesOf() and viewOf() do
+PointsView viewOf(const pcl::PolygonMesh::ConstPtr& mesh);
 
 /// The settings of a question. A setting without a meaning makes filtering throw. Lengths are in the clouds' own unit.
 class QuestionFilter {
@@ -64,27 +71,14 @@ public:
         "the obstacle", [cloud] { return viewOf(*cloud); }, [cloud] { return fieldsOfRecords(*cloud); });
   }
 
-  /// A surface instead of a cloud: the mesh's polygons. Then free is farther than the clearance from the surface, for
-  /// certain, and colliding is within clearance + tolerance (a tolerance for motion comes on top); a distance d means
-  /// that the true one is in [d, d + tolerance], up to the rounding of d, and limits are compared with d. What a closed
-  /// surface encloses is not part of it. The mesh is covered by balls here and now, and not kept.
-  /// @param tolerance by how much balls may reach beyond the surface, in the clouds' unit; finite and > 0
-  /// @throws std::invalid_argument as coverOf() does
-  void setObstacleSurface(const pcl::PolygonMesh::ConstPtr& mesh, double tolerance)
-  {
-    setObstacleSurface(coverOf(mesh, tolerance));
-  }
+  /// A surface instead of a cloud: the mesh's polygons, and all that lies on them. Results name their triangles:
+  /// trianglesOf() says which polygon has each. What a closed surface encloses is no part of it. The mesh must not
+  /// change, as a cloud must not.
+  /// @throws std::invalid_argument as viewOf() does
+  void setObstacleSurface(const pcl::PolygonMesh::ConstPtr& mesh) { setSurface(viewOf(mesh)); }
 
-  /// The same, of a surface that is covered already: of coverSurface().
-  /// @throws std::invalid_argument when the pointer is null
-  void setObstacleSurface(const std::shared_ptr<const SurfaceCover>& cover)
-  {
-    obstacle_ = Shape("the obstacle", cover);
-  }
-
-  /// Null where the obstacle is a cloud. Its records are those that results name: `triangles` of each says which
-  /// triangle it stands for.
-  const std::shared_ptr<const SurfaceCover>& getObstacleSurface() const { return obstacle_.surface(); }
+  /// The same of triangles wherever they are. @throws std::invalid_argument as viewOf() does
+  void setObstacleSurface(const TrianglesView& triangles) { setSurface(viewOf(triangles)); }
 
   /// Pose of the obstacle in the input's frame, T_input_obstacle. Rigid within 1e-6 (default: identity). Takes any of
   /// Eigen's transforms, and 4x4 matrices as PCL's registration returns them; float or double. Replaces a trajectory.
@@ -152,14 +146,20 @@ protected:
   }
 
   Question question_;
+  std::size_t undecided_ = 0; ///< of the last query
 
 private:
+  void setSurface(const PointsView& triangles)
+  {
+    obstacle_ = Shape(
+        "the obstacle", [triangles] { return triangles; }, [] { return std::vector<RecordField>(); });
+  }
+
   Shape obstacle_;
   std::function<void(const std::string&)> warn_; ///< empty: PCL_WARN
   WarningsOnce warnings_;
   bool measured_ = false; ///< spacings
   Work work_;
-  std::size_t undecided_ = 0;
   std::size_t sparse_ = 0;
 };
 

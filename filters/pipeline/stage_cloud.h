@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/surface/surface_cover.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <pcl/PCLPointCloud2.h>
 

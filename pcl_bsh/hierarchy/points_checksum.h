@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -41,9 +42,18 @@ std::uint64_t checksumOfBits(const PointsView& view)
   return sum;
 }
 
-/// Of all coordinates and their order, as they are written. Bytes between them may change.
+/// Of all coordinates and their order, as they are written; of triangles, those of the vertices, and the corners. Bytes
+/// between them may change.
 inline std::uint64_t checksumOf(const PointsView& view)
 {
+  if (view.triangles) {
+    std::uint64_t sum = checksumOf(view.triangles->vertices);
+    for (std::size_t i = 0; i < view.triangles->count; ++i) {
+      const auto [a, b, c] = view.triangles->cornersOf(static_cast<std::uint32_t>(i));
+      sum = mixed(mixed(sum, std::uint64_t{a} << 32 | b), c);
+    }
+    return sum;
+  }
   return view.scalar == Scalar::float32 ? checksumOfBits<std::uint32_t>(view) : checksumOfBits<std::uint64_t>(view);
 }
 

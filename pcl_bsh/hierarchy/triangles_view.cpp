@@ -140,6 +140,33 @@ PointsView ballsOf(const TrianglesView& triangles, Scalar scalar)
 
 } // namespace
 
+TrianglesView trianglesOf(const PointsView& vertices, std::shared_ptr<const std::vector<Triangle>> triangles)
+{
+  TrianglesView view{vertices, triangles->empty() ? nullptr : triangles->front().data(), triangles->size()};
+  view.vertices.owner = std::make_shared<const std::pair<std::shared_ptr<const void>, std::shared_ptr<const void>>>(
+      vertices.owner, std::move(triangles));
+  return view;
+}
+
+std::size_t looseVertices(const TrianglesView& triangles)
+{
+  std::vector<bool> named(triangles.vertices.count);
+  for (std::size_t i = 0; i < triangles.count; ++i)
+    for (const std::uint32_t corner : triangles.cornersOf(static_cast<std::uint32_t>(i))) named[corner] = true;
+  std::size_t loose = 0;
+  for (std::size_t i = 0; i < named.size(); ++i)
+    if (!named[i] && isFinite(triangles.vertices.point(static_cast<std::uint32_t>(i)))) ++loose;
+  return loose;
+}
+
+PointsView middlesOf(const PointsView& view)
+{
+  PointsView middles = view;
+  middles.triangles = nullptr;
+  middles.radii = nullptr;
+  return middles;
+}
+
 PointsView viewOf(const TrianglesView& triangles)
 {
   check(triangles);

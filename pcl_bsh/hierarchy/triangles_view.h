@@ -12,9 +12,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
+#include <vector>
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
+
+/// The records of a triangle's corners.
+using Triangle = std::array<std::uint32_t, 3>;
 
 /// A read-only view of `count` triangles. The memory must stay unchanged, and there, as that of PointsView must.
 struct TrianglesView {
@@ -24,9 +29,9 @@ struct TrianglesView {
   std::size_t stride = 3 * sizeof(std::uint32_t); ///< bytes from one triangle's corners to the next one's
 
   /// The records of its corners. @pre triangle < count
-  std::array<std::uint32_t, 3> cornersOf(std::uint32_t triangle) const noexcept
+  Triangle cornersOf(std::uint32_t triangle) const noexcept
   {
-    std::array<std::uint32_t, 3> records;
+    Triangle records;
     std::memcpy(records.data(), reinterpret_cast<const unsigned char*>(corners) + stride * triangle, sizeof records);
     return records;
   }
@@ -39,6 +44,12 @@ struct TrianglesView {
   }
 };
 
+/// A view that keeps alive what it refers to: the list, and whatever the vertices' owner does. @pre not null
+TrianglesView trianglesOf(const PointsView& vertices, std::shared_ptr<const std::vector<Triangle>> triangles);
+
+/// Finite vertices that no triangle names: no part of the surface. @pre as viewOf() asks
+std::size_t looseVertices(const TrianglesView& triangles);
+
 /// The triangles as records of a cloud. Record i is triangle i; its point and its radius are those of a ball that holds
 /// it, which trees are built of, and queries decide by the triangle itself. A triangle with a corner that is not finite
 /// is no part of it, as a point that is not finite. The balls, 16 bytes a triangle (28 of float64 vertices), are owned
@@ -47,6 +58,10 @@ struct TrianglesView {
 ///   too many triangles, a stride below three numbers, vertices with radii, uncertainties of their own or a subset, a
 ///   triangle too large for a float32 radius; as checkView() does of the vertices
 PointsView viewOf(const TrianglesView& triangles);
+
+/// The middles of a view's records as points: of triangles, those of their balls, which lie on the triangles up to
+/// rounding. Whatever is no triangle is seen as it is, without radii.
+PointsView middlesOf(const PointsView& view);
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

@@ -84,7 +84,7 @@ Examples
 array([0, 1], dtype=uint8)
 )";
 
-constexpr auto kReadMesh = R"(The vertices and faces of a mesh, for `cover_surface`.
+constexpr auto kReadMesh = R"(The vertices and faces of a mesh, for `SphereHierarchy.of_triangles`.
 
 Parameters
 ----------

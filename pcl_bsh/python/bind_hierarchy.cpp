@@ -64,6 +64,40 @@ Examples
 SphereHierarchy(1000 points, float64)
 )";
 
+constexpr auto kOfTriangles = R"(The hierarchy of a mesh's triangles: every query takes it where points go.
+
+Answers are exact for all of each triangle, and their records are triangles. A triangle may be a segment or a point; one
+with a corner that is not finite is left out. What a closed surface encloses is no part of it.
+
+Parameters
+----------
+vertices : array_like, (n, 3) or records with fields x, y, z
+    As `xyz` of `SphereHierarchy`: read where they are.
+triangles : array_like of int, (t, 3)
+    Rows of the vertices; copied.
+uncertainty : float, default 0
+    How far each triangle may truly be from where it was measured.
+copy : bool, default False
+    Keep a copy of the vertices, and leave the array as it is.
+voxel_edge : float, default 0
+    Edge of a voxel; 0: from the density of the triangles.
+threads : int, default 1
+    For sorting; 0: all of the machine's.
+
+Raises
+------
+ValueError
+    As `SphereHierarchy`; a triangle that names a row which is not there.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> plate = pcl_bsh.SphereHierarchy.of_triangles(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), [[0, 1, 2]])
+>>> scan = pcl_bsh.SphereHierarchy(np.array([[0.25, 0.25, 0.2], [0.25, 0.25, 0.5]]))
+>>> pcl_bsh.collision_flags(scan, plate, clearance=0.3)
+array([1, 0], dtype=uint8)
+)";
+
 constexpr auto kRefit = R"(The points have moved: as many rows of the same type, other coordinates.
 
 Trees stay as they are where they can, and their spheres are fitted to the points anew; answers are those of a new
@@ -72,7 +106,7 @@ hierarchy. It takes as long as measuring all spheres: for points that move a lit
 Parameters
 ----------
 xyz : array_like
-    As that of `SphereHierarchy`. Not the array that the hierarchy reads now, which is read-only: that one is given back,
+    As that of `SphereHierarchy`; of triangles, their vertices. Not the array that the hierarchy reads now, which is read-only: that one is given back,
     and may be written to and given next.
 radii, uncertainties : array_like of float32, (n,), optional
     None: as they were.
@@ -152,10 +186,10 @@ std::string textOf(const Cloud& hierarchy)
 {
   const PointsView view = viewNow(hierarchy);
   const std::size_t finite = sizeOf(hierarchy);
-  std::string text = "SphereHierarchy(" + counted(finite, "point");
+  std::string text = "SphereHierarchy(" + counted(finite, view.triangles ? "triangle" : "point");
   if (finite != view.size()) text += " of " + std::to_string(view.size());
   text += view.scalar == Scalar::float32 ? ", float32" : ", float64";
-  if (view.radii) text += ", with radii";
+  if (view.radii && !view.triangles) text += ", with radii";
   if (view.isUncertain()) text += ", uncertain";
   return text + ")";
 }
@@ -193,6 +227,20 @@ std::shared_ptr<Cloud> make(const ArrayLike& xyz, const OptionalArray& radii, co
   return unlocked([&] { return std::make_shared<Cloud>(view, options); });
 }
 
+std::shared_ptr<Cloud> makeOfTriangles(const ArrayLike& vertices, const ArrayLike& triangles,
+                                                 double uncertainty, bool copy, double voxel_edge, unsigned threads)
+{
+  const std::vector<std::uint32_t> corners = recordsOf("triangles", triangles, 3);
+  std::vector<Triangle> list;
+  for (std::size_t i = 0; i < corners.size(); i += 3) list.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  const PointsView view =
+      viewOfTriangles({vertices, py::none(), py::none(), uncertainty, py::none(), copy}, std::move(list));
+  HierarchyOptions options;
+  options.voxel_edge = voxel_edge;
+  options.threads = threads;
+  return unlocked([&] { return std::make_shared<Cloud>(view, options); });
+}
+
 } // namespace
 
 void bindHierarchy(py::module_& module)
@@ -202,6 +250,8 @@ void bindHierarchy(py::module_& module)
       .def(py::init(&make), "xyz"_a, py::kw_only(), "radii"_a = py::none(), "indices"_a = py::none(),
            "uncertainty"_a = 0.0, "uncertainties"_a = py::none(), "copy"_a = false, "voxel_edge"_a = 0.0,
            "threads"_a = 1)
+      .def_static("of_triangles", &makeOfTriangles, kOfTriangles, "vertices"_a, "triangles"_a, py::kw_only(),
+                  "uncertainty"_a = 0.0, "copy"_a = false, "voxel_edge"_a = 0.0, "threads"_a = 1)
       .def("__len__", &sizeOf)
       .def("__repr__", &textOf)
       .def_property_readonly(
@@ -212,7 +262,7 @@ void bindHierarchy(py::module_& module)
             if (!kept) return std::nullopt;
             return kept->points;
           },
-          "The array that it reads; None for the cover of a surface.")
+          "The array that it reads: of triangles, their vertices.")
       .def_property_readonly(
           "in_place",
           [](const Cloud& hierarchy) {
@@ -223,7 +273,7 @@ void bindHierarchy(py::module_& module)
           "Whether it reads the caller's own memory.")
       .def_property_readonly(
           "records", [](const Cloud& hierarchy) { return viewNow(hierarchy).count; },
-          "Rows of the array: the length of arrays with a value for each point.")
+          "Rows of the array, or triangles: the length of arrays with a value for each.")
       .def_property_readonly(
           "coordinate_spacing",
           [](const Cloud& hierarchy) { return unlocked([&] { return hierarchy.coordinateSpacing(); }); },

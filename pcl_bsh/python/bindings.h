@@ -22,7 +22,6 @@ void bindNeighbors(pybind11::module_& module);
 void bindClusters(pybind11::module_& module);   ///< clusters and spacings of one cloud
 void bindTrajectory(pybind11::module_& module); ///< and the clashes of a path
 void bindManyPoses(pybind11::module_& module);  ///< many poses, many motions
-void bindSurface(pybind11::module_& module);
 void bindScene(pybind11::module_& module);
 void bindSceneResult(pybind11::module_& module);
 void bindFiles(pybind11::module_& module);

@@ -111,7 +111,6 @@ PYBIND11_MODULE(_core, module)
   bindClusters(module);
   bindTrajectory(module);
   bindManyPoses(module);
-  bindSurface(module);
   bindScene(module);
   bindFiles(module);
   bindPipeline(module);

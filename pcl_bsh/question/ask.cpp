@@ -7,8 +7,6 @@
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/query/record_distance.h>
 #include <pcl_bsh/question/options.h>
-#include <pcl_bsh/question/surface_answers.h>
-#include <pcl_bsh/surface/triangle_answers.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +19,7 @@ namespace {
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// Compares what was measured with lengths. A record without a distance is farther than all that was asked for. A
-/// distance that equals the length was rounded: the coordinates decide. Within a ball of a surface, distances are 0.
+/// distance that equals the length was rounded: the coordinates decide.
 class MeasuredDistances {
 public:
   MeasuredDistances(const Placed& input, const Placed& obstacle, const PointDistances& found)
@@ -38,8 +36,7 @@ public:
     if (std::isnan(distance)) return 1;
     if (distance != length) return distance < length ? -1 : 1;
     const std::uint32_t nearest = found_.nearest[record];
-    const int sign = exact_.compare({record, nearest}, length);
-    return length == 0.0 ? std::max(sign, 0) : sign;
+    return exact_.compare({record, nearest}, length);
   }
 
 private:
@@ -103,14 +100,12 @@ private:
     answer_.collisions.flags = std::move(found.a);
     answer_.collisions.colliding = found.colliding_a;
     answer_.collisions.undecided = found.undecided_a;
-    if (wanted_.flags && input_.surface())
-      answer_.collisions = ofTriangles(*input_.surface(), std::move(answer_.collisions));
   }
 
   /// Null where nothing is guarded.
   const float* guard()
   {
-    if (obstacle_.surface()) {
+    if (obstacle_.isSurface()) {
       answer_.warnings.push_back({WarningKind::unguarded, obstacle_.name() +
                                                               ": is a surface, which has no holes: density guards "
                                                               "nothing"});
@@ -136,13 +131,11 @@ private:
     request.progress = question_.progress;
     answer_.collisions = collideAlong(a_, b_.hierarchy(), question_.poses(), request);
     answer_.work += answer_.collisions.work;
-    if (obstacle_.surface()) tellOfSurface(answer_.collisions);
     if (wanted_.closest) {
-      nameClosest(closestOf(answer_.collisions));
+      answer_.closest = closestOf(answer_.collisions);
       answer_.closest.distance = std::max(answer_.closest.distance, 0.0);
       closest_is_known_ = true;
     }
-    if (input_.surface()) answer_.collisions = ofTriangles(*input_.surface(), std::move(answer_.collisions));
   }
 
   /// However large it is.
@@ -150,18 +143,7 @@ private:
   {
     DistanceResult found = closestPair(a_, b_, {question_.accuracy});
     answer_.work += found.work;
-    if (obstacle_.surface()) tellOfSurface(obstacle_.surface()->tolerance, found);
-    if (input_.surface()) tellOfSurface(input_.surface()->tolerance, found);
-    nameClosest(std::move(found));
-  }
-
-  void nameClosest(DistanceResult found)
-  {
     answer_.closest = std::move(found);
-    if (!answer_.closest.pair) return;
-    PointPair& pair = *answer_.closest.pair;
-    answer_.closest_places = {a_.hierarchy().view().point(pair.a), b_.hierarchy().view().point(pair.b)};
-    pair = {input_.part(pair.a), obstacle_.part(pair.b)};
   }
 
   /// How far to look.
@@ -188,10 +170,7 @@ private:
       found.a = pointDistances(a_, b_, request);
     answer_.work += found.a.work;
     answer_.work += found.b.work;
-    if (obstacle_.surface()) tellOfSurface(obstacle_.surface()->tolerance, found);
-    if (input_.surface()) tellOfSurface(input_.surface()->tolerance, found);
     if (wanted_.within) compare(request.max_distance);
-    if (input_.surface()) found.a = ofTriangles(*input_.surface(), std::move(found.a));
   }
 
   /// With the limits, then with the greatest distance that is told.
@@ -232,14 +211,9 @@ private:
 /// What is about points cannot be asked of surfaces.
 void requireAnswerable(const Question& question, const Shape& input)
 {
-  if (!input.surface()) return;
-  const std::string wrong = "is about points, and " + input.name() + " is a surface";
-  const char* const remedy = "give `vertices_only` to ask about its vertices, or leave it out";
-  if (question.density) throw InvalidOption("density", wrong, remedy);
-  if (question.wanted.within) throw InvalidOption("filter_limits", wrong, remedy);
-  if (!input.surface()->triangles_apart)
-    throw InvalidInput(Input::surface, input.name(), "its balls hold parts of several triangles each",
-                       "cover it with triangles_apart");
+  if (input.isSurface() && question.density)
+    throw InvalidOption("density", "is about points, and " + input.name() + " is a surface",
+                        "give `vertices_only` to ask about its vertices, or leave it out");
 }
 
 } // namespace
@@ -262,31 +236,6 @@ void check(const Question& question)
   checkOptions(question);
   Shape input("the input", PointsView()), obstacle("the obstacle", PointsView());
   ask(of_nothing, input, obstacle);
-}
-
-std::string promiseOfObstacle(const SurfaceCover& surface, const std::string& beside)
-{
-  const std::string tolerance = plainText(surface.tolerance);
-  return "the obstacle is a surface of " + counted(surface.triangle_count, "triangle") + ", to a tolerance of " +
-         tolerance + ": free is farther than the clearance from it for certain, colliding is within the clearance + " +
-         tolerance + ", and a distance is too small by at most " + tolerance +
-         (beside.empty() ? "" : "; the tolerance of " + beside + " comes on top");
-}
-
-std::string promiseOfInput(const SurfaceCover& surface)
-{
-  const std::string tolerance = plainText(surface.tolerance);
-  return "the input is a surface of " + counted(surface.triangle_count, "triangle") + ", to a tolerance of " +
-         tolerance +
-         ": a free triangle is farther than the clearance from the obstacle for certain, a colliding one "
-         "is within the clearance + " +
-         tolerance;
-}
-
-std::string besideSurface(const Accuracy& accuracy, bool swept)
-{
-  if (swept) return "swept motion";
-  return accuracy.isExact() || accuracy.stopsEarly() ? "" : "the accuracy " + accuracy.text();
 }
 
 } // namespace pcl_bsh

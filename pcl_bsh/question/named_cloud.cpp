@@ -2,19 +2,21 @@
 #include <pcl_bsh/question/named_cloud.h>
 
 #include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <utility>
 
 namespace pcl_bsh {
 
-NamedCloud namedCloud(std::string name, const SphereHierarchy& points, const SurfaceCover* cover)
+NamedCloud namedCloud(std::string name, const SphereHierarchy& points)
 {
   NamedCloud cloud;
   cloud.name = std::move(name);
   cloud.points = points.view().size();
   cloud.finite = points.size();
-  if (cover) cloud.loose = cover->loose;
-  cloud.coordinate_spacing = cover ? cover->coordinate_spacing : points.coordinateSpacing();
+  cloud.is_surface = points.view().triangles != nullptr;
+  if (cloud.is_surface) cloud.loose = looseVertices(*points.view().triangles);
+  cloud.coordinate_spacing = points.coordinateSpacing();
   if (points.empty()) return cloud;
   const LocalFrame& frame = points.storage().frame;
   const Eigen::Vector3d middle = Eigen::Map<const Eigen::Vector3d>(frame.origin.data());
@@ -23,10 +25,10 @@ NamedCloud namedCloud(std::string name, const SphereHierarchy& points, const Sur
   return cloud;
 }
 
-NamedCloud measuredCloud(std::string name, const SphereHierarchy& points, const SurfaceCover* cover)
+NamedCloud measuredCloud(std::string name, const SphereHierarchy& points)
 {
-  NamedCloud cloud = namedCloud(std::move(name), points, cover);
-  if (!cover) cloud.spacing = spacingOf(points);
+  NamedCloud cloud = namedCloud(std::move(name), points);
+  if (!cloud.is_surface) cloud.spacing = spacingOf(points);
   return cloud;
 }
 

@@ -5,7 +5,6 @@
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/neighbors/spacing.h>
-#include <pcl_bsh/surface/surface_cover.h>
 
 #include <Eigen/Geometry>
 
@@ -20,20 +19,20 @@ namespace pcl_bsh {
 /// A cloud, or a surface, by the name that its user knows it by. Lengths are in the clouds' own unit.
 struct NamedCloud {
   std::string name;                ///< of a file, or such as "the input"
-  std::uint64_t points = 0;        ///< records; of a surface, the balls that stand for it
+  bool is_surface = false;         ///< its records are triangles
+  std::uint64_t points = 0;        ///< records
   std::uint64_t finite = 0;        ///< of these; as many as there are where nobody knows
   Eigen::AlignedBox3d box;         ///< holds the finite points, in the cloud's frame; empty: there are none
-  double coordinate_spacing = 0.0; ///< as SphereHierarchy::coordinateSpacing() has it; of a surface, of its corners
+  double coordinate_spacing = 0.0; ///< as SphereHierarchy::coordinateSpacing() has it
   std::uint64_t loose = 0;         ///< of a surface, vertices that no triangle names
   std::optional<Spacing> spacing;  ///< of the points; none of a surface, and where nobody has measured it
 };
 
-/// Facts that cost nothing, so not the spacing.
-/// @param cover null, or the surface that the points are the balls of
-NamedCloud namedCloud(std::string name, const SphereHierarchy& points, const SurfaceCover* cover = nullptr);
+/// Facts that cost little, so not the spacing.
+NamedCloud namedCloud(std::string name, const SphereHierarchy& points);
 
 /// With the spacing, unless it is a surface. Better after a query than before: it builds a few voxels.
-NamedCloud measuredCloud(std::string name, const SphereHierarchy& points, const SurfaceCover* cover = nullptr);
+NamedCloud measuredCloud(std::string name, const SphereHierarchy& points);
 
 /// Holds a box at each of these poses. @param poses where it is, in the frame of the answer
 Eigen::AlignedBox3d boxAlong(const Eigen::AlignedBox3d& box, const std::vector<Eigen::Isometry3d>& poses);

@@ -48,14 +48,10 @@ std::vector<QuestionOption> table()
       {"max_distance", &Q::max_distance, Kind::distances, "M", "m", Input::max_distance,
        "greater distances are not told, but are NaN; less is faster; without it, no limit",
        Range::from_zero_to_infinity},
-      {"surface_tolerance", &Q::surface_tolerance, Kind::any, "T", "m", Input::surface,
-       "an obstacle with faces is a surface: what is free is farther than the clearance from it for certain, what "
-       "collides is within clearance + this tolerance, and the true distance is in [d, d + tolerance]; so is an input "
-       "with faces, whose triangles are asked about, and its tolerance comes on top; without it, a tenth of the "
-       "clearance, or of distances a 10,000th of the obstacle's size",
-       Range::above_zero},
-      {"vertices_only", &Q::vertices_only, Kind::any, "", "", Input::surface,
-       "meshes, the obstacle and the input, are their vertices alone"},
+      {"vertices_only", &Q::vertices_only, Kind::any, "", "", std::nullopt,
+       "a mesh is its vertices alone; without it, an obstacle with faces is a surface, its triangles, and so is an "
+       "input "
+       "with faces, whose triangles are asked about"},
       {"threads", &Q::threads, Kind::any, "N", "", std::nullopt,
        "0: all of the machine's; the result is the same for any number", Range::from_zero, false, "number_of_threads"},
   };
@@ -161,8 +157,6 @@ void checkOptions(const Question& question)
            "leave out the path, the list of clashes, or `density`");
   if (question.widest_gap && !question.density)
     refuse("widest_gap", "is given, but not `density`", "give `density`, too");
-  if (question.surface_tolerance && question.vertices_only)
-    refuse("surface_tolerance", "is given, but `vertices_only`, too", "give one of them");
   if (question.path && (wanted.obstacle_flags || wanted.both_ways || wanted.within))
     refuse("path", "has no distances but the smallest", "give one pose");
   if (question.path && wanted.distances && wanted.collisions())

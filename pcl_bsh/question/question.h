@@ -65,9 +65,8 @@ struct Question {
   std::optional<double> widest_gap = {};   ///< of the guard; none: usualGap()
   std::optional<double> max_distance = {}; ///< greater distances are not told
   DistanceLimits limits = {};
-  std::optional<double> surface_tolerance = {}; ///< for who makes shapes of meshes; none: usualTolerance()
-  bool vertices_only = false;                   ///< likewise: meshes are their vertices alone
-  unsigned threads = 1;                         ///< 0: all of the machine's
+  bool vertices_only = false; ///< for who makes shapes of meshes: they are their vertices alone
+  unsigned threads = 1;       ///< 0: all of the machine's
   Wanted wanted = {};
 
   /// Of distances, and along a path: called now and then, by the thread that asks, with the fraction done in [0, 1],

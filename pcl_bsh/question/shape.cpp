@@ -12,7 +12,8 @@ namespace pcl_bsh {
 Shape::Shape(std::string name, const PointsView& points, std::vector<RecordField> fields)
 : name_(std::move(name)),
   view_([points] { return points; }),
-  fields_([fields = std::move(fields)] { return fields; })
+  fields_([fields = std::move(fields)] { return fields; }),
+  is_surface_(points.triangles != nullptr)
 {
 }
 
@@ -22,26 +23,12 @@ Shape::Shape(std::string name, std::function<PointsView()> points, std::function
   fields_(std::move(fields)),
   watched_(true)
 {
-  view_(); // what cannot be read is refused here, not at the first use
+  is_surface_ = view_().triangles != nullptr; // what cannot be read is refused here, not at the first use
 }
 
-Shape::Shape(std::string name, std::shared_ptr<const SurfaceCover> surface)
+Shape::Shape(std::string name, std::shared_ptr<const SphereHierarchy> hierarchy)
 : name_(std::move(name)),
-  surface_(std::move(surface))
-{
-  if (!surface_)
-    throw InvalidInput(Input::surface, name_, "is no surface", "give the cover of no triangles if need be");
-  view_ = [cover = surface_] {
-    PointsView view = cover->view();
-    view.owner = cover;
-    return view;
-  };
-}
-
-Shape::Shape(std::string name, std::shared_ptr<const SphereHierarchy> hierarchy,
-             std::shared_ptr<const SurfaceCover> surface)
-: name_(std::move(name)),
-  surface_(std::move(surface)),
+  is_surface_(hierarchy && hierarchy->view().triangles),
   hierarchy_(std::move(hierarchy))
 {
 }
@@ -52,7 +39,7 @@ const SphereHierarchy& Shape::hierarchy(const Uncertainty& uncertainty, unsigned
   if (!view_ && !uncertainty.isZero())
     throw InvalidInput(Input::uncertainty, name_, "is built already", "build it of points with uncertainties");
   if (!view_) return *hierarchy_;
-  if (surface_ && !uncertainty.field.empty()) {
+  if (is_surface_ && !uncertainty.field.empty()) {
     throw InvalidInput(Input::uncertainty, name_, "is a surface, which has no field '" + uncertainty.field + "'",
                        "give a length, or `vertices_only`");
   }
@@ -94,8 +81,8 @@ void Shape::setPatches(std::vector<float> spacings)
 
 NamedCloud Shape::facts(bool spacing) const
 {
-  NamedCloud facts = namedCloud(name_, *hierarchy_, surface_.get());
-  if (!spacing || surface_ || hierarchy_->view().radii) return facts;
+  NamedCloud facts = namedCloud(name_, *hierarchy_);
+  if (!spacing || is_surface_ || hierarchy_->view().radii) return facts;
   const std::lock_guard lock(measured_->one_at_a_time);
   if (!measured_->spacing) measured_->spacing = spacingOf(*hierarchy_);
   facts.spacing = measured_->spacing;

@@ -7,7 +7,6 @@
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/question/named_cloud.h>
 #include <pcl_bsh/question/uncertainty.h>
-#include <pcl_bsh/surface/surface_cover.h>
 
 #include <cstdint>
 #include <functional>
@@ -20,40 +19,32 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// A copy shares what is built: two threads may ask about two copies. The records of its hierarchy are those of the
-/// points; of a surface, pieces that part() knows.
+/// A copy shares what is built: two threads may ask about two copies. The records of its hierarchy are the user's:
+/// points or, where the view is of triangles (viewOf(TrianglesView)), triangles: a surface.
 class Shape {
 public:
   Shape() = default; ///< nothing yet
 
-  /// Points that do not change. @param fields of their records, for uncertainties
+  /// Points, or triangles, that do not change. @param fields of the points' records, for uncertainties
   Shape(std::string name, const PointsView& points, std::vector<RecordField> fields = {});
 
-  /// Points which their owner may change, though it must not: every question compares a checksum of their coordinates
-  /// and uncertainties, which takes some 20 instructions a point, a tenth or less of what building takes.
-  /// @param points and @param fields are called for each question, and keep alive what they tell of
+  /// What its owner may change, though it must not: every question compares a checksum of coordinates, corners and
+  /// uncertainties, which takes some 20 instructions a point, a tenth or less of what building takes.
+  /// @param points and @param fields are called for each question, and keep alive what they tell of; a view of
+  ///   triangles is the same each time
   /// @throws what `points` does
   Shape(std::string name, std::function<PointsView()> points, std::function<std::vector<RecordField>()> fields);
 
-  /// A surface. @throws InvalidInput when the pointer is null
-  Shape(std::string name, std::shared_ptr<const SurfaceCover> surface);
-
-  /// What is built already: uncertainties are those of its points. @param surface null, or what its points cover
-  Shape(std::string name, std::shared_ptr<const SphereHierarchy> hierarchy,
-        std::shared_ptr<const SurfaceCover> surface = nullptr);
+  /// What is built already: uncertainties are those of its points.
+  Shape(std::string name, std::shared_ptr<const SphereHierarchy> hierarchy);
 
   explicit operator bool() const noexcept { return view_ || hierarchy_; } ///< whether it is something
   const std::string& name() const noexcept { return name_; }              ///< as its user knows it
 
-  /// Null where it is points.
-  const std::shared_ptr<const SurfaceCover>& surface() const noexcept { return surface_; }
+  bool isSurface() const noexcept { return is_surface_; } ///< whether its records are triangles
 
   /// The same by another name.
   Shape named(std::string name) const;
-
-  /// What a record of the hierarchy is to users: the point, or the triangle (of covers that others have renumbered,
-  /// what they put there).
-  std::uint32_t part(std::uint32_t record) const { return surface_ ? surface_->triangles[record] : record; }
 
   /// Built on the first use, and anew for another uncertainty. @param threads that build it
   /// @throws InvalidInput when it is nothing, its points have changed, or its uncertainties are not what
@@ -94,7 +85,7 @@ private:
   std::function<PointsView()> view_; ///< empty: the hierarchy was given
   std::function<std::vector<RecordField>()> fields_;
   bool watched_ = false;
-  std::shared_ptr<const SurfaceCover> surface_;
+  bool is_surface_ = false;
   std::shared_ptr<const SphereHierarchy> hierarchy_;
   Uncertainty uncertainty_;                ///< that the hierarchy was built with
   std::uint64_t uncertainties_ = 0;        ///< checksum of its field

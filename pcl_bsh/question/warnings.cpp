@@ -43,16 +43,16 @@ bool Density::couldHide(double clearance) const
 std::vector<Warning> warningsOf(const NamedCloud& cloud, std::optional<double> clearance, double least_length)
 {
   std::vector<Warning> warnings;
+  const std::string one = cloud.is_surface ? "triangle" : "point";
   if (cloud.box.isEmpty()) {
     const char* const what = clearance ? "nothing collides with it" : "nothing has a distance from it";
-    warnings.push_back({WarningKind::empty, cloud.name + ": has no finite point: " + what});
+    warnings.push_back({WarningKind::empty, cloud.name + ": has no finite " + one + ": " + what});
   }
   else if (cloud.finite < cloud.points) {
     const std::uint64_t others = cloud.points - cloud.finite;
-    warnings.push_back(
-        {WarningKind::not_finite,
-         plainText(cloud.name, ": ", others, " of ", cloud.points,
-                   others == 1 ? " points is not finite: it is" : " points are not finite: they are", " left out")});
+    warnings.push_back({WarningKind::not_finite,
+                        plainText(cloud.name, ": ", others, " of ", cloud.points, ' ', one,
+                                  others == 1 ? "s is not finite: it is" : "s are not finite: they are", " left out")});
   }
   if (cloud.loose > 0) {
     const char* const belong = cloud.loose == 1 ? " of its vertices belongs to no face: it is"

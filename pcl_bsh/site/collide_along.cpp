@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/question/surface_answers.h>
 #include <pcl_bsh/site/answers/inquiry.h>
 #include <pcl_bsh/site/answers/joined_poses.h>
 #include <pcl_bsh/site/answers/passage_sum.h>
@@ -124,7 +123,6 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const P
   Inquiry inquiry(site, request);
   const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
-    if (request.surface) tellOfSurface(found);
     if (sink) sink(tile, cloud, found);
     return sum.numbersOf(tile, cloud, found);
   };

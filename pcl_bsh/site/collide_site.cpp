@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
-#include <pcl_bsh/question/surface_answers.h>
 #include <pcl_bsh/site/answers/comparison.h>
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/tiles/records.h>
@@ -195,7 +194,6 @@ SiteClosest closestOf(const PlacedSite& asked, const Other& b, const SiteRequest
   else
     nearest = query({nearest_a, asked.pose}, {nearest_b, b.pose});
   nearest.interval.lower = std::min(lower, nearest.interval.lower);
-  if (request.surface) tellOfSurface(*request.surface, nearest);
   result.interval = nearest.interval;
   result.distance = nearest.distance;
   result.point = last_a.points[nearest.pair->a];
@@ -243,7 +241,6 @@ SiteDistances distancesOf(const PlacedSite& asked, const Other& b, double max_di
         all.greatest = std::fmax(all.greatest, distance);
       }
     }
-    if (request.surface) tellOfSurface(*request.surface, all);
     if (sink) sink(tile, cloud, all);
     return std::vector<double>{static_cast<double>(all.measured), static_cast<double>(all.undecided), all.greatest};
   };

@@ -68,10 +68,7 @@ struct SiteRequest {
   std::optional<double> swept; ///< of collideAlong(): the motion between poses too, to this tolerance, as there
   Point3 pivot = {0, 0, 0};    ///< of that motion, as there
   Uncertainty uncertainty;     ///< of the site's points: for verdicts, as in PointsView. A field is one of the site's
-  /// The tolerance, where b or the model is the cover of a surface (SurfaceCover): distances are then told as those of
-  /// the surface, as tellOfSurface() has them. Not of an obstacle that is a site.
-  std::optional<double> surface;
-  bool pose_summaries = false;                   ///< of collideAlong(): what collides at each pose, as there
+  bool pose_summaries = false; ///< of collideAlong(): what collides at each pose, as there
   ClashFinder* clashes = nullptr;                ///< of collideAlong(): gets what collides; needs distances
   unsigned threads = 1;                          ///< of each process; 0: all of the machine's
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy

@@ -12,9 +12,8 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -22,9 +21,6 @@
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
-
-/// The records of a triangle's corners.
-using Triangle = std::array<std::uint32_t, 3>;
 
 /// What coverSurface() reads.
 struct SurfaceRequest {

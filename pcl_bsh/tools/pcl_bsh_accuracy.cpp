@@ -86,13 +86,13 @@ std::optional<Options> parse(int argc, char** argv)
   columns.addTo(app);
   app.add_option("--unit", options.unit, "name of the clouds' unit, for the picture")->type_name("NAME");
   Question question;
-  cli::addQuestionOptions(app, question, {"surface_tolerance", "vertices_only"});
+  cli::addQuestionOptions(app, question, {"vertices_only"});
   app.add_flag("--peers", options.peers,
                "measure PCL's kd-tree, octree and VoxelGrid on the same clouds, too, which\n"
                "must be points");
   if (!cli::understood(app, program, argc, argv)) return std::nullopt;
   cli::requireAccepted(question);
-  options.surface = {question.surface_tolerance, question.vertices_only};
+  options.surface = {question.vertices_only};
   if (!options.trajectory.empty() && (!pose.empty() || poses))
     throw cli::UsageError(std::string(pose.empty() ? "--poses" : "--pose") + ": --trajectory is given too: give one");
   options.poses = poses.value_or(1);
@@ -108,11 +108,11 @@ std::optional<Options> parse(int argc, char** argv)
   return options;
 }
 
-io::Obstacle load(const Options& options, const std::filesystem::path& path, io::SurfaceSettings settings)
+io::Obstacle load(const Options& options, const std::filesystem::path& path)
 {
   double seconds = 0.0;
   io::Obstacle loaded =
-      cli::loadObstacle(path, settings, options.clearance, seconds, options.columns.of(path), nullptr, options.threads);
+      cli::loadObstacle(path, options.surface, seconds, options.columns.of(path), nullptr, options.threads);
   cli::warn(program, cli::warningsOf(loaded, path));
   if (options.peers && loaded.isSurface())
     throw std::runtime_error("--peers: are measured on points, and " + path.string() +
@@ -123,11 +123,7 @@ io::Obstacle load(const Options& options, const std::filesystem::path& path, io:
 /// What was compared.
 std::string describe(const io::Obstacle& compared, const std::filesystem::path& path)
 {
-  const std::size_t records = compared.view().count;
-  const std::string what = compared.isSurface()
-                               ? counted(compared.triangles()->size(), "triangle") + " in " + counted(records, "ball")
-                               : counted(records, "point");
-  return "`" + path.filename().string() + "` (" + what + ")";
+  return "`" + path.filename().string() + "` (" + counted(compared.view().count, compared.partName()) + ")";
 }
 
 struct Box {
@@ -177,10 +173,7 @@ int study(const Options& options)
       options.trajectory.empty() ? std::vector<Eigen::Isometry3d>() : posesOfFile(options.trajectory);
   const files::OutputFolder folder(options.out);
   for (const char* name : results) files::requireWritable(options.out / name);
-  io::SurfaceSettings asked_about = options.surface; // as pcl_bsh_collide takes an input
-  asked_about.triangles_apart = true;
-  const io::Obstacle given_a = load(options, options.a, asked_about),
-                     given_b = load(options, options.b, options.surface);
+  const io::Obstacle given_a = load(options, options.a), given_b = load(options, options.b);
   accuracy::Subject subject{given_a.view(), given_b.view(), options.clearance, {}, 0.0, options.unit};
   const Box a(subject.a), b(subject.b);
   if (a.box.isEmpty() || b.box.isEmpty())
@@ -189,10 +182,10 @@ int study(const Options& options)
   subject.diameter = a.box.diagonal().norm();
   subject.poses = given.empty() ? posesAbout(options, subject.diameter, b.box.center()) : given;
   std::vector<std::string> told;
-  addTexts(warningsOf({measuredCloud(options.a.string(), SphereHierarchy(subject.a), given_a.cover().get()),
-                       measuredCloud(options.b.string(), SphereHierarchy(subject.b), given_b.cover().get()),
-                       subject.poses, options.clearance}),
-           told);
+  addTexts(
+      warningsOf({measuredCloud(options.a.string(), SphereHierarchy(subject.a)),
+                  measuredCloud(options.b.string(), SphereHierarchy(subject.b)), subject.poses, options.clearance}),
+      told);
   cli::warn(program, told);
 
   const auto progress = [](const std::string& what, double done) {
@@ -205,7 +198,7 @@ int study(const Options& options)
   }
 
   std::string heading = describe(given_a, options.a) + " against " + describe(given_b, options.b) + ".";
-  if (given_b.isSurface()) heading += " Here " + io::promiseOf(given_b, "a setting") + ".";
+  if (given_b.isSurface()) heading += " Here " + io::promiseOf(given_b) + ".";
   accuracy::writeReports(options.out, heading, subject, result);
   std::cout << accuracy::advice(subject, result) << "\nWrote " << (options.out / "accuracy.md").string()
             << ", accuracy.csv and accuracy.png beside it.\n";

@@ -77,7 +77,7 @@ void write(const Options& options, const Scan& input, const Answer& answer, doub
 {
   cli::Step step("Writing " + options.output.string());
   const TrajectoryResult& found = answer.collisions;
-  if (!input.triangles.empty()) {
+  if (input.shape.isSurface()) {
     seconds += step.done(counted(cli::writeSurface(options, input, found), "triangle"));
     return;
   }
@@ -85,9 +85,9 @@ void write(const Options& options, const Scan& input, const Answer& answer, doub
   const std::vector<float> distances(measured.begin(), measured.end());
   pcl::PCLPointCloud2 cloud;
   if (options.keep == Keep::flagged || options.distances)
-    cloud = marked(options.input, input.cloud, newFields(options, found, distances));
+    cloud = marked(options.input, input.cloud(), newFields(options, found, distances));
   if (options.keep != Keep::flagged)
-    cloud = select(options.distances ? cloud : input.cloud, viewOf(input.cloud), found.flags, options.keep);
+    cloud = select(options.distances ? cloud : input.cloud(), viewOf(input.cloud()), found.flags, options.keep);
   io::writeCloud(options.output, cloud, input.facts.viewpoint, input.facts.las);
   seconds += step.done(counted(std::size_t{cloud.width} * cloud.height, "point"));
 }
@@ -234,10 +234,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, const io::Obsta
   const SphereHierarchy& b = built(other, question.uncertaintyOfObstacle());
   report.input = {options.input.string(), a.view().count, a.size()};
   report.obstacle = {options.obstacle.string(), b.view().count, b.size()};
-  if (scan.surface()) {
-    report.input_surface = scan.surface()->tolerance;
-    report.input.points = report.input.finite = input.triangles.size();
-  }
+  report.input_is_surface = scan.isSurface();
   if (obstacle.isSurface()) {
     report.surface = obstacle;
     const PointsView vertices = viewOf(obstacle.points());
@@ -272,12 +269,11 @@ int collide(const Options& options)
 
   const Scan input = loadInput(options, report.seconds.load);
   report.coordinate_system = input.facts.coordinate_system;
-  Shape scan = cli::shapeOf(options, input, report.seconds.load, report.warnings);
-  if (!scan.surface() && (options.keep == Keep::flagged || options.distances))
-    marked(options.input, withoutRecords(input.cloud), newFields(options, {}, {})); // fails now
-  const io::Obstacle obstacle = cli::loadObstacle(
-      options.obstacle, {question.surface_tolerance, question.vertices_only}, question.clearance.value_or(0.0),
-      report.seconds.load, options.columns.of(options.obstacle), nullptr, question.threads);
+  Shape scan = input.shape.shape(options.input.string());
+  if (!scan.isSurface() && (options.keep == Keep::flagged || options.distances))
+    marked(options.input, withoutRecords(input.cloud()), newFields(options, {}, {})); // fails now
+  const io::Obstacle obstacle = cli::loadObstacle(options.obstacle, {question.vertices_only}, report.seconds.load,
+                                                  options.columns.of(options.obstacle), nullptr, question.threads);
   return cli::named([&] { return tell(options, input, scan, obstacle, earlier, report); }, question,
                     options.names_of_poses);
 }

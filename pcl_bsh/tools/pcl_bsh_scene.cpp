@@ -112,8 +112,13 @@ void writeClouds(const io::SceneFile& file, const cli::CloudNames& names, io::Sc
   const auto& parts = file.options.effects.flags ? result.flags : result.swept;
   for (const FlaggedPart& part : parts) {
     const io::PartEntry& entry = file.objects[part.object].parts[part.part];
-    io::writeCloud(folder / names.of(part.object, part.part, step),
-                   withField(world.cloud(entry.cloud), collision_field_name, part.flags));
+    fs::path path = folder / names.of(part.object, part.part, step);
+    if (const io::Obstacle* const surface = world.surface(entry.cloud)) {
+      path.replace_extension(".ply"); // which holds faces
+      io::writeMesh(path, surface->points(), *surface->triangles(), {{collision_field_name, &part.flags}});
+      continue;
+    }
+    io::writeCloud(path, withField(world.cloud(entry.cloud), collision_field_name, part.flags));
   }
 }
 

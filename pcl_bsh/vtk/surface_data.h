@@ -3,8 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/hierarchy/points_view.h>
-#include <pcl_bsh/surface/surface_cover.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>

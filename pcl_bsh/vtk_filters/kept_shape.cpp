@@ -3,7 +3,7 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/hierarchy/points_checksum.h>
-#include <pcl_bsh/surface/polygon_triangles.h>
+#include <pcl_bsh/hierarchy/polygon_triangles.h>
 
 #include <vtkCellArray.h>
 #include <vtkCellArrayIterator.h>
@@ -120,17 +120,17 @@ bool isSurface(vtkPolyData& data)
   return data.GetNumberOfLines() + data.GetNumberOfPolys() + data.GetNumberOfStrips() > 0;
 }
 
-bool KeptShape::isOf(const PointsView& view, bool copied, std::uint64_t checksum, double tolerance)
+bool KeptShape::isOf(const PointsView& view, bool copied, std::uint64_t checksum, bool surface)
 {
   // A hierarchy of points looks into their memory: where that is the caller's, the same numbers elsewhere are others.
-  const bool same_memory = view.data == points_.data || (copied && copied_) || tolerance >= 0.0;
+  const bool same_memory = view.data == points_.data || (copied && copied_);
   const bool same_points = view.count == points_.count && view.scalar == points_.scalar && same_memory;
-  if (shape_ && same_points && checksum == checksum_ && tolerance == tolerance_) return true;
+  if (shape_ && same_points && checksum == checksum_ && surface == surface_) return true;
   shape_ = Shape();
   points_ = view;
   copied_ = copied;
   checksum_ = checksum;
-  tolerance_ = tolerance;
+  surface_ = surface;
   return false;
 }
 
@@ -145,22 +145,18 @@ Shape& KeptShape::ofPoints(vtkPolyData& data)
 {
   bool copied = false;
   const PointsView view = viewOf(data, copied);
-  return isOf(view, copied, checksumOf(view), -1.0) ? shape_ : keep({name_, view});
+  return isOf(view, copied, checksumOf(view), false) ? shape_ : keep({name_, view});
 }
 
-Shape& KeptShape::ofSurface(vtkPolyData& data, double tolerance, const std::function<bool(double)>& progress)
+Shape& KeptShape::ofSurface(vtkPolyData& data)
 {
-  if (!(tolerance >= 0.0)) throw InvalidInput(Input::surface, "tolerance", "is negative or no number", "give a length");
   bool copied = false;
   const PointsView view = viewOf(data, copied);
-  if (isOf(view, copied, mixed(checksumOf(view), checksumOfCells(data)), tolerance)) return shape_;
-  const CellTriangles cells = trianglesOf(data, view);
-  SurfaceRequest request;
-  request.tolerance = tolerance;
-  request.progress = progress;
-  const auto cover = std::make_shared<SurfaceCover>(coverSurface(view, cells.triangles, request));
-  for (std::uint32_t& part : cover->triangles) part = cells.cells[part];
-  return keep({name_, std::shared_ptr<const SurfaceCover>(cover)});
+  if (isOf(view, copied, mixed(checksumOf(view), checksumOfCells(data)), true)) return shape_;
+  CellTriangles found = trianglesOf(data, view);
+  cells_ = std::move(found.cells);
+  const auto triangles = std::make_shared<const std::vector<Triangle>>(std::move(found.triangles));
+  return keep({name_, pcl_bsh::viewOf(pcl_bsh::trianglesOf(view, triangles))});
 }
 
 } // namespace pcl_bsh::vtk

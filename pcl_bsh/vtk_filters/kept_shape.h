@@ -9,9 +9,9 @@
 #include <vtkSmartPointer.h>
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace pcl_bsh::vtk {
 
@@ -22,9 +22,8 @@ PointsView viewOf(vtkPolyData& data, bool& copied);
 /// Whether the data has lines, polygons or strips.
 bool isSurface(vtkPolyData& data);
 
-/// Made anew only when the points (and of a surface the cells, or the tolerance) are no longer what it was made from,
-/// by a checksum of their numbers: this holds also where data was changed without a call of Modified(). What it builds
-/// is kept as long.
+/// Made anew only when the points (and of a surface the cells) are no longer what it was made from, by a checksum of
+/// their numbers: this holds also where data was changed without a call of Modified(). What it builds is kept as long.
 class KeptShape {
 public:
   explicit KeptShape(std::string name) : name_(std::move(name)) {}
@@ -32,15 +31,17 @@ public:
   /// Of all points; cells do not count.
   Shape& ofPoints(vtkPolyData& data);
 
-  /// Of the balls which cover all cells, vertices and lines too; its parts are the cells.
-  /// @throws as coverSurface() does
-  Shape& ofSurface(vtkPolyData& data, double tolerance, const std::function<bool(double)>& progress);
+  /// Of the triangles of all cells, vertices and lines too. @throws as viewOf() does of triangles
+  Shape& ofSurface(vtkPolyData& data);
+
+  /// Of a surface, which cell each triangle is of.
+  const std::vector<std::uint32_t>& cells() const noexcept { return cells_; }
 
   std::size_t made() const noexcept { return made_; } ///< so far
 
 private:
   /// Whether the shape is of these numbers; remembers them where not, and forgets the shape.
-  bool isOf(const PointsView& view, bool copied, std::uint64_t checksum, double tolerance);
+  bool isOf(const PointsView& view, bool copied, std::uint64_t checksum, bool surface);
   Shape& keep(Shape shape);
 
   std::string name_;
@@ -48,7 +49,8 @@ private:
   PointsView points_; ///< the owner keeps the memory, so that its address is not used for other points
   bool copied_ = false;
   std::uint64_t checksum_ = 0;
-  double tolerance_ = -1.0; ///< of the cover; negative: of points
+  bool surface_ = false;
+  std::vector<std::uint32_t> cells_;
   std::size_t made_ = 0;
 };
 

@@ -34,8 +34,7 @@ void vtkBSHCollisionFilter::Ask(pcl_bsh::Question& question) const
   question.wanted.contacts = question.path.has_value();
 }
 
-void vtkBSHCollisionFilter::Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer,
-                                 const pcl_bsh::Shape& /*obstacle*/, vtkPolyData* output)
+void vtkBSHCollisionFilter::Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, vtkPolyData* output)
 {
   using pcl_bsh::vtk::addPointArray;
   const pcl_bsh::TrajectoryResult& found = answer.collisions;

@@ -46,8 +46,7 @@ protected:
   ~vtkBSHCollisionFilter() override = default;
 
   void Ask(pcl_bsh::Question& question) const override;
-  void Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, const pcl_bsh::Shape& obstacle,
-            vtkPolyData* output) override;
+  void Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, vtkPolyData* output) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
   double Clearance = 0.0;

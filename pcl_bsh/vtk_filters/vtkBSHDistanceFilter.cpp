@@ -23,8 +23,7 @@ void vtkBSHDistanceFilter::Ask(pcl_bsh::Question& question) const
   question.wanted.distances = true;
 }
 
-void vtkBSHDistanceFilter::Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer,
-                                const pcl_bsh::Shape& obstacle, vtkPolyData* output)
+void vtkBSHDistanceFilter::Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, vtkPolyData* output)
 {
   using pcl_bsh::vtk::addPointArray;
   if (question.path) {
@@ -36,7 +35,7 @@ void vtkBSHDistanceFilter::Fill(const pcl_bsh::Question& question, const pcl_bsh
     addPointArray<vtkDoubleArray>(*output, "distance", found.distance);
     addPointArray<vtkIdTypeArray>(*output, "nearest", [&](std::size_t i) -> vtkIdType {
       const std::uint32_t record = found.nearest[i];
-      return record == pcl_bsh::kNothing ? -1 : static_cast<vtkIdType>(obstacle.part(record));
+      return record == pcl_bsh::kNothing ? -1 : static_cast<vtkIdType>(record);
     });
   }
   output->GetPointData()->SetActiveScalars("distance");

@@ -7,8 +7,7 @@
 /// there is none). With poses (port 2), `distance` is the smallest over all of them, rounded to float, and
 /// `closest_pose` (int, from 0; -1 where none) the first that has it; MaximumDistance must then be finite.
 ///
-/// Of points, a distance is exact, rounded to the nearest double. Of a surface it is too small by at most the
-/// tolerance.
+/// A distance is exact, rounded to the nearest double.
 ///
 /// vtkBSHFilter has the inputs, what they mean, and what happens where something fails.
 #pragma once
@@ -33,8 +32,7 @@ protected:
   ~vtkBSHDistanceFilter() override = default;
 
   void Ask(pcl_bsh::Question& question) const override;
-  void Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, const pcl_bsh::Shape& obstacle,
-            vtkPolyData* output) override;
+  void Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, vtkPolyData* output) override;
 
   double MaximumDistance = VTK_DOUBLE_MAX;
 

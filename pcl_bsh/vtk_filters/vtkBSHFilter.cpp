@@ -60,7 +60,6 @@ void vtkBSHFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Transform: " << static_cast<void*>(this->Transform) << '\n'
-     << indent << "SurfaceTolerance: " << this->SurfaceTolerance << '\n'
      << indent << "NumberOfThreads: " << this->NumberOfThreads << '\n'
      << indent << "HierarchiesBuilt: " << this->GetHierarchiesBuilt() << '\n';
 }
@@ -135,10 +134,8 @@ int vtkBSHFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vt
     if (!cloud || !obstacle) throw std::invalid_argument("an input is missing: connect a cloud and an obstacle");
     auto* const table = dataOf<vtkTable>(*inputs[2], "the list of poses", "a vtkTable");
 
-    double done = 0.0; // progress of the cover first, then of the query: together they never fall
-    const auto report = [this, &done](double from, double to, double fraction) {
-      done = std::max(done, from + (to - from) * fraction);
-      this->UpdateProgress(done);
+    const auto report = [this](double fraction) {
+      this->UpdateProgress(fraction);
       return this->GetAbortExecute() == 0;
     };
     std::vector<std::string> warnings;
@@ -154,25 +151,19 @@ int vtkBSHFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vt
     question.wanted.spacings = question.wanted.collisions();
 
     const bool is_surface = pcl_bsh::vtk::isSurface(*obstacle);
-    const double cover_share = is_surface ? 0.3 : 0.0;
-    question.progress = [&](double fraction) { return report(cover_share, 1.0, fraction); };
-    const auto shapeOfObstacle = [&]() -> pcl_bsh::Shape& {
-      if (!is_surface) return this->Inputs->obstacle.ofPoints(*obstacle);
-      const double tolerance =
-          this->SurfaceTolerance == 0.0 ? question.clearance.value_or(0.0) / 10.0 : this->SurfaceTolerance;
-      if (!(tolerance > 0.0))
-        throw std::invalid_argument("the obstacle has faces, and nothing says how exactly to cover them: give a "
-                                    "SurfaceTolerance, a length > 0");
-      return this->Inputs->obstacle.ofSurface(*obstacle, tolerance,
-                                              [&](double fraction) { return report(0.0, cover_share, fraction); });
-    };
-    pcl_bsh::Shape& other = shapeOfObstacle();
+    question.progress = report;
+    pcl_bsh::vtk::KeptShape& kept = this->Inputs->obstacle;
+    pcl_bsh::Shape& other = is_surface ? kept.ofSurface(*obstacle) : kept.ofPoints(*obstacle);
     pcl_bsh::Shape& points = this->Inputs->cloud.ofPoints(*cloud);
-    if (!report(0.0, cover_share, 1.0)) throw pcl_bsh::Cancelled();
+    if (!report(0.0)) throw pcl_bsh::Cancelled();
     output->ShallowCopy(cloud);
-    const pcl_bsh::Answer answer = pcl_bsh::ask(question, points, other);
+    pcl_bsh::Answer answer = pcl_bsh::ask(question, points, other);
+    if (is_surface) {
+      for (std::uint32_t& nearest : answer.distances.a.nearest)
+        if (nearest != pcl_bsh::PointDistances::kNoPoint) nearest = kept.cells()[nearest];
+    }
     for (const pcl_bsh::Warning& warning : answer.warnings) vtkWarningMacro(<< warning.text);
-    this->Fill(question, answer, other, output);
+    this->Fill(question, answer, output);
     this->Failed = false;
     return 1;
   }

@@ -3,7 +3,7 @@
 /// @brief what the filters share that compare a cloud with an obstacle
 ///
 /// Port 0 is the cloud: all points of a vtkPolyData; its cells are not looked at. Port 1 is the obstacle: the points of
-/// a vtkPolyData, or, where that has lines, polygons or strips, all of its cells, as a surface (SurfaceTolerance). Port
+/// a vtkPolyData, or, where that has lines, polygons or strips, all of its cells, as a surface. Port
 /// 2, optional, is a vtkTable of poses of the obstacle, a row each: 12 or 16 numbers of its matrix, row by row, or time
 /// tx ty tz qx qy qz qw. A cloud may come in blocks: each is answered as a cloud of its own, and only the last one's
 /// hierarchy is kept. Obstacle or poses in blocks are refused.
@@ -12,9 +12,8 @@
 /// one line; then, and after an abort, the output is empty and the execution failed, so that nothing looks like an
 /// answer: a port without a connection, too. vtkWarningMacro tells what else is to be known of a question: clouds
 /// without a finite point, coarse float32 coordinates, holes that a collision may hide in, frames that are not one,
-/// points of a surface that no cell has. Progress is told, and an abort heeded, while a surface is covered, along poses
-/// and of distances; the flags at a single pose are one step. Points that are not finite are no points: they have the
-/// values of free points.
+/// points of a surface that no cell has. Progress is told, and an abort heeded, along poses and of distances; the flags
+/// at a single pose are one step. Points that are not finite are no points: they have the values of free points.
 ///
 /// The hierarchies of cloud and obstacle are kept: nothing is built again when only settings, the transform or the
 /// poses change, nor when the input has other arrays at the same points. All calls by one thread at a time, as VTK has
@@ -28,7 +27,6 @@
 #include <memory>
 
 namespace pcl_bsh {
-class Shape;
 struct Answer;
 struct Question;
 } // namespace pcl_bsh
@@ -61,14 +59,6 @@ public:
   ///@}
 
   ///@{
-  /// How far the balls that cover a surface may reach beyond it, in the clouds' unit. What is free is beyond the
-  /// clearance for certain, what collides is within clearance + tolerance, a distance is too small by at most the
-  /// tolerance. 0 (default): a tenth of the clearance.
-  vtkSetMacro(SurfaceTolerance, double);
-  vtkGetMacro(SurfaceTolerance, double);
-  ///@}
-
-  ///@{
   /// 0: all of the machine's; the result is the same for any number. Default 1.
   vtkSetClampMacro(NumberOfThreads, int, 0, VTK_INT_MAX);
   vtkGetMacro(NumberOfThreads, int);
@@ -88,9 +78,8 @@ protected:
   virtual void Ask(pcl_bsh::Question& question) const = 0;
 
   /// Fills the output, which has the cloud's points and arrays. Whatever it throws is told in one line.
-  /// @param obstacle names its parts: points, or cells
-  virtual void Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, const pcl_bsh::Shape& obstacle,
-                    vtkPolyData* output) = 0;
+  /// @param answer of whose distances `nearest` is a point of the obstacle or, of a surface, a cell
+  virtual void Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, vtkPolyData* output) = 0;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputs,
@@ -98,7 +87,6 @@ protected:
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
   vtkLinearTransform* Transform = nullptr;
-  double SurfaceTolerance = 0.0;
   int NumberOfThreads = 1;
 
 private:

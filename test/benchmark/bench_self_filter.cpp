@@ -27,13 +27,13 @@ struct Frame {
   self_filter::DepthImage image;
 };
 
-void measure(const self_filter::Robot& robot, const std::vector<Frame>& frames, double padding, double tolerance,
-             const Options& options, Table& table)
+void measure(const self_filter::Robot& robot, const std::vector<Frame>& frames, double padding, const Options& options,
+             Table& table)
 {
-  progress("padding " + text(padding) + " m, tolerance " + text(tolerance) + " m");
+  progress("padding " + text(padding) + " m");
   const std::size_t camera = robot.linkNamed("camera");
   const Stopwatch covering;
-  self_filter::SelfFilter filter(robot, {padding, tolerance, 1});
+  self_filter::SelfFilter filter(robot, {padding, 1});
   const double covered = covering.seconds();
   std::vector<double> times;
   double points = 0, cut = 0, seen = 0;
@@ -47,7 +47,7 @@ void measure(const self_filter::Robot& robot, const std::vector<Frame>& frames, 
       cut += static_cast<double>(std::count(flags.begin(), flags.end(), Verdict::colliding));
       seen += static_cast<double>(std::count(frame.image.is_robot.begin(), frame.image.is_robot.end(), 1));
     }
-  table.add({text(padding), text(tolerance), std::to_string(filter.balls()), text(covered), text(100 * seen / points),
+  table.add({text(padding), std::to_string(filter.triangles()), text(covered), text(100 * seen / points),
              text(100 * cut / points), text(median(times)), text(*std::max_element(times.begin(), times.end()))});
 }
 
@@ -64,8 +64,7 @@ int main(int argc, char** argv)
       ->check(CLI::Range(16, 4096))
       ->capture_default_str();
   app.add_option("--frames", options.frames, "images")->check(CLI::PositiveNumber)->capture_default_str();
-  Table table({"padding [m]", "tolerance [m]", "balls", "cover and build [s]", "robot [%]", "cut [%]", "frame [ms]",
-               "slowest [ms]"});
+  Table table({"padding [m]", "triangles", "load and build [s]", "robot [%]", "cut [%]", "frame [ms]", "slowest [ms]"});
   return runProgram(app, argc, argv, options, table, [&](Table& rows) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("bench_self_filter_" + std::to_string(getpid()));
@@ -78,9 +77,7 @@ int main(int argc, char** argv)
       const self_filter::JointValues values = self_filter::madeJointValues(i, options.frames);
       frames.push_back({values, self_filter::seenBy(robot, values, options.width)});
     }
-    measure(robot, frames, 0.02, 0.005, options, rows);
-    measure(robot, frames, 0.02, 0.002, options, rows);
-    measure(robot, frames, 0.05, 0.01, options, rows);
+    for (const double padding : {0.02, 0.05}) measure(robot, frames, padding, options, rows);
     std::filesystem::remove_all(folder);
     return true;
   });

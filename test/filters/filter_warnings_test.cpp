@@ -163,7 +163,7 @@ TEST_F(FilterWarnings, OfSurfaces)
   Eigen::Isometry3d there = Eigen::Isometry3d::Identity();
   there.translation().x() = -(1 << 20);
   filter_.setInputCloud(floorAt(0));
-  filter_.setObstacleSurface(mesh, 1.0);
+  filter_.setObstacleSurface(mesh);
   filter_.setPose(there);
   filter_.setClearance(0.5);
   ask();
@@ -174,8 +174,8 @@ TEST_F(FilterWarnings, OfSurfaces)
 
   MeshCollisionFilter faces;
   const Told<MeshCollisionFilter> told(faces);
-  faces.setInputMesh(mesh, 1.0);
-  faces.setObstacleSurface(mesh, 1.0);
+  faces.setInputMesh(mesh);
+  faces.setObstacleSurface(mesh);
   faces.setClearance(0.5);
   faces.computeFlags(flags_);
   expected = same("the input");

@@ -3,13 +3,13 @@
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/flags/colliding_indices.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/pairs/trace.h>
 #include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
-#include <pcl_bsh/surface/surface_cover.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "clouds.h"
@@ -292,21 +292,18 @@ TEST(AllocationFailure, OfTheHausdorffDistance)
   }
 }
 
-TEST(AllocationFailure, OfACoveredSurface)
+TEST(AllocationFailure, OfTriangles)
 {
   const Cloud corners = richCloud(4, 30);
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Triangle> triangles;
   for (std::uint32_t i = 0; i + 2 < 30; i += 3) triangles.push_back({i, i + 1, i + 2});
-  for (const bool apart : {false, true}) {
-    SurfaceRequest asked;
-    asked.tolerance = 0.05;
-    asked.triangles_apart = apart;
-    failEachAllocation([] { return 0; },
-                       [&](int) {
-                         const SurfaceCover cover = coverSurface(corners.view(), triangles, asked);
-                         return std::tuple(cover.centers, cover.radii, cover.triangles);
-                       });
-  }
+  const TrianglesView view{corners.view(), triangles[0].data(), triangles.size()};
+  failEachAllocation([] { return 0; },
+                     [&](int) {
+                       const PointsView balls = viewOf(view);
+                       return std::vector<float>(balls.radii, balls.radii + balls.count);
+                     });
+  failEachAllocation([] { return 0; }, [&](int) { return looseVertices(view); });
 }
 
 TEST(AllocationFailure, OfClustersClashesAndSpacing)

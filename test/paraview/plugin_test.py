@@ -91,10 +91,10 @@ cube = vtkCubeSource()
 cube.SetXLength(2), cube.SetYLength(2), cube.SetZLength(2)
 cube.Update()
 box = simple.OpenDataFile(save(cube.GetOutput(), "box.vtp"))
-surface = PointCloudDistance(Input=scan, Obstacle=box, SurfaceTolerance=0.01)  # noqa: F821
+surface = PointCloudDistance(Input=scan, Obstacle=box)  # noqa: F821
 surface.UpdatePipeline()
 true = np.linalg.norm(np.maximum(np.abs(tunnel.astype(np.float64)) - 1.0, 0.0), axis=1)
-assert np.all(array(surface, "distance") <= true + 1e-9) and np.all(array(surface, "distance") >= true - 0.01 - 1e-9)
+assert np.allclose(array(surface, "distance"), true, rtol=1e-12)
 
 spheres = BoundingSpheres(Input=scan, Level=1)  # noqa: F821
 spheres.UpdatePipeline()

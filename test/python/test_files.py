@@ -107,7 +107,9 @@ def test_meshes(tmp_path):
     (tmp_path / "square.off").write_text("OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")
     vertices, triangles = pcl_bsh.read_mesh(tmp_path / "square.off")
     assert vertices.shape == (4,) and triangles.shape == (2, 3) and triangles.dtype == np.uint32
-    assert pcl_bsh.cover_surface(vertices, triangles, 0.1).area == pytest.approx(1.0)
+    square = pcl_bsh.SphereHierarchy.of_triangles(vertices, triangles)
+    above = pcl_bsh.SphereHierarchy(np.array([[0.5, 0.5, 0.25]]))
+    assert pcl_bsh.closest_pair(above, square).distance == 0.25
 
 
 def test_files_that_cannot_be(tmp_path):

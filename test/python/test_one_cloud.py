@@ -132,24 +132,21 @@ def test_surface():
     rng = np.random.default_rng(6)
     vertices = rng.random((6, 3))
     triangles = np.array([[0, 1, 2], [3, 4, 5]], np.int32)
-    cover = pcl_bsh.cover_surface(vertices, triangles, 0.02)
-    assert cover.radii.dtype == np.float32 and cover.centers.shape == (len(cover), 3) and len(cover.triangles) == len(cover)
-    assert cover.radii.max() <= 0.02 and cover.tolerance == 0.02
-    area = sum(np.linalg.norm(np.cross(*(vertices[t[1:]] - vertices[t[0]]))) / 2 for t in triangles)
-    assert cover.area == pytest.approx(area)
     scan = rng.random((300, 3)) * 2 - 0.5
+    mesh = pcl_bsh.SphereHierarchy.of_triangles(vertices, triangles)
+    assert repr(mesh) == "SphereHierarchy(2 triangles, float64)" and len(mesh) == mesh.records == 2
+    assert mesh.array is vertices and mesh.in_place and not vertices.flags.writeable
     surface = np.minimum(*(distance_from_triangle(scan, vertices[t]) for t in triangles))
-    hierarchy = cover.hierarchy()
-    del cover
     S = pcl_bsh.SphereHierarchy(scan)
-    flags = pcl_bsh.collision_flags(S, hierarchy, 0.1)
+    flags = pcl_bsh.collision_flags(S, mesh, 0.1)
     step = 0.03  # of the samples
-    assert flags[surface <= 0.1].all() and not flags[surface > 0.1 + 0.02 + step].any()
-    assert flags.any() and not flags.all() and hierarchy.array is None and not hierarchy.in_place
-    apart = pcl_bsh.cover_surface(vertices.astype(np.float32), triangles.tolist(), 0.02, triangles_apart=True)
-    assert set(apart.triangles.tolist()) == {0, 1}
-    seen = []
-    pcl_bsh.cover_surface(vertices, triangles, 0.005, progress=seen.append)
-    assert seen and seen == sorted(seen) and 0 <= seen[0] and seen[-1] <= 1
-    with pytest.raises(pcl_bsh.Cancelled):
-        pcl_bsh.cover_surface(vertices, triangles, 0.005, progress=lambda done: False)
+    assert flags[surface <= 0.1].all() and not flags[surface > 0.1 + step].any()
+    assert flags.any() and not flags.all()
+    far = vertices + 10
+    mesh.refit(far)
+    assert mesh.array is far and vertices.flags.writeable
+    assert not pcl_bsh.collision_flags(S, mesh, 0.1).any()
+    with pytest.raises(ValueError, match="radii: are those of points"):
+        mesh.refit(vertices, radii=np.zeros(6, np.float32))
+    floats = pcl_bsh.SphereHierarchy.of_triangles(vertices.astype(np.float32), triangles.tolist())
+    assert repr(floats) == "SphereHierarchy(2 triangles, float32)"

@@ -205,8 +205,8 @@ def test_accuracy_keeps_its_promises(text):
         (lambda A: pcl_bsh.collide_along(A, A, np.eye(4), 0.1), r"\(m, 4, 4\)"),
         (lambda A: pcl_bsh.any_collision_on_motions(A, A, [np.eye(4)], [[0, 1]], 0.1, tolerance=0.1), "motion|pose"),
         (lambda A: pcl_bsh.any_collision_on_motions(A, A, [np.eye(4)], [[0, 0]], 0.1, tolerance=0.0), "tolerance"),
-        (lambda A: pcl_bsh.cover_surface(np.zeros((3, 3)), [[0, 1, 3]], 0.1), "3"),
-        (lambda A: pcl_bsh.cover_surface(np.zeros((3, 3)), [[0, 1]], 0.1), r"triangles: have shape \(1, 2\)"),
+        (lambda A: pcl_bsh.SphereHierarchy.of_triangles(np.zeros((3, 3)), [[0, 1, 3]]), "names vertex 3"),
+        (lambda A: pcl_bsh.SphereHierarchy.of_triangles(np.zeros((3, 3)), [[0, 1]]), r"triangles: have shape \(1, 2\)"),
         (lambda A: pcl_bsh.Accuracy("level=x"), "level=x"),
     ],
 )

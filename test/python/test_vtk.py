@@ -102,7 +102,6 @@ def test_surfaces_and_spheres(clouds):
     distance = vtk.vtkBSHDistanceFilter()
     distance.SetInputData(cloud(np.zeros((1, 3))))
     distance.SetObstacleConnection(ball.GetOutputPort())
-    distance.SetSurfaceTolerance(0.01)
     distance.Update()
     assert 0.4 < array(distance, "distance")[0] < 0.5
 

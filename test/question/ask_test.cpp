@@ -7,8 +7,8 @@
 #include "support/verdicts.h"
 
 #include <pcl_bsh/collide.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
-#include <pcl_bsh/surface/triangle_answers.h>
 
 #include <gmock/gmock.h>
 
@@ -212,8 +212,6 @@ TEST_F(Ask, TheClosestPairHoweverFar)
   EXPECT_EQ(found.closest.distance, expected.distance);
   ASSERT_TRUE(found.closest.pair == expected.pair);
   EXPECT_EQ(found.closest.interval.lower, expected.interval.lower);
-  EXPECT_EQ(found.closest_places[0], scan.places[expected.pair->a]);
-  EXPECT_EQ(found.closest_places[1], robot.places[expected.pair->b]);
 }
 
 TEST_F(Ask, DistancesAndLimits)
@@ -289,55 +287,85 @@ TEST_F(Ask, DistancesThatStopEarly)
   EXPECT_EQ(found.distances.a.interval.size(), scan.places.size());
 }
 
-/// A square of two triangles as obstacle, then as input.
-TEST_F(Ask, Surfaces)
-{
-  const std::vector<Point3> corners = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-  SurfaceRequest request;
-  request.tolerance = 0.01;
-  request.triangles_apart = true;
-  const auto square = std::make_shared<const SurfaceCover>(
-      coverSurface(viewOf(corners[0].data(), corners.size()), {{0, 1, 2}, {0, 2, 3}}, request));
-  const SphereHierarchy balls(square->view());
-  question.pose = Eigen::Isometry3d::Identity();
-  question.wanted.flags = question.wanted.closest = true;
-  obstacle = Shape("square", square);
-  Answer found = answer();
-  EXPECT_EQ(found.collisions.flags, collisionFlags({a}, {balls}, within(0.1)).a);
-  EXPECT_LT(found.closest.pair->b, 2u) << "a triangle";
-  EXPECT_GE(found.closest.distance, 0.0);
-  EXPECT_GE(found.closest.interval.upper, found.closest.distance + 0.01);
+/// A square of two triangles.
+class AskOfSurfaces : public Ask {
+protected:
+  AskOfSurfaces() { question.pose = Eigen::Isometry3d::Identity(); }
 
-  input = Shape("square", square);
-  obstacle = robot.shape("b");
-  question.pose.translation() = Eigen::Vector3d(1.2, 0.2, 0.2);
-  found = answer();
-  const FlagsResult expected = collisionFlags({balls}, {b, question.pose}, within(0.1));
-  EXPECT_EQ(found.collisions.flags, triangleVerdicts(*square, expected.a));
-  EXPECT_LT(found.closest.pair->a, 2u);
-  question.wanted.contacts = true;
-  found = answer();
-  EXPECT_EQ(found.collisions.first_pose.size(), 2u);
-  question.wanted = {};
-  question.wanted.distances = true;
-  found = answer();
-  ASSERT_EQ(found.distances.a.distance.size(), 2u);
-  const PointDistances of_balls = pointDistances({balls}, {b, question.pose});
+  Shape square(const std::string& name) const { return {name, viewOf(view)}; }
+
+  /// Of a point from the square.
+  static double distanceOf(const Point3& p)
+  {
+    return std::hypot(std::max(std::abs(p[0]) - 1.0, 0.0), std::max(std::abs(p[1]) - 1.0, 0.0), p[2]);
+  }
+
+  const std::vector<Point3> corners = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 2, 3}};
+  const TrianglesView view{viewOf(corners[0].data(), corners.size()), triangles[0].data(), triangles.size()};
+};
+
+TEST_F(AskOfSurfaces, AsObstacleIsAllOfItsTriangles)
+{
+  question.wanted.flags = question.wanted.closest = true;
+  obstacle = square("square");
+  EXPECT_TRUE(obstacle.isSurface());
+  const Answer found = answer();
   double least = infinity;
-  for (const double distance : of_balls.distance) least = std::min(least, std::max(distance, 0.0));
-  EXPECT_EQ(std::min(found.distances.a.distance[0], found.distances.a.distance[1]), least);
+  for (std::size_t i = 0; i < scan.places.size(); ++i) {
+    const double distance = distanceOf(scan.places[i]);
+    if (std::abs(distance - 0.1) > 1e-12) {
+      ASSERT_EQ(found.collisions.flags[i], distance < 0.1 ? Verdict::colliding : Verdict::free) << i;
+    }
+    least = std::fmin(least, distance);
+  }
+  EXPECT_DOUBLE_EQ(found.closest.distance, least);
+  EXPECT_LT(found.closest.pair->b, 2u) << "a triangle";
 }
 
-TEST_F(Ask, SurfacesRefuseWhatIsAboutPoints)
+TEST_F(AskOfSurfaces, LimitsAreComparedExactlyWithDistancesOfTriangles)
 {
-  const std::vector<Point3> corners = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}};
-  SurfaceRequest request;
-  request.tolerance = 0.1;
-  const auto cover = [&](bool apart) {
-    request.triangles_apart = apart;
-    return std::make_shared<const SurfaceCover>(
-        coverSurface(viewOf(corners[0].data(), corners.size()), {{0, 1, 2}}, request));
-  };
+  // Distances of exactly 0.25, of the next double above, and of a corner: 5/4 by 3 and 4 quarters.
+  const std::vector<Point3> places = {{0.3, 0.2, 0.25}, {0.3, 0.2, std::nextafter(0.25, 1.0)}, {1.75, 2, 0}};
+  input = Shape("points", viewOf(places[0].data(), places.size()));
+  obstacle = square("square");
+  question.wanted.within = true;
+  question.limits = {0.0, 0.25};
+  EXPECT_EQ(answer().within, (std::vector<std::uint8_t>{1, 0, 0}));
+  question.limits = {0.25, 1.25};
+  EXPECT_EQ(answer().within, (std::vector<std::uint8_t>{1, 1, 1}));
+  question.limits = {std::nextafter(0.25, 1.0), std::nextafter(1.25, 0.0)};
+  EXPECT_EQ(answer().within, (std::vector<std::uint8_t>{0, 1, 0}));
+}
+
+TEST_F(AskOfSurfaces, AsInputIsFlaggedByTriangles)
+{
+  const std::vector<Point3> places = {{0.5, -0.5, 0.25}, {9, 9, 9}};
+  const PointsView points = viewOf(places[0].data(), places.size());
+  input = square("square");
+  obstacle = Shape("points", points);
+  question.clearance = 0.25;
+  question.wanted.flags = question.wanted.closest = true;
+  Answer found = answer();
+  EXPECT_EQ(found.collisions.flags, test::verdictsOf({1, 0}));
+  EXPECT_EQ(found.collisions.colliding, 1u);
+  EXPECT_EQ(found.closest.distance, 0.25);
+  EXPECT_EQ(found.closest.pair->a, 0u);
+  question.wanted = {};
+  question.wanted.distances = question.wanted.within = true;
+  question.limits = {0.0, 0.25};
+  found = answer();
+  ASSERT_EQ(found.distances.a.distance.size(), 2u);
+  EXPECT_EQ(found.distances.a.distance[0], 0.25);
+  EXPECT_NEAR(found.distances.a.distance[1], std::sqrt(0.5 + 0.0625), 1e-15);
+  EXPECT_EQ(found.within, (std::vector<std::uint8_t>{1, 0}));
+  question.wanted = {};
+  question.wanted.flags = question.wanted.contacts = true;
+  EXPECT_EQ(answer().collisions.first_pose, (std::vector<std::int32_t>{0, -1}));
+}
+
+TEST_F(AskOfSurfaces, RefuseWhatIsAboutPoints)
+{
   const auto refusal = [&] {
     try {
       answer();
@@ -348,9 +376,7 @@ TEST_F(Ask, SurfacesRefuseWhatIsAboutPoints)
     return std::string();
   };
   question.wanted.flags = true;
-  input = Shape("crate.off", cover(false));
-  EXPECT_THAT(refusal(), HasSubstr("crate.off: its balls hold parts of several triangles each"));
-  input = Shape("crate.off", cover(true));
+  input = square("crate.off");
   EXPECT_EQ(refusal(), "");
   question.density = true;
   EXPECT_THAT(refusal(), HasSubstr("density|density: is about points, and crate.off is a surface"));
@@ -358,11 +384,8 @@ TEST_F(Ask, SurfacesRefuseWhatIsAboutPoints)
   question.uncertainty = Uncertainty("sigma", 1.0);
   EXPECT_THAT(refusal(), HasSubstr("crate.off: is a surface, which has no field 'sigma': give a length"));
   question.uncertainty = 0.0;
-  question.wanted.within = true;
-  EXPECT_THAT(refusal(), HasSubstr("filter_limits|filter_limits: is about points"));
   input = scan.shape("a");
-  obstacle = Shape("crate.off", cover(false));
-  question.wanted.within = false;
+  obstacle = square("crate.off");
   question.density = true;
   EXPECT_EQ(answer().warnings.at(0).text, "crate.off: is a surface, which has no holes: density guards nothing");
 }

@@ -127,8 +127,6 @@ TEST(QuestionOptions, RefuseWhatDoesNotGoTogether)
   EXPECT_THAT(refusal([](Question& q) { q.widest_gap = 2; }), HasSubstr("widest_gap: is given, but not `density`"));
   EXPECT_THAT(refusal([&](Question& q) { q.density = true, q.path = path; }), HasSubstr("density: is about which"));
   EXPECT_THAT(refusal([](Question& q) { q.density = q.wanted.contacts = true; }), HasSubstr("density: is about which"));
-  EXPECT_THAT(refusal([](Question& q) { q.surface_tolerance = 1, q.vertices_only = true; }),
-              HasSubstr("surface_tolerance: is given, but `vertices_only`, too"));
   EXPECT_THAT(refusal([](Question& q) { q.accuracy = Accuracy::level(1), q.wanted.distances = true; }),
               HasSubstr("accuracy: level=1: leaves points without a distance: give exact or tolerance=LENGTH"));
   EXPECT_THAT(refusal([&](Question& q) { q.path = path, q.wanted.both_ways = true; }), HasSubstr("path: has no"));
@@ -181,6 +179,7 @@ TEST(QuestionOptions, AreKnownByTheCodesOfTheCore)
   EXPECT_EQ(named(Input::pose), "pose");
   EXPECT_EQ(named(Input::uncertainty), "") << "of whom?";
   EXPECT_EQ(named(Input::points), "");
+  EXPECT_EQ(named(Input::surface), "") << "of a mesh itself";
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include <pcl_bsh/question/shape.h>
 
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 
 #include <gmock/gmock.h>
@@ -83,12 +84,31 @@ TEST_F(WatchedShape, MeasuresOnce)
   EXPECT_EQ(shape.facts(true).spacing->median, 1.0);
 }
 
+/// Neither a vertex nor a corner's number may change.
+TEST(Shape, OfTrianglesIsWatchedToo)
+{
+  std::vector<float> xyz = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+  std::vector<Triangle> triangles = {{0, 1, 2}};
+  const PointsView view = viewOf(TrianglesView{viewOf(xyz.data(), 4), triangles[0].data(), 1});
+  Shape shape(
+      "plate", [view] { return view; }, [] { return std::vector<RecordField>(); });
+  EXPECT_TRUE(shape.isSurface());
+  EXPECT_EQ(shape.hierarchy({}, 1).size(), 1u);
+  EXPECT_EQ(shape.facts(true).loose, 1u);
+  EXPECT_FALSE(shape.facts(true).spacing);
+  xyz[4] = 0.5f;
+  EXPECT_THAT([&] { shape.hierarchy({}, 1); }, ThrowsMessage<InvalidInput>(HasSubstr("plate: has changed")));
+  xyz[4] = 0.0f;
+  EXPECT_NO_THROW(shape.hierarchy({}, 1));
+  triangles[0][1] = 3;
+  EXPECT_THAT([&] { shape.hierarchy({}, 1); }, ThrowsMessage<InvalidInput>(HasSubstr("plate: has changed")));
+}
+
 TEST(Shape, ThatIsNothing)
 {
   Shape nothing;
   EXPECT_FALSE(nothing);
   EXPECT_THROW(nothing.hierarchy({}, 1), InvalidInput);
-  EXPECT_THROW(Shape("crate", std::shared_ptr<const SurfaceCover>()), InvalidInput);
   EXPECT_TRUE(Shape("empty", PointsView()));
 }
 
@@ -99,7 +119,7 @@ TEST(Shape, ThatIsBuiltAlready)
   Shape shape("pair", built);
   EXPECT_EQ(&shape.hierarchy({}, 1), built.get());
   EXPECT_THROW(shape.hierarchy(0.1, 1), InvalidInput) << "they are those of its points";
-  EXPECT_EQ(shape.part(1), 1u);
+  EXPECT_FALSE(shape.isSurface());
   EXPECT_EQ(shape.facts(false).points, 2u);
 }
 

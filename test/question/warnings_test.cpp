@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/question/warnings.h>
 
-#include <pcl_bsh/surface/surface_cover.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <gmock/gmock.h>
 
@@ -106,17 +106,15 @@ TEST(Warnings, CoarseCoordinates)
   EXPECT_THAT(warningsOf(namedCloud("a", float64), 0.001), IsEmpty());
 }
 
-/// The corners of a mesh were rounded; the balls that cover it are in double, and are no samples of a scan.
 TEST(Warnings, SurfacesHaveCornersAndNoHoles)
 {
   const std::vector<float> corners = {500000, 0, 0, 500030, 0, 0, 500000, 30, 0, 9, 9, 9, nan, 0, 0};
-  const SurfaceCover cover = coverSurface(viewOf(corners.data(), 5), {{0, 1, 2}}, {1.0, false, nullptr});
-  const SphereHierarchy balls(cover.view());
-  ASSERT_GE(balls.size(), 100u);
-  const NamedCloud surface = measuredCloud("mesh", balls, &cover);
+  const std::vector<Triangle> triangles(120, Triangle{0, 1, 2});
+  const TrianglesView view{viewOf(corners.data(), 5), triangles[0].data(), triangles.size()};
+  const NamedCloud surface = measuredCloud("mesh", SphereHierarchy(viewOf(view)));
   EXPECT_EQ(surface.coordinate_spacing, 0.03125);
-  EXPECT_EQ(namedCloud("balls", balls).coordinate_spacing, 0.0);
   EXPECT_FALSE(surface.spacing);
+  EXPECT_TRUE(surface.is_surface);
 
   const Cloud scan(plane(12));
   EXPECT_THAT(textsOf(warningsOf(question({at(-500000)}, 0.25), scan.named("scan", true), surface)),
@@ -125,9 +123,19 @@ TEST(Warnings, SurfacesHaveCornersAndNoHoles)
                           "points lie 1 apart in scan: what was scanned may touch the surface of mesh with no point "
                           "within the clearance of 0.25: scan more densely, or give a clearance of 0.707107 at least"));
   EXPECT_THAT(warningsOf(question({at(0)}, 0.5), surface, surface), testing::SizeIs(1)) << "of the loose vertex";
+}
 
-  const std::vector<double> wide(corners.begin(), corners.end());
-  EXPECT_EQ(coverSurface(viewOf(wide.data(), 3), {{0, 1, 2}}, {1.0, false, nullptr}).coordinate_spacing, 0.0);
+TEST(Warnings, TrianglesThatAreNotFinite)
+{
+  const std::vector<float> corners = {0, 0, 0, 1, 0, 0, 0, 1, 0, nan, 0, 0};
+  const auto told = [&](const std::vector<Triangle>& triangles) {
+    const TrianglesView view{viewOf(corners.data(), 4), triangles[0].data(), triangles.size()};
+    return textsOf(warningsOf(namedCloud("mesh", SphereHierarchy(viewOf(view))), 0.1));
+  };
+  EXPECT_THAT(told({{0, 1, 2}, {0, 1, 3}}), ElementsAre("mesh: 1 of 2 triangles is not finite: it is left out"));
+  EXPECT_THAT(told({{0, 1, 2}, {0, 1, 3}, {1, 2, 3}}),
+              ElementsAre("mesh: 2 of 3 triangles are not finite: they are left out"));
+  EXPECT_THAT(told({{0, 1, 3}}), testing::Contains("mesh: has no finite triangle: nothing collides with it"));
 }
 
 TEST(Warnings, HolesBetweenPoints)

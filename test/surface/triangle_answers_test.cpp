@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "meshes.h"
+#include "support/made_meshes.h"
 #include "support/verdicts.h"
 
 #include <pcl_bsh/base/invalid_input.h>

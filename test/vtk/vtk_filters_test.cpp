@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/roadmap/brute_force.h>
-#include <pcl_bsh/surface/surface_cover.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 #include <pcl_bsh/vtk/cloud_data.h>
 #include <pcl_bsh/vtk_filters/vtkBSHCollisionFilter.h>
@@ -358,52 +358,38 @@ TEST_P(Filters, ObstaclesWithCellsAreSurfaces)
     triangles.push_back({static_cast<std::uint32_t>(corners->GetId(0)), static_cast<std::uint32_t>(corners->GetId(1)),
                          static_cast<std::uint32_t>(corners->GetId(2))});
   }
-  SurfaceRequest covered;
-  covered.tolerance = 0.01;
-  const SurfaceCover cover = coverSurface(viewOfData(mesh), triangles, covered);
-  const SphereHierarchy a(viewOfData(*cloud)), b(cover.view());
+  const TrianglesView view{viewOfData(mesh), triangles[0].data(), triangles.size()};
+  const SphereHierarchy a(viewOfData(*cloud)), b(viewOf(view));
   FlagsRequest request;
   request.clearance = 0.1;
 
   vtkNew<vtkBSHCollisionFilter> filter;
   filter->SetInputData(cloud);
   filter->SetObstacleConnection(ball->GetOutputPort());
-  filter->SetClearance(0.1); // a tenth of it is the tolerance
+  filter->SetClearance(0.1);
   filter->Update();
   expectSame(values(*filter->GetOutput(), "collision"), collisionFlags({a}, {b}, request).a);
   EXPECT_EQ(filter->GetHierarchiesBuilt(), 2);
   filter->SetTransform(transformOf(pose));
+  filter->SetClearance(0.2);
   filter->Update();
   EXPECT_EQ(filter->GetHierarchiesBuilt(), 2);
-  filter->SetClearance(0.2);
-  filter->SetSurfaceTolerance(0.01);
-  filter->Update();
-  EXPECT_EQ(filter->GetHierarchiesBuilt(), 2); // the same tolerance
-  filter->SetSurfaceTolerance(0.02);
+  ball->SetPhiResolution(9);
   filter->Update();
   EXPECT_EQ(filter->GetHierarchiesBuilt(), 3);
-  filter->SetSurfaceTolerance(0.0);
-  filter->SetClearance(0.0);
-  expectFailure(*filter, "give a SurfaceTolerance");
-  filter->SetSurfaceTolerance(-1.0);
-  expectFailure(*filter, "give a SurfaceTolerance");
+  ball->SetPhiResolution(8);
+  ball->Update();
 
   vtkNew<vtkBSHDistanceFilter> distances;
   distances->SetInputData(cloud);
   distances->SetObstacleConnection(ball->GetOutputPort());
-  expectFailure(*distances, "give a SurfaceTolerance");
-  distances->SetSurfaceTolerance(0.01);
   distances->Update();
   const PointDistances wanted = pointDistances({a}, {b});
-  const std::vector<double> distance = values(*distances->GetOutput(), "distance");
-  const std::vector<double> cells = values(*distances->GetOutput(), "nearest");
-  for (std::size_t i = 0; i < distance.size(); ++i) {
-    EXPECT_EQ(distance[i], std::max(0.0, wanted.distance[i]));
-    EXPECT_EQ(cells[i], cover.triangles[wanted.nearest[i]]);
-  }
+  expectSame(values(*distances->GetOutput(), "distance"), wanted.distance);
+  expectSame(values(*distances->GetOutput(), "nearest"), wanted.nearest);
 }
 
-TEST_P(Filters, CellsOfAllKindsAreCovered)
+TEST_P(Filters, CellsOfAllKindsCount)
 {
   // A square, a segment, a strip and a point: each is near one point of the cloud, far from all corners but the
   // point's.
@@ -442,13 +428,11 @@ TEST_P(Filters, CellsOfAllKindsAreCovered)
   filter->SetInputData(probes);
   filter->SetObstacleData(things);
   filter->SetClearance(0.2);
-  filter->SetSurfaceTolerance(0.05);
   filter->Update();
   expectSame(values(*filter->GetOutput(), "collision"), std::vector<int>{1, 1, 1, 1, 1, 1, 0, 0});
   vtkNew<vtkBSHDistanceFilter> distances;
   distances->SetInputData(probes);
   distances->SetObstacleData(things);
-  distances->SetSurfaceTolerance(0.05);
   distances->Update();
   // vtkPolyData numbers vertices first, then lines, polygons, strips
   expectSame(values(*distances->GetOutput(), "nearest"), std::vector<int>{2, 2, 1, 3, 3, 0, 0, 2});
@@ -595,7 +579,6 @@ TEST_P(Filters, TellWhatTheAnswerDoesNot)
   Told of_distances(*distances, vtkCommand::WarningEvent);
   distances->SetInputData(scan);
   distances->SetObstacleData(surface);
-  distances->SetSurfaceTolerance(0.1);
   distances->Update();
   EXPECT_THAT(of_distances.texts,
               testing::ElementsAre(HasSubstr("the obstacle: 1 of its vertices belongs to no face")));
@@ -699,7 +682,6 @@ TEST_P(Filters, TellProgressAndStop)
   filter->SetObstacleConnection(ball->GetOutputPort());
   filter->SetPosesData(tableOf(path));
   filter->SetClearance(0.05);
-  filter->SetSurfaceTolerance(0.01);
   std::vector<double> told;
   vtkNew<vtkCallbackCommand> listen;
   listen->SetClientData(&told);
@@ -714,7 +696,7 @@ TEST_P(Filters, TellProgressAndStop)
   EXPECT_NE(filter->GetOutput()->GetPointData()->GetArray("first_pose"), nullptr);
   filter->RemoveObserver(observer);
 
-  vtkNew<vtkCallbackCommand> stop; // at the cover's first report, and later
+  vtkNew<vtkCallbackCommand> stop; // at the first report, and later
   for (const double at : {0.0, 0.31}) {
     double limit = at;
     stop->SetClientData(&limit);
@@ -723,7 +705,7 @@ TEST_P(Filters, TellProgressAndStop)
         vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1);
     });
     const unsigned long stopping = filter->AddObserver(vtkCommand::ProgressEvent, stop);
-    filter->SetSurfaceTolerance(0.011 + at * 0.01);
+    filter->Modified();
     Told errors(*filter);
     filter->Update();
     EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // This project's own filter.
 #include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/gathered_result.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/faces.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
@@ -43,7 +44,9 @@ private:
   /// have.
   StageCloudPtr flaggedFaces(StageCloudPtr&& input, TrajectoryResult found) const
   {
-    const TrajectoryResult of_vertices = ofVertices(*input->triangles, viewOf(input->cloud).count, found);
+    const std::vector<Triangle>& triangles = *input->triangles;
+    const TrajectoryResult of_vertices = gatheredResult(found, viewOf(input->cloud).count,
+                                                        [&](std::size_t t) -> const Triangle& { return triangles[t]; });
     const auto output = ownCloud(std::move(input));
     output->cloud = withResults(output->cloud, of_vertices);
     setFaceProperty(*output, collision_field_name, numbersOf(found.flags));

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <pcl_bsh/filters/pipeline/stage_cloud.h>
-#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -24,11 +23,6 @@ void setFaceProperty(StageCloud& mesh, const std::string& name, std::vector<Valu
   }
   mesh.face_properties.push_back({name, std::move(values)});
 }
-
-/// Of each vertex the gravest of what its triangles have: colliding before undecided before free, the smallest distance
-/// and its pose, the first pose. A vertex of no triangle is free. What the result does not have stays empty.
-TrajectoryResult ofVertices(const std::vector<Triangle>& triangles, std::size_t vertices,
-                            const TrajectoryResult& of_triangles);
 
 /// The triangles whose flag is not 0, their properties, and the vertices that they use, in the order they had.
 /// @pre the mesh has triangles, and there is one flag each

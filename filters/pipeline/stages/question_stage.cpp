@@ -61,16 +61,14 @@ void warnOfUndecided(const Answer& answer, const Question& question, const char*
   stage.warn(std::to_string(undecided) + ' ' + parts + " stay undecided" + why + ": they are not taken for free");
 }
 
-/// Makes a surface, or tells why it cannot be. @param subject what it is made of
-template <typename Make>
-auto covered(const Make& make, const std::string& subject)
+/// What a cloud is compared as. @param option of what it is made of, in errors
+io::Obstacle shapeOf(const StageCloudPtr& cloud, const Question& question, const char* option)
 {
   try {
-    return make();
+    return {{cloud, &cloud->cloud}, cloud->triangles, {question.vertices_only}};
   }
   catch (const InvalidInput& error) {
-    if (error.input() == Input::surface && error.value()) throw OptionError("surface_tolerance", error.advice());
-    throw OptionError("obstacle", subject + ": " + error.advice());
+    throw OptionError(option, error.advice());
   }
 }
 
@@ -174,50 +172,16 @@ void QuestionStage::plan(const CloudHeader& input, const Wanted& wanted, Stage& 
   for (std::string& warning : warnings) stage.warn(std::move(warning));
 }
 
-io::SurfaceSettings QuestionStage::surfaceSettings(bool asked_about) const
-{
-  return {question.surface_tolerance, question.vertices_only, asked_about};
-}
-
-io::Obstacle QuestionStage::compared(Stage& stage) const
-{
-  const io::Obstacle made = covered(
-      [&] {
-        return io::Obstacle({obstacle.cloud, &obstacle.cloud->cloud}, obstacle.cloud->triangles, surfaceSettings(false),
-                            question.clearance.value_or(0.0), [&stage](double) { return !stage.isCancelled(); });
-      },
-      obstacle.name);
-  for (const std::string& remark : made.remarks()) stage.warn("obstacle: " + remark);
-  if (made.isSurface())
-    stage.warn(promiseOfObstacle(*made.cover(), besideSurface(question.accuracy, question.swept > 0.0)));
-  return made;
-}
-
-Shape QuestionStage::inputOf(const StageCloudPtr& input, Stage& stage) const
-{
-  if (!asksAboutFaces(*input)) return {"the input", viewOf(input->cloud), recordFields(input->cloud.fields)};
-  std::vector<std::string> remarks;
-  const auto cover = covered(
-      [&] {
-        return std::make_shared<const SurfaceCover>(io::coverMesh(
-            viewOf(input->cloud), *input->triangles, surfaceSettings(true), question.clearance.value_or(0.0),
-            [&stage](double) { return !stage.isCancelled(); }, remarks));
-      },
-      "input");
-  for (const std::string& remark : remarks) stage.warn("input: " + remark);
-  stage.warn(promiseOfInput(*cover));
-  return {"the input", cover};
-}
-
 QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage) const
 {
   Question asked = question;
   asked.wanted.spacings = asked.wanted.collisions();
   asked.progress = [&stage](double) { return !stage.isCancelled(); };
   Asked found;
-  found.compared = compared(stage);
+  found.compared = shapeOf(obstacle.cloud, question, "obstacle");
   found.obstacle = found.compared.shape("the obstacle");
-  found.input = inputOf(input, stage);
+  found.input = shapeOf(input, question, "input").shape("the input");
+  if (found.obstacle.isSurface()) stage.warn(io::promiseOf(found.compared));
   try {
     found.answer = pcl_bsh::ask(asked, found.input, found.obstacle);
   }
@@ -225,7 +189,7 @@ QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage
     refuse(error, question);
   }
   for (const Warning& warning : found.answer.warnings) stage.warn(warning.text);
-  warnOfUndecided(found.answer, question, asksAboutFaces(*input) ? "triangles" : "points", stage);
+  warnOfUndecided(found.answer, question, found.input.isSurface() ? "triangles" : "points", stage);
   return found;
 }
 

@@ -47,15 +47,13 @@ protected:
   Asked ask(const StageCloudPtr& input, Stage& stage) const;
 
   /// Whether the triangles of the input are asked about, not its points.
-  bool asksAboutFaces(const StageCloud& input) const { return input.triangles && !question.vertices_only; }
+  bool asksAboutFaces(const StageCloud& input) const
+  {
+    return input.triangles && !input.triangles->empty() && !question.vertices_only;
+  }
 
   /// For run() of a stage that knows points alone. @throws OptionError where faces are asked about
   void requirePoints(const StageCloud& input) const;
-
-private:
-  io::SurfaceSettings surfaceSettings(bool asked_about) const;
-  io::Obstacle compared(Stage& stage) const;
-  Shape inputOf(const StageCloudPtr& input, Stage& stage) const;
 };
 
 /// A row of the core's table as an option of a stage. @param question of a stage

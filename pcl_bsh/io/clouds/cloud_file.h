@@ -10,7 +10,7 @@
 
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/column_names.h>
-#include <pcl_bsh/surface/surface_cover.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <pcl/PCLPointCloud2.h>
 

@@ -68,8 +68,7 @@ private:
   Data contents() const
   {
     const ClashQuestion& question = report_.question;
-    const std::string promise =
-        report_.surface != nullptr ? promiseOf(*report_.surface, question.swept ? "swept motion" : "") : "";
+    const std::string promise = report_.surface != nullptr ? promiseOf(*report_.surface) : "";
     Object page = pageAbout(question, report_.coordinate_system, question.accuracy.text(), promise);
     page.insert({{"headline", headline()},
                  {"unit", textOrNone(report_.unit)},
@@ -231,7 +230,7 @@ private:
     card["scan_point"] = nameOfPart(report_.source_of, clash.scan_point, clash.scan_point);
     card["scan_place"] = coordinate(p.x()) + ", " + coordinate(p.y()) + ", " + coordinate(p.z());
     card["model_part"] =
-        report_.partName() + (' ' + nameOfPart(report_.model_source_of, clash.model_point, report_.modelPart(clash)));
+        report_.partName() + (' ' + nameOfPart(report_.model_source_of, clash.model_point, clash.model_point));
     card["top_view"] = topView(clash);
     card["approach"] = approach(clash);
     return card;

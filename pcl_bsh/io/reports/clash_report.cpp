@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/geometry/triangle/nearest_point.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/report_origin.h>
@@ -50,7 +51,7 @@ Json toJson(const ClashReport& report, const Clash& clash)
   };
   Json input = {{"point", clash.scan_point}};
   if (report.source_of) input = sourceJson(report.source_of(clash.scan_point));
-  Json obstacle = {{report.partName(), report.modelPart(clash)}};
+  Json obstacle = {{report.partName(), clash.model_point}};
   if (report.model_source_of) obstacle = sourceJson(report.model_source_of(clash.model_point));
   json["closest_pair"] = {{"input", side(input, report.scanPoint(clash))},
                           {"obstacle", side(obstacle, report.modelPoint(clash))}};
@@ -64,13 +65,19 @@ std::string formatOf(const std::filesystem::path& path)
 
 } // namespace
 
-Json surfaceJson(const Obstacle* surface, const std::string& beside)
+Eigen::Vector3d ClashReport::modelPoint(const Clash& clash) const
+{
+  const Eigen::Isometry3d& pose = poses[static_cast<std::size_t>(clash.closest_pose)];
+  if (!model.triangles) return pose * vectorOf(model.point(clash.model_point));
+  const Eigen::Vector3d seen = pose.inverse() * scanPoint(clash);
+  const Point3 nearest = nearestPoint({seen.x(), seen.y(), seen.z()}, model.triangles->triangle(clash.model_point));
+  return pose * vectorOf(nearest);
+}
+
+Json surfaceJson(const Obstacle* surface)
 {
   if (surface == nullptr) return nullptr;
-  return {{"triangles", surface->triangles()->size()},
-          {"balls", surface->cover()->centers.size()},
-          {"tolerance", surface->tolerance()},
-          {"promise", promiseOf(*surface, beside)}};
+  return {{"triangles", surface->triangles()->size()}, {"promise", promiseOf(*surface)}};
 }
 
 std::string clashJson(const ClashReport& report)
@@ -83,7 +90,7 @@ std::string clashJson(const ClashReport& report)
                {"obstacle", question.obstacle},
                {"unit", textOrNull(report.unit)},
                {"coordinate_system", textOrNull(report.coordinate_system)},
-               {"surface", surfaceJson(report.surface, question.swept ? "swept motion" : "")},
+               {"surface", surfaceJson(report.surface)},
                {"clearance", question.clearance},
                {"uncertainty",
                 {{"input", uncertaintyJson(question.input_uncertainty)},
@@ -130,7 +137,7 @@ std::string clashCsv(const ClashReport& report)
     if (isPresent(clash.status)) {
       cell_of(report.source_of, clash.scan_point, clash.scan_point);
       for (const double coordinate : report.scanPoint(clash)) cell(numberText(coordinate));
-      cell_of(report.model_source_of, clash.model_point, report.modelPart(clash));
+      cell_of(report.model_source_of, clash.model_point, clash.model_point);
       for (const double coordinate : report.modelPoint(clash)) cell(numberText(coordinate));
     }
     else {

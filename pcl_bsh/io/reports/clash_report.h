@@ -39,17 +39,13 @@ struct ClashReport {
   std::string unit = {};                    ///< of the clouds' lengths; empty: not known
   std::string coordinate_system = {};       ///< of the input, where its file names one; else empty
   std::optional<std::string> previous = {}; ///< file name
-  const Obstacle* surface = nullptr;        ///< the obstacle, where it is one; `model` are its balls
+  const Obstacle* surface = nullptr;        ///< the obstacle, where it is one; `model` are its triangles
   /// Of a point of `scan`, where the input is several files.
   std::function<SourcePoint(std::uint32_t)> source_of = nullptr;
   /// The same of a point of `model`.
   std::function<SourcePoint(std::uint32_t)> model_source_of = nullptr;
 
   /// Of the obstacle: a point, or a triangle.
-  std::uint32_t modelPart(const Clash& clash) const
-  {
-    return surface != nullptr ? surface->partOf(clash.model_point) : clash.model_point;
-  }
   const char* partName() const { return surface != nullptr ? surface->partName() : "point"; }
 
   std::size_t count(ClashStatus status) const
@@ -72,11 +68,8 @@ struct ClashReport {
   Eigen::Vector3d scanPoint(const Clash& clash) const { return vectorOf(scan.point(clash.scan_point)); }
 
   /// Where the obstacle's point of the closest pair is at the closest pose (swept: when the motion from there begins).
-  /// Of a surface, the middle of the ball that is closest.
-  Eigen::Vector3d modelPoint(const Clash& clash) const
-  {
-    return poses[static_cast<std::size_t>(clash.closest_pose)] * vectorOf(model.point(clash.model_point));
-  }
+  /// Of a surface, the point of the triangle that is nearest to the scan's, rounded.
+  Eigen::Vector3d modelPoint(const Clash& clash) const;
 
   static Eigen::Vector3d vectorOf(const Point3& p) { return {p[0], p[1], p[2]}; }
 
@@ -89,8 +82,7 @@ private:
 };
 
 /// What an obstacle is compared as: null where that is its points.
-/// @param beside as promiseOf() takes it
-Json surfaceJson(const Obstacle* surface, const std::string& beside = "");
+Json surfaceJson(const Obstacle* surface);
 
 /// One object per clash, with its closest pair if it is there now.
 std::string clashJson(const ClashReport& report);

@@ -66,7 +66,7 @@ private:
          {"statistics", statistics()},
          {"sides", List{side(report_.input, report_.obstacle.name), side(report_.obstacle, report_.input.name)}}});
     if (const auto& pair = report_.hausdorff_pair)
-      page["pair"] = Object{{"a", std::to_string(pair->a)}, {"b", std::to_string(question.partOf(pair->b))}};
+      page["pair"] = Object{{"a", std::to_string(pair->a)}, {"b", std::to_string(pair->b)}};
     return page;
   }
 
@@ -79,7 +79,7 @@ private:
     };
     const auto addLength = [&](const std::string& name, double x, double y) { add(name, unit_, length(x), length(y)); };
     const DistanceStatistics &s = a.statistics, &t = b.statistics;
-    const std::string points = report_.question.surface != nullptr ? "points, balls on the surface" : "points";
+    const std::string points = report_.question.surface != nullptr ? "points, triangles" : "points";
     add(points, "", std::to_string(a.points), std::to_string(b.points));
     add(points + " with a distance", "", std::to_string(s.count), std::to_string(t.count));
     addLength("mean", s.mean, t.mean);
@@ -228,10 +228,6 @@ private:
   Data places(const DistanceSide& from) const
   {
     if (from.places.empty()) return false;
-    const bool of_input = &from == &report_.input;
-    const auto part = [&](std::uint32_t record, bool is_input) {
-      return std::to_string(is_input ? record : report_.question.partOf(record));
-    };
     List rows;
     for (std::size_t i = 0; i < std::min(from.places.size(), most_far_places); ++i) {
       const FarPlace& place = from.places[i];
@@ -244,8 +240,8 @@ private:
                             {"distance", distanceText(place.distance)},
                             {"points", std::to_string(place.records.size())},
                             {"size", number(size, 3)},
-                            {"point", part(place.point, of_input)},
-                            {"nearest", known ? part(place.nearest, !of_input) : std::string("none")}});
+                            {"point", std::to_string(place.point)},
+                            {"nearest", known ? std::to_string(place.nearest) : std::string("none")}});
     }
     const std::size_t more = from.places.size() - std::min(from.places.size(), most_far_places);
     return Object{{"rows", rows}, {"more", more > 0 ? Data(std::to_string(more)) : Data(false)}};

@@ -17,19 +17,20 @@ Json lengthJson(double length)
 }
 
 /// A point of the input, and a point or a triangle of the obstacle.
-Json pairJson(const DistanceQuestion& question, const std::optional<PointPair>& pair)
+Json pairJson(const std::optional<PointPair>& pair)
 {
-  return pair ? Json{pair->a, question.partOf(pair->b)} : Json();
+  return pair ? Json{pair->a, pair->b} : Json();
 }
 
 DistanceSide sideOf(const std::string& name, const Placed& cloud, const PointDistances& found,
                     const std::optional<double>& beyond)
 {
-  DistanceSide side{name, cloud.hierarchy().view(), cloud.pose, found, cloud.hierarchy().size(), {}, 0.0, {}};
+  const PointsView points = middlesOf(cloud.hierarchy().view());
+  DistanceSide side{name, points, cloud.pose, found, cloud.hierarchy().size(), {}, 0.0, {}};
   side.statistics = statisticsOf(found.distance);
   side.beyond = beyond.value_or(side.statistics.percentiles[3]);
   const double far = std::isnan(side.beyond) ? 0.0 : side.beyond; // then every point is farther than all that was asked
-  side.places = findFarPlaces(side.cloud, found, far, clusterDistanceFor(0.0, spacingOf(cloud.hierarchy())));
+  side.places = findFarPlaces(side.cloud, found, far, clusterDistanceFor(0.0, spacingOf(SphereHierarchy(points))));
   return side;
 }
 
@@ -49,18 +50,17 @@ Json toJson(const DistanceQuestion& question, const DistanceSide& side, bool is_
                {"median", lengthJson(statistics.median)},
                {"percentiles", percentiles},
                {"maximum", lengthJson(statistics.maximum)},
-               {"farthest_pair", pairJson(question, farthest)},
+               {"farthest_pair", pairJson(farthest)},
                {"places_beyond", lengthJson(side.beyond)},
                {"places", Json::array()}};
-  const auto part = [&](std::uint32_t record, bool of_input) { return of_input ? record : question.partOf(record); };
   for (std::size_t i = 0; i < std::min(side.places.size(), most_far_places); ++i) {
     const FarPlace& place = side.places[i];
     const Eigen::Vector3d at = side.placeOf(place.point);
     const bool known = place.nearest != kNothing;
     json["places"].push_back({{"points", place.records.size()},
                               {"distance", lengthJson(place.distance)},
-                              {is_input ? "point" : question.partName(), part(place.point, is_input)},
-                              {"nearest", known ? Json(part(place.nearest, !is_input)) : Json()},
+                              {is_input ? "point" : question.partName(), place.point},
+                              {"nearest", known ? Json(place.nearest) : Json()},
                               {"at", {lengthJson(at.x()), lengthJson(at.y()), lengthJson(at.z())}}});
   }
   return json;
@@ -70,11 +70,9 @@ Json toJson(const DistanceQuestion& question, const DistanceSide& side, bool is_
 
 Json DistanceQuestion::surfaceToTell() const
 {
-  Json json = surfaceJson(surface, request.accuracy.isExact() ? "" : "the accuracy");
-  if (surface != nullptr) {
-    json["promise"] = json["promise"].get<std::string>() +
-                      "; distances from its balls, and so the Hausdorff distance, by " + "at most twice as much";
-  }
+  Json json = surfaceJson(surface);
+  if (surface != nullptr)
+    json["promise"] = json["promise"].get<std::string>() + "; the distance of a triangle is that of its nearest point";
   return json;
 }
 
@@ -100,7 +98,7 @@ Json distanceJson(const DistanceReport& report)
           {"input_to_obstacle", toJson(question, report.input, true)},
           {"obstacle_to_input", toJson(question, report.obstacle, false)},
           {"hausdorff", lengthJson(report.hausdorff)},
-          {"hausdorff_pair", pairJson(question, report.hausdorff_pair)}};
+          {"hausdorff_pair", pairJson(report.hausdorff_pair)}};
 }
 
 void writeDistances(const std::filesystem::path& path, const DistanceReport& report)

@@ -22,21 +22,19 @@ struct DistanceQuestion {
   std::string unit;            ///< of the clouds' lengths; empty: not known
   PointDistancesRequest request;
   std::optional<double> beyond;       ///< places have points farther than this; none: than 95 of 100 points
-  const Obstacle* surface = nullptr;  ///< the obstacle, where it is one; its balls stand for it
+  const Obstacle* surface = nullptr;  ///< the obstacle, where it is one: its records are triangles
   std::string coordinate_system = {}; ///< of the input, where its file names one; else empty
 
-  /// Of the obstacle: a point, or a triangle.
-  std::uint32_t partOf(std::uint32_t record) const { return surface != nullptr ? surface->partOf(record) : record; }
-  /// What the numbers mean where the obstacle is a surface: null unless it is one. A ball reaches as far on its far
-  /// side.
+  /// What the numbers mean where the obstacle is a surface: null unless it is one.
   Json surfaceToTell() const;
+  /// Of the obstacle: a point, or a triangle.
   const char* partName() const { return surface != nullptr ? surface->partName() : "point"; }
 };
 
-/// From each point of one cloud to the nearest of the other. Cloud and distances are borrowed.
+/// From each record of one cloud to the nearest of the other. Cloud and distances are borrowed.
 struct DistanceSide {
-  std::string name; ///< file name of the cloud
-  const PointsView& cloud;
+  std::string name;       ///< file name of the cloud
+  PointsView cloud;       ///< its points; of triangles, their middles
   Eigen::Isometry3d pose; ///< of the cloud in the input's frame
   const PointDistances& found;
   std::size_t points = 0; ///< finite ones

@@ -27,8 +27,7 @@ void parseUncertainty(const JsonReader& reader, CloudSource& cloud)
 
 void parseSurface(const JsonReader& reader, CloudSource& cloud)
 {
-  for (const auto& [key, what] :
-       {std::pair{"surface_tolerance", "faces"}, {"vertices_only", "faces"}, {"columns", "files"}}) {
+  for (const auto& [key, what] : {std::pair{"vertices_only", "faces"}, {"columns", "files"}}) {
     if (reader.has(key) && !cloud.shape.empty())
       reader.at(key).fail(std::string("is about ") + what + ", and a " + cloud.shape + " is points", "leave it out");
   }
@@ -40,10 +39,7 @@ void parseSurface(const JsonReader& reader, CloudSource& cloud)
       reader.at("columns").fail(error.what(), error.remedy());
     }
   }
-  read(reader, "surface_tolerance", cloud.surface.tolerance);
   read(reader, "vertices_only", cloud.surface.vertices_only);
-  if (cloud.surface.tolerance && cloud.surface.vertices_only)
-    reader.at("surface_tolerance").fail("is about faces, and 'vertices_only' drops them", "give one of the two");
 }
 
 void parseShape(const JsonReader& reader, CloudSource& cloud)

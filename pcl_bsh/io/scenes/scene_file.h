@@ -111,16 +111,15 @@ public:
   Scene& scene() { return *scene_; }
 
   /// A cloud's points as they were read, scaled and shifted; of a shape, x y z. float32 coordinates have become float64
-  /// where float32 cannot hold what scale and shift make of them. Of a surface, the balls that cover it: x y z, radius,
-  /// and the number of the triangle.
-  const pcl::PCLPointCloud2& cloud(const std::string& name) const { return clouds_.at(name).points; }
+  /// where float32 cannot hold what scale and shift make of them. Of a surface, its vertices.
+  const pcl::PCLPointCloud2& cloud(const std::string& name) const { return clouds_.at(name).shape.points(); }
   /// What a cloud with faces is; null where it is points.
   const Obstacle* surface(const std::string& name) const
   {
-    const std::optional<Obstacle>& found = clouds_.at(name).surface;
-    return found ? &*found : nullptr;
+    const Obstacle& found = clouds_.at(name).shape;
+    return found.isSurface() ? &found : nullptr;
   }
-  std::size_t points() const;                                            ///< of all clouds; of surfaces, balls
+  std::size_t points() const;                                            ///< of all clouds; of surfaces, triangles
   const std::vector<std::string>& warnings() const { return warnings_; } ///< of clouds, a line each
 
   /// Puts the points of waving objects where they are at this time; at first they are where they are at 0.
@@ -128,8 +127,7 @@ public:
 
 private:
   struct Loaded {
-    pcl::PCLPointCloud2 points;
-    std::optional<Obstacle> surface;
+    Obstacle shape;
     std::shared_ptr<SphereHierarchy> hierarchy;
   };
   struct Waving {

@@ -145,41 +145,23 @@ std::vector<double> coordinatesOf(const PointsView& view)
   return xyz;
 }
 
-Obstacle surfaceOf(Mesh mesh, const CloudSource& source, const SceneFile& file)
+Obstacle shapeOf(Mesh mesh, const CloudSource& source, const SceneFile& file)
 {
   const auto vertices = std::make_shared<const pcl::PCLPointCloud2>(std::move(mesh.vertices));
   const auto triangles = std::make_shared<const std::vector<Triangle>>(std::move(mesh.triangles));
   try {
-    return Obstacle(vertices, triangles, source.surface, file.options.clearance);
+    return Obstacle(vertices, triangles, source.surface);
   }
   catch (const InvalidInput& error) {
     throw JsonError(file.path.string(), source.place, error.wrong(), error.remedy());
   }
 }
 
-/// x y z, radius, triangle.
-pcl::PCLPointCloud2 ballsOf(const SurfaceCover& cover)
-{
-  pcl::PCLPointCloud2 cloud;
-  for (const char* axis : {"x", "y", "z"}) addField(cloud, axis, pcl::PCLPointField::FLOAT64);
-  addField(cloud, "radius", pcl::PCLPointField::FLOAT32);
-  addField(cloud, "triangle", pcl::PCLPointField::UINT32);
-  allocate(cloud, static_cast<std::uint32_t>(cover.centers.size()));
-  for (std::size_t i = 0; i < cover.centers.size(); ++i) {
-    std::uint8_t* const record = cloud.data.data() + i * cloud.point_step;
-    std::memcpy(record, cover.centers[i].data(), sizeof(Point3));
-    std::memcpy(record + cloud.fields[3].offset, &cover.radii[i], sizeof(float));
-    std::memcpy(record + cloud.fields[4].offset, &cover.triangles[i], sizeof(std::uint32_t));
-  }
-  cloud.is_dense = 1;
-  return cloud;
-}
-
 /// By a hierarchy of its own: that of the scene is built only where effects go.
-NamedCloud measured(const CloudSource& source, const PointsView& view, const Obstacle* surface)
+NamedCloud measured(const CloudSource& source, const PointsView& view)
 {
   const std::string name = source.file.empty() ? "cloud '" + source.name + "'" : source.file.string();
-  return measuredCloud(name, SphereHierarchy(view), surface ? surface->cover().get() : nullptr);
+  return measuredCloud(name, SphereHierarchy(view));
 }
 
 const std::string& placeOf(const std::string& cloud, const SceneFile& file)
@@ -210,7 +192,7 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
     if (used.count(source.name) == 0) continue;
     if (reading) reading(source);
     load(source, file, clouds_[source.name]);
-    named.emplace(source.name, measured(source, clouds_[source.name].hierarchy->view(), surface(source.name)));
+    named.emplace(source.name, measured(source, clouds_[source.name].hierarchy->view()));
   }
   std::vector<NamedObject> objects;
   for (const ObjectEntry& object : file.objects) {
@@ -233,7 +215,7 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
     const auto id = static_cast<ObjectId>(scene_->size());
     for (const PartEntry& part : entry.parts) {
       std::shared_ptr<SphereHierarchy> hierarchy = clouds_.at(part.cloud).hierarchy;
-      if (entry.wave && clouds_.at(part.cloud).surface) {
+      if (entry.wave && surface(part.cloud)) {
         throw JsonError(file.path.string(), placeOf(part.cloud, file),
                         "is a surface, and the wave of '" + entry.name + "' moves points",
                         "give 'vertices_only': true");
@@ -267,16 +249,11 @@ void SceneWorld::load(const CloudSource& source, const SceneFile& file, Loaded& 
   scaleAndShift(mesh.vertices, source, file.path.string());
   HierarchyOptions options;
   options.threads = file.options.threads;
-  if (mesh.triangles.empty()) {
-    loaded.points = std::move(mesh.vertices);
-    const PointsView view = uncertainView(viewOf(loaded.points), loaded.points.fields, source, file.path.string());
-    loaded.hierarchy = std::make_shared<SphereHierarchy>(view, options);
-    return;
-  }
-  loaded.surface = surfaceOf(std::move(mesh), source, file);
-  for (const std::string& remark : loaded.surface->remarks()) warnings_.push_back(source.file.string() + ": " + remark);
-  loaded.points = ballsOf(*loaded.surface->cover());
-  const PointsView view = uncertainView(loaded.surface->view(), {}, source, file.path.string()); // no field: balls
+  loaded.shape = shapeOf(std::move(mesh), source, file);
+  const bool has_fields = !loaded.shape.isSurface();
+  const PointsView view =
+      uncertainView(loaded.shape.view(), has_fields ? loaded.shape.points().fields : std::vector<pcl::PCLPointField>(),
+                    source, file.path.string());
   loaded.hierarchy = std::make_shared<SphereHierarchy>(view, options);
 }
 

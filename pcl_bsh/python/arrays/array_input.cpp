@@ -248,8 +248,26 @@ PointsView viewOfPoints(const std::string& name, const PointsInput& input)
   return view;
 }
 
+PointsView viewOfTriangles(const PointsInput& vertices, std::vector<Triangle> triangles)
+{
+  const PointsView corners = viewOfPoints("vertices", vertices);
+  PointsView view = viewOf(trianglesOf(corners, std::make_shared<const std::vector<Triangle>>(std::move(triangles))));
+  view.owner = std::shared_ptr<const void>(view.owner, corners.owner.get()); // who asks for the arrays finds them
+  return view;
+}
+
 MovedView movedView(const PointsView& before, PointsInput input)
 {
+  if (before.triangles) {
+    if (!input.radii.is_none() || !input.uncertainties.is_none())
+      throw InvalidInput(Input::points, input.radii.is_none() ? "uncertainties" : "radii", "are those of points",
+                         "leave them out for triangles");
+    std::vector<Triangle> triangles;
+    for (std::size_t i = 0; i < before.triangles->count; ++i)
+      triangles.push_back(before.triangles->cornersOf(static_cast<std::uint32_t>(i)));
+    input.uncertainty = before.uncertainty;
+    return {before, viewOfTriangles(input, std::move(triangles))};
+  }
   // The arrays of before end with its hierarchy's view.
   const auto stays = [&](py::object& given, const float* values) {
     if (given.is_none() && values) given = py::array_t<float>(static_cast<py::ssize_t>(before.count), values);

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <pcl_bsh/geometry/point3.h>
-#include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/python/arrays/array_lock.h>
 #include <pcl_bsh/python/threads/interpreter_lock.h>
 #include <pcl_bsh/python/typed.h>
@@ -71,13 +71,17 @@ std::shared_ptr<Kept> makeOwner()
 /// @param name how errors call the points
 PointsView viewOfPoints(const std::string& name, const PointsInput& input);
 
+/// The view of a hierarchy of triangles; its owner keeps the vertices' arrays. @param vertices without radii, indices
+/// and uncertainties of their own
+PointsView viewOfTriangles(const PointsInput& vertices, std::vector<Triangle> triangles);
+
 /// Points that have moved, and where they were: what is last to hold these needs the interpreter's lock.
 struct MovedView {
   PointsView before, now;
 };
 
 /// `input` has no subset and no common uncertainty, those of the points before stay, as do radii and uncertainties that
-/// it does not have.
+/// it does not have. Of triangles, it has their vertices.
 MovedView movedView(const PointsView& before, PointsInput input);
 
 /// The same for the time of a call: nothing is locked. `kept` has what must live as long as the view.

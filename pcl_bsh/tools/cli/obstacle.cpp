@@ -8,21 +8,14 @@
 
 namespace pcl_bsh::cli {
 
-io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double clearance,
-                          double& seconds, const io::ColumnNames& columns, io::CloudFacts* facts, unsigned threads)
+io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double& seconds,
+                          const io::ColumnNames& columns, io::CloudFacts* facts, unsigned threads)
 {
   Step step("Loading " + path.string());
-  const auto progress = [&](double fraction) {
-    step.share(fraction);
-    return true;
-  };
-  io::Obstacle obstacle = io::readObstacle(path, settings, clearance, progress, columns, facts, threads);
+  io::Obstacle obstacle = io::readObstacle(path, settings, columns, facts, threads);
   const pcl::PCLPointCloud2& points = obstacle.points();
   std::string result = counted(std::size_t{points.width} * points.height, "point");
-  if (obstacle.isSurface()) {
-    result += ", " + counted(obstacle.triangles()->size(), "triangle") + " in " +
-              counted(obstacle.cover()->centers.size(), "ball");
-  }
+  if (obstacle.isSurface()) result += ", " + counted(obstacle.triangles()->size(), "triangle");
   seconds += step.done(result);
   return obstacle;
 }

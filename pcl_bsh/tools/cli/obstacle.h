@@ -11,10 +11,10 @@
 namespace pcl_bsh::cli {
 
 /// Reads it, as a step of the program.
-/// @param clearance of the query. @param seconds that it took are added
+/// @param seconds that it took are added
 /// @throws as io::readObstacle() does, whose last arguments these are
-io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double clearance,
-                          double& seconds, const io::ColumnNames& columns, io::CloudFacts* facts, unsigned threads);
+io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double& seconds,
+                          const io::ColumnNames& columns, io::CloudFacts* facts, unsigned threads);
 
 /// What users should know of the obstacle, a line each, with the file's name.
 std::vector<std::string> warningsOf(const io::Obstacle& obstacle, const std::filesystem::path& path);

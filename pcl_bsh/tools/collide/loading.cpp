@@ -3,13 +3,10 @@
 
 #include <pcl_bsh/tools/cli/step.h>
 
-#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/selected_records.h>
-#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/filters/used_vertices.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <stdexcept>
@@ -36,39 +33,17 @@ Scan loadInput(const CollideOptions& options, double& seconds)
 {
   Step step("Loading " + options.input.string());
   Scan scan;
-  const io::ColumnNames columns = options.columns.of(options.input);
   const Question& question = options.question;
-  io::Mesh mesh = io::readMesh(options.input, {question.surface_tolerance, question.vertices_only}, &scan.facts,
-                               columns, question.threads);
-  scan.cloud = std::move(mesh.vertices);
-  scan.triangles = std::move(mesh.triangles);
-  const std::string triangles = scan.triangles.empty() ? "" : ", " + counted(scan.triangles.size(), "triangle");
-  seconds += step.done(counted(std::size_t{scan.cloud.width} * scan.cloud.height, "point") + triangles);
+  const io::SurfaceSettings settings{question.vertices_only};
+  scan.shape = io::obstacleOf(
+      options.input,
+      io::readMesh(options.input, settings, &scan.facts, options.columns.of(options.input), question.threads),
+      settings);
+  if (scan.shape.isSurface()) requireForSurface(options);
+  const std::string triangles =
+      scan.shape.isSurface() ? ", " + counted(scan.shape.triangles()->size(), "triangle") : "";
+  seconds += step.done(counted(std::size_t{scan.cloud().width} * scan.cloud().height, "point") + triangles);
   return scan;
-}
-
-Shape shapeOf(const CollideOptions& options, const Scan& input, double& seconds, std::vector<std::string>& warnings)
-{
-  const std::string name = options.input.string();
-  if (input.triangles.empty()) return {name, viewOf(input.cloud), recordFields(input.cloud.fields)};
-  requireForSurface(options);
-  Step step("Covering " + name);
-  const auto progress = [&](double fraction) {
-    step.share(fraction);
-    return true;
-  };
-  std::vector<std::string> remarks;
-  try {
-    auto cover = std::make_shared<const SurfaceCover>(
-        io::coverMesh(viewOf(input.cloud), input.triangles, {options.question.surface_tolerance, false, true},
-                      options.question.clearance.value_or(0.0), progress, remarks));
-    for (const std::string& remark : remarks) warnings.push_back(name + ": " + remark);
-    seconds += step.done(counted(cover->centers.size(), "ball"));
-    return {name, std::move(cover)};
-  }
-  catch (const InvalidInput& error) {
-    throw files::FileError(options.input, error.wrong(), error.remedy());
-  }
 }
 
 const SphereHierarchy& build(Shape& shape, const Uncertainty& uncertainty, unsigned threads, double& seconds)
@@ -81,7 +56,7 @@ const SphereHierarchy& build(Shape& shape, const Uncertainty& uncertainty, unsig
 
 std::size_t writeSurface(const CollideOptions& options, const Scan& input, const TrajectoryResult& found)
 {
-  io::Mesh mesh{input.cloud, input.triangles};
+  io::Mesh mesh{input.cloud(), *input.shape.triangles()};
   std::vector<std::uint8_t> kept(mesh.triangles.size(), 1);
   if (options.keep != Keep::flagged) {
     kept = maskOf(found.flags, options.keep != Keep::colliding);

@@ -13,19 +13,15 @@
 namespace pcl_bsh::cli {
 
 struct Scan {
-  pcl::PCLPointCloud2 cloud;
-  std::vector<Triangle> triangles; ///< where the input has faces: these are asked about
-  io::CloudFacts facts;            ///< of the input's file
+  io::Obstacle shape;   ///< its points, or, where the input has faces, its triangles
+  io::CloudFacts facts; ///< of the input's file
+
+  const pcl::PCLPointCloud2& cloud() const { return shape.points(); }
 };
 
-/// @throws files::FileError
+/// @throws files::FileError; std::invalid_argument where the input is a surface and the options ask what is told of
+///   points alone, or the output cannot hold it
 Scan loadInput(const CollideOptions& options, double& seconds);
-
-/// The input's points, or its triangles.
-/// @param warnings what users should know of a surface is appended, a line each
-/// @throws std::invalid_argument, files::FileError where the options ask what is told of points alone, where a surface
-///   cannot be covered, or the output cannot hold it
-Shape shapeOf(const CollideOptions& options, const Scan& input, double& seconds, std::vector<std::string>& warnings);
 
 /// @throws InvalidInput as Shape::hierarchy() does
 const SphereHierarchy& build(Shape& shape, const Uncertainty& uncertainty, unsigned threads, double& seconds);

@@ -16,9 +16,9 @@ namespace {
 constexpr auto collide_footer =
     R"(Point p of INPUT and q of OBSTACLE collide iff |p - POSE q| <= D, decided exactly, or as --accuracy says. With
 --uncertainty a point collides, or is free, only if it is so wherever the points truly are; else it is undecided.
-An OBSTACLE with faces (.obj .off .ply .stl) is a surface, to a tolerance T: what is free is farther than D from it
-for certain, what collides is within D + T, and a distance d says that the true one is in [d, d + T]. What a closed
-surface encloses is not part of it. Reports name its triangles, from 0; polygons are cut into triangles.
+An OBSTACLE with faces (.obj .off .ply .stl) is a surface: q is any point of its triangles, and distances are exact to
+them. What a closed surface encloses is no part of it. Reports name its triangles, from 0; polygons are cut into
+triangles.
 An INPUT with faces is a surface, too: its triangles are flagged, and OUTPUT is a .ply with a property of its faces.
 Reads .pcd .ply .las .laz .obj .off .stl .pts .ptx .csv .xyz .txt, writes all of these but .laz .off .stl. Files may be
 pipes; - is standard input (PCD, PLY, LAS, OFF or columns), or standard output for OUTPUT (PCD) and --report.
@@ -32,8 +32,8 @@ Example: the same hall, whose scanner is off by up to 4 mm: what surely keeps 5 
   pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708 --uncertainty 0.004
 Example: how far has each point of a scan moved away from an earlier scan?
   pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html
-Example: which points of a hall are within 5 cm of a machine's surface, to a millimetre?
-  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05 --surface-tolerance 0.001)";
+Example: which points of a hall are within 5 cm of a machine's surface?
+  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05)";
 
 /// Checks that involve several options; those of the question are the core's.
 void requireConsistent(const CollideOptions& options)

@@ -55,8 +55,9 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   nlohmann::ordered_json json;
   json["input"] = toJson(report.input);
   json["obstacle"] = toJson(report.obstacle);
-  json["input_surface"] = report.input_surface ? nlohmann::ordered_json{{"tolerance", *report.input_surface}} : nullptr;
-  json["surface"] = io::surfaceJson(report.surface ? &*report.surface : nullptr, report.beside());
+  json["input_surface"] =
+      report.input_is_surface ? nlohmann::ordered_json{{"triangles", report.input.points}} : nullptr;
+  json["surface"] = io::surfaceJson(report.surface ? &*report.surface : nullptr);
   json["clearance"] = clearance;
   json["colliding"] = colliding;
   json["undecided"] = undecided;

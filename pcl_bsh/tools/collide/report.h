@@ -34,7 +34,7 @@ struct CollisionReport {
   CloudReport input;
   CloudReport obstacle;                ///< of a surface, its vertices
   std::optional<io::Obstacle> surface; ///< the obstacle, where it is one
-  std::optional<double> input_surface; ///< the tolerance, where the input is one: its numbers are those of triangles
+  bool input_is_surface = false;       ///< its numbers are those of triangles
   std::string coordinate_system;       ///< of the input, where its file names one; else empty
   Question question;
   Answer answer;
@@ -42,8 +42,6 @@ struct CollisionReport {
   std::size_t voxels_total = 0;
   Seconds seconds;
   std::vector<std::string> warnings;
-
-  std::string beside() const { return besideSurface(question.accuracy, question.swept > 0.0); }
 
   bool mayLeaveUndecided() const
   {

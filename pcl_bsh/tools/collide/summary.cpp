@@ -48,13 +48,13 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
   std::ostream& out = options.files.summary();
   const Answer& answer = report.answer;
   out << answer.collisions.colliding << " of "
-      << counted(report.input.points, report.input_surface ? "triangle" : "point")
+      << counted(report.input.points, report.input_is_surface ? "triangle" : "point")
       << (report.input.points == 1 ? " collides" : " collide");
   if (report.mayLeaveUndecided()) out << ", " << answer.collisions.undecided << " are undecided";
   if (answer.widest_gap > 0) out << ", " << answer.sparse << " are not scanned densely enough";
   if (const auto& pair = answer.closest.pair) {
     out << "; smallest distance " << distanceText(report) << ", between "
-        << (report.input_surface ? "triangle " : "point ") << pair->a << " of the input and "
+        << (report.input_is_surface ? "triangle " : "point ") << pair->a << " of the input and "
         << (report.surface ? report.surface->partName() : "point") << ' ' << pair->b << " of the obstacle";
   }
   if (report.question.path) out << "; " << counted(report.question.path->size(), "pose");
@@ -62,7 +62,7 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
     out << "; first contact at pose " << static_cast<double>(first->pose) + first->fraction;
   if (!clashes.empty()) out << "; " << clashes;
   if (distances) out << distanceSummary(*distances);
-  if (report.surface) out << "; " << io::promiseOf(*report.surface, report.beside());
+  if (report.surface) out << "; " << io::promiseOf(*report.surface);
   out << "; wrote " << options.output.string() << '\n';
 }
 

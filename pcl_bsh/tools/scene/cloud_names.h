@@ -11,8 +11,9 @@
 
 namespace pcl_bsh::cli {
 
-/// OBJECT_000012.pcd or OBJECT_PART_000012.pcd, with only such letters as every disk allows. No two parts of a scene
-/// share a name, not even where upper and lower case are one: where theirs would, the later ones get a number.
+/// OBJECT_000012.pcd or OBJECT_PART_000012.pcd (.ply of a surface), with only such letters as every disk allows. No two
+/// parts of a scene share a name, not even where upper and lower case are one: where theirs would, the later ones get a
+/// number.
 class CloudNames {
 public:
   explicit CloudNames(const io::SceneFile& file);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "link_body.h"
 
-#include "surface.h"
-
 #include <pcl_bsh/io/files/file_error.h>
-#include <pcl_bsh/surface/surface_cover.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +21,7 @@ float roundedUp(double length)
   return nearest < length ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
 }
 
-void addSolid(LinkBody& body, const Solid& solid, const Eigen::Isometry3d& T_link_solid, double tolerance)
+void addSolid(LinkBody& body, const Solid& solid, const Eigen::Isometry3d& T_link_solid)
 {
   requireSize(solid);
   body.solids.push_back({solid, T_link_solid.inverse()});
@@ -32,7 +29,9 @@ void addSolid(LinkBody& body, const Solid& solid, const Eigen::Isometry3d& T_lin
   constexpr double most = 64;
   const Rod rod = rodAround(solid);
   const double count = std::clamp(std::ceil(rod.half_length / rod.radius), 1.0, most);
-  const double radius = std::hypot(rod.radius, rod.half_length / count) + tolerance;
+  constexpr double roundings = 0x1p-40; // of the centres
+  const double radius = std::hypot(rod.radius, rod.half_length / count) +
+                        roundings * (rod.radius + rod.half_length + T_link_solid.translation().lpNorm<1>());
   for (double i = 0; i < count; ++i) {
     const Eigen::Vector3d center =
         T_link_solid * (((2 * i + 1) / count - 1) * rod.half_length * Eigen::Vector3d::Unit(rod.axis));
@@ -41,25 +40,15 @@ void addSolid(LinkBody& body, const Solid& solid, const Eigen::Isometry3d& T_lin
   }
 }
 
-void addMesh(LinkBody& body, const Shape& shape, double tolerance)
+void addShape(LinkBody& body, const Shape& shape)
 {
-  const Surface surface = surfaceOf(shape, tolerance);
-  SurfaceRequest request;
-  request.tolerance = tolerance;
-  const SurfaceCover cover =
-      coverSurface(viewOf(surface.vertices[0].data(), surface.vertices.size()), surface.triangles, request);
-  body.surfaces.centers.insert(body.surfaces.centers.end(), cover.centers.begin(), cover.centers.end());
-  body.surfaces.radii.insert(body.surfaces.radii.end(), cover.radii.begin(), cover.radii.end());
-}
-
-void addShape(LinkBody& body, const Shape& shape, double tolerance)
-{
+  constexpr double any = 1.0; // nothing of a mesh is round
   std::visit(
       [&](const auto& form) {
         if constexpr (std::is_constructible_v<Solid, decltype(form)>)
-          addSolid(body, form, shape.pose, tolerance);
+          addSolid(body, form, shape.pose);
         else
-          addMesh(body, shape, tolerance);
+          body.surface.add(surfaceOf(shape, any));
       },
       shape.form);
 }
@@ -82,12 +71,12 @@ bool LinkBody::hasWithin(double padding, const Eigen::Vector3d& point) const
   });
 }
 
-LinkBody bodyOf(const Link& link, double tolerance)
+LinkBody bodyOf(const Link& link)
 {
   LinkBody body;
   for (const Shape& shape : link.shapes) {
     try {
-      addShape(body, shape, tolerance);
+      addShape(body, shape);
     }
     catch (const files::FileError&) {
       throw;

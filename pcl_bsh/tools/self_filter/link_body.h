@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bodies of a link: solids, and balls that cover the surfaces of meshes.
+// The bodies of a link: solids, and the surfaces of meshes.
 #pragma once
 
 #include "robot.h"
+#include "surface.h"
 
 #include <pcl_bsh/hierarchy/points_view.h>
 
@@ -43,22 +44,20 @@ struct PlacedSolid {
   Eigen::Isometry3d T_solid_link;
 };
 
-/// In the link's frame. Boxes, cylinders and spheres are solid; what a mesh encloses is not part of it.
+/// In the link's frame. Boxes, cylinders and spheres are solid; what a mesh encloses is no part of it.
 struct LinkBody {
   std::vector<PlacedSolid> solids;
   Balls enclosing; ///< what is within a length of a solid is within that length of one of these
-  Balls surfaces;  ///< of the meshes
+  Surface surface; ///< of the meshes
 
   /// Whether a point in the link's frame is within the padding of a solid. It errs to that side, by a few roundings of
   /// double.
   bool hasWithin(double padding, const Eigen::Vector3d& point) const;
 };
 
-/// Every point of a mesh's surface lies in a ball, and none reaches farther than the tolerance beyond the surface: but
-/// for the rounding of a float, and that of a shape's pose and scale in double.
-/// @param tolerance m, finite and > 0
+/// Meshes are as their files have them, but for the rounding of a shape's pose and scale in double.
 /// @throws files::FileError for a mesh that cannot be read or has no faces; std::runtime_error naming the link for what
-///   has no size, or cannot be covered
-LinkBody bodyOf(const Link& link, double tolerance);
+///   has no size
+LinkBody bodyOf(const Link& link);
 
 } // namespace pcl_bsh::self_filter

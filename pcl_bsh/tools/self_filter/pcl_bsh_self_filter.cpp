@@ -36,8 +36,8 @@ using self_filter::JointValues;
 constexpr auto program = "pcl_bsh_self_filter";
 constexpr auto footer =
     R"(Each output has the name of its cloud, in the folder of --out, and all fields. A point that is kept, or has coordinates and
-the flag 0, is farther than the padding from every link, for certain; one that is removed, or has the flag 1, is within
-padding + tolerance of a link, has no coordinates, or is no return: exactly 0 0 0, where the sensor itself is. Boxes,
+the flag 0, is farther than the padding from every link; one that is removed, or has the flag 1, is within the padding of
+a link, has no coordinates, or is no return: exactly 0 0 0, where the sensor itself is. Boxes,
 cylinders and spheres are solid, meshes are surfaces. Of a link the bodies for collisions count; where it has none, those
 to look at. Joints are fixed, revolute, continuous or prismatic; limits are not looked at. Meshes are .stl, .obj, .ply or
 .off in metres, or, where assimp was there when this was built, .dae: its <unit> counts, its <up_axis> does not, as in RViz.
@@ -56,7 +56,6 @@ struct Options {
   std::string frame;
   std::vector<std::string> packages;
   self_filter::Settings settings;
-  std::optional<double> tolerance;
   bool flag = false;
   std::optional<fs::path> report;
   io::ColumnChoice columns;
@@ -173,15 +172,13 @@ int run(const Options& options)
   for (const JointValues& values : states) robot.requireValues(values);
   const std::size_t frame = options.frame.empty() ? 0 : robot.linkNamed(options.frame);
 
-  cli::Step covering("Covering the links");
+  cli::Step loading("Loading the links");
   self_filter::SelfFilter filter(robot, options.settings);
-  covering.done(counted(filter.balls(), "ball") + ", " + counted(filter.solids(), "solid"));
+  loading.done(counted(filter.triangles(), "triangle") + ", " + counted(filter.solids(), "solid"));
 
   const files::OutputFolder folder(options.out);
-  Json report = {
-      {"robot", robot.name},       {"links", robot.links.size()},         {"balls", filter.balls()},
-      {"solids", filter.solids()}, {"padding", options.settings.padding}, {"tolerance", options.settings.tolerance},
-      {"clouds", Json::array()}};
+  Json report = {{"robot", robot.name},       {"links", robot.links.size()},         {"triangles", filter.triangles()},
+                 {"solids", filter.solids()}, {"padding", options.settings.padding}, {"clouds", Json::array()}};
   WarningsOnce once;
   for (std::size_t i = 0; i < options.clouds.size(); ++i) {
     report["clouds"].push_back(filterCloud(options, options.clouds[i], states[i], frame, filter, once));
@@ -221,12 +218,6 @@ int main(int argc, char** argv)
         ->transform(
             cli::number<double>("give a length in metres", [](double m) { return std::isfinite(m) && m >= 0.0; }))
         ->capture_default_str();
-    app.add_option("--tolerance", options.tolerance,
-                   "by how much the covers of meshes may stick out, in metres (default: a\nquarter of the padding, at "
-                   "least 0.001)")
-        ->type_name("M")
-        ->transform(cli::number<double>("give a length in metres above 0",
-                                        [](double m) { return std::isfinite(m) && m > 0.0; }));
     app.add_flag("--flag", options.flag,
                  "keep all points, with a field 'collision' that is 1 where the robot or no return is");
     app.add_option("--package", options.packages, "folder that package://NAME/ stands for; may be given several times")
@@ -243,7 +234,6 @@ int main(int argc, char** argv)
     columns.addTo(app);
     if (!cli::understood(app, program, argc, argv)) return 0;
     options.columns = columns.read({options.clouds.begin(), options.clouds.end()});
-    options.settings.tolerance = options.tolerance.value_or(std::max(0.001, options.settings.padding / 4));
     check(options);
     return run(options);
   });

@@ -10,9 +10,9 @@ namespace pcl_bsh::self_filter {
 SelfFilter::Part::Part(LinkBody link_body, unsigned threads)
 : body(std::move(link_body)),
   enclosing(body.enclosing.view()),
-  surfaces(body.surfaces.view())
+  surface(body.surface.view())
 {
-  surfaces.buildAll(threads);
+  surface.buildAll(threads);
 }
 
 SelfFilter::SelfFilter(Robot robot, const Settings& settings) : robot_(std::move(robot))
@@ -23,14 +23,13 @@ SelfFilter::SelfFilter(Robot robot, const Settings& settings) : robot_(std::move
         "': has no body, so that nothing would be cut out: give its links <collision> or <visual>");
   request_.clearance = settings.padding;
   request_.threads = settings.threads;
-  for (const Link& link : robot_.links)
-    parts_.push_back(std::make_unique<const Part>(bodyOf(link, settings.tolerance), settings.threads));
+  for (const Link& link : robot_.links) parts_.push_back(std::make_unique<const Part>(bodyOf(link), settings.threads));
 }
 
-std::size_t SelfFilter::balls() const
+std::size_t SelfFilter::triangles() const
 {
   std::size_t sum = 0;
-  for (const auto& part : parts_) sum += part->body.surfaces.centers.size();
+  for (const auto& part : parts_) sum += part->body.surface.triangles.size();
   return sum;
 }
 
@@ -67,7 +66,7 @@ const std::vector<Verdict>& SelfFilter::flags(const PointsView& scan, const Eige
     const Part& part = *parts_[link];
     const Eigen::Isometry3d T_scan_link = T_scan_root * poses[link];
     flagSolids(points, part, T_scan_link);
-    collidingIndices({points}, {part.surfaces, T_scan_link}, request_, hit_);
+    collidingIndices({points}, {part.surface, T_scan_link}, request_, hit_);
     for (const std::int32_t record : hit_.a) flags_[static_cast<std::size_t>(record)] = Verdict::colliding;
   }
   scan_ = namedCloud({}, points);

@@ -4,8 +4,8 @@
 //   SelfFilter filter(readRobot("arm.urdf"), {});
 //   const std::vector<Verdict>& mine = filter.flags(viewOf(cloud), T_cloud_root, {{"elbow", 0.7}});
 //
-// A point that is not flagged is farther than the padding from the robot, for certain; one that is flagged is within
-// padding + tolerance. Boxes, cylinders and spheres are solid: what lies in them is flagged. Meshes are surfaces.
+// A point is flagged where it is within the padding of the robot. Boxes, cylinders and spheres are solid: what lies in
+// them is flagged. Meshes are surfaces.
 #pragma once
 
 #include "link_body.h"
@@ -23,20 +23,19 @@
 namespace pcl_bsh::self_filter {
 
 struct Settings {
-  double padding = 0.02;    ///< m, finite and >= 0
-  double tolerance = 0.005; ///< of the covers of meshes, m, finite and > 0
-  unsigned threads = 1;     ///< 0: all of the machine's
+  double padding = 0.02; ///< m, finite and >= 0
+  unsigned threads = 1;  ///< 0: all of the machine's
 };
 
-/// Covers all links once; a new frame builds the scan's hierarchy, and of that only what is near the robot.
+/// Reads all links once; a new frame builds the scan's hierarchy, and of that only what is near the robot.
 class SelfFilter {
 public:
   /// @throws as bodyOf() does; std::runtime_error for a robot without a body
   SelfFilter(Robot robot, const Settings& settings);
 
   const Robot& robot() const { return robot_; }
-  std::size_t balls() const;  ///< that cover meshes, of all links
-  std::size_t solids() const; ///< of all links
+  std::size_t triangles() const; ///< of the meshes of all links
+  std::size_t solids() const;    ///< of all links
 
   /// One per record of the scan: colliding where it is the robot, else free. Valid until the next call.
   /// @param T_scan_root where the robot's root is in the scan's frame
@@ -48,12 +47,12 @@ public:
   const NamedCloud& scan() const { return scan_; }
 
 private:
-  /// A body, and hierarchies of its balls.
+  /// A body, and hierarchies of the balls about its solids and of its triangles.
   struct Part {
     explicit Part(LinkBody link_body, unsigned threads);
 
     LinkBody body;
-    SphereHierarchy enclosing, surfaces;
+    SphereHierarchy enclosing, surface;
   };
 
   void flagSolids(const SphereHierarchy& points, const Part& part, const Eigen::Isometry3d& T_scan_link);

@@ -83,6 +83,19 @@ Surface triangulated(const MeshFile& mesh, double)
 
 } // namespace
 
+void Surface::add(const Surface& more)
+{
+  const auto first = static_cast<std::uint32_t>(vertices.size());
+  vertices.insert(vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (const auto& [a, b, c] : more.triangles) triangles.push_back({first + a, first + b, first + c});
+}
+
+PointsView Surface::view() const
+{
+  const PointsView corners = viewOf(vertices.empty() ? nullptr : vertices[0].data(), vertices.size());
+  return viewOf(TrianglesView{corners, triangles.empty() ? nullptr : triangles[0].data(), triangles.size()});
+}
+
 Surface surfaceOf(const Shape& shape, double sagitta)
 {
   Surface surface = std::visit([&](const auto& form) { return triangulated(form, sagitta); }, shape.form);

@@ -5,7 +5,7 @@
 #include "robot.h"
 
 #include <pcl_bsh/geometry/point3.h>
-#include <pcl_bsh/surface/surface_cover.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <filesystem>
 #include <vector>
@@ -15,6 +15,11 @@ namespace pcl_bsh::self_filter {
 struct Surface {
   std::vector<Point3> vertices;
   std::vector<Triangle> triangles;
+
+  void add(const Surface& more);
+
+  /// The triangles as records; this object must outlive what is built on them.
+  PointsView view() const;
 };
 
 /// Reads .stl, .obj, .ply and .off, whose unit is taken for metres, and .dae where this is compiled with assimp. Of

@@ -70,9 +70,7 @@ public:
     })),
     placed_(hierarchy_, asking.options.question.pose)
   {
-    if (surface_ != nullptr) asking.request.surface = surface_->tolerance();
-    const Question& question = asking.options.question;
-    asking.report["surface"] = io::surfaceJson(surface_, besideSurface(question.accuracy, question.swept > 0.0));
+    asking.report["surface"] = io::surfaceJson(surface_);
   }
 
   const Placed& placed() const { return placed_; }
@@ -81,22 +79,17 @@ public:
 
   site::SiteFlags flags(Asking& asking) const
   {
-    // Which triangles collide is known where each has balls of its own.
-    const bool of_both = surface_ == nullptr || surface_->cover()->triangles_apart;
     const site::SiteFlags found =
-        site::collisionFlags(asking.site, placed_, of_both ? Side::both : Side::a, asking.request, asking.out.flags());
+        site::collisionFlags(asking.site, placed_, Side::both, asking.request, asking.out.flags());
     putCounts(asking.report, "", found.colliding, found.undecided);
-    putCounts(asking.report, "_of_obstacle", nullptr, nullptr);
-    if (!of_both) return found;
-    const std::vector<Verdict> flags = file_.flagsOfParts(found.b);
-    file_.write(flags, asking.options);
-    putCounts(asking.report, "_of_obstacle", countOf(flags, Verdict::colliding), countOf(flags, Verdict::undecided));
+    file_.write(found.b, asking.options);
+    putCounts(asking.report, "_of_obstacle", countOf(found.b, Verdict::colliding), countOf(found.b, Verdict::undecided));
     return found;
   }
 
   void putNearest(Json& report, const site::SiteClosest& found) const
   {
-    report[std::string(file_.obstacle.partName()) + "_of_obstacle"] = file_.obstacle.partOf(found.b);
+    report[std::string(file_.obstacle.partName()) + "_of_obstacle"] = found.b;
   }
 
   site::SitePassage along(const Asking& asking) const

@@ -112,7 +112,7 @@ struct CollideTexts {
     app.add_flag("--resume", options.resume, "goes on with what the same command has left in --out when it was killed");
     addQuestionOptions(app, options.question,
                        {"clearance", "swept", "accuracy", "uncertainty", "obstacle_uncertainty", "sigmas",
-                        "max_distance", "surface_tolerance", "vertices_only", "threads"});
+                        "max_distance", "vertices_only", "threads"});
     app.add_option("--plan", options.plan,
                    "numbers of ranks, as 64,1024: by what the tiles have cost, the report says how long the same "
                    "question takes on so many, and what limits it")

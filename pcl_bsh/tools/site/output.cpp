@@ -7,7 +7,6 @@
 
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/selected_records.h>
-#include <pcl_bsh/surface/triangle_answers.h>
 
 #include <boost/crc.hpp>
 #include <nlohmann/json.hpp>
@@ -55,7 +54,7 @@ std::uint32_t checksumOf(const std::vector<Value>& values)
   return checksum.checksum();
 }
 
-/// What tells one obstacle from another: the points of a cloud, and how faces are covered; of a site, which is too
+/// What tells one obstacle from another: the points of a cloud, and its faces; of a site, which is too
 /// large for that, how it is made and when its tiles were written.
 nlohmann::json obstacleText(const ObstacleFile* given, const SiteOptions& options)
 {
@@ -65,8 +64,7 @@ nlohmann::json obstacleText(const ObstacleFile* given, const SiteOptions& option
     text.push_back(checksumOf(obstacle.points().data));
     for (const pcl::PCLPointField& field : obstacle.points().fields)
       text.push_back({field.name, field.offset, field.datatype, field.count});
-    if (obstacle.isSurface())
-      text.push_back({checksumOf(*obstacle.triangles()), obstacle.tolerance(), obstacle.cover()->triangles_apart});
+    if (obstacle.isSurface()) text.push_back(checksumOf(*obstacle.triangles()));
     return text;
   }
   const site::Site other = site::readSite(options.obstacle);
@@ -94,7 +92,7 @@ std::string questionOf(const site::Site& site, const ObstacleFile* obstacle, dou
                              {"clusters", cluster_distance},
                              {"obstacle", obstacleText(obstacle, options)},
                              {"poses", nlohmann::json::array()}};
-  question["numbers"] = 3; // what of a tile is kept
+  question["numbers"] = 4; // what of a tile is kept
   for (const Uncertainty& of : {asked.uncertaintyOfInput(), asked.uncertaintyOfObstacle()})
     question["uncertainty"].push_back({of.field, of.length, of.sigmas});
   for (const Eigen::Isometry3d& pose : asked.poses())
@@ -122,13 +120,11 @@ ObstacleFile::ObstacleFile(const SiteOptions& options)
   double seconds = 0.0;
   const io::ColumnNames columns = options.columns.of(options.obstacle);
   const Question& question = options.question;
-  const io::SurfaceSettings surface = {question.surface_tolerance, question.vertices_only,
-                                       !options.obstacle_out.empty()}; // each triangle has a flag of its own
-  const double clearance = question.clearance.value_or(0.0);
+  const io::SurfaceSettings surface = {question.vertices_only};
   if (site::rankHere() == 0)
-    obstacle = loadObstacle(options.obstacle, surface, clearance, seconds, columns, &facts, question.threads);
+    obstacle = loadObstacle(options.obstacle, surface, seconds, columns, &facts, question.threads);
   else
-    obstacle = io::readObstacle(options.obstacle, surface, clearance, nullptr, columns, &facts, question.threads);
+    obstacle = io::readObstacle(options.obstacle, surface, columns, &facts, question.threads);
   if (options.obstacle_out.empty()) return;
   if (obstacle.isSurface()) {
     io::requireWritableMesh(options.obstacle_out);
@@ -137,11 +133,6 @@ ObstacleFile::ObstacleFile(const SiteOptions& options)
     io::requireWritableCloud(options.obstacle_out);
     withField(withoutRecords(obstacle.points()), collision_field_name, {}); // fails now
   }
-}
-
-std::vector<Verdict> ObstacleFile::flagsOfParts(const std::vector<Verdict>& flags) const
-{
-  return obstacle.isSurface() ? triangleVerdicts(*obstacle.cover(), flags) : flags;
 }
 
 void ObstacleFile::write(const std::vector<Verdict>& flags, const SiteOptions& options) const

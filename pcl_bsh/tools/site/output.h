@@ -25,10 +25,6 @@ struct ObstacleFile {
   /// Null where it is points.
   const io::Obstacle* surface() const { return obstacle.isSurface() ? &obstacle : nullptr; }
 
-  /// From flags of the records of its view to those of its points or triangles.
-  /// @pre of a surface, its triangles are apart
-  std::vector<Verdict> flagsOfParts(const std::vector<Verdict>& flags) const;
-
   /// Writes its points or triangles with these flags, where they are asked for: on the first rank.
   void write(const std::vector<Verdict>& flags, const SiteOptions& options) const;
 

@@ -20,9 +20,9 @@ namespace {
 
 constexpr auto footer = R"(Points of the first CLOUD within D of another CLOUD or of the MODEL collide, decided exactly;
 they are drawn larger and in orange, all others dimmed. A file with faces is a surface, drawn as one:
-what is free is farther than D from it, what collides within D and the surface tolerance. Of a first
-CLOUD that is a surface the triangles are tested and coloured. A cloud that holds the fields collision,
-distance or first_pose, or a .ply whose faces have such properties, shows these as they are.
+its triangles are compared, coloured and picked; what a closed one encloses is no part of it.
+A cloud that holds the fields collision, distance or first_pose, or a .ply whose faces have such
+properties, shows these as they are.
 Of a site, the folder that pcl_bsh_site makes, the overview is drawn at once, and the tiles that the
 camera sees nearest one by one, as many as the budget holds; with its fields collision, distance ...
 coloured as clouds are.
@@ -222,7 +222,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
       ->type_name("D")
       ->transform(cli::number<double>(cli::give_length));
   Question question;
-  cli::addQuestionOptions(app, question, {"surface_tolerance", "vertices_only"});
+  cli::addQuestionOptions(app, question, {"vertices_only"});
   cli::ColumnOptions columns;
   columns.addTo(app);
   app.add_option("--color", options.color,
@@ -272,7 +272,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
       ->transform(cli::number<unsigned>(cli::give_threads));
   if (!cli::understood(app, program, argc, argv)) return std::nullopt;
   cli::requireAccepted(question);
-  options.surface = {question.surface_tolerance, question.vertices_only};
+  options.surface = {question.vertices_only};
 
   if (!pose.empty()) {
     if (options.trajectory) throw UsageError("--pose: a model has one pose or a --trajectory: give one of the two");

@@ -81,8 +81,8 @@ TEST(Laz, IsReadOnAsManyThreadsAsAreAskedFor)
       [&](unsigned threads) { readCloud(file, nullptr, {}, threads); },
       [&](unsigned threads) { readMesh(file, nullptr, {}, threads); },
       [&](unsigned threads) { readMesh(file, vertices, nullptr, {}, threads); },
-      [&](unsigned threads) { readObstacle(file, {}, 0.1, nullptr, {}, nullptr, threads); },
-      [&](unsigned threads) { readObstacle(file, vertices, 0.1, nullptr, {}, nullptr, threads); },
+      [&](unsigned threads) { readObstacle(file, {}, {}, nullptr, threads); },
+      [&](unsigned threads) { readObstacle(file, vertices, {}, nullptr, threads); },
       read_stream};
   for (const auto& reader : readers) {
     expectOtherThreads(false, [&] { reader(1); });

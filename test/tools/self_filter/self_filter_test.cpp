@@ -80,7 +80,7 @@ protected:
 
 TEST_F(SelfFilterTest, FlagsWhatIsWithinThePaddingOfALink)
 {
-  const Settings settings{0.03, 0.003, 1};
+  const Settings settings{0.03, 1};
   SelfFilter filter(robot, settings);
   std::mt19937 random(3);
   const auto uniform = [&](double low, double high) {
@@ -89,7 +89,7 @@ TEST_F(SelfFilterTest, FlagsWhatIsWithinThePaddingOfALink)
   std::vector<std::pair<std::size_t, TrueShape>> shapes; // with their links
   for (std::size_t link = 0; link < robot.links.size(); ++link)
     for (const Shape& shape : robot.links[link].shapes) shapes.emplace_back(link, TrueShape(shape));
-  std::size_t flagged = 0, between = 0;
+  std::size_t flagged = 0, near = 0;
   for (std::size_t frame = 0; frame < 3; ++frame) {
     const JointValues values = madeJointValues(frame, 3);
     const std::vector<Eigen::Isometry3d> poses = robot.poses(values);
@@ -120,21 +120,21 @@ TEST_F(SelfFilterTest, FlagsWhatIsWithinThePaddingOfALink)
       if (distance <= settings.padding - rounding) {
         EXPECT_EQ(flags[i], Verdict::colliding) << distance;
       }
-      if (distance > settings.padding + settings.tolerance + rounding) {
+      if (distance > settings.padding + rounding) {
         EXPECT_EQ(flags[i], Verdict::free) << distance;
       }
       flagged += flags[i] == Verdict::colliding;
-      between += distance > settings.padding && distance < settings.padding + settings.tolerance;
+      near += std::abs(distance - settings.padding) < 0.003;
     }
   }
   EXPECT_GT(flagged, 150U);
   EXPECT_LT(flagged, 500U);
-  EXPECT_GT(between, 5U);
+  EXPECT_GT(near, 5U);
 }
 
 TEST_F(SelfFilterTest, CutsOutWhatTheCameraSeesOfTheRobot)
 {
-  SelfFilter filter(robot, {0.02, 0.005, 1});
+  SelfFilter filter(robot, {0.02, 1});
   const JointValues values = madeJointValues(1, 3);
   const DepthImage image = seenBy(robot, values, 160);
   const Eigen::Isometry3d T_camera_root = robot.poses(values)[robot.linkNamed("camera")].inverse();
@@ -156,7 +156,7 @@ TEST_F(SelfFilterTest, AnswersAlikeForAnyNumberOfThreadsAndFrameBefore)
   const DepthImage image = seenBy(robot, madeJointValues(0, 3), 160);
   const PointsView view = viewOf(image.xyz.data(), image.xyz.size() / 3);
   const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  SelfFilter one(robot, {0.02, 0.005, 1}), all(robot, {0.02, 0.005, 0});
+  SelfFilter one(robot, {0.02, 1}), all(robot, {0.02, 0});
   all.flags(view, pose, madeJointValues(2, 3));
   EXPECT_EQ(one.flags(view, pose, madeJointValues(1, 3)), all.flags(view, pose, madeJointValues(1, 3)));
   EXPECT_THROW(one.flags(view, pose, {{"nose", 1}}), std::runtime_error);
@@ -184,8 +184,7 @@ TEST_F(SelfFilterOfOneBody, CutsOutWhatLiesInsideOfEachSolid)
   for (const Shape& shape : {Shape{Box{{2, 3, 4}}, pose}, Shape{Cylinder{1, 3}, pose}, Shape{Sphere{1.5}, pose}}) {
     std::vector<Vector3d> points;
     for (double along = -0.75; along <= 0.75; along += 0.125) points.push_back(pose * Vector3d(0.2, along, 0.3));
-    for (const Verdict flag : flags(shape, {0.02, 0.005, 1}, points))
-      EXPECT_EQ(flag, Verdict::colliding) << shape.form.index();
+    for (const Verdict flag : flags(shape, {0.02, 1}, points)) EXPECT_EQ(flag, Verdict::colliding) << shape.form.index();
   }
 }
 
@@ -195,7 +194,7 @@ TEST_F(SelfFilterOfOneBody, RoundsEdgesByThePadding)
   const double along = padding / std::sqrt(3.0), in_plane = padding / std::sqrt(2.0);
   const auto just = [&](const Shape& shape, const Vector3d& from, const Vector3d& step) {
     const std::vector<Vector3d> points = {pose * (from + (1 - least) * step), pose * (from + (1 + least) * step)};
-    EXPECT_EQ(flags(shape, {padding, 0.001, 1}, points), pcl_bsh::test::verdictsOf({1, 0}))
+    EXPECT_EQ(flags(shape, {padding, 1}, points), pcl_bsh::test::verdictsOf({1, 0}))
         << shape.form.index() << ": " << (from + step).transpose();
   };
   const Shape box{Box{{2, 3, 4}}, pose}, tube{Cylinder{1, 3}, pose}, ball{Sphere{1.5}, pose};
@@ -218,7 +217,7 @@ TEST_F(SelfFilterOfOneBody, KeepsWhatLiesInsideOfAMesh)
   const io::TemporaryFolder folder;
   writeMadeRobot(folder.path());
   const std::vector<Vector3d> points = {pose * Vector3d(0, 0, 0.1), pose * Vector3d(0.12, 0, 0.1)};
-  EXPECT_EQ(flags({MeshFile{folder / "meshes/turret.stl"}, pose}, {0.02, 0.005, 1}, points),
+  EXPECT_EQ(flags({MeshFile{folder / "meshes/turret.stl"}, pose}, {0.02, 1}, points),
             pcl_bsh::test::verdictsOf({0, 1}));
 }
 
@@ -243,7 +242,7 @@ TEST(LinkBodyTest, NamesTheLinkThatHasNoSize)
     link.name = "thumb";
     link.shapes = {shape};
     try {
-      bodyOf(link, 0.01);
+      bodyOf(link);
       ADD_FAILURE();
     }
     catch (const std::runtime_error& error) {
@@ -258,19 +257,19 @@ TEST(LinkBodyTest, OfVastSolidsIsAFewBallsToLookIn)
   link.name = "drum";
   for (const double size : {1e9, 1e30}) {
     link.shapes = {{Sphere{size}}, {Cylinder{size, 1.0}}, {Box{{1.0, size, 1.0}}}};
-    const LinkBody body = bodyOf(link, 0.001);
+    const LinkBody body = bodyOf(link);
     EXPECT_EQ(body.enclosing.centers.size(), 1U + 1U + 64U);
-    EXPECT_TRUE(body.surfaces.centers.empty());
+    EXPECT_TRUE(body.surface.triangles.empty());
     for (const float radius : body.enclosing.radii) EXPECT_TRUE(std::isfinite(radius));
   }
   link.shapes = {{Cylinder{1e31, 1.0}}};
-  EXPECT_THROW(bodyOf(link, 0.001), std::runtime_error);
+  EXPECT_THROW(bodyOf(link), std::runtime_error);
 }
 
 TEST(LinkBodyTest, OfALinkWithoutBodiesIsEmpty)
 {
-  const LinkBody body = bodyOf({}, 0.01);
-  EXPECT_EQ(body.surfaces.view().count + body.enclosing.view().count + body.solids.size(), 0U);
+  const LinkBody body = bodyOf({});
+  EXPECT_EQ(body.surface.view().count + body.enclosing.view().count + body.solids.size(), 0U);
 }
 
 } // namespace

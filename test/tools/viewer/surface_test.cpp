@@ -54,7 +54,6 @@ protected:
     made.clouds = {folder.write("scan.xyz", scan.str())};
     made.model = folder.write("crate.off", crateOff());
     made.clearance = 0.1;
-    made.surface.tolerance = 0.05;
     made.surface.vertices_only = vertices_only;
     made.width = 500;
     made.height = 400;
@@ -80,13 +79,8 @@ TEST_F(SurfaceViewTest, WhatCollidesOfItStandsOut)
   const CloudsContent corners(options(true));
   EXPECT_GT(found.colliding, 3000u) << "all of the floor below the crate";
   EXPECT_LT(corners.collisions(0).colliding, 200u);
-  const PointsView& balls = content.viewedClouds()[1].points();
-  ASSERT_EQ(found.flags[1].size(), balls.count);
-  for (std::uint32_t i = 0; i < balls.count; ++i)
-    if (found.flags[1][i] == Verdict::colliding)
-      ASSERT_LE(balls.point(i)[2], 0.05 + balls.radius(i)) << i;
-    else
-      ASSERT_GT(balls.point(i)[2], 0.001) << i;
+  // The bottom, and the sides, whose lowest points are 5 cm over the floor; not the top.
+  EXPECT_EQ(found.flags[1], test::verdictsOf({1, 1, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1}));
   Options seen_from_below = options(false);
   seen_from_below.camera = {Camera::Kind::given, {4, -5, -1}, {0, 0, 0.5}, {0, 0, 1}};
   seen_from_below.clouds = {folder.write("one.xyz", "0 0 -0.05\n0.1 0 -0.05\n3 3 3\n")};
@@ -129,7 +123,7 @@ TEST_F(SurfaceViewTest, AndAreColouredWhereTheyAre)
   EXPECT_GT(upper.draw().countNear(scan_color, u, v, 5, 30), 110u);
 }
 
-TEST_F(SurfaceViewTest, TheirDistancesAreTooSmallByTheToleranceAtMost)
+TEST_F(SurfaceViewTest, TheirDistancesAreExact)
 {
   Options all = asked();
   all.clearance.reset();
@@ -139,10 +133,9 @@ TEST_F(SurfaceViewTest, TheirDistancesAreTooSmallByTheToleranceAtMost)
   ASSERT_EQ(distances.size(), 12u);
   // The top is 1 away, 0.8 beside the nearest corner of a side is farther; the bottom is 3 away.
   const double nearest = *std::min_element(distances.begin(), distances.end());
-  EXPECT_GE(nearest, 0.95 - 1e-6);
-  EXPECT_LE(nearest, 1.0 + 1e-6);
+  EXPECT_EQ(nearest, 1.0);
   EXPECT_EQ(std::min_element(distances.begin(), distances.end()) - distances.begin(), 2) << "a triangle of the top";
-  EXPECT_GE(distances[0], 2.95 - 1e-6);
+  EXPECT_EQ(distances[1], 3.0);
   all.width = 800;
   all.height = 600;
   const Pixels pixels = OffscreenView(all).draw();
@@ -153,8 +146,7 @@ TEST_F(SurfaceViewTest, TheirDistancesAreTooSmallByTheToleranceAtMost)
   within.color = Coloring::distance;
   const std::vector<float> near = CloudsContent(within).distances(0);
   for (std::size_t i = 0; i < near.size(); ++i) EXPECT_EQ(std::isfinite(near[i]), i == touched) << i;
-  EXPECT_LE(near[touched], 0.05f);
-  EXPECT_GE(near[touched], 0.0f);
+  EXPECT_FLOAT_EQ(near[touched], 0.05f);
 }
 
 TEST_F(SurfaceViewTest, FollowAPath)
@@ -172,7 +164,7 @@ TEST_F(SurfaceViewTest, ShowWhatAFileSaysOfItsFaces)
   const Options question = asked();
   const std::filesystem::path marked = folder / "marked.ply";
   ASSERT_EQ(run("pcl_bsh_collide", question.clouds[0].string() + ' ' + question.model->string() + ' ' +
-                                       marked.string() + " --clearance 0.1 --surface-tolerance 0.05")
+                                       marked.string() + " --clearance 0.1")
                 .exit_code,
             0);
   Options told;

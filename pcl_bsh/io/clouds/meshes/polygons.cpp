@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/hierarchy/polygon_triangles.h>
 #include <pcl_bsh/io/clouds/meshes/polygons.h>
 #include <pcl_bsh/io/text/format_error.h>
-#include <pcl_bsh/surface/polygon_triangles.h>
 
 #include <limits>
 #include <string>

@@ -2,9 +2,8 @@
 // The faces of a mesh file: polygons by their vertices, and the triangles they are cut into.
 #pragma once
 
-#include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
-#include <pcl_bsh/surface/surface_cover.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -49,7 +49,6 @@ vtkSmartPointer<vtkActor> surfaceActor(const ViewedCloud& viewed, const Color& c
   actor->GetProperty()->SetInterpolationToFlat();
   actor->GetProperty()->SetAmbient(0.3);
   actor->GetProperty()->SetDiffuse(0.7);
-  actor->PickableOff();
   return actor;
 }
 

@@ -25,8 +25,7 @@ vtkSmartPointer<vtkActor> actorOf(vtkPolyData* data);
 void setData(vtkActor& actor, vtkPolyData& data); ///< of one that actorOf() made
 void setColor(vtkActor& actor, const Color& color);
 
-/// A surface in one colour, lit, so that its shape is seen. It cannot be picked: what is asked about may be the balls
-/// of its cover. @pre viewed.surface has triangles
+/// A surface in one colour, lit, so that its shape is seen. @pre viewed.surface
 vtkSmartPointer<vtkActor> surfaceActor(const ViewedCloud& viewed, const Color& color);
 
 /// A colour of its own for each point or cell. @param color_of called with numbers up to `count`

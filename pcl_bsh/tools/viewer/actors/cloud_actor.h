@@ -77,8 +77,7 @@ private:
 /// Clouds of a picture, in the order of its content's.
 using CloudActors = std::span<const std::unique_ptr<CloudActor>>;
 
-/// A cloud as points; marks are drawn once more, larger. A surface of whose triangles nothing is asked is drawn as
-/// such, with the balls of its cover that are marked.
+/// A cloud as points; marks are drawn once more, larger.
 std::unique_ptr<CloudActor> makePointsActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
                                             const Color& marked);
 

@@ -111,25 +111,17 @@ public:
       setData(*few_, *vtk::thinned(*data_, points_while_moving));
       few_is_old_ = false;
     }
-    all_->SetVisibility(!moving && !hidden_);
-    few_->SetVisibility(moving && !hidden_);
-  }
-
-  /// For good.
-  void hide()
-  {
-    hidden_ = true;
-    setMoving(false);
+    all_->SetVisibility(!moving);
+    few_->SetVisibility(moving);
   }
 
   /// Of a picture that does not move.
-  void setVisible(bool visible) { all_->SetVisibility(visible && !hidden_); }
+  void setVisible(bool visible) { all_->SetVisibility(visible); }
 
 private:
   vtkSmartPointer<vtkPolyData> data_;
   vtkSmartPointer<vtkActor> all_, few_;
   bool few_is_old_ = true;
-  bool hidden_ = false;
 };
 
 class PointsActor final : public CloudActor {
@@ -144,10 +136,6 @@ public:
     setColor(marks_.all(), marked);
     setPoints(viewed.points());
     mark({}, {});
-    if (!viewed.surface) return;
-    surface_ = surfaceActor(viewed, color);
-    draw(*surface_);
-    points_.hide();
   }
 
   void setPoints(const PointsView& points) override
@@ -195,12 +183,10 @@ public:
   {
     points_.setVisible(visible);
     marks_.setVisible(visible);
-    if (surface_) surface_->SetVisibility(visible);
   }
 
   void offerTo(vtkPicker& points, vtkPicker& /*triangles*/) const override
   {
-    if (surface_) return;
     for (const PointLayer* layer : {&points_, &marks_}) points.AddPickList(&layer->all());
   }
 
@@ -226,7 +212,6 @@ private:
   }
 
   PointLayer points_, marks_;
-  vtkSmartPointer<vtkActor> surface_; ///< null where the cloud is points
 };
 
 } // namespace

@@ -42,7 +42,6 @@ public:
     all_ = data_ = vtkPolyDataMapper::SafeDownCast(faces_->GetMapper())->GetInput();
     marked_ = vtkSmartPointer<vtkPolyData>::New();
     outlines_ = actorOf(marked_);
-    faces_->PickableOn();
     outlines_->GetProperty()->SetRepresentationToWireframe();
     outlines_->GetProperty()->SetLineWidth(2.5f);
     outlines_->PickableOff();

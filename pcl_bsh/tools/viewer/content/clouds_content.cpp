@@ -7,6 +7,7 @@
 
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/geometry/triangle/nearest_point.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/question/warnings.h>
@@ -18,7 +19,7 @@
 namespace pcl_bsh::viewer {
 namespace {
 
-/// A cloud with faces is a surface; of the scan's, each triangle is asked about.
+/// A cloud with faces is a surface.
 ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, const Options& options)
 {
   ViewedCloud viewed;
@@ -26,21 +27,17 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, cons
   viewed.role = role;
   viewed.file = file;
   cli::Step step("Loading " + file.string());
-  io::SurfaceSettings settings = options.surface;
-  settings.triangles_apart = role == ViewedCloud::Role::scan;
   io::CloudFacts facts;
-  io::Mesh mesh = io::readMesh(file, settings, &facts, options.columns.of(file), options.threads);
+  io::Mesh mesh = io::readMesh(file, options.surface, &facts, options.columns.of(file), options.threads);
   viewed.face_values = std::move(mesh.face_values);
-  const io::Obstacle read = io::obstacleOf(file, std::move(mesh), settings, options.clearance.value_or(0.0));
+  const io::Obstacle read = io::obstacleOf(file, std::move(mesh), options.surface);
   HierarchyOptions how;
   how.threads = options.threads;
   viewed.hierarchy = std::make_shared<SphereHierarchy>(read.view(), how);
   viewed.cloud = read.cloud();
   if (read.isSurface()) viewed.surface = read;
-  step.done(read.isSurface() ? counted(read.triangles()->size(), "triangle") : counted(viewed.points().count, "point"));
+  step.done(counted(viewed.parts(), viewed.partName()));
   cli::warnOfFile(program, file, facts.remarks);
-  const bool asks = options.clouds.size() > 1 || options.model; // else nothing depends on the balls
-  if (asks) cli::warnOfFile(program, file, read.remarks());
   return viewed;
 }
 
@@ -70,7 +67,7 @@ CloudsContent::CloudsContent(const Options& options) : FieldContent(options), po
 Shape CloudsContent::shapeOf(std::size_t cloud) const
 {
   const ViewedCloud& viewed = viewed_clouds_[cloud];
-  return {viewed.file.string(), viewed.hierarchy, viewed.surface ? viewed.surface->cover() : nullptr};
+  return {viewed.file.string(), viewed.hierarchy};
 }
 
 void CloudsContent::warnOfQuestions() const
@@ -131,11 +128,11 @@ std::optional<ClosestPair> CloudsContent::closest(std::size_t step) const
   Question question;
   question.wanted.closest = true;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
-    const Answer found = asked(other, step, question);
-    const double distance = found.closest.distance;
-    if (!found.closest.pair || (nearest && nearest->distance <= distance)) continue;
-    const auto& [a, b] = found.closest_places;
-    nearest = {Eigen::Vector3d::Map(a.data()), poseOf(other, step) * Eigen::Vector3d::Map(b.data()), distance};
+    const DistanceResult found = asked(other, step, question).closest;
+    if (!found.pair || (nearest && nearest->distance <= found.distance)) continue;
+    const auto [a, b] = nearestPoints(scan().cornersOf(found.pair->a, poseOf(0, step)),
+                                      viewed_clouds_[other].cornersOf(found.pair->b, poseOf(other, step)));
+    nearest = {Eigen::Vector3d(a.data()), Eigen::Vector3d(b.data()), found.distance};
   }
   return nearest;
 }
@@ -143,8 +140,7 @@ std::optional<ClosestPair> CloudsContent::closest(std::size_t step) const
 std::string CloudsContent::heading(const StepCollisions& collisions, std::size_t step) const
 {
   std::ostringstream text;
-  text << scan().name << ": "
-       << groupedCount(scan().hasTriangles() ? scan().parts() : scan().hierarchy->size(), scan().partName());
+  text << scan().name << ": " << groupedCount(scan().hierarchy->size(), scan().partName());
   if (collisions.known) {
     text << ", " << groupedCount(collisions.colliding, "collides", "collide");
     if (collisions.undecided > 0) text << ", " << groupedCount(collisions.undecided, "is undecided", "are undecided");
@@ -164,18 +160,15 @@ MotionPaths CloudsContent::paths(std::size_t /*step*/) const
 std::optional<double> CloudsContent::distanceOf(std::uint32_t part, std::size_t step) const
 {
   if (viewed_clouds_.size() == 1) return std::nullopt;
-  std::vector<std::int32_t> records; // the point, or the triangle's balls
-  if (!scan().hasTriangles()) records.push_back(static_cast<std::int32_t>(part));
-  for (std::uint32_t ball = 0; scan().hasTriangles() && ball < scan().points().count; ++ball)
-    if (scan().surface->partOf(ball) == part) records.push_back(static_cast<std::int32_t>(ball));
+  const auto record = static_cast<std::int32_t>(part);
   PointsView view = scan().points();
-  view.indices = records.data();
-  view.index_count = records.size();
+  view.indices = &record;
+  view.index_count = 1;
   const SphereHierarchy alone(view);
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
     nearest = std::min(nearest, closestPair({alone}, placed(other, step)).distance);
-  return std::max(nearest, 0.0);
+  return nearest;
 }
 
 std::vector<float> CloudsContent::distances(std::size_t step) const

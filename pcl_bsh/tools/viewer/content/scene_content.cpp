@@ -191,12 +191,13 @@ StepCollisions SceneContent::collisions(std::size_t step) const
   }
   for (const DistantPair& pair : result.distance) {
     if (found.closest && found.closest->distance <= pair.distance) continue;
-    const auto point = [&](ObjectId object, std::uint32_t part, std::uint32_t record) {
+    const auto corners = [&](ObjectId object, std::uint32_t part, std::uint32_t record) {
       const std::size_t cloud = cloudOf(object, part);
-      const Point3 p = viewed_clouds_[cloud].points().point(record);
-      return Eigen::Vector3d(poseOf(cloud, step) * Eigen::Vector3d(p[0], p[1], p[2]));
+      return viewed_clouds_[cloud].cornersOf(record, poseOf(cloud, step));
     };
-    found.closest = {point(pair.a, pair.part_a, pair.pair.a), point(pair.b, pair.part_b, pair.pair.b), pair.distance};
+    const auto [a, b] =
+        nearestPoints(corners(pair.a, pair.part_a, pair.pair.a), corners(pair.b, pair.part_b, pair.pair.b));
+    found.closest = {Eigen::Vector3d(a.data()), Eigen::Vector3d(b.data()), pair.distance};
   }
   return found;
 }

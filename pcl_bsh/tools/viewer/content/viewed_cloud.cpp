@@ -34,11 +34,21 @@ void eachValue(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field
 Point3 ViewedCloud::placeOf(std::uint32_t part) const
 {
   if (!hasTriangles()) return points().point(part);
-  const PointsView vertices = viewOf(*cloud);
   Point3 sum = {};
-  for (const std::uint32_t corner : (*surface->triangles())[part])
-    for (std::size_t k = 0; k < 3; ++k) sum[k] += vertices.point(corner)[k] / 3.0;
+  for (const Point3& corner : points().triangles->triangle(part))
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += corner[k] / 3.0;
   return sum;
+}
+
+Triangle3 ViewedCloud::cornersOf(std::uint32_t part, const Eigen::Isometry3d& pose) const
+{
+  const Point3 only = points().point(part);
+  Triangle3 corners = hasTriangles() ? points().triangles->triangle(part) : Triangle3{only, only, only};
+  for (Point3& corner : corners) {
+    const Eigen::Vector3d placed = pose * Eigen::Vector3d(corner[0], corner[1], corner[2]);
+    corner = {placed.x(), placed.y(), placed.z()};
+  }
+  return corners;
 }
 
 std::optional<std::vector<float>> ViewedCloud::result(const std::string& field_name) const

@@ -2,6 +2,7 @@
 // One cloud that the viewer shows, with its hierarchy.
 #pragma once
 
+#include <pcl_bsh/geometry/triangle/triangle3.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 
@@ -25,20 +26,23 @@ struct ViewedCloud {
   Role role = Role::scan;
   std::filesystem::path file;
   std::shared_ptr<const pcl::PCLPointCloud2> cloud; ///< as it was read; none where fields are not shown
-  std::optional<io::Obstacle> surface;     ///< where it has faces: these are drawn, and queries are asked of its balls
-  std::vector<io::FaceValues> face_values; ///< as they were read; none where fields are not shown
-  std::shared_ptr<SphereHierarchy> hierarchy; ///< null where nothing is asked
-  PointsView records;                         ///< then the points
+  std::optional<io::Obstacle> surface;              ///< where it has faces: these are drawn, and asked about
+  std::vector<io::FaceValues> face_values;          ///< as they were read; none where fields are not shown
+  std::shared_ptr<SphereHierarchy> hierarchy;       ///< null where nothing is asked
+  PointsView records;                               ///< then the points
 
-  const PointsView& points() const { return hierarchy ? hierarchy->view() : records; } ///< of a surface, its balls
+  const PointsView& points() const { return hierarchy ? hierarchy->view() : records; } ///< of a surface, its triangles
 
-  /// What is asked about, coloured and picked: points or, of a surface whose balls are each of one triangle, triangles.
-  bool hasTriangles() const { return surface && surface->cover()->triangles_apart; }
-  std::size_t parts() const { return hasTriangles() ? surface->triangles()->size() : points().count; }
+  /// What is asked about, coloured and picked: points or, of a surface, triangles.
+  bool hasTriangles() const { return surface.has_value(); }
+  std::size_t parts() const { return points().count; }
   const char* partName() const { return hasTriangles() ? "triangle" : "point"; }
 
   /// Of a triangle, its middle.
   Point3 placeOf(std::uint32_t part) const;
+
+  /// The corners of a triangle, or three times a point. @param pose of the cloud
+  Triangle3 cornersOf(std::uint32_t part, const Eigen::Isometry3d& pose) const;
 
   /// A field's values, one per part; none where the cloud has no such field, or one of several values. Of triangles:
   /// the property of its faces or, without one, the mean of the field at the corners.

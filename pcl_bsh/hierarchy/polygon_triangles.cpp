@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/surface/polygon_triangles.h>
+#include <pcl_bsh/hierarchy/polygon_triangles.h>
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>

@@ -4,7 +4,7 @@
 
 #include "support/random.h"
 
-#include <pcl_bsh/surface/surface_cover.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <Eigen/Geometry>
 
@@ -19,6 +19,11 @@ struct TestMesh {
   std::vector<Triangle> triangles;
 
   PointsView view() const { return viewOf(vertices.empty() ? nullptr : vertices[0].data(), vertices.size()); }
+
+  TrianglesView trianglesView() const
+  {
+    return {view(), triangles.empty() ? nullptr : triangles[0].data(), triangles.size()};
+  }
 
   void add(const Point3& a, const Point3& b, const Point3& c)
   {

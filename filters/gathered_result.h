@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From what is found of triangles to what is said of their polygons, or of their vertices.
+#pragma once
+
+#include <pcl_bsh/query/result.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+
+namespace pcl_bsh {
+
+/// Of each group the gravest of what its triangles have: colliding before undecided before free, the smallest distance
+/// with its pose and nearest point, the first pose. A group of no triangle is free. What the result does not have stays
+/// empty; summaries of poses, which count triangles, are left out.
+/// @param groupsOf from the number of a triangle to a range of those of its groups, each below `groups`
+template <typename GroupsOf>
+TrajectoryResult gatheredResult(const TrajectoryResult& found, std::size_t groups, const GroupsOf& groupsOf)
+{
+  TrajectoryResult gathered;
+  const auto sizeAs = [groups](const auto& values, auto& own, auto none) {
+    if (!values.empty()) own.assign(groups, none);
+  };
+  sizeAs(found.flags, gathered.flags, flagOf(Verdict::free));
+  sizeAs(found.distance, gathered.distance, std::numeric_limits<float>::quiet_NaN());
+  sizeAs(found.first_pose, gathered.first_pose, -1);
+  sizeAs(found.certain_pose, gathered.certain_pose, -1);
+  sizeAs(found.closest_pose, gathered.closest_pose, -1);
+  sizeAs(found.closest_point, gathered.closest_point, TrajectoryResult::kNoPoint);
+  const auto isGraver = [](auto flag, auto than) { // 1, 2 and 3 from the gravest on; 0 is free
+    return flag != flagOf(Verdict::free) && (than == flagOf(Verdict::free) || flag < than);
+  };
+  const auto takeFirst = [](std::int32_t pose, std::int32_t& first) {
+    if (pose >= 0 && (first < 0 || pose < first)) first = pose;
+  };
+  const std::size_t triangles = std::max(found.flags.size(), found.distance.size());
+  for (std::size_t t = 0; t < triangles; ++t) {
+    for (const std::size_t group : groupsOf(t)) {
+      if (!found.flags.empty() && isGraver(found.flags[t], gathered.flags[group]))
+        gathered.flags[group] = found.flags[t];
+      if (!found.first_pose.empty()) takeFirst(found.first_pose[t], gathered.first_pose[group]);
+      if (!found.certain_pose.empty()) takeFirst(found.certain_pose[t], gathered.certain_pose[group]);
+      if (found.distance.empty() || !(found.distance[t] >= 0.0f)) continue;
+      const bool has_poses = !found.closest_pose.empty();
+      const auto rank = [has_poses](const TrajectoryResult& of, std::size_t i) {
+        return std::tuple(of.distance[i], has_poses ? of.closest_pose[i] : 0);
+      };
+      const bool is_first = !(gathered.distance[group] >= 0.0f);
+      if (!is_first && !(rank(found, t) < rank(gathered, group))) continue;
+      gathered.distance[group] = found.distance[t];
+      if (has_poses) gathered.closest_pose[group] = found.closest_pose[t];
+      if (!found.closest_point.empty()) gathered.closest_point[group] = found.closest_point[t];
+    }
+  }
+  const auto count = [&](Verdict verdict) {
+    return static_cast<std::size_t>(std::count(gathered.flags.begin(), gathered.flags.end(), flagOf(verdict)));
+  };
+  gathered.colliding = count(Verdict::colliding);
+  gathered.undecided = count(Verdict::undecided);
+  gathered.first_contact = found.first_contact;
+  gathered.certain_contact = found.certain_contact;
+  gathered.work = found.work;
+  return gathered;
+}
+
+} // namespace pcl_bsh
